@@ -364,7 +364,7 @@ typedef enum corcast_plane {
 typedef enum corcast_type {
     CORCAST_U8 = 1,  /* uint8_t, sRGB */
     CORCAST_U16 = 2, /* uint16_t, sRGB */
-    CORCAST_F32 = 3, /* float, linear light; colours are multiplied by alpha */
+    CORCAST_F32 = 3, /* float, linear light; colors are multiplied by alpha */
     CORCAST_U32 = 4  /* uint32_t, of CORCAST_ID */
 } corcast_type;
 
@@ -373,16 +373,16 @@ typedef struct corcast_scene corcast_scene;
 
 /* Makes the scene of a tree.
  *
- * options  NULL, or options of "render": model, view, size, colours, light, look, and the planes
+ * options  NULL, or options of "render": model, view, size, colors, light, look, and the planes
  *          that corcast_render makes ("planes" = "depth,id"). "bits" is the precision of the
- *          colours: 8, 16, or 32 for floats. Of an animation, "only" selects the picture.
+ *          colors: 8, 16, or 32 for floats. Of an animation, "only" selects the picture.
  * Stability: stable. */
 CORCAST_API int corcast_scene_new(const corcast_tree *tree, const corcast_options *options,
                                   corcast_scene **out, corcast_error *error);
 
 /* Draws a scene with the native renderer.
  *
- * out      receives the picture: its colours, and the planes that the scene's options name.
+ * out      receives the picture: its colors, and the planes that the scene's options name.
  * report   NULL, or receives what `render --json` writes: engine, seconds, rays, ...
  * Errors   CORCAST_FAILED, kind "memory", for a picture that is larger than memory; corcast_export
  *          writes such pictures band by band.
@@ -423,9 +423,9 @@ CORCAST_API int corcast_image_shape(const corcast_image *image, corcast_plane pl
                                     int *height, int *channels, corcast_error *error);
 
 /* Copies the pixels of a plane to a buffer of the caller's, in the layout that
- * corcast_pixels describes. Colours are converted to `type`.
+ * corcast_pixels describes. Colors are converted to `type`.
  *
- * type     CORCAST_U8, CORCAST_U16 or CORCAST_F32 for colours, CORCAST_F32 for depth and normals,
+ * type     CORCAST_U8, CORCAST_U16 or CORCAST_F32 for colors, CORCAST_F32 for depth and normals,
  *          CORCAST_U32 for ids.
  * buffer   aligned for the type.
  * size     of the buffer in bytes: at least width * height * channels * bytes per number.
@@ -436,7 +436,7 @@ CORCAST_API int corcast_image_pixels(const corcast_image *image, corcast_plane p
                                      corcast_type type, void *buffer, size_t size,
                                      corcast_error *error);
 
-/* Writes a plane of an image to a file, in the format of the extension of `path`. Colours go to
+/* Writes a plane of an image to a file, in the format of the extension of `path`. Colors go to
  * .png, .tif, .jpg, .ppm and .pgm as CORCAST_U8 or CORCAST_U16, and to .exr and .pfm as
  * CORCAST_F32. Depth and normals go to .exr and .pfm, ids to .png and .ppm.
  * Errors   CORCAST_WRONG for what the format cannot hold; CORCAST_FAILED if writing fails.
@@ -448,7 +448,7 @@ CORCAST_API int corcast_image_write(const corcast_image *image, corcast_plane pl
  * Stability: stable. */
 CORCAST_API void corcast_image_free(corcast_image *image);
 
-/* Compares the colours of two images of the same size; and their ids, if both have them.
+/* Compares the colors of two images of the same size; and their ids, if both have them.
  *
  * a        the reference.
  * options  NULL, or options of "compare" that are about numbers and not about files: "tier",

@@ -4,7 +4,7 @@ the least that a solver does with them, in linear finite elements.
     diffusion.py NAME
 
 reads NAME.ends.csv, and NAME.1.node and NAME.1.ele of TetGen; holds the concentration at 1 on inlets and at 0 on outlets,
-prints what flows through each end, and writes NAME-cut.pov: the tetrahedra behind the plane z = 0, coloured by it.
+prints what flows through each end, and writes NAME-cut.pov: the tetrahedra behind the plane z = 0, colored by it.
 """
 import csv
 import sys

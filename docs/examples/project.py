@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """project.py V.nii.gz P.ppm: the volume from the front. On the left, the largest part that vessels fill of a voxel on
-each line along z, a maximum intensity projection; on the right, the same, in a colour for each label of
+each line along z, a maximum intensity projection; on the right, the same, in a color for each label of
 V.labels.nii.gz. Needs python3-nibabel."""
 import sys
 import nibabel

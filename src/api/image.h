@@ -7,7 +7,7 @@
 
 struct corcast_image {
     Handle handle;
-    Image color; /* integer codes, or floats; empty if there are no colours */
+    Image color; /* integer codes, or floats; empty if there are no colors */
     Plane depth, normal;
     IdPlane ids;
 };

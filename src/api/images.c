@@ -1,4 +1,4 @@
-/* Pictures in memory. Colours stay as they were made or read, as integer codes or as floats; a
+/* Pictures in memory. Colors stay as they were made or read, as integer codes or as floats; a
  * caller who asks for another type gets a conversion. */
 #include "api/image.h"
 
@@ -150,7 +150,7 @@ int corcast_image_shape(const corcast_image *image, corcast_plane plane, int *wi
     return call_end(&call, status);
 }
 
-/* Converts a plane of colours with alpha in its last channel to codes. */
+/* Converts a plane of colors with alpha in its last channel to codes. */
 static Status codes_of_transparent(const Plane *plane, int bits, Picture *out, Err *err)
 {
     const size_t n = (size_t)plane->width * (size_t)plane->height;
@@ -169,7 +169,7 @@ done:
     return status;
 }
 
-/* Makes the colours of an image as integer codes of sRGB. */
+/* Makes the colors of an image as integer codes of sRGB. */
 static Status codes_of(const Image *image, int bits, Picture *out, Err *err)
 {
     if (!image->plane.values)
@@ -230,7 +230,7 @@ static Status check_type(corcast_plane plane, corcast_type type, Err *err)
 static Status find_plane(const corcast_image *image, corcast_plane plane, corcast_type type,
                          PlaneShape *shape, Err *err)
 {
-    static const char *const names[] = {"colours", "depth", "normals", "ids"};
+    static const char *const names[] = {"colors", "depth", "normals", "ids"};
     TRY(check_plane(image, plane, err));
     TRY(check_type(plane, type, err));
     *shape = shape_of(image, plane);

@@ -58,7 +58,7 @@ int corcast_scene_new(const corcast_tree *tree, const corcast_options *options, 
     return call_end(&call, new_scene(tree, options, out, &call, &call.err));
 }
 
-/* Puts alpha behind the colours that are multiplied by it. */
+/* Puts alpha behind the colors that are multiplied by it. */
 static Status join_alpha(const Plane *color, const Plane *alpha, Plane *out, Err *err)
 {
     const size_t n = (size_t)color->width * (size_t)color->height;

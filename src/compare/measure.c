@@ -47,7 +47,7 @@ const Measure measures[] = {
      JUDGED(REGION_PIXELS, "largest missing or extra region", "pixels", REGION, "it starts")},
     {ALL, MEASURE_NAN_PIXELS, .key = "nan_pixels"},
     {COLOR, MEASURE_NOT_FINITE,
-     JUDGED(NAN, "colours that are not finite", "pixels", NAN, first_is)},
+     JUDGED(NAN, "colors that are not finite", "pixels", NAN, first_is)},
     {ALL, MEASURE_MAX_ABS, .key = "max_abs", SHOWN(SIZES, 0, "largest difference", "levels")},
     {ALL, MEASURE_MAX_CODE, .key = "max_code"},
     {ALL, MEASURE_MEAN_ABS, .key = "mean_abs", SHOWN(SIZES, 1, "mean difference", "levels")},
@@ -165,11 +165,11 @@ bool measure_is_for(const Measure *measure, const CompareResult *result)
 const char *measure_heading(PlaneKind kind, MeasureTable table)
 {
     static const char *const of_color[MEASURE_TABLES] = {
-        [TABLE_SIZES] = "Colour: sizes of differences",
-        [TABLE_SIGNS] = "Colour: which way B is off",
-        [TABLE_OUTLINES] = "Colour: outlines and coverage",
+        [TABLE_SIZES] = "Color: sizes of differences",
+        [TABLE_SIGNS] = "Color: which way B is off",
+        [TABLE_OUTLINES] = "Color: outlines and coverage",
         [TABLE_CLASSES] = "Pixels by the cause of their difference",
-        [TABLE_PERCEPTION] = "Colour: as people see it (reported, never judged)"};
+        [TABLE_PERCEPTION] = "Color: as people see it (reported, never judged)"};
     static const char *const of_others[PLANE_KINDS] = {
         [PLANE_DEPTH] = "Depth", [PLANE_NORMAL] = "Normals", [PLANE_ID] = "Segments"};
     return table == TABLE_CLASSES || kind == PLANE_COLOR ? of_color[table] : of_others[kind];

@@ -24,9 +24,9 @@ const char *plane_kind_name(PlaneKind kind);
  * function reads only the members that its contract names. */
 typedef struct Rendering {
     const Picture *picture;      /* integer codes */
-    const Plane *color;          /* linear colours in floats, which may exceed 1 */
+    const Plane *color;          /* linear colors in floats, which may exceed 1 */
     const IdPlane *ids;          /* NULL, in both renderings: unknown. The background is then
-                                  * the colour that three corners of each picture share. */
+                                  * the color that three corners of each picture share. */
     const Plane *depth, *normal; /* NULL, in both renderings: unknown */
     const Picture *transparent;  /* The picture before it was composited over a background, for
                                   * pixelmatch; NULL or without codes: the picture was opaque. */
@@ -65,7 +65,7 @@ typedef enum Limit {
     LIMIT_NORMAL_PPM,        /* pixels beyond LIMIT_NORMAL_MAX_DEG */
     LIMIT_NORMAL_MEDIAN_DEG, /* median angle between normals */
     /* Settings of measures: the maximum difference of a pixel that counts as equal, and others. */
-    LIMIT_COLOR_LEVELS,      /* maximum difference of colours that count as equal */
+    LIMIT_COLOR_LEVELS,      /* maximum difference of colors that count as equal */
     LIMIT_COLOR_COMMON_ONLY, /* 1: LIMIT_COLOR_PPM counts only pixels that show a vessel in both
                               * images; 0: it counts all pixels */
     LIMIT_DEPTH_MAX_MM,      /* maximum difference of depths that count as equal */
@@ -111,7 +111,7 @@ typedef enum MeasureId {
     MEASURE_LARGEST_REGION,  /* pixels in the largest 8-connected region of missing, or of extra,
                               * pixels */
     MEASURE_NAN_PIXELS,      /* pixels with a value that is not a number, in A plus in B */
-    MEASURE_NOT_FINITE,      /* MEASURE_NAN_PIXELS of float colours */
+    MEASURE_NOT_FINITE,      /* MEASURE_NAN_PIXELS of float colors */
     /* Pixels that limits count. */
     MEASURE_JUDGED_PIXELS, /* pixels that limits in ppm refer to */
     MEASURE_BEYOND_PIXELS, /* unsettled pixels that differ by more than the setting for one pixel:
@@ -123,7 +123,7 @@ typedef enum MeasureId {
     MEASURE_BAND_BEYOND,       /* the part of MEASURE_BEYOND_PIXELS that is at edges */
     MEASURE_INTERIOR_BEYOND,   /* the part of MEASURE_BEYOND_PIXELS that is not at edges */
     MEASURE_UNSETTLED_MAX_ABS, /* levels; largest difference of a pixel that is not settled */
-    /* Sizes of colour differences, in levels; MEASURE_MAX_CODE in codes. */
+    /* Sizes of color differences, in levels; MEASURE_MAX_CODE in codes. */
     MEASURE_MAX_ABS,
     MEASURE_MAX_CODE,
     MEASURE_MEAN_ABS,
@@ -132,7 +132,7 @@ typedef enum MeasureId {
     MEASURE_INTERIOR_MAX_ABS,
     MEASURE_EDGE_MISMATCH, /* fraction of the pixels at edges whose labels differ in A and B */
     MEASURE_EDGE_MISMATCH_PERCENT,
-    /* Signed colour differences. */
+    /* Signed color differences. */
     MEASURE_BIAS_LEVELS,
     MEASURE_SIGN_SIGMA, /* positive: B is brighter more often than darker */
     MEASURE_GAIN,       /* g of the least squares fit B = g A + o over common pixels */
@@ -154,7 +154,7 @@ typedef enum MeasureId {
     MEASURE_FLIP_WEIGHTED_MEAN, /* the weight of each pixel is its FLIP error */
     MEASURE_FLIP_WEIGHTED_MEDIAN,
     MEASURE_FLIP_WEIGHTED_P95,
-    MEASURE_HDR_FLIP_MEAN, /* of float colours */
+    MEASURE_HDR_FLIP_MEAN, /* of float colors */
     MEASURE_SSIM,          /* of luma; NAN below 11 x 11 pixels */
     MEASURE_DE2000_MEAN,
     MEASURE_DE2000_MAX,
@@ -207,8 +207,8 @@ typedef enum PixelClass {
     PIXEL_EDGE,          /* ids differ, at an edge */
     PIXEL_SHADOW,        /* ids and geometry agree; one is over 1.5 times as bright as the other */
     PIXEL_GEOMETRY,      /* ids agree; depth or normal differs */
-    PIXEL_SHADING,  /* ids and geometry agree or are unknown; colour differs by over one code */
-    PIXEL_ROUNDING, /* ids and geometry agree or are unknown; colour differs by one code */
+    PIXEL_SHADING,  /* ids and geometry agree or are unknown; color differs by over one code */
+    PIXEL_ROUNDING, /* ids and geometry agree or are unknown; color differs by one code */
     PIXEL_IDENTICAL,
     PIXEL_CLASSES
 } PixelClass;
@@ -221,7 +221,7 @@ typedef struct LedgerEntry {
     uint32_t id;
     size_t area_a, area_b; /* pixels */
     size_t common;         /* pixels that show the segment in both images */
-    size_t differing; /* pixels that show the segment in either image, and differ in colour or id */
+    size_t differing; /* pixels that show the segment in either image, and differ in color or id */
     double outline_px;       /* length of the segment's outline in A; in B if A does not show it */
     double signed_levels[3]; /* per channel: mean difference of the common pixels */
     double gain;             /* g of the least squares fit B = g A; NAN if A is black */

@@ -2,7 +2,7 @@
  * 80-byte title may begin with "solid" as an ASCII file does. One with zero bytes in it may also be
  * longer: some programs write more behind the triangles. Keywords of an ASCII file may be in
  * capitals, "end loop" may be two words, and what stands behind "endsolid" is not read. Normals,
- * colours, textures and groups are not read: the outside of a triangle is where its corners run
+ * colors, textures and groups are not read: the outside of a triangle is where its corners run
  * counter-clockwise. */
 #include "domain/mesh.h"
 

@@ -1,6 +1,6 @@
 /* A Python script of Blender's: what it does stands in the template, and C writes calls with
- * numbers. Splines have no colours of their own but materials, of which an object has few: where
- * there are more than MOST_MATERIALS colours, those whose codes agree in their leading bits become
+ * numbers. Splines have no colors of their own but materials, of which an object has few: where
+ * there are more than MOST_MATERIALS colors, those whose codes agree in their leading bits become
  * one, the bits being as many as keep them that few. */
 #include "emit/curves.h"
 #include "emit/meshparts.h"
@@ -16,7 +16,7 @@ typedef struct Script {
     Curves curves;
     uint32_t *paints;     /* the material of each segment, by its index; owned */
     uint32_t *painted;    /* a segment of each material; owned */
-    uint64_t *color_keys; /* the leading bits of each segment's colour, and its index; owned */
+    uint64_t *color_keys; /* the leading bits of each segment's color, and its index; owned */
     size_t n_materials;
 } Script;
 
@@ -26,7 +26,7 @@ static int compare_keys(const void *a, const void *b)
     return (*one > *other) - (*one < *other);
 }
 
-/* Sorts the segments by the `bits` leading bits of their colours' codes; returns how many
+/* Sorts the segments by the `bits` leading bits of their colors' codes; returns how many
  * different codes there are. */
 static size_t sort_colors(Script *script, int bits)
 {

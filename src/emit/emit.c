@@ -34,7 +34,7 @@ const Emitter emitters[] = {
     OF_MESHES("obj", "obj", "triangles in groups, and their materials", obj_write,
               .has_colors = true, .second_extension = "mtl", .second_holds = "the materials",
               .check_name = obj_check_name),
-    OF_MESHES("3mf", "3mf", "triangles and their colours for printers", threemf_write,
+    OF_MESHES("3mf", "3mf", "triangles and their colors for printers", threemf_write,
               .binary = true, .has_colors = true),
     OF_LINES("blender", "py", "a script that makes curves in Blender", blender_write,
              .binary = false),

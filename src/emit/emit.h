@@ -32,7 +32,7 @@ typedef struct EmitParams {
     const char *command;     /* the command that makes the scene, in one line */
     bool shadows;
     bool ids;              /* fields: adds the paint that the id plane needs */
-    bool planes;           /* Tachyon: colours encode depth and segment */
+    bool planes;           /* Tachyon: colors encode depth and segment */
     CellParams cells;      /* isosurface */
     const CellTree *built; /* isosurface: its cells, if they are known; NULL: they are computed */
     const PixelRect *part; /* POV-Ray without an anatomy, and with `built`: leaves out what no ray

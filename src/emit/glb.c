@@ -3,7 +3,7 @@
  * that the coordinates are the very ones that were proved. y is up in both.
  *
  * A point is a vertex once for the wall and once for a cap, whose normal is flat, in each order
- * that has it. All vertices stand in one buffer, order by order: positions, then normals, colours
+ * that has it. All vertices stand in one buffer, order by order: positions, then normals, colors
  * and corners. */
 #include "emit/meshparts.h"
 #include "emit/record.h"
@@ -145,7 +145,7 @@ static void add_order(const Glb *glb, size_t order, GlbLists *lists)
     lists->n++;
 }
 
-/* What is known of the tree, and what its colours mean; flat, because assimp 5.2 aborts on objects
+/* What is known of the tree, and what its colors mean; flat, because assimp 5.2 aborts on objects
  * within. */
 static json_t *root_extras(const EmitParams *params)
 {

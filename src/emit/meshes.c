@@ -55,7 +55,7 @@ static void put_ply_faces(const EmitParams *params, Text *out)
     }
 }
 
-/* Points with normals and colours, and for each triangle the SWC id of its segment and whether it
+/* Points with normals and colors, and for each triangle the SWC id of its segment and whether it
  * closes an end. */
 Status ply_write(const EmitParams *params, EmitOutput *to, Err *err)
 {

@@ -1,4 +1,4 @@
-/* What several formats need of meshes and vessels: triangles by Strahler order, colours, boxes.
+/* What several formats need of meshes and vessels: triangles by Strahler order, colors, boxes.
  * Private to the module emit. */
 #ifndef CORCAST_EMIT_MESHPARTS_H
 #define CORCAST_EMIT_MESHPARTS_H
@@ -13,7 +13,7 @@ enum { MOST_ORDERS = 32 };
  * indexlists_release, also after an error. Errors: STATUS_MEMORY. */
 MUST_CHECK Status triangles_by_order(const EmitParams *params, IndexLists *out, Err *err);
 
-/* Return the colour of a segment of params->vessels: linear, and as 8-bit codes of sRGB. */
+/* Return the color of a segment of params->vessels: linear, and as 8-bit codes of sRGB. */
 Rgb vessel_color(const EmitParams *params, uint32_t segment);
 void vessel_color_codes(const EmitParams *params, uint32_t segment, uint8_t codes[3]);
 /* Appends these codes: "C0102A". */

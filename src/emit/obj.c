@@ -1,4 +1,4 @@
-/* Wavefront OBJ with a library of materials: groups by Strahler order, a material for each colour.
+/* Wavefront OBJ with a library of materials: groups by Strahler order, a material for each color.
  * Points are shared by all triangles about them; the flat normals of caps follow those of points,
  * one for each triangle of a cap, in the order in which these are written. */
 #include "emit/meshparts.h"
@@ -33,7 +33,7 @@ static void put_face(const VesselMesh *mesh, uint32_t triangle, size_t *flat, Te
     text_puts(out, "\n");
 }
 
-/* A new material where the colour is not that of the triangle before. */
+/* A new material where the color is not that of the triangle before. */
 static void put_material(const EmitParams *params, uint32_t triangle, uint32_t *last, Text *out)
 {
     uint8_t codes[3];
@@ -63,12 +63,12 @@ static int compare_colors(const void *a, const void *b)
     return memcmp(a, b, 3);
 }
 
-/* One for each colour, which stands as sRGB has it, divided by 255. */
+/* One for each color, which stands as sRGB has it, divided by 255. */
 static Status put_materials(const EmitParams *params, Text *out, Err *err)
 {
     const size_t n = params->vessels->n_segments;
     uint8_t(*codes)[3];
-    TRY(mem_calloc(&codes, n, sizeof *codes, "colours", err));
+    TRY(mem_calloc(&codes, n, sizeof *codes, "colors", err));
     for (size_t i = 0; i < n; i++)
         vessel_color_codes(params, (uint32_t)i, codes[i]);
     qsort(codes, n, sizeof *codes, compare_colors);

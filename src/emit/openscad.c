@@ -69,7 +69,7 @@ static size_t ends_at(const Parametric *made, Vec3 point, const CylinderEnd **fi
 
 /* ---- calls ----------------------------------------------------------------------------------- */
 
-/* Appends the radius, what follows it, and the colour if vessels differ in colour. */
+/* Appends the radius, what follows it, and the color if vessels differ in color. */
 static void put_rest(Text *text, const Scene *scene, const Primitive *primitive,
                      const Vec3 *outwards)
 {

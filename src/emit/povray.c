@@ -107,7 +107,7 @@ static void add_places(Values *values, const EmitParams *params)
     put_vectors(add_value(values, "path"), anatomy->path, anatomy->n_path);
 }
 
-/* A colour map has at most 256 entries; a step of one colour is two. */
+/* A color map has at most 256 entries; a step of one color is two. */
 static void put_color_map(Text *text, const Appearance *appearance)
 {
     enum { ENTRIES = COLORRAMP_ENTRIES };

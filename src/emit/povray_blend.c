@@ -1,6 +1,6 @@
-/* Where colours blend, POV-Ray finds a point's mean place on the scale, by functions that
- * povray_cells.c and povray_blob.c write, and takes it to a colour as colorscale_at does. A blob's
- * own blending of textures is not used: it weights colours by the strengths of single components,
+/* Where colors blend, POV-Ray finds a point's mean place on the scale, by functions that
+ * povray_cells.c and povray_blob.c write, and takes it to a color as colorscale_at does. A blob's
+ * own blending of textures is not used: it weights colors by the strengths of single components,
  * and of those that subtract, too. */
 #include "emit/povray_members.h"
 #include "emit/povray_text.h"
@@ -38,7 +38,7 @@ static void put_bounds(Text *text, const ColorScale *scale)
     text_printf(text, ") / %d", scale->n_bounds + 1);
 }
 
-/* POV-Ray rounds the ends of a colour map's steps to single precision, so a class is given the
+/* POV-Ray rounds the ends of a color map's steps to single precision, so a class is given the
  * middle of its step. */
 void put_value_map(Text *text, const ColorScale *scale)
 {
@@ -81,7 +81,7 @@ Status put_blend_macros(Text *out, void *context, Err *err)
         return text_check(out, err);
     if (appearance->n_frames > 0)
         return err_set(err, STATUS_USAGE,
-                       "`color_blend`: in a scene of POV-Ray colours that change with time do not "
+                       "`color_blend`: in a scene of POV-Ray colors that change with time do not "
                        "blend; `moment` chooses one moment");
     add_number(&values, "lowest", scale->under.given ? colorscale_lowest(scale) : -never);
     add_number(&values, "highest", scale->over.given ? colorscale_highest(scale) : never);

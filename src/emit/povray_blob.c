@@ -13,7 +13,7 @@
 
 #include <stdlib.h>
 
-/* A pigment map holds 256 entries, and so does a colour map: two of them in one another count
+/* A pigment map holds 256 entries, and so does a color map: two of them in one another count
  * on. */
 enum { GROUP = 256, MAX_PAINTED = GROUP * GROUP, LEAF = 4 };
 
@@ -275,7 +275,7 @@ typedef struct PaintItem {
 typedef struct Paints {
     const Scene *scene;
     PovrayItems painted;  /* numbered anew, in their order */
-    const double *places; /* of sums for colours that blend; NULL: the largest term is found */
+    const double *places; /* of sums for colors that blend; NULL: the largest term is found */
     const Tmpl *node;     /* the function of a box */
     bool in_matrices;     /* as put_matrices says */
     double grid_mm;       /* boxes are rounded to */
@@ -499,7 +499,7 @@ static Status put_weights(Text *out, void *context, Err *err)
     return put_hierarchy(out, geometry, geometry->scene->appearance.places, err);
 }
 
-/* What finds the mean where colours blend. */
+/* What finds the mean where colors blend. */
 static Status put_blend(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;

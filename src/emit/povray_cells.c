@@ -22,7 +22,7 @@ enum { TUBE = TERM_MIDDLE + 1, N_FUNCTIONS };
  * in a cell of more, by comparing each with the largest, a function of its own. */
 enum { MOST_COMPARED = 4 };
 
-/* The entries of a map of POV-Ray's colours or textures. */
+/* The entries of a map of POV-Ray's colors or textures. */
 enum { MOST_PAINTS = 256 };
 
 /* Scales are 2^(number - SCALE_ONE). */
@@ -234,7 +234,7 @@ typedef enum CellTextPart {
     CELL_HIGH,
     CELL_FUNCTION,
     CELL_PAINT,
-    CELL_BY_SEGMENT, /* the paint by segment, where colours blend */
+    CELL_BY_SEGMENT, /* the paint by segment, where colors blend */
     CELL_DECLARED,
     CELL_PICK,
     CELL_PAINTS,
@@ -434,7 +434,7 @@ static Status put_cell_paint(CellWriter *writer, const Cell *cell, CellTextPart 
     if (cell->count > MOST_PAINTS)
         return err_set(err, STATUS_INFEASIBLE,
                        "%u vessels meet near (%g, %g, %g): POV-Ray cannot paint more than %d of an "
-                       "isosurface at one place; draw them in one colour, or choose another "
+                       "isosurface at one place; draw them in one color, or choose another "
                        "model",
                        cell->count, cell->low.x, cell->low.y, cell->low.z, MOST_PAINTS);
     Text *declared = cell_text(writer, CELL_DECLARED), *pick = cell_text(writer, CELL_PICK);
@@ -457,7 +457,7 @@ static Status put_cell_paint(CellWriter *writer, const Cell *cell, CellTextPart 
                       text, err);
 }
 
-/* ---- colours that blend ---------------------------------------------------------------------- */
+/* ---- colors that blend ---------------------------------------------------------------------- */
 
 /* The place on the scale of a term's segment; NAN: it has none. */
 static double place_of(const EmitParams *params, const CellTerm *term)
@@ -515,7 +515,7 @@ static void put_cell_ratio(Text *text, const EmitParams *params, const CellTree 
     close_calls(text, cell->n_groups > 0 ? cell->n_groups - 1 : 0);
 }
 
-/* Appends the paint of a cell in which colours may blend. It contains the paint by segment. */
+/* Appends the paint of a cell in which colors may blend. It contains the paint by segment. */
 static Status put_cell_blend(CellWriter *writer, const Cell *cell, Err *err)
 {
     const EmitParams *params = writer->geometry->params;

@@ -36,18 +36,18 @@ Status put_mesh(Text *out, PovrayGeometry *geometry, Err *err);
 /* Appends the call that draws a joint. */
 void put_joint(Text *text, const EmitParams *params, const Primitive *joint);
 
-/* ---- colours ----------------------------------------------------------------------------------
+/* ---- colors ----------------------------------------------------------------------------------
  */
 
 /* Appends the fraction of the scale's range below the value x, as an expression of POV-Ray's
- * functions [colorscale_place]. For a scale that counts colours, the fraction is x itself. */
+ * functions [colorscale_place]. For a scale that counts colors, the fraction is x itself. */
 void put_value_part(Text *text, const ColorScale *scale);
 /* Appends the position on Value_Color_Map, 0 to 1, of a fraction x of the range, as an expression.
  */
 void put_value_map(Text *text, const ColorScale *scale);
-/* Returns true if the colours of the geometry blend. */
+/* Returns true if the colors of the geometry blend. */
 bool povray_blends(const PovrayGeometry *geometry);
-/* Appends the macros that blend colours, if they do. */
+/* Appends the macros that blend colors, if they do. */
 Status put_blend_macros(Text *out, void *geometry, Err *err);
 
 #endif

@@ -6,10 +6,10 @@
 #include "tmpl/tmpl.h"
 
 /* Appends the last arguments of the macros: id,order,value,color of a segment, given by its index.
- * In a scene of one colour the last two are 0. If colours change with time, they are elements of
+ * In a scene of one color the last two are 0. If colors change with time, they are elements of
  * the arrays of put_frame. */
 void put_paint(Text *text, const EmitParams *params, uint32_t segment);
-/* Appends the arrays of values and colours of all segments in a frame [appearance_frame]. */
+/* Appends the arrays of values and colors of all segments in a frame [appearance_frame]. */
 void put_frame(Text *text, const Appearance *frame);
 /* Appends x*k0+y*k1-z*k2+k3 without zero terms; nothing if all are 0. */
 void put_linear(Text *text, const Linear *linear);

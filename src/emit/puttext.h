@@ -1,4 +1,4 @@
-/* Formatted text with vectors, colours and exact numbers. Private to the module emit. */
+/* Formatted text with vectors, colors and exact numbers. Private to the module emit. */
 #ifndef CORCAST_EMIT_PUTTEXT_H
 #define CORCAST_EMIT_PUTTEXT_H
 

@@ -53,7 +53,7 @@ static void put_texture(Text *text, const char *name, const Finish *finish, Rgb 
     text_puts(text, " TEXFUNC 0\n");
 }
 
-/* The id as a colour that is cut off to its codes. */
+/* The id as a color that is cut off to its codes. */
 static Rgb id_color(uint32_t id)
 {
     return (Rgb){((float)(id >> 16 & 255) + 0.5F) / 255, ((float)(id >> 8 & 255) + 0.5F) / 255,

@@ -1,6 +1,6 @@
 /* 3MF: one object of XML in a ZIP archive [3MF Consortium, Core Specification 1.3; Materials and
  * Properties Extension 1.2, section 3]. All vessels are one mesh, painted triangle by triangle with
- * the colour of the segment: parts of one colour each would be open where they meet. */
+ * the color of the segment: parts of one color each would be open where they meet. */
 #include "emit/threemf.h"
 
 #include "emit/meshparts.h"

@@ -10,7 +10,7 @@ MUST_CHECK Status threemf_put_archive(const EmitParams *params,
                                       Status (*put)(Text *out, void *context, Err *err),
                                       void *context, Text *out, Err *err);
 
-/* Adds `generator`, `description`, `command`, and the part `colors`: a colour for each segment, or
+/* Adds `generator`, `description`, `command`, and the part `colors`: a color for each segment, or
  * one for all. */
 void threemf_add_about(Values *values, const EmitParams *params);
 

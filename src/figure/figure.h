@@ -1,4 +1,4 @@
-/* The public header of the module figure: a page of pictures, diagrams, colour bars, scale bars,
+/* The public header of the module figure: a page of pictures, diagrams, color bars, scale bars,
  * letters and text, as PDF, as SVG and as pixels.
  *
  * Lengths are mm from the page's upper left corner, x to the right and y down. Sizes of text are
@@ -56,7 +56,7 @@ typedef struct FigureColor {
     uint8_t rgb[3];
 } FigureColor;
 
-/* Returns the sRGB codes of a linear colour. */
+/* Returns the sRGB codes of a linear color. */
 FigureColor figure_color(const float linear[3]);
 
 typedef enum FigureAlign { ALIGN_LEFT, ALIGN_CENTER, ALIGN_RIGHT } FigureAlign;
@@ -65,7 +65,7 @@ typedef enum FigureKind {
     FIGURE_PICTURE,
     FIGURE_SHAPE, /* a polygon, filled */
     FIGURE_LINE,  /* a polyline, stroked */
-    FIGURE_RAMP,  /* a rectangle whose colour changes from the left to the right, or upwards */
+    FIGURE_RAMP,  /* a rectangle whose color changes from the left to the right, or upwards */
     FIGURE_TEXT,
     FIGURE_STROKES, /* a line drawing */
     FIGURE_BARS,    /* a diagram */
@@ -77,7 +77,7 @@ enum { FIGURE_CORNERS = 4, FIGURE_STOPS = 65 };
 /* A bar of a diagram: a rectangle, mm. */
 typedef struct FigureBar {
     double x[2], y[2]; /* ascending */
-    int32_t index;     /* of its colour */
+    int32_t index;     /* of its color */
 } FigureBar;
 
 /* The bars of a diagram. No two overlap. All members are borrowed. */
@@ -102,7 +102,7 @@ typedef struct FigureItem {
     double width_mm;        /* of a line */
     double size_pt;         /* of a text */
     char *text;             /* owned */
-    FigureColor *ramp;      /* owned; FIGURE_STOPS colours at equal distances */
+    FigureColor *ramp;      /* owned; FIGURE_STOPS colors at equal distances */
     const Strokes *strokes; /* borrowed; their paper's corner is at at[0] */
     const FigureBars *bars; /* borrowed; their origin is at at[0] */
     const Picture *picture; /* borrowed; 8 bits */
@@ -180,9 +180,9 @@ typedef struct FigureLegend {
     FigureColor ink;
 } FigureLegend;
 
-/* Appends a colour bar with title, ticks at round numbers, pointed ends where values are outside
- * the range, and a swatch for vessels without a value. If integers select separate colours, appends
- * one swatch per colour instead. The position is arbitrary: use figure_bounds and figure_move. */
+/* Appends a color bar with title, ticks at round numbers, pointed ends where values are outside
+ * the range, and a swatch for vessels without a value. If integers select separate colors, appends
+ * one swatch per color instead. The position is arbitrary: use figure_bounds and figure_move. */
 void figure_add_legend(FigurePage *page, const FigureLegend *legend);
 
 /* Appends a scale bar of this length, with its label above the middle, at an arbitrary position. */
@@ -190,7 +190,7 @@ void figure_add_scale_bar(FigurePage *page, double length_mm, const char *label,
                           FigureColor ink);
 
 /* Stores about `wanted` round numbers within the range of a scale, ascending, and returns how many.
- * The scale must not count colours [colorscale_counts]. `whole`: only integers. */
+ * The scale must not count colors [colorscale_counts]. `whole`: only integers. */
 enum { FIGURE_TICKS = 32 };
 int figure_ticks(const ColorScale *scale, int wanted, bool whole, double ticks[FIGURE_TICKS]);
 

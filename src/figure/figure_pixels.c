@@ -1,7 +1,7 @@
 /* The rasterizer of FreeType fills glyphs, polygons and lines: it converts outlines to spans of
  * exact coverage, which are blended into the rows. The result does not depend on the band that the
  * rows are. Boxes and lines along the pixel grid are rounded to whole pixels, so that they are
- * sharp. A ramp has the colour at the centre of each pixel. Each part of a polyline is a polygon of
+ * sharp. A ramp has the color at the centre of each pixel. Each part of a polyline is a polygon of
  * its own. */
 #include "figure/fonts.h"
 #include "figure/items.h"
@@ -26,7 +26,7 @@ static double pixels_of(const PixelRows *target, double mm)
     return mm / MM_PER_INCH * target->page->dpi;
 }
 
-/* Blends an 8-bit colour over a pixel that it covers by `alpha` / 255. */
+/* Blends an 8-bit color over a pixel that it covers by `alpha` / 255. */
 static void blend(Picture *rows, size_t pixel, const uint8_t color[3], unsigned alpha)
 {
     const unsigned scale = rows->bits == 8 ? 1 : 257;
@@ -326,9 +326,9 @@ Status figure_draw(const FigurePage *page, int first, Picture *rows, Err *err)
 /* ---- bars in linear light --------------------------------------------------------------------
  *
  * A pixel is the mean of what it covers. Bars do not overlap. The parts of the pixel that they
- * cover, and the colours of these parts, therefore add up in any order. The rest is background. */
+ * cover, and the colors of these parts, therefore add up in any order. The rest is background. */
 
-/* Channels of the plane of sums: the colour, and the part of the pixel that is covered. */
+/* Channels of the plane of sums: the color, and the part of the pixel that is covered. */
 enum { COVERED = 3, SUMS = 4 };
 
 /* Returns the part of pixel `at` that is between two positions. */
@@ -360,7 +360,7 @@ static void add_bar(const double x[2], const double y[2], const float color[3], 
         }
 }
 
-/* Stores the sums as colours. By rounding they may cover a little more than the whole pixel. */
+/* Stores the sums as colors. By rounding they may cover a little more than the whole pixel. */
 static void mix(const Plane *sums, const float background[3], Plane *color)
 {
     size_t pixels = (size_t)color->width * (size_t)color->height;

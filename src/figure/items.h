@@ -12,7 +12,7 @@ typedef Status FigurePut(void *context, const FigureItem *item, Err *err);
 MUST_CHECK Status figure_put_items(const FigurePage *page, FigurePut *const put[FIGURE_KINDS],
                                    void *context, Err *err);
 
-/* Returns bar `i` of an item of the kind FIGURE_BARS as a shape, in the colours of sRGB. */
+/* Returns bar `i` of an item of the kind FIGURE_BARS as a shape, in the colors of sRGB. */
 FigureItem figure_bar(const FigureItem *item, size_t i);
 
 #endif

@@ -194,7 +194,7 @@ static void put_swatch(const LegendLayout *layout, double from, const float line
     put_label(layout, from + side / 2, side + gap_ems * layout->em, label);
 }
 
-/* Adds a swatch for each integer of the range, the highest first, or as many as there are colours.
+/* Adds a swatch for each integer of the range, the highest first, or as many as there are colors.
  * Returns the length of the bar. */
 static double put_counts(const LegendLayout *layout)
 {

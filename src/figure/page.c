@@ -97,7 +97,7 @@ void figure_add_ramp(FigurePage *page, FigureBox box, bool upwards,
                      const FigureColor stops[FIGURE_STOPS])
 {
     FigureColor *ramp = NULL;
-    if (mem_calloc(&ramp, FIGURE_STOPS, sizeof *ramp, "colours", NULL) != STATUS_OK) {
+    if (mem_calloc(&ramp, FIGURE_STOPS, sizeof *ramp, "colors", NULL) != STATUS_OK) {
         page->failed = true;
         return;
     }

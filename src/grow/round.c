@@ -3,8 +3,8 @@
  * cache, however large the tree is.
  *
  * Threads work on tiles side by side. The points of a tile may read and change what lies in its
- * zone, which reaches half a tile beyond it on all sides. Tiles have 2 x 2 (x 2) colours, like a
- * chessboard's, and one colour is done after the other: zones of one colour have nothing in common,
+ * zone, which reaches half a tile beyond it on all sides. Tiles have 2 x 2 (x 2) colors, like a
+ * chessboard's, and one color is done after the other: zones of one color have nothing in common,
  * so the tree does not depend on the number of threads. The few points that would need more than
  * the zone are left over, and connected by one thread at the end. The seams between tiles move from
  * round to round, so that no place is always on one. Small trees are one tile.
@@ -110,7 +110,7 @@ typedef struct Running {
     Round *round;
     const PlanCommon *common;
     bool skip;            /* points in full cells are skipped */
-    const uint32_t *turn; /* the tiles of one colour; NULL: one tile, whose zone is all space */
+    const uint32_t *turn; /* the tiles of one color; NULL: one tile, whose zone is all space */
 } Running;
 
 /* Prefetches what the next points will need: the further ahead the point, the earlier the step. */
@@ -283,7 +283,7 @@ static GridBox box_of(const TileCut *cut, size_t index, int margin)
     return box;
 }
 
-static int colour_of(const TileCut *cut, size_t index)
+static int color_of(const TileCut *cut, size_t index)
 {
     int x = (int)(index % cut->count[0]), y = (int)(index / cut->count[0] % cut->count[1]);
     int z = (int)(index / cut->count[0] / cut->count[1]);
@@ -395,16 +395,16 @@ static size_t gather(Round *round, Network *net, size_t tiles)
 static Status run_tiles(Round *round, const PlanCommon *common, RoundLimits limits, size_t *over,
                         Err *err)
 {
-    enum { COLOURS = 8 };
+    enum { COLORS = 8 };
     Site *site = common->site;
     TileCut cut = make_cut(round, &site->grid);
     sort(round, &cut, &site->grid);
     endow(round, common, &cut, limits.most);
     uint32_t *turn = round->tile_of; /* which only `sort` needed */
-    for (int colour = 0; colour < COLOURS; colour++) {
+    for (int color = 0; color < COLORS; color++) {
         size_t count = 0;
         for (size_t t = 0; t < cut.tiles; t++)
-            if (colour_of(&cut, t) == colour)
+            if (color_of(&cut, t) == color)
                 turn[count++] = (uint32_t)t;
         Running running = {round, common, limits.skip, turn};
         TRY(threads_try(count, round->threads, run_turn, &running, err));

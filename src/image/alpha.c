@@ -120,7 +120,7 @@ static Status lay_plane(const Plane *plane, const float background[3], Plane *la
     return STATUS_OK;
 }
 
-/* Makes a plane of linear colours, multiplied by alpha. */
+/* Makes a plane of linear colors, multiplied by alpha. */
 static Status multiply(const Image *image, Plane *plane, Err *err)
 {
     TRY(plane_from_picture(plane, &image->picture, err));

@@ -1,4 +1,4 @@
-/* A colour map is a text file with one colour per line. The colours are equidistant from 0 to 1.
+/* A color map is a text file with one color per line. The colors are equidistant from 0 to 1.
  * Between them the encoded values are interpolated, as the authors of the maps intended, and then
  * decoded. */
 #include "image/image.h"
@@ -15,7 +15,7 @@ static bool is_separate(const char *line)
            line[length + strspn(line + length, " \t\r")] == '\0';
 }
 
-/* Reads one line: a colour, a blank line, a comment, or the kind of the map. */
+/* Reads one line: a color, a blank line, a comment, or the kind of the map. */
 static Status take_line(Colormap *map, size_t *capacity, const char *line, Err *err)
 {
     double c[3];
@@ -32,7 +32,7 @@ static Status take_line(Colormap *map, size_t *capacity, const char *line, Err *
     if (!fits)
         return err_set(err, STATUS_INPUT,
                        "'%.40s' is not three numbers from 0 to 1, red green blue", line);
-    TRY(mem_reserve(&map->srgb, capacity, map->n + 1, sizeof *map->srgb, "colours", err));
+    TRY(mem_reserve(&map->srgb, capacity, map->n + 1, sizeof *map->srgb, "colors", err));
     for (int i = 0; i < 3; i++)
         map->srgb[map->n][i] = (float)c[i];
     map->n++;
@@ -41,7 +41,7 @@ static Status take_line(Colormap *map, size_t *capacity, const char *line, Err *
 
 Status colormap_read(Colormap *map, const char *path, Err *err)
 {
-    static const FileForm form = {.name = "a colour map", .most_bytes = 1e7, .is_text = true};
+    static const FileForm form = {.name = "a color map", .most_bytes = 1e7, .is_text = true};
     char *text = NULL;
     size_t size, capacity = 0;
     TRY(file_read(path, &form, &text, &size, err));
@@ -55,7 +55,7 @@ Status colormap_read(Colormap *map, const char *path, Err *err)
     }
     free(text);
     if (status == STATUS_OK && read.n < 2)
-        status = err_set(err, STATUS_INPUT, "%s: a colour map needs at least 2 colours", path);
+        status = err_set(err, STATUS_INPUT, "%s: a color map needs at least 2 colors", path);
     if (status == STATUS_OK)
         *map = read;
     else

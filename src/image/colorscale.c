@@ -149,7 +149,7 @@ static int step_at(const ColorScale *scale, double place)
     return step;
 }
 
-/* Returns the special colour of a position; NULL if it has none. */
+/* Returns the special color of a position; NULL if it has none. */
 static const ScaleColor *own_color(const ColorScale *scale, double place)
 {
     const ScaleColor *own = isnan(place)             ? &scale->none
@@ -159,7 +159,7 @@ static const ScaleColor *own_color(const ColorScale *scale, double place)
     return own && own->given ? own : NULL;
 }
 
-/* Returns true, and stores the colour, if the position has a special colour or is on a step. */
+/* Returns true, and stores the color, if the position has a special color or is on a step. */
 static bool take_step(const ColorScale *scale, double place, float rgb[3])
 {
     const ScaleColor *own = own_color(scale, place);

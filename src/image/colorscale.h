@@ -1,11 +1,11 @@
-/* A colour scale from the values of a quantity to colours. */
+/* A color scale from the values of a quantity to colors. */
 #ifndef CORCAST_IMAGE_COLORSCALE_H
 #define CORCAST_IMAGE_COLORSCALE_H
 
 #include "base/base.h"
 #include "image/colormap.h"
 
-/* A colour for values outside of the map. If `given` is false, the default applies. */
+/* A color for values outside of the map. If `given` is false, the default applies. */
 typedef struct ScaleColor {
     bool given;
     float rgb[3]; /* linear */
@@ -18,13 +18,13 @@ typedef struct ColorScale {
     const char *unit; /* borrowed; "" for pure numbers */
     double range[2];  /* values at the ends of the map, ascending; above 0 with `log` */
     bool log;         /* the map is linear in the logarithm of the value */
-    int classes;      /* N >= 2: N equal classes of one colour each; else continuous */
+    int classes;      /* N >= 2: N equal classes of one color each; else continuous */
     /* Bounds of classes, ascending. They replace `classes`: n bounds make n + 1 classes, the first
      * below bounds[0] and the last from bounds[n - 1] on. */
     double bounds[COLORSCALE_MOST_BOUNDS];
     int n_bounds;           /* 0: there are none */
     ScaleColor under, over; /* of values below and above the range, or all bounds; default: the
-                             * colours of the ends */
+                             * colors of the ends */
     ScaleColor none;        /* of values that cannot be shown; default: middle grey */
     Colormap map;           /* owned by the maker of the scale */
 } ColorScale;
@@ -39,7 +39,7 @@ double colorscale_place(const ColorScale *scale, double value);
 double colorscale_slack(const ColorScale *scale);
 /* Returns the position where the class above bounds[i] begins, slack included. */
 double colorscale_bound(const ColorScale *scale, int i);
-/* Return the positions between which values have neither the colour `under` nor the colour `over`.
+/* Return the positions between which values have neither the color `under` nor the color `over`.
  * Both include the slack. */
 double colorscale_lowest(const ColorScale *scale);
 double colorscale_highest(const ColorScale *scale);
@@ -60,24 +60,24 @@ typedef struct ScaleOutside {
 } ScaleOutside;
 ScaleOutside colorscale_outside(const ColorScale *scale, const double *values, size_t n);
 
-/* Returns the number of separate colours of the scale: by its bounds, its classes, or a separate
+/* Returns the number of separate colors of the scale: by its bounds, its classes, or a separate
  * map; 0: the scale is continuous. */
 int colorscale_steps(const ColorScale *scale);
-/* Stores the linear colour of a step, counted from 0. The steps of a continuous map are spread over
+/* Stores the linear color of a step, counted from 0. The steps of a continuous map are spread over
  * the whole map, its ends included. */
 void colorscale_step_color(const ColorScale *scale, int step, float rgb[3]);
 
-/* Returns true if integers select the colours of a separate map, from 1 on, modulo the number of
- * colours. */
+/* Returns true if integers select the colors of a separate map, from 1 on, modulo the number of
+ * colors. */
 bool colorscale_counts(const ColorScale *scale);
 
-/* Stores the linear colour at a position of a scale that does not count colours. A value on a
+/* Stores the linear color at a position of a scale that does not count colors. A value on a
  * bound, or up to colorscale_slack below the bound, belongs to the class above. */
 void colorscale_at(const ColorScale *scale, double place, float rgb[3]);
-/* Stores the linear colour of a value. */
+/* Stores the linear color of a value. */
 void colorscale_linear(const ColorScale *scale, double value, float rgb[3]);
 
-/* A continuous colour map in the form of POV-Ray: linear colours at equidistant positions from 0 to
+/* A continuous color map in the form of POV-Ray: linear colors at equidistant positions from 0 to
  * 1, interpolated between them. */
 enum { COLORRAMP_ENTRIES = 256 };
 typedef struct ColorRamp {
@@ -86,7 +86,7 @@ typedef struct ColorRamp {
 } ColorRamp;
 
 void colorramp_init(ColorRamp *ramp, const Colormap *map);
-/* Does the same as colorscale_at, with interpolated colours of `ramp`, which colorramp_init made
+/* Does the same as colorscale_at, with interpolated colors of `ramp`, which colorramp_init made
  * from scale->map. */
 void colorscale_on_ramp(const ColorScale *scale, const ColorRamp *ramp, double place, float rgb[3]);
 

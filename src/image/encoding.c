@@ -1,4 +1,4 @@
-/* All computations are in float, powf included: the colours of POV-Ray are float32, and its pow is
+/* All computations are in float, powf included: the colors of POV-Ray are float32, and its pow is
  * the float overload. Equal floats then give equal codes. With the power in double, about one
  * 16-bit code in a thousand differs. */
 #include "image/image.h"

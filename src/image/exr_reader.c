@@ -149,7 +149,7 @@ static Status choose_channels(ExrReader *self, Err *err)
     return STATUS_OK;
 }
 
-/* Without chromaticities, colours have the primaries of Rec. 709, which are those of sRGB. */
+/* Without chromaticities, colors have the primaries of Rec. 709, which are those of sRGB. */
 static Status check_colors(ExrReader *self, Err *err)
 {
     exr_attr_chromaticities_t given;

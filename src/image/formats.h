@@ -35,7 +35,7 @@ MUST_CHECK Status image_check_memory(int width, int height, size_t bytes, Err *e
 /* Returns true if chromaticities, x and y of red, green, blue and white, are within 0.002 of those
  * of sRGB. */
 bool image_is_srgb(const double xy[8]);
-/* Returns STATUS_INPUT: the file's colours are of another space, as its part `where` states. */
+/* Returns STATUS_INPUT: the file's colors are of another space, as its part `where` states. */
 Status image_other_colors(const char *name, const char *where, Err *err);
 /* Stores the description in an ICC profile, without characters that are not printable ASCII; "" if
  * it has none. */

@@ -3,7 +3,7 @@
  *
  * Rows are stored from the top down, pixels from left to right, channels interleaved. A picture
  * holds the integer codes of a file; a plane holds linear numbers. picture_from_plane is the only
- * colour encoding step of the program. */
+ * color encoding step of the program. */
 #ifndef CORCAST_IMAGE_IMAGE_H
 #define CORCAST_IMAGE_IMAGE_H
 
@@ -20,7 +20,7 @@ typedef struct PixelRect {
     int left, top, width, height;
 } PixelRect;
 
-/* Linear floats: colour (3 channels, 0 black to 1 white), depth (1 channel, mm, INFINITY where
+/* Linear floats: color (3 channels, 0 black to 1 white), depth (1 channel, mm, INFINITY where
  * nothing is hit), normal (3 channels, unit vector, 0 0 0 where nothing is hit), or several of them
  * for one file. */
 typedef struct Plane {
@@ -134,14 +134,14 @@ static inline uint8_t srgb_code(const SrgbCodes *codes, float linear)
 
 /* The following functions make images, which the caller releases. Errors: STATUS_MEMORY. */
 
-/* Encodes a colour plane of 1 or 3 channels. */
+/* Encodes a color plane of 1 or 3 channels. */
 MUST_CHECK Status picture_from_plane(Picture *picture, const Plane *plane, Encoding encoding,
                                      int bits, Err *err);
-/* Makes a picture of 4 channels from a colour plane that is multiplied by `alpha`. Its colours are
+/* Makes a picture of 4 channels from a color plane that is multiplied by `alpha`. Its colors are
  * divided by alpha, its alpha is linear. Where alpha is 0, all four codes are 0. */
 MUST_CHECK Status picture_from_transparent(Picture *picture, const Plane *plane, const Plane *alpha,
                                            Encoding encoding, int bits, Err *err);
-/* Decodes a picture, by its gamma, to linear colours. */
+/* Decodes a picture, by its gamma, to linear colors. */
 MUST_CHECK Status plane_from_picture(Plane *plane, const Picture *picture, Err *err);
 /* Converts a picture to codes of sRGB. Alpha keeps its value. */
 MUST_CHECK Status picture_to_srgb(Picture *srgb, const Picture *picture, int bits, Err *err);
@@ -170,8 +170,8 @@ typedef struct ImageNotes {
                  * density of a JPEG, xDensity of OpenEXR; 0: not written */
 } ImageNotes;
 
-/* How colours change that an output profile cannot reproduce: all colours move, so that none become
- * equal, or only these colours move, each to the nearest reproducible one. */
+/* How colors change that an output profile cannot reproduce: all colors move, so that none become
+ * equal, or only these colors move, each to the nearest reproducible one. */
 typedef enum InkIntent { INKS_PERCEPTUAL, INKS_RELATIVE } InkIntent;
 
 /* The conversion from sRGB to the cyan, magenta, yellow and black of an output profile. */
@@ -192,7 +192,7 @@ typedef struct ImagePacking {
                                    * processors */
     int quality;                  /* of a JPEG, from 1 to 100; 0: 95 */
     bool half;                    /* OpenEXR: channels have 16 bits, except the exact ones */
-    const Inks *inks; /* borrowed; converts the colours of a TIFF or JPEG, whose bits must be those
+    const Inks *inks; /* borrowed; converts the colors of a TIFF or JPEG, whose bits must be those
                        * of the inks; the file carries the output profile. NULL: sRGB */
 } ImagePacking;
 
@@ -205,7 +205,7 @@ typedef struct ImageChannel {
 /* The form of an image that is written or read. */
 typedef struct ImageForm {
     int width, height;
-    int channels;      /* 1, 3 or, in PNG and TIFF, 4: with alpha, by which the colours are not
+    int channels;      /* 1, 3 or, in PNG and TIFF, 4: with alpha, by which the colors are not
                         * multiplied; in OpenEXR with `named` as many as that has */
     int bits;          /* 8 or 16: codes; 32: floats */
     Encoding encoding; /* of codes */
@@ -224,7 +224,7 @@ typedef struct ImageWriter ImageWriter;
  * the bottom up. Codes go by extension to .ppm (P6; a grey picture with its channel three times),
  * .pgm (P5, 1 channel), .png, .tif or .tiff (strips; BigTIFF above 4 GB), .jpg or .jpeg (8 bits,
  * lossy, at most 65500 pixels a side). "-" is standard output and a PPM. A PNG carries an sRGB
- * chunk if `encoding` is sRGB and gAMA 1.0 if it is linear, and no tIME. A TIFF or JPEG of colours
+ * chunk if `encoding` is sRGB and gAMA 1.0 if it is linear, and no tIME. A TIFF or JPEG of colors
  * carries their ICC profile.
  *
  * out      is owned. Follow with exactly one of imagewriter_commit and imagewriter_discard, which
@@ -257,7 +257,7 @@ MUST_CHECK Status picture_put_uri(const Picture *picture, Text *out, Err *err);
 /* What files of a format can hold. */
 typedef struct ImageTraits {
     bool keeps_dpi;   /* ImageNotes.dpi */
-    bool has_profile; /* an ICC profile, so that colours may be inks */
+    bool has_profile; /* an ICC profile, so that colors may be inks */
     bool keeps_alpha; /* transparent pictures */
     bool floats;      /* floats, and no codes */
 } ImageTraits;
@@ -299,8 +299,8 @@ void image_release(Image *image);
  * out. */
 typedef enum ImageAlpha {
     ALPHA_REFUSED, /* STATUS_INPUT */
-    ALPHA_KEPT,    /* it is the last channel: pictures have 4 channels, their colours are not
-                    * multiplied by it; planes have 2 or 4 channels, their colours are */
+    ALPHA_KEPT,    /* it is the last channel: pictures have 4 channels, their colors are not
+                    * multiplied by it; planes have 2 or 4 channels, their colors are */
     ALPHA_IS_MASK  /* of a picture: codes become 255 where alpha is at least 0.5, and 0 elsewhere */
 } ImageAlpha;
 
@@ -314,7 +314,7 @@ typedef enum ImageAlpha {
  * layer    of an OpenEXR file: the name of a part, or of a layer ("layer.R", "layer.G", ...) in the
  *          first part that has it. NULL: the channels without a layer of a file with one part
  * Errors   STATUS_INPUT with a sentence that names the file and the property that cannot be read,
- *          such as colours of another space than sRGB (profiles, primaries), animations, several
+ *          such as colors of another space than sRGB (profiles, primaries), animations, several
  *          pages or an unknown layer, or that states what is truncated or corrupt. STATUS_MEMORY.
  */
 MUST_CHECK Status image_read(Image *image, const char *path, ImageAlpha alpha, const char *layer,

@@ -16,7 +16,7 @@ struct ImageWriter {
     char *path;      /* owned; for errors */
     ImageForm form;  /* of the rows that the caller hands over */
     int next;        /* index of the next row */
-    void *inked_row; /* owned; NULL unless colours are converted to inks */
+    void *inked_row; /* owned; NULL unless colors are converted to inks */
 };
 
 const char *image_note(const ImageNotes *notes, const char *key)
@@ -169,9 +169,9 @@ static Status check_inks(const char *path, const ImageForm *form, const RowEncod
     if (!form->packing.inks)
         return STATUS_OK;
     if (!encoder->traits.has_profile)
-        return err_set(err, STATUS_USAGE, "%s: only .tif and .jpg hold colours of a press", path);
+        return err_set(err, STATUS_USAGE, "%s: only .tif and .jpg hold colors of a press", path);
     if (form->channels != 3)
-        return err_set(err, STATUS_USAGE, "%s: only opaque pictures in colour go to a press", path);
+        return err_set(err, STATUS_USAGE, "%s: only opaque pictures in color go to a press", path);
     assert(inks_bits(form->packing.inks) == form->bits && form->encoding == ENCODING_SRGB);
     return STATUS_OK;
 }
@@ -191,7 +191,7 @@ static Status choose_encoder(const char *path, const ImageForm *form, const RowE
                        path);
     if (*encoder == &pgm_encoder && form->channels != 1)
         return err_set(err, STATUS_USAGE,
-                       "%s: a colour picture cannot be a .pgm; use .ppm, .png, .tif or .jpg", path);
+                       "%s: a color picture cannot be a .pgm; use .ppm, .png, .tif or .jpg", path);
     if (*encoder == &pfm_encoder && form->channels != 1 && form->channels != 3)
         return err_set(err, STATUS_USAGE, "%s: PFM holds 1 or 3 channels, not %d", path,
                        form->channels);
@@ -243,7 +243,7 @@ static void release(ImageWriter *writer)
     free(writer);
 }
 
-/* Converts the colours to inks, row by row. */
+/* Converts the colors to inks, row by row. */
 static Status write_inked(ImageWriter *writer, const uint8_t *values, int n, Err *err)
 {
     const ImageForm *form = &writer->form;

@@ -94,7 +94,7 @@ static Status make_srgb(void *profile, Err *err)
 
 static Status srgb_profile(ImageProfile *profile, Err *err)
 {
-    Guard guard = {.format = "ICC", .name = "the colour profile"};
+    Guard guard = {.format = "ICC", .name = "the color profile"};
     ImageProfile made = {0};
     Status status;
     TRY_GOTO(guard_run(&guard, make_srgb, &made, err));
@@ -144,10 +144,10 @@ static Status open_profile(void *self, Err *err)
                                                  (cmsUInt32Number)inks->profile.size);
     if (!press)
         return STATUS_OK;
-    inks->fault = "is the profile of other colours than cyan, magenta, yellow and black";
+    inks->fault = "is the profile of other colors than cyan, magenta, yellow and black";
     if (cmsGetColorSpace(press) == cmsSigCmykData) {
         make_transform(inks, press);
-        inks->fault = inks->transform ? NULL : "is no profile that colours can be printed by";
+        inks->fault = inks->transform ? NULL : "is no profile that colors can be printed by";
     }
     cmsCloseProfile(press);
     return STATUS_OK;

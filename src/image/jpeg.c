@@ -1,10 +1,10 @@
 /* JPEG through libjpeg.
  *
- * Reading, from the file in memory: grey or colours of 8 bits, decoded by the integer transform,
+ * Reading, from the file in memory: grey or colors of 8 bits, decoded by the integer transform,
  * chroma interpolated, as every viewer shows it. A picture that Exif declares turned is refused,
  * since programs disagree about whether to turn it.
  *
- * Writing, row by row: baseline, each pixel with colours of its own (4:4:4), since red vessels on
+ * Writing, row by row: baseline, each pixel with colors of its own (4:4:4), since red vessels on
  * white would bleed. The integer transform gives the same bytes on every machine. JFIF has no CMYK.
  * Its header is written all the same, as it holds the resolution. Inks are stored inverted after an
  * Adobe marker, as every reader expects. */
@@ -120,8 +120,8 @@ static Status check_colors(JpegReader *self, Err *err)
     unsigned size;
     if (space != JCS_GRAYSCALE && space != JCS_YCbCr && space != JCS_RGB)
         return err_set(err, STATUS_INPUT, "%s: has %s; only grey and RGB can be read", name,
-                       space == JCS_CMYK || space == JCS_YCCK ? "the colours of inks (CMYK)"
-                                                              : "colours of an unknown kind");
+                       space == JCS_CMYK || space == JCS_YCCK ? "the colors of inks (CMYK)"
+                                                              : "colors of an unknown kind");
     if (jpeg_read_icc_profile(&self->jpeg, &self->profile, &size))
         return image_check_profile(name, self->profile, size, err);
     return STATUS_OK;

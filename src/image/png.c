@@ -101,7 +101,7 @@ static bool has_srgb_primaries(PngReader *self)
     return image_is_srgb(xy);
 }
 
-/* Checks the colour space and sets *gamma, 0 for sRGB. The chunks are read in the order of their
+/* Checks the color space and sets *gamma, 0 for sRGB. The chunks are read in the order of their
  * precedence [PNG 3, section 13.13]. libpng turns a profile that it knows into an sRGB chunk. */
 static Status read_colors(PngReader *self, double *gamma, Err *err)
 {

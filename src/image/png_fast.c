@@ -67,7 +67,7 @@ static bool read_chunks(PlainPng *plain, const ImageBytes *file)
 {
     size_t at = SIGNATURE_SIZE;
     bool is_srgb = false,
-         may_differ = false; /* there is an sRGB chunk; a chunk may state other colours */
+         may_differ = false; /* there is an sRGB chunk; a chunk may state other colors */
     for (bool first = true;; first = false) {
         if (file->size - at < CHUNK_FRAME)
             return false;

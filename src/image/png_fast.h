@@ -7,7 +7,7 @@
 /* Deflate shrinks data at most by this factor. It bounds what the header of a PNG may claim. */
 enum { DEFLATE_MAX_RATIO = 1032 };
 
-/* Decodes a PNG of the common form: 8 or 16 bits, no palette, not interlaced, colours of sRGB. The
+/* Decodes a PNG of the common form: 8 or 16 bits, no palette, not interlaced, colors of sRGB. The
  * last of 2 or 4 channels is alpha. Returns false, and leaves *picture as it is, for every other
  * file, broken ones included, and if memory runs out. */
 bool png_decode_plain(const ImageBytes *file, Picture *picture);

@@ -1,4 +1,4 @@
-/* Recognises colours of sRGB. An ICC profile is not applied. It is recognised by its description:
+/* Recognises colors of sRGB. An ICC profile is not applied. It is recognised by its description:
  * every common profile of sRGB has "sRGB" in it. Profiles with the primaries of sRGB and linear
  * codes have "linear" in it, too, and are refused. */
 #include "image/formats.h"
@@ -18,7 +18,7 @@ bool image_is_srgb(const double xy[8])
 Status image_other_colors(const char *name, const char *where, Err *err)
 {
     return err_set(err, STATUS_INPUT,
-                   "%s: has the colours of another space (%s); only those of sRGB can be read",
+                   "%s: has the colors of another space (%s); only those of sRGB can be read",
                    name, where);
 }
 
@@ -64,6 +64,6 @@ Status image_check_profile(const char *name, const uint8_t *profile, size_t size
     if (strstr(text, "sRGB") && !strstr(text, "inear"))
         return STATUS_OK;
     return err_set(err, STATUS_INPUT,
-                   "%s: has the colour profile \"%s\"; only colours of sRGB can be read", name,
+                   "%s: has the color profile \"%s\"; only colors of sRGB can be read", name,
                    text);
 }

@@ -81,18 +81,18 @@ static const char *photometric_name(uint16_t photometric)
         uint16_t photometric;
         const char *name;
     } names[] = {{PHOTOMETRIC_MASK, "a mask for a picture"},
-                 {PHOTOMETRIC_SEPARATED, "the colours of inks (CMYK)"},
-                 {PHOTOMETRIC_YCBCR, "YCbCr colours without JPEG compression"},
-                 {PHOTOMETRIC_CIELAB, "CIELAB colours"},
-                 {PHOTOMETRIC_ICCLAB, "ICCLAB colours"},
-                 {PHOTOMETRIC_ITULAB, "ITULAB colours"},
-                 {PHOTOMETRIC_CFA, "the raw colours of a camera (CFA)"},
+                 {PHOTOMETRIC_SEPARATED, "the colors of inks (CMYK)"},
+                 {PHOTOMETRIC_YCBCR, "YCbCr colors without JPEG compression"},
+                 {PHOTOMETRIC_CIELAB, "CIELAB colors"},
+                 {PHOTOMETRIC_ICCLAB, "ICCLAB colors"},
+                 {PHOTOMETRIC_ITULAB, "ITULAB colors"},
+                 {PHOTOMETRIC_CFA, "the raw colors of a camera (CFA)"},
                  {PHOTOMETRIC_LOGL, "LogL light"},
-                 {PHOTOMETRIC_LOGLUV, "LogLuv colours"}};
+                 {PHOTOMETRIC_LOGLUV, "LogLuv colors"}};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (names[i].photometric == photometric)
             return names[i].name;
-    return "colours of an unknown kind (PhotometricInterpretation)";
+    return "colors of an unknown kind (PhotometricInterpretation)";
 }
 
 static Status check_samples(TiffReader *self, uint16_t format, Err *err)
@@ -131,7 +131,7 @@ static Status take_palette(TiffReader *self, Err *err)
     return STATUS_OK;
 }
 
-/* Only grey and RGB have alpha. libtiff converts YCbCr colours of JPEG to RGB. */
+/* Only grey and RGB have alpha. libtiff converts YCbCr colors of JPEG to RGB. */
 static Status check_colors_of_samples(TiffReader *self, uint16_t photometric, Err *err)
 {
     const int samples = self->samples;
@@ -285,7 +285,7 @@ static float float_at(const uint8_t *row, size_t i, int bits)
     return bits == 64 ? (float)value : single;
 }
 
-/* Sets the codes of a pixel: all three of a palette's colour, or one of channel `c`. */
+/* Sets the codes of a pixel: all three of a palette's color, or one of channel `c`. */
 static void set_code(const TiffReader *self, unsigned value, size_t pixel, int c, Picture *picture)
 {
     const size_t first = pixel * (size_t)self->channels;
@@ -453,7 +453,7 @@ static ImageCompression compression_of(TIFF *handle)
 }
 
 /* Returns true if the rows of the file are those of the image: integers, interleaved, upright, in
- * strips; grey, RGB, or RGB with an alpha that the colours are not multiplied by. */
+ * strips; grey, RGB, or RGB with an alpha that the colors are not multiplied by. */
 static bool has_plain_rows(const TiffReader *self)
 {
     TIFF *handle = self->tiff.handle;

@@ -1,4 +1,4 @@
-/* WebP through libwebp, from the file in memory: a single picture of 8 bits, in colours, perhaps
+/* WebP through libwebp, from the file in memory: a single picture of 8 bits, in colors, perhaps
  * with alpha. VP8 compression is lossy, VP8L is lossless. */
 #include "image/formats.h"
 

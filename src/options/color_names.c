@@ -1,4 +1,4 @@
-/* The named colours of CSS Color Module Level 4, section 6.1, in order of the alphabet. */
+/* The named colors of CSS Color Module Level 4, section 6.1, in order of the alphabet. */
 #include "options/color_names.h"
 
 #include <stdlib.h>

@@ -60,7 +60,7 @@ static const ConditionRow rows[] = {
     [WHEN_VESSELS] = {.sentence = "is for vessels; a polyhedron is the surface of all"},
     [WHEN_MODELS] = {.sentence = "is for vessels; a polyhedron is the surface of all"},
     [WHEN_OPENSCAD] = {.sentence = "is for models of OpenSCAD (.scad)"},
-    [WHEN_COLORS] = {.sentence = "is for formats with colours"},
+    [WHEN_COLORS] = {.sentence = "is for formats with colors"},
     [WHEN_MESH] = {.sentence = "is for formats of triangles"},
     [WHEN_NAMED_PARTS] = {.sentence = "is for named parts: a .vtp, or an .stl with --parts"},
     [WHEN_VOLUME] = {.sentence = "is for volumes, as V.nii.gz", .groups = GROUP(VOXELS)},

@@ -289,9 +289,9 @@ static Status read_color(const Option *option, const char *value, void *where, E
         return wrong(option, value,
                      option->can_be_none
                          ? "none, R,G,B, three numbers from 0 to 1 parted by commas, #RRGGBB or "
-                           "the name of a colour, as in red"
+                           "the name of a color, as in red"
                          : "R,G,B, three numbers from 0 to 1 parted by commas, #RRGGBB or the name "
-                           "of a colour, as in red",
+                           "of a color, as in red",
                      err);
     *(Vec3 *)where = vec3(rgb[0], rgb[1], rgb[2]);
     return STATUS_OK;

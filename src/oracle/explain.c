@@ -1,7 +1,7 @@
 /* Explains pixels at which POV-Ray's image (A) differs from the native renderer's (B).
  *
  * Blobs: the visible point, its normal, its segment and its shadows are computed from the field
- * along the pixel's ray. Of the renderer only the shading function is used. Its colours equal
+ * along the pixel's ray. Of the renderer only the shading function is used. Its colors equal
  * POV-Ray's at all other pixels.
  *
  * Other models: the renderer draws the pixel twice more, with a camera of one pixel. The first time
@@ -47,7 +47,7 @@ typedef struct Examiner {
                                * the lights dimmed by their visibility */
     Renderer *ray_renderer;   /* shadow rays begin at shadow_ray_start_mm; NULL: a blob */
     Renderer *cache_renderer; /* shadow rays begin at shadow_cache_start_mm; NULL: a blob */
-    TermMean *color_mean;     /* colours of a blob whose colours blend; otherwise NULL */
+    TermMean *color_mean;     /* colors of a blob whose colors blend; otherwise NULL */
     LightBlockage blockages[VIEW_MAX_LIGHTS]; /* per light, for the last shading point queried */
 } Examiner;
 
@@ -99,7 +99,7 @@ static Status draw_one(const Examiner *examiner, Renderer *renderer, Rgb *color,
     return STATUS_OK;
 }
 
-/* Returns true if an image's colour lies between two others, channel by channel. 16-bit codes may
+/* Returns true if an image's color lies between two others, channel by channel. 16-bit codes may
  * be off by one. */
 static bool lies_between(const Examiner *examiner, const Rendering *side, Rgb low, Rgb high,
                          size_t pixel)
@@ -245,7 +245,7 @@ typedef struct VisiblePoint {
     Rgb color;
 } VisiblePoint;
 
-/* Returns the colour of a hit in the light that arrives there, with `more` points of light
+/* Returns the color of a hit in the light that arrives there, with `more` points of light
  * `brighter` added. */
 static Rgb lit(Examiner *examiner, const VisiblePoint *seen, size_t brighter, int more)
 {
@@ -255,7 +255,7 @@ static Rgb lit(Examiner *examiner, const VisiblePoint *seen, size_t brighter, in
     return shade(&examiner->view, &seen->at, NULL, NULL);
 }
 
-/* Returns the hit of the surface at `t`, without its colour. */
+/* Returns the hit of the surface at `t`, without its color. */
 static VisiblePoint wall_at(const Examiner *examiner, Ray ray, double t)
 {
     const Scene *scene = examiner->input->scene;
@@ -328,7 +328,7 @@ static Ray sample_ray(const Examiner *examiner, int i, int j, int sample)
                       j - 0.5 + ((sample - 1) / n + 0.5) / n);
 }
 
-/* Returns the pixel's colour if sample `changed` had `color`. */
+/* Returns the pixel's color if sample `changed` had `color`. */
 static Rgb mean_with(const Examiner *examiner, const PixelSample *samples, int changed, Rgb color)
 {
     int n = samples_of(examiner);
@@ -363,7 +363,7 @@ static Vec3 normal_at(const Rendering *side, size_t pixel)
     return vec3((double)n[0], (double)n[1], (double)n[2]);
 }
 
-/* Returns true if B shows what the field gives: point, normal, segment and colour. */
+/* Returns true if B shows what the field gives: point, normal, segment and color. */
 static bool native_is_right(const Examiner *examiner, const PixelSample *samples, size_t pixel)
 {
     const Rendering *b = examiner->input->b;
@@ -451,7 +451,7 @@ static void find_missed(const Examiner *examiner, const PixelSample *sample, siz
 }
 
 /* Settles the pixel if A shows the surface a little before or behind the first root, with the
- * normal and colour of that point. */
+ * normal and color of that point. */
 static Status examine_inexact(Examiner *examiner, const PixelSample *sample, size_t pixel,
                               SettledPixel *found, Err *err)
 {
@@ -504,7 +504,7 @@ static Status examine_shadows(Examiner *examiner, const PixelSample *samples, in
     return STATUS_OK;
 }
 
-/* Settles the pixel if A's colour is explained by sample `s` having missed its first roots. */
+/* Settles the pixel if A's color is explained by sample `s` having missed its first roots. */
 static Status examine_later_roots(Examiner *examiner, const PixelSample *samples, int s,
                                   size_t pixel, SettledPixel *found, Err *err)
 {

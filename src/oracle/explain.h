@@ -10,7 +10,7 @@ typedef struct ExplainCase {
     const Scene *scene;
     const RenderParams *params; /* with which B was drawn */
     const Rendering *a, *b;     /* with all planes */
-    Encoding encoding;          /* of the colours of both */
+    Encoding encoding;          /* of the colors of both */
     const Tolerance *tolerance; /* pixels within it are not examined */
 } ExplainCase;
 

@@ -7,9 +7,9 @@
 
 /* Zeroed: nothing is drawn yet. All members are owned. */
 typedef struct OraclePlanes {
-    Picture picture; /* colours: 8-bit sRGB or 16-bit linear */
+    Picture picture; /* colors: 8-bit sRGB or 16-bit linear */
     Picture alpha;   /* 8-bit grey; empty if alpha is not drawn */
-    Frame frame;     /* depth, normals and ids; of corcast also linear colours */
+    Frame frame;     /* depth, normals and ids; of corcast also linear colors */
 } OraclePlanes;
 
 void planes_release(OraclePlanes *planes);

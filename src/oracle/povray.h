@@ -12,7 +12,7 @@ typedef enum PovrayPlane {
     POVRAY_NORMAL,
     POVRAY_ID,
     POVRAY_DEPTH_ID, /* depth, and ids of at most POVRAY_MAX_ID, in one picture */
-    POVRAY_ALPHA,    /* 8-bit colours with alpha in front of a transparent background */
+    POVRAY_ALPHA,    /* 8-bit colors with alpha in front of a transparent background */
     POVRAY_PLANES
 } PovrayPlane;
 
@@ -52,11 +52,11 @@ MUST_CHECK Status povray_draw(const PovrayParams *params, PovrayRun *run, Err *e
  * *out (owned). Errors: STATUS_MEMORY. */
 MUST_CHECK Status povray_command(const PovrayParams *params, char **out, Err *err);
 
-/* Decodes the picture of a run into new members of `planes`: the colours; depth in mm along the
+/* Decodes the picture of a run into new members of `planes`: the colors; depth in mm along the
  * ray, INFINITY where nothing is visible; unit normals, 0 0 0 where nothing is visible; ids; or
  * alpha.
  *
- * picture  is emptied if its codes become the colours. Release it in any case.
+ * picture  is emptied if its codes become the colors. Release it in any case.
  * scene    tells the depths that the codes 0 and 65535 stand for.
  * planes   release them with planes_release, also after an error.
  * Errors   STATUS_INPUT if it is not such a picture, STATUS_MEMORY. The sentence has no file

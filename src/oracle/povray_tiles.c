@@ -36,7 +36,7 @@ static const char *const plane_names[POVRAY_PLANES] = {
     [POVRAY_ALPHA] = "povray.alpha.png",
 };
 
-/* The planes that are drawn. The colours are the first. */
+/* The planes that are drawn. The colors are the first. */
 typedef struct PlaneList {
     PovrayPlane plane[POVRAY_PLANES];
     size_t n;

@@ -9,12 +9,12 @@
 
 /* What POV-Ray draws, and where. All pointers are borrowed until povraytiles_free. */
 typedef struct PovrayTilesParams {
-    EmitParams emit; /* the scene, its colours at all moments, and how it is written; without file
+    EmitParams emit; /* the scene, its colors at all moments, and how it is written; without file
                       * names, `ids`, `built` and `part` */
     const char *folder; /* an existing folder, for scenes and planes */
     double clock;       /* moment of the scene, in [0, 1] */
-    int antialias;      /* N x N samples per pixel of the colours */
-    int bits;           /* of the colours: 8 (sRGB) or 16 (linear) */
+    int antialias;      /* N x N samples per pixel of the colors */
+    int bits;           /* of the colors: 8 (sRGB) or 16 (linear) */
     bool alpha;         /* alpha is drawn, too, unless there are several tiles */
     int min_tiles;      /* 1 or more */
     int threads;        /* 0: all processors */
@@ -47,7 +47,7 @@ const char *povraytiles_command(const PovrayTiles *tiles, size_t run);
  *
  * planes  receives picture, depth, normals and ids, and alpha if it is drawn. Release it with
  *         planes_release, also after an error.
- * run     receives POV-Ray's version, and the seconds of the colour plane, summed over tiles.
+ * run     receives POV-Ray's version, and the seconds of the color plane, summed over tiles.
  * Errors  as povray_draw. A picture that cannot be read is STATUS_TOOL. */
 MUST_CHECK Status povraytiles_draw(PovrayTiles *tiles, OraclePlanes *planes, PovrayRun *run,
                                    Err *err);

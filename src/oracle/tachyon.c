@@ -1,5 +1,5 @@
-/* One scene gives both planes. Segments have flat colours, and Tachyon's low shading shows these
- * colours unchanged: the id plane. In its medium shading segments are black, because there is no
+/* One scene gives both planes. Segments have flat colors, and Tachyon's low shading shows these
+ * colors unchanged: the id plane. In its medium shading segments are black, because there is no
  * light, and fog covers them that grows linearly along the ray: the depth plane. Tachyon truncates
  * codes, so a depth is half a step beyond its code. */
 #include "oracle/tachyon.h"

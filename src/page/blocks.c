@@ -5,7 +5,7 @@
  *     parent    uint32 per node: index of its parent; a root's own index
  *     id        uint32 per node
  *     field-K   per node, frame after frame: float, or uint16 if all values are integers, with
- * 65535 for no value map-K     uint8 x 3 per colour, sRGB
+ * 65535 for no value map-K     uint8 x 3 per color, sRGB
  *
  * Base64 takes 4 characters for 3 bytes. Numbers are therefore collected in pieces of whole
  * triples, each of which is appended to the text at once. */

@@ -12,7 +12,7 @@
 #include "stage/stage.h"
 #include "tree/tree.h"
 
-/* A colour map that the user can select. */
+/* A color map that the user can select. */
 typedef struct PageMap {
     char *name; /* owned */
     Colormap map;

@@ -521,7 +521,7 @@ def _type_of(dtype):
 class Image(_Handle):
     """A picture, with planes that may lie beside it.
 
-    Arrays have the shape (height, width) or (height, width, channels). Colours of uint8 and uint16
+    Arrays have the shape (height, width) or (height, width, channels). Colors of uint8 and uint16
     are sRGB, those of float32 are linear.
     """
 
@@ -555,7 +555,7 @@ class Image(_Handle):
 
     def plane(self, name, dtype=None):
         """Returns "color", "depth" (mm), "normal" or "id" as an array, or None when the image does
-        not have the plane. `dtype` of colours is uint8, uint16 or float32."""
+        not have the plane. `dtype` of colors is uint8, uint16 or float32."""
         width, height, channels = self._shape(name)
         if width == 0:
             return None
@@ -571,7 +571,7 @@ class Image(_Handle):
 
     @property
     def pixels(self):
-        """Colours as uint8."""
+        """Colors as uint8."""
         return self.plane("color")
 
     def __array__(self, dtype=None, copy=None):

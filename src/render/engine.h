@@ -6,7 +6,7 @@
 
 typedef struct Engine {
     const char *name; /* that of the method, where there is one */
-    bool makes_codes; /* may make 8-bit codes instead of colours [RenderParams.codes_suffice] */
+    bool makes_codes; /* may make 8-bit codes instead of colors [RenderParams.codes_suffice] */
     bool covers;      /* leaves out hidden vessels, and draws Drawing.thin over its samples */
     /* Whether the engine can draw this, and is asked to; band, caster and appearance do not matter.
      */

@@ -57,7 +57,7 @@ typedef struct RenderParams {
     double least_px; /* minimum drawn width of such vessels, pixels, 0..64; 0 draws true widths */
     const CellParams *povray_cells; /* an isosurface is drawn where POV-Ray's root finder finds it
                                      * in these cells; NULL: where it is, by proof */
-    bool codes_suffice; /* the frame may have 8-bit codes instead of float colours, if that is
+    bool codes_suffice; /* the frame may have 8-bit codes instead of float colors, if that is
                          * faster; a transparent view may have its background and no alpha */
     bool want_color, want_depth, want_normal, want_id; /* geometry planes are of the centre ray */
     bool (*progress)(double fraction, void *context);  /* called by one thread; false: stop; may be
@@ -73,7 +73,7 @@ typedef struct RenderStats {
     size_t rays;         /* number of primary rays */
     const char *engine;  /* the engine that drew the last rows, such as "field" or "raster" */
     size_t preparations; /* how often an engine was prepared for a view: for another camera, lights,
-                          * ground plane or antialiasing, or for colours after planes */
+                          * ground plane or antialiasing, or for colors after planes */
 } RenderStats;
 
 /* Adds the statistics of another renderer, whose engine drew last. `preparations` is not added. */
@@ -94,7 +94,7 @@ typedef struct Drawing {
     const Appearance *appearance;
     const RenderParams *params;
     struct Caster *caster; /* casts the engine's rays; NULL: the engine casts none */
-    const TermMean *mean;  /* blends the colours of segments; NULL: colours do not blend */
+    const TermMean *mean;  /* blends the colors of segments; NULL: colors do not blend */
     const struct PixelVisibility *visibility; /* shared by the samples of a pixel; NULL: none is */
     const bool *hidden; /* per primitive, or per segment of a field: not visible to the camera, but
                          * casts shadows; NULL: none is hidden */
@@ -102,7 +102,7 @@ typedef struct Drawing {
     Band band;
 } Drawing;
 
-/* Returns the linear colour of a segment at a point of its surface. */
+/* Returns the linear color of a segment at a point of its surface. */
 Rgb drawing_color(const Drawing *drawing, uint32_t segment, Vec3 point);
 
 /* Reports progress of the whole picture by params->progress, unless it is NULL. Errors:

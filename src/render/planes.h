@@ -45,7 +45,7 @@ static inline void planes_store_nothing(const Frame *frame, size_t first, size_t
         memset(frame->id.ids + first, 0, n * sizeof *frame->id.ids);
 }
 
-/* Stores the linear colour of a pixel. The frame has a float colour plane. */
+/* Stores the linear color of a pixel. The frame has a float color plane. */
 static inline void planes_store_color(const Frame *frame, size_t pixel, Rgb color)
 {
     frame->color.values[3 * pixel] = color.r;

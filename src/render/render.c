@@ -1,14 +1,14 @@
-/* A picture is drawn in passes. The colours come from one pass, and the planes of geometry from the
- * same pass if the colours show just what the planes do [opaque_rows].
+/* A picture is drawn in passes. The colors come from one pass, and the planes of geometry from the
+ * same pass if the colors show just what the planes do [opaque_rows].
  *
  * What the geometry alone decides, such as the search structure of rays (Caster), is made once.
  * What a view decides, such as an engine's lists of tiles and its light views, is kept as long as
- * its key stays the same [ViewKey]. An appearance decides colours only.
+ * its key stays the same [ViewKey]. An appearance decides colors only.
  *
  * The first engine of the table that can draws: the special ones first, rays, which can draw
  * anything, last.
  *
- * Vessels that are thinner than the distance of samples are drawn by coverage. Their colours come
+ * Vessels that are thinner than the distance of samples are drawn by coverage. Their colors come
  * from a second renderer of the same geometry, the covering one, whose camera does not see the thin
  * vessels. They are drawn over each of its samples [thin/thinvessels.h]. Shadows and occlusion are
  * those of all vessels. The visibility of lights at the thin vessels of a view is found once: that
@@ -40,7 +40,7 @@ static const Engine *const engines[] = {&xray_engine, &field_engine, &raster_eng
 
 /* Everything that decides what is prepared for a view. Keys are compared by their bytes: unused
  * members and padding are zero. has_color is last and is compared apart: what was prepared for
- * colours, which need shadows, also serves planes of geometry. */
+ * colors, which need shadows, also serves planes of geometry. */
 typedef struct ViewKey {
     const Engine *engine; /* NULL: no engine is prepared */
     Camera camera;
@@ -65,7 +65,7 @@ struct Renderer {
     /* What a view decides: */
     ViewKey key;
     void *prepared;     /* the engine's, for `key` */
-    Renderer *covering; /* draws the colours where vessels are thin; NULL until a view has some */
+    Renderer *covering; /* draws the colors where vessels are thin; NULL until a view has some */
     /* Only in a covering renderer: */
     ViewKey thin_key; /* of `thin`; without an engine */
     ThinVessels thin;
@@ -74,7 +74,7 @@ struct Renderer {
 
 /* ---- planes ---------------------------------------------------------------------------------- */
 
-/* Allocates the planes that `params` asks for. Their pixels are undefined. Colours are 8-bit codes
+/* Allocates the planes that `params` asks for. Their pixels are undefined. Colors are 8-bit codes
  * if `codes`, else floats. The caller releases *frame, even after an error. */
 static Status make_planes(int width, int height, const RenderParams *params, bool codes,
                           Frame *frame, Err *err)
@@ -150,7 +150,7 @@ static Status prepare_caster(Renderer *renderer, Drawing *drawing, Err *err)
     return STATUS_OK;
 }
 
-/* Makes the term mean if the drawing blends colours, and sets drawing->mean. */
+/* Makes the term mean if the drawing blends colors, and sets drawing->mean. */
 static Status prepare_mean(Renderer *renderer, Drawing *drawing, Err *err)
 {
     if (!drawing->appearance->places || !model_has(renderer->geometry->model, MODEL_FIELD))
@@ -390,7 +390,7 @@ static Status find_lights(Renderer *renderer, const Drawing *drawing, Err *err)
     return STATUS_OK;
 }
 
-/* Sets the colours of the thin vessels of a band. */
+/* Sets the colors of the thin vessels of a band. */
 static Status light_thin(Renderer *renderer, const Drawing *drawing, Err *err)
 {
     TRY(find_lights(renderer, drawing, err));
@@ -407,7 +407,7 @@ static Status draw(Renderer *renderer, const Drawing *drawing, Frame *frame, Err
     Drawing lit = *drawing;
     PixelVisibility *visibility = NULL;
     Status status;
-    /* The engine of planes may cast rays where that of colours casts none. */
+    /* The engine of planes may cast rays where that of colors casts none. */
     TRY_GOTO(prepare_caster(renderer, &lit, err));
     TRY_GOTO(prepare_view(renderer, drawing, err));
     const Engine *engine = renderer->key.engine;
@@ -493,7 +493,7 @@ static int rows_at_once(const Camera *fine, int antialias)
     return rows < RENDER_BAND_STEP ? RENDER_BAND_STEP : rows / RENDER_BAND_STEP * RENDER_BAND_STEP;
 }
 
-/* Draws the colours of the drawing's band with effects. */
+/* Draws the colors of the drawing's band with effects. */
 static Status draw_effects(Renderer *renderer, const Drawing *drawing, Frame *frame, Err *err)
 {
     const RenderParams *params = drawing->params;
@@ -533,7 +533,7 @@ typedef struct WantedRows {
     int first, rows;
 } WantedRows;
 
-/* Draws the planes that `params` asks for, all of them by one engine. Colours have effects if the
+/* Draws the planes that `params` asks for, all of them by one engine. Colors have effects if the
  * view has any; then `params` asks for no other plane. A renderer that has found thin vessels draws
  * these by coverage; else samples hit or miss them. */
 static Status draw_pass(Renderer *renderer, const WantedRows *wanted, const RenderParams *params,
@@ -625,7 +625,7 @@ static bool may_cover(const Renderer *renderer, const View *view)
            engine_for(&drawing)->covers;
 }
 
-/* Sets *colors to the renderer that draws the view's colours. */
+/* Sets *colors to the renderer that draws the view's colors. */
 static Status choose_renderer(Renderer *renderer, const View *view, Renderer **colors, Err *err)
 {
     *colors = renderer;
@@ -641,7 +641,7 @@ static Status choose_renderer(Renderer *renderer, const View *view, Renderer **c
     return STATUS_OK;
 }
 
-/* Draws the planes of geometry and the colours, in one pass if the colours show just what the
+/* Draws the planes of geometry and the colors, in one pass if the colors show just what the
  * planes do. Else the planes are drawn first: what the centres of pixels hit of all vessels. */
 static Status opaque_rows(Renderer *renderer, const WantedRows *wanted, Frame *frame, Err *err)
 {
@@ -702,7 +702,7 @@ static Status find_alpha(Frame *over_black, const Frame *over_white, int antiali
     return STATUS_OK;
 }
 
-/* A pixel's linear colour is the colour of what is drawn plus the background's times the part that
+/* A pixel's linear color is the color of what is drawn plus the background's times the part that
  * is left, whatever the engine and the effects. Two backgrounds give both. */
 static Status transparent_rows(Renderer *renderer, const WantedRows *wanted, Frame *frame, Err *err)
 {

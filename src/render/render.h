@@ -1,5 +1,5 @@
 /* The public header of render: draws a geometry in a view and an appearance. Rays are computed in
- * double precision, in POV-Ray 3.7's order of operations [docs/POVRAY.md]; colours are floats. */
+ * double precision, in POV-Ray 3.7's order of operations [docs/POVRAY.md]; colors are floats. */
 #ifndef CORCAST_RENDER_RENDER_H
 #define CORCAST_RENDER_RENDER_H
 
@@ -33,8 +33,8 @@ void renderer_free(Renderer *renderer);
  * What the view needs of the geometry is prepared with its first rows. It is kept for later calls
  * as long as camera, lights and ground plane stay the same, bit by bit, and antialiasing does, too.
  * A call with another appearance or background costs its pixels only. A transparent view, whose
- * frame has alpha, costs twice as much. Planes of geometry that are wanted beside colours do not
- * change the colours.
+ * frame has alpha, costs twice as much. Planes of geometry that are wanted beside colors do not
+ * change the colors.
  *
  * view, appearance  not kept after the call.
  * first    a multiple of RENDER_BAND_STEP.

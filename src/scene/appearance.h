@@ -1,5 +1,5 @@
-/* The appearance of vessels, which depends neither on geometry nor on view: colours, what they
- * stand for, and finish. Colours are linear RGB. */
+/* The appearance of vessels, which depends neither on geometry nor on view: colors, what they
+ * stand for, and finish. Colors are linear RGB. */
 #ifndef CORCAST_SCENE_APPEARANCE_H
 #define CORCAST_SCENE_APPEARANCE_H
 
@@ -10,7 +10,7 @@ typedef struct Rgb {
     float r, g, b;
 } Rgb;
 
-/* Returns the linear mixture of two colours: `from` if part is 0, `to` if part is 1. */
+/* Returns the linear mixture of two colors: `from` if part is 0, `to` if part is 1. */
 static inline Rgb rgb_mixed(Rgb from, Rgb to, double part)
 {
     return (Rgb){(float)((double)from.r + ((double)to.r - (double)from.r) * part),
@@ -27,21 +27,21 @@ typedef struct Finish {
  * segment has the same index in all of them. All pointers are owned. */
 typedef struct Appearance {
     Finish finish;
-    Rgb color;         /* colour of all segments if `colors` is NULL */
+    Rgb color;         /* color of all segments if `colors` is NULL */
     Rgb *colors;       /* per segment index; NULL: all have `color` */
-    double *values;    /* per segment index: the value its colour stands for, or NAN; NULL: none */
-    ColorScale scale;  /* from values to colours; zeroed if `colors` is NULL */
+    double *values;    /* per segment index: the value its color stands for, or NAN; NULL: none */
+    ColorScale scale;  /* from values to colors; zeroed if `colors` is NULL */
     char *name, *unit; /* of the scale */
     size_t n_values;
     ScaleOutside outside; /* how many of the drawn segments lie outside of the scale */
-    double *places;       /* per segment index: the value's position on the scale, if colours
+    double *places;       /* per segment index: the value's position on the scale, if colors
                            * blend [stage_blend]; else NULL */
-    ColorRamp *ramp; /* the colours that positions are mapped to, if colours blend; else NULL */
-    char *said;  /* the meaning of the colours in words: "wss 3.70 to 54.1 Pa, of ..."; or NULL */
+    ColorRamp *ramp; /* the colors that positions are mapped to, if colors blend; else NULL */
+    char *said;  /* the meaning of the colors in words: "wss 3.70 to 54.1 Pa, of ..."; or NULL */
     bool fitted; /* the range of the scale was computed from values, and not specified */
-    /* If colours change with time, `colors`, `values` and `places` hold n_frames frames one after
+    /* If colors change with time, `colors`, `values` and `places` hold n_frames frames one after
      * another, of n_segments entries each. */
-    double *time; /* per frame: its time, rising; NULL: colours do not change */
+    double *time; /* per frame: its time, rising; NULL: colors do not change */
     size_t n_frames, n_segments;
 } Appearance;
 
@@ -52,10 +52,10 @@ void appearance_release(Appearance *appearance);
  * released. O(1). */
 Appearance appearance_frame(const Appearance *appearance, size_t frame);
 
-/* Returns the linear colour at a position on the scale. Requires that colours blend. */
+/* Returns the linear color at a position on the scale. Requires that colors blend. */
 Rgb appearance_blended(const Appearance *appearance, double place);
 
-/* Returns the linear colour of a segment, given by its index. */
+/* Returns the linear color of a segment, given by its index. */
 static inline Rgb appearance_color(const Appearance *appearance, uint32_t segment)
 {
     return appearance->colors ? appearance->colors[segment] : appearance->color;

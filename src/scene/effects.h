@@ -1,5 +1,5 @@
 /* Effects that `render` adds to the shaded picture or draws in its place. POV-Ray has none of them.
- * Widths are in pixels of the picture, radii are those of the nearer vessel, colours are linear
+ * Widths are in pixels of the picture, radii are those of the nearer vessel, colors are linear
  * RGB. */
 #ifndef CORCAST_SCENE_EFFECTS_H
 #define CORCAST_SCENE_EFFECTS_H
@@ -11,21 +11,21 @@
  * another vessel that lies deeper. */
 typedef struct Outline {
     double width_px; /* 0: no outlines */
-    double radii;    /* maximum width of the line in radii, so that thin vessels keep a colour */
+    double radii;    /* maximum width of the line in radii, so that thin vessels keep a color */
     double deeper;   /* another vessel lies deeper if it is this many radii behind */
     double crease_cosine; /* vessels that touch are separated by a line where the cosine between
                            * their normals is below this; -1: never */
     Rgb color;
 } Outline;
 
-/* A gap in the background's colour around a vessel that is in front of another. */
+/* A gap in the background's color around a vessel that is in front of another. */
 typedef struct Halo {
     double width_px; /* 0: no halos */
     double radii;    /* maximum width of the gap in radii */
     double deeper;   /* another vessel is behind if it lies this many radii deeper */
 } Halo;
 
-/* The fraction of the background's colour that is mixed into the vessels. It changes linearly with
+/* The fraction of the background's color that is mixed into the vessels. It changes linearly with
  * the depth along the ray, from `nearest` at near_mm to `farthest` at far_mm. */
 typedef struct Fade {
     double nearest, farthest; /* in [0, 1]; both 0: no fading */
@@ -33,7 +33,7 @@ typedef struct Fade {
 } Fade;
 
 /* Absorption of light by the vessels [Beer and Lambert]. After L mm in vessels a fraction
- * exp(-per_mm L) of the background's colour remains; the rest is `color`. */
+ * exp(-per_mm L) of the background's color remains; the rest is `color`. */
 typedef struct Xray {
     double per_mm; /* 0: no x-ray */
     Rgb color;
@@ -62,7 +62,7 @@ static inline bool effects_have_shape(const Effects *effects)
     return effects->outline.width_px > 0 || effects->halo.width_px > 0 || effects->xray.per_mm > 0;
 }
 
-/* Returns the fraction of the background's colour at a depth. */
+/* Returns the fraction of the background's color at a depth. */
 static inline double fade_at(const Fade *fade, double depth_mm)
 {
     double part = (depth_mm - fade->near_mm) / (fade->far_mm - fade->near_mm);

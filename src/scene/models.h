@@ -18,7 +18,7 @@ typedef enum ModelProperty {
     MODEL_TRIANGLES = 1 << 5, /* a mesh of the surface of the potential */
 
     MODEL_PRIMITIVES = MODEL_CYLINDERS | MODEL_BALLS | MODEL_JOINTS,
-    MODEL_FIELD = MODEL_POTENTIAL | MODEL_BLOB, /* the colours of such segments can blend */
+    MODEL_FIELD = MODEL_POTENTIAL | MODEL_BLOB, /* the colors of such segments can blend */
     MODEL_ELEMENTS = MODEL_PRIMITIVES | MODEL_FIELD | MODEL_TRIANGLES,
 
     MODEL_ROUND_ENDS = 1 << 6, /* at every node a ball covers the ends of all cylinders there */

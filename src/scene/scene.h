@@ -1,9 +1,9 @@
 /* The public header of the module scene: what is drawn, independent of trees.
  *
- * A picture is made of a Geometry (the shape of the vessels), an Appearance (their colours and
+ * A picture is made of a Geometry (the shape of the vessels), an Appearance (their colors and
  * finish) and a View (camera, lights, ground and effects). All three are immutable after
  * construction. Any appearance fits any geometry of the same tree, and any view fits both.
- * Coordinates are right-handed and in millimetres, colours are linear RGB. */
+ * Coordinates are right-handed and in millimetres, colors are linear RGB. */
 #ifndef CORCAST_SCENE_SCENE_H
 #define CORCAST_SCENE_SCENE_H
 

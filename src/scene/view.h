@@ -1,4 +1,4 @@
-/* Camera, lights, ground and effects. Coordinates are right-handed and in mm, colours are linear
+/* Camera, lights, ground and effects. Coordinates are right-handed and in mm, colors are linear
  * RGB. */
 #ifndef CORCAST_SCENE_VIEW_H
 #define CORCAST_SCENE_VIEW_H
@@ -90,7 +90,7 @@ Light light_at_point(const Light *light, int k);
 LightWay light_way_to_point(const Light *light, int k, Vec3 place);
 
 /* A plane under or behind the vessels: the points x with normal . x = offset_mm. It appears in
- * colours only; planes of depth, normals and ids show vessels alone. */
+ * colors only; planes of depth, normals and ids show vessels alone. */
 typedef struct Ground {
     bool present;
     Vec3 normal; /* unit, towards the vessels */

@@ -1,5 +1,5 @@
 /* All numbers of a scale are in one unit, so the values are converted first. The range comes from
- * the values that can be drawn, in all frames: the colours of a film mean the same throughout. */
+ * the values that can be drawn, in all frames: the colors of a film mean the same throughout. */
 #include "stage/fieldscale.h"
 
 #include "stage/stage.h"
@@ -115,7 +115,7 @@ static Status set_range(const FieldScaleParams *params, const FieldValues *value
     return params->has_ends ? set_ends(params, values, scale, err) : STATUS_OK;
 }
 
-/* The colours of a separate map are selected by integers or by classes. */
+/* The colors of a separate map are selected by integers or by classes. */
 static Status check_separate(const FieldScaleParams *params, const ColorScale *scale,
                              const FieldValues *values, Err *err)
 {
@@ -124,7 +124,7 @@ static Status check_separate(const FieldScaleParams *params, const ColorScale *s
     for (size_t i = 0; i < values->n_drawn; i++)
         if (isfinite(values->drawn[i]) && values->drawn[i] != floor(values->drawn[i]))
             return err_set(err, STATUS_USAGE,
-                           "`colormap` %s has separate colours, for whole numbers; the field %s "
+                           "`colormap` %s has separate colors, for whole numbers; the field %s "
                            "takes them with `classes`",
                            params->map_name, values->series.field.name);
     return STATUS_OK;
@@ -204,7 +204,7 @@ Status fieldscale_check_frame(int frame, const char *name, size_t frames, Err *e
                    frames == 1 ? "" : "s");
 }
 
-/* Makes the colours of all frames, or of the one that is shown. */
+/* Makes the colors of all frames, or of the one that is shown. */
 static Status color_frames(const FieldScaleParams *params, FieldSeries *series,
                            const ColorScale *scale, Appearance *appearance, Err *err)
 {

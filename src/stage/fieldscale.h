@@ -1,5 +1,5 @@
-/* The scale from the values of a field to colours: which values its ends have, how it is divided,
- * and what the colours mean in words. */
+/* The scale from the values of a field to colors: which values its ends have, how it is divided,
+ * and what the colors mean in words. */
 #ifndef CORCAST_STAGE_FIELDSCALE_H
 #define CORCAST_STAGE_FIELDSCALE_H
 
@@ -33,26 +33,26 @@ typedef struct FieldScaleParams {
     bool has_ends;         /* false: the ends of the scale are the minimum and the maximum value */
     double ends[2];        /* values, the first at most the second, or */
     bool percent[2];       /* percentiles of the values, 0..100 */
-    bool log;              /* colours are linear in the logarithm of the value */
+    bool log;              /* colors are linear in the logarithm of the value */
     bool of_tree;          /* the range is that of the whole tree; read for the words only */
     const double *classes; /* one number: the count of equal classes, 1..256, where 1 is no classes;
                             * several numbers: ascending bounds between classes; borrowed */
     size_t n_classes;      /* at least 1, at most COLORSCALE_MOST_BOUNDS */
     ScaleColor under, over, none; /* as in ColorScale */
-    const char *map_name;         /* of the colour map, for sentences */
+    const char *map_name;         /* of the color map, for sentences */
     int frame; /* of values that change with time, the frame that is shown, from 1; 0: all */
 } FieldScaleParams;
 
-/* Makes a scale for a field, and the appearance in which each segment has its value's colour. The
- * appearance states in `said` what the colours mean.
+/* Makes a scale for a field, and the appearance in which each segment has its value's color. The
+ * appearance states in `said` what the colors mean.
  *
- * map         the colours of the scale; moved to *appearance on success.
+ * map         the colors of the scale; moved to *appearance on success.
  * range_of    the values that decide the ends of the scale.
  * drawn       the values that are shown; its times are moved to *appearance. May be `range_of`.
  * appearance  released with appearance_release.
  * Errors      STATUS_INPUT if no value can be shown; STATUS_USAGE if ends or classes do not ascend,
  *             if an end is not above 0 with `log`, if `frame` is beyond the last frame, or if the
- *             map has separate colours and values are not integers; STATUS_MEMORY. Sentences put
+ *             map has separate colors and values are not integers; STATUS_MEMORY. Sentences put
  *             the names of options in backquotes. */
 MUST_CHECK Status fieldscale_color(const FieldScaleParams *params, Colormap *map,
                                    const FieldValues *range_of, FieldValues *drawn,

@@ -261,7 +261,7 @@ static void add_joint(const JointBuilder *builder, size_t trunk, size_t end, Vec
 }
 
 /* The sphere of a place that cannot be joined; of equals, the trunk gives it its size and
- * colour. */
+ * color. */
 static void add_sphere(const JointBuilder *builder, size_t place, Geometry *geometry)
 {
     const Tree *tree = builder->tree;

@@ -1,5 +1,5 @@
-/* The shape of a tree is that of its model; its appearance is the look's, but for colours that show
- * a field. Neither knows of the other, so that a picture in other colours shares the shape.
+/* The shape of a tree is that of its model; its appearance is the look's, but for colors that show
+ * a field. Neither knows of the other, so that a picture in other colors shares the shape.
  *
  * No two surfaces of a primitive model coincide, because which of two coincident surfaces is seen
  * is nobody's to say; hence places.c. */
@@ -171,7 +171,7 @@ Status stage_appearance(const Look *look, const Field *field, const ColorScale *
     Appearance made = {.finish = look->finish, .color = look->color};
     Status status;
     if (field) {
-        TRY_GOTO(mem_calloc(&made.colors, field->n, sizeof *made.colors, "colours", err));
+        TRY_GOTO(mem_calloc(&made.colors, field->n, sizeof *made.colors, "colors", err));
         TRY_GOTO(mem_calloc(&made.values, field->n, sizeof *made.values, "values", err));
         TRY_GOTO(mem_strdup(&made.name, scale->name ? scale->name : "", err));
         TRY_GOTO(mem_strdup(&made.unit, scale->unit ? scale->unit : "", err));
@@ -196,7 +196,7 @@ done:
 Status stage_blend(Appearance *appearance, Err *err)
 {
     const size_t n = appearance->n_values;
-    TRY(mem_calloc(&appearance->ramp, 1, sizeof *appearance->ramp, "colours", err));
+    TRY(mem_calloc(&appearance->ramp, 1, sizeof *appearance->ramp, "colors", err));
     TRY(mem_calloc(&appearance->places, n, sizeof *appearance->places, "places", err));
     colorramp_init(appearance->ramp, &appearance->scale.map);
     for (size_t i = 0; i < n; i++) {

@@ -12,9 +12,9 @@
 
 /* ---- looks ------------------------------------------------------------------------------------
  *
- * A look holds the properties that pictures of different trees share: finish, colours, lights,
+ * A look holds the properties that pictures of different trees share: finish, colors, lights,
  * ground and effects. Lengths are relative to the tree's size, and directions are mostly in the
- * camera's axes. Colours are linear RGB. */
+ * camera's axes. Colors are linear RGB. */
 
 typedef struct LookLight {
     bool is_point;
@@ -48,7 +48,7 @@ typedef struct LookEffects {
                         * separates them; 180: never */
     Rgb outline_color;
     double halo_width, halo_radii, halo_deeper; /* width 0: no halos */
-    double fade_nearest, fade_farthest;         /* fractions of the background's colour; 0: none */
+    double fade_nearest, fade_farthest;         /* fractions of the background's color; 0: none */
     double xray_per_diameter; /* absorption per diameter of the thickest vessel, or */
     double xray_per_mm;       /* absorption per mm; both 0: no x-ray */
 } LookEffects;
@@ -58,7 +58,7 @@ enum { LOOK_MAX_ABOUT = 160 };
 typedef struct Look {
     char about[LOOK_MAX_ABOUT + 1]; /* a description in one line, or "" */
     Finish finish;
-    Rgb color; /* of vessels that are not coloured by a field */
+    Rgb color; /* of vessels that are not colored by a field */
     Rgb background;
     LookLight lights[LOOK_MAX_LIGHTS];
     int n_lights;
@@ -190,17 +190,17 @@ MUST_CHECK Status stage_anatomy(const Tree *tree, Vec3 origin, Anatomy *anatomy,
  */
 bool segment_can_be_drawn(const Tree *tree, size_t i);
 
-/* Makes an appearance: the finish of the look, and for each segment the colour of its value.
+/* Makes an appearance: the finish of the look, and for each segment the color of its value.
  *
  * field       values by segment index; several frames may follow one another, and the caller then
- *             sets n_frames, n_segments and time. NULL: all segments have the look's colour.
+ *             sets n_frames, n_segments and time. NULL: all segments have the look's color.
  * scale       not read if `field` is NULL. On success *appearance owns its map.
  * appearance  is released with appearance_release.
  * Errors      STATUS_MEMORY; the caller then still owns the map. */
 MUST_CHECK Status stage_appearance(const Look *look, const Field *field, const ColorScale *scale,
                                    Appearance *appearance, Err *err);
 
-/* Makes the colours of an appearance blend where segments blend. A point then has the colour at the
+/* Makes the colors of an appearance blend where segments blend. A point then has the color at the
  * mean of the segments' positions on the scale, weighted by their terms [field/termmean.h].
  * Requires an appearance with a scale. Errors: STATUS_MEMORY. */
 MUST_CHECK Status stage_blend(Appearance *appearance, Err *err);

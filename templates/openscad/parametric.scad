@@ -31,7 +31,7 @@ margin = 3; // [0.5:0.5:20]
 $$fn = 12; // [6:2:64]
 
 /* [Look] */
-// Of the preview; a solid has no colour
+// Of the preview; a solid has no color
 vessel_color = ${color}; // linear
 
 /* [Hidden] */

@@ -15,7 +15,7 @@ part = "tree"; // [tree:the tree as a solid, half:what of it lies behind the pla
 cut = ${middle};
 
 /* [Look] */
-// Of the preview; a solid has no colour
+// Of the preview; a solid has no color
 vessel_color = [0.78, 0.26, 0.24];
 
 /* [Hidden] */

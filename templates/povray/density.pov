@@ -12,7 +12,7 @@
 // Size: ${width}x${height}
 //
 // What stands in #ifndef can be set before an #include of this file and, if it is a number, on the command line,
-// as Declare=Glow_Emission=2. A pixel has the colour Glow_Color * Glow_Emission * the millimetres of vessel behind it.
+// as Declare=Glow_Emission=2. A pixel has the color Glow_Color * Glow_Emission * the millimetres of vessel behind it.
 #version 3.7;
 
 global_settings { assumed_gamma 1.0 max_trace_level 5 }

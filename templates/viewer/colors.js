@@ -1,5 +1,5 @@
-// From values to colours, as corcast's own scales have it: places on a range, equal or of equal ratios, and colours
-// interpolated in sRGB between those of a map. A map of separate colours counts whole numbers round and round.
+// From values to colors, as corcast's own scales have it: places on a range, equal or of equal ratios, and colors
+// interpolated in sRGB between those of a map. A map of separate colors counts whole numbers round and round.
 
 const NO_DATA = [128, 128, 128];
 
@@ -20,7 +20,7 @@ export class Scale {
     return this.log ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low);
   }
 
-  // Writes the colour of a place, sRGB bytes, into `out` from `at` on.
+  // Writes the color of a place, sRGB bytes, into `out` from `at` on.
   put(value, out, at) {
     const { bytes } = this.map, n = bytes.length / 3;
     const place = this.counts ? value : this.place(value);

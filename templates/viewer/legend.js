@@ -1,4 +1,4 @@
-// The colour scale with its unit, and the scale bar, drawn on the page and into screenshots by the same hand.
+// The color scale with its unit, and the scale bar, drawn on the page and into screenshots by the same hand.
 import { number } from "./colors.js";
 
 const BAR = 12, GAP = 5;
@@ -15,7 +15,7 @@ function fieldName(scale) {
   return name + (unit ? ` (${unit})` : "") + (scale.log ? ", logarithmic" : "");
 }
 
-// A patch for each whole number, as far as the colours of the map are different ones.
+// A patch for each whole number, as far as the colors of the map are different ones.
 function drawPatches(context, scale, width, top) {
   const [low, high] = scale.range, n = Math.min(high - low + 1, scale.map.bytes.length / 3);
   for (let k = 0; k < n; k++) {

@@ -78,7 +78,7 @@ function resize() {
   wantPicture();
 }
 
-// The colours of the page, light or dark as the reader has it.
+// The colors of the page, light or dark as the reader has it.
 function takeScheme() {
   const styles = getComputedStyle(document.documentElement);
   const color = (name) => new Color().setStyle(styles.getPropertyValue(name).trim(), SRGBColorSpace);

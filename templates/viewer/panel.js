@@ -42,7 +42,7 @@ export class Panel {
     const sides = low.map((l, c) => number(high[c] - l, 3)).join(" × ");
     find("said").textContent = `${segments.length.toLocaleString("en")} segments, ${sides}\u00a0mm`;
     const fields = tree.fields.map(({ name, unit }) => option(name, unit ? `${name} (${unit})` : name));
-    find("field").append(option("", "one colour"), ...fields);
+    find("field").append(option("", "one color"), ...fields);
     find("map").append(...tree.maps.map(({ name }) => option(name, name)));
     find("made").textContent = `${told.generator}: ${told.command}`;
   }

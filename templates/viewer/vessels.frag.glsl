@@ -19,7 +19,7 @@ uniform float ambient, diffuse, brilliance, phong, phongSize, specular, sharpnes
 uniform float lightIsPoint[LIGHTS];
 uniform vec3 lightPlace[LIGHTS], lightColor[LIGHTS];
 uniform float halfDiagonal;
-uniform vec3 paper, accent; // the paper's colour is sRGB
+uniform vec3 paper, accent; // the paper's color is sRGB
 uniform float fade;
 uniform highp sampler2D open; // sums of light that comes, and of what would
 uniform float shade, rim;

@@ -116,7 +116,7 @@ export class Vessels {
     this.mesh.material = this.material;
   }
 
-  // Colours all segments by a scale, of the values of one moment; without, in the look's colour.
+  // Colors all segments by a scale, of the values of one moment; without, in the look's color.
   paint(scale, moment) {
     const attribute = this.mesh.geometry.getAttribute("color"), { segments, n } = this.tree;
     segments.forEach((i, k) => {
@@ -138,7 +138,7 @@ function aim({ eye, gaze, parallel, pixel }, camera, height) {
     : (2 * Math.tan((camera.fov * Math.PI) / 360)) / camera.zoom / height;
 }
 
-// sRGB bytes of a linear colour.
+// sRGB bytes of a linear color.
 function encoded(linear) {
   return linear.map((v) => Math.round(255 * (v < 0.0031308 ? 12.92 * v : 1.055 * Math.pow(v, 1 / 2.4) - 0.055)));
 }

@@ -10,7 +10,7 @@ in_blender() {
 }
 
 # looks_as_rendered IOU BEYOND OPTION ...: blender.png shows what `render` draws of t.swc with these options: at least that
-# part of the pixels of both, at most so many beyond our outline, in the same colours.
+# part of the pixels of both, at most so many beyond our outline, in the same colors.
 looks_as_rendered() {
     local iou=$1 beyond=$2
     shift 2
@@ -32,7 +32,7 @@ iou = (ours & theirs).sum() / (ours | theirs).sum()
 beyond = (theirs & ~binary_dilation(ours, disk(1))).sum()
 both = ours & theirs
 off = np.abs(shares(picture[both][:, :3]) - shares(imread("ours.ppm")[both])).max(axis=1)
-print("pixels", ours.sum(), "IoU", iou, "beyond", beyond, "colours off by", np.median(off), np.percentile(off, 90))
+print("pixels", ours.sum(), "IoU", iou, "beyond", beyond, "colors off by", np.median(off), np.percentile(off, 90))
 sys.exit(0 if ours.sum() > 9000 and iou > float(sys.argv[1]) and beyond <= int(sys.argv[2]) and np.median(off) < 0.03 else 1)
 END
 }
@@ -53,9 +53,9 @@ test_blender_imports_every_format_whole() {
     done < <(grep '^MEASURED' stdout)
 }
 
-# Vessels are three pixels wide; `render` rounds the ends that the mesh cuts off flat. Colours are compared by what of a
+# Vessels are three pixels wide; `render` rounds the ends that the mesh cuts off flat. Colors are compared by what of a
 # pixel's light is red, green and blue, whatever the shading; highlights are white.
-test_blender_draws_a_glb_with_the_outline_and_the_colours_that_render_draws() {
+test_blender_draws_a_glb_with_the_outline_and_the_colors_that_render_draws() {
     run_ok corcast grow --terminals 23 --domain ball:41 --seed 7 --quiet -o t.swc
     run_ok corcast export t.swc --color-by radius --quiet -o t.glb
     in_blender draw "$PWD/t.glb" "$PWD/blender.png"

@@ -4,7 +4,7 @@
  *   embree TREE.swc SIZE THREADS RUNS LOOK.ini
  *
  * prints the medians over the runs of the wall time and of the processor time of all threads, in
- * ms: curves, hierarchy, rays and colours, up to the frame in memory. */
+ * ms: curves, hierarchy, rays and colors, up to the frame in memory. */
 #include "base/base.h"
 #include "image/image.h"
 #include "render/tile/canvas.h"

@@ -1,6 +1,6 @@
 /* What the frames of a film cost: a renderer is made for one geometry and draws a first frame, one
- * of other colours and one of another view. For each the medians of wall time in ms, what is
- * prepared apart from pixels, and of the processor time of both. A frame of other colours prepares
+ * of other colors and one of another view. For each the medians of wall time in ms, what is
+ * prepared apart from pixels, and of the processor time of both. A frame of other colors prepares
  * nothing; the program fails if it does.
  *
  *   frames TREE.swc MODEL SIZE THREADS RUNS LOOK.ini MAP.txt [shadows] */
@@ -13,7 +13,7 @@
 #include <string.h>
 
 enum { MOST_RUNS = 99, FRAMES = 3 };
-static const char *const frame_names[FRAMES] = {"first", "other-colours", "other-view"};
+static const char *const frame_names[FRAMES] = {"first", "other-colors", "other-view"};
 
 typedef struct Film {
     Geometry geometry;
@@ -78,7 +78,7 @@ static void run_film(const Film *film, Times times[FRAMES], int run, Err *err)
     draw(renderer, &film->views[0], &film->appearances[0], &times[0], run, &stats, err);
     draw(renderer, &film->views[0], &film->appearances[1], &times[1], run, &stats, err);
     if (stats.preparations != 1) {
-        fprintf(stderr, "frames: other colours were prepared for\n");
+        fprintf(stderr, "frames: other colors were prepared for\n");
         exit(1);
     }
     draw(renderer, &film->views[1], &film->appearances[1], &times[2], run, &stats, err);

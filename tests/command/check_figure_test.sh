@@ -144,7 +144,7 @@ test_faults_of_pictures_are_named_one_each() {
     run_ok corcast convert fine.ppm zip.tif --dpi 300 --compression deflate
     refused plos zip.tif 'compression: deflate; wanted is lzw'
     run_ok corcast convert fine.ppm inks.tif --dpi 300 --cmyk-profile "$CMYK"
-    refused nature inks.tif 'colours: cmyk; taken are rgb grey'
+    refused nature inks.tif 'colors: cmyk; taken are rgb grey'
     taken elsevier inks.tif
     oiiotool fine.tif --ch R,G,B,A=0.5 --compression lzw -o glassy.tif
     refused plos glassy.tif 'alpha: a channel of transparency; figures are to be flat'
@@ -162,7 +162,7 @@ test_faults_of_pictures_are_named_one_each() {
     run corcast check-figure "$DATA/images/pages.tif" --preset nature
     expect_stdout 'pages: 2; one is wanted'
     run corcast check-figure "$DATA/images/wide-profile.tif" --preset nature
-    expect_stdout 'profile: "Wide built-in"; colours without ado are sRGB'
+    expect_stdout 'profile: "Wide built-in"; colors without ado are sRGB'
 }
 
 # page_with_font FONT FILE: a page whose only font is this dictionary.

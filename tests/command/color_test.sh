@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Which colour a value gets, in the native picture and in the scene for POV-Ray: entries of matplotlib's
+# Which color a value gets, in the native picture and in the scene for POV-Ray: entries of matplotlib's
 # published tables, as 8-bit codes and as linear numbers worked out by hand.
 . "$(dirname "$0")/../lib.sh"
 
 MODELS=$(corcast models)
 
 # Vessels 2, 4, 6, 8 and 10, each alone, of radii 1.37 mm times 1, 2, 4, 8 and 16, and a look that shows
-# nothing but their colours. From the least to the greatest, the radii are at the entries 0, 17, 51, 119 and 255
+# nothing but their colors. From the least to the greatest, the radii are at the entries 0, 17, 51, 119 and 255
 # of 256, and by logarithm at 0, 1/4, 1/2, 3/4 and 1.
 make_vessels() {
     cat >tree.swc <<'SWC'
@@ -42,7 +42,7 @@ numbers() {
     tail -c 14400 "$1" | od -An -v -tu1 -w3
 }
 
-# expect_codes OPTION... -- "ID R G B" ...: in every pixel of a vessel, with no other colour in the picture but
+# expect_codes OPTION... -- "ID R G B" ...: in every pixel of a vessel, with no other color in the picture but
 # $background.
 background="255 255 255"
 expect_codes() {
@@ -58,7 +58,7 @@ expect_codes() {
     paste -d ' ' <(numbers p.id.ppm | awk '{ print $1 * 65536 + $2 * 256 + $3 }') <(numbers p.ppm) |
         tr -s ' ' | sort -n | uniq >seen
     [ "$(cat seen)" = "$expected" ] ||
-        fail "expected the colours '$(echo $expected)', got '$(echo $(cat seen))', from: $command_line"
+        fail "expected the colors '$(echo $expected)', got '$(echo $(cat seen))', from: $command_line"
 }
 
 # expect_scene OPTION... -- "ID R G B" ...: linear numbers, wherever the scene paints a vessel.
@@ -75,7 +75,7 @@ expect_scene() {
     printf '%s\n' "$@" | paste -d ' ' seen - | awk '
         NF != 8 || $1 != $5 { bad = 1 }
         { for (i = 2; i <= 4; i++) if (($i - $(i + 4)) ^ 2 > 1e-13) bad = 1 }
-        END { exit bad }' || fail "expected the colours '$*', got '$(echo $(cat seen))', from: $command_line"
+        END { exit bad }' || fail "expected the colors '$*', got '$(echo $(cat seen))', from: $command_line"
 }
 
 test_every_model_shows_the_published_entry_of_each_value_and_writes_it_for_povray() {
@@ -91,7 +91,7 @@ test_every_model_shows_the_published_entry_of_each_value_and_writes_it_for_povra
     done
 }
 
-test_the_fast_methods_show_the_same_colours() {
+test_the_fast_methods_show_the_same_colors() {
     local method
     make_vessels
     for method in raster zbuffer; do
@@ -112,13 +112,13 @@ test_log_takes_equal_factors_to_equal_steps_of_every_map() {
         "2 13 8 135" "4 126 3 168" "6 203 71 120" "8 248 148 65" "10 240 249 33"
 }
 
-test_classes_are_steps_of_one_colour_that_use_the_whole_map() {
+test_classes_are_steps_of_one_color_that_use_the_whole_map() {
     make_vessels
     expect_codes --color-by radius --log --classes 3 -- \
         "2 68 1 84" "4 68 1 84" "6 33 144 140" "8 253 231 37" "10 253 231 37"
 }
 
-# 5.48 of 2.74 to 10.96 is at 1/3, entry 85, and by logarithm at 1/2; what lies outside has the colour of the end.
+# 5.48 of 2.74 to 10.96 is at 1/3, entry 85, and by logarithm at 1/2; what lies outside has the color of the end.
 test_range_sets_the_ends_of_the_map() {
     make_vessels
     expect_codes --color-by radius --range 2.74,10.96 -- \
@@ -147,7 +147,7 @@ test_a_background_is_given_as_it_is_encoded() {
         fail "expected the linear background 0.05087609 0.2140411 0.5225216, got '$(cat seen)'"
 }
 
-test_a_picture_of_16_bits_has_the_same_colours_more_finely() {
+test_a_picture_of_16_bits_has_the_same_colors_more_finely() {
     make_vessels
     run_ok corcast render --exact --quiet tree.swc --look ./flat.ini --size 60x80 --bits 16 --color-by radius -o p.ppm
     # The entry 17, 0.282656 0.100196 0.422160, times 65535.
@@ -184,7 +184,7 @@ test_the_range_is_said_in_the_log_the_json_the_picture_and_the_scene() {
         "radius mm 1.37 21.92 false $said" ] || fail "expected the range in the JSON, got $(jq -c .color r.json)"
     grep -aq "$said" p.png || fail "expected the range in the picture's text"
     run_ok corcast scene --quiet tree.swc --input-unit mm --color-by radius -o s.pov
-    grep -q "^// Desc: .*, coloured by $said\$" s.pov || fail "expected the range in the scene's head"
+    grep -q "^// Desc: .*, colored by $said\$" s.pov || fail "expected the range in the scene's head"
     grep -qx "#declare Value_Said = \"$said\";" s.inc || fail "expected the range in the anatomy"
     run_ok corcast render --exact --quiet tree.swc --input-unit mm --size 60x80 --color-by radius -o p.png
     [ ! -s stderr ] || fail "expected --quiet to say nothing, got '$(cat stderr)'"
@@ -249,7 +249,7 @@ test_a_pruned_picture_may_keep_the_range_of_the_tree() {
     refuses '--range-of has no effect on a --range of two values' --color-by radius --range-of tree --range 1,2
 }
 
-test_values_outside_the_range_and_segments_without_one_have_their_colours() {
+test_values_outside_the_range_and_segments_without_one_have_their_colors() {
     make_vessels
     expect_codes --color-by radius --range 2.74,10.96 --under '#0080ff' --over red -- \
         "2 0 128 255" "4 68 1 84" "6 49 104 142" "8 253 231 37" "10 255 0 0"
@@ -261,17 +261,17 @@ test_values_outside_the_range_and_segments_without_one_have_their_colours() {
     run_ok corcast render --exact load.csv --look flat $VIEW --color-by load --log --no-data lime -o p.ppm
     grep -q 'load 7 to 11, of the 5 segments drawn; logarithmic; 2 without a logarithm' stderr ||
         fail "expected to hear of values without a logarithm$(said)"
-    numbers p.ppm | tr -s ' ' | grep -qx ' 0 255 0' || fail "expected the colour of no data"
+    numbers p.ppm | tr -s ' ' | grep -qx ' 0 255 0' || fail "expected the color of no data"
     refuses "--under: 'bleu' is not R,G,B" --color-by radius --under bleu
 }
 
-test_a_map_of_separate_colours_counts_whole_numbers() {
+test_a_map_of_separate_colors_counts_whole_numbers() {
     make_vessels
     expect_codes --color-by strahler --colormap Set1 -- \
         "2 228 26 28" "4 228 26 28" "6 228 26 28" "8 228 26 28" "10 228 26 28"
     expect_codes --color-by radius --classes 2,5,15 --colormap Dark2 -- \
         "2 27 158 119" "4 217 95 2" "6 117 112 179" "8 117 112 179" "10 231 41 138"
-    refuses '--colormap Set1 has separate colours, for whole numbers' --color-by radius --colormap Set1
+    refuses '--colormap Set1 has separate colors, for whole numbers' --color-by radius --colormap Set1
 }
 
 test_a_field_of_many_decades_gets_a_hint() {
@@ -301,7 +301,7 @@ test_a_field_without_any_value_is_refused() {
 }
 
 # The look flat is the map itself; data is, where the light falls, to 2 codes of 255.
-test_looks_for_data_show_the_colour_of_the_map() {
+test_looks_for_data_show_the_color_of_the_map() {
     local look most
     make_vessels
     for look in flat data; do
@@ -311,9 +311,9 @@ test_looks_for_data_show_the_colour_of_the_map() {
     done
 }
 
-# Two vessels end to end, of values 1 and 3: by segment there are two colours, blended at most both and what
+# Two vessels end to end, of values 1 and 3: by segment there are two colors, blended at most both and what
 # lies between them, and half way both weigh the same.
-test_colours_blend_where_vessels_do() {
+test_colors_blend_where_vessels_do() {
     local model
     printf '1 1 -30 10 0 10 -1\n2 3 0 10 0 10 1\n3 3 30 10 0 10 2\n' >tree.swc
     corcast convert tree.swc tree.csv
@@ -321,9 +321,9 @@ test_colours_blend_where_vessels_do() {
     for model in isosurface blob; do
         run_ok corcast render --exact load.csv --quiet --look flat $VIEW --model $model --color-by load -o segment.ppm
         run_ok corcast render --exact load.csv --quiet --look flat $VIEW --model $model --color-by load --color-blend blended -o blended.ppm
-        [ "$(numbers segment.ppm | sort -u | wc -l)" = 3 ] || fail "expected two colours by segment as $model"
+        [ "$(numbers segment.ppm | sort -u | wc -l)" = 3 ] || fail "expected two colors by segment as $model"
         numbers blended.ppm | sort -u >seen
-        [ "$(wc -l <seen)" -ge 6 ] || fail "expected colours between the two as $model, got $(wc -l <seen)"
+        [ "$(wc -l <seen)" -ge 6 ] || fail "expected colors between the two as $model, got $(wc -l <seen)"
         # Columns 29 and 30 of 60 lie 1.06 mm to either side of the middle, the entries 128 and 127 of the map.
         numbers blended.ppm | awk 'NR % 60 == 30 || NR % 60 == 31' | sort -u | grep -v 255 >middle
         [ "$(wc -l <middle)" = 2 ] && [ "$(awk '{ sum += $2 } END { print int(sum / 2) }' middle)" -ge 142 ] &&
@@ -333,13 +333,13 @@ test_colours_blend_where_vessels_do() {
         [ "$(numbers steps.ppm | sort -u | wc -l)" = 3 ] || fail "expected two classes as $model"
     done
     refuses '--color-blend is for --model isosurface and blob' --model joined --color-by level --color-blend blended
-    refuses '--colormap Set1 has separate colours, which blend only with --classes' \
+    refuses '--colormap Set1 has separate colors, which blend only with --classes' \
         --model blob --color-by level --colormap Set1 --color-blend blended
     refuses '--color-blend needs --color-by' --model blob --color-blend blended
     printf 'id,0,0.5\n2,1,2\n3,3,4\n' >load.csv
     run corcast scene tree.swc --quiet --color-by load.csv:load --model blob --color-blend blended -o no.pov
     expect_status 2
-    expect_sentence 'colours that change with time do not blend; --moment chooses one moment'
+    expect_sentence 'colors that change with time do not blend; --moment chooses one moment'
     run_ok corcast scene tree.swc --quiet --color-by load.csv:load --moment 2 --model blob --color-blend blended -o yes.pov
 }
 
@@ -348,12 +348,12 @@ test_the_maps_are_listed_with_licences_and_drawn() {
     expect_same stdout <(for map in "$REPO"/templates/colormaps/*.txt; do
         name=$(basename "$map" .txt)
         printf '%s\t' "$name"
-        sed -n 's/^# //p' "$map" | tr '\n' ' ' | sed -E 's/.*Cite: (.*) One colour.*/\1\n/'
+        sed -n 's/^# //p' "$map" | tr '\n' ' ' | sed -E 's/.*Cite: (.*) One color.*/\1\n/'
     done)
     [ "$(grep -c 'Licence: ' stdout)" = "$(wc -l <stdout)" ] || fail "expected a licence of each map"
     [ "$(sed -n 2p maps.ppm)" = "512 392" ] || fail "expected 12 strips, got $(sed -n 2p maps.ppm)"
     tail -c $((512 * 392 * 3)) maps.ppm | tail -c $((512 * 3 * 9)) | head -c 3 | od -An -tu1 | grep -qx ' *68 *1 *84' ||
-        fail "expected the last strip to begin with viridis' first colour"
+        fail "expected the last strip to begin with viridis' first color"
 }
 
 test_ends_of_a_range_may_be_any_numbers() {

@@ -315,11 +315,11 @@ test_the_cause_is_said_where_it_is_certain() {
     pnmcut -left 0 -top 2 -width 118 a.ppm | pnmpad -white -left 3 -bottom 2 | pnmtopng >b.png
     expect_cause 'B is A moved by \(3, -2\) pixels, right and down being positive'
     oiiotool a.png --iscolorspace sRGB --tocolorspace linear --mulc 0.731 --tocolorspace sRGB -d uint8 -o b.png
-    expect_cause 'B is A made darker: its linear colours are 0\.73[01][0-9]* times those of A'
+    expect_cause 'B is A made darker: its linear colors are 0\.73[01][0-9]* times those of A'
     oiiotool a.png --iscolorspace sRGB --tocolorspace linear -d float -o a.exr
     oiiotool a.exr --mulc 0.731 -d float -o b.exr
     run corcast compare a.exr b.exr --html page.html
-    expect_stdout '; B is A made darker: its linear colours are 0\.731 times those of A$'
+    expect_stdout '; B is A made darker: its linear colors are 0\.731 times those of A$'
     grep -q 'The pictures: B is A made darker' page.html || fail "expected the cause in the page"
 }
 
@@ -527,7 +527,7 @@ test_pixelmatch_counts_as_the_package_of_that_name_transparent_pictures_too() {
     awk '$3 > 0 { found++ } END { exit found < 50 }' expected || fail "expected pictures that differ"
 }
 
-# Two pictures without colour on white: only their alpha, 0 and 255 at the eighth of 20 pixels, differs.
+# Two pictures without color on white: only their alpha, 0 and 255 at the eighth of 20 pixels, differs.
 test_pixelmatch_counts_alpha_in_folders_and_under_masks() {
     mkdir stored drawn
     printf 'P5\n5 4\n255\n%20s' | tr ' ' '\0' >clear.pgm
@@ -543,7 +543,7 @@ test_pixelmatch_counts_alpha_in_folders_and_under_masks() {
     run_ok corcast compare --reference stored drawn --pixelmatch 0.1
 }
 
-# Slow: kinds of faults, two at once, in a part of the picture and in the colours too, in two pictures: a wrong cause fails.
+# Slow: kinds of faults, two at once, in a part of the picture and in the colors too, in two pictures: a wrong cause fails.
 test_no_cause_is_named_that_was_not_planted() {
     /usr/bin/python3 -c 'import scipy' 2>import.log || skip "python3-scipy is not installed"
     run_ok corcast render "$REPO/tests/golden/ball60.swc" --view iso --size 201x160 --antialias 2 --background black \

@@ -60,17 +60,17 @@ test_script_and_usd_have_every_segment_once_in_objects_by_tree_and_order() {
 }
 
 # Segments of an order follow each other in one spline: there are fewer splines than segments.
-test_a_curve_goes_on_as_long_as_its_order_and_its_colour() {
+test_a_curve_goes_on_as_long_as_its_order_and_its_color() {
     local plain
     run_ok corcast export "$DATA/coronary.swc" -o plain.py --quiet
     is_as_curves plain.py "$DATA/coronary.swc"
     plain=$(awk '{ n += $4 } END { print n }' objects)
     run_ok corcast export "$DATA/coronary.swc" --color-by strahler -o same.py --quiet
     is_as_curves same.py "$DATA/coronary.swc"
-    [ "$(awk '{ n += $4 } END { print n }' objects)" = "$plain" ] || fail "expected colours of orders to part no curve"
+    [ "$(awk '{ n += $4 } END { print n }' objects)" = "$plain" ] || fail "expected colors of orders to part no curve"
     run_ok corcast export "$DATA/coronary.swc" --color-by level -o other.py --quiet
     is_as_curves other.py "$DATA/coronary.swc"
-    [ "$(awk '{ n += $4 } END { print n }' objects)" -gt "$plain" ] || fail "expected other colours to part curves"
+    [ "$(awk '{ n += $4 } END { print n }' objects)" -gt "$plain" ] || fail "expected other colors to part curves"
 }
 
 test_a_script_has_at_most_64_materials_and_uses_each() {
@@ -91,7 +91,7 @@ test_usd_is_in_millimetres_with_widths_and_without_normals() {
     [ "$(tr -cd '[{(' <t.usda | wc -c)" = "$(tr -cd ']})' <t.usda | wc -c)" ] || fail "expected as many brackets open as closed"
 }
 
-# lib3mf 1.8 knows no colours of beams, and warns of them.
+# lib3mf 1.8 knows no colors of beams, and warns of them.
 test_lib3mf_reads_a_beam_for_each_segment_and_the_preview_that_represents_them() {
     ldconfig -p | grep -q lib3MF.so.1 || skip "lib3mf1 is not installed"
     grown

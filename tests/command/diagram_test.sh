@@ -43,7 +43,7 @@ test_the_pixels_are_those_of_the_svg() {
     expect_json stdout '.rmse < 6 and .mean_abs < 1'
 }
 
-test_a_diagram_takes_the_colours_of_a_picture() {
+test_a_diagram_takes_the_colors_of_a_picture() {
     printf '1 1 0 0 0 2.385 -1\n2 3 30 0 0 2.385 1\n' >tree.swc
     run_ok corcast diagram tree.swc --gap 1 --size 40x40 --background 0.2,0.4,0.6 -o other.ppm
     printf '\063\146\231' >expected

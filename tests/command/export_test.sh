@@ -102,7 +102,7 @@ test_assimp_reads_every_format_with_the_same_triangles() {
     done
 }
 
-test_obj_has_groups_by_order_and_a_material_for_each_colour() {
+test_obj_has_groups_by_order_and_a_material_for_each_color() {
     grown
     run_ok corcast export t.swc --color-by strahler -o t.obj --quiet
     [ "$(grep '^g ' t.obj | tr '\n' ' ')" = "g order_1 g order_2 g order_3 g order_4 " ] ||
@@ -217,8 +217,8 @@ test_glb_has_a_node_for_each_order_in_metres() {
     expect_json t.json '.materials[0].pbrMetallicRoughness.baseColorFactor == [1, 1, 1, 1]'
 }
 
-# Of one field two colours: the ends of viridis, linear in GLB and encoded in PLY.
-test_colours_are_linear_in_glb_and_encoded_in_ply() {
+# Of one field two colors: the ends of viridis, linear in GLB and encoded in PLY.
+test_colors_are_linear_in_glb_and_encoded_in_ply() {
     local extension
     /usr/bin/python3 -c 'import numpy' 2>import.log || skip "python3-numpy is not installed"
     for extension in glb ply; do
@@ -245,10 +245,10 @@ sys.exit(0 if glb_codes == ends and ply_codes == ends else 1)
 END
 }
 
-test_refuses_colours_where_a_format_has_none() {
+test_refuses_colors_where_a_format_has_none() {
     run corcast export "$DATA/bifurcation.swc" --color-by radius -o m.stl
     expect_status 2
-    expect_sentence '--color-by is for formats with colours'
+    expect_sentence '--color-by is for formats with colors'
     run corcast export "$DATA/bifurcation.swc" --classes 4 -o m.glb
     expect_status 2
     expect_sentence '--classes needs --color-by'

@@ -178,7 +178,7 @@ refused() {
 
 test_mistakes_are_named_with_file_and_line() {
     run_ok corcast grow --terminals 12 --quiet -o t.swc
-    refused '[panel a]\ntree = t.swc\ncolour-by = flow\n' "r\.ini:3: 'colour-by' is not a key of \[panel\]; did you mean color-by"
+    refused '[panel a]\ntree = t.swc\ncolor-by = flow\n' "r\.ini:3: 'color-by' is not a key of \[panel\]; did you mean color-by"
     refused '[panel a]\ntree = t.swc\nsize = 3x3\n' "r\.ini:3: 'size' is not a key of"
     refused '[panel a]\ntree = t.swc\n[panel a]\n' 'r\.ini:3: there is a section \[panel a\] already'
     refused '[figure]\n[figure]\n' 'r\.ini:2: there is a section \[figure\] already'

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Colour bars, scale bars and letters on pictures, and pages of PDF and SVG that hold one. Poppler,
+# Color bars, scale bars and letters on pictures, and pages of PDF and SVG that hold one. Poppler,
 # xmllint and librsvg are the witnesses.
 . "$(dirname "$0")/../lib.sh"
 

@@ -10,7 +10,7 @@ make_crossing() {
 test_looks_are_listed_with_what_povray_does_not_draw() {
     run_ok corcast looks
     expect_stdout '^clinical	POV-Ray draws the same	the bright red of textbooks'
-    expect_stdout '^journal	POV-Ray draws it without outlines and halos	true colours'
+    expect_stdout '^journal	POV-Ray draws it without outlines and halos	true colors'
     expect_stdout '^depth	POV-Ray draws it without halos and fading with depth	'
     [ "$(corcast looks | wc -l)" = "$(ls "$REPO"/templates/looks | wc -l)" ] || fail "expected every look to be listed"
     ! corcast looks | awk -F '	' 'NF != 3 || $3 == ""' | grep . || fail "expected every look to say what it is"
@@ -39,7 +39,7 @@ test_halos_part_vessels_whatever_the_model() {
     done
 }
 
-# No colour of a field, no picture of POV-Ray; a tube of radius 3.1 is 6.2 mm thick, whose light is exp(-2).
+# No color of a field, no picture of POV-Ray; a tube of radius 3.1 is 6.2 mm thick, whose light is exp(-2).
 test_an_xray_shows_lengths_alone() {
     make_crossing
     sed -i '/^[34] /d' tree.swc
@@ -49,7 +49,7 @@ test_an_xray_shows_lengths_alone() {
         awk '{ exit !($1 > 0.13533 && $1 < 0.13534) }' || fail "expected exp(-2) of the light in the middle"
     run corcast render tree.swc --look xray --color-by radius -o no.png
     expect_status 2
-    expect_sentence '--look xray has two colours of its own; --color-by has no effect'
+    expect_sentence '--look xray has two colors of its own; --color-by has no effect'
     run corcast render tree.swc --look xray --ao 3 -o no.png
     expect_status 2
     expect_sentence '^corcast render: --ao is of lit walls, and an x-ray has none$'

@@ -202,11 +202,11 @@ test_each_place_is_called_what_it_is() {
     [ "$(grep -c '^  end(' fork.scad)" = 3 ] || fail "expected three ends"
 }
 
-test_vessels_have_the_colours_that_are_asked_for() {
+test_vessels_have_the_colors_that_are_asked_for() {
     fork
     run_ok corcast scene fork.swc --color-by length -o colored.scad
     scad colored.csg colored.scad
-    [ "$(grep -o 'color(\[[^]]*' colored.csg | sort -u | wc -l)" = 3 ] || fail "expected three colours"
+    [ "$(grep -o 'color(\[[^]]*' colored.csg | sort -u | wc -l)" = 3 ] || fail "expected three colors"
 }
 
 test_the_commands_of_the_page_run() {

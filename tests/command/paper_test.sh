@@ -131,7 +131,7 @@ test_a_grey_picture_has_no_inks() {
     printf 'P2 2 1 255 9 200\n' >grey.pgm
     run corcast convert grey.pgm grey.tif --cmyk-profile "$CMYK"
     expect_status 2
-    expect_sentence 'grey.tif: only opaque pictures in colour go to a press'
+    expect_sentence 'grey.tif: only opaque pictures in color go to a press'
     expect_only grey.pgm
 }
 
@@ -168,7 +168,7 @@ test_bad_profiles_are_refused_and_nothing_is_written() {
 missing.icc|missing.icc: cannot be read: No such file
 tree.swc|tree.swc: is not an ICC profile
 cut.icc|cut.icc: is no
-${CMYK%/*}/srgb.icc|srgb.icc: is the profile of other colours than cyan, magenta, yellow and black
+${CMYK%/*}/srgb.icc|srgb.icc: is the profile of other colors than cyan, magenta, yellow and black
 END
     run corcast render tree.swc --size 30x20 --cmyk-profile "$CMYK" -o p.png
     expect_status 2

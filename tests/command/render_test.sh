@@ -4,8 +4,8 @@
 
 MODELS=$(corcast models)
 
-# colours FILE.ppm: how many different pixels there are.
-colours() {
+# colors FILE.ppm: how many different pixels there are.
+colors() {
     pnmtoplainpnm "$1" 2>/dev/null | tail -n +4 | tr -s ' \n' '\n' | grep -v '^$' | paste - - - | sort -u | wc -l
 }
 
@@ -18,9 +18,9 @@ pixels() {
     esac | pnmtoplainpnm
 }
 
-colours_of_png() {
-    pngtopnm "$1" >colours.ppm
-    colours colours.ppm
+colors_of_png() {
+    pngtopnm "$1" >colors.ppm
+    colors colors.ppm
 }
 
 expect_same_pixels() {
@@ -36,7 +36,7 @@ test_every_model_gives_a_picture_of_the_size_asked_for() {
         run_ok corcast render --exact tree.swc --model $model --size 83x41 -o $model.ppm
         pnmfile $model.ppm | grep -q 'PPM raw, 83 by 41  maxval 255' ||
             fail "expected a P6 of 83 x 41, got $(pnmfile $model.ppm)"
-        [ "$(colours $model.ppm)" -gt 20 ] || fail "expected a shaded picture of $model"
+        [ "$(colors $model.ppm)" -gt 20 ] || fail "expected a shaded picture of $model"
     done
 }
 
@@ -77,7 +77,7 @@ test_the_planes_stand_beside_the_picture() {
     run_ok corcast render --exact tree.swc --size 50x30 --planes color,depth,normal,id -o picture.png
     expect_only tree.swc picture.png picture.{color,depth,normal}.pfm picture.id.ppm
     [ "$(head -c 8 picture.depth.pfm | head -1)" = Pf ] || fail "expected a grey PFM"
-    [ "$(head -c 8 picture.normal.pfm | head -1)" = PF ] || fail "expected a colour PFM"
+    [ "$(head -c 8 picture.normal.pfm | head -1)" = PF ] || fail "expected a color PFM"
     [ "$(sed -n 2p picture.depth.pfm | head -c 5)" = "50 30" ] || fail "expected 50 30 in the PFM"
     pfmtopam picture.normal.pfm >normal.pam 2>stderr || fail "expected netpbm to read the PFM$(said)"
     pnmfile picture.id.ppm | grep -q 'PPM raw, 50 by 30  maxval 255' || fail "expected a P6 of ids"
@@ -160,11 +160,11 @@ test_convert_changes_the_format_and_not_the_pixels() {
     expect_same_pixels picture.ppm again.ppm
 }
 
-test_antialiasing_gives_colours_in_between() {
+test_antialiasing_gives_colors_in_between() {
     grow_tree 20
     run_ok corcast render --exact tree.swc --size 80x80 -o sharp.ppm
     run_ok corcast render --exact tree.swc --size 80x80 --antialias 3 -o smooth.ppm
-    [ "$(colours smooth.ppm)" -gt "$(colours sharp.ppm)" ] || fail "expected more colours with antialiasing"
+    [ "$(colors smooth.ppm)" -gt "$(colors sharp.ppm)" ] || fail "expected more colors with antialiasing"
 }
 
 test_perspective_and_shadows_change_the_picture() {
@@ -180,10 +180,10 @@ test_pruning_drops_thin_segments_from_the_picture() {
     grow_tree 60
     run_ok corcast render --exact tree.swc --size 200x200 --planes id -o all.ppm
     run_ok corcast render --exact tree.swc --size 200x200 --planes id --prune-radius 1 -o thick.ppm
-    [ "$(colours thick.id.ppm)" -lt "$(colours all.id.ppm)" ] || fail "expected fewer segments"
+    [ "$(colors thick.id.ppm)" -lt "$(colors all.id.ppm)" ] || fail "expected fewer segments"
 }
 
-test_fields_colour_the_segments() {
+test_fields_color_the_segments() {
     local field
     grow_tree 30
     run_ok corcast render --exact tree.swc --size 80x80 -o plain.ppm
@@ -213,7 +213,7 @@ test_a_field_that_needs_flow_is_refused_where_nothing_is_known_of_it() {
     run_ok corcast render --exact tree.swc --size 20x20 --color-by flow --q-perf 312.5 -o picture.ppm
 }
 
-test_the_background_is_the_colour_asked_for() {
+test_the_background_is_the_color_asked_for() {
     grow_tree 5
     run_ok corcast render --exact tree.swc --size 40x40 --background 0,0,0 -o black.ppm
     [ "$(tail -c 3 black.ppm | od -A n -t u1 | tr -s ' ')" = " 0 0 0" ] ||
@@ -558,7 +558,7 @@ test_methods_say_what_they_do_not_draw() {
     run corcast render tree.swc --method zbuffer --ao 8 -o picture.ppm
     expect_status 2
     run_ok corcast render tree.swc --method zbuffer --size 90x60 -o picture.ppm
-    [ "$(colours picture.ppm)" -gt 20 ] || fail "expected a shaded picture"
+    [ "$(colors picture.ppm)" -gt 20 ] || fail "expected a shaded picture"
 }
 
 test_the_potential_of_the_graph_keeps_strangers_apart() {

@@ -134,10 +134,10 @@ test_a_povray_that_talks_without_progress_is_ended() {
 test_the_reason_of_a_povray_that_fails_is_what_it_said_last() {
     local start='echo "povray: cannot open the user configuration file x" >&2
         echo "Persistence of Vision(tm) Ray Tracer Version 3.7.0.10.unofficial" >&2; echo "POV-Ray is based on DKBTrace" >&2'
-    stand_in "$start; echo 'Possible Parse Error: Cannot find it'; echo 'Parse Error: No such colour'; echo 'Fatal error in parser: Cannot parse input.'
+    stand_in "$start; echo 'Possible Parse Error: Cannot find it'; echo 'Parse Error: No such color'; echo 'Fatal error in parser: Cannot parse input.'
         echo 'Render failed'; exit 1"
     run corcast povray scene.pov -o picture.png
-    expect_sentence '\(exit status 1\): Parse Error: No such colour$'
+    expect_sentence '\(exit status 1\): Parse Error: No such color$'
     stand_in "$start; echo 'Cannot create render state output file.'; echo '  Bounding Time:    0 hours'; echo 'Render failed'; exit 1"
     run corcast povray scene.pov -o picture.png
     expect_sentence '\(exit status 1\): Cannot create render state output file\.   Bounding Time: '

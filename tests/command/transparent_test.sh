@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# --background: colours by name and code, and none, whose pictures are held over backgrounds against those that have them.
+# --background: colors by name and code, and none, whose pictures are held over backgrounds against those that have them.
 . "$(dirname "$0")/../lib.sh"
 
 # rgba FILE.png: a line a pixel.
@@ -7,7 +7,7 @@ rgba() {
     pngtopam -alphapam "$1" | sed '1,/^ENDHDR/d' | od -A n -v -t u1 -w4
 }
 
-# over R G B: the pixels on standard input over a colour, in linear light, as sRGB.
+# over R G B: the pixels on standard input over a color, in linear light, as sRGB.
 over() {
     awk -v ground="$*" '
         function linear(c) { c /= 255; return c < 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ^ 2.4 }
@@ -22,7 +22,7 @@ expect_corner() {
         fail "expected a corner of $2 from: $command_line"
 }
 
-test_a_transparent_picture_over_a_colour_is_the_picture_on_it() {
+test_a_transparent_picture_over_a_color_is_the_picture_on_it() {
     local how
     run_ok corcast grow --terminals 60 --domain ball:20 -o tree.swc
     for how in '--model joined --shadows on' '--model isosurface' '--model blob --exact --antialias 2' '--look journal' '--look depth'; do
@@ -91,7 +91,7 @@ END
     expect_sentence "--background: 'none' is not R,G,B"
 }
 
-test_convert_keeps_alpha_or_lays_it_on_a_colour() {
+test_convert_keeps_alpha_or_lays_it_on_a_color() {
     cp "$DATA/bifurcation.swc" tree.swc
     run_ok corcast render tree.swc --size 40x30 --background none --quiet -o none.png
     rgba none.png >none
@@ -106,7 +106,7 @@ test_convert_keeps_alpha_or_lays_it_on_a_colour() {
         { for (c = 1; c <= 3; c++) if (($c - $(c + 3)) ^ 2 > 1) exit 1 }' || fail "expected the picture over teal"
     run corcast convert none.png no.jpg
     expect_status 2
-    expect_sentence "none\.png: is transparent, which 'no\.jpg' cannot be; --background lays it on a colour"
+    expect_sentence "none\.png: is transparent, which 'no\.jpg' cannot be; --background lays it on a color"
     run_ok corcast render tree.swc --size 40x30 --background none --quiet -o none.exr
     run corcast convert none.exr no.pfm
     expect_status 2
@@ -175,7 +175,7 @@ test_compare_judges_alpha_of_two_transparent_pictures() {
     run_ok corcast compare --reference stored drawn
 }
 
-test_colours_have_the_names_of_css_and_codes() {
+test_colors_have_the_names_of_css_and_codes() {
     local color codes
     cp "$DATA/bifurcation.swc" tree.swc
     while read -r color codes; do

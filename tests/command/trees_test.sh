@@ -113,7 +113,7 @@ test_a_tree_on_standard_input_is_told_by_its_first_bytes() {
     expect_sentence 'standard input: there is no section \*Connectivity'
 }
 
-test_a_column_of_a_csv_colours_its_segments() {
+test_a_column_of_a_csv_colors_its_segments() {
     printf '%s\n' 'id,parent,x_mm,y_mm,z_mm,radius_mm,age [a]' 1,,0,9,0,1, 2,1,0,4,0,1,41 3,2,-4,0,0,0.5,37.5 \
         4,2,4,0,0,0.5, >tree.csv
     run_ok corcast render --exact tree.csv --color-by age --range 30,50 --size 40x30 -o age.ppm

@@ -121,7 +121,7 @@ test_the_window_shows_what_its_options_draw() {
     close_view
 }
 
-test_keys_switch_model_colour_projection_and_shadows() {
+test_keys_switch_model_color_projection_and_shadows() {
     grow_tree 40
     open_view --size 200x160
     press 1

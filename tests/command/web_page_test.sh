@@ -54,7 +54,7 @@ test_a_page_of_2000_segments_is_small_complete_and_the_same_each_time() {
     [ "$(wc -c <a.html)" -lt 1000000 ] || fail "expected less than 1 MB, got $(wc -c <a.html)"
     grep -qE '(src|href)="' a.html && fail "expected nothing from elsewhere"
     grep -q 'Permission is hereby granted' a.html || fail "expected the licence of three.js"
-    grep -q 'Copyright (c) 2021 Fabio Crameri' a.html || fail "expected the licences of the colour maps"
+    grep -q 'Copyright (c) 2021 Fabio Crameri' a.html || fail "expected the licences of the color maps"
     grep -q '<title>tree.swc, an arterial tree</title>' a.html || fail "expected a title"
     sed -n 's/^<script type="application\/json" id="told">\(.*\)<\/script>$/\1/p' a.html >told.json
     expect_json told.json '(.start | .field == "flow" and .map == "magma" and .log and (.low - 0.5 | fabs) < 1e-9 and (.high - 500 | fabs) < 1e-9)
@@ -110,7 +110,7 @@ test_without_the_viewer_a_page_is_refused_and_what_is_missing_named() {
     [ ! -e page.html ] || fail "expected no page"
 }
 
-# The page's own scale: round numbers, places, and colours of values, linear and logarithmic.
+# The page's own scale: round numbers, places, and colors of values, linear and logarithmic.
 test_the_scale_of_a_page_has_the_right_numbers() {
     command -v node >node.path || skip "nodejs is not installed"
     cp "$REPO/templates/viewer/colors.js" colors.mjs
@@ -141,9 +141,9 @@ for (const [low, high, log, place, value] of [[2, 10, false, 0.25, 4], [1, 1000,
 }
 const color = [0, 0, 0];
 scale(1, 1000, true).put(10, color, 0);
-expect("colour", color, [85, 85, 170]);
+expect("color", color, [85, 85, 170]);
 scale(0, 100, false).put(20, color, 0);
-expect("colour", color, [51, 51, 204]);
+expect("color", color, [51, 51, 204]);
 END
     run_ok node scale.mjs
 }

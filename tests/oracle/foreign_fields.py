@@ -109,7 +109,7 @@ def check_triangles(points, triangles, segments=None, codes=None, normals=None):
         expect("segments of triangles", int((np.asarray(segments)[clear] != wall[clear]).sum()), 0)
     if codes is not None:
         expected = np.array([code(int(s)) for s in wall[clear]])
-        expect("colours of triangles", int((np.asarray(codes)[clear] != expected).any(axis=-1).sum()), 0)
+        expect("colors of triangles", int((np.asarray(codes)[clear] != expected).any(axis=-1).sum()), 0)
     if normals is not None:
         smooth = np.asarray(normals, float)[clear]
         expect("lengths of normals", np.linalg.norm(smooth, axis=-1).ravel(), np.ones(smooth[..., 0].size), 1e-5)
@@ -196,14 +196,14 @@ def ply_faces(path):
 
 
 def check_like_ply(ply, points, triangles, codes):
-    """Each triangle has the colour of the segment that the PLY of the same mesh names for it."""
+    """Each triangle has the color of the segment that the PLY of the same mesh names for it."""
     vertices, faces = ply_faces(ply)
     key = lambda corners: tuple(sorted(map(tuple, np.float32(corners).tolist())))
     known = {key(vertices["at"][face["v"]]): code(int(face["segment"])) for face in faces}
     points = np.float32(points)
     expect("triangles beside those of PLY", len(known), len(triangles))
     wrong = sum(known.get(key(points[t])) != tuple(int(c) for c in paint) for t, paint in zip(triangles, codes))
-    expect("triangles of another colour than in PLY", wrong, 0)
+    expect("triangles of another color than in PLY", wrong, 0)
 
 
 def read_ply(path):
@@ -212,7 +212,7 @@ def read_ply(path):
     check_triangles(vertices["at"], triangles, faces["segment"], None, vertices["normal"][triangles])
     wall, _, _ = walls(vertices["at"].astype(float))
     expected = np.array([code(int(s)) for s in wall[wall > 0]])
-    expect("colours of points", vertices["color"][wall > 0], expected)
+    expect("colors of points", vertices["color"][wall > 0], expected)
     check_caps(vertices["at"].astype(float)[triangles].mean(axis=1), faces["cap"] > 0, faces["segment"])
 
 
@@ -265,7 +265,7 @@ def read_obj(path, ply):
 
 
 def read_model(path):
-    """The document of a 3MF, its colours, and its objects by id."""
+    """The document of a 3MF, its colors, and its objects by id."""
     archive = zipfile.ZipFile(path)
     expect("files", archive.namelist(), ["[Content_Types].xml", "_rels/.rels", "3D/3dmodel.model"])
     check_text("content types", archive.read("[Content_Types].xml").decode(),
@@ -508,7 +508,7 @@ def check_line(points, radii, first, colors, tree, order, color_of):
         expect("a point", points[k], at(segment))
         expect("a radius", radii[k], radius(segment))
         expect("tree and order", [tree, order], [TREE[segment], ORDER[segment]])
-        expect("a colour", colors[k], color_of(segment))
+        expect("a color", colors[k], color_of(segment))
         segments.append(segment)
     return segments
 
@@ -587,7 +587,7 @@ def read_html(path):
     expect("lights", [light["point"] for light in look["lights"]], [False, False])
     expect("directions", np.array([light["direction"] for light in look["lights"]]),
            [[-0.22, 0.3, 1], [0.9, -0.2, 0.5]], 1e-6)
-    expect("colours of lights", np.array([light["color"] for light in look["lights"]]),
+    expect("colors of lights", np.array([light["color"] for light in look["lights"]]),
            [[0.95] * 3, [0.22, 0.23, 0.26]], 1e-6)
 
 
@@ -707,14 +707,14 @@ def read_csg(path, source):
     for (a, b, r, c), segment in zip(sorted(found, key=lambda row: tuple(np.round(row[1], 2))),
                                      sorted(SEGMENTS, key=lambda s: tuple(at(s)))):
         expect("a cylinder", [*a, *b, r], [*ends(segment)[0], *ends(segment)[1], radius(segment)], 1e-3)
-        expect("its colour", c, np.array(code(segment)) / 255, 2e-3)
+        expect("its color", c, np.array(code(segment)) / 255, 2e-3)
     expect("balls", len(balls), len(NODES))
     for node in NODES:
         meeting = [s for s in SEGMENTS if node in (s, NODES[s][0])]
         thickest = max(meeting, key=lambda s: (radius(s), s == node))
         centre, r, c = min(balls, key=lambda ball: np.linalg.norm(ball[0] - at(node)))
         expect("a ball", [*centre, r], [*at(node), radius(thickest)], 1e-3)
-        expect("its colour", c, np.array(code(thickest)) / 255, 2e-3)
+        expect("its color", c, np.array(code(thickest)) / 255, 2e-3)
 
 
 def read_mesh2(path, ply):
@@ -735,7 +735,7 @@ def read_mesh2(path, ply):
             segment = int(segment)
             expect("radius and order of a paint", [float(size), int(order)], [radius(segment), ORDER[segment]])
             expect("value of a paint", value if segment not in LOAD else float(value), LOAD.get(segment, "Value_None"))
-            expect("colour of a paint", [float(x) for x in color.split(",")], linear(code(segment)), 3e-3)
+            expect("color of a paint", [float(x) for x in color.split(",")], linear(code(segment)), 3e-3)
         all_paints += [int(paint[1]) for paint in paints]
         corners = lambda row: [first + int(x) for x in row[0].split(",")]
         painted += [(corners(row), int(paints[int(re.findall(r"\d+", row[1])[0])][1])) for row in rows("face_indices")]

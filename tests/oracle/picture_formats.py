@@ -241,8 +241,8 @@ def tiff_kinds():
         name = f"bilevel-{compression}.tif"
         picture.convert("1").save(name, compression=compression)
         check(name, corcast(name), deep(numpy.asarray(Image.open(name).convert("L"))))
-    for mode, sentence in (("CMYK", "has the colours of inks (CMYK)"), ("LAB", "has CIELAB colours"),
-                           ("YCbCr", "has YCbCr colours without JPEG compression")):
+    for mode, sentence in (("CMYK", "has the colors of inks (CMYK)"), ("LAB", "has CIELAB colors"),
+                           ("YCbCr", "has YCbCr colors without JPEG compression")):
         picture.convert(mode).save(f"{mode}.tif")
         check(mode, corcast(f"{mode}.tif"), sentence)
     picture.save("pages.tif", save_all=True, append_images=[picture])
@@ -372,7 +372,7 @@ def lossy():
                 color.convert(mode).save(name, progressive=progressive, subsampling=sampling, quality=90)
                 check(name, corcast(name), deep(numpy.asarray(Image.open(name))))
     color.convert("CMYK").save("cmyk.jpg")
-    check("cmyk.jpg", corcast("cmyk.jpg"), "has the colours of inks (CMYK)")
+    check("cmyk.jpg", corcast("cmyk.jpg"), "has the colors of inks (CMYK)")
     exif = Image.Exif()
     exif[0x0112] = 6
     color.save("turned.jpg", exif=exif)
@@ -443,7 +443,7 @@ def written_codes(files, profile):
         for name in ("t.png", *TIFFS):
             check(f"{bits}{name}", numpy.rint(files.seen(f"{bits}{name}") * most), truth)
             check(f"{bits}{name} again", corcast(f"{bits}{name}"), truth)
-            name = f"{bits}clear-{name}"  # whose colours OpenImageIO multiplies by alpha
+            name = f"{bits}clear-{name}"  # whose colors OpenImageIO multiplies by alpha
             check(name, files.seen(name) * most, shown, 1)
             check(f"{name} again", corcast(name), kept)
             if bits == 8:

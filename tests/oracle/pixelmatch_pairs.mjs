@@ -36,13 +36,13 @@ function discs(width, height, alpha, smooth, shift, copy) {
     return { data, list };
 }
 
-// Few colours at random: pixels with none, one, two, three and more siblings, darker and brighter neighbours.
+// Few colors at random: pixels with none, one, two, three and more siblings, darker and brighter neighbours.
 function grain(width, height, alpha, colors) {
     const palette = Array.from({ length: colors }, () => [below(256), below(256), below(256), alpha()]);
     return Buffer.from(Array.from({ length: width * height }, () => pick(palette)).flat());
 }
 
-// Some pixels of another picture get the colour of a neighbour, or one of their own.
+// Some pixels of another picture get the color of a neighbour, or one of their own.
 function disturb(data, width, alpha, one_in) {
     const made = Buffer.from(data), n = data.length / 4;
     for (let i = 0; i < n; i++) {

@@ -100,8 +100,8 @@ def in_part(codes, made, rows, columns):
     return codes if (np.rint(out) == np.clip(np.rint(made), 0, 255)).all() else out
 
 
-def recoloured(codes, color):
-    """Things of another colour, as bright as before; the background as it was."""
+def recolored(codes, color):
+    """Things of another color, as bright as before; the background as it was."""
     linear = light(codes)
     made = codes_of(linear.mean(axis=2, keepdims=True) * np.array(color))
     return np.where((codes == codes[0, 0]).all(axis=2)[..., None], codes, made)
@@ -118,7 +118,7 @@ def ramp(codes, axis):
 MOVED, BLURRED, TONE, GAMMA = "moved", "blurred", "gain or offset", "gamma or encoding"
 TURNED, CHANNELS, MISSING = "turned or mirrored", "channels", "one thing missing"
 BACKGROUND, ROUNDING, NONE = "background", "rounding", "unknown"
-CURVE, SHADING, COLORS = "some other curve", "shading", "other colours"
+CURVE, SHADING, COLORS = "some other curve", "shading", "other colors"
 WORDS = [
     ("moved by", MOVED), ("blurred", BLURRED), ("power of", GAMMA), ("encoded", GAMMA),
     ("negative", GAMMA), ("made brighter", TONE), ("made darker", TONE), ("mirrored", TURNED),
@@ -154,14 +154,14 @@ FAULTS = [
     ("light that falls off to the right", SHADING, in_light(lambda l: l * (1 - 0.3 * ramp(l, 1)))),
     ("the lower half darker", SHADING, in_light(lambda l: np.where(ramp(l, 0) > 0.5, 0.8 * l, l))),
     ("a curve", CURVE, lambda c: 255 * (0.9 * c / 255) ** 1.3), ("a sine", CURVE, lambda c: 255 * np.sin(c / 255 * 1.5)),
-    # Other colours, which no sentence is about.
+    # Other colors, which no sentence is about.
     ("desaturated a little", COLORS, lambda c: mixed(c, 0.1)), ("desaturated a little", COLORS, lambda c: mixed(c, 0.2)),
     ("desaturated", COLORS, lambda c: mixed(c, 0.5)), ("grey", COLORS, lambda c: mixed(c, 1)),
     ("saturated", COLORS, lambda c: mixed(c, -0.3)), ("desaturated in light", COLORS, in_light(lambda l: mixed(l, 0.3))),
     ("hue turned a little", COLORS, lambda c: hue_turned(c, 5)), ("hue turned a little", COLORS, lambda c: hue_turned(c, -12)),
     ("hue turned", COLORS, lambda c: hue_turned(c, 40)), ("hue turned by half", COLORS, lambda c: hue_turned(c, 180)),
-    ("recoloured", COLORS, lambda c: recoloured(c, (0.3, 0.9, 1.6))),
-    ("recoloured nearly grey", COLORS, lambda c: recoloured(c, (1, 1.03, 0.98))),
+    ("recolored", COLORS, lambda c: recolored(c, (0.3, 0.9, 1.6))),
+    ("recolored nearly grey", COLORS, lambda c: recolored(c, (1, 1.03, 0.98))),
     ("warmer white", COLORS, lambda c: c * [1.04, 1, 0.9]),
     ("one channel brighter", COLORS, lambda c: c * [1.1, 1, 1]), ("one channel plus a number", COLORS, lambda c: c + [0, 0, 8]),
     ("one channel missing", COLORS, lambda c: c * [1, 1, 0]),

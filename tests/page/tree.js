@@ -4,7 +4,7 @@
 //
 // EXPECTED: {page, series, address, options, width, height, exact: P.ppm, ids: I.ppm, segments: {id: {field: value}}}: the
 // page of a tree and one of a tree whose field p changes; a view as the address tells it and as options of render, and
-// what corcast drew of it, colours on #fbfaf7 and the ids of segments; values of all segments. Prints one line for each
+// what corcast drew of it, colors on #fbfaf7 and the ids of segments; values of all segments. Prints one line for each
 // expectation that fails; exit status 1 if any does.
 "use strict";
 const fs = require("fs");
@@ -68,7 +68,7 @@ function lonelyId(ids, x, y, reach) {
 }
 
 // No pixel of the page shows a vessel where corcast has none within a pixel, nor paper within what corcast fills; and
-// inside vessels the colours are corcast's.
+// inside vessels the colors are corcast's.
 async function checkPicture() {
   await browser.open(expected.page, expected.address + "&" + LIGHT_OF_NOBODY);
   const shown = await picture(), exact = readPpm(expected.exact), ids = readPpm(expected.ids);
@@ -88,7 +88,7 @@ async function checkPicture() {
   check(vessels > 20000 && inside > 3000, `expected a picture of vessels, got ${vessels} pixels, ${inside} inside`);
   check(beyond === 0, `expected no vessel a pixel beyond corcast's, got ${beyond} pixels`);
   check(lacking === 0, `expected all vessels of corcast's picture, lacking ${lacking} pixels`);
-  check(off / inside < 4, `expected corcast's colours within 4 levels, got ${off / inside}`);
+  check(off / inside < 4, `expected corcast's colors within 4 levels, got ${off / inside}`);
   await browser.key("?");
   check(await text("figure") === `corcast render tree.swc ${expected.options} --size ${expected.width}x${expected.height} -o figure.png`,
     "expected the command that draws the view, got " + await text("figure"));
@@ -131,7 +131,7 @@ async function checkPicking(ids) {
   await browser.key("Escape");
 }
 
-// Each field has a picture of its own, a legend and colours; the address brings it back.
+// Each field has a picture of its own, a legend and colors; the address brings it back.
 async function checkFields() {
   const addresses = new Map(), hashes = new Set();
   await browser.open(expected.page, "haze=off&shade=off");

@@ -38,7 +38,7 @@ test_no_model_makes_povray_warn() {
     grep -q Blob_Cell blob.inc || fail "expected a blob of many cells"
 }
 
-# A coloured and pruned forest in the shadows of every look, and the planes that `verify` asks for.
+# A colored and pruned forest in the shadows of every look, and the planes that `verify` asks for.
 test_no_look_and_no_plane_makes_povray_warn() {
     local model look plane=0
     run_ok corcast grow --quiet --terminals 40 --inlet 0,50 --inlet 0,-50 -o tree.swc
@@ -53,7 +53,7 @@ test_no_look_and_no_plane_makes_povray_warn() {
 }
 
 # The vessel in the middle is blue, of whatever model, without a change of the files.
-test_colours_are_set_by_numbers_on_the_command_line() {
+test_colors_are_set_by_numbers_on_the_command_line() {
     local model
     for model in $MODELS; do
         scene_of_a_vessel "$model" "$model.pov"
@@ -90,7 +90,7 @@ own_scene() {
 }
 
 # A scene of one's own, with any texture and interior: the same words do the same in every model, in one
-# that was written with colours too.
+# that was written with colors too.
 test_the_tree_takes_any_texture_and_interior() {
     local model glass='texture { pigment { rgbt 1 } finish { diffuse 0 } } interior { ior 1.4 fade_distance 1 fade_power 1001 fade_color <0, 0, 1> }'
     for model in $MODELS; do
@@ -186,7 +186,7 @@ test_parts_of_a_picture_are_the_whole_to_the_code() {
     done
 }
 
-test_a_scene_declares_where_the_tree_lies_and_what_its_colours_mean() {
+test_a_scene_declares_where_the_tree_lies_and_what_its_colors_mean() {
     run_ok corcast scene "$DATA/bifurcation.swc" --quiet --color-by length -o tree.pov
     own_scene own tree '#debug concat("\n", vstr(3, Root_Position, " ", 0, 3), "; ", vstr(3, Path_At(1), " ", 0, 3), "; ", Value_Name, " ", Value_Unit, " ", str(Value_Place(17.5446), 0, 3), "; ", str(Tree_Segments, 0, 0), "\n")
 #if (vlength(Tree_Center - (Tree_Min + Tree_Max) / 2) > 0 | Tree_Max.x < 8.5 | Tree_Min.y > -31) #error "wrong box" #end

@@ -12,7 +12,7 @@ camera='camera { orthographic location <0, 0, 10> right W * x up H * y direction
 
 # draw WxH [SWITCH ...]: has POV-Ray draw the scene on standard input, linear in 16 bits by default; the codes
 # of its pixels' red, row by row, in $codes. In the scene, W and H are those of the picture, and Glow(V) is a
-# texture of the colour V in any light.
+# texture of the color V in any light.
 draw() {
     local size=$1
     shift

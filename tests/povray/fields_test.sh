@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Every field of a scene as POV-Ray reads it: where the tree lies, what each segment is, what its colours mean, and the
+# Every field of a scene as POV-Ray reads it: where the tree lies, what each segment is, what its colors mean, and the
 # settings. The tree is that of tests/oracle/foreign_fields.py: no symmetry, two roots, ids with gaps, a missing value.
 . "$(dirname "$0")/../lib.sh"
 
@@ -92,8 +92,8 @@ levels() {
         { d = code($2) - code($3); if (d < 0) d = -d; if (d > most) most = d } END { print most + 0 }'
 }
 
-# The colours that the scene gives its segments are those of its map at the places of their values, to a code.
-test_the_colour_map_has_the_colours_of_the_segments() {
+# The colors that the scene gives its segments are those of its map at the places of their values, to a code.
+test_the_color_map_has_the_colors_of_the_segments() {
     local options most
     tree
     cat >own.pov <<'POV'
@@ -113,8 +113,8 @@ POV
         draw s +W80 +H60
         draw own +W80 +H60
         most=$(levels s.png own.png)
-        [ "$most" -le 2 ] || fail "expected the colours of the map with $options, they are $most levels off"
-        [ "$(pngtopnm s.png | pnmtoplainpnm | tail -n +4 | tr -s ' ' '\n' | sort -u | wc -l)" -gt 6 ] || fail "expected colours with $options"
+        [ "$most" -le 2 ] || fail "expected the colors of the map with $options, they are $most levels off"
+        [ "$(pngtopnm s.png | pnmtoplainpnm | tail -n +4 | tr -s ' ' '\n' | sort -u | wc -l)" -gt 6 ] || fail "expected colors with $options"
     done <<'OPTIONS'
 --color-by load.csv:load
 --color-by load.csv:load --log --colormap magma

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Colours that change with time, and turns: POV-Ray by its own clock draws what corcast draws frame by frame.
+# Colors that change with time, and turns: POV-Ray by its own clock draws what corcast draws frame by frame.
 . "$(dirname "$0")/../lib.sh"
 
 SIZE="--size 40x36"

@@ -55,7 +55,7 @@ sys.exit(0 if ours.sum() > 9000 and iou > 0.98 and beyond == 0 and np.median(off
 END
 }
 
-test_colours_of_segments_are_textures_of_the_mesh() {
+test_colors_of_segments_are_textures_of_the_mesh() {
     run_ok corcast export "$DATA/bifurcation.swc" --color-by strahler -o mesh.inc --quiet
     mesh_scene colors.pov 'object { Tree texture { pigment { color rgb <0, 0, 1> } } }'
     draw colors.pov colors.png Declare=Vessel_Ambient=1 Declare=Vessel_Diffuse=0 Declare=Vessel_Phong=0

@@ -16,7 +16,7 @@ two_cases() {
     expect_stdout '^differ: 2 cases; page.html'
 }
 
-# pixel PICTURE.png X Y: its colour as a JSON array.
+# pixel PICTURE.png X Y: its color as a JSON array.
 pixel() {
     pngtopnm "$1" | pamcut "$2" "$3" 1 1 | tail -c 3 | od -An -tu1 | awk '{ printf "[%d, %d, %d]", $1, $2, $3 }'
 }

@@ -98,7 +98,7 @@ codes() {
 
 # Seen and lit head on, ambient light 1/4, diffuse 1/2, phong 1/4 of exponent 3, and a second light at 60 degrees:
 # red is 0.3 (1/4 + 0.8 / 2 + 0.4 / 4) + (0.8 + 0.4 / 8) / 4 = 0.4375, or 177 of 255 in sRGB.
-test_a_vessel_lit_head_on_has_the_colour_that_a_calculator_says() {
+test_a_vessel_lit_head_on_has_the_color_that_a_calculator_says() {
     local model view="--size 3x3 --location 1.5,0,40 --look-at 1.5,0,0 --height 0.1"
     printf '1 3 -30 0 0 2.385 -1\n2 3 30 0 0 2.385 1\n' >tree.swc
     cat >look.ini <<'INI'
@@ -140,7 +140,7 @@ test_a_transparent_picture_is_povrays() {
         paste -d ' ' <(pngtopam -alphapam povray.png | tail -c 12000 | od -A n -v -t u1 -w4) \
             <(pngtopam -alphapam native.png | tail -c 12000 | od -A n -v -t u1 -w4) |
             awk '$1 != $5 || $2 != $6 || $3 != $7 || $4 != $8 { exit 1 } $4 > 0 { seen++ } END { exit seen < 300 }' ||
-            fail "expected POV-Ray's colours and alpha, antialiased by $antialias"
+            fail "expected POV-Ray's colors and alpha, antialiased by $antialias"
     done
 }
 

@@ -152,7 +152,7 @@ test_an_isosurface_whose_numbers_are_in_matrices_agrees() {
     grep -q 'Vs\[3072\](x,y,z)\.x' check/scene.inc || fail "expected the last segment to have a matrix"
 }
 
-test_colours_that_blend_agree_to_the_last_of_16_bits() {
+test_colors_that_blend_agree_to_the_last_of_16_bits() {
     local options
     tree_3d 30
     for options in 'isosurface --color-by radius' 'isosurface --potential graph --color-by pressure' \
@@ -164,9 +164,9 @@ test_colours_that_blend_agree_to_the_last_of_16_bits() {
     done
 }
 
-# A grown tree's Strahler orders lie exactly on the bounds of these classes: each vessel has one colour in both pictures.
+# A grown tree's Strahler orders lie exactly on the bounds of these classes: each vessel has one color in both pictures.
 # The look is flat, so a picture has the background, the classes, and what --over and --under add.
-test_values_on_the_bounds_of_classes_have_one_colour_in_both_pictures() {
+test_values_on_the_bounds_of_classes_have_one_color_in_both_pictures() {
     local model classes
     tree_3d 30
     for model in isosurface blob; do
@@ -305,7 +305,7 @@ test_a_measured_tree_agrees() {
     agrees joined --view left
 }
 
-test_colours_by_a_field_agree_in_every_model() {
+test_colors_by_a_field_agree_in_every_model() {
     local model
     tree_2d 20
     for model in $(corcast models); do
@@ -511,7 +511,7 @@ END
     export CORCAST_POVRAY=$PWD/povray.sh
 }
 
-# One pixel of POV-Ray's colours darker, then one brighter: no root and no shadow explains it.
+# One pixel of POV-Ray's colors darker, then one brighter: no root and no shadow explains it.
 test_a_pixel_of_a_blob_that_nothing_explains_is_a_difference() {
     local level
     for level in 3 200; do
@@ -640,7 +640,7 @@ test_another_finish_is_found_out() {
     done
 }
 
-# Where the surface is proven to be, its colours are POV-Ray's but for the accuracy of its steps.
+# Where the surface is proven to be, its colors are POV-Ray's but for the accuracy of its steps.
 test_a_hundredth_more_diffuse_light_is_found_in_the_exact_isosurface() {
     local change
     tree_3d 30

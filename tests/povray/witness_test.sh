@@ -59,7 +59,7 @@ test_without_a_witness_that_draws_there_is_no_verdict() {
 }
 
 # A finish without highlights and brilliance is in both; Tachyon leaves out light below 1/512.
-test_tachyon_draws_a_scene_in_the_colours_that_render_gives_it() {
+test_tachyon_draws_a_scene_in_the_colors_that_render_gives_it() {
     local shadows
     needs_tachyon
     printf '[vessel]\ncolor = 0.5 0.1 0.3\n[finish]\nambient = 0.23\ndiffuse = 0.61\nphong = 0\nspecular = 0\n' >plain.ini

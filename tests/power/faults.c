@@ -292,7 +292,7 @@ static size_t pixels_of(const Subject *subject)
     return (size_t)subject->picture.width * (size_t)subject->picture.height;
 }
 
-/* Encodes the colours in another way. */
+/* Encodes the colors in another way. */
 static void encode_again(Subject *subject, float (*curve)(float), float offset)
 {
     const float *values = subject->frame.color.values;
@@ -360,7 +360,7 @@ static void nan_normal(Subject *subject, double unused)
     subject->frame.normal.values[3 * target_pixel(subject) + 1] = NAN;
 }
 
-/* A NaN among the colours ends as black. */
+/* A NaN among the colors ends as black. */
 static void nan_color(Subject *subject, double unused)
 {
     (void)unused;
@@ -467,7 +467,7 @@ const Fault faults[] = {
     {"stride is the height", OF_ALL, 1, NULL, NULL, 0},
     {"a row repeated", OF_ALL, 1, NULL, NULL, 0},
     {"a tile of 8 x 8 pixels lost", OF_ALL, 1, NULL, lost_tile, 8},
-    {"one colour is NaN", OF_ALL, 1, NULL, nan_color, 0},
+    {"one color is NaN", OF_ALL, 1, NULL, nan_color, 0},
     {"one depth is NaN", OF_ALL, 1, NULL, nan_depth, 0},
     {"one normal is NaN", OF_ALL, 1, NULL, nan_normal, 0},
     {"normals tilted by 0.2 deg", OF_ALL, 1, NULL, tilt_normals, 0.2},
@@ -488,6 +488,6 @@ const Sweep sweeps[] = {
     {"phong", "relative", phong, 1},
     {"diffuse", "relative", diffuse, 1},
     {"ambient", "relative", ambient, 1},
-    {"colour of one segment", "relative", one_color, 1},
+    {"color of one segment", "relative", one_color, 1},
 };
 const size_t n_sweeps = sizeof sweeps / sizeof *sweeps;

@@ -12,7 +12,7 @@ typedef struct Subject {
     RenderParams params;
     CellParams cells; /* params points here for an implicit model */
     Frame frame;      /* owned; after subject_draw */
-    Picture picture;  /* owned; 8-bit, of the frame's colour */
+    Picture picture;  /* owned; 8-bit, of the frame's color */
     uint32_t target;  /* id of the segment that fills most of the picture, 0: not known */
     uint32_t beside;  /* id of another one that is seen */
     double pixel_mm;  /* width of a pixel at the middle of the scene */
@@ -21,7 +21,7 @@ typedef struct Subject {
 /* A deep copy of what there is before drawing. */
 MUST_CHECK Status subject_copy(Subject *copy, const Subject *subject, Err *err);
 void subject_release(Subject *subject);
-/* Draws all planes and encodes the colours. */
+/* Draws all planes and encodes the colors. */
 MUST_CHECK Status subject_draw(Subject *subject, Err *err);
 /* Fills in target, beside and pixel_mm of a subject that has been drawn. */
 void subject_choose_target(Subject *subject);

@@ -114,7 +114,7 @@ def read_ppm(path):
 
 
 def draw(scene):
-    """The linear colours and the depths of a scene's pixels."""
+    """The linear colors and the depths of a scene's pixels."""
     with folder_with(scene.rows, scene.files) as folder:
         run([*command(scene), "--planes", "depth", "-o", "p.pfm"], folder)
         return {"color": read_pfm(f"{folder}/p.pfm"), "depth": read_pfm(f"{folder}/p.depth.pfm")}
@@ -219,7 +219,7 @@ def map_points(scene, move, vector=None):
 class Pair:
     first: Scene
     second: Scene
-    color: float = BIT           # largest difference of a linear colour
+    color: float = BIT           # largest difference of a linear color
     depth: float = BIT           # largest difference of a depth, mm
     pixels: int = 0              # pixels that may differ by more
     depth_scale: float = 1       # the second scene's depths are this many times those of the first

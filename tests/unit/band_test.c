@@ -181,7 +181,7 @@ static void assert_rows_of_today(const Scene *scene, const RenderParams *params,
     frame_release(rows);
 }
 
-static void bands_prepare_again_for_another_view_alone_not_for_other_colours(void **state)
+static void bands_prepare_again_for_another_view_alone_not_for_other_colors(void **state)
 {
     (void)state;
     static const SceneModel either[] = {SCENE_JOINED, SCENE_ISOSURFACE};
@@ -282,7 +282,7 @@ int main(void)
         cmocka_unit_test(bands_have_the_bytes_of_the_whole),
         cmocka_unit_test(bands_of_tiles_have_the_bytes_of_the_whole),
         cmocka_unit_test(bands_have_the_soft_shadows_of_the_whole),
-        cmocka_unit_test(bands_prepare_again_for_another_view_alone_not_for_other_colours),
+        cmocka_unit_test(bands_prepare_again_for_another_view_alone_not_for_other_colors),
         cmocka_unit_test(bands_of_povrays_view_have_the_bytes_of_the_whole),
         cmocka_unit_test(progress_rises_from_band_to_band),
     };

@@ -1,5 +1,5 @@
 /* What made B of A, of faults planted in a picture of seven shaded balls before a background of one
- * colour, drawn by a formula wherever the camera is: the right words for each, and none for faults
+ * color, drawn by a formula wherever the camera is: the right words for each, and none for faults
  * that no sentence is about, for two at once, and for chance. */
 #include "compare/compare.h"
 #include "unit.h"
@@ -16,7 +16,7 @@ static Picture reference; /* the plain shot */
 /* How a picture is drawn, and what is done to its codes. */
 typedef struct Shot {
     double dx, dy, radii, highlight, diffuse; /* factors of 1 and pixels */
-    double angle, pale;   /* pale: of 0 to 1, how near all colours are to that of resin */
+    double angle, pale;   /* pale: of 0 to 1, how near all colors are to that of resin */
     int samples, without; /* a side; the ball left out, from 1 on */
     double sigma;
     void (*spoil)(Picture *picture, double by);
@@ -213,7 +213,7 @@ static void desaturate(Picture *picture, double by)
     }
 }
 
-/* From `by` on, a seed: normal noise, some pixels of any colour, a block, a darker band. */
+/* From `by` on, a seed: normal noise, some pixels of any color, a block, a darker band. */
 static void add_noise(Picture *picture, double by)
 {
     Random random;
@@ -331,8 +331,8 @@ static void names_gain_offset_gamma_and_encoding(void **state)
     } tones[] = {
         {gain_of_codes, 0.93, "darker: its sRGB codes are 0.93"},
         {gain_of_codes, 1.052, "brighter: its sRGB codes are 1.05"},
-        {gain_of_light, 0.731, "darker: its linear colours are 0.73"},
-        {gain_of_light, 1.104, "brighter: its linear colours are 1.1"},
+        {gain_of_light, 0.731, "darker: its linear colors are 0.73"},
+        {gain_of_light, 1.104, "brighter: its linear colors are 1.1"},
         {offset, 7, "brighter: its sRGB codes, from 0 to 255, are those of A changed by 7"},
         {offset, -5, "darker: its sRGB codes, from 0 to 255, are those of A changed by -5"},
         {gamma_curve, 1.25,
@@ -359,7 +359,7 @@ static void says_the_number_of_a_tone_to_its_last_digit(void **state)
     } tones[] = {{offset, 40, 39.99, 40.01, "changed by "},
                  {offset, -60, -60.01, -59.99, "changed by "},
                  {gain_of_codes, 0.9, 0.897, 0.903, "sRGB codes are "},
-                 {gain_of_light, 0.75, 0.749, 0.751, "linear colours are "},
+                 {gain_of_light, 0.75, 0.749, 0.751, "linear colors are "},
                  {gamma_curve, 1.25, 1.248, 1.252, "power of "}};
     for (size_t i = 0; i < sizeof tones / sizeof *tones; i++) {
         const Shot shot = spoilt(tones[i].spoil, tones[i].by);
@@ -411,7 +411,7 @@ static void expect_cause_from(const Shot *from, const Shot *shot, const char *wo
 }
 
 /* Of nearly grey surfaces every curve of tones makes light that is nearly white, or nearly of their
- * own colour: both are the same. */
+ * own color: both are the same. */
 static void names_no_light_of_surfaces_that_are_nearly_grey(void **state)
 {
     (void)state;
@@ -486,7 +486,7 @@ static void names_the_side_that_lacks_a_thing_and_its_place(void **state)
 }
 
 /* The picture but for its background, which has other codes. */
-static void recolour_background(Picture *picture, double by)
+static void recolor_background(Picture *picture, double by)
 {
     const uint8_t code = picture->codes8[0];
     for (int i = 0; i < 3 * W * H; i += 3)
@@ -501,7 +501,7 @@ static void recolour_background(Picture *picture, double by)
 static void names_another_background(void **state)
 {
     (void)state;
-    Shot shot = spoilt(recolour_background, 29);
+    Shot shot = spoilt(recolor_background, 29);
     expect_cause(&shot, "only the background differs, and what is mixed with it at outlines: it is "
                         "(235, 235, 235) in A and (17, 29, 43) in B");
     shot.diffuse = 1.2;

@@ -1,4 +1,4 @@
-/* The colours of a value, against the published tables (matplotlib's; Crameri's as GMT has them, in
+/* The colors of a value, against the published tables (matplotlib's; Crameri's as GMT has them, in
  * 8 bits) and the sRGB standard (IEC 61966-2-1), worked out by hand. */
 #include "image/image.h"
 #include "unit.h"
@@ -205,7 +205,7 @@ static void a_scale_is_fitted_to_what_it_can_show(void **state)
     assert_true(scale.range[0] == 0.5 && scale.range[1] == 2.385);
 }
 
-static void ships_colours_that_are_separate(void **state)
+static void ships_colors_that_are_separate(void **state)
 {
     (void)state;
     static const struct {
@@ -230,7 +230,7 @@ static void ships_colours_that_are_separate(void **state)
     }
 }
 
-static void a_map_is_separate_by_a_line_before_its_colours(void **state)
+static void a_map_is_separate_by_a_line_before_its_colors(void **state)
 {
     (void)state;
     Colormap map;
@@ -300,7 +300,7 @@ static void a_value_on_a_bound_may_be_rounded_to_either_side(void **state)
 }
 
 /* A ramp of 256 entries, between which the mixture is linear and not of codes. */
-static void a_ramp_has_the_colours_of_the_map(void **state)
+static void a_ramp_has_the_colors_of_the_map(void **state)
 {
     (void)state;
     ColorScale scale = ramp(false, 0, 2, 4);
@@ -328,7 +328,7 @@ static void a_ramp_has_the_colours_of_the_map(void **state)
     colormap_release(&scale.map);
 }
 
-static void whole_numbers_count_separate_colours_round_and_round(void **state)
+static void whole_numbers_count_separate_colors_round_and_round(void **state)
 {
     (void)state;
     ColorScale scale = ramp(false, 0, 1, 7);
@@ -340,13 +340,13 @@ static void whole_numbers_count_separate_colours_round_and_round(void **state)
     assert_place(&scale, 0, 1);
     assert_place(&scale, -1, 0);
     assert_place(&scale, NAN, 0.5);
-    scale.classes = 7; /* of which the third has the first colour again */
+    scale.classes = 7; /* of which the third has the first color again */
     assert_false(colorscale_counts(&scale));
     assert_place(&scale, 3.2, 0);
     colormap_release(&scale.map);
 }
 
-static void values_outside_may_have_colours_of_their_own(void **state)
+static void values_outside_may_have_colors_of_their_own(void **state)
 {
     (void)state;
     ColorScale scale = ramp(false, 0, 2.5, 7.5);
@@ -413,8 +413,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(decodes_srgb_as_the_standard_says),
         cmocka_unit_test(ships_the_published_tables),
-        cmocka_unit_test(ships_colours_that_are_separate),
-        cmocka_unit_test(a_map_is_separate_by_a_line_before_its_colours),
+        cmocka_unit_test(ships_colors_that_are_separate),
+        cmocka_unit_test(a_map_is_separate_by_a_line_before_its_colors),
         cmocka_unit_test(takes_a_fraction_to_its_place_in_the_table),
         cmocka_unit_test(mixes_neighbours_as_they_are_encoded),
         cmocka_unit_test(stays_at_the_ends_and_takes_what_is_no_number_for_middle_grey),
@@ -422,9 +422,9 @@ int main(void)
         cmocka_unit_test(classes_are_equal_steps_that_use_the_whole_map),
         cmocka_unit_test(bounds_part_classes_that_are_open_at_both_ends),
         cmocka_unit_test(a_value_on_a_bound_may_be_rounded_to_either_side),
-        cmocka_unit_test(a_ramp_has_the_colours_of_the_map),
-        cmocka_unit_test(whole_numbers_count_separate_colours_round_and_round),
-        cmocka_unit_test(values_outside_may_have_colours_of_their_own),
+        cmocka_unit_test(a_ramp_has_the_colors_of_the_map),
+        cmocka_unit_test(whole_numbers_count_separate_colors_round_and_round),
+        cmocka_unit_test(values_outside_may_have_colors_of_their_own),
         cmocka_unit_test(percentiles_lie_between_neighbours_in_order),
         cmocka_unit_test(a_range_is_said_in_three_digits),
         cmocka_unit_test(a_scale_is_fitted_to_what_it_can_show),

@@ -194,7 +194,7 @@ static void tells_surface_from_edge_from_missing(void **state)
     assert_int_equal(r.classes[PIXEL_SHADING], 1);
     assert_float_equal(r.values[MEASURE_INTERIOR_MAX_ABS], 5, 0);
     assert_true(r.values[MEASURE_EDGE_MISMATCH] > 0);
-    /* The background's colour tells the same. */
+    /* The background's color tells the same. */
     CompareResult s = compare(&pair, false, tolerance_identity(0));
     assert_true(s.has_mask && !s.has_ids);
     assert_int_equal(s.values[MEASURE_MISSING_PIXELS], 7);
@@ -639,7 +639,7 @@ static void keeps_the_keys_of_the_contract(void **state)
     pair_release(&pair);
 }
 
-static void colours_differences_by_fixed_steps(void **state)
+static void colors_differences_by_fixed_steps(void **state)
 {
     (void)state;
     Picture a, b, heat;
@@ -723,7 +723,7 @@ int main(void)
         cmocka_unit_test(measures_normals_by_their_angle),
         cmocka_unit_test(finds_nothing_in_common_with_an_empty_plane),
         cmocka_unit_test(keeps_the_keys_of_the_contract),
-        cmocka_unit_test(colours_differences_by_fixed_steps),
+        cmocka_unit_test(colors_differences_by_fixed_steps),
         cmocka_unit_test(measures_are_levels_of_255_to_the_last_digit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -139,7 +139,7 @@ static void make_crossing(Tree *tree, double above)
     set_segment(tree, 2, vec3(-90, 0, 6.1 + above), vec3(90, 0, 6.1 + above), 2.385);
 }
 
-/* Pixels of the sheet's colour in the middle column. */
+/* Pixels of the sheet's color in the middle column. */
 static double gap_in_middle(double above)
 {
     Tree tree;
@@ -276,7 +276,7 @@ enum { COIN_SIDE = 240, COIN_PX_PER_MM = COIN_SIDE / 40 };
 static const double coin_mm = 2.385;
 
 /* A disc across the line of sight, `above` mm before a larger one: what is black and what has the
- * sheet's colour within 8 mm of its middle, along the row through it, in mm. */
+ * sheet's color within 8 mm of its middle, along the row through it, in mm. */
 static void draw_coins(const Look *look, double above, double *black, double *sheet)
 {
     Tree tree;

@@ -193,7 +193,7 @@ static void a_joint_is_given_in_the_frame_of_its_first_circle(void **state)
     release(&out);
 }
 
-static void segments_of_different_colours_carry_their_own(void **state)
+static void segments_of_different_colors_carry_their_own(void **state)
 {
     (void)state;
     Scene scene = make_scene(SCENE_ROUNDED);
@@ -581,7 +581,7 @@ int main(void)
         cmocka_unit_test(the_numbers_of_a_cylinder_read_back_exactly),
         cmocka_unit_test(a_joint_is_given_in_the_frame_of_its_first_circle),
         cmocka_unit_test(more_joints_than_povray_holds_are_meshes),
-        cmocka_unit_test(segments_of_different_colours_carry_their_own),
+        cmocka_unit_test(segments_of_different_colors_carry_their_own),
         cmocka_unit_test(the_scene_says_what_it_is_and_how_to_render_it),
         cmocka_unit_test(without_a_geometry_file_all_stands_in_the_scene),
         cmocka_unit_test(every_function_of_a_cell_is_declared),

@@ -148,7 +148,7 @@ static bool is_shadowed(void *context, Vec3 point, Vec3 towards, double distance
     return caster_shadow(context, 0, &no_ground, point, towards, distance);
 }
 
-/* The colour of a place of the picture, in double precision. */
+/* The color of a place of the picture, in double precision. */
 static Rgb color_at(const Scene *scene, Caster *caster, double i, double j)
 {
     Ray ray = camera_ray(&scene->view.camera, i, j);
@@ -249,7 +249,7 @@ static void adaptive_antialiasing_changes_edges_alone(void **state)
     frame_release(&adaptive);
 }
 
-/* Both kernels' hits and colours of one tile. */
+/* Both kernels' hits and colors of one tile. */
 typedef struct Tile {
     TileHits hits;
     float color[3][TILE_SAMPLES];
@@ -345,7 +345,7 @@ static void make_surface(Random *random, TileHits *hits, TileSurface *surface)
     surface->hits = hits;
 }
 
-/* docs/METHODS.md, section 3: to 2e-5 of the light's colour. */
+/* docs/METHODS.md, section 3: to 2e-5 of the light's color. */
 static void kernels_shade_as_single_rays_are_shaded(void **state)
 {
     (void)state;

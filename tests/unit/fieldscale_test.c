@@ -35,7 +35,7 @@ static FieldSeries make_series(const double *values, size_t frames)
     return series;
 }
 
-/* The colours of a map run from black to red. */
+/* The colors of a map run from black to red. */
 static Colormap make_map(bool separate)
 {
     Colormap map = {.n = 2, .separate = separate};
@@ -48,7 +48,7 @@ static const double one_class[] = {1};
 static const FieldScaleParams plain = {.classes = one_class, .n_classes = 1, .map_name = "map"};
 static const double rising[] = {0, 10, 20, 40, 1000}; /* the last is of no segment */
 
-/* Colours the values; with a sentence expects it as the error. */
+/* Colors the values; with a sentence expects it as the error. */
 static Appearance color(const FieldScaleParams *params, const double *values, size_t frames,
                         bool separate, const char *sentence)
 {
@@ -117,7 +117,7 @@ static void test_classes_divide_the_scale(void **state)
     ranges(&params, 10, 40, "pressure 10 to 40 mmHg, of the 3 segments drawn; classes at 15, 30");
 }
 
-static void test_each_segment_has_the_colour_of_its_value(void **state)
+static void test_each_segment_has_the_color_of_its_value(void **state)
 {
     (void)state;
     Appearance appearance = color(&plain, rising, 1, false, NULL);
@@ -135,7 +135,7 @@ static void test_what_makes_no_scale_is_refused(void **state)
                         halves[] = {0, 0.5, 1, 2, 0}, falling[] = {2, 1};
     FieldScaleParams params = plain;
     color(&params, none, 1, false, "`color_by`: the field pressure has no value");
-    color(&params, halves, 1, true, "`colormap` map has separate colours, for whole numbers");
+    color(&params, halves, 1, true, "`colormap` map has separate colors, for whole numbers");
     params.classes = falling;
     params.n_classes = 2;
     color(&params, rising, 1, false, "`classes`: bounds ascend, but 2 comes before 1");
@@ -214,7 +214,7 @@ int main(void)
         cmocka_unit_test(test_a_scale_spans_the_values_that_can_be_drawn),
         cmocka_unit_test(test_ends_are_values_or_percentiles),
         cmocka_unit_test(test_classes_divide_the_scale),
-        cmocka_unit_test(test_each_segment_has_the_colour_of_its_value),
+        cmocka_unit_test(test_each_segment_has_the_color_of_its_value),
         cmocka_unit_test(test_what_makes_no_scale_is_refused),
         cmocka_unit_test(test_frames_share_one_scale),
         cmocka_unit_test(test_values_are_converted_to_a_unit_of_their_kind),

@@ -246,7 +246,7 @@ static void sixteen_bits_are_the_eight_to_rounding(void **state)
     picture_release(&photo);
 }
 
-static void boxes_and_ramps_cover_whole_pixels_in_their_own_colours(void **state)
+static void boxes_and_ramps_cover_whole_pixels_in_their_own_colors(void **state)
 {
     const double pixel = MM_PER_INCH / 300;
     FigureColor stops[FIGURE_STOPS];
@@ -415,7 +415,7 @@ static void classes_have_the_right_numbers_between_them(void **state)
     EXPECT_LABELS(bounds, {"5", 7.5}, {"10", 15}, {"50", 22.5});
 }
 
-/* The boxes of a legend have the colours of values just below and just above the numbers between
+/* The boxes of a legend have the colors of values just below and just above the numbers between
  * them. */
 static void expect_boxes(const ColorScale *scale, const double *inner, int n)
 {
@@ -442,8 +442,8 @@ static void expect_color(const FigureItem *item, const float linear[3])
         assert_int_equal(item->color.rgb[c], image_code(linear[c], ENCODING_SRGB, 8));
 }
 
-/* Values below, above and none have colours of their own, in this order. */
-static void what_is_outside_has_its_colour_at_its_end(void **state)
+/* Values below, above and none have colors of their own, in this order. */
+static void what_is_outside_has_its_color_at_its_end(void **state)
 {
     ColorScale scale = plain_scale(3, 41, false, 1);
     const float *colors[3] = {scale.under.rgb, scale.over.rgb, scale.none.rgb};
@@ -479,7 +479,7 @@ static void what_is_outside_has_its_colour_at_its_end(void **state)
 }
 
 /* A swatch is followed by its number. */
-static void swatches_have_the_colours_of_their_numbers(void **state)
+static void swatches_have_the_colors_of_their_numbers(void **state)
 {
     static float colors[4][3] = {{0, 0, 1}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}};
     const ColorScale scale = {
@@ -507,7 +507,7 @@ static void swatches_have_the_colours_of_their_numbers(void **state)
     }
 }
 
-static void classes_have_the_colours_of_their_values(void **state)
+static void classes_have_the_colors_of_their_values(void **state)
 {
     static const double linear[] = {2.5, 5, 7.5}, decades[] = {10, 100},
                         halves[] = {3.1622776601683795, 10, 31.622776601683793},
@@ -556,14 +556,14 @@ int main(void)
         cmocka_unit_test(text_stands_where_its_alignment_says),
         cmocka_unit_test(rows_are_the_same_whatever_parts_the_page_is_drawn_in),
         cmocka_unit_test(sixteen_bits_are_the_eight_to_rounding),
-        cmocka_unit_test(boxes_and_ramps_cover_whole_pixels_in_their_own_colours),
+        cmocka_unit_test(boxes_and_ramps_cover_whole_pixels_in_their_own_colors),
         cmocka_unit_test(a_legend_has_points_and_a_swatch_only_for_values_that_need_them),
         cmocka_unit_test(a_legend_of_classes_has_a_box_each),
         cmocka_unit_test(a_bar_has_the_right_numbers_at_the_right_places),
         cmocka_unit_test(classes_have_the_right_numbers_between_them),
-        cmocka_unit_test(what_is_outside_has_its_colour_at_its_end),
-        cmocka_unit_test(swatches_have_the_colours_of_their_numbers),
-        cmocka_unit_test(classes_have_the_colours_of_their_values),
+        cmocka_unit_test(what_is_outside_has_its_color_at_its_end),
+        cmocka_unit_test(swatches_have_the_colors_of_their_numbers),
+        cmocka_unit_test(classes_have_the_colors_of_their_values),
         cmocka_unit_test(a_legend_can_be_measured_and_moved),
     };
     return cmocka_run_group_tests(tests, load_fonts, free_fonts);

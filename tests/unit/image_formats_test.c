@@ -224,13 +224,13 @@ static void says_what_it_does_not_read(void **state)
         {"glassy.tif", "is transparent at column 0, row 0"},
         {"glassy.exr", "is transparent at column 0, row 0"},
         {"dwaa.exr", "is compressed by DWAA or DWAB, which the library OpenEXRCore cannot"},
-        {"aces.exr", "has the colours of another space (chromaticities)"},
+        {"aces.exr", "has the colors of another space (chromaticities)"},
         {"pages.tif", "has several pages"},
         {"animated.png", "is an animation of 2 pictures"},
-        {"wide-profile.png", "has the colour profile \"Wide built-in\""},
-        {"wide-profile.tif", "has the colour profile \"Wide built-in\""},
-        {"p3.png", "has the colours of another space (cHRM chunk)"},
-        {"p3.tif", "has the colours of another space (PrimaryChromaticities or WhitePoint)"}};
+        {"wide-profile.png", "has the color profile \"Wide built-in\""},
+        {"wide-profile.tif", "has the color profile \"Wide built-in\""},
+        {"p3.png", "has the colors of another space (cHRM chunk)"},
+        {"p3.tif", "has the colors of another space (PrimaryChromaticities or WhitePoint)"}};
     for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
         char path[128];
         Image image = {.picture = {.width = -7}};

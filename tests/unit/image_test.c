@@ -306,9 +306,9 @@ static void reads_palette_and_low_depth_png(void **state)
     const uint8_t indexed[] = {0, 1, 0};
     build_png(&png, (const uint8_t[13]){0, 0, 0, 2, 0, 0, 0, 1, 8, 3}, palette, 6, indexed, 3);
     assert_int_equal(read_bytes(png.chars, png.length, &picture), STATUS_OK);
-    const uint16_t colours[] = {40, 50, 60, 10, 20, 30};
+    const uint16_t colors[] = {40, 50, 60, 10, 20, 30};
     assert_int_equal(picture.channels, 3);
-    assert_codes(&picture, colours, sizeof colours / sizeof *colours);
+    assert_codes(&picture, colors, sizeof colors / sizeof *colors);
     picture_release(&picture);
     text_release(&png);
 
@@ -419,7 +419,7 @@ static void tables_give_the_same_codes(void **state)
     }
 }
 
-/* Codes of POV-Ray 3.7.0.10 (+FP16 File_Gamma=srgb) for colours where a power in double precision
+/* Codes of POV-Ray 3.7.0.10 (+FP16 File_Gamma=srgb) for colors where a power in double precision
  * rounds the other way. */
 static void rounds_like_povray_where_double_precision_would_not(void **state)
 {

@@ -1,4 +1,4 @@
-/* The planes of geometry that are drawn beside a picture do not change its colours. */
+/* The planes of geometry that are drawn beside a picture do not change its colors. */
 #include "render/render.h"
 #include "unit.h"
 
@@ -41,7 +41,7 @@ static Look look_of(EffectKind effects, bool soft)
     return look;
 }
 
-/* Colours of the picture in two bands, as users get them. */
+/* Colors of the picture in two bands, as users get them. */
 static void draw(const Scene *scene, const RenderParams *params, float out[3 * SIDE * SIDE])
 {
     enum { FIRST = 24 };
@@ -73,7 +73,7 @@ static void assert_planes_change_nothing(const Scene *scene, RenderParams params
         params.want_id = planes & ID;
         draw(scene, &params, beside);
         if (memcmp(alone, beside, sizeof alone) != 0)
-            fail_msg("planes %d change colours of %s, antialias %d, occlusion %d, shadows %d, thin "
+            fail_msg("planes %d change colors of %s, antialias %d, occlusion %d, shadows %d, thin "
                      "%d",
                      planes, what, params.antialias, params.occlusion, params.shadows,
                      params.cover_thin);
@@ -93,7 +93,7 @@ static Scene scene_of(SceneModel model, EffectKind effects, bool soft)
     return scene;
 }
 
-static void planes_change_no_colour(void **state)
+static void planes_change_no_color(void **state)
 {
     (void)state;
     static const struct {
@@ -172,7 +172,7 @@ static void another_ground_is_drawn_as_by_a_new_renderer(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(planes_change_no_colour),
+        cmocka_unit_test(planes_change_no_color),
         cmocka_unit_test(another_ground_is_drawn_as_by_a_new_renderer),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -79,7 +79,7 @@ static void the_hierarchy_finds_what_trying_all_finds(void **state)
     testsearch_close(&search);
 }
 
-/* The colour of the origin under one light, seen along a direction. */
+/* The color of the origin under one light, seen along a direction. */
 static Rgb seen_under(const Light *light, const Finish *finish, Rgb pigment, Vec3 direction,
                       ShadowTest *shadow, void *context)
 {

@@ -739,7 +739,7 @@ static void every_model_numbers_its_segments_alike(void **state)
     tree_release(&tree);
 }
 
-static void an_appearance_has_the_colours_of_its_field(void **state)
+static void an_appearance_has_the_colors_of_its_field(void **state)
 {
     (void)state;
     double values[] = {(double)NAN, 2, 8, 32, 4};
@@ -1108,7 +1108,7 @@ int main(void)
         cmocka_unit_test(the_ground_lies_just_beyond_the_tree),
         cmocka_unit_test(a_tree_far_from_the_origin_is_staged_next_to_it),
         cmocka_unit_test(every_model_numbers_its_segments_alike),
-        cmocka_unit_test(an_appearance_has_the_colours_of_its_field),
+        cmocka_unit_test(an_appearance_has_the_colors_of_its_field),
         cmocka_unit_test(a_camera_that_has_not_moved_is_what_it_was),
         cmocka_unit_test(what_is_turned_moves_with_the_hand),
         cmocka_unit_test(zooming_and_panning_are_by_what_is_looked_at),

@@ -1,4 +1,4 @@
-/* A tree as all three things that a picture is of, in the look's one colour. */
+/* A tree as all three things that a picture is of, in the look's one color. */
 #ifndef CORCAST_TESTS_TEST_STAGE_H
 #define CORCAST_TESTS_TEST_STAGE_H
 

@@ -189,7 +189,7 @@ static void is_drawn_as_wide_as_is_asked_for(void **state)
 }
 
 /* The light stands behind the viewer. A highlight as narrow as this is at the middle one of the
- * normals alone, and the colour is the mean of all. */
+ * normals alone, and the color is the mean of all. */
 static void is_shaded_at_five_normals(void **state)
 {
     (void)state;
@@ -205,7 +205,7 @@ static void is_shaded_at_five_normals(void **state)
     frame_release(&frame);
 }
 
-static void has_a_colour_of_its_own_each_pixel_and_a_half(void **state)
+static void has_a_color_of_its_own_each_pixel_and_a_half(void **state)
 {
     (void)state;
     for (int pieces = 1; pieces <= 30; pieces++)
@@ -607,7 +607,7 @@ int main(void)
         cmocka_unit_test(is_drawn_as_wide_as_is_asked_for),
         cmocka_unit_test(is_shaded_at_five_normals),
         cmocka_unit_test(goes_into_a_wall_where_it_is_as_deep),
-        cmocka_unit_test(has_a_colour_of_its_own_each_pixel_and_a_half),
+        cmocka_unit_test(has_a_color_of_its_own_each_pixel_and_a_half),
         cmocka_unit_test(is_nearer_to_the_mean_of_many_samples_than_ten_samples_are),
         cmocka_unit_test(has_the_same_bytes_whatever_threads_and_bands),
         cmocka_unit_test(ends_at_the_plane_of_an_orthographic_camera),

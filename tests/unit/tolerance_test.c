@@ -1,4 +1,4 @@
-/* Tiers, the ledger of segments, float colours, and tolerances as files. */
+/* Tiers, the ledger of segments, float colors, and tolerances as files. */
 #include "compare/compare.h"
 #include "compare/pixels.h"
 #include "compare/rules/judge.h"
@@ -354,7 +354,7 @@ static void never_averages_in_what_is_not_finite(void **state)
     assert_near(r.values[MEASURE_RMSE], 0, 0);
     assert_near(r.values[MEASURE_HDR_FLIP_MEAN], 0, 0);
     assert_false(r.agrees);
-    assert_non_null(strstr(r.reason, "colours that are not finite: 3 pixels"));
+    assert_non_null(strstr(r.reason, "colors that are not finite: 3 pixels"));
     plane_release(&a);
     plane_release(&b);
 }

@@ -14,7 +14,7 @@
 
 static Err err;
 
-/* Colours of this look are the part of the sky that is seen. */
+/* Colors of this look are the part of the sky that is seen. */
 static const Look sky_look = {.color = {1, 1, 1}, .finish = {.ambient = 1, .brilliance = 1}};
 
 static Scene staged(const Tree *tree, const Look *look, SceneModel model, int size, NamedView view)
@@ -204,7 +204,7 @@ static void a_vessel_of_a_few_pixels_has_its_sky(void **state)
     scene.view.n_lights = 0;
     scene.appearance.finish = (Finish){.ambient = 1, .brilliance = 1};
     Frame frame = drawn(&scene, params_of(3));
-    /* A ball alone sees all of it: the middle has its own colour. */
+    /* A ball alone sees all of it: the middle has its own color. */
     assert_float_equal(frame.color.values[3 * (4 * 9 + 4)], 0.6f, 1e-4f);
     frame_release(&frame);
 }

@@ -1,4 +1,4 @@
-/* Prints the list of colour maps, unless their picture goes to standard output. */
+/* Prints the list of color maps, unless their picture goes to standard output. */
 #include "cli/commands.h"
 #include "job/picture/colormaps.h"
 #include <stdio.h>

@@ -475,7 +475,7 @@ const Command command_view = {
                 "in the window:\n"
                 "  drag turns, drag with the right button or shift moves, the wheel zooms\n"
                 "  1 ... 6    cylinders, joined, rounded, isosurface, blob, mesh\n"
-                "  c          the next field that colours the vessels, or none\n"
+                "  c          the next field that colors the vessels, or none\n"
                 "  p s a      projection, shadows, ambient occlusion\n"
                 "  r          back to where the camera was\n"
                 "  o          print the options that draw this picture\n"

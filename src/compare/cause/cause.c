@@ -1,6 +1,6 @@
 /* What made B of A, where that can be said for certain: each guess is a map of one picture onto the
  * other, or a place, and it is named when it explains the pictures, not when it merely resembles
- * them. Guesses about places come before those about colours, exact ones before those that leave
+ * them. Guesses about places come before those about colors, exact ones before those that leave
  * something. All are tried on a few hundred of the pixels that differ, and only what fits those on
  * all. Two faults at once have no sentence, unless one of them is a fiftieth of the other. */
 #include "compare/cause/cause.h"

@@ -37,8 +37,8 @@ typedef struct Shift {
  * Returns the best translation. Returns dx = dy = 0, and the mean difference without a translation,
  * if a subset of the samples shows that no translation removes 30 % of the difference. */
 Shift cause_best_shift(const Picture *a, const Picture *b, const Samples *samples);
-/* Returns true if both pictures have the same saturation: the distances of their colours from grey
- * agree within 3 %. Also returns true if A has too little colour to decide.
+/* Returns true if both pictures have the same saturation: the distances of their colors from grey
+ * agree within 3 %. Also returns true if A has too little color to decide.
  *
  * aa   sum of the squares of (A's channel - mean of the pixel's channels), in levels.
  * ab   sum of the products of these deviations in A and in B. */
@@ -68,7 +68,7 @@ MUST_CHECK Status cause_warp(const Picture *a, const Picture *b, const Samples *
  * Errors   STATUS_MEMORY. */
 MUST_CHECK Status cause_tone(const Picture *a, const Picture *b, const Samples *samples,
                              Sentence *out, Err *err);
-/* Tests whether only the colour of the background differs.
+/* Tests whether only the color of the background differs.
  *
  * Errors   STATUS_MEMORY. */
 MUST_CHECK Status cause_background(const Picture *a, const Picture *b, const Samples *samples,

@@ -6,15 +6,15 @@
  * - One thing is missing when the background took its place: the pixels seen in A only are one
  *   region, which in A borders on background for three quarters of its rim (a cut end does, a worn
  *   outline borders on what is left), and next to nothing else differs.
- * - Outlines differ when the pixels that differ have neighbours of quite other colours in both
+ * - Outlines differ when the pixels that differ have neighbours of quite other colors in both
  *   pictures, and there are others within the outlines to tell, most of which have the
  *   same codes: of things a few pixels wide nothing can be said.
  * - Highlights differ when the light in which the pictures differ is nearly white (a highlight has
- *   the lamp's colour, all else the surface's), and the same at all pixels, on surfaces that are
+ *   the lamp's color, all else the surface's), and the same at all pixels, on surfaces that are
  *   not. Of grey surfaces nothing can be said.
- * - Shading differs when that light is more, or less, of the surface's own colour and of white at
+ * - Shading differs when that light is more, or less, of the surface's own color and of white at
  *   each pixel, but for a hundredth and for the rounding of codes. More of one and less of the
- * other is another saturation, and anything else another hue: both are other colours, not other
+ * other is another saturation, and anything else another hue: both are other colors, not other
  * light.
  */
 #include "compare/cause/guesses.h"
@@ -354,14 +354,14 @@ static Status say_outlines(const Picture *a, const Picture *b, const Samples *sa
 /* ---- shading --------------------------------------------------------------------------------- */
 
 /* Of the light that B has more of than A, pixel by pixel: the squares, the part of them that lies
- * along white and along the colour of the pixel in A, what no more, or no less, of both makes, and
+ * along white and along the color of the pixel in A, what no more, or no less, of both makes, and
  * what the rounding of codes makes. */
 typedef struct LightSums {
     double squares, white, own, rest, rounding;
-    /* Of coloured pixels that differ by more than rounding: */
+    /* Of colored pixels that differ by more than rounding: */
     double moments[3][3];    /* products of the channels' light, summed */
     double colored_rounding; /* what the rounding of their codes makes */
-    /* Of those so coloured that light midway between white and their own is neither: */
+    /* Of those so colored that light midway between white and their own is neither: */
     double telling;       /* squares */
     size_t pixels, plain; /* all; in white or own light alone */
 } LightSums;
@@ -517,9 +517,9 @@ static bool has_equal_outlines(const CompareResult *result)
            result->classes[PIXEL_WRONG_SEGMENT] == 0;
 }
 
-/* Whether the light of coloured pixels is most of it and has one colour, the lamp's, but for a
+/* Whether the light of colored pixels is most of it and has one color, the lamp's, but for a
  * two-hundredth and for rounding. The light that another curve of tones takes from surfaces that
- * are nearly grey is nearly white, too, but its colour is another at each brightness. */
+ * are nearly grey is nearly white, too, but its color is another at each brightness. */
 static bool has_one_color(const LightSums *light)
 {
     enum { STEPS = 8 };
@@ -542,14 +542,14 @@ static bool has_one_color(const LightSums *light)
     return all - largest <= 0.005 * all + light->colored_rounding;
 }
 
-/* Whether most of the light is of pixels that tell white from their own colour, and two in three of
+/* Whether most of the light is of pixels that tell white from their own color, and two in three of
  * them have light of one or the other. */
 static bool is_plain(const LightSums *light)
 {
     return 2 * light->telling >= light->squares && 3 * light->plain >= 2 * light->pixels;
 }
 
-/* Highlights are what white light explains, and more light of the surfaces' own colours does not.
+/* Highlights are what white light explains, and more light of the surfaces' own colors does not.
  */
 static void say_shading(const CompareResult *result, const LightSums *light, Sentence *out)
 {

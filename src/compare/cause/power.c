@@ -1,5 +1,5 @@
 /* Each case is a picture of its own, so that processors share them. A fault that changes no code,
- * as a shift of a hundredth of a pixel in flat colour, is none, and is counted nowhere. */
+ * as a shift of a hundredth of a pixel in flat color, is none, and is counted nowhere. */
 #include "compare/cause/power.h"
 
 #include "compare/measures/perception.h"

@@ -136,8 +136,8 @@ static const Curve curves[KINDS] = {
     [ENCODED_BY_POWER] = {ALONE, "encoded by a gamma of 2.2 and not as sRGB", NULL, 1},
     [ENCODED_AS_SRGB] = {ALONE, "encoded as sRGB and not by a gamma of 2.2", NULL, 1},
     [NEGATIVE] = {ALONE, "as a negative", NULL, 1},
-    [TIMES_LIGHT] = {TIMES, "made", "linear colours", 1},
-    [PLUS_LIGHT] = {PLUS, "made", "linear colours, from 0 to 1,", 1},
+    [TIMES_LIGHT] = {TIMES, "made", "linear colors", 1},
+    [PLUS_LIGHT] = {PLUS, "made", "linear colors, from 0 to 1,", 1},
     [TIMES_CODE] = {TIMES, "made", "sRGB codes", 1},
     [PLUS_CODE] = {PLUS, "made", "sRGB codes, from 0 to 255,", 255},
     [POWER_OF_CODE] = {POWER, "of another gamma,", "sRGB codes, from 0 to 1,", 1},
@@ -289,7 +289,7 @@ static Status measure_curve(Meaning *meaning, const Codes *all, Err *err)
     return STATUS_OK;
 }
 
-/* Whether one curve can be told from surfaces that are lit otherwise: those of other colours then
+/* Whether one curve can be told from surfaces that are lit otherwise: those of other colors then
  * have other curves in each channel. */
 static bool has_colors(const Picture *picture, const Samples *samples)
 {

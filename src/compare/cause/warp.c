@@ -370,7 +370,7 @@ static const float *look_at(Patches *patches, int channel, const Warp *what)
     return what->sharper ? patches->before : patches->to;
 }
 
-/* Whether the colours are as far from grey as they were, all channels together. The tones of a
+/* Whether the colors are as far from grey as they were, all channels together. The tones of a
  * channel do not tell: where things are nearly grey they hide another saturation. */
 static bool has_same_saturation(Patches *patches, const Warp *what)
 {

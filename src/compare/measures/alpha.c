@@ -1,4 +1,4 @@
-/* Alpha of two pictures that were laid on one background before their colours were compared. What
+/* Alpha of two pictures that were laid on one background before their colors were compared. What
  * is laid on a background may agree although another part of the background shows through. */
 #include "compare/measures/planes.h"
 

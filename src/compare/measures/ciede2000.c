@@ -110,7 +110,7 @@ double de2000(const double lab_a[3], const double lab_b[3])
 
 enum { STRETCH = 64 };
 
-/* Linear colours of a stretch of both pictures. */
+/* Linear colors of a stretch of both pictures. */
 typedef struct LinearStretch {
     float red[STRETCH], green[STRETCH], blue[STRETCH];
 } LinearStretch;

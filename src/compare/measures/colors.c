@@ -1,4 +1,4 @@
-/* Linear colours in floats: every difference counts, however bright or small, so they are not
+/* Linear colors in floats: every difference counts, however bright or small, so they are not
  * turned into codes; a level is 1/255 of the sRGB encoding, continued beyond white. What is not
  * finite is made black in copies of both, which the measures of perception then see as equal. */
 #include "compare/measures/labels.h"

@@ -2,9 +2,9 @@
  * out.
  *
  * Both images go to the opponent space YCxCz. There they are blurred as the eye blurs at 67 pixels
- * per degree (Cz by a sum of two Gaussians, each filtered on its own), and their colour distance is
+ * per degree (Cz by a sum of two Gaussians, each filtered on its own), and their color distance is
  * taken in a Hunt-adjusted CIELab. Edges and points, first and second derivatives of a Gaussian
- * applied to Y, amplify it: error = colour^(1 - feature).
+ * applied to Y, amplify it: error = color^(1 - feature).
  *
  * Pictures are measured tile by tile, small enough that all filtered planes of a tile stay in a
  * processor's cache: first all rows of the tile and its halo are filtered horizontally, then each
@@ -25,7 +25,7 @@ typedef enum Input { IN_Y, IN_CX, IN_CZ, IN_LIGHTNESS, INPUTS } Input;
 static const Input filter_input[FLIP_FILTERS] = {IN_Y,         IN_CX,        IN_CZ,       IN_CZ,
                                                  IN_LIGHTNESS, IN_LIGHTNESS, IN_LIGHTNESS};
 
-/* What is filtered vertically by what: the colours, then the derivatives along x and along y. */
+/* What is filtered vertically by what: the colors, then the derivatives along x and along y. */
 typedef enum Output { Y, CX, CZ1, CZ2, EDGE_X, POINT_X, EDGE_Y, POINT_Y, OUTPUTS } Output;
 static const struct {
     FlipFilter plane, filter;
@@ -72,7 +72,7 @@ typedef struct Flip {
     Plane map;             /* owned; without values when nobody wants it */
 } Flip;
 
-/* --------------------------------------------------------------------------------------- colour */
+/* --------------------------------------------------------------------------------------- color */
 
 typedef struct Triple {
     float x, y, z;
@@ -130,7 +130,7 @@ static inline float color_distance(Triple a, Triple b)
     return power(magnitude(a.x - b.x) + sqrtf(da * da + db * db), 0.7f);
 }
 
-/* Colour, edge and point of a row of one image, from its vertically filtered values. */
+/* Color, edge and point of a row of one image, from its vertically filtered values. */
 static void row_features(const Rows *restrict rows, Features *restrict out)
 {
     const float(*row)[TILE] = rows->of;

@@ -34,10 +34,10 @@ typedef struct FlipSpan {
     int side, exposure, x, y, n;
 } FlipSpan;
 
-/* Two images to compare: of each pixel its linear colour in [0, 1]. */
+/* Two images to compare: of each pixel its linear color in [0, 1]. */
 typedef struct FlipPair {
     int width, height;
-    /* Writes the colours of a span: planes of red, green and blue with `stride` floats between
+    /* Writes the colors of a span: planes of red, green and blue with `stride` floats between
      * them. */
     void (*colors)(const struct FlipPair *pair, const FlipSpan *span, float *out, size_t stride);
     /* Returns true if both sides are equal in `n` pixels from (x, y) on. */

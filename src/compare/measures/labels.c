@@ -26,7 +26,7 @@ Labels labels_from_ids(const IdPlane *a, const IdPlane *b)
     return (Labels){.source = LABELS_IDS, .width = a->width, .height = a->height, .ids = {a, b}};
 }
 
-/* Whether three corners share a colour; *background is the number of its first code. */
+/* Whether three corners share a color; *background is the number of its first code. */
 static bool find_background(const Picture *picture, size_t *background)
 {
     size_t channels = (size_t)picture->channels, row = picture_stride(picture);

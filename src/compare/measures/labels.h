@@ -11,7 +11,7 @@
 typedef enum LabelSource {
     LABELS_UNKNOWN,
     LABELS_IDS,        /* the ids of id planes */
-    LABELS_BACKGROUND, /* 0 for the colour of a picture's background, else 1 */
+    LABELS_BACKGROUND, /* 0 for the color of a picture's background, else 1 */
     LABELS_SEEN        /* 0 or 1, set by the caller */
 } LabelSource;
 
@@ -31,8 +31,8 @@ typedef struct Labels {
 MUST_CHECK Status labels_check_ids(int width, int height, const IdPlane *a, const IdPlane *b,
                                    Err *err);
 Labels labels_from_ids(const IdPlane *a, const IdPlane *b);
-/* A pixel shows something if it has another colour than three corners of its picture share. The
- * labels are unknown if either picture has no such colour. */
+/* A pixel shows something if it has another color than three corners of its picture share. The
+ * labels are unknown if either picture has no such color. */
 Labels labels_from_background(const Picture *a, const Picture *b);
 /* No pixel shows anything; the caller changes `seen`. Release with labels_release. Errors:
  * STATUS_MEMORY. */

@@ -69,7 +69,7 @@ static Status check_planes(const Plane *const planes[3], Err *err)
         for (size_t i = 0; i < (size_t)a->width * (size_t)a->height * (size_t)a->channels; i++)
             if (!isfinite(plane->values[i]) || (p == 2 && plane->values[i] < 0))
                 return err_set(err, STATUS_INPUT,
-                               "a colour is not finite, or a variance is below 0");
+                               "a color is not finite, or a variance is below 0");
     }
     return STATUS_OK;
 }

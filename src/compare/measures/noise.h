@@ -15,7 +15,7 @@ typedef struct NoiseResult {
     PixelPlace tile;    /* first pixel of the worst tile; without ids */
 } NoiseResult;
 
-/* Compares two planes of linear colours whose noise has the same variance.
+/* Compares two planes of linear colors whose noise has the same variance.
  *
  * variance   of each value, of one rendering.
  * rate       of false alarms, in (0, 1): how often pictures of one mean are called different, at

@@ -27,8 +27,8 @@ MUST_CHECK Status flip_compute(const Picture *a, const Picture *b, Plane *map, F
 MUST_CHECK Status flip_find(const Picture *a, const Picture *b, double values[MEASURES], Err *err);
 
 /* Computes HDR-FLIP [Andersson et al. 2021, HPG short papers; version 1.6] of two planes of finite
- * linear colours: the largest LDR-FLIP over a range of exposures. The luminance of A decides the
- * range; colours are tone mapped by ACES.
+ * linear colors: the largest LDR-FLIP over a range of exposures. The luminance of A decides the
+ * range; colors are tone mapped by ACES.
  *
  * map      receives the error of each pixel, 1 channel; the caller releases it. May be NULL.
  * Errors   STATUS_MEMORY. */
@@ -40,8 +40,8 @@ MUST_CHECK Status hdr_flip_compute(const Plane *a, const Plane *b, Plane *map, F
  * picture is smaller than the window. */
 MUST_CHECK Status ssim_find(const Picture *a, const Picture *b, double values[MEASURES], Err *err);
 
-/* Returns the colour difference CIEDE2000 [Sharma, Wu, Dalal 2005, Color Res. Appl. 30, 21] of two
- * CIELAB colours. */
+/* Returns the color difference CIEDE2000 [Sharma, Wu, Dalal 2005, Color Res. Appl. 30, 21] of two
+ * CIELAB colors. */
 double de2000(const double lab_a[3], const double lab_b[3]);
 /* Computes the mean and the largest CIEDE2000 of the pixels, with white point D65. */
 MUST_CHECK Status de2000_find(const Picture *a, const Picture *b, double values[MEASURES],

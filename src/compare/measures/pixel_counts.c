@@ -102,7 +102,7 @@ static void count_pixel(const Counting *counting, const PixelRow *row, int x, Pi
     }
 }
 
-/* Pixels [from, to) of a row that are equal in colour and label, and whose geometry nobody asked
+/* Pixels [from, to) of a row that are equal in color and label, and whose geometry nobody asked
  * about. */
 static void count_equal(const LabelWindow *window, int from, int to, PixelSums *sums)
 {
@@ -157,7 +157,7 @@ static void note_worst(const Differences *differences, int from, int n, int y, P
         }
 }
 
-/* Pixels [from, to) of a row whose labels agree, of which nobody asks more than their colours: as
+/* Pixels [from, to) of a row whose labels agree, of which nobody asks more than their colors: as
  * count_pixel counts them. */
 static void count_colors(const Counting *counting, const PixelRow *row, int from, int to,
                          PixelSums *sums)
@@ -254,7 +254,7 @@ static void count_silhouette(const uint32_t *row, const uint32_t *below, int wid
     sums->silhouette += edges;
 }
 
-/* What the straight line through the colours seen in both needs. */
+/* What the straight line through the colors seen in both needs. */
 static void add_regression(const PixelRow *row, int width, int channels, PixelSums *sums)
 {
     const uint32_t *in_a = row->window->rows[0][1], *in_b = row->window->rows[1][1];

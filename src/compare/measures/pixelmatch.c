@@ -34,7 +34,7 @@ static bool are_equal(const Pixel *a, const Pixel *b)
            a->alpha == b->alpha;
 }
 
-/* The colour a - b, from -255 to 255. Transparent pixels are blended with the square of the
+/* The color a - b, from -255 to 255. Transparent pixels are blended with the square of the
  * checkerboard that pixelmatch has at the pixel (x, y): its squares depend on the byte in an RGBA
  * picture. */
 static void subtract(const Picture *picture, int x, int y, const Pixel *a, const Pixel *b,
@@ -81,7 +81,7 @@ static bool on_border(const Picture *picture, int x, int y)
     return x == 0 || x == picture->width - 1 || y == 0 || y == picture->height - 1;
 }
 
-/* Whether at least three of the neighbours have the pixel's colour; the border counts as one. */
+/* Whether at least three of the neighbours have the pixel's color; the border counts as one. */
 static bool has_siblings(const Picture *picture, int x, int y)
 {
     int equal = on_border(picture, x, y);

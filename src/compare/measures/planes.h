@@ -28,7 +28,7 @@ MUST_CHECK Status compare_perception(const Picture *a, const Picture *b, Compare
  * above white and mirrored below black. Pixels with a value that is not finite are counted, and
  * enter no other measure. `ids` only name segments.
  *
- * perception   adds HDR-FLIP of the colours, and the other perceptual measures of the colours
+ * perception   adds HDR-FLIP of the colors, and the other perceptual measures of the colors
  *              clipped to white.
  * Errors       STATUS_INPUT if shapes differ; STATUS_MEMORY. */
 MUST_CHECK Status compare_colors(const Rendering *a, const Rendering *b, const Tolerance *tolerance,
@@ -54,7 +54,7 @@ MUST_CHECK Status compare_ids(const IdPlane *a, const IdPlane *b, const Toleranc
  * STATUS_MEMORY. */
 MUST_CHECK Status alpha_take(Picture *alpha, const Image *image, Err *err);
 
-/* Judges alpha of two transparent pictures by the tolerance of their colours. If the colours agree
+/* Judges alpha of two transparent pictures by the tolerance of their colors. If the colors agree
  * and alpha does not, the result differs, with a reason and a cause.
  *
  * a, b     as alpha_take made them. If either is empty, alpha is not judged: an opaque picture is

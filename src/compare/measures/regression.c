@@ -1,4 +1,4 @@
-/* The straight line b = gain a + offset through the colours that both pictures show, by least
+/* The straight line b = gain a + offset through the colors that both pictures show, by least
  * squares, and its standard errors: a few pixels at the rims of shadows move the line, too.
  *
  * An error supposes that the samples are independent. They are not where a picture repeats itself:

@@ -136,7 +136,7 @@ int report_checks(const ReportCase *report, Check checks[CHECKS_MAX])
     if (report->settled)
         checks[n++] = check_settled(report->settled);
     if (report->exact)
-        checks[n++] = check_pictures(report->exact, "Colours of the surface where it is");
+        checks[n++] = check_pictures(report->exact, "Colors of the surface where it is");
     if (report->surface)
         checks[n++] = check_surface(report->surface);
     for (int pair = 0; report->witness && pair < WITNESS_PAIRS; pair++)

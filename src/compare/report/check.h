@@ -7,7 +7,7 @@
 
 /* A measure that is reported in addition to the rules. All members are borrowed. */
 typedef struct CheckMeasure {
-    const char *table; /* heading of the table that lists it: "Colour: sizes of differences" */
+    const char *table; /* heading of the table that lists it: "Color: sizes of differences" */
     const char *name, *unit;
     double value; /* never NAN */
 } CheckMeasure;
@@ -15,7 +15,7 @@ typedef struct CheckMeasure {
 enum { MEASURES_MAX = 40 };
 
 /* One item that is judged: a plane; alpha; the settled pixels (A is known to be wrong there, see
- * checks/settled.h); the colours or the position of an implicit surface; or a pair of programs, one
+ * checks/settled.h); the colors or the position of an implicit surface; or a pair of programs, one
  * of which may be the witness (a third, independent renderer, see checks/witness.h). */
 typedef struct Check {
     const char *title; /* "color", "settled", "exact color", "surface"; borrowed */

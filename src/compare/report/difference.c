@@ -1,4 +1,4 @@
-/* Pictures of a difference: Magma's colours at six fixed steps, and a signed one. */
+/* Pictures of a difference: Magma's colors at six fixed steps, and a signed one. */
 #include "compare/pixels.h"
 #include "compare/report/pictures.h"
 

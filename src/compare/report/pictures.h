@@ -5,7 +5,7 @@
 #include "base/base.h"
 #include "image/image.h"
 
-/* The levels at which the heat map changes colour: 0, 1, 2, 4, 8, 16 and more. They do not depend
+/* The levels at which the heat map changes color: 0, 1, 2, 4, 8, 16 and more. They do not depend
  * on the picture, so that two heat maps can be compared. */
 enum { HEAT_STEPS = 6 };
 typedef struct HeatStep {
@@ -17,8 +17,8 @@ extern const HeatStep heat_steps[HEAT_STEPS];
 /* The pictures below are of two pictures of one shape. The caller releases *out, or the text.
  * Errors: STATUS_MEMORY. */
 
-/* Makes the heat map of the difference, an 8-bit RGB picture. Only equal pixels have the colour of
- * level 0. A difference of 16-bit codes below one level has the colour of level 1. */
+/* Makes the heat map of the difference, an 8-bit RGB picture. Only equal pixels have the color of
+ * level 0. A difference of 16-bit codes below one level has the color of level 1. */
 MUST_CHECK Status heat_picture(Picture *out, const Picture *a, const Picture *b, Err *err);
 /* Makes the signed difference, an 8-bit picture: 128 + 8 (B - A) in 8-bit levels, clipped. Equal
  * pixels are grey. */

@@ -27,7 +27,7 @@ typedef struct ReportSide {
     const char *name;    /* "POV-Ray" */
     const char *key;     /* in JSON: "povray", "native", "a", "b" */
     const char *version; /* "3.7.0.10"; "": none */
-    double seconds;      /* wall-clock time of the colour picture, sum over tiles; NAN: unknown */
+    double seconds;      /* wall-clock time of the color picture, sum over tiles; NAN: unknown */
     size_t tiles;        /* tiles that the picture was drawn in; 0: unknown */
     const Picture *picture;
     const IdPlane *ids;          /* NULL, in both sides: unknown */
@@ -44,7 +44,7 @@ typedef struct ReportCase {
     const CompareResult *planes[PLANE_KINDS]; /* NULL: not compared; PLANE_COLOR is required */
     const SurfaceCheck *surface;              /* of an implicit model; NULL: of another model */
     const CompareResult *alpha;               /* of a transparent picture; NULL: it is opaque */
-    /* Colours of an implicit surface where it is, compared with A's. NULL: of another model. */
+    /* Colors of an implicit surface where it is, compared with A's. NULL: of another model. */
     const CompareResult *exact;
     const Settled *settled; /* NULL: no pixel was examined */
     const Witness *witness; /* NULL: there is none */

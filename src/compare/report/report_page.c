@@ -41,11 +41,11 @@ static void put_agreement(const ReportCase *report, int compared, Text *sentence
 {
     const CompareResult *color = report->planes[PLANE_COLOR];
     if (color->values[MEASURE_DIFFERING_PIXELS] == 0)
-        text_printf(sentence, "All %zu pixels have the same colour in both pictures. ",
+        text_printf(sentence, "All %zu pixels have the same color in both pictures. ",
                     result_count(color, MEASURE_PIXELS));
     else
         text_printf(sentence,
-                    "%zu of %zu pixels differ in colour, the worst by %.3g of 255 levels. ",
+                    "%zu of %zu pixels differ in color, the worst by %.3g of 255 levels. ",
                     result_count(color, MEASURE_DIFFERING_PIXELS),
                     result_count(color, MEASURE_PIXELS), color->values[MEASURE_MAX_ABS]);
     text_printf(sentence, compared == 1 ? "The %d plane compared is" : "The %d planes compared are",
@@ -57,7 +57,7 @@ static void put_agreement(const ReportCase *report, int compared, Text *sentence
         text_printf(sentence, " %s.", report->witness->sentence);
     if (report->surface)
         text_puts(sentence, " What POV-Ray's root finder sees is the surface to its accuracy, and "
-                            "the surface has POV-Ray's colours.");
+                            "the surface has POV-Ray's colors.");
 }
 
 static void put_sentence(const ReportCase *report, Text *sentence)

@@ -12,7 +12,7 @@ Tolerance tolerance_none(void);
  * All but 2 pixels in a million have equal 8-bit codes, 16-bit codes within one, equal ids, depths
  * within `depth_step_mm`, the step of the reference's depths, and normals within 0.03 degrees. One
  * pixel more may be off by one level, since both renderers may round a value between two codes. Off
- * the edges no colour is off by more than one level. */
+ * the edges no color is off by more than one level. */
 Tolerance tolerance_identity(double depth_step_mm);
 
 /* Returns tier B: what a renderer in single precision keeps, for any scene. Local faults cannot
@@ -22,7 +22,7 @@ Tolerance tolerance_tolerant(double depth_step_mm);
 
 /* Returns the tier "surface", for implicit surfaces, whose points both sides find by iteration.
  *
- * Colours are within 2 levels, except for 2000 ppm of the pixels off the edges and 15,000 ppm of
+ * Colors are within 2 levels, except for 2000 ppm of the pixels off the edges and 15,000 ppm of
  * the pixels at edges. The gain is 1 within 0.0005, the offset 0 within 0.15 levels. No segment's
  * mean is off by more than one level, no segment's outline by more than 0.15 px. No region of more
  * than 2 pixels is missing or extra.

@@ -84,7 +84,7 @@ static const Option own[] = {
      .group = GROUP_COLOR,
      .list = "looks",
      .when = WHEN(COLORS),
-     .help = "colour and finish: a file of templates/looks, or a path"},
+     .help = "color and finish: a file of templates/looks, or a path"},
 };
 
 static void set_defaults(void *options)

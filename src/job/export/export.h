@@ -21,7 +21,7 @@ typedef struct ExportOptions {
 extern const Command command_export;
 
 /* Makes the surface of a tree in memory, in the form that the format of options->output needs. If
- * there is no output, the result has no named parts, and has colours.
+ * there is no output, the result has no named parts, and has colors.
  *
  * options  `print` or `wall_mm` sets further members.
  * mesh     borrows from `options` and `parsed`; release it with meshing_release.

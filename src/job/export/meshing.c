@@ -26,7 +26,7 @@ static Status take_vessels(MeshResult *made, VesselBody body, const Talk *talk, 
     return STATUS_OK;
 }
 
-/* Finds the colours of the segments, and the orders by which the file groups them. */
+/* Finds the colors of the segments, and the orders by which the file groups them. */
 static Status color_vessels(const MeshingOptions *options, const Talk *talk, MeshResult *made,
                             Err *err)
 {

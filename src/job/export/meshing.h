@@ -19,8 +19,8 @@ typedef struct MeshingOptions {
     bool part_overlaps;         /* makes thin vessels thinner that overlap vessels to which they are
                                  * not connected */
     const PrintSettings *print; /* makes a solid for a printer; NULL: the surface alone; borrowed */
-    const char *look;           /* name or path; read if the emitter has colours */
-    Coloring coloring;          /* used if the emitter has colours */
+    const char *look;           /* name or path; read if the emitter has colors */
+    Coloring coloring;          /* used if the emitter has colors */
 } MeshingOptions;
 
 /* Indices of segments in VesselTree.segments. */
@@ -39,7 +39,7 @@ typedef struct MeshResult {
     SegmentList thinned;    /* segments that part_overlaps made thinner */
     SegmentList longer;     /* segments that were lengthened, so that their ends are flat */
     MeshEnds ends;          /* the named parts, if the emitter writes them */
-    Appearance appearance;  /* this and the next two are set if the emitter has colours */
+    Appearance appearance;  /* this and the next two are set if the emitter has colors */
     Field orders;           /* Strahler orders */
     Anatomy anatomy;
     const PrintSettings *print; /* NULL: the mesh is no print; borrowed from the options */

@@ -87,7 +87,7 @@ Status scene_files_name(const Emitter *emitter, const char *path, bool settings,
     return second && emitter->check_name ? emitter->check_name(file_name(second), err) : STATUS_OK;
 }
 
-/* Appends what is drawn, of which tree, and what its colours mean. */
+/* Appends what is drawn, of which tree, and what its colors mean. */
 static void put_description(const Emitter *emitter, const EmitParams *params, const char *tree_path,
                             Text *out)
 {
@@ -100,7 +100,7 @@ static void put_description(const Emitter *emitter, const EmitParams *params, co
         text_puts(out, emitter->of_lines ? ", its vessels" : ", its surface");
     }
     if (appearance && appearance->said)
-        text_printf(out, ", coloured by %s", appearance->said);
+        text_printf(out, ", colored by %s", appearance->said);
 }
 
 static const char *name_of(const FileSlot *file)

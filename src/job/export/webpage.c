@@ -165,9 +165,9 @@ done:
     return status;
 }
 
-/* ---- colours --------------------------------------------------------------------------------- */
+/* ---- colors --------------------------------------------------------------------------------- */
 
-/* Adds a colour map. The page takes ownership of `name`. */
+/* Adds a color map. The page takes ownership of `name`. */
 static Status add_map(Webpage *page, char *name, const char *path, Err *err)
 {
     PageMap *map = &page->maps[page->n_maps];
@@ -182,7 +182,7 @@ static Status read_map(Webpage *page, const char *value, Err *err)
     Status status;
     TRY_GOTO(template_file("colormap", "colormaps", value, ".txt", &path, err));
     TRY_GOTO(mem_reserve(&page->maps, &page->maps_capacity, page->n_maps + 1, sizeof *page->maps,
-                         "colour maps", err));
+                         "color maps", err));
     TRY_GOTO(mem_strdup(&name, file_name(value), err));
     status = add_map(page, name, path, err);
 done:
@@ -190,7 +190,7 @@ done:
     return status;
 }
 
-/* Reads all colour maps of the templates, and the user's own map if `chosen` is a path. */
+/* Reads all color maps of the templates, and the user's own map if `chosen` is a path. */
 static Status read_maps(const char *chosen, Webpage *page, Err *err)
 {
     Text names = TEXT_INIT;

@@ -12,7 +12,7 @@
 enum { WEBPAGE_MOST_SEGMENTS = 200000, WEBPAGE_MOST_BYTES = 100000000 };
 
 /* Writes a page about a tree, with all fields that can be derived, all columns of its file and all
- * colour maps. The page opens with the colours that `coloring` selects. Prints which fields are
+ * color maps. The page opens with the colors that `coloring` selects. Prints which fields are
  * left out because their inputs are missing.
  *
  * look     name in templates/looks, or path.

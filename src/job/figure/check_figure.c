@@ -97,11 +97,11 @@ static void check_colors(Check *check, const char *colors, const char *profile)
 {
     const char *listed = check->preset->colors;
     if (!preset_has(listed, colors))
-        refuse(check, "colours: %s; taken are %s", colors, listed);
+        refuse(check, "colors: %s; taken are %s", colors, listed);
     else if (strcmp(colors, "cmyk") == 0 && !*profile)
         refuse(check, "profile: inks without the ICC profile of their press");
     else if (strcmp(colors, "rgb") == 0 && *profile && !strstr(profile, "sRGB"))
-        refuse(check, "profile: \"%s\"; colours without ado are sRGB", profile);
+        refuse(check, "profile: \"%s\"; colors without ado are sRGB", profile);
 }
 
 static void check_picture(Check *check, const ImageFacts *facts)
@@ -207,7 +207,7 @@ static void take_image(Check *check, char *line, int number)
 
 static Status check_pdf(Check *check, Err *err)
 {
-    text_puts(&check->found->unchecked, "sizes of letters, colours of lines and letters\n");
+    text_puts(&check->found->unchecked, "sizes of letters, colors of lines and letters\n");
     TRY(ask(check, "pdfinfo", take_info, err));
     TRY(ask(check, "pdffonts", take_font, err));
     return ask(check, "pdfimages -list", take_image, err);

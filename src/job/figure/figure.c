@@ -271,7 +271,7 @@ static Status put_text(Figure *figure, const Section *section, Err *err)
     return STATUS_OK;
 }
 
-/* Reports what the panels have lost of their trees and how they are coloured. */
+/* Reports what the panels have lost of their trees and how they are colored. */
 static Status say_panels(const Figure *figure, Err *err)
 {
     Status status = STATUS_OK;

@@ -1,4 +1,4 @@
-/* A picture differs from the next in one thing: colours (a series), the view (a turn) or the
+/* A picture differs from the next in one thing: colors (a series), the view (a turn) or the
  * geometry (growth). The first two leave what a renderer has prepared of the geometry as it is, so
  * that such a picture costs its pixels. */
 #include "job/picture/animation.h"
@@ -134,7 +134,7 @@ Status animation_frame_turn(const PictureOptions *options, const PictureSource *
     return stage_view(&source->look, &params, &scene->geometry, &scene->view, err);
 }
 
-/* The colours of a part of a tree, whose nodes are in the same order. */
+/* The colors of a part of a tree, whose nodes are in the same order. */
 static Status part_appearance(const Appearance *whole, const Tree *tree, const Tree *part,
                               Appearance *out, Err *err)
 {
@@ -146,7 +146,7 @@ static Status part_appearance(const Appearance *whole, const Tree *tree, const T
     made.n_values = 0;
     made.scale = (ColorScale){0};
     if (whole->colors) {
-        TRY(mem_calloc(&made.colors, part->n, sizeof *made.colors, "colours", err));
+        TRY(mem_calloc(&made.colors, part->n, sizeof *made.colors, "colors", err));
         for (size_t i = 0, k = 0; i < part->n; i++, k++) {
             while (tree->id[k] != part->id[i])
                 k++;

@@ -14,7 +14,7 @@ typedef struct AnimationOptions {
 
 typedef enum AnimationKind {
     ANIMATION_NONE,   /* a single picture */
-    ANIMATION_SERIES, /* the colours change */
+    ANIMATION_SERIES, /* the colors change */
     ANIMATION_TURN,   /* the view changes */
     ANIMATION_GROWTH  /* the geometry changes */
 } AnimationKind;
@@ -56,7 +56,7 @@ typedef struct AnimationSubject {
 /* Makes the scene of picture `number`.
  *
  * shown   borrows from the whole scene and from *grown.
- * grown   of growth: geometry and colours of this picture; zeroed before; release it with
+ * grown   of growth: geometry and colors of this picture; zeroed before; release it with
  *         scene_release. Other kinds leave it as it is.
  * Errors  as picture_geometry; STATUS_MEMORY. */
 MUST_CHECK Status animation_scene(const Animation *animation, const AnimationSubject *subject,

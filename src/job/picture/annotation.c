@@ -13,7 +13,7 @@ static const Option rows[] = {
      SETS(SWITCH, Annotation, legend),
      .group = GROUP_PAGE,
      .when = WHEN(SURFACES),
-     .help = "a colour bar beside the tree, with ticks, name and unit of the field"},
+     .help = "a color bar beside the tree, with ticks, name and unit of the field"},
     {.name = "legend-at",
      SETS(CHOICE, Annotation, legend_at),
      GIVEN(Annotation, has_side),

@@ -1,4 +1,4 @@
-/* What explains a picture, drawn over it or beside it: colour bar, scale bar, letter. */
+/* What explains a picture, drawn over it or beside it: color bar, scale bar, letter. */
 #ifndef CORCAST_JOB_PICTURE_ANNOTATION_H
 #define CORCAST_JOB_PICTURE_ANNOTATION_H
 
@@ -25,7 +25,7 @@ extern const OptionTable annotation_table; /* sets an Annotation */
 /* Whether there is anything to draw. */
 bool annotation_is_any(const Annotation *annotation);
 
-/* STATUS_USAGE when a legend has no colours to explain, a scale bar is asked for in perspective,
+/* STATUS_USAGE when a legend has no colors to explain, a scale bar is asked for in perspective,
  * where no length of the picture is one of the tree. */
 MUST_CHECK Status annotation_check(const Annotation *annotation, const PictureOptions *picture,
                                    Err *err);
@@ -44,9 +44,9 @@ MUST_CHECK Status annotation_make_room(const Annotation *annotation, const Figur
 MUST_CHECK Status annotation_put(const Annotation *annotation, const Scene *scene, FigureBox where,
                                  FigurePage *page, Err *err);
 
-/* The colour as a page has it. */
+/* The color as a page has it. */
 FigureColor annotation_color(Rgb linear);
-/* Black or white, whichever is read on this colour. */
+/* Black or white, whichever is read on this color. */
 FigureColor annotation_ink(Rgb background);
 
 #endif

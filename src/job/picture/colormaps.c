@@ -39,7 +39,7 @@ static void put_between(const char *head, const char *from, const char *to, Text
 
 static Status put_line(const char *name, const char *path, bool cite, Text *lines, Err *err)
 {
-    static const FileForm form = {.name = "a colour map", .most_bytes = 1e7, .is_text = true};
+    static const FileForm form = {.name = "a color map", .most_bytes = 1e7, .is_text = true};
     char *text = NULL;
     size_t size;
     Text head = TEXT_INIT;
@@ -48,7 +48,7 @@ static Status put_line(const char *name, const char *path, bool cite, Text *line
     const char *chars = text_chars(&head);
     text_printf(lines, "%s\t", name);
     if (chars)
-        put_between(chars, cite ? "Cite: " : ": ", cite ? " One colour" : " Cite: ", lines);
+        put_between(chars, cite ? "Cite: " : ": ", cite ? " One color" : " Cite: ", lines);
     text_puts(lines, chars ? "\n" : NULL);
     free(text);
     text_release(&head);

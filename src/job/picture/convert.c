@@ -66,7 +66,7 @@ static Status read_picture(const ConvertOptions *options, const char *from, cons
         return STATUS_OK;
     picture_release(picture);
     return err_set(err, STATUS_USAGE,
-                   "%s: is transparent, which '%s' cannot be; --background lays it on a colour, "
+                   "%s: is transparent, which '%s' cannot be; --background lays it on a color, "
                    "and .png and .tif keep it",
                    from, to);
 }

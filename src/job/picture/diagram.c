@@ -52,7 +52,7 @@ static const Option own[] = {
      SETS(LOOKUP, DiagramOptions, look),
      .group = GROUP_COLOR,
      .list = "looks",
-     .help = "colour of what no field colours: a file of templates/looks, or a path"},
+     .help = "color of what no field colors: a file of templates/looks, or a path"},
     {.name = "background",
      SETS(COLOR, DiagramOptions, background),
      .group = GROUP_LIGHT,
@@ -88,7 +88,7 @@ static Status paint(const DiagramOptions *options, MadeDiagram *made, Err *err)
     const Tree *tree = &made->of.tree;
     const Appearance *appearance = &made->appearance;
     const Rgb background = rgb_of_option(options->background);
-    TRY(mem_calloc(&made->color, tree->n, sizeof *made->color, "colours", err));
+    TRY(mem_calloc(&made->color, tree->n, sizeof *made->color, "colors", err));
     for (size_t i = 0; i < tree->n; i++) {
         Rgb color = appearance_color(appearance, (uint32_t)i);
         memcpy(made->color[i], &color, sizeof color);
@@ -104,7 +104,7 @@ static Status paint(const DiagramOptions *options, MadeDiagram *made, Err *err)
     return STATUS_OK;
 }
 
-/* Reads the tree and its colours, and lays the tree out. */
+/* Reads the tree and its colors, and lays the tree out. */
 static Status lay_out(const DiagramOptions *options, const Parsed *parsed, MadeDiagram *made,
                       Err *err)
 {

@@ -156,7 +156,7 @@ static Status open_files(FramesWriter *writer, Err *err)
     return STATUS_OK;
 }
 
-/* Makes the frame that receives everything in memory. A picture of floats is its colour plane. */
+/* Makes the frame that receives everything in memory. A picture of floats is its color plane. */
 static Status open_memory(const FramesForm *form, Err *err)
 {
     const int width = form->width, height = form->height;

@@ -27,7 +27,7 @@ enum { PICTURE_TREE, PICTURE_DOMAIN, PICTURE_DRAWING };
 static const char *const framings[] = {
     [PICTURE_TREE] = "tree", [PICTURE_DOMAIN] = "domain", [PICTURE_DRAWING] = "drawing", NULL};
 
-/* What a point has the colour of: its largest term, or the mean of all. */
+/* What a point has the color of: its largest term, or the mean of all. */
 enum { BLEND_SEGMENT, BLEND_BLENDED };
 static const char *const color_blends[] = {
     [BLEND_SEGMENT] = "segment", [BLEND_BLENDED] = "blended", NULL};
@@ -81,7 +81,7 @@ static const Option rows[] = {
      .when = WHEN(FIELD_MODEL),
      .needs = "color-by",
      .help =
-         "isosurface, blob: a point has its largest segment's colour, or that of the mean value"},
+         "isosurface, blob: a point has its largest segment's color, or that of the mean value"},
     {.name = "size",
      SETS(SIZE, PictureOptions, size),
      FROM_TO(1, IMAGE_MAX_SIDE),
@@ -403,7 +403,7 @@ static Status read_look(const PictureOptions *options, const Parsed *parsed, Loo
     TRY(coloring_read_look(options->look, look, err));
     if (is_xray(look) && options->coloring.field)
         return err_set(err, STATUS_USAGE,
-                       "--look %s has two colours of its own; --color-by has no effect",
+                       "--look %s has two colors of its own; --color-by has no effect",
                        options->look);
     if (is_xray(look))
         TRY(options_refuse(parsed, WHEN(LIT) | WHEN(LIGHTS), err));
@@ -546,17 +546,17 @@ Status picture_geometry(const PictureOptions *options, const PictureSource *sour
     return status;
 }
 
-/* Has the colours blend, if they are to. */
+/* Has the colors blend, if they are to. */
 static Status blend(const PictureOptions *options, Appearance *appearance, Err *err)
 {
-    enum { MOST_STEPS = 128 }; /* that a colour map of POV-Ray holds */
+    enum { MOST_STEPS = 128 }; /* that a color map of POV-Ray holds */
     const ColorScale *scale = &appearance->scale;
     if (options->color_blend == BLEND_SEGMENT || !appearance->colors)
         return STATUS_OK;
     if (colorscale_counts(scale))
         return err_set(
             err, STATUS_USAGE,
-            "--color-blend blended: --colormap %s has separate colours, which blend only "
+            "--color-blend blended: --colormap %s has separate colors, which blend only "
             "with --classes",
             options->coloring.colormap);
     if (colorscale_steps(scale) > MOST_STEPS)

@@ -27,8 +27,8 @@ typedef struct PictureOptions {
      * joints       a JointForm.
      * projection   a Projection.
      * view         a NamedView.
-     * color_blend  models of fields: 0: a point has the colour of its largest segment; 1: the
-     *              colour at the mean value of the segments that blend there.
+     * color_blend  models of fields: 0: a point has the color of its largest segment; 1: the
+     *              color at the mean value of the segments that blend there.
      * frame        what the camera frames: 0: the tree; 1: the domain that the tree was grown in;
      *              2: the geometry that is drawn. */
     int model, potential, joints, projection, view, color_blend, frame;
@@ -95,7 +95,7 @@ MUST_CHECK Status picture_check_povray(const PictureOptions *options, Err *err);
 typedef struct PictureTree {
     const char *path; /* the tree's file, for messages; borrowed from the Parsed */
     Tree tree;        /* without pruned segments; owned */
-    Tree whole;       /* with pruned segments; owned. Only stored if the range of colours is that of
+    Tree whole;       /* with pruned segments; owned. Only stored if the range of colors is that of
                        * the whole tree (RANGE_OF_TREE); else zeroed, and n is 0 */
     char *joined;     /* if --color-by names a file of values: the name of the tree's column that
                        * the values were read into; else NULL. Owned */
@@ -152,7 +152,7 @@ MUST_CHECK Status picture_geometry(const PictureOptions *options, const PictureS
 /* Makes the appearance of a picture.
  *
  * appearance   release it with appearance_release.
- * Errors       STATUS_USAGE if colours are to blend and the colour map or the number of classes
+ * Errors       STATUS_USAGE if colors are to blend and the color map or the number of classes
  *              does not allow it; the errors of coloring_appearance and stage_blend. */
 MUST_CHECK Status picture_appearance(const PictureOptions *options, const PictureSource *source,
                                      Appearance *appearance, Err *err);
@@ -192,7 +192,7 @@ MUST_CHECK Status picture_scene_of(const PictureOptions *options, const PictureS
                                    PictureReport *report, Err *err);
 
 /* Prints notes about a scene: what is too small or too near to be drawn, how many segments are
- * pruned or not drawn, how many joints could not be built as specified, and what the colours mean.
+ * pruned or not drawn, how many joints could not be built as specified, and what the colors mean.
  *
  * Call it after all checks, so that a refused operation prints only its error.
  *

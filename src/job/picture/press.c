@@ -58,7 +58,7 @@ static const Option rows[] = {
      .group = GROUP_PRESS,
      .needs = "cmyk-profile",
      .when = WHEN(PACKED),
-     .help = "colours that the press has not: all make way, or they alone"},
+     .help = "colors that the press has not: all make way, or they alone"},
 };
 
 /* Sets an option to the preset's value, unless the command line or a recipe gives the option. */

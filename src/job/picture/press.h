@@ -1,5 +1,5 @@
 /* Reads the options that define how a picture is stored in its file: bits, compression, quality and
- * CMYK colours. All commands that write pictures share these options.
+ * CMYK colors. All commands that write pictures share these options.
  *
  * These settings, read and completed, are called an output profile (type Press). */
 #ifndef CORCAST_JOB_PICTURE_PRESS_H
@@ -15,7 +15,7 @@ typedef struct PressOptions {
     int bits;                 /* bits per channel: 8, 16 or 32; 0: the default of the format */
     int compression, intent;  /* choices: ImageCompression (TIFF); InkIntent (CMYK) */
     int quality;              /* JPEG: 1..100 */
-    const char *cmyk_profile; /* ICC profile that colours are converted to; NULL: sRGB */
+    const char *cmyk_profile; /* ICC profile that colors are converted to; NULL: sRGB */
 } PressOptions;
 
 extern const OptionTable press_table; /* sets a PressOptions */

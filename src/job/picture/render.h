@@ -12,7 +12,7 @@ typedef struct RenderResult {
                    * With --bits 32 instead `color` and, if it is transparent, `alpha`. Also the
                    * planes that --planes names; `color` is linear */
     double dpi;   /* pixels per inch on paper; 0: not known */
-    char *colors; /* the meaning of the colours in words; NULL: there is none; owned */
+    char *colors; /* the meaning of the colors in words; NULL: there is none; owned */
     const char *engine; /* the engine that drew the picture, such as "raster" */
 } RenderResult;
 

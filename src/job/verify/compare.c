@@ -1,5 +1,5 @@
 /* What is compared, and how, follows from the options and from what the files hold: integers or
- * floats, colours or planes of geometry. */
+ * floats, colors or planes of geometry. */
 #include "job/verify/compare.h"
 
 #include "job/picture/coloring.h"
@@ -139,7 +139,7 @@ static Status compare_codes(const CompareOptions *options, const Tolerance *tole
                : STATUS_OK;
 }
 
-/* Returns a side whose plane is of colours, depths or normals. */
+/* Returns a side whose plane is of colors, depths or normals. */
 static Rendering values_of(const Comparison *made, int side)
 {
     const Plane *plane = &made->sides[side].image.plane;
@@ -195,7 +195,7 @@ static void note_losses(const ComparedSide sides[2], const Talk *talk)
 {
     for (int i = 0; i < 2; i++)
         if (sides[i].image.lossy)
-            talk_note(talk, "%s is lossy (%s): its colours are off by what was compressed away",
+            talk_note(talk, "%s is lossy (%s): its colors are off by what was compressed away",
                       sides[i].name, sides[i].image.lossy);
 }
 
@@ -320,11 +320,11 @@ const Command command_compare = {
         "  corcast compare --reference references drawn --tier B --junit junit.xml\n"
         "  corcast compare --reference references drawn --accept a.png --reason 'new lamp'\n"
         "\ntiers of agreement:\n"
-        "  A        identity: on all but 2 pixels in a million the same colours, ids and depths;\n"
+        "  A        identity: on all but 2 pixels in a million the same colors, ids and depths;\n"
         "           fewer than 500,000 pixels: on all, except for one pixel by one 8-bit level\n"
         "  B        what a renderer in single precision keeps: a few pixels at edges, no bias,\n"
-        "           no segment missing, moved or of another colour\n"
-        "  surface  what iteration towards a surface keeps: 99.5 % of colours within 2 levels,\n"
+        "           no segment missing, moved or of another color\n"
+        "  surface  what iteration towards a surface keeps: 99.5 % of colors within 2 levels,\n"
         "           99 % of depths within 0.01 mm, nothing missing\n"
         "  none     everything is measured, nothing is judged but numbers that are none\n",
     .min_operands = 1,

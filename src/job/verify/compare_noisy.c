@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Reads a file of any kind as linear colours. */
+/* Reads a file of any kind as linear colors. */
 static Status read_colors(Plane *plane, const char *path, Err *err)
 {
     Image image = {0};

@@ -52,7 +52,7 @@ typedef struct CompareOptions {
     bool json;                    /* the command line prints the result as JSON */
     bool metrics, has_metrics;    /* perceptual measures are computed; `metrics` is specified */
     double depth_mm;              /* maximum difference of depths; 0: not specified */
-    Vec3 background;     /* colour over which transparent images are composited; sRGB in [0, 1] */
+    Vec3 background;     /* color over which transparent images are composited; sRGB in [0, 1] */
     GivenImage given[2]; /* A and B in memory, used instead of the operands; set by the caller;
                           * zeroed: A and B are files */
 } CompareOptions;

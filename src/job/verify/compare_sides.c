@@ -95,7 +95,7 @@ done:
     return status;
 }
 
-/* Gets one image. Only colours have alpha: of a plane of geometry every value counts. */
+/* Gets one image. Only colors have alpha: of a plane of geometry every value counts. */
 static Status get_image(const SidesReading *reading, size_t index, Err *err)
 {
     const CompareOptions *options = reading->options;
@@ -157,7 +157,7 @@ static const char *holds(const ComparedSide *side)
     return side->image.plane.values ? "floats" : "whole numbers";
 }
 
-/* Images of unlike gamma become planes of linear colours; pictures of unlike depth become 16-bit.
+/* Images of unlike gamma become planes of linear colors; pictures of unlike depth become 16-bit.
  */
 static Status match_images(ComparedSide sides[2], Err *err)
 {

@@ -52,7 +52,7 @@ static const Option own[] = {
      .range = &bits_range,
      .argument = "8|16",
      .when = WHEN(COLOR_PLANE),
-     .help = "of the colours: 8, sRGB, or 16, linear"},
+     .help = "of the colors: 8, sRGB, or 16, linear"},
     {.name = "alpha",
      SETS(FLAG, PovrayOptions, alpha),
      .group = GROUP_LIGHT,

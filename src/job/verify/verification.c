@@ -97,7 +97,7 @@ static Status render_frame(Verification *v, bool exact, Frame *frame, Err *err)
     return render(&v->scene, &params, frame, &v->stats, err);
 }
 
-/* Draws alpha. Colours are compared in front of the look's background, as POV-Ray draws them; alpha
+/* Draws alpha. Colors are compared in front of the look's background, as POV-Ray draws them; alpha
  * is compared in a picture of its own. */
 static Status render_alpha(Verification *v, Err *err)
 {
@@ -177,7 +177,7 @@ static Status texts_init(const Verification *v, SceneTexts *texts, Err *err)
     *texts = (SceneTexts){.description = TEXT_INIT};
     picture_description(&v->scene.geometry, v->tree, &texts->description);
     if (v->scene.appearance.said)
-        text_printf(&texts->description, ", coloured by %s", v->scene.appearance.said);
+        text_printf(&texts->description, ", colored by %s", v->scene.appearance.said);
     TRY(text_check(&texts->description, err));
     return templates_folder(&texts->templates, err);
 }
@@ -267,7 +267,7 @@ static Status draw_tachyon(Verification *v, const SceneTexts *texts, Err *err)
     return STATUS_OK;
 }
 
-/* Converts linear colours to what a screen shows. */
+/* Converts linear colors to what a screen shows. */
 static Status show_both(Verification *v, Err *err)
 {
     if (v->options->bits == 8)
@@ -331,8 +331,8 @@ static bool sees_whole_vessels(const IdPlane *ids)
     return 2 * (double)seen * 4 <= side * PI / 4 * (double)sides;
 }
 
-/* Returns the tolerance for the colours of the exact surface. POV-Ray's steps tilt normals by up to
- * 0.1 degrees. The effect on the colours averages out over the breadth of a vessel. In a close
+/* Returns the tolerance for the colors of the exact surface. POV-Ray's steps tilt normals by up to
+ * 0.1 degrees. The effect on the colors averages out over the breadth of a vessel. In a close
  * view, where only one side of a vessel is visible, all normals are tilted one way, and the rules
  * on means do not apply. */
 static Tolerance exact_tolerance(const IdPlane *ids)
@@ -365,7 +365,7 @@ done:
     return status;
 }
 
-/* Compares the colours of the exact surface with POV-Ray's, as a screen shows them. */
+/* Compares the colors of the exact surface with POV-Ray's, as a screen shows them. */
 static Status compare_exact(Verification *v, const Rendering *povray, Err *err)
 {
     Picture picture;

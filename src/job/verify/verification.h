@@ -15,7 +15,7 @@ typedef enum WitnessChoice { WITNESS_NONE, WITNESS_TACHYON } WitnessChoice;
 /* What the options of `verify` set. */
 typedef struct VerifyOptions {
     const char *folder;
-    int bits;              /* of the colours that are compared: 8 (sRGB) or 16 (linear) */
+    int bits;              /* of the colors that are compared: 8 (sRGB) or 16 (linear) */
     RenderKernels kernels; /* with which corcast draws */
     WitnessChoice witness;
     int tiles; /* minimum number of tiles that POV-Ray draws the picture in */
@@ -28,7 +28,7 @@ typedef struct VerifyOptions {
 typedef struct VerifyFindings {
     CompareResult planes[PLANE_KINDS];
     CompareResult alpha;  /* of a transparent picture */
-    CompareResult exact;  /* isosurfaces: POV-Ray's colours against those of the exact surface */
+    CompareResult exact;  /* isosurfaces: POV-Ray's colors against those of the exact surface */
     SurfaceCheck surface; /* isosurfaces: where POV-Ray's root finder puts the surface */
     Settled settled;      /* of the pixels that differ: those that are explained */
     bool examined;        /* `settled` applies to the scene */
@@ -42,14 +42,14 @@ typedef struct Verification {
     const char *tree;    /* path of the tree, for sentences */
     char *name;          /* name of the tree, for the report */
     Scene scene;         /* at the moment that is compared */
-    Appearance moments;  /* appearance at all moments if the colours change with time; the scene's
+    Appearance moments;  /* appearance at all moments if the colors change with time; the scene's
                           * appearance is then a view of it */
     int frame;           /* number of the moment, from 1 on */
     OraclePlanes povray; /* POV-Ray's planes */
     OraclePlanes native; /* corcast's planes; of an isosurface with POV-Ray's root finder */
     Frame exact;         /* of an isosurface: corcast's planes of the exact surface */
     Frame tachyon;       /* depth and ids */
-    Picture shown[2];    /* 16-bit colours of POV-Ray and corcast as 8-bit sRGB; empty for 8 bits */
+    Picture shown[2];    /* 16-bit colors of POV-Ray and corcast as 8-bit sRGB; empty for 8 bits */
     RenderStats stats;   /* of corcast's last frame */
     PovrayRun run;
     size_t n_tiles;  /* in which POV-Ray drew the picture; 1: the whole picture */
@@ -70,7 +70,7 @@ MUST_CHECK Status verification_add_command(Verification *v, const char *command,
  */
 bool verification_takes_two_steps(const Verification *v);
 
-/* Selects a moment of a scene whose colours change with time; 0 selects the first. POV-Ray's scene
+/* Selects a moment of a scene whose colors change with time; 0 selects the first. POV-Ray's scene
  * still contains all moments. Errors: STATUS_USAGE if there is no such moment. */
 MUST_CHECK Status verification_pick_frame(Verification *v, int frame, Err *err);
 
@@ -82,7 +82,7 @@ MUST_CHECK Status verification_draw(Verification *v, Err *err);
 /* Compares what was drawn. Sets v->found. Errors: STATUS_MEMORY. */
 MUST_CHECK Status verification_compare(Verification *v, Err *err);
 
-/* Returns the colours of a side (0: POV-Ray, 1: corcast) as a screen shows them; borrowed. */
+/* Returns the colors of a side (0: POV-Ray, 1: corcast) as a screen shows them; borrowed. */
 const Picture *verification_shown(const Verification *v, int side);
 
 /* Returns everything that was found, as a report; borrowed from `v`. */

@@ -23,7 +23,7 @@ static const Option own[] = {
      .range = &bits_range,
      .group = GROUP_JUDGE,
      .argument = "8|16",
-     .help = "of the colours compared: 8, sRGB, or 16, linear"},
+     .help = "of the colors compared: 8, sRGB, or 16, linear"},
     {.name = "kernels",
      SETS(CHOICE, VerifyOptions, kernels),
      .choices = render_kernel_names,

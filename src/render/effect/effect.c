@@ -201,7 +201,7 @@ static void gather(const EffectEdges *edges, size_t row, float *line, float *gap
     }
 }
 
-/* ---- colours --------------------------------------------------------------------------------- */
+/* ---- colors --------------------------------------------------------------------------------- */
 
 static void draw_row(size_t number, int worker, void *context)
 {

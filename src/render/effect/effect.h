@@ -39,15 +39,15 @@ typedef struct EffectSamples {
     int side;  /* samples per pixel width */
     int threads;
     Band band;    /* rows of samples */
-    Frame *frame; /* colour, depth and ids; normals if outlines follow creases */
+    Frame *frame; /* color, depth and ids; normals if outlines follow creases */
 } EffectSamples;
 
-/* Draws the effects into the colours of the band's rows, except the rows above and below. Those are
+/* Draws the effects into the colors of the band's rows, except the rows above and below. Those are
  * effects_reach() rows, or all rows up to the edge of the picture; then the result depends neither
  * on the band nor on the number of threads. Errors: STATUS_MEMORY. */
 MUST_CHECK Status effects_draw(const EffectSamples *samples, Err *err);
 
-/* Averages the colours of side x side samples to pixels. Leaves out the rows above and below the
+/* Averages the colors of side x side samples to pixels. Leaves out the rows above and below the
  * band. Writes the pixels to the rows of `color` from `row` on. */
 void effects_reduce(const EffectSamples *samples, Plane *color, int row);
 

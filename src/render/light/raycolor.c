@@ -1,6 +1,6 @@
 /* Ground, occlusion, shadows and shading of one ray, whichever engine has found what it meets, so
  * that every model is lit alike. The ground is tested here and not by the casters: it belongs to
- * the view, and no plane but that of colours shows it. */
+ * the view, and no plane but that of colors shows it. */
 #include "render/light/raycolor.h"
 
 #include "render/light/rayocclusion.h"

@@ -1,4 +1,4 @@
-/* The colour of one camera ray. */
+/* The color of one camera ray. */
 #ifndef CORCAST_RENDER_RAYCOLOR_H
 #define CORCAST_RENDER_RAYCOLOR_H
 
@@ -9,7 +9,7 @@
  * a ground plane, which the kernels of tiles do not support. */
 bool raycolor_is_needed(const View *view, const RenderParams *params);
 
-/* Returns the linear colour of the camera ray through the sample (i, j) of the drawing.
+/* Returns the linear color of the camera ray through the sample (i, j) of the drawing.
  *
  * surfel   the ray's first hit of a vessel; NULL: none. The vessel is drawn if it is nearer than
  *          the ground plane; otherwise the ground is drawn, or the background if the ray misses

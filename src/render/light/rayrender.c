@@ -1,4 +1,4 @@
-/* One ray a sample, its colour as light/raycolor.c finds it; a row of pixels is the unit of work,
+/* One ray a sample, its color as light/raycolor.c finds it; a row of pixels is the unit of work,
  * so that the picture does not depend on the number of threads. Samples stand where POV-Ray puts
  * them: the centre of the pixel, and with antialiasing an N x N grid more; their mean weighs all N
  * * N + 1 alike (tracetask.cpp of 3.7.0.10: every pixel is supersampled when the threshold is 0).

@@ -25,7 +25,7 @@ typedef struct Resampling {
 
 /* Returns the further samples for `antialias` of RenderParams, without a mask. */
 Resampling resampling_for(int antialias);
-/* Makes the mask from the colours of the centre samples, if `params` has a threshold. Errors:
+/* Makes the mask from the colors of the centre samples, if `params` has a threshold. Errors:
  * STATUS_MEMORY. */
 MUST_CHECK Status resampling_choose(Resampling *more, const RenderParams *params, const Band *band,
                                     const Plane *color, int threads, Err *err);

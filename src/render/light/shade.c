@@ -1,7 +1,7 @@
-/* Geometry is double and colour is float, and every product is rounded where POV-Ray 3.7 rounds it
+/* Geometry is double and color is float, and every product is rounded where POV-Ray 3.7 rounds it
  * (render/trace.cpp; docs/POVRAY.md section 3), so that 8-bit and 16-bit pictures come out the same
- * to the last code. A colour times a number is computed in double and rounded; a colour times a
- * colour, and a sum of colours, is computed in float. */
+ * to the last code. A color times a number is computed in double and rounded; a color times a
+ * color, and a sum of colors, is computed in float. */
 #include "render/light/shade.h"
 
 static Rgb rgb_scale(Rgb color, double factor)
@@ -21,7 +21,7 @@ static Rgb rgb_add(Rgb a, Rgb b)
 }
 
 /* The Phong highlight: the mirrored view ray against the light. POV-Ray leaves out sizes of 60 and
- * more where the cosine is below 0.0008, whose power is 0 in any colour. */
+ * more where the cosine is below 0.0008, whose power is 0 in any color. */
 static double phong_intensity(const Finish *finish, Vec3 direction, Vec3 normal, Vec3 towards)
 {
     double along = vec3_dot(direction, normal);

@@ -24,7 +24,7 @@ typedef struct ShadingInput {
     const float *parts; /* visibility of each light, in [0, 1]; negative, or NULL: not known */
 } ShadingInput;
 
-/* Returns the linear colour of a point: the ambient light, and the diffuse and specular light of
+/* Returns the linear color of a point: the ambient light, and the diffuse and specular light of
  * each light of the view that the surface faces.
  *
  * A light whose visibility is known [ShadingInput.parts] is multiplied by it. A light that casts

@@ -3,7 +3,7 @@
  * have in each sample's cell [tile/thincells.h]. Wider vessels are sampled, which is right wherever
  * it is fine enough.
  *
- * A strip is cut into pieces of about PIECE_PX pixels. A piece has one colour: the mean of the
+ * A strip is cut into pieces of about PIECE_PX pixels. A piece has one color: the mean of the
  * shading model over the visible half of the wall, at normals in the middle of SHADED parts of
  * equal width. The light visibility of a piece is that of the point of its wall that faces the
  * light. The point that faces the viewer would not do: where the light comes from behind, the
@@ -424,7 +424,7 @@ done:
     return status;
 }
 
-/* ---- colours --------------------------------------------------------------------------------- */
+/* ---- colors --------------------------------------------------------------------------------- */
 
 /* Sets the visibility of each light at a piece; below 0 of lights that cast no shadows. */
 static void find_parts(const ThinVessels *thin, const View *view, size_t piece,
@@ -436,7 +436,7 @@ static void find_parts(const ThinVessels *thin, const View *view, size_t piece,
                                              : -1;
 }
 
-/* The mean colour of the visible half of a piece's wall. */
+/* The mean color of the visible half of a piece's wall. */
 static Rgb wall_color(const Drawing *drawing, const ThinVessels *thin, const ThinWall *wall,
                       size_t piece)
 {

@@ -13,7 +13,7 @@
 typedef struct ThinVessels {
     const Geometry *whole;  /* borrowed */
     Camera camera;          /* a copy of the caller's camera */
-    ThinLayer layer;        /* has no colours before thinvessels_color */
+    ThinLayer layer;        /* has no colors before thinvessels_color */
     uint32_t *piece_strips; /* per piece: index of its strip; owned */
     OffPixelPoints lights;  /* shading points of the pieces; no lights before offpixel_init */
     float *open;            /* per piece: ambient visibility, 0 to 1; owned. NULL: all are 1. */
@@ -41,14 +41,14 @@ void thinvessels_release(ThinVessels *thin);
 MUST_CHECK Status thinvessels_find_open(const Drawing *drawing, const OccluderSet *beams,
                                         ThinVessels *thin, Err *err);
 
-/* Sets the colours of pieces whose strips may touch the drawing's band. Uses thin->lights and
+/* Sets the colors of pieces whose strips may touch the drawing's band. Uses thin->lights and
  * thin->open as they are now. */
 void thinvessels_color(const Drawing *drawing, const ThinVessels *thin);
 
 /* Points thin->lights to the shading points of the pieces; it has no lights yet. */
 void thinvessels_place(ThinVessels *thin);
 
-/* Draws the vessels over the colours of a frame that has depths along the rays. The frame has the
+/* Draws the vessels over the colors of a frame that has depths along the rays. The frame has the
  * drawing's band, one sample per pixel. Errors: STATUS_MEMORY. */
 MUST_CHECK Status thinvessels_draw(const Drawing *drawing, const ThinVessels *thin, Frame *frame,
                                    Err *err);

@@ -36,7 +36,7 @@ static bool needs_places(const View *view)
     return needs;
 }
 
-/* A surface of one colour, seen along the view. */
+/* A surface of one color, seen along the view. */
 static void begin_surface(Rgb color, TileSurface *surface)
 {
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
@@ -138,7 +138,7 @@ Status canvas_choose(Canvas *canvas, Err *err)
                              &canvas->frame->color, canvas->workers, err);
 }
 
-/* ---- colours --------------------------------------------------------------------------------- */
+/* ---- colors --------------------------------------------------------------------------------- */
 
 /* The number of the segment that a hit is on. */
 static uint32_t segment_of(const Canvas *canvas, const TileHits *hits, int sample)
@@ -277,7 +277,7 @@ void canvas_trace_ground(const Canvas *canvas, TracedTile *seen, TileHits *hits)
         seen->hits = hits;
 }
 
-/* Gives the samples that see the ground its colours. */
+/* Gives the samples that see the ground its colors. */
 static void shade_ground(const Canvas *canvas, const TracedTile *seen,
                          const uint8_t (*shadowed)[TILE_SAMPLES], CanvasWorker *own)
 {

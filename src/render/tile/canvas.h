@@ -27,16 +27,16 @@ typedef struct Canvas {
     Frame *frame;           /* borrowed */
     Viewpoint eye;
     const TileKernels *kernels;
-    bool needs_places; /* shading reads TileHits.z, because light, visibility or colours depend on
+    bool needs_places; /* shading reads TileHits.z, because light, visibility or colors depend on
                         * the position of the hit */
     bool wants_color, wants_geometry;
-    bool wholly_colored; /* the engine also sets the colours of samples without a hit; false at
+    bool wholly_colored; /* the engine also sets the colors of samples without a hit; false at
                           * first */
     TileLook look, ground_look;
     Resampling more;   /* owned, like all members below */
     SrgbCodes codes;   /* if the frame has codes */
     float *background; /* a row of the picture */
-    float *blank;      /* colours of pixels in tiles that are not drawn: a row of the picture */
+    float *blank;      /* colors of pixels in tiles that are not drawn: a row of the picture */
     uint8_t *background_codes;
     CanvasWorker *each;
     int workers;
@@ -62,7 +62,7 @@ typedef Status CanvasRows(void *context, int first, int rows, int worker, Err *e
 MUST_CHECK Status canvas_pass(Canvas *canvas, bool further, int at_once, CanvasRows *draw,
                               void *context, Err *err);
 
-/* Selects the pixels that get further samples, from the colours of the centre samples. Errors:
+/* Selects the pixels that get further samples, from the colors of the centre samples. Errors:
  * STATUS_MEMORY. */
 MUST_CHECK Status canvas_choose(Canvas *canvas, Err *err);
 
@@ -84,29 +84,29 @@ void canvas_trace_ground(const Canvas *canvas, TracedTile *seen, TileHits *hits)
  * shadowed  shadowed[light][sample] is 1 if the sample is in the shadow of the light; NULL: no
  * sample is in shadow.
  *
- * Returns the colours, in the memory of the worker; they are valid until its next call. */
+ * Returns the colors, in the memory of the worker; they are valid until its next call. */
 float (*canvas_shade(const Canvas *canvas, int worker, const TracedTile *seen,
                      const uint8_t (*shadowed)[TILE_SAMPLES]))[TILE_SAMPLES];
 
-/* Draws thin vessels over the colours of a tile, whose hits must have depths.
+/* Draws thin vessels over the colors of a tile, whose hits must have depths.
  *
  * cells    sample (i, j) of the tile has the cell (i * step + x, j * step + y), where step is the
  *          number of cells per sample.
- * color    the result of canvas_shade; NULL: all samples have the background's colour.
+ * color    the result of canvas_shade; NULL: all samples have the background's color.
  *
- * Returns the colours in the memory of the worker, or `color` if no thin vessel touches the tile.
+ * Returns the colors in the memory of the worker, or `color` if no thin vessel touches the tile.
  */
 float (*canvas_cover(const Canvas *canvas, int worker, const TracedTile *seen, ThinCells *cells,
                      int x, int y, float (*color)[TILE_SAMPLES]))[TILE_SAMPLES];
 
 /* Stores a tile of centre samples in the planes of the frame. Tiles must come row by row, from left
- * to right. `color` NULL: all samples have the background's colour. */
+ * to right. `color` NULL: all samples have the background's color. */
 void canvas_draw(const Canvas *canvas, int worker, const TracedTile *seen,
                  float color[3][TILE_SAMPLES]);
 
-/* Copies the first `columns` and `rows` of a tile's colours to rows of pixels; `stride` is the
+/* Copies the first `columns` and `rows` of a tile's colors to rows of pixels; `stride` is the
  * number of floats from one row to the next. `color` NULL: all samples have the background's
- * colour. */
+ * color. */
 void canvas_store(const Canvas *canvas, int columns, int rows, float color[3][TILE_SAMPLES],
                   float *pixels, size_t stride);
 

@@ -1,4 +1,4 @@
-/* shade.c's model for the samples of a tile, their pixels, and the codes of the colours, several at
+/* shade.c's model for the samples of a tile, their pixels, and the codes of the colors, several at
  * once and in single precision: included by each source that compiles it for its lanes,
  * LANES_NAME(name) making the names of its functions. */
 #include "render/tile/lanes.h"

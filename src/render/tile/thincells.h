@@ -17,7 +17,7 @@ typedef struct ThinStrip {
     uint32_t vessel;  /* index of the primitive, or of the segment of a field */
     uint32_t run;     /* equal for vessels that follow one another end to end */
     uint32_t first_piece,
-        n_pieces; /* pieces of equal length on the picture, each with one colour */
+        n_pieces; /* pieces of equal length on the picture, each with one color */
 } ThinStrip;
 
 /* The thin vessels of a view. */
@@ -25,7 +25,7 @@ typedef struct ThinLayer {
     bool *is_thin; /* per vessel: drawn by strips; engines leave it out. All arrays are owned. */
     ThinStrip *strips; /* in ascending order of vessels */
     size_t n, n_pieces;
-    float (*colors)[3]; /* per piece: linear colour */
+    float (*colors)[3]; /* per piece: linear color */
     IndexLists
         tiles; /* per tile of the picture, row by row: the strips that may touch it, ascending */
     int tile_columns, tile_rows;
@@ -36,7 +36,7 @@ typedef struct ThinLayer {
 typedef struct ThinFragment {
     uint32_t run, next; /* next: index + 1 of the cell's next fragment; 0: last */
     float area, z;      /* sums over lines of area, and of depth times area */
-    float color[3];     /* sum of colour times area */
+    float color[3];     /* sum of color times area */
 } ThinFragment;
 
 /* A fragment in the order of depth. */
@@ -93,7 +93,7 @@ static inline bool thincells_are_empty(const ThinCells *cells, int column, int r
     return cells->first[row * cells->block.columns + column] == 0;
 }
 
-/* Draws the fragments of cell (column, row) of the block over the linear colour of a sample, whose
+/* Draws the fragments of cell (column, row) of the block over the linear color of a sample, whose
  * hit has the depth z along the view, mm. Fragments behind z are hidden. Runs are drawn from front
  * to back. Each is taken to cover a random part of the cell: transparencies multiply. */
 void thincells_over(ThinCells *cells, int column, int row, float z, float color[3]);

@@ -62,15 +62,15 @@ typedef struct ProjectedPoints {
 } ProjectedPoints;
 
 typedef struct TileKernels {
-    /* Computes the colours of hits. They agree with shade() to 2e-5 of the light's colour. Sets the
-     * colours of other samples in the same block to undefined values. */
+    /* Computes the colors of hits. They agree with shade() to 2e-5 of the light's color. Sets the
+     * colors of other samples in the same block to undefined values. */
     void (*shade)(const TileLook *look, const TileSurface *surface, float color[3][TILE_SAMPLES]);
-    /* Sets the colour of the samples whose TileState is TILE_MISS to the background. */
+    /* Sets the color of the samples whose TileState is TILE_MISS to the background. */
     void (*clear)(const uint8_t *state, const float background[3], float color[3][TILE_SAMPLES]);
-    /* Copies the colours of a whole tile to TILE_SIDE rows of pixels; `stride` is the number of
+    /* Copies the colors of a whole tile to TILE_SIDE rows of pixels; `stride` is the number of
      * floats from one row to the next. */
     void (*paint)(float color[3][TILE_SAMPLES], float *pixels, size_t stride);
-    /* Encodes the colours of a whole tile as 8-bit sRGB, in TILE_SIDE rows of pixels; `stride` is
+    /* Encodes the colors of a whole tile as 8-bit sRGB, in TILE_SIDE rows of pixels; `stride` is
      * the number of bytes from one row to the next. Samples whose TileState is TILE_MISS get the
      * background; `state` NULL: no sample is. NaN is encoded as 0. */
     void (*encode)(const SrgbCodes *codes, float color[3][TILE_SAMPLES], const uint8_t *state,

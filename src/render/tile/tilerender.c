@@ -3,7 +3,7 @@
  *
  * The first pass draws the centres of all pixels. The further samples of antialiasing come in one
  * of two ways, whichever suits the engine. On a fine grid, N times as fine in each direction, tiles
- * have shorter lists. The colours of a row of pixel tiles go to a buffer, from which each pixel
+ * have shorter lists. The colors of a row of pixel tiles go to a buffer, from which each pixel
  * adds up its own. Shifted passes draw the tiles of the pixels again, N x N times, and add to one
  * sum per pixel while the list of the tile is in the cache. Both sum in float in POV-Ray's order.
  * If a threshold chooses the pixels, the centres of all must be known first, so shifted passes need
@@ -158,7 +158,7 @@ static Status find_shadows(const TilePicture *picture, int worker, Err *err)
     return STATUS_OK;
 }
 
-/* ---- colours --------------------------------------------------------------------------------- */
+/* ---- colors --------------------------------------------------------------------------------- */
 
 /* Returns the ray of a sample. */
 static Ray sample_ray(const TilePicture *picture, const TracedTile *seen, int sample)
@@ -180,7 +180,7 @@ static Surfel surfel_of(const TilePicture *picture, const TracedTile *seen, int 
                     .segment = geometry->segments[seen->hits->segment[sample]].segment};
 }
 
-/* Colours each sample on its own, with the effects that the kernel does not know. */
+/* Colors each sample on its own, with the effects that the kernel does not know. */
 static void color_samples(const TilePicture *picture, int worker, const TracedTile *seen,
                           float color[3][TILE_SAMPLES])
 {
@@ -200,7 +200,7 @@ static void color_samples(const TilePicture *picture, int worker, const TracedTi
     }
 }
 
-/* Returns the colours of a tile with its thin vessels, cells (x, y) of each sample's block of
+/* Returns the colors of a tile with its thin vessels, cells (x, y) of each sample's block of
  * `cells`; NULL: those of the background. */
 static float (*color_tile(const TilePicture *picture, int worker, const BatchTile *tile,
                           ThinCells *cells, int x, int y))[TILE_SAMPLES]
@@ -291,7 +291,7 @@ static Status draw_shifted(const TilePicture *picture, int worker, Err *err)
 
 /* ---- the fine grid --------------------------------------------------------------------------- */
 
-/* Keeps the colours of a tile of the fine grid until those of a row of pixel tiles are complete. */
+/* Keeps the colors of a tile of the fine grid until those of a row of pixel tiles are complete. */
 static void keep_fine(const TilePicture *picture, const TileBatch *batch, const TracedTile *seen,
                       float (*color)[TILE_SAMPLES])
 {

@@ -1,10 +1,10 @@
-/* The x-ray view: colours by the length of vessel along each ray. */
+/* The x-ray view: colors by the length of vessel along each ray. */
 #ifndef CORCAST_RENDER_XRAY_H
 #define CORCAST_RENDER_XRAY_H
 
 #include "render/engine.h"
 
-/* Draws colours only, one sample per pixel. */
+/* Draws colors only, one sample per pixel. */
 extern const Engine xray_engine;
 
 /* The part of a ray inside a vessel, mm from the ray's origin. */

@@ -355,7 +355,7 @@ static Status check_header(const TubeHeader *header, bool gives_radius, Err *err
 }
 
 /* Without PointDim, the numbers of a point are in the order in which MetaIO writes them. What
- * follows the radius, as a colour, has no name. Packed points have a size that only PointDim
+ * follows the radius, as a color, has no name. Packed points have a size that only PointDim
  * states. */
 static Status assume_point_dim(TubeReader *reader, Err *err)
 {

@@ -204,14 +204,14 @@ static Status read_scalars(LegacyReader *reader, Err *err)
     return read_array(reader, name, type, (size_t)components, reader->n, err);
 }
 
-/* Passes over "LOOKUP_TABLE name n" and its colours, which mean nothing here. */
+/* Passes over "LOOKUP_TABLE name n" and its colors, which mean nothing here. */
 static Status skip_table(LegacyReader *reader, Err *err)
 {
     char word[CURSOR_WORD];
     size_t n = 0;
     double *colors = NULL;
     cursor_word(&reader->cursor, word);
-    TRY(read_count(reader, "colours", &n, err));
+    TRY(read_count(reader, "colors", &n, err));
     TRY(read_numbers(reader, VTK_UINT8, "LOOKUP_TABLE", 4 * n, &colors, err));
     free(colors);
     return STATUS_OK;
