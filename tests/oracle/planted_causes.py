@@ -221,7 +221,7 @@ def main():
                 # Two sentences are true of other faults, too: that no code is off by more than 1, and that B is A
                 # under some curve of tones, which a gain that clips and a gamma are.
                 rounded = kind == ROUNDING and np.abs(planted_codes - codes).max() <= 1
-                curved = kind == CURVE and right in (GAIN, GAMMA)
+                curved = kind == CURVE and right in (TONE, GAMMA)
                 if kind not in (right, NONE) and not rounded and not curved:
                     wrong.append(f"{path}: {planted}: {cause}")
     columns = sorted({kind for _, kind in named}, key=lambda kind: (kind == NONE, kind))
