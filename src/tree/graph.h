@@ -44,16 +44,16 @@ typedef struct Graph {
     const char *line_record;  /* likewise "cell" */
     const ReadOptions *options;
     TreeReading *reading;
-    TreeBuilder *tree; /* a reader that finds a tree in its file, with ids and parents, in mm, may
-                        * hand its nodes and meta over here, and leave the graph empty */
-    TreeMeta meta;     /* of the tree, for the reader to fill */
-    LengthUnit unit;   /* that is custom in the format, for the reader to set; mm */
-    bool unit_said;    /* the file itself says the unit; for the reader to set */
-    bool is_named;     /* lines name their points, so that points at one place may be different ones
-                        * where they would close a loop; for the reader to set */
-    bool is_tree;      /* the file was made of a tree, and each line is directed and leads from a
-                        * parent to its child, and each point has its own id but for those that are
-                        * joined: nothing is merged or removed; for the reader to set */
+    TreeBuilder *tree;   /* a reader that finds a tree in its file, with ids and parents, in mm, may
+                          * hand its nodes and meta over here, and leave the graph empty */
+    TreeMeta meta;       /* of the tree, for the reader to fill */
+    LengthUnit unit;     /* that is custom in the format, for the reader to set; mm */
+    bool unit_is_stated; /* the file itself says the unit; for the reader to set */
+    bool is_named; /* lines name their points, so that points at one place may be different ones
+                    * where they would close a loop; for the reader to set */
+    bool is_tree;  /* the file was made of a tree, and each line is directed and leads from a
+                    * parent to its child, and each point has its own id but for those that are
+                    * joined: nothing is merged or removed; for the reader to set */
     GraphPoint *point;
     size_t n_points, points_capacity;
     GraphLine *line;

@@ -385,14 +385,14 @@ static Status choose_roots(Building *building, LinkCandidate *best, Err *err)
     static const RootReason reasons[] = {[RANK_ANY] = ROOT_THICKEST,
                                          [RANK_END] = ROOT_THICKEST,
                                          [RANK_SOURCE] = ROOT_DIRECTION,
-                                         [RANK_INLET] = ROOT_SAID};
+                                         [RANK_INLET] = ROOT_STATED};
     for (uint32_t i = 0; i < graph->n_points; i++) {
         if (!best[i].point)
             continue;
         TRY(mem_reserve(&reading->root, &reading->roots_capacity, reading->n_roots + 1,
                         sizeof *reading->root, "roots", err));
         reading->root[reading->n_roots++] = (ReadRoot){
-            (int32_t)best[i].point, graph->is_tree ? ROOT_SAID : reasons[best[i].rank], 0};
+            (int32_t)best[i].point, graph->is_tree ? ROOT_STATED : reasons[best[i].rank], 0};
     }
     return STATUS_OK;
 }
@@ -731,9 +731,10 @@ static void describe(const Graph *graph, const ReadOptions *options, TreeReading
     reading->network.points = graph->n_points;
     reading->network.lines = graph->n_lines;
     reading->unit = options->has_unit ? options->unit : graph->unit;
-    reading->unit_said = options->has_unit || graph->unit_said;
+    reading->unit_is_stated = options->has_unit || graph->unit_is_stated;
     reading->voxels = options->has_voxel_size;
-    reading->looks_like_voxels = !reading->voxels && !graph->unit_said && looks_like_voxels(graph);
+    reading->looks_like_voxels =
+        !reading->voxels && !graph->unit_is_stated && looks_like_voxels(graph);
 }
 
 static Status build(Building *building, TreeBuilder *builder, Err *err)
