@@ -4,19 +4,19 @@
 #include "tree/tree.h"
 #include <stdlib.h>
 
-void tree_part_flow(Tree *tree, double *share)
+void tree_set_flow_shares(Tree *tree, double *share)
 {
     free(tree->flow_share);
     tree->flow_share = share;
     tree->meta.known[META_TERMINAL_FLOW] = false;
 }
 
-void tree_part_flow_equally(Tree *tree)
+void tree_set_flow_equal(Tree *tree)
 {
-    tree_part_flow(tree, NULL);
+    tree_set_flow_shares(tree, NULL);
 }
 
-Status tree_part_flow_by_radius(Tree *tree, double gamma, Err *err)
+Status tree_set_flow_by_radius(Tree *tree, double gamma, Err *err)
 {
     int32_t *children = NULL;
     double *share = NULL, largest = 0;
@@ -30,7 +30,7 @@ Status tree_part_flow_by_radius(Tree *tree, double gamma, Err *err)
         TRY_GOTO(err_set(err, STATUS_INPUT, "no terminal has a radius above 0 to part flow by"));
     for (size_t i = 0; i < tree->n; i++)
         share[i] = share[i] > 0 ? elementary_pow(share[i] / largest, gamma) : 0;
-    tree_part_flow(tree, share);
+    tree_set_flow_shares(tree, share);
     share = NULL;
 done:
     free(share);

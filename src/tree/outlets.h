@@ -8,11 +8,11 @@
 typedef struct Tree Tree;
 
 /* The same for all. */
-void tree_part_flow_equally(Tree *tree);
+void tree_set_flow_equal(Tree *tree);
 /* As their radii to the power of gamma, as Murray's law has it all over a tree that keeps to it.
  * STATUS_INPUT, naming no file, when no terminal has a radius. */
-MUST_CHECK Status tree_part_flow_by_radius(Tree *tree, double gamma, Err *err);
+MUST_CHECK Status tree_set_flow_by_radius(Tree *tree, double gamma, Err *err);
 /* As share[n] of the nodes (owned from then on), each finite and not negative. */
-void tree_part_flow(Tree *tree, double *share);
+void tree_set_flow_shares(Tree *tree, double *share);
 
 #endif

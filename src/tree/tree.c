@@ -316,7 +316,7 @@ static void cut_ends(const Tree *tree, const int32_t *place, const double *way, 
     }
 }
 
-Status tree_grown(const Tree *tree, double part, Tree *out, Err *err)
+Status tree_proximal_part(const Tree *tree, double part, Tree *out, Err *err)
 {
     int32_t *place = NULL, n = 0;
     double *way = NULL;

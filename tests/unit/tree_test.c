@@ -431,17 +431,17 @@ static void growth_cuts_vessels_at_the_same_way_from_their_roots(void **state)
         tree.position[i] = vec3(x[i], y[i], 0.5);
         tree.radius_mm[i] = 1.375;
     }
-    must(tree_grown(&tree, 0.5, &part, &err), &err); /* 3.5 mm */
+    must(tree_proximal_part(&tree, 0.5, &part, &err), &err); /* 3.5 mm */
     must(tree_check(&part, &err), &err);
     assert_int_equal(part.n, 6);
     assert_true(part.position[2].x == 3.5 && part.position[3].y == 1);
     assert_true(part.position[5].x == 10.75);
     tree_release(&part);
-    must(tree_grown(&tree, 0.25, &part, &err), &err);
+    must(tree_proximal_part(&tree, 0.25, &part, &err), &err);
     assert_int_equal(part.n, 4);
     assert_true(part.position[1].x == 1.75 && part.id[3] == 53 && part.parent[3] == 2);
     tree_release(&part);
-    must(tree_grown(&tree, 1, &part, &err), &err);
+    must(tree_proximal_part(&tree, 1, &part, &err), &err);
     assert_memory_equal(part.position, tree.position, 6 * sizeof *part.position);
     tree_release(&part);
     tree_release(&tree);
