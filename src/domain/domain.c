@@ -244,14 +244,14 @@ bool domain_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
     return ops->holds_segment(domain, a, b);
 }
 
-bool domain_settles(const Domain *domain)
+bool domain_has_projection(const Domain *domain)
 {
-    return domain->ops->settle != NULL;
+    return domain->ops->project != NULL;
 }
 
-Vec3 domain_settle(const Domain *domain, Vec3 point)
+Vec3 domain_project(const Domain *domain, Vec3 point)
 {
-    Vec3 own = domain->ops->settle(domain, to_own(domain, point));
+    Vec3 own = domain->ops->project(domain, to_own(domain, point));
     return domain->is_placed ? vec3_add(own, domain->at) : own;
 }
 

@@ -117,9 +117,9 @@ bool domain_inside(const Domain *domain, Vec3 point, double tolerance_mm);
 bool domain_holds_segment(const Domain *domain, Vec3 a, Vec3 b);
 
 /* Returns true if bifurcations must be moved onto the domain, because the domain is a surface. */
-bool domain_settles(const Domain *domain);
+bool domain_has_projection(const Domain *domain);
 /* Returns the point of the surface nearest to `point`, mm, which must be in the domain. */
-Vec3 domain_settle(const Domain *domain, Vec3 point);
+Vec3 domain_project(const Domain *domain, Vec3 point);
 
 /* Returns the distance of a point from the domain, mm, accurate to a thousandth of the distance: 0
  * inside, and `most` if the distance is larger than `most`. */

@@ -14,7 +14,7 @@
 static const double half_share = 0.005;
 static const double least_step = 1.0 / 64;
 /* How often a point is moved towards the surface. */
-enum { SETTLING = 4 };
+enum { PROJECTION_STEPS = 4 };
 
 struct Surface {
     double half;  /* of the layer's thickness, mm */
@@ -78,10 +78,10 @@ static bool surface_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
     return clearance_of(domain, b, least) >= 0;
 }
 
-static Vec3 surface_settle(const Domain *domain, Vec3 point)
+static Vec3 surface_project(const Domain *domain, Vec3 point)
 {
     double reach = fabs(domain->size[0]) + 4 * domain->surface->half;
-    for (int k = 0; k < SETTLING; k++) {
+    for (int k = 0; k < PROJECTION_STEPS; k++) {
         uint32_t nearest;
         double depth = depth_of(domain, point, reach, &nearest);
         if (!isfinite(depth))
@@ -170,7 +170,7 @@ static Status build(Domain *domain, Err *err)
                        offset, thinnest);
     domain->volume = area * 2 * surface->half;
     domain->own_bounds = bounds;
-    domain->inlet = surface_settle(domain, domain->inlet);
+    domain->inlet = surface_project(domain, domain->inlet);
     domain->bounds = box_padded(bounds, surface->half + fmax(-offset, 0));
     return STATUS_OK;
 }
@@ -202,6 +202,6 @@ const DomainOps surface_ops = {
     .inside = surface_inside,
     .holds_segment = surface_holds_segment,
     .sample = surface_sample,
-    .settle = surface_settle,
+    .project = surface_project,
     .release = surface_release,
 };

@@ -147,7 +147,7 @@ bool connection_optimise(const Site *site, Connection *connection)
     return true;
 }
 
-bool connection_settle(const Site *site, Connection *connection)
+bool connection_project(const Site *site, Connection *connection)
 {
     int32_t host = connection->segment;
     if (network_is_given(&site->net, host))
@@ -155,7 +155,7 @@ bool connection_settle(const Site *site, Connection *connection)
     Bifurcation problem = bifurcation_of(site, host, connection->terminal);
     const Law law = network_law(&site->net, host);
     BifurcationState state;
-    bifurcation_at(&law, &problem, domain_settle(site->domain, connection->bifurcation), &state);
+    bifurcation_at(&law, &problem, domain_project(site->domain, connection->bifurcation), &state);
     take_state(&state, connection);
     return isfinite(state.price) && bifurcation_is_long_enough(&problem, &state);
 }

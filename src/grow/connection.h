@@ -38,7 +38,7 @@ bool connection_optimise(const Site *site, Connection *connection);
 /* Moves the bifurcation of an optimised connection onto the domain, which is a surface. A
  * bifurcation on a given segment stays. Returns false if a segment then is shorter than the rules
  * allow. */
-bool connection_settle(const Site *site, Connection *connection);
+bool connection_project(const Site *site, Connection *connection);
 
 /* Returns true if the three segments of an optimised connection are in the domain. In a convex
  * domain they are if the bifurcation is. The two parts of a given segment may be anywhere. */

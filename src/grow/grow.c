@@ -318,7 +318,7 @@ static Status start_trees(Growth *growth, Err *err)
         network_append(net, -1, params->inlet[k]);
     TRY(first_segments_add(&growth->site, &tosses, err));
     growth->tosses += tosses.count;
-    if (domain_settles(growth->site.domain)) /* where no straight vessel is longer */
+    if (domain_has_projection(growth->site.domain)) /* where no straight vessel is longer */
         growth->size = tosses.distance;
     set_toss_distance(growth, tosses.distance);
     return STATUS_OK;

@@ -78,14 +78,14 @@ static PlanState choose(const Plan *plan, Planner *planner, Offers offers, Conne
 {
     const Site *site = plan->common->site;
     Connection *connection = planner->connection;
-    bool inside = false, outside = false, settles = domain_settles(site->domain);
+    bool inside = false, outside = false, settles = domain_has_projection(site->domain);
     for (int count = offers.count; count > 0; count--) {
         int best = cheapest(connection, count);
         *out = connection[best];
         connection[best] = connection[count - 1];
         if (!connection_optimise(site, out))
             continue;
-        bool is_on_surface = !settles || connection_settle(site, out);
+        bool is_on_surface = !settles || connection_project(site, out);
         if (!is_on_surface || !connection_is_inside(site, out)) {
             outside = true;
             continue;

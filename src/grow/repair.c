@@ -316,8 +316,9 @@ static Status relax(const Repair *repair, int32_t node, Err *err)
     Vec3 step = vec3_sub(goal, from);
     for (int k = 0; k < TRIES; k++, step = vec3_scale(step, 0.5)) {
         Vec3 place = vec3_add(from, step);
-        if (domain_settles(repair->site->domain) && domain_inside(repair->site->domain, place, 0))
-            place = domain_settle(repair->site->domain, place);
+        if (domain_has_projection(repair->site->domain) &&
+            domain_inside(repair->site->domain, place, 0))
+            place = domain_project(repair->site->domain, place);
         net->position[node] = place;
         bool is_allowed =
             is_inside(repair, node) && !(fault_at(repair, node, relaxed_spare, DBL_MIN) > 0);
