@@ -98,9 +98,9 @@ done:
     return status;
 }
 
-Status field_diameter_strahler(const Tree *tree, const TreeMeta *said, double *value, Err *err)
+Status field_diameter_strahler(const Tree *tree, const TreeMeta *overrides, double *value, Err *err)
 {
-    (void)said;
+    (void)overrides;
     Vessels vessels;
     TRY(vessels_init(&vessels, tree, err));
     int32_t *order = NULL;

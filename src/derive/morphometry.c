@@ -22,7 +22,7 @@ const struct MorphometryName morphometry_names[MORPHOMETRY_MEASURES] = {
     [COMPARED_LENGTH_RATIO] = {"ratio of lengths", ""},
 };
 
-enum { ROW_NUMBERS = 8 + DAUGHTERS_SAID, RATIO_NUMBERS = 3 };
+enum { ROW_NUMBERS = 8 + DAUGHTER_ORDERS, RATIO_NUMBERS = 3 };
 
 void morphometry_release(Morphometry *table)
 {
@@ -126,7 +126,7 @@ static MorphometryRow row_of_tree(const TreeStatistics *statistics, size_t k)
                           .length_mm = own->length_mm,
                           .elements = (double)own->elements,
                           .vessels_per_element.mean = (double)own->vessels / (double)own->elements};
-    for (size_t less = 0; less < DAUGHTERS_SAID; less++)
+    for (size_t less = 0; less < DAUGHTER_ORDERS; less++)
         row.daughters[less] = less <= k ? statistics->daughters[k * n + k - less] : (double)NAN;
     return row;
 }

@@ -5,9 +5,9 @@
 
 #include <stdlib.h>
 
-Status field_level(const Tree *tree, const TreeMeta *said, double *value, Err *err)
+Status field_level(const Tree *tree, const TreeMeta *overrides, double *value, Err *err)
 {
-    (void)said;
+    (void)overrides;
     int32_t *children = NULL;
     TRY(tree_child_counts(tree, &children, err));
     for (size_t i = 0; i < tree->n; i++) {
@@ -20,9 +20,9 @@ Status field_level(const Tree *tree, const TreeMeta *said, double *value, Err *e
 
 /* Backwards, all children of a node come before it: until then value[i] holds the largest order
  * among them, and alike[i] how many have it. */
-Status field_strahler(const Tree *tree, const TreeMeta *said, double *value, Err *err)
+Status field_strahler(const Tree *tree, const TreeMeta *overrides, double *value, Err *err)
 {
-    (void)said;
+    (void)overrides;
     int32_t *alike = NULL;
     TRY(mem_calloc(&alike, tree->n, sizeof *alike, "counts of equal orders", err));
     for (size_t i = tree->n; i-- > 0;) {
@@ -42,18 +42,18 @@ Status field_strahler(const Tree *tree, const TreeMeta *said, double *value, Err
     return STATUS_OK;
 }
 
-Status field_tree(const Tree *tree, const TreeMeta *said, double *value, Err *err)
+Status field_tree(const Tree *tree, const TreeMeta *overrides, double *value, Err *err)
 {
-    (void)said, (void)err;
+    (void)overrides, (void)err;
     double trees = 0;
     for (size_t i = 0; i < tree->n; i++)
         value[i] = tree_is_segment(tree, i) ? value[tree->parent[i]] : ++trees;
     return STATUS_OK;
 }
 
-Status field_branch(const Tree *tree, const TreeMeta *said, double *value, Err *err)
+Status field_branch(const Tree *tree, const TreeMeta *overrides, double *value, Err *err)
 {
-    (void)said;
+    (void)overrides;
     enum { NONE = 0 }; /* index 0 is a root, and no node's daughter */
     int32_t *thickest = NULL;
     TRY(mem_calloc(&thickest, tree->n, sizeof *thickest, "thickest daughters", err));

@@ -10,12 +10,12 @@ typedef struct Box {
 } Box;
 
 /* fmin and fmax of numbers, as one instruction each. */
-static inline double box_least(double a, double b)
+static inline double box_min(double a, double b)
 {
     return a < b ? a : b;
 }
 
-static inline double box_greatest(double a, double b)
+static inline double box_max(double a, double b)
 {
     return a > b ? a : b;
 }
@@ -34,21 +34,20 @@ static inline bool box_is_empty(Box box)
 /* The smallest box that holds `box` and the ball of `radius` >= 0 about `center`. */
 static inline Box box_with_ball(Box box, Vec3 center, double radius)
 {
-    box.low.x = box_least(box.low.x, center.x - radius);
-    box.low.y = box_least(box.low.y, center.y - radius);
-    box.low.z = box_least(box.low.z, center.z - radius);
-    box.high.x = box_greatest(box.high.x, center.x + radius);
-    box.high.y = box_greatest(box.high.y, center.y + radius);
-    box.high.z = box_greatest(box.high.z, center.z + radius);
+    box.low.x = box_min(box.low.x, center.x - radius);
+    box.low.y = box_min(box.low.y, center.y - radius);
+    box.low.z = box_min(box.low.z, center.z - radius);
+    box.high.x = box_max(box.high.x, center.x + radius);
+    box.high.y = box_max(box.high.y, center.y + radius);
+    box.high.z = box_max(box.high.z, center.z + radius);
     return box;
 }
 
 static inline Box box_union(Box a, Box b)
 {
     return (Box){
-        {box_least(a.low.x, b.low.x), box_least(a.low.y, b.low.y), box_least(a.low.z, b.low.z)},
-        {box_greatest(a.high.x, b.high.x), box_greatest(a.high.y, b.high.y),
-         box_greatest(a.high.z, b.high.z)}};
+        {box_min(a.low.x, b.low.x), box_min(a.low.y, b.low.y), box_min(a.low.z, b.low.z)},
+        {box_max(a.high.x, b.high.x), box_max(a.high.y, b.high.y), box_max(a.high.z, b.high.z)}};
 }
 
 /* The box with all its faces moved outwards by `by`. */
