@@ -1,4 +1,5 @@
-/* Shares are relative, so that radii are taken over the largest: no power of them overflows. */
+/* Shares are relative. Radii are divided by the largest radius first, so that no power of
+ * them overflows. */
 #include "tree/outlets.h"
 
 #include "tree/tree.h"

@@ -1,6 +1,6 @@
-/* What a tree shows is measured on the tree that was built, for every format alike. A unit is
- * believed when the median radius, so read, is that of a vessel: the one that the tree was read
- * with first, then the commoner before the rarer. */
+/* The report is measured on the tree that was built, in the same manner for all formats. A unit is
+ * plausible if the median radius, read in that unit, is a vessel's. The unit with which the tree
+ * was read is tried first; then the other units, more common ones before rarer ones. */
 #include "tree/reading.h"
 
 #include "tree/tree.h"

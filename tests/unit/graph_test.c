@@ -331,7 +331,8 @@ static void refuses_what_no_tree_can_be_made_of(void **state)
     put_point(&net, 1, 2, 3, 4);
     put_point(&net, 1, 2, 3, 4);
     put_line(&net, 0, 1, NONE);
-    refused(&net, "net: all lines begin and end at one place");
+    refused(&net, "net: each line has both ends at the same position; a tree needs a line that is "
+                  "longer than 0");
     const GraphPoint bad = {.position = {0, 0, 0}, .radius = -0.5};
     assert_int_equal(graph_point(&net.graph, &bad, &net.err), STATUS_INPUT);
     assert_string_equal(net.err.text, "the radius is '-0.5'; it must be a finite number that is "
