@@ -1,7 +1,9 @@
-/* Nodes of the tree become nodes of the network one by one, in order, and keep their index in the
- * tree (origin), because network_reorder renumbers them. A vessel that the tree makes up of several
- * segments shows by its nodes of one child; its pieces may be much shorter than wide, as in
- * measured trees, so growth does not hold them to its own rules. */
+/* The nodes of the tree become nodes of the network one by one, in order. Each remembers its index
+ * in the tree (origin), because network_reorder renumbers the nodes.
+ *
+ * A vessel that consists of several segments is recognised by its nodes with one child. Its
+ * pieces may be much shorter than wide, as in measured trees, so growth does not apply its own
+ * rules to them. */
 #include "grow/continue_tree.h"
 
 #include <stdlib.h>
@@ -44,7 +46,8 @@ static Status check_node(const Tree *from, size_t i, int32_t children, const Dom
     return STATUS_OK;
 }
 
-/* How far a point is outside the bounds, along the axis along which it is farthest. */
+/* Returns the distance, mm, of a point from the box, along the axis along which it is farthest; 0
+ * or less inside. */
 static double beyond(Box box, Vec3 point)
 {
     Vec3 below = vec3_sub(box.low, point), above = vec3_sub(point, box.high);
@@ -70,7 +73,7 @@ size_t continue_outside(const Tree *from, const Domain *domain, size_t *farthest
     return count;
 }
 
-/* Whether a part of the tree at least is in the domain. */
+/* Checks that at least a part of the tree is in the domain. */
 static Status check_place(const Tree *from, const Domain *domain, Err *err)
 {
     size_t farthest = 0;
@@ -115,7 +118,7 @@ done:
     return status;
 }
 
-/* Whether the vessel that the segment i is part of has other segments. */
+/* Returns true if the vessel that the segment i is part of has other segments. */
 static bool is_piece(const Network *net, int32_t i)
 {
     const Segment *segment = &net->segment[i], *above = &net->segment[segment->parent];

@@ -1,12 +1,14 @@
-/* Radii are r = q g rho: rho is summed up from the terminals, g multiplied down from the root
- * [law.h]. Both sweeps only add and multiply positive numbers, so nothing cancels and every radius
- * is exact to a few units in the last place for any gamma: Murray's law holds by the definition of
- * P, and the daughters of a bifurcation see one pressure by that of g.
+/* Radii are r = q g rho: rho is summed from the terminals up to the root, and g is multiplied
+ * from the root down [law.h]. Both sweeps only add and multiply positive numbers. Nothing
+ * cancels, so every radius is exact to a few units in the last place for any gamma. Murray's law
+ * holds by the definition of P. The daughters of a bifurcation begin at the same pressure by the
+ * definition of g.
  *
- * Where viscosity or gamma depend on the radius, both and the radii are computed in turn until they
- * agree. A radius goes with the fourth root of the viscosity, which falls by far less than the
- * fourth power of the radius in all but the thinnest vessels, and gamma with its logarithm, so this
- * converges; where it does not, steps are shortened. */
+ * If viscosity or gamma depend on the radius, they and the radii are computed in turn until they
+ * agree. The iteration converges, because a radius depends only on the fourth root of the
+ * viscosity, the viscosity changes by far less than the fourth power of the radius in all except
+ * the thinnest vessels, and gamma is a function of the radius's logarithm. Where it does not
+ * converge, the steps are shortened. */
 #include "grow/finish.h"
 
 #include "grow/continue_tree.h"
@@ -63,8 +65,8 @@ static Status sweep_down(const Network *net, Tree *tree, Err *err)
 static const double agreement = 1e-13;
 enum { MAX_ROUNDS = 200 };
 
-/* Computes all radii, with the flows that the terminals' shares ask for and the viscosities and
- * exponents at these radii. `flow` has room for one a node. */
+/* Computes all radii, with the flows of the terminals' shares, and with the viscosities and
+ * exponents at these radii. `flow` is a workspace of one number per node. */
 static Status settle_radii(Network *net, const GrowParams *params, double *flow, Tree *tree,
                            Err *err)
 {
@@ -88,7 +90,7 @@ static Status settle_radii(Network *net, const GrowParams *params, double *flow,
                    net->terminals);
 }
 
-/* Whether the trunk that is kept leaves all that hangs on it some of the drop of pressure. */
+/* Checks that the kept trunk leaves a part of the pressure drop to all subtrees that leave it. */
 static Status check_trunk(const Network *net, const GrowParams *params, Err *err)
 {
     double *spent = NULL;

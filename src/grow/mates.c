@@ -1,4 +1,5 @@
-/* A point on the unit sphere is even in z and in the angle about it. */
+/* A uniformly distributed point on the unit sphere has a uniformly distributed z, and a uniformly
+ * distributed angle about the z axis. */
 #include "grow/mates.h"
 
 #include <assert.h>
@@ -27,7 +28,8 @@ Status mates_write(const Network *net, Tree *tree, Err *err)
     return status;
 }
 
-/* How far apart the ends of a pair have to be for its walls. */
+/* Returns the distance, mm, that the ends of a pair need so that the walls of its vessels keep
+ * the clearance. */
 static double needed(const GrowParams *params, const Tree *tree, TreePair pair)
 {
     return params->clearance_mm + tree->radius_mm[pair.node[0]] + tree->radius_mm[pair.node[1]];

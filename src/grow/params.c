@@ -1,5 +1,5 @@
-/* The parameters of growth: their defaults, and whether a set of them makes sense. What a tree's
- * file says of itself is checked by the table of keys [tree/meta.h], the rest here. */
+/* The parameters of growth: their defaults, and the check of their values. The table of keys
+ * [tree/meta.h] checks the values that a tree's file also states; this file checks the others. */
 #include "grow/continue_tree.h"
 #include "grow/grow.h"
 #include <stddef.h>

@@ -1,7 +1,7 @@
-/* Refinement assumes more of a tree than a file has to promise: one root with one child, two
- * children or none elsewhere, segments with a length, flow out of terminals alone, all numbers of
- * the law, and a place inside the domain. All of it is tested before anything is allocated for the
- * tree. */
+/* Refinement requires more of a tree than a file guarantees: one or two children at a root, two or
+ * none elsewhere after vessels are made straight, segments longer than 0, flow that leaves only at
+ * terminals, all numbers of the law, and positions inside the domain. All of that is tested before
+ * memory is allocated for the tree. */
 #include "grow/refine/refine_check.h"
 
 #include <stdlib.h>
