@@ -1,6 +1,6 @@
-/* Flow is gathered from the shares of the nodes by one backward sweep; everything else follows from
- * it segment by segment, but for pressure, which is a forward sweep. Inside are mm, g and s:
- * mm^3/s, Pa, Pa s. */
+/* One backward sweep sums the flow from the shares of the nodes. All other fields follow from the
+ * flow segment by segment, except the pressure, which is a forward sweep. Internal units are mm, g
+ * and s: mm^3/s, Pa, Pa s. */
 #include "derive/fields.h"
 
 #include <stdlib.h>

@@ -1,7 +1,7 @@
-/* A published table is text of numbers, and a tree's statistics have the same rows, so that the
- * comparison is one loop over measures and orders. The orders are matched by diameter alone:
- * diameters grow by nearly the same ratio from order to order, so that a wrong shift shows in every
- * order, while lengths and numbers depend on how far down a tree was followed. */
+/* A published table is a text of numbers. The statistics of a tree have the same rows, so that the
+ * comparison is one loop over measures and orders. Orders are matched by diameter alone. Diameters
+ * grow by nearly the same ratio from order to order, so that a wrong shift shows in every order.
+ * Lengths and numbers depend on the diameter down to which a tree was measured. */
 #include "derive/morphometry.h"
 
 #include <math.h>
@@ -158,7 +158,8 @@ static double misfit(const TreeStatistics *statistics, const Morphometry *table,
     return count > 0 ? sum / count : HUGE_VAL;
 }
 
-/* The one of the two ranges of orders lies within the other. */
+/* Finds the best shift. At every shift that is tried, one of the two ranges of orders contains
+ * the other. */
 static int best_shift(const TreeStatistics *statistics, const Morphometry *table)
 {
     int spare = (int)table->n - (int)statistics->by_diameter_strahler.n;

@@ -1,6 +1,7 @@
-/* Orders of segments, each in one or two sweeps over the tree's arrays, in which a parent stands
- * before its children: forwards for what a segment inherits (level, branch), backwards for what it
- * gets from below (Strahler's order). No recursion, so a tree of any depth needs no stack. */
+/* Orders of segments, each in one or two sweeps over the arrays of the tree, in which parents come
+ * before children. A forward sweep computes what a segment inherits (level, branch); a backward
+ * sweep computes what it gets from its subtree (Strahler order). There is no recursion, so a tree
+ * of any depth needs no stack. */
 #include "derive/fields.h"
 
 #include <stdlib.h>
@@ -18,8 +19,9 @@ Status field_level(const Tree *tree, const TreeMeta *overrides, double *value, E
     return STATUS_OK;
 }
 
-/* Backwards, all children of a node come before it: until then value[i] holds the largest order
- * among them, and alike[i] how many have it. */
+/* The backward sweep visits all children of a node before the node. Until then value[i] is
+ * the largest order among its children so far, and alike[i] the number of children that have
+ * this order. */
 Status field_strahler(const Tree *tree, const TreeMeta *overrides, double *value, Err *err)
 {
     (void)overrides;

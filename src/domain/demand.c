@@ -1,4 +1,5 @@
-/* The map is a mask that keeps the voxels' values: nothing is interpolated between them. */
+/* The map is a mask that also stores the values of the voxels. There is no interpolation
+ * between them. */
 #include "domain/domain.h"
 
 #include "domain/mask.h"
@@ -11,7 +12,7 @@ struct Demand {
     double most; /* value */
 };
 
-/* Points of the domain that are looked at, and the least that they are to ask for in the mean. */
+/* Number of random points of the domain at which the demand is tested, and its minimum mean. */
 enum { LOOKS = 20000 };
 static const double least_mean = 1e-4;
 

@@ -1,8 +1,9 @@
-/* Every kind of domain is a row of `kinds`, a DomainOps, defined in the file of its family:
- * shapes.c, polygon.c, mask.c, mesh.c, hull.c, surface.c. What is here is the same for all: the
- * place (`@`) that a domain's own coordinates are put at, and sampling. Points are sampled by
- * rejection from the bounding box (acceptance pi/4 in the disc, pi/6 in the ball) unless a kind
- * knows better: exactly uniform, and without functions whose last bit differs between machines. */
+/* Every kind of domain is an entry of `kinds`, a DomainOps, defined in the file of its family:
+ * shapes.c, polygon.c, mask.c, mesh.c, hull.c, surface.c. This file has what is common to all
+ * kinds: the position (`@`) of a domain's own coordinate system, and sampling. Points are sampled
+ * by rejection from the bounding box (acceptance pi/4 in the disc, pi/6 in the ball), unless a kind
+ * has a better method. Rejection is exactly uniform, and uses no function whose last bit differs
+ * between machines. */
 #include "domain/domain.h"
 
 #include "domain/hull.h"
@@ -53,7 +54,7 @@ done:
     return status;
 }
 
-/* Whether the domain is large enough for points to be sampled. */
+/* Checks that the domain fills enough of its bounding box for points to be sampled. */
 static Status check_filling(const Domain *domain, Err *err)
 {
     Vec3 size = vec3_sub(domain->bounds.high, domain->bounds.low);
@@ -129,8 +130,8 @@ static bool parse_place(const char *text, Vec3 *at)
     return text[-1] == '\0' && n >= 2;
 }
 
-/* Reads the place behind the last `@` of a text, and copies what is before it to *values (owned). A
- * file's name may have an `@` with no place behind it. */
+/* Reads the position after the last `@` of a text. *values receives a copy of the text before it,
+ * which the caller frees. The name of a file may contain an `@` that no position follows. */
 static Status read_place(const DomainOps *ops, const char *text, char **values, Vec3 *at, Err *err)
 {
     const char *mark = strrchr(text, '@');
