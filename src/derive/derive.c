@@ -76,7 +76,7 @@ static Status unknown_field(const Tree *tree, const char *name, Err *err)
         text_printf(&known, ", %s", tree->column[k].name);
     Status status = text_check(&known, err);
     if (status == STATUS_OK)
-        status = err_set(err, STATUS_USAGE, "there is no field '%.40s'; known are %s", name,
+        status = err_set(err, STATUS_USAGE, "there is no field '%.40s'; the fields are %s", name,
                          text_chars(&known));
     text_release(&known);
     if (status == STATUS_USAGE)

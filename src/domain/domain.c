@@ -45,10 +45,11 @@ static Status refuse_shape(const char *spec, Err *err)
                     kinds[kind]->name, kinds[kind]->parameters);
     Status status = STATUS_OK;
     TRY_GOTO(text_check(&shapes, err));
-    status = err_set(err, STATUS_USAGE,
-                     "`domain` %s: unknown shape; use %s, lengths in mm, and @X,Y,Z behind it to "
-                     "place it",
-                     spec, text_chars(&shapes));
+    status =
+        err_set(err, STATUS_USAGE,
+                "`domain` %s: unknown shape; use %s, lengths in mm, and @X,Y,Z after it for its "
+                "position",
+                spec, text_chars(&shapes));
 done:
     text_release(&shapes);
     return status;
@@ -61,11 +62,12 @@ static Status check_filling(const Domain *domain, Err *err)
     double box = size.x * size.y * (domain->dimension == 3 ? size.z : 1);
     if (domain->ops->sample || domain->volume >= least_filled * box)
         return STATUS_OK;
-    return err_set(err, domain->file ? STATUS_INPUT : STATUS_USAGE,
-                   "%s%sthe domain is too thin to find points in: it fills %.2g of the box around "
-                   "it, and must fill %g",
-                   domain->file ? domain->file : "", domain->file ? ": " : "", domain->volume / box,
-                   least_filled);
+    return err_set(
+        err, domain->file ? STATUS_INPUT : STATUS_USAGE,
+        "%s%sthe domain is too thin for random points: it fills %.2g of its bounding box, "
+        "and must fill at least %g",
+        domain->file ? domain->file : "", domain->file ? ": " : "", domain->volume / box,
+        least_filled);
 }
 
 static bool try_sample(const Domain *domain, Random *random, Vec3 *point);
@@ -94,8 +96,9 @@ static Status complete(Domain *domain, Vec3 at, Err *err)
     if (!domain->is_placed)
         return STATUS_OK;
     if (domain->dimension == 2 && at.z != 0)
-        return err_set(err, STATUS_USAGE,
-                       "a domain of two dimensions lies in the plane z = 0, so its place is @X,Y");
+        return err_set(
+            err, STATUS_USAGE,
+            "a domain of two dimensions lies in the plane z = 0, so its position is @X,Y");
     domain->at = at;
     domain->inner = vec3_add(domain->inner, at);
     domain->bounds = (Box){vec3_add(domain->bounds.low, at), vec3_add(domain->bounds.high, at)};
@@ -139,9 +142,9 @@ static Status read_place(const DomainOps *ops, const char *text, char **values, 
     if (!has_place)
         *at = vec3(0, 0, 0);
     if (mark && !has_place && !ops->release)
-        return err_set(err, STATUS_USAGE, "the place '%s' is not X,Y or X,Y,Z in mm", mark);
+        return err_set(err, STATUS_USAGE, "the position '%s' is not X,Y or X,Y,Z in mm", mark);
     if (has_place && !(fmax(fabs(at->x), fmax(fabs(at->y), fabs(at->z))) <= DOMAIN_MAX_MM))
-        return err_set(err, STATUS_USAGE, "the place '%s' is beyond %g mm", mark, DOMAIN_MAX_MM);
+        return err_set(err, STATUS_USAGE, "the position '%s' is beyond %g mm", mark, DOMAIN_MAX_MM);
     TRY(mem_strdup(values, text, err));
     if (has_place)
         (*values)[mark - text] = '\0';

@@ -309,7 +309,7 @@ static Status hull_load(Domain *domain, const char *values, Err *err)
 {
     (void)domain;
     (void)values;
-    return err_set(err, STATUS_USAGE, "takes a tree, which is not known here");
+    return err_set(err, STATUS_USAGE, "needs a tree, which is not available here");
 }
 
 const DomainOps hull_ops = {

@@ -92,8 +92,8 @@ static Status check_ascii_stl(const char *path, char *bytes, size_t *size, Err *
                        "file",
                        path, *size, STL_HEADER);
     return err_set(err, STATUS_INPUT,
-                   "%s: is no text, and a binary STL file of the %u triangles that it states has "
-                   "%zu bytes, this one %zu",
+                   "%s: is not a text; as a binary STL file with %u triangles it must have %zu "
+                   "bytes, but it has %zu",
                    path, little_endian(bytes + STL_TITLE), stated_size(bytes), *size);
 }
 

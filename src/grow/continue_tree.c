@@ -23,17 +23,16 @@ static Status check_node(const Tree *from, size_t i, int32_t children, const Dom
 {
     int32_t id = from->id[i];
     if (children > 2)
-        return err_set(
-            err, STATUS_INPUT,
-            "`from`: node %d has %d children; growth goes on from trees in which no node "
-            "has more than 2",
-            id, children);
+        return err_set(err, STATUS_INPUT,
+                       "`from`: node %d has %d children; growth can continue only a tree in which "
+                       "no node has more than 2",
+                       id, children);
     if (!tree_is_segment(from, i) && children == 0)
         return err_set(err, STATUS_INPUT, "`from`: node %d is an inlet without a vessel", id);
     if (tree_is_segment(from, i) && children == 0 && !(tree_segment_length(from, i) > 0))
         return err_set(err, STATUS_INPUT,
-                       "`from`: node %d, a terminal, is where its parent is; its segment needs a "
-                       "length",
+                       "`from`: node %d, a terminal, has the position of its parent; its segment "
+                       "must be longer than 0",
                        id);
     if (keep_radii && tree_is_segment(from, i) && !(from->radius_mm[i] > 0))
         return err_set(err, STATUS_INPUT,

@@ -81,13 +81,14 @@ static Status settle_radii(Network *net, const GrowParams *params, double *flow,
         last = change;
         network_resum(net);
     }
-    return err_set(err, STATUS_INFEASIBLE,
-                   params->gamma.n > 1
-                       ? "`gamma` changes too fast with the radius: the radii of %zu terminals do "
-                         "not settle; put its values at radii that are further apart"
-                       : "the vessels of %zu terminals are too thin for `viscosity_law` pries: "
-                         "radii and viscosities do not settle; lower `terminals` or raise `q_perf`",
-                   net->terminals);
+    return err_set(
+        err, STATUS_INFEASIBLE,
+        params->gamma.n > 1
+            ? "`gamma` changes too fast with the radius: the radii of %zu terminals do "
+              "not converge; put its values at radii that are further apart"
+            : "the vessels of %zu terminals are too thin for `viscosity_law` pries: "
+              "radii and viscosities do not converge; lower `terminals` or raise `q_perf`",
+        net->terminals);
 }
 
 /* Checks that the kept trunk leaves a part of the pressure drop to all subtrees that leave it. */
@@ -103,7 +104,7 @@ static Status check_trunk(const Network *net, const GrowParams *params, Err *err
     Vec3 at = net->position[where];
     return err_set(err, STATUS_INFEASIBLE,
                    "`keep_radii`: the vessels of `from` are too narrow for `q_perf` %g ml/min: on "
-                   "the way to (%.4g, %.4g, %.4g), where the radius is %.4g mm, they take %.4g "
+                   "the path to (%.4g, %.4g, %.4g), where the radius is %.4g mm, they take %.4g "
                    "times the drop from `p_perf` to `p_term`; this tree passes a flow below %.4g "
                    "ml/min",
                    params->blood.q_perf_ml_min, at.x, at.y, at.z, net->trunk->radius[where], most,

@@ -56,7 +56,7 @@ Status mates_check(const GrowParams *params, const Tree *tree, Err *err)
         status = err_set(err, STATUS_INFEASIBLE,
                          "`pair_mm` %g: the vessels of the pair of nodes %d and %d are %.4g and "
                          "%.4g mm in radius, so that pairs must be at least %.4g mm apart, with "
-                         "the clearance; or ask for more `terminals` or less `q_perf`",
+                         "the clearance; or raise `terminals` or lower `q_perf`",
                          params->pair_mm, tree->id[pair[worst].node[0]],
                          tree->id[pair[worst].node[1]], tree->radius_mm[pair[worst].node[0]],
                          tree->radius_mm[pair[worst].node[1]], most);

@@ -69,22 +69,23 @@ static bool is_id(int64_t id)
 
 static Status unknown_parent(int64_t id, Err *err)
 {
-    return err_set(err, STATUS_INPUT,
-                   "the parent is %lld, which is no node's id; it must be the id of a node, or %d "
-                   "for a root",
-                   (long long)id, TREE_NO_PARENT);
+    return err_set(
+        err, STATUS_INPUT,
+        "the parent is %lld, which is not the id of a node; it must be the id of a node, or %d "
+        "for a root",
+        (long long)id, TREE_NO_PARENT);
 }
 
 static Status unknown_pair(int64_t id, Err *err)
 {
-    return err_set(err, STATUS_INPUT, "%s names the node %lld, which is no node's id",
+    return err_set(err, STATUS_INPUT, "%s names the node %lld, which is not the id of a node",
                    tree_pairs_name, (long long)id);
 }
 
 static Status unknown_share(int64_t id, Err *err)
 {
-    return err_set(err, STATUS_INPUT, "flow_share names the node %lld, which is no node's id",
-                   (long long)id);
+    return err_set(err, STATUS_INPUT,
+                   "flow_share names the node %lld, which is not the id of a node", (long long)id);
 }
 
 static Status check_node(const BuilderNode *node, Err *err)
@@ -391,8 +392,8 @@ static Status fill_shares(const TreeBuilder *builder, const IdIndex *index, cons
         if (row == NO_ROW)
             status = unknown_share(said->id, err);
         else if (tree->flow_share[place_of(place, (size_t)row)] > 0)
-            status = err_set(err, STATUS_INPUT, "the flow share of node %d has been said before",
-                             said->id);
+            status =
+                err_set(err, STATUS_INPUT, "the flow share of node %d is stated twice", said->id);
         TRY(builder_blame(builder, said->record, status, err));
         tree->flow_share[place_of(place, (size_t)row)] = said->share;
     }

@@ -421,9 +421,9 @@ static Status note_other_inlets(const Building *building, Err *err)
         inlets -= point[reading->root[i].id - 1].is_inlet;
     if (inlets == 0)
         return STATUS_OK;
-    return reading_note(building->reading, err,
-                        "%zu more inlets are ends, as each tree has one root, the thickest",
-                        inlets);
+    return reading_note(
+        building->reading, err,
+        "stated inlets that are not roots: %zu (each tree has one root, the thickest)", inlets);
 }
 
 /* Sets the parents of all points of the root's component, breadth first. `queue` has space for

@@ -261,7 +261,7 @@ static bool parse_word(const MetaRow *row, const char *text, double *value)
 
 static Status contradict(MetaKey key, const char *value, Err *err)
 {
-    return err_set(err, STATUS_INPUT, "%s is '%.40s', but an earlier line says otherwise",
+    return err_set(err, STATUS_INPUT, "%s is '%.40s', but an earlier line has another value",
                    meta_rows[key].name, value);
 }
 

@@ -28,7 +28,8 @@ Status tree_set_flow_by_radius(Tree *tree, double gamma, Err *err)
         if (tree_is_segment(tree, i) && children[i] == 0)
             largest = fmax(largest, share[i] = tree->radius_mm[i]);
     if (!(largest > 0))
-        TRY_GOTO(err_set(err, STATUS_INPUT, "no terminal has a radius above 0 to part flow by"));
+        TRY_GOTO(err_set(err, STATUS_INPUT,
+                         "no terminal has a radius above 0, so flow cannot be divided by radius"));
     for (size_t i = 0; i < tree->n; i++)
         share[i] = share[i] > 0 ? elementary_pow(share[i] / largest, gamma) : 0;
     tree_set_flow_shares(tree, share);

@@ -72,7 +72,7 @@ static Status check(const Tree *tree, const Series *series, Err *err)
         const TreeColumn *one = &tree->column[series->frame[k - 1].column];
         const TreeColumn *next = &tree->column[series->frame[k].column];
         if (series->frame[k - 1].time == series->frame[k].time)
-            return err_set(err, STATUS_INPUT, "the columns '%.60s' and '%.60s' are of one time",
+            return err_set(err, STATUS_INPUT, "the columns '%.60s' and '%.60s' have the same time",
                            one->name, next->name);
         if (strcmp(one->unit, next->unit) != 0)
             return err_set(err, STATUS_INPUT,

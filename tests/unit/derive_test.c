@@ -216,10 +216,11 @@ static void missing_data_are_asked_for_by_option(void **state)
     static const char *const viscous[] = {"wss", "reynolds"};
     for (size_t i = 0; i < 2; i++) {
         char sentence[200];
-        snprintf(sentence, sizeof sentence,
-                 "the field %s needs the viscosity of the blood, which the tree does not say; give "
-                 "`viscosity_cP`, or the header key viscosity_cP",
-                 viscous[i]);
+        snprintf(
+            sentence, sizeof sentence,
+            "the field %s needs the viscosity of the blood, which the tree does not state; give "
+            "`viscosity_cP`, or the header key viscosity_cP",
+            viscous[i]);
         assert_needs(&params, viscous[i], sentence);
     }
 }
@@ -232,7 +233,7 @@ static void an_unknown_field_is_answered_with_the_known_ones(void **state)
     Err err;
     assert_int_equal(derive_field(&tree, &no_options, "color", &field, &err), STATUS_USAGE);
     assert_string_equal(
-        err.text, "there is no field 'color'; known are radius, length, flow, velocity, "
+        err.text, "there is no field 'color'; the fields are radius, length, flow, velocity, "
                   "pressure, wss, reynolds, level, strahler, diameter-strahler, branch, tree");
     tree_release(&tree);
 }
@@ -315,7 +316,7 @@ static void a_viscosity_given_alone_means_a_constant_one(void **state)
     Err err;
     assert_int_equal(derive_field(&tree, &params, "wss", &field, &err), STATUS_INPUT);
     assert_string_equal(err.text,
-                        "the field wss needs the hematocrit, which the tree does not say; give "
+                        "the field wss needs the hematocrit, which the tree does not state; give "
                         "`hematocrit`, or the header key hematocrit");
     params.known[META_PLASMA_VISCOSITY] = false;
     assert_int_equal(derive_field(&tree, &params, "wss", &field, &err), STATUS_INPUT);

@@ -141,8 +141,9 @@ static void an_inlet_among_merged_points_is_one_and_others_are_told(void **state
     must(build(&net, &tree), &net.err);
     assert_int_equal(net.reading.root[0].id, 2);
     assert_int_equal(net.reading.root[0].reason, ROOT_STATED);
-    assert_string_equal(net.reading.note[0],
-                        "1 more inlets are ends, as each tree has one root, the thickest");
+    assert_string_equal(
+        net.reading.note[0],
+        "stated inlets that are not roots: 1 (each tree has one root, the thickest)");
     release(&net, &tree);
 }
 

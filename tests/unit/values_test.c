@@ -200,7 +200,7 @@ static void refuses_two_columns_of_one_time(void **state)
                         "the columns 'q_0.5' and 'q_1' have different units, 'Pa' and 'mmHg'");
     must(tree_add_column(&tree, "q_0.50", "Pa", &value, &err), &err);
     assert_int_equal(tree_series(&tree, "q", &series, &err), STATUS_INPUT);
-    assert_string_equal(err.text, "the columns 'q_0.5' and 'q_0.50' are of one time");
+    assert_string_equal(err.text, "the columns 'q_0.5' and 'q_0.50' have the same time");
     tree_release(&tree);
 }
 

@@ -56,7 +56,7 @@ static Status survey_node(const Tree *tree, ProblemSurvey *survey, size_t i, Pro
         survey->drop[tree->parent[i]] + survey->flow[i] * length / (radius2 * radius2);
     if (is_outlet(tree, survey, i) && !(survey->drop[i] > 0))
         return err_set(err, STATUS_INPUT,
-                       "node %d: blood leaves the tree where its root is, without a way to it",
+                       "node %d: blood leaves the tree where its root is, without a path to it",
                        tree->id[i]);
     if (!isfinite(survey->drop[i]))
         return err_set(err, STATUS_INPUT, "node %d: radius %g mm lets too little blood through",

@@ -247,9 +247,9 @@ static Status disagree(const Arbor *arbor, Err *err)
 {
     return err_set(err, STATUS_INFEASIBLE,
                    arbor->gamma.n > 1
-                       ? "gamma changes too fast with the radius: the radii do not settle"
+                       ? "gamma changes too fast with the radius: the radii do not converge"
                        : "vessels are too thin for the viscosity law pries: radii and viscosities "
-                         "do not settle");
+                         "do not converge");
 }
 
 Status arbor_agree(Arbor *arbor, Err *err)

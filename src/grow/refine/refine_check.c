@@ -38,7 +38,7 @@ static Status check_node(const Tree *tree, const int32_t *counts, size_t i, Err 
     if (tree_is_segment(tree, i) && children != 1 &&
         !(vec3_distance(tree->position[i], tree->position[proximal(tree, counts, i)]) > 0))
         return err_set(err, STATUS_INPUT,
-                       "node %d is where its vessel begins; refinement needs vessels with a length",
+                       "node %d is where its vessel begins; refinement needs vessels longer than 0",
                        id);
     if (tree->flow_share && (children == 0 ? !(tree->flow_share[i] > 0) : tree->flow_share[i] != 0))
         return err_set(err, STATUS_INPUT,
