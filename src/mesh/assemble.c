@@ -8,7 +8,7 @@
 #include "mesh/assemble.h"
 
 #include "mesh/precision.h"
-#include "mesh/zones/nearpairs.h"
+#include "mesh/regions/nearpairs.h"
 #include <stdlib.h>
 #include <string.h>
 

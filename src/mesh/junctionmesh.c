@@ -12,7 +12,7 @@
 
 #include "mesh/patchcross.h"
 #include "mesh/precision.h"
-#include "mesh/zones/nearpairs.h"
+#include "mesh/regions/nearpairs.h"
 #include <stdlib.h>
 
 #define NONE UINT32_MAX

@@ -9,12 +9,12 @@
 #define CORCAST_MESH_MESH_H
 
 #include "base/base.h"
-#include "mesh/meshreport.h"      // IWYU pragma: export
-#include "mesh/precision.h"       // IWYU pragma: export
-#include "mesh/proof/meshcheck.h" // IWYU pragma: export
-#include "mesh/zones/adjust.h"    // IWYU pragma: export
-#include "mesh/zones/junctions.h" // IWYU pragma: export
-#include "mesh/zones/nearpairs.h" // IWYU pragma: export
+#include "mesh/meshreport.h"        // IWYU pragma: export
+#include "mesh/precision.h"         // IWYU pragma: export
+#include "mesh/proof/meshcheck.h"   // IWYU pragma: export
+#include "mesh/regions/adjust.h"    // IWYU pragma: export
+#include "mesh/regions/junctions.h" // IWYU pragma: export
+#include "mesh/regions/nearpairs.h" // IWYU pragma: export
 #include "scene/scene.h"
 
 /* The expected cost of a mesh, in most cases right within a factor of 2. */

@@ -3,7 +3,7 @@
 #include "grow/cco/grid.h"
 #include "mesh/precision.h"
 #include "mesh/proof/meshcheck.h"
-#include "mesh/zones/nearpairs.h"
+#include "mesh/regions/nearpairs.h"
 #include "print/seams.h"
 #include "unit.h"
 

@@ -3,7 +3,7 @@
 #include "mesh/lattice/octree.h"
 #include "mesh/proof/boxpairs.h"
 #include "mesh/proof/meshcheck.h"
-#include "mesh/zones/nearpairs.h"
+#include "mesh/regions/nearpairs.h"
 #include "stage/stage.h"
 #include "treeio/treeio.h"
 #include "unit.h"

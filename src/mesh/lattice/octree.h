@@ -3,7 +3,7 @@
 #ifndef CORCAST_MESH_LATTICE_OCTREE_H
 #define CORCAST_MESH_LATTICE_OCTREE_H
 
-#include "mesh/zones/junctions.h"
+#include "mesh/regions/junctions.h"
 
 typedef enum CellState {
     CELL_OUTSIDE, /* all of the cell is outside */

@@ -1,6 +1,6 @@
 /* An order of a tree's nodes that tells on which side of a segment a node is. */
-#ifndef CORCAST_MESH_ZONES_TREEORDER_H
-#define CORCAST_MESH_ZONES_TREEORDER_H
+#ifndef CORCAST_MESH_REGIONS_TREEORDER_H
+#define CORCAST_MESH_REGIONS_TREEORDER_H
 
 #include "base/base.h"
 #include "scene/scene.h"

@@ -9,11 +9,11 @@
  * where they are near. A tube can become too short by that, which joins regions. Then more pairs
  * may share a region. The steps are repeated until nothing changes. They end, because a plane is
  * only pushed to one of a few positions. */
-#include "mesh/zones/junctions.h"
+#include "mesh/regions/junctions.h"
 
 #include "mesh/precision.h"
-#include "mesh/zones/freeends.h"
-#include "mesh/zones/nearpairs.h"
+#include "mesh/regions/freeends.h"
+#include "mesh/regions/nearpairs.h"
 #include <stdlib.h>
 
 /* In units of the radius: how far a plane may be shifted; the minimum gap left between two shifted

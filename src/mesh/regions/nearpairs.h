@@ -1,6 +1,6 @@
 /* Vessels that share no node, but whose surfaces are near each other; distances of segments. */
-#ifndef CORCAST_MESH_ZONES_NEARPAIRS_H
-#define CORCAST_MESH_ZONES_NEARPAIRS_H
+#ifndef CORCAST_MESH_REGIONS_NEARPAIRS_H
+#define CORCAST_MESH_REGIONS_NEARPAIRS_H
 
 #include "mesh/meshreport.h"
 #include "mesh/proof/boxpairs.h"

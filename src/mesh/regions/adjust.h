@@ -1,7 +1,7 @@
 /* Changes to a tree that has no valid mesh, or that has vessel ends that are not flat. Exported by
  * the public header of the module mesh. */
-#ifndef CORCAST_MESH_ZONES_ADJUST_H
-#define CORCAST_MESH_ZONES_ADJUST_H
+#ifndef CORCAST_MESH_REGIONS_ADJUST_H
+#define CORCAST_MESH_REGIONS_ADJUST_H
 
 #include "mesh/meshreport.h"
 

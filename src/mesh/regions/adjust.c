@@ -10,10 +10,10 @@
  * if other vessels are near. Each end that is not flat grows by a step at a time. An end that would
  * then overlap a stranger, or that is not flat at its greatest length, goes back to where it was.
  */
-#include "mesh/zones/adjust.h"
+#include "mesh/regions/adjust.h"
 
-#include "mesh/zones/junctions.h"
-#include "mesh/zones/nearpairs.h"
+#include "mesh/regions/junctions.h"
+#include "mesh/regions/nearpairs.h"
 #include <stdlib.h>
 
 /* In units of the sum of the radii: the gap left between parted surfaces. */

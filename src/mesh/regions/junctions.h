@@ -4,11 +4,11 @@
  * surface of a region comes from a lattice. A tube is the part of a segment between two regions;
  * its surface is a cylinder. A branch stub is the part of such a segment that belongs to a region:
  * it ends at a plane across the segment, where the tube begins. */
-#ifndef CORCAST_MESH_ZONES_JUNCTIONS_H
-#define CORCAST_MESH_ZONES_JUNCTIONS_H
+#ifndef CORCAST_MESH_REGIONS_JUNCTIONS_H
+#define CORCAST_MESH_REGIONS_JUNCTIONS_H
 
 #include "mesh/meshreport.h"
-#include "mesh/zones/junctionfield.h"
+#include "mesh/regions/junctionfield.h"
 
 #define NO_JUNCTION UINT32_MAX
 

@@ -1,10 +1,10 @@
 /* Where along a segment the vessels at its ends no longer change its surface, so that it may be cut
  * there. */
-#ifndef CORCAST_MESH_ZONES_FREEENDS_H
-#define CORCAST_MESH_ZONES_FREEENDS_H
+#ifndef CORCAST_MESH_REGIONS_FREEENDS_H
+#define CORCAST_MESH_REGIONS_FREEENDS_H
 
 #include "mesh/meshreport.h"
-#include "mesh/zones/treeorder.h"
+#include "mesh/regions/treeorder.h"
 
 /* The influence of the vessels that meet at one end of a segment. Distances are from that end. */
 typedef struct FreeEnd {

@@ -1,6 +1,6 @@
 /* Nodes are taken from a stack, so that all that lies beyond a node follows it at once; then, from
  * the last node to the first, each tells the one before it where its part of the order ends. */
-#include "mesh/zones/treeorder.h"
+#include "mesh/regions/treeorder.h"
 
 #include <stdlib.h>
 

@@ -5,10 +5,10 @@
  * is nearly that of the segment alone, if it continued.
  *
  * Places are tried in steps from the far end on. The interval that the last one is in is halved. */
-#include "mesh/zones/freeends.h"
+#include "mesh/regions/freeends.h"
 
-#include "mesh/zones/junctionfield.h"
-#include "mesh/zones/nearpairs.h"
+#include "mesh/regions/junctionfield.h"
+#include "mesh/regions/nearpairs.h"
 #include <stdlib.h>
 
 /* In units of the level: what other vessels may add. Adding a part p moves the surface by p / 4

@@ -1,7 +1,7 @@
 /* The potential field of a junction region, and the local part of it that matters in a ball. Each
  * node of the region has a group of terms. The field is the largest of the groups' sums. */
-#ifndef CORCAST_MESH_ZONES_JUNCTIONFIELD_H
-#define CORCAST_MESH_ZONES_JUNCTIONFIELD_H
+#ifndef CORCAST_MESH_REGIONS_JUNCTIONFIELD_H
+#define CORCAST_MESH_REGIONS_JUNCTIONFIELD_H
 
 #include "base/base.h"
 #include "scene/scene.h"

@@ -1,7 +1,7 @@
 /* Fast exp(-x) and erf(x), from which the terms of the potential are made. They are as exact as a
  * surface in single precision needs, and take a fifth of the time of the C library's functions. */
-#ifndef CORCAST_MESH_ZONES_GAUSS_H
-#define CORCAST_MESH_ZONES_GAUSS_H
+#ifndef CORCAST_MESH_REGIONS_GAUSS_H
+#define CORCAST_MESH_REGIONS_GAUSS_H
 
 #include <stdint.h>
 
