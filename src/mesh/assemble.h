@@ -16,10 +16,10 @@ typedef struct TubeParams {
  *
  * meshes   per region; released while they are joined.
  * mesh     receives the mesh; owned by the caller.
- * off      is raised to the largest distance of a tube's triangle from its surface.
+ * deviation  is raised to the largest distance of a tube's triangle from its surface.
  * Errors   STATUS_MEMORY. */
 MUST_CHECK Status assemble_mesh(const VesselTree *tree, const Junctions *junctions,
                                 JunctionMesh *meshes, const TubeParams *params, VesselMesh *mesh,
-                                MeshOff *off, Err *err);
+                                MeshDeviation *deviation, Err *err);
 
 #endif

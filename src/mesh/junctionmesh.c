@@ -284,10 +284,10 @@ static Status finish(const JunctionBuild *build, const MeshFineness *fineness, b
     TRY(patch_keep_largest(patch, build->err));
     TRY(find_statuses(build, fineness->cells.ratio));
     TRY(collapse_apply(&workspace->collapser, patch, fineness->sagitta, build->err));
-    build->mesh->off = (MeshOff){0};
+    build->mesh->deviation = (MeshDeviation){0};
     size_t n_points = patch->n_points;
-    TRY(facerefine_apply(&workspace->refiner, &build->surface, fineness->split, &build->mesh->off,
-                         build->err));
+    TRY(facerefine_apply(&workspace->refiner, &build->surface, fineness->split,
+                         &build->mesh->deviation, build->err));
     TRY(prove(build, sound));
     *build->crossing = PATCHCROSS_NONE;
     if (*sound && patch->n_points > n_points)
@@ -493,17 +493,17 @@ static Status come_near(const JunctionBuild *build, MeshFineness *used)
 {
     MeshFineness tried = *used;
     bool sound = true, is_nearest = true;
-    double hole, off = build->mesh->off.ratio;
+    double hole, off = build->mesh->deviation.ratio;
     for (int i = 0; i < MAX_ACCURACY_RETRIES && off > used->worst; i++) {
         int repeats = build->mesh->repeats;
         make_finer(&tried, fmax(min_retry_factor, refinement_factor * used->worst / off));
         junctionmesh_release(build->mesh);
         TRY(attempt(build, &tried, &sound, &hole));
         build->mesh->repeats = repeats + 1;
-        is_nearest = sound && build->mesh->off.ratio < off;
+        is_nearest = sound && build->mesh->deviation.ratio < off;
         if (is_nearest) {
             *used = tried;
-            off = build->mesh->off.ratio;
+            off = build->mesh->deviation.ratio;
         } else if (off > max_error) {
             break;
         }
@@ -533,7 +533,7 @@ Status junctionmesh_make(JunctionWorkspace *workspace, const JunctionInput *inpu
     TRY_GOTO(make_sound(&build, &used, &sound));
     if (sound)
         TRY_GOTO(come_near(&build, &used));
-    if (!sound || made.off.ratio > max_error)
+    if (!sound || made.deviation.ratio > max_error)
         TRY_GOTO(refuse(&build, used.grid_mm, err));
     TRY_GOTO(keep_patch(workspace, used.grid_mm, &made, err));
     *mesh = made;

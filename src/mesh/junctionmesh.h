@@ -29,8 +29,8 @@ typedef struct JunctionMesh {
     Rim *rims; /* per stub */
     size_t n_rims;
     uint32_t *rim_points;
-    int repeats; /* number of attempts with finer cells */
-    MeshOff off; /* at the middles of triangles and of their longest edges */
+    int repeats;             /* number of attempts with finer cells */
+    MeshDeviation deviation; /* at the middles of triangles and of their longest edges */
 } JunctionMesh;
 
 void junctionmesh_release(JunctionMesh *mesh);

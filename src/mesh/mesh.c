@@ -271,13 +271,13 @@ static Status make_mesh(MeshBuild *build, VesselMesh *mesh, MeshReport *report, 
         (MeshReport){.tolerance = tolerance_of(params), .junctions = build->junctions.n_junctions};
     for (uint32_t z = 0; z < build->junctions.n_junctions; z++) {
         report->repeated += build->meshes[z].repeats > 0 || build->finer[z] > 0;
-        report->off.mm = fmax(report->off.mm, build->meshes[z].off.mm);
-        report->off.ratio = fmax(report->off.ratio, build->meshes[z].off.ratio);
+        report->deviation.mm = fmax(report->deviation.mm, build->meshes[z].deviation.mm);
+        report->deviation.ratio = fmax(report->deviation.ratio, build->meshes[z].deviation.ratio);
     }
     const TubeParams tubes = {sides_of(cap_part * report->tolerance), params->tube_edge,
                               build->fineness.grid_mm};
-    return assemble_mesh(build->tree, &build->junctions, build->meshes, &tubes, mesh, &report->off,
-                         err);
+    return assemble_mesh(build->tree, &build->junctions, build->meshes, &tubes, mesh,
+                         &report->deviation, err);
 }
 
 /* Has the junctions made finer that triangles which cross lie in, of tubes those at both ends;

@@ -27,16 +27,16 @@ typedef struct NearPair {
 
 /* The largest distance of a triangle from the surface. The two maxima may be at different places.
  */
-typedef struct MeshOff {
+typedef struct MeshDeviation {
     double mm;
     double ratio; /* in local radii */
-} MeshOff;
+} MeshDeviation;
 
-/* Raises *off to a distance found where the local radius is radius_mm. */
-static inline void meshoff_add(MeshOff *off, double mm, double radius_mm)
+/* Raises *deviation to a distance found where the local radius is radius_mm. */
+static inline void meshdeviation_add(MeshDeviation *deviation, double mm, double radius_mm)
 {
-    off->mm = mm > off->mm ? mm : off->mm;
-    off->ratio = mm / radius_mm > off->ratio ? mm / radius_mm : off->ratio;
+    deviation->mm = mm > deviation->mm ? mm : deviation->mm;
+    deviation->ratio = mm / radius_mm > deviation->ratio ? mm / radius_mm : deviation->ratio;
 }
 
 /* The facts about a mesh, found on its final points. All arrays are owned. */
@@ -61,7 +61,8 @@ typedef struct MeshReport {
     double volume_mm3;
     double tolerance; /* the triangles were made for this tolerance: larger than
                        * MeshParams.tolerance if `lod` is below 1 */
-    MeshOff off; /* at the middle of each triangle of a junction region and of its longest edge */
+    MeshDeviation
+        deviation; /* at the middle of each triangle of a junction region and of its longest edge */
     size_t junctions; /* number of junction regions */
     size_t repeated;  /* junction regions that needed finer cells */
 } MeshReport;

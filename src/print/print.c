@@ -309,8 +309,9 @@ static Status prove(PrintMaking *making, MeshReport *report, Err *err)
             seams_lone(&making->seams, print_has_wall(&making->params) ? MESH_LUMEN : 0);
     }
     if (print_has_wall(&making->params)) {
-        report->off.mm = fmax(report->off.mm, making->sides[1].report.off.mm);
-        report->off.ratio = fmax(report->off.ratio, making->sides[1].report.off.ratio);
+        report->deviation.mm = fmax(report->deviation.mm, making->sides[1].report.deviation.mm);
+        report->deviation.ratio =
+            fmax(report->deviation.ratio, making->sides[1].report.deviation.ratio);
     }
     making->report.rings = making->seams.n_rings;
     TRY(seams_prove(&making->seams, &making->solid.mesh, making->solid.grid_mm,

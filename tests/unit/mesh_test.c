@@ -87,9 +87,9 @@ static void expect_near(const VesselTree *tree, const Made *made, double mean, d
             fail_msg("%s: mean %g, worst %g, %zu of %zu beyond 0.02",
                      way ? "surface to mesh" : "mesh to surface", found.mean, found.worst,
                      found.beyond, found.n);
-        if (found.worst > (way ? 1.5 : 1.05) * made->report.off.ratio + 1e-4)
+        if (found.worst > (way ? 1.5 : 1.05) * made->report.deviation.ratio + 1e-4)
             fail_msg("%s: worst %g, reported %g", way ? "surface to mesh" : "mesh to surface",
-                     found.worst, made->report.off.ratio);
+                     found.worst, made->report.deviation.ratio);
     }
     ruler_release(&ruler);
 }
@@ -159,7 +159,7 @@ static void a_tree_far_from_the_origin_is_as_near_its_surface(void **state)
     make(&sketch.tree, &made);
     expect_sound(&made, 1);
     expect_near(&sketch.tree, &made, 0.003, 0.03);
-    assert_true(made.report.off.ratio < 0.03);
+    assert_true(made.report.deviation.ratio < 0.03);
     release(&made);
 }
 
@@ -184,7 +184,7 @@ static void triangles_that_are_too_far_off_are_split(void **state)
         expect_sound(&made, 1);
         assert_int_equal(made.report.repeated, 0);
         expect_near(&sketch.tree, &made, 0.003, 0.025);
-        assert_true(made.report.off.ratio < 0.0225);
+        assert_true(made.report.deviation.ratio < 0.0225);
         release(&made);
     }
 }
@@ -432,7 +432,7 @@ static void no_triangle_lies_far_above_the_bottom_of_a_narrow_groove(void **stat
     sketch_to(&sketch, fork, vec3(-4.537, -1.422, 2.795), 0.1557);
     make(&sketch.tree, &made);
     expect_sound(&made, 1);
-    assert_true(made.report.off.ratio < 0.045);
+    assert_true(made.report.deviation.ratio < 0.045);
     release(&made);
 }
 

@@ -156,8 +156,8 @@ json_t *mesh_manifest(const MeshResult *made)
         {"points", json_count(mesh->n_points)},
         {"volume_mm3", json_number(report->volume_mm3)},
         {"tolerance", json_number(report->tolerance)},
-        {"max_distance_mm", json_number(report->off.mm)},
-        {"max_distance_over_radius", json_number(report->off.ratio)},
+        {"max_distance_mm", json_number(report->deviation.mm)},
+        {"max_distance_over_radius", json_number(report->deviation.ratio)},
     };
     json_t *all = json_with_members(json_object(), members, sizeof members / sizeof *members);
     return made->print ? json_with(all, "print", print_json(made)) : all;

@@ -34,7 +34,7 @@ typedef struct FaceRefining {
     const JunctionField *field;
     const Octree *tree;
     Patch *patch;
-    MeshOff *off;
+    MeshDeviation *deviation;
     double split, limit; /* in local radii; in the last round the limit is infinite */
     Err *err;
 } FaceRefining;
@@ -231,7 +231,7 @@ static Status look_at(const FaceRefining *refining, size_t number)
         TRY(mark_edge(refining, triangle.at[longest], triangle.at[(longest + 1) % 3], &marked));
     *state = marked ? TRIANGLE_FAR : TRIANGLE_SETTLED;
     if (!marked)
-        meshoff_add(refining->off, off, radius);
+        meshdeviation_add(refining->deviation, off, radius);
     return STATUS_OK;
 }
 
@@ -315,11 +315,11 @@ static Status refine_once(const FaceRefining *refining, bool *changed)
 }
 
 Status facerefine_apply(Refiner *refiner, const JunctionSurface *surface, double limit,
-                        MeshOff *off, Err *err)
+                        MeshDeviation *deviation, Err *err)
 {
     Patch *patch = surface->patch;
     FaceRefining refining = {
-        refiner, &surface->plan->field, surface->tree, patch, off, limit, limit, err};
+        refiner, &surface->plan->field, surface->tree, patch, deviation, limit, limit, err};
     size_t n_points = patch->n_points;
     bool changed = true;
     TRY(ARRAY_RESERVE(&refiner->states, patch->n_triangles, "triangles of a junction", err));

@@ -17,10 +17,10 @@ void refiner_release(Refiner *refiner);
  * points are on the surface. Edges on rims are not split. The topology of the patch does not
  * change.
  *
- * off      is raised to the largest distance of a triangle from the surface after the splits,
+ * deviation  is raised to the largest distance of a triangle from the surface after the splits,
  *          measured at the middles of triangles and of their longest edges.
  * Errors   STATUS_MEMORY. */
 MUST_CHECK Status facerefine_apply(Refiner *refiner, const JunctionSurface *surface, double limit,
-                                   MeshOff *off, Err *err);
+                                   MeshDeviation *deviation, Err *err);
 
 #endif
