@@ -15,7 +15,7 @@ void meshreport_release(MeshReport *report)
     *report = (MeshReport){0};
 }
 
-bool meshreport_is_sound(const MeshReport *report)
+bool meshreport_is_valid(const MeshReport *report)
 {
     return report->open_edges == 0 && report->components == report->expected_components &&
            report->genus == report->expected_genus && report->crossings == 0 &&
@@ -24,7 +24,7 @@ bool meshreport_is_sound(const MeshReport *report)
 
 Status meshreport_check(const MeshReport *report, const VesselTree *tree, Err *err)
 {
-    if (meshreport_is_sound(report))
+    if (meshreport_is_valid(report))
         return STATUS_OK;
     if (report->n_missing)
         return err_set(err, STATUS_DIFFERS,

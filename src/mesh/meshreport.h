@@ -74,7 +74,7 @@ void meshreport_release(MeshReport *report);
 
 /* Returns true if the mesh is valid: closed, without crossings, with the expected topology, and
  * with a surface for every segment. */
-bool meshreport_is_sound(const MeshReport *report);
+bool meshreport_is_valid(const MeshReport *report);
 /* Returns STATUS_OK for a valid mesh, else STATUS_DIFFERS with a sentence that says what is wrong,
  * or STATUS_INPUT if the tree is too far from the origin. */
 MUST_CHECK Status meshreport_check(const MeshReport *report, const VesselTree *tree, Err *err);
