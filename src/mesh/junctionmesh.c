@@ -413,7 +413,7 @@ static Status refuse(const JunctionBuild *build, double grid_mm, Err *err)
     const uint32_t *ids = build->tree->ids;
     uint32_t pair[2], first = build->plan->field.terms[0].segment;
     if (*build->crossing == PATCHCROSS_ROUNDING)
-        return reach_refuse(build->tree, first, grid_mm, err);
+        return precision_refuse(build->tree, first, grid_mm, err);
     if (build->workspace->patch.n_triangles == 0)
         return err_set(err, STATUS_INFEASIBLE,
                        "segment %u, and what it meets, is so short for its radius that it has no "

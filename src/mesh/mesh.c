@@ -322,7 +322,7 @@ done:
 Status vesselmesh_build(const VesselTree *tree, const MeshParams *params, VesselMesh *mesh,
                         MeshReport *report, Err *err)
 {
-    double grid_mm = mesh_grid(fmax(mesh_reach(tree), params->reach_mm));
+    double grid_mm = mesh_grid(fmax(mesh_max_coordinate(tree), params->max_coordinate_mm));
     MeshBuild build = {.tree = tree,
                        .params = params,
                        .n_workers = workers_of(params),

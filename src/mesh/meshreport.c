@@ -31,7 +31,8 @@ Status meshreport_check(const MeshReport *report, const VesselTree *tree, Err *e
                        "%zu segments have no triangles, segment %u among them; nothing is written",
                        report->n_missing, tree->ids[report->missing[0]]);
     if (report->crossings > 0 && precision_is_short(tree))
-        return reach_refuse(tree, reach_thinnest(tree), mesh_grid(mesh_reach(tree)), err);
+        return precision_refuse(tree, precision_thinnest_segment(tree),
+                                mesh_grid(mesh_max_coordinate(tree)), err);
     return err_set(err, STATUS_DIFFERS,
                    "the surface is not sound: %zu parts for %zu trees, genus %zu, %zu open edges, "
                    "%zu crossing pairs of triangles, %zu bridges; nothing is written (a smaller "

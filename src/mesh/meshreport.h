@@ -13,8 +13,8 @@ typedef struct MeshParams {
                  * least about 9 per radius of length; 0 is taken as 1 */
     double tube_edge; /* maximum length of a tube's triangles along it, in radii; 0: no limit */
     int threads;      /* 0: all processors */
-    double reach_mm;  /* 0, or a coordinate of another object that the mesh is to be joined with, so
-                       * that both are on one grid */
+    double max_coordinate_mm; /* 0, or a coordinate of another object that the mesh is to be joined
+                               * with, so that both are on one grid */
     bool (*progress)(double fraction, void *context); /* false: stop; NULL: none */
     void *context;
 } MeshParams;

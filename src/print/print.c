@@ -146,14 +146,14 @@ static double rounded(double x, double step)
 static Status lay_grid(PrintMaking *making, Err *err)
 {
     Casing *casing = &making->casing;
-    double reach = mesh_reach(&making->outer), grid;
+    double reach = mesh_max_coordinate(&making->outer), grid;
     if (making->params.block.is_there)
         TRY(block_casing(making->tree, &making->params.block, casing, err));
     if (making->params.base.is_there)
         *casing = supportpins_base_plate(&making->outer, &making->params.base, &making->pins);
     for (int face = 0; face < CASING_FACES; face++)
         reach = fmax(reach, fabs(face_coordinate(casing, face)));
-    making->params.mesh.reach_mm = reach;
+    making->params.mesh.max_coordinate_mm = reach;
     making->solid.grid_mm = grid = mesh_grid(reach);
     Vec3 *ends[2] = {&casing->box.low, &casing->box.high};
     for (int end = 0; end < 2; end++)

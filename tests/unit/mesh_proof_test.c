@@ -315,7 +315,7 @@ static void a_radius_of_16_steps_of_the_mesh_is_enough(void **state)
                 {.a = {1, 2, 3}, .b = {1, 2, far ? 5 : -2000}, .radius_mm = 1},
                 {.a = {1, 2, 3}, .b = {4, 5, 6}, .radius_mm = least * (thin ? 0.99 : 1)}};
             const VesselTree tree = {.segments = segments, .n_segments = 2, .ids = ids};
-            assert_int_equal(reach_check(&tree, far ? 2000 : 0, &err),
+            assert_int_equal(precision_check(&tree, far ? 2000 : 0, &err),
                              thin ? STATUS_INPUT : STATUS_OK);
         }
 }

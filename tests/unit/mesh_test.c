@@ -469,7 +469,7 @@ static double outside_round(const VesselTree *tree, Vec3 x)
 static void zones_in_which_triangles_cross_are_made_again(void **state)
 {
     (void)state;
-    const MeshParams params = {.tolerance = 0.02, .threads = 1, .reach_mm = 14745.6};
+    const MeshParams params = {.tolerance = 0.02, .threads = 1, .max_coordinate_mm = 14745.6};
     Sketch sketch;
     Made made;
     sketch_begin(&sketch, vec3(0, 0, 0));

@@ -410,7 +410,7 @@ Status junctions_find(const VesselTree *tree, const MeshParams *params, Junction
     Status status;
     TRY_GOTO(vesseltree_incident(tree, &found.incident, err));
     TRY_GOTO(vesseltree_blending(tree, &found.incident, &found.blending, err));
-    TRY_GOTO(reach_check(tree, params->reach_mm, err));
+    TRY_GOTO(precision_check(tree, params->max_coordinate_mm, err));
     TRY_GOTO(reserve(&divider, err));
     TRY_GOTO(treeorder_make(tree, &found.incident, &divider.order, err));
     TRY_GOTO(freeends_find(
