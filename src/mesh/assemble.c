@@ -143,7 +143,7 @@ static void measure_rim(const Assembly *assembly, const double *angles, uint32_t
     double widest = 0;
     for (uint32_t i = 0; i < n; i++)
         widest = fmax(widest, turned_angle(angles, n, i + 1) - angles[i]);
-    double off = 1 - elementary_cos(widest / 2) + assembly->junctions->moved;
+    double off = 1 - elementary_cos(widest / 2) + assembly->junctions->max_shift;
     meshdeviation_add(assembly->deviation, radius * off, radius);
 }
 

@@ -234,7 +234,7 @@ static Status list_round(const MeshBuild *build, MeshReport *report, Err *err)
 
 static Status refuse_overlap(const MeshBuild *build, Err *err)
 {
-    const NearPair *pair = build->junctions.strangers;
+    const NearPair *pair = build->junctions.unconnected;
     const uint32_t *ids = build->tree->ids;
     return err_set(
         err, STATUS_INPUT,
@@ -338,10 +338,10 @@ Status vesselmesh_build(const VesselTree *tree, const MeshParams *params, Vessel
     TRY_GOTO(reserve_build(&build, err));
     for (int round = 0; again; round++)
         TRY_GOTO(build_once(&build, round, &made, &found, &again, err));
-    found.near = junctions->strangers;
-    found.n_near = junctions->n_strangers;
+    found.near = junctions->unconnected;
+    found.n_near = junctions->n_unconnected;
     found.n_overlapping = junctions->n_overlapping;
-    junctions->strangers = NULL;
+    junctions->unconnected = NULL;
     *mesh = made;
     *report = found;
     made = (VesselMesh){0};

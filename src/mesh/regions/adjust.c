@@ -1,6 +1,6 @@
 /* Both changes follow one scheme: change the tree a little, find its junction regions anew, and
  * repeat until they are as wanted. One step does not suffice: a change of radii or lengths makes
- * regions larger or smaller, so that vessels that shared a region before may become strangers.
+ * regions larger or smaller, so that vessels that shared a region before may become unconnected.
  *
  * Two vessels that overlap are thinned by the same factor, together with the vessels that blend
  * with them and are not much thicker, because the surface of a centre line of short steps is that
@@ -60,7 +60,7 @@ static Status thin_pairs(Parting *parting, Err *err)
     for (size_t i = 0; i < tree->n_segments; i++)
         parting->kept[i] = 1;
     for (size_t i = 0; i < parting->junctions.n_overlapping; i++) {
-        const NearPair *pair = &parting->junctions.strangers[i];
+        const NearPair *pair = &parting->junctions.unconnected[i];
         double radii = tree->segments[pair->segments[0]].radius_mm +
                        tree->segments[pair->segments[1]].radius_mm;
         double factor = (pair->gap_mm + radii) / radii * (1 - free_part);
@@ -159,7 +159,7 @@ static bool put_back_overlapping(const Lengthening *all)
     for (size_t i = 0; i < all->tips.n; i++) {
         TreeTip *tip = &all->tips.items[i];
         for (size_t k = 0; k < all->junctions.n_overlapping && tip->steps; k++) {
-            const uint32_t *pair = all->junctions.strangers[k].segments;
+            const uint32_t *pair = all->junctions.unconnected[k].segments;
             if (pair[0] != tip->segment && pair[1] != tip->segment)
                 continue;
             put_back(all, tip);

@@ -8,14 +8,14 @@
 
 /* The influence of the vessels that meet at one end of a segment. Distances are from that end. */
 typedef struct FreeEnd {
-    double even_mm;  /* from here on, the surface is nearly the cylinder */
-    double clear_mm; /* from here on, it is the cylinder as far as these vessels matter; may be
-                      * beyond the other end */
+    double near_cylinder_mm; /* from here on, the surface is nearly the cylinder */
+    double cylinder_mm; /* from here on, it is the cylinder as far as these vessels matter; may be
+                         * beyond the other end */
 } FreeEnd;
 
 /* Returns the maximum distance by which other vessels may move the surface of a tube, in units of
  * its radius: a quarter of the tolerance, within bounds. */
-double freeends_moved(const MeshParams *params);
+double freeends_max_shift(const MeshParams *params);
 
 /* The tree, with lists of segments per node. All pointers are borrowed. */
 typedef struct FreeEndInput {

@@ -25,11 +25,11 @@ typedef struct Junctions {
                          * one region */
     bool *is_close;     /* per segment: its planes are so near its ends that the rims there are not
                          * circles */
-    double moved;       /* maximum distance by which other vessels move a tube's surface, in units
+    double max_shift;   /* maximum distance by which other vessels move a tube's surface, in units
                          * of its radius */
-    NearPair *strangers; /* near pairs that share no region, by rising gap */
-    size_t n_strangers;
-    size_t n_overlapping; /* number of pairs in `strangers` with a gap below 0 */
+    NearPair *unconnected; /* near pairs that share no region, by rising gap */
+    size_t n_unconnected;
+    size_t n_overlapping; /* number of pairs in `unconnected` with a gap below 0 */
 } Junctions;
 
 /* Cuts the tree. The result does not depend on the number of threads.
