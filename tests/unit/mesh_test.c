@@ -237,13 +237,13 @@ static void a_zone_of_too_many_cells_is_refused(void **state)
     JunctionPlan plan;
     Octree tree = {0};
     Err err;
-    CellSize size = {.ratio = 0.5, .bending = 0.2, .most = 2385};
+    CellSize size = {.ratio = 0.5, .bending = 0.2, .max_cells = 2385};
     sketch_trunk(&sketch);
     cut(&sketch.tree, &junctions);
     assert_int_equal(junctionplan_make(&sketch.tree, &junctions, 0, &plan, NULL), STATUS_OK);
     assert_int_equal(octree_build(&tree, &plan, &size, &err), STATUS_INFEASIBLE);
     assert_non_null(strstr(err.text, "its surface needs more than 2385 cells"));
-    size.most = 100000;
+    size.max_cells = 100000;
     assert_int_equal(octree_build(&tree, &plan, &size, NULL), STATUS_OK);
     octree_release(&tree);
     junctionplan_release(&plan);

@@ -54,7 +54,8 @@ static bool is_inside(const FaceRefining *refining, Vec3 x, bool otherwise)
     if (!cell || cell->state == CELL_OUTSIDE)
         return false;
     if (cell->state == CELL_ACTIVE)
-        return localfield_value(refining->field, &tree->kept, &cell->part, x).phi >= FIELD_LEVEL;
+        return localfield_value(refining->field, &tree->leaf_fields, &cell->local, x).phi >=
+               FIELD_LEVEL;
     return cell->state == CELL_INSIDE || otherwise;
 }
 
@@ -87,11 +88,12 @@ static double measure_at(const FaceRefining *refining, Vec3 x, Vec3 normal, doub
     const Octree *tree = refining->tree;
     const OctreeCell *cell = octree_leaf(tree, x);
     Vec3 gradient;
-    if (!cell || cell->state == CELL_BEHIND)
+    if (!cell || cell->state == CELL_BEYOND_PLANE)
         return 0;
     if (cell->state != CELL_ACTIVE)
         return search_wall(refining, x, cell->state == CELL_INSIDE, normal, radius_mm);
-    FieldValue value = localfield_gradient(refining->field, &tree->kept, &cell->part, x, &gradient);
+    FieldValue value =
+        localfield_gradient(refining->field, &tree->leaf_fields, &cell->local, x, &gradient);
     double slope = vec3_length(gradient), off = fabs(value.phi - FIELD_LEVEL) / slope;
     if (off <= near * radius_mm && slope * radius_mm >= steep)
         return off;
@@ -149,8 +151,8 @@ static bool find_point(const FaceRefining *refining, uint32_t a, uint32_t b, Pat
         const OctreeCell *cell = octree_leaf(refining->tree, x);
         if (!cell || cell->state != CELL_ACTIVE || vec3_distance(x, middle) > most)
             return false;
-        FieldValue value =
-            localfield_gradient(refining->field, &refining->tree->kept, &cell->part, x, &gradient);
+        FieldValue value = localfield_gradient(refining->field, &refining->tree->leaf_fields,
+                                               &cell->local, x, &gradient);
         double steepness = vec3_length(gradient);
         if (fabs(value.phi - FIELD_LEVEL) <= precisely * FIELD_LEVEL) {
             *point = patch_surface_point(refining->field, x, &value, gradient);

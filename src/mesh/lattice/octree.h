@@ -8,8 +8,8 @@
 typedef enum CellState {
     CELL_OUTSIDE, /* all of the cell is outside */
     CELL_INSIDE,
-    CELL_ACTIVE, /* the surface may pass the cell */
-    CELL_BEHIND  /* behind the plane of a stub, where no surface is made */
+    CELL_ACTIVE,      /* the surface may pass the cell */
+    CELL_BEYOND_PLANE /* behind the plane of a stub, where no surface is made */
 } CellState;
 
 /* The cube from `at` to `at` + 1, in units of the side of its level, from the tree's corner. */
@@ -17,8 +17,9 @@ typedef struct OctreeCell {
     uint32_t children; /* index of the first of eight, x fastest; 0: a leaf */
     int32_t at[3];
     uint8_t level;
-    uint8_t state;   /* CellState */
-    LocalField part; /* of an active leaf: what matters within a cell's width, in Octree.kept */
+    uint8_t state; /* CellState */
+    LocalField
+        local; /* of an active leaf: what matters within a cell's width, in Octree.leaf_fields */
 } OctreeCell;
 
 /* The greatest level; the root has level 0. */
@@ -30,18 +31,18 @@ typedef struct Octree {
     size_t n_cells, capacity;
     Vec3 corner;
     double side; /* of the root, mm */
-    LocalFieldPool kept, stack;
+    LocalFieldPool leaf_fields, stack;
 } Octree;
 
 typedef struct CellSize {
     double ratio;   /* maximum side of a cell, in local radii */
     double bending; /* maximum side times the turn of the normal across the cell, in local radii */
-    size_t most;    /* maximum number of cells */
+    size_t max_cells; /* maximum number of cells */
 } CellSize;
 
 /* Builds the tree of a region; a tree that was built before is replaced, and its memory is used
  * again. Cells with a common face or edge differ by at most one level. Errors: STATUS_INFEASIBLE if
- * more than size->most cells are needed, or as localfield_refuse; STATUS_MEMORY. */
+ * more than size->max_cells cells are needed, or as localfield_refuse; STATUS_MEMORY. */
 MUST_CHECK Status octree_build(Octree *tree, const JunctionPlan *plan, const CellSize *size,
                                Err *err);
 void octree_release(Octree *tree);

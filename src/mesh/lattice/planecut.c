@@ -121,8 +121,8 @@ static void move_to_surface(const PlaneCut *cut, const BranchStub *stub, Vec3 aw
         return;
     for (int i = 0; i < SURFACE_STEPS; i++) {
         Vec3 gradient;
-        FieldValue value =
-            localfield_gradient(cut->field, &cut->tree->kept, &cell->part, point->x, &gradient);
+        FieldValue value = localfield_gradient(cut->field, &cut->tree->leaf_fields, &cell->local,
+                                               point->x, &gradient);
         double slope = vec3_dot(gradient, away), most = 0.1 * stub->radius_mm;
         double by = (FIELD_LEVEL - value.phi) / slope;
         if (!(slope < 0) || !(fabs(by) < most))
