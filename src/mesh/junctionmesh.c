@@ -98,8 +98,9 @@ static Status follow_edges(const JunctionBuild *build, size_t *n_edges, bool *so
         if (keymap_find(&workspace->edges, (uint64_t)b << 32 | a))
             continue;
         open++;
-        *sound = *sound && patch->points[a].stub != NO_STUB &&
-                 patch->points[a].stub == patch->points[b].stub && workspace->next.items[a] == NONE;
+        *sound = *sound && patch->points[a].rim_stub != NO_STUB &&
+                 patch->points[a].rim_stub == patch->points[b].rim_stub &&
+                 workspace->next.items[a] == NONE;
         workspace->next.items[a] = b;
     }
     *n_edges = (corners + open) / 2;
@@ -124,7 +125,7 @@ static bool add_rim(const JunctionBuild *build, size_t stub_index, uint32_t *n_p
     uint32_t start = NONE, total = 0, n = 0;
     double lowest = HUGE_VAL;
     for (uint32_t i = 0; i < patch->n_points; i++) {
-        if (patch->points[i].stub != stub_index)
+        if (patch->points[i].rim_stub != stub_index)
             continue;
         double angle = angle_of(segment, patch->points[i].x);
         total++;
@@ -159,7 +160,7 @@ static Status prove(const JunctionBuild *build, bool *sound)
     if (!*sound)
         return STATUS_OK;
     for (size_t i = 0; i < patch->n_points; i++)
-        n_on_rims += patch->points[i].stub != NO_STUB;
+        n_on_rims += patch->points[i].rim_stub != NO_STUB;
     TRY(mem_calloc(&mesh->rims, n_stubs, sizeof *mesh->rims, "rims", build->err));
     TRY(mem_calloc(&mesh->rim_points, n_on_rims + 1, sizeof *mesh->rim_points, "rims", build->err));
     mesh->n_rims = n_stubs;

@@ -172,7 +172,7 @@ static Status mark_edge(const FaceRefining *refining, uint32_t a, uint32_t b, bo
     const PatchPoint *points = refining->patch->points;
     uint32_t *place;
     PatchPoint point;
-    bool is_new, on_rim = points[a].stub != NO_STUB && points[a].stub == points[b].stub;
+    bool is_new, on_rim = points[a].rim_stub != NO_STUB && points[a].rim_stub == points[b].rim_stub;
     *marked = false;
     if (on_rim)
         return STATUS_OK;

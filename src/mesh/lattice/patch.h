@@ -8,12 +8,12 @@
 #include <stdint.h>
 
 typedef struct PatchPoint {
-    Vec3 x;           /* mm */
-    Vec3 normal;      /* unit, outward */
-    double radius_mm; /* radius of the vessel whose term is largest here */
-    uint32_t segment; /* that vessel */
-    uint16_t tube;    /* the branch stub of that vessel, or NO_STUB */
-    uint16_t stub;    /* the stub whose rim the point is on, or NO_STUB */
+    Vec3 x;               /* mm */
+    Vec3 normal;          /* unit, outward */
+    double radius_mm;     /* radius of the vessel whose term is largest here */
+    uint32_t segment;     /* that vessel */
+    uint16_t vessel_stub; /* the branch stub of that vessel, or NO_STUB */
+    uint16_t rim_stub;    /* the stub whose rim the point is on, or NO_STUB */
 } PatchPoint;
 
 /* Indices of three points, counterclockwise seen from outside. */

@@ -27,7 +27,7 @@ void planecutter_release(PlaneCutter *cutter);
  * cut leaves no slivers. The shift is at most `ratio` / 4 radii, and at most PLANE_MOVE radii
  * (CLOSE_MOVE if the stub is_close). `ratio` is the cell size over the local radius. A new rim
  * point is on the circle about the axis, or on the surface if the stub is_close. Its
- * PatchPoint.stub is the index of the stub.
+ * PatchPoint.rim_stub is the index of the stub.
  *
  * valid    receives false if one triangle has points beyond two different planes, else true.
  * Errors   STATUS_MEMORY. */
