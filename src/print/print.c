@@ -115,11 +115,11 @@ static Status prepare(PrintMaking *making, Err *err)
     PrintReport *report = &making->report;
     TRY(take_outer(making, err));
     if (params->part_overlaps)
-        TRY(vesseltree_part(&making->outer, &params->mesh, &report->thinned, &report->n_thinned,
-                            err));
+        TRY(vesseltree_thin_overlaps(&making->outer, &params->mesh, &report->thinned,
+                                     &report->n_thinned, err));
     if (print_is_hollow(params))
-        TRY(vesseltree_free_ends(&making->outer, &params->mesh, &report->longer, &report->n_longer,
-                                 err));
+        TRY(vesseltree_lengthen_ends(&making->outer, &params->mesh, &report->longer,
+                                     &report->n_longer, err));
     TRY(take_changes(making, err));
     TRY(vesseltree_closest_pair(&making->outer, &params->mesh, &report->closest,
                                 &report->has_closest, err));

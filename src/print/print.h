@@ -34,7 +34,7 @@ typedef struct PrintBase {
 
 typedef struct PrintParams {
     MeshParams mesh;
-    bool part_overlaps; /* thin walls and vessels that overlap [vesseltree_part] */
+    bool part_overlaps; /* thin walls and vessels that overlap [vesseltree_thin_overlaps] */
     /* Thickness of a wall about the vessels, which become its lumen: wall_mm + wall_ratio * radius.
      * Both 0: solid vessels. */
     double wall_mm, wall_ratio;

@@ -89,8 +89,8 @@ static Status list_thinned(const Parting *parting, uint32_t **list, size_t *n, E
     return STATUS_OK;
 }
 
-Status vesseltree_part(VesselTree *tree, const MeshParams *params, uint32_t **thinned, size_t *n,
-                       Err *err)
+Status vesseltree_thin_overlaps(VesselTree *tree, const MeshParams *params, uint32_t **thinned,
+                                size_t *n, Err *err)
 {
     Parting parting = {.tree = tree};
     Status status;
@@ -179,7 +179,7 @@ static bool lengthen(const Lengthening *all)
         uint32_t node = all->tree->nodes[tip->segment][tip->end];
         if (tip->is_stuck || all->junctions.of_node[node] == NO_JUNCTION)
             continue;
-        if ((tip->steps + 1) * end_step > LENGTHENED_MOST) {
+        if ((tip->steps + 1) * end_step > MAX_LENGTHENING) {
             put_back(all, tip);
         } else {
             tip->steps++;
@@ -204,8 +204,8 @@ static Status list_longer(const Lengthening *all, uint32_t **list, size_t *n, Er
     return STATUS_OK;
 }
 
-Status vesseltree_free_ends(VesselTree *tree, const MeshParams *params, uint32_t **lengthened,
-                            size_t *n, Err *err)
+Status vesseltree_lengthen_ends(VesselTree *tree, const MeshParams *params, uint32_t **lengthened,
+                                size_t *n, Err *err)
 {
     Lengthening all = {.tree = tree};
     Status status;
