@@ -14,7 +14,7 @@ typedef enum PrintPorts { PORTS_NONE, PORTS_INLET, PORTS_ALL } PrintPorts;
 
 /* A block in which the vessels are hollow. */
 typedef struct PrintBlock {
-    bool is_there;
+    bool is_wanted;
     bool is_round;     /* a cylinder along the coordinate axis that the first vessel is nearest to,
                         * which     vessels leave through its two flat faces; else a box */
     double size_mm[3]; /* of a box: along x, y, z; of a cylinder: diameter, height; 0: from the
@@ -27,9 +27,9 @@ typedef struct PrintBlock {
 
 /* A plate below the vessels, across the z axis, on which they stand by support pins. */
 typedef struct PrintBase {
-    bool is_there;
+    bool is_wanted;
     double thickness_mm;
-    double least_radius_mm; /* minimum radius of a pin */
+    double min_pin_radius_mm; /* minimum radius of a pin */
 } PrintBase;
 
 typedef struct PrintParams {
@@ -46,18 +46,18 @@ typedef struct PrintParams {
 
 /* The facts about a print. All arrays are owned. */
 typedef struct PrintReport {
-    size_t rings;      /* number of rings that join surfaces */
-    size_t openings;   /* of lumens: ends of vessels, or ports of a block */
-    size_t pins;       /* number of pins between vessels and the base */
-    size_t hanging;    /* number of places that need a pin, but where no pin is possible */
-    size_t cavities;   /* number of lumens without an opening */
-    NearPair closest;  /* the vessels nearest to each other that do not belong together, with their
-                          walls */
-    bool has_closest;  /* false: there are no such vessels */
-    uint32_t *closed;  /* segments with an end that is not open */
-    uint32_t *longer;  /* segments that were made longer, so that their ends are flat */
-    uint32_t *thinned; /* segments that were made thinner, by part_overlaps */
-    size_t n_closed, n_longer, n_thinned;
+    size_t rings;       /* number of rings that join surfaces */
+    size_t openings;    /* of lumens: ends of vessels, or ports of a block */
+    size_t pins;        /* number of pins between vessels and the base */
+    size_t unsupported; /* number of places that need a pin, but where no pin is possible */
+    size_t cavities;    /* number of lumens without an opening */
+    NearPair closest;   /* the vessels nearest to each other that do not belong together, with their
+                           walls */
+    bool has_closest;   /* false: there are no such vessels */
+    uint32_t *closed;   /* segments with an end that is not open */
+    uint32_t *lengthened; /* segments that were made longer, so that their ends are flat */
+    uint32_t *thinned;    /* segments that were made thinner, by part_overlaps */
+    size_t n_closed, n_lengthened, n_thinned;
     double lumen_mm3; /* volume of the vessels */
     double outer_mm3; /* volume that the outer surface encloses; without a wall or block, that of
                        * the vessels */
@@ -74,13 +74,13 @@ static inline bool print_has_wall(const PrintParams *params)
 /* Returns true if the print has lumens. */
 static inline bool print_is_hollow(const PrintParams *params)
 {
-    return print_has_wall(params) || params->block.is_there;
+    return print_has_wall(params) || params->block.is_wanted;
 }
 
 /* Returns true if several surfaces are joined at flat ends. */
 static inline bool print_is_joined(const PrintParams *params)
 {
-    return print_is_hollow(params) || params->base.is_there;
+    return print_is_hollow(params) || params->base.is_wanted;
 }
 
 /* Makes the solid of a tree and proves its topology. The result does not depend on the number of

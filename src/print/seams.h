@@ -14,7 +14,7 @@ typedef struct Seams {
     uint32_t *root;  /* per surface: sets of joined surfaces [base/sets.h] */
     uint32_t *rings; /* per surface that represents a set: the number of rings in the set */
     size_t n_rings;
-    bool *is_there; /* per surface: it is part of the solid */
+    bool *is_used; /* per surface: it is part of the solid */
 } Seams;
 
 /* Makes a graph without surfaces. Release it with seams_release. Errors: STATUS_MEMORY. */
@@ -30,7 +30,7 @@ void seams_ring(Seams *seams, uint32_t label, uint32_t other);
 
 /* Returns the number of trees with a surface that no ring joins. `kind` is MESH_LUMEN, or 0 for the
  * outer side. */
-size_t seams_lone(const Seams *seams, uint32_t kind);
+size_t seams_count_unjoined(const Seams *seams, uint32_t kind);
 
 /* Fills the fields of the report that meshcheck_topology and meshcheck_crossings fill, and the
  * expected numbers. Errors: STATUS_DIFFERS if a part of the solid is not connected, or does not

@@ -75,7 +75,7 @@ static Status find_feet(Standing *standing)
         PinFoot foot;
         if (!is_lowest(standing, node, &foot))
             continue;
-        foot.radius_mm = fmax(pin_part * foot.radius_mm, standing->base->least_radius_mm);
+        foot.radius_mm = fmax(pin_part * foot.radius_mm, standing->base->min_pin_radius_mm);
         TRY(mem_reserve(&standing->feet, &standing->foot_capacity, standing->n_feet + 1,
                         sizeof *standing->feet, "pins", standing->err));
         standing->feet[standing->n_feet++] = foot;
