@@ -42,7 +42,7 @@ bool body_meets(const Body *body, const VoxelCell *cell);
 /* Returns true if the whole cell lies in the body. */
 bool body_holds(const Body *body, const VoxelCell *cell);
 /* Returns the fraction of the cell, in [0, 1], that lies in the body, with an error of 1e-7. */
-double body_part(const Body *body, const VoxelCell *cell);
+double body_fraction(const Body *body, const VoxelCell *cell);
 
 /* Intersects a body with the line through `at` parallel to axis 0, 1 or 2. Returns false if they do
  * not meet. `low` and `high` receive the ends of the chord, in mm from `at`. Before, `wider` mm are

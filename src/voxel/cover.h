@@ -5,7 +5,7 @@
 #include "base/base.h"
 #include "voxel/body.h"
 
-/* Workspace of cover_part. Zero it before first use; release it with cover_release. */
+/* Workspace of cover_fraction. Zero it before first use; release it with cover_release. */
 typedef struct CoverWorkspace {
     uint32_t *lists;
     double (*chords)[2];
@@ -18,9 +18,9 @@ void cover_release(CoverWorkspace *workspace);
 
 /* Returns the fraction of the cell, in [0, 1], that lies in at least one of the n bodies of `list`.
  * The workspace must be reserved for n bodies. If one body meets the cell, the result is that of
- * body_part. Otherwise its error is at most 0.01, and 0.0014 in the root mean square. The order of
- * the list does not matter. */
-double cover_part(const Body *bodies, const uint32_t *list, size_t n, const VoxelCell *cell,
-                  CoverWorkspace *workspace);
+ * body_fraction. Otherwise its error is at most 0.01, and 0.0014 in the root mean square. The order
+ * of the list does not matter. */
+double cover_fraction(const Body *bodies, const uint32_t *list, size_t n, const VoxelCell *cell,
+                      CoverWorkspace *workspace);
 
 #endif

@@ -244,7 +244,7 @@ Status volume_begin(VolumeStream *stream, const VoxelGrid *grid, bool parts, con
                     Err *err)
 {
     const VolumeFormat *format = stream->format;
-    VolumePart part = {0};
+    VolumeChunk part = {0};
     HeaderBytes header = {0};
     Status status;
     stream->crc = (uint32_t)crc32(0, NULL, 0);
@@ -292,7 +292,7 @@ static void swap_bytes(uint8_t *samples, size_t n, size_t size)
 /* Level 1 takes a sixth of the time of level 6, for files that are 6 % larger. */
 enum { LEVEL = 1, RAW = -15, MEMORY_LEVEL = 8 };
 
-static Status deflate_part(const uint8_t *samples, size_t n, VolumePart *out, Err *err)
+static Status deflate_part(const uint8_t *samples, size_t n, VolumeChunk *out, Err *err)
 {
     z_stream zlib = {0};
     if (deflateInit2(&zlib, LEVEL, Z_DEFLATED, RAW, MEMORY_LEVEL, Z_DEFAULT_STRATEGY) != Z_OK)
@@ -312,10 +312,10 @@ done:
     return status;
 }
 
-Status volume_pack(const VolumeStream *stream, uint8_t *samples, size_t n, VolumePart *out,
+Status volume_pack(const VolumeStream *stream, uint8_t *samples, size_t n, VolumeChunk *out,
                    Err *err)
 {
-    VolumePart part = {.plain = n, .n = n};
+    VolumeChunk part = {.plain = n, .n = n};
     if (stream->format->big_endian && is_little_endian())
         swap_bytes(samples, n, samples_of[stream->type].size);
     if (stream->format->deflated) {
@@ -328,7 +328,7 @@ Status volume_pack(const VolumeStream *stream, uint8_t *samples, size_t n, Volum
     return STATUS_OK;
 }
 
-Status volume_put(VolumeStream *stream, const VolumePart *part, Err *err)
+Status volume_put(VolumeStream *stream, const VolumeChunk *part, Err *err)
 {
     if (fwrite(part->bytes, 1, part->n, stream->to) != part->n)
         return err_set(err, STATUS_IO, "cannot be written: %s", strerror(errno));

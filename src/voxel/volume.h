@@ -64,18 +64,18 @@ MUST_CHECK Status volume_begin(VolumeStream *stream, const VoxelGrid *grid, bool
 void volume_end(VolumeStream *stream);
 
 /* Samples in the form in which the file holds them. */
-typedef struct VolumePart {
+typedef struct VolumeChunk {
     uint8_t *bytes;  /* owned */
     size_t n, plain; /* number of bytes, and of bytes before compression */
     uint32_t crc;
-} VolumePart;
+} VolumeChunk;
 
 /* Converts `n` bytes of samples in the machine's byte order to a part of the file. Changes the
  * samples. Several threads may convert parts of one stream at the same time. Free out->bytes.
  * Errors: STATUS_MEMORY. */
 MUST_CHECK Status volume_pack(const VolumeStream *stream, uint8_t *samples, size_t n,
-                              VolumePart *out, Err *err);
+                              VolumeChunk *out, Err *err);
 /* Appends the next part to the file. Errors: STATUS_IO; the sentence does not name the file. */
-MUST_CHECK Status volume_put(VolumeStream *stream, const VolumePart *part, Err *err);
+MUST_CHECK Status volume_put(VolumeStream *stream, const VolumeChunk *part, Err *err);
 
 #endif

@@ -13,7 +13,7 @@ enum { CHUNK_VOXELS = 1 << 18, CHUNKS_A_THREAD = 4, VOLUMES = 3 };
 
 typedef struct VoxelChunk {
     RowBlock rows;
-    VolumePart parts[VOLUMES];
+    VolumeChunk parts[VOLUMES];
 } VoxelChunk;
 
 typedef struct VoxelWork {
