@@ -289,7 +289,7 @@ Status claims_make(const RowSource *source, const Geometry *geometry, Claims *ou
     Claims made = {0};
     Status status;
     TRY_GOTO(claimer_init(&claimer, err));
-    TRY_GOTO(hold_all(&claimer, geometry, &made.taken, err));
+    TRY_GOTO(hold_all(&claimer, geometry, &made.n_taken, err));
     TRY_GOTO(mem_calloc(&made.claim, claimer.n_axes, sizeof *made.claim, "labels", err));
     for (; made.n < claimer.held.n; made.n++) {
         const Held *held = &claimer.held.items[made.n];

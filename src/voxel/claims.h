@@ -14,7 +14,7 @@ typedef struct Claim {
 typedef struct Claims {
     Claim *claim; /* owned */
     size_t n;
-    size_t taken; /* number of claims on voxels of which another label fills more */
+    size_t n_taken; /* number of claims on voxels of which another label fills more */
 } Claims;
 
 /* Finds a voxel for each label, among those that its segments meet. Release *out with

@@ -25,14 +25,14 @@ double sample_full(SampleType type);
 typedef struct VolumeFormat {
     const char *suffix; /* ".nii.gz" */
     const char *description;
-    int64_t most;   /* maximum number of voxels along an axis */
-    unsigned types; /* sample types that it can hold: bits 1 << SampleType */
+    int64_t max_side; /* maximum number of voxels along an axis */
+    unsigned types;   /* sample types that it can hold: bits 1 << SampleType */
     bool deflated, big_endian;
     bool header_deflated; /* the header is compressed with the samples */
     bool is_density;      /* for POV-Ray: holds filled fractions, and no labels */
-    /* Appends the header. `parts`: the samples are filled fractions, not labels. `about`: a line
-     * that describes the volume. */
-    void (*put_header)(const VoxelGrid *grid, SampleType type, bool parts, const char *about,
+    /* Appends the header. `is_fraction`: the samples are filled fractions, not labels. `about`: a
+     * line that describes the volume. */
+    void (*put_header)(const VoxelGrid *grid, SampleType type, bool is_fraction, const char *about,
                        Text *out);
 } VolumeFormat;
 
@@ -42,22 +42,23 @@ extern const VolumeFormat volume_formats[];
 const VolumeFormat *volume_format_find(const char *path);
 
 /* Checks that a format can hold a volume. Errors: STATUS_INFEASIBLE if there are too many voxels
- * along an axis; STATUS_USAGE if the format has no samples of this type, or if `parts` is false and
- * it holds no labels. */
+ * along an axis; STATUS_USAGE if the format has no samples of this type, or if `is_fraction` is
+ * false and it holds no labels. */
 MUST_CHECK Status volume_check(const VolumeFormat *format, const VoxelGrid *grid, SampleType type,
-                               bool parts, Err *err);
+                               bool is_fraction, Err *err);
 
 /* A file that is being written. The caller sets the first three members; all are borrowed. */
 typedef struct VolumeStream {
     const VolumeFormat *format;
     SampleType type;
     FILE *to;
-    uint32_t crc;   /* checksum of what was compressed so far */
-    uint64_t plain; /* its size before compression */
+    uint32_t crc;            /* checksum of what was compressed so far */
+    uint64_t n_uncompressed; /* its size before compression */
 } VolumeStream;
 
-/* Writes the header. `parts` and `about` as VolumeFormat.put_header. Errors: STATUS_MEMORY. */
-MUST_CHECK Status volume_begin(VolumeStream *stream, const VoxelGrid *grid, bool parts,
+/* Writes the header. `is_fraction` and `about` as VolumeFormat.put_header. Errors: STATUS_MEMORY.
+ */
+MUST_CHECK Status volume_begin(VolumeStream *stream, const VoxelGrid *grid, bool is_fraction,
                                const char *about, Err *err);
 /* Writes what follows the last samples. The owner of the file checks whether all was written
  * [base/file.h]. */
@@ -65,8 +66,8 @@ void volume_end(VolumeStream *stream);
 
 /* Samples in the form in which the file holds them. */
 typedef struct VolumeChunk {
-    uint8_t *bytes;  /* owned */
-    size_t n, plain; /* number of bytes, and of bytes before compression */
+    uint8_t *bytes;           /* owned */
+    size_t n, n_uncompressed; /* number of bytes, and of bytes before compression */
     uint32_t crc;
 } VolumeChunk;
 

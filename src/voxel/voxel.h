@@ -15,11 +15,11 @@ MUST_CHECK Status voxelgrid_make(const Geometry *geometry, Vec3 step, VoxelGrid 
 
 /* Estimated work for a volume. */
 typedef struct VoxelEstimate {
-    double voxels;  /* number of voxels */
-    double walls;   /* number of partly filled voxels */
-    double bytes;   /* size of all files */
-    double memory;  /* bytes, of the whole program */
-    double seconds; /* on `threads` threads of a processor of 2023 */
+    double voxels;         /* number of voxels */
+    double partial_voxels; /* number of partly filled voxels */
+    double bytes;          /* size of all files */
+    double memory;         /* bytes, of the whole program */
+    double seconds;        /* on `threads` threads of a processor of 2023 */
 } VoxelEstimate;
 
 typedef struct VoxelParams {
@@ -35,10 +35,10 @@ typedef struct VoxelParams {
 } VoxelParams;
 
 typedef struct VoxelReport {
-    double union_mm3;  /* volume of the vessels, before rounding to steps of the samples */
-    double volume_mm3; /* volume of the written samples */
-    int64_t filled;    /* number of voxels that are not 0 */
-    size_t claimed;    /* number of labels that fill most of no voxel and were given one */
+    double union_mm3;      /* volume of the vessels, before rounding to steps of the samples */
+    double volume_mm3;     /* volume of the written samples */
+    int64_t filled;        /* number of voxels that are not 0 */
+    size_t n_given_voxels; /* number of labels that fill most of no voxel and were given one */
 } VoxelReport;
 
 /* Estimates the work of voxels_write. O(number of segments). */
