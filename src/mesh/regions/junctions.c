@@ -98,9 +98,9 @@ static bool join_path(const Divider *divider, uint32_t a, uint32_t b)
     const TreeOrder *order = &divider->order;
     bool changed = false;
     while (a != b) {
-        uint32_t *later = order->place[a] > order->place[b] ? &a : &b;
-        changed |= join_nodes(divider, *later, order->up[*later]);
-        *later = order->up[*later];
+        uint32_t *later = order->position[a] > order->position[b] ? &a : &b;
+        changed |= join_nodes(divider, *later, order->previous[*later]);
+        *later = order->previous[*later];
     }
     return changed;
 }

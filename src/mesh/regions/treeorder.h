@@ -8,9 +8,10 @@
 /* The nodes of each tree in order from its lowest node outwards, one branch after the other. All
  * arrays are per node and owned. */
 typedef struct TreeOrder {
-    uint32_t *up; /* the node before it on the path from the lowest node; at the lowest, itself */
-    uint32_t *place; /* its position in the order */
-    uint32_t *last;  /* the position of the last node beyond it */
+    uint32_t
+        *previous; /* the node before it on the path from the lowest node; at the lowest, itself */
+    uint32_t *position;    /* its position in the order */
+    uint32_t *last_beyond; /* the position of the last node beyond it */
 } TreeOrder;
 
 /* Orders the nodes. `incident` lists the segments at each node. Release the order with
@@ -22,8 +23,8 @@ void treeorder_release(TreeOrder *order);
 /* Returns true if the path from the lowest node to `node` leads through `through`. */
 static inline bool treeorder_is_beyond(const TreeOrder *order, uint32_t node, uint32_t through)
 {
-    return order->place[node] >= order->place[through] &&
-           order->place[node] <= order->last[through];
+    return order->position[node] >= order->position[through] &&
+           order->position[node] <= order->last_beyond[through];
 }
 
 /* Returns the end, 0 or 1, of a segment from which another segment of the same tree is reached. */
