@@ -287,7 +287,7 @@ static Status finish(const JunctionBuild *build, const MeshFineness *fineness, b
     TRY(collapse_apply(&workspace->collapser, patch, fineness->sagitta, build->err));
     build->mesh->deviation = (MeshDeviation){0};
     size_t n_points = patch->n_points;
-    TRY(facerefine_apply(&workspace->refiner, &build->surface, fineness->split,
+    TRY(facerefine_apply(&workspace->refiner, &build->surface, fineness->split_distance,
                          &build->mesh->deviation, build->err));
     TRY(prove(build, sound));
     *build->crossing = PATCHCROSS_NONE;
@@ -309,9 +309,9 @@ static Status attempt(const JunctionBuild *build, const MeshFineness *fineness, 
     TRY(finish(build, fineness, sound));
     if (*sound || *build->crossing == PATCHCROSS_ROUNDING)
         return STATUS_OK;
-    TRY(repair_apply(&workspace->repairer, &workspace->lattice, &build->surface, fineness->farthest,
-                     hole, build->err));
-    return *hole <= fineness->farthest ? finish(build, fineness, sound) : STATUS_OK;
+    TRY(repair_apply(&workspace->repairer, &workspace->lattice, &build->surface,
+                     fineness->max_repair, hole, build->err));
+    return *hole <= fineness->max_repair ? finish(build, fineness, sound) : STATUS_OK;
 }
 
 static bool is_member(const JunctionField *field, uint32_t group, uint32_t term)
@@ -479,7 +479,7 @@ static Status make_sound(const JunctionBuild *build, MeshFineness *used, bool *s
             *sound ? 0
                    : steps_finer(build, hole, before, used->cells.ratio, MAX_REFINEMENTS - repeats);
         if (steps && is_own_tunnel(build, hole, before))
-            used->farthest = max_closed_tunnel;
+            used->max_repair = max_closed_tunnel;
         before = hole;
         make_finer(used, elementary_pow(refinement_factor, steps));
     }
@@ -495,9 +495,10 @@ static Status come_near(const JunctionBuild *build, MeshFineness *used)
     MeshFineness tried = *used;
     bool sound = true, is_nearest = true;
     double hole, off = build->mesh->deviation.ratio;
-    for (int i = 0; i < MAX_ACCURACY_RETRIES && off > used->worst; i++) {
+    for (int i = 0; i < MAX_ACCURACY_RETRIES && off > used->rebuild_distance; i++) {
         int repeats = build->mesh->repeats;
-        make_finer(&tried, fmax(min_retry_factor, refinement_factor * used->worst / off));
+        make_finer(&tried,
+                   fmax(min_retry_factor, refinement_factor * used->rebuild_distance / off));
         junctionmesh_release(build->mesh);
         TRY(attempt(build, &tried, &sound, &hole));
         build->mesh->repeats = repeats + 1;

@@ -46,11 +46,12 @@ typedef enum SegmentStatus {
 /* How fine a mesh is. All but grid_mm are in units of the local radius. */
 typedef struct MeshFineness {
     CellSize cells;
-    double sagitta;  /* maximum distance of an edge from the surface when points are removed */
-    double split;    /* triangles that are farther from the surface are split */
-    double farthest; /* maximum distance from the surface of points that close a gap */
-    double worst; /* regions with a triangle farther from the surface are built with finer cells */
-    double grid_mm; /* coordinates are rounded to integer multiples of it */
+    double sagitta; /* maximum distance of an edge from the surface when points are removed */
+    double split_distance;   /* triangles that are farther from the surface are split */
+    double max_repair;       /* maximum distance from the surface of points that close a gap */
+    double rebuild_distance; /* regions with a triangle farther from the surface are built with
+                                finer cells */
+    double grid_mm;          /* coordinates are rounded to integer multiples of it */
 } MeshFineness;
 
 /* A triangle and the Morton code of its first point. */
