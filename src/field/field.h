@@ -65,11 +65,11 @@ double potential_log_form(double phi);
 MUST_CHECK Status surface_count_hidden(const Geometry *geometry, size_t *count, Err *err);
 
 /* Planes of a picture of the surface, rows from the top. All arrays are borrowed. */
-typedef struct SurfaceSight {
+typedef struct SurfacePlanes {
     const float *depth;  /* per pixel: mm along the ray; INFINITY where nothing is hit */
     const float *normal; /* per pixel: three components of the unit normal */
     const uint32_t *ids; /* per pixel: id of the segment of the geometry, where something is hit */
-} SurfaceSight;
+} SurfacePlanes;
 
 /* Finds how far apart the depths of two pictures may be.
  *
@@ -80,7 +80,7 @@ typedef struct SurfaceSight {
  *          has a hit, HUGE_VAL where the ray grazes a surface.
  * Errors   STATUS_MEMORY. */
 MUST_CHECK Status surface_tolerance(const Geometry *geometry, const Camera *camera, ErfForm erf,
-                                    const SurfaceSight *seen, const SurfaceSight *exact,
+                                    const SurfacePlanes *seen, const SurfacePlanes *exact,
                                     float *allowed, Err *err);
 
 #endif
