@@ -43,7 +43,7 @@ static Status wall_vessels(VesselTree *vessels, const GeometryParams *params, Ve
     MeshReport report;
     uint32_t *thinned = NULL;
     if (params->part_overlaps)
-        TRY(vesseltree_part(vessels, &params->mesh, &thinned, &counted->thinned, err));
+        TRY(vesseltree_thin_overlaps(vessels, &params->mesh, &thinned, &counted->thinned, err));
     free(thinned);
     TRY(vesselmesh_build(vessels, &params->mesh, mesh, &report, err));
     Status status = meshreport_check(&report, vessels, err);
