@@ -29,7 +29,7 @@ typedef enum RenderKernels {
 /* The names of RenderKernels, in order; NULL ends the list. */
 extern const char *const render_kernel_names[];
 
-enum { RENDER_MOST_ANTIALIAS = 9 };
+enum { RENDER_MAX_ANTIALIAS = 9 };
 
 typedef struct RenderParams {
     /* How primitives and blobs are drawn; an isosurface has an engine of its own. For every
@@ -40,7 +40,7 @@ typedef struct RenderParams {
     RenderKernels kernels;
     int threads;                /* 0: all processors */
     int antialias;              /* 1: one ray through each pixel's centre. N in
-                                 * 2..RENDER_MOST_ANTIALIAS: that ray and N x N more, with the
+                                 * 2..RENDER_MAX_ANTIALIAS: that ray and N x N more, with the
                                  * positions and weights of POV-Ray's +A0.0 +AM1 +RN -J */
     double antialias_threshold; /* 0: every pixel gets the N x N more rays, as in POV-Ray. In (0,
                                  * 1]: only pixels that differ from a neighbour by this much in the

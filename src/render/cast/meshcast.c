@@ -185,4 +185,4 @@ static bool any_triangle(const RayIndex *index, void *workspace, const RayPart *
 }
 
 const RaySearch triangle_search = {
-    .nearest_mm = NEAREST_SEEN_MM, .build = build, .first = first_triangle, .any = any_triangle};
+    .nearest_mm = NEAREST_VISIBLE_MM, .build = build, .first = first_triangle, .any = any_triangle};

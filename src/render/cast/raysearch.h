@@ -8,7 +8,7 @@
 #include "scene/scene.h"
 
 /* POV-Ray's limit [docs/POVRAY.md section 3]: crossings nearer than this are not visible. */
-#define NEAREST_SEEN_MM 1e-4
+#define NEAREST_VISIBLE_MM 1e-4
 /* Crossings of a blob nearer than this are not visible and cast no shadow. */
 #define BLOB_NEAREST_MM 1e-2
 

@@ -56,7 +56,7 @@ Rgb ray_color(const Drawing *drawing, int worker, Ray ray, double i, double j, c
     const RenderParams *params = drawing->params;
     const Ground *ground = &view->ground;
     double t = surfel ? surfel->t : HUGE_VAL;
-    bool on_ground = ground_hit(ground, ray, NEAREST_SEEN_MM, t, &t);
+    bool on_ground = ground_hit(ground, ray, NEAREST_VISIBLE_MM, t, &t);
     if (!on_ground && !surfel)
         return view->background;
     float parts[VIEW_MAX_LIGHTS];

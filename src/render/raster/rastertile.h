@@ -50,7 +50,7 @@ typedef struct RasterItem {
 } RasterItem;
 
 /* No geometry with more primitives can be drawn. */
-enum { MOST_ITEMS = 1 << 28 };
+enum { MAX_ITEMS = 1 << 28 };
 
 /* How far the capsule extends along the view from its middle, and the smallest depth of it. */
 static inline double item_depth(const RasterItem *item)

@@ -103,8 +103,8 @@ static void clip_above(double a, double b, double *from, double *to)
 static void clip_at_camera(const ThinVessel *vessel, const Camera *camera, double *from, double *to)
 {
     if (camera->projection == PROJECTION_ORTHOGRAPHIC)
-        clip_above(camera_point(camera, vessel->a).depth_mm - NEAREST_SEEN_MM,
-                   camera_point(camera, vessel->b).depth_mm - NEAREST_SEEN_MM, from, to);
+        clip_above(camera_point(camera, vessel->a).depth_mm - NEAREST_VISIBLE_MM,
+                   camera_point(camera, vessel->b).depth_mm - NEAREST_VISIBLE_MM, from, to);
 }
 
 static double depth_along_view(const Camera *camera, Vec3 point)

@@ -265,7 +265,7 @@ void canvas_trace_ground(const Canvas *canvas, TracedTile *seen, TileHits *hits)
         double across = n.x * line.x + n.y * line.y;
         double z = seen->perspective ? offset / (across + n.z) : (offset - across) / n.z;
         bool before = hits->state[sample] == TILE_HIT && hits->z[sample] <= z;
-        if (!(z >= NEAREST_SEEN_MM) || !isfinite(z) || before)
+        if (!(z >= NEAREST_VISIBLE_MM) || !isfinite(z) || before)
             continue;
         double away = seen->perspective ? across + n.z : n.z;
         store_vec3(hits->normal, sample, away > 0 ? vec3_scale(n, -1) : n);
