@@ -171,8 +171,8 @@ static const FieldSegment *find_wall(const Examiner *examiner, Ray ray, Vec3 x, 
 
 /* Finds whether a shadow ray from `place` to a light is free: neither the ground nor a root of the
  * field is in its way. Updates `found` if a vessel blocks it. */
-static Status examine_shadow_ray(const Examiner *examiner, Vec3 place, LightWay way, bool *free,
-                                 LightBlockage *found, Err *err)
+static Status examine_shadow_ray(const Examiner *examiner, Vec3 place, LightDirection way,
+                                 bool *free, LightBlockage *found, Err *err)
 {
     Ray ray = {place, way.towards};
     double far = way.distance - shadow_ray_start_mm, t;
@@ -205,8 +205,8 @@ static Status examine_light(const Examiner *examiner, const Light *light, Vec3 p
         return STATUS_OK;
     for (int k = 0; k < n; k++) {
         bool free;
-        TRY(examine_shadow_ray(examiner, place, light_way_to_point(light, k, place), &free, found,
-                               err));
+        TRY(examine_shadow_ray(examiner, place, light_direction_to_point(light, k, place), &free,
+                               found, err));
         reach += free;
     }
     found->visibility = (double)reach / n;

@@ -88,7 +88,7 @@ static void what_stands_between_that_and_a_light_is_in_sight_of_shadows(void **s
             const Light *light = &view.lights[n % 3];
             Vec3 from = tile_hit_point(&view, &random);
             int k = (int)(light_points(light) * random_uniform(&random));
-            LightWay way = light_way_to_point(light, k, from);
+            LightDirection way = light_direction_to_point(light, k, from);
             double part_of_way = random_uniform(&random);
             Vec3 place = vec3_add_scaled(from, way.towards, fmin(way.distance, 150) * part_of_way);
             between += box_holds(bounds, place, 0);

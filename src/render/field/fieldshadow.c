@@ -33,7 +33,7 @@ typedef struct FieldTester {
 
 static bool can_look(const Geometry *geometry, const View *view, const Light *light)
 {
-    LightWay way = light_way(light, box_center(geometry->bounds));
+    LightDirection way = light_direction(light, box_center(geometry->bounds));
     return lightview_sees_all(geometry, view, light) && way.distance > lightview_radius(geometry);
 }
 

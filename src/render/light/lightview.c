@@ -16,7 +16,7 @@ double lightview_radius(const Geometry *geometry)
 /* Whether light and geometry are on one side of the ground. */
 static bool is_before_ground(const Ground *ground, const Light *light, Vec3 center)
 {
-    Vec3 towards = light_way(light, center).towards;
+    Vec3 towards = light_direction(light, center).towards;
     double above = vec3_dot(ground->normal, center) - ground->offset_mm;
     double to_light = light->parallel
                           ? vec3_dot(ground->normal, towards)

@@ -65,7 +65,7 @@ static double visible_part(const Light *light, Vec3 place, ShadowTest *shadow, v
     if (!shadow || !light->casts_shadows)
         return 1;
     for (int k = 0; k < n; k++) {
-        LightWay way = light_way_to_point(light, k, place);
+        LightDirection way = light_direction_to_point(light, k, place);
         reach += !shadow(context, place, way.towards, way.distance);
     }
     return (double)reach / n;
@@ -76,7 +76,7 @@ Rgb shade(const View *view, const ShadingInput *at, ShadowTest *shadow, void *co
     Rgb color = rgb_scale(at->pigment, (double)at->finish->ambient * at->open);
     for (size_t i = 0; i < view->n_lights; i++) {
         const Light *light = &view->lights[i];
-        Vec3 towards = light_way(light, at->point).towards;
+        Vec3 towards = light_direction(light, at->point).towards;
         double cosine = vec3_dot(at->normal, towards);
         if (cosine < MIN_LIT_COSINE)
             continue;

@@ -64,7 +64,7 @@ int shadowrays_count(const Drawing *drawing, int worker, const Light *light, int
     for (int k = 0; k < light_points(light); k++) {
         if (!sampleset_has(set, light, k))
             continue;
-        LightWay way = light_way_to_point(light, k, point);
+        LightDirection way = light_direction_to_point(light, k, point);
         n += !caster_shadow(drawing->caster, worker, &drawing->view->ground, point, way.towards,
                             way.distance);
     }

@@ -347,7 +347,7 @@ static Vec3 above_wall(const ThinWall *wall, Vec3 normal)
 static Vec3 lit_point(const void *context, const Light *light, size_t piece)
 {
     const ThinWall wall = wall_of(context, piece);
-    Vec3 towards = light_way(light, wall.middle).towards;
+    Vec3 towards = light_direction(light, wall.middle).towards;
     Vec3 across = vec3_add_scaled(towards, wall.axis, -vec3_dot(towards, wall.axis));
     return above_wall(&wall, vec3_length(across) > 1e-6 ? vec3_normalized(across) : wall.front);
 }
