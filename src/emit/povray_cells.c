@@ -615,7 +615,7 @@ static Status take_cells(PovrayGeometry *geometry, Err *err)
     size_t n = 0;
     for (size_t i = 0; i < built->n_cells; i++) {
         const Cell *cell = &built->cells[i];
-        if (sight_meets(geometry->sight, (Box){cell->low, cell->high}))
+        if (rayvolume_meets(geometry->volume, (Box){cell->low, cell->high}))
             geometry->met[n++] = *cell;
     }
     geometry->cells[0] = *built;
