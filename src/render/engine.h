@@ -5,12 +5,12 @@
 #include "render/job.h"
 
 typedef struct Engine {
-    const char *name; /* that of the method, where there is one */
-    bool makes_codes; /* may make 8-bit codes instead of colors [RenderParams.codes_suffice] */
-    bool covers;      /* leaves out hidden vessels, and draws Drawing.thin over its samples */
+    const char *name;  /* that of the method, where there is one */
+    bool writes_codes; /* may make 8-bit codes instead of colors [RenderParams.codes_suffice] */
+    bool draws_thin;   /* leaves out hidden vessels, and draws Drawing.thin over its samples */
     /* Whether the engine can draw this, and is asked to; band, caster and appearance do not matter.
      */
-    bool (*can)(const Drawing *drawing);
+    bool (*supports)(const Drawing *drawing);
     /* Likewise whether it asks for rays: then the drawing is to have a caster. */
     bool (*needs_rays)(const Drawing *drawing);
     /* Makes in *prepared (owned) what all bands of a view have in common, whatever the appearance;

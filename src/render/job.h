@@ -54,7 +54,8 @@ typedef struct RenderParams {
      * they cover; POV-Ray has no such mode. False: samples hit or miss these vessels, too. Planes
      * of geometry have what samples hit in either case. */
     bool cover_thin;
-    double least_px; /* minimum drawn width of such vessels, pixels, 0..64; 0 draws true widths */
+    double
+        min_width_px; /* minimum drawn width of such vessels, pixels, 0..64; 0 draws true widths */
     const CellParams *povray_cells; /* an isosurface is drawn where POV-Ray's root finder finds it
                                      * in these cells; NULL: where it is, by proof */
     bool codes_suffice; /* the frame may have 8-bit codes instead of float colors, if that is

@@ -91,7 +91,7 @@ static void ask(const Geometry *geometry, const Light *light, const Viewpoint *e
     const LightBinsParams of = {.engine = &field_shadows, .drawing = &drawing, .frame = *eye};
     LightBins *bins;
     ShadowQueue *queue;
-    assert_true(field_shadows.can(geometry, &view, light));
+    assert_true(field_shadows.supports(geometry, &view, light));
     assert_int_equal(lightbins_new(&of, light, 1, &bins, NULL), STATUS_OK);
     RenderKernels kernels = (RenderKernels)(KERNELS_PORTABLE + kind);
     assert_int_equal(shadowqueue_new(bins, kernels, NULL, &queue, NULL), STATUS_OK);

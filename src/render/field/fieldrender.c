@@ -74,9 +74,9 @@ static Status prepare_field(const Drawing *drawing, void **prepared, Err *err)
 }
 
 const Engine field_engine = {.name = "field",
-                             .makes_codes = true,
-                             .covers = true,
-                             .can = can_draw_field,
+                             .writes_codes = true,
+                             .draws_thin = true,
+                             .supports = can_draw_field,
                              .needs_rays = field_needs_rays,
                              .prepare = prepare_field,
                              .rows = tilerender_rows,

@@ -350,7 +350,7 @@ static Status test_by_terms(const LightBins *light, void *workspace, const TileQ
     return decide_points(tester, &tile, points, err);
 }
 
-const ShadowEngine field_shadows = {.can = can_look,
+const ShadowEngine field_shadows = {.supports = can_look,
                                     .tiles = tiles_for_segments,
                                     .slack = slack_of_field,
                                     .bin = bin_segments,

@@ -156,7 +156,7 @@ static Status count_visible(AreaJob *job, Err *err)
 {
     const Drawing *drawing = job->drawing;
     const VisibilitySources *sources = job->sources;
-    if (!sources->engine || !shadowengine_can(sources->engine, drawing, light_of(job))) {
+    if (!sources->engine || !shadowengine_supports(sources->engine, drawing, light_of(job))) {
         threads_for(job->points->n_runs, drawing->params->threads, trace_run, job);
         if (sources->off_pixel)
             offpixel_trace(drawing, (size_t)job->light_index, sources->off_pixel);

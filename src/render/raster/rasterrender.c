@@ -150,9 +150,9 @@ static Status prepare_raster(const Drawing *drawing, void **prepared, Err *err)
 }
 
 const Engine raster_engine = {.name = "raster",
-                              .makes_codes = true,
-                              .covers = true,
-                              .can = can_draw_raster,
+                              .writes_codes = true,
+                              .draws_thin = true,
+                              .supports = can_draw_raster,
                               .needs_rays = raster_needs_rays,
                               .prepare = prepare_raster,
                               .rows = tilerender_rows,

@@ -180,7 +180,7 @@ static Status test_by_cover(const LightBins *light, void *workspace, const TileQ
     return STATUS_OK;
 }
 
-const ShadowEngine raster_shadows = {.can = lightview_sees_all,
+const ShadowEngine raster_shadows = {.supports = lightview_sees_all,
                                      .tiles = tiles_for_primitives,
                                      .slack = slack_of_rounding,
                                      .bin = bin_primitives,

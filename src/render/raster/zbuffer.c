@@ -293,7 +293,7 @@ static bool zbuffer_needs_rays(const Drawing *drawing)
 }
 
 const Engine zbuffer_engine = {.name = "zbuffer",
-                               .can = can_draw_zbuffer,
+                               .supports = can_draw_zbuffer,
                                .needs_rays = zbuffer_needs_rays,
                                .prepare = prepare_zbuffer,
                                .rows = draw_zbuffer,

@@ -125,7 +125,7 @@ static bool make_strip(const ThinSearch *search, uint32_t number, ThinStrip *str
     const ThinVessel vessel = vessel_part(&whole, near, far);
     const CameraPoint a = camera_point(camera, vessel.a), b = camera_point(camera, vessel.b);
     const double width =
-        fmax(vessel.radius_a * a.per_mm + vessel.radius_b * b.per_mm, search->widths.least_px);
+        fmax(vessel.radius_a * a.per_mm + vessel.radius_b * b.per_mm, search->widths.min_width_px);
     const double margin = width + 1; /* so that clipped ends are in no cell */
     const double z[2] = {depth_along_view(camera, vessel.a) - vessel.radius_a,
                          depth_along_view(camera, vessel.b) - vessel.radius_b};
@@ -167,7 +167,7 @@ static Status search_chunk(size_t chunk, int worker, void *context, Err *err)
         const ThinVessel vessel = vessel_at(search->thin->whole, i);
         ThinStrip strip;
         is_thin[i] = widest(&vessel, search->camera) <
-                     fmax(search->widths.below_px, search->widths.least_px);
+                     fmax(search->widths.below_px, search->widths.min_width_px);
         if (is_thin[i] && vessel.has_length && make_strip(search, (uint32_t)i, &strip))
             TRY(ARRAY_PUSH(&search->found[chunk], "thin vessels", err, strip));
     }

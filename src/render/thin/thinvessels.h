@@ -21,8 +21,8 @@ typedef struct ThinVessels {
 
 /* Widths on the picture, pixels. */
 typedef struct ThinWidths {
-    double below_px; /* narrower vessels are thin */
-    double least_px; /* so are these, and are drawn this wide; 0: at their true widths */
+    double below_px;     /* narrower vessels are thin */
+    double min_width_px; /* so are these, and are drawn this wide; 0: at their true widths */
 } ThinWidths;
 
 /* Finds the vessels that are narrower than one of the two widths in this view. Triangles are never

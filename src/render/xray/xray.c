@@ -277,7 +277,7 @@ done:
     return status;
 }
 
-static bool can(const Drawing *drawing)
+static bool supports_xray(const Drawing *drawing)
 {
     return drawing->view->effects.xray.per_mm > 0 && drawing->params->want_color;
 }
@@ -288,4 +288,4 @@ static bool needs_rays(const Drawing *drawing)
 }
 
 const Engine xray_engine = {
-    .name = "xray", .can = can, .needs_rays = needs_rays, .rows = draw_rows};
+    .name = "xray", .supports = supports_xray, .needs_rays = needs_rays, .rows = draw_rows};
