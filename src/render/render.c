@@ -385,7 +385,7 @@ static Status find_lights(Renderer *renderer, const Drawing *drawing, Err *err)
         if (view->lights[i].casts_shadows && !(shared && light_is_soft(&view->lights[i])))
             TRY(find_light(renderer, drawing, i, err));
     if (params->occlusion > 0 && shared)
-        TRY(thinvessels_find_open(drawing, &renderer->occluders, &renderer->thin, err));
+        TRY(thinvessels_find_ambient(drawing, &renderer->occluders, &renderer->thin, err));
     renderer->unlit = NULL;
     return STATUS_OK;
 }
@@ -607,7 +607,7 @@ static Status find_thin(Renderer *covering, const View *view, Err *err)
     thinvessels_release(thin);
     memset(&covering->thin_key, 0, sizeof covering->thin_key);
     TRY(thinvessels_find(covering->geometry, &camera, widths, params->threads, thin, err));
-    thinvessels_place(thin);
+    thinvessels_init_lights(thin);
     covering->unlit = &thin->lights;
     if (params->shadows)
         TRY(offpixel_init(view, &thin->lights, err));

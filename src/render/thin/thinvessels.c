@@ -154,7 +154,7 @@ static bool make_strip(const ThinSearch *search, uint32_t number, ThinStrip *str
         parts[end] = (float)thinstrip_part(&search->thin->layer, strip, s);
     }
     memcpy(strip->z, depths, sizeof depths);
-    memcpy(strip->part, parts, sizeof parts);
+    memcpy(strip->part, parts, sizeof light_visibility);
     return true;
 }
 
@@ -276,7 +276,7 @@ void thinvessels_release(ThinVessels *thin)
     thinlayer_release(&thin->layer);
     offpixel_release(&thin->lights);
     free(thin->piece_strips);
-    free(thin->open);
+    free(thin->ambient);
     *thin = (ThinVessels){0};
 }
 
@@ -352,7 +352,7 @@ static Vec3 lit_point(const void *context, const Light *light, size_t piece)
     return above_wall(&wall, vec3_length(across) > 1e-6 ? vec3_normalized(across) : wall.front);
 }
 
-void thinvessels_place(ThinVessels *thin)
+void thinvessels_init_lights(ThinVessels *thin)
 {
     offpixel_release(&thin->lights);
     thin->lights = (OffPixelPoints){.n = thin->layer.n_pieces, .at = lit_point, .context = thin};
@@ -400,8 +400,8 @@ static Status make_picture(const Drawing *drawing, const ThinVessels *thin, cons
     return STATUS_OK;
 }
 
-Status thinvessels_find_open(const Drawing *drawing, const OccluderSet *beams, ThinVessels *thin,
-                             Err *err)
+Status thinvessels_find_ambient(const Drawing *drawing, const OccluderSet *occluders,
+                                ThinVessels *thin, Err *err)
 {
     PixelVisibility *light = NULL;
     uint32_t *columns = NULL;
@@ -411,13 +411,14 @@ Status thinvessels_find_open(const Drawing *drawing, const OccluderSet *beams, T
     TRY_GOTO(place_pieces(thin, &columns, &width, err));
     light->width = (int)width;
     light->rows = light->samples_per_side = 1;
-    light->origin = beams->origin;
+    light->origin = occluders->origin;
     TRY_GOTO(make_picture(drawing, thin, columns, light, err));
-    TRY_GOTO(occlusion_compute(drawing, beams, light, err));
-    free(thin->open);
-    TRY_GOTO(mem_calloc(&thin->open, thin->layer.n_pieces, sizeof *thin->open, "occlusion", err));
+    TRY_GOTO(occlusion_compute(drawing, occluders, light, err));
+    free(thin->ambient);
+    TRY_GOTO(
+        mem_calloc(&thin->ambient, thin->layer.n_pieces, sizeof *thin->ambient, "occlusion", err));
     for (size_t piece = 0; piece < thin->layer.n_pieces; piece++)
-        thin->open[piece] = light->ambient[columns[piece]];
+        thin->ambient[piece] = light->ambient[columns[piece]];
 done:
     pixelvisibility_free(light);
     free(columns);
@@ -427,22 +428,22 @@ done:
 /* ---- colors --------------------------------------------------------------------------------- */
 
 /* Sets the visibility of each light at a piece; below 0 of lights that cast no shadows. */
-static void find_parts(const ThinVessels *thin, const View *view, size_t piece,
-                       float parts[VIEW_MAX_LIGHTS])
+static void find_light_visibility(const ThinVessels *thin, const View *view, size_t piece,
+                                  float light_visibility[VIEW_MAX_LIGHTS])
 {
     for (size_t i = 0; i < view->n_lights; i++)
-        parts[i] = thin->lights.n_visible[i] ? (float)thin->lights.n_visible[i][piece] /
-                                                   (float)light_points(&view->lights[i])
-                                             : -1;
+        light_visibility[i] = thin->lights.n_visible[i] ? (float)thin->lights.n_visible[i][piece] /
+                                                              (float)light_points(&view->lights[i])
+                                                        : -1;
 }
 
 /* The mean color of the visible half of a piece's wall. */
 static Rgb wall_color(const Drawing *drawing, const ThinVessels *thin, const ThinWall *wall,
                       size_t piece)
 {
-    float parts[VIEW_MAX_LIGHTS];
+    float light_visibility[VIEW_MAX_LIGHTS];
     Rgb sum = {0};
-    find_parts(thin, drawing->view, piece, parts);
+    find_light_visibility(thin, drawing->view, piece, light_visibility);
     for (int k = 0; k < SHADED; k++) {
         double across = (2 * k + 1.0) / SHADED - 1;
         Vec3 normal =
@@ -452,8 +453,8 @@ static Rgb wall_color(const Drawing *drawing, const ThinVessels *thin, const Thi
                                  .point = vec3_add_scaled(wall->middle, normal, wall->radius),
                                  .normal = normal,
                                  .direction = wall->direction,
-                                 .open = thin->open ? (double)thin->open[piece] : 1,
-                                 .parts = parts};
+                                 .ambient = thin->ambient ? (double)thin->ambient[piece] : 1,
+                                 .light_visibility = light_visibility};
         Rgb one = shade(drawing->view, &at, NULL, NULL);
         sum = (Rgb){sum.r + one.r / SHADED, sum.g + one.g / SHADED, sum.b + one.b / SHADED};
     }

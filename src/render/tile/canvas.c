@@ -52,8 +52,8 @@ static void share_surfaces(const PixelVisibility *visibility, CanvasWorker *own)
 {
     TileSurface *surfaces[] = {&own->surface, &own->ground};
     for (int i = 0; visibility && i < 2; i++) {
-        surfaces[i]->open = own->open;
-        surfaces[i]->parts = (const float(*)[TILE_SAMPLES])own->parts;
+        surfaces[i]->ambient = own->ambient;
+        surfaces[i]->light_visibility = (const float(*)[TILE_SAMPLES])own->light_visibility;
         for (int light = 0; light < VIEW_MAX_LIGHTS; light++)
             surfaces[i]->is_shared[light] = visibility->lights[light] != NULL;
     }
@@ -245,10 +245,10 @@ static void set_shared(const Canvas *canvas, const TracedTile *seen, CanvasWorke
                                        seen->row + tile_sample_y(sample));
         if (pixel == NO_HIT)
             pixel = shared_pixel(canvas, seen, sample, per);
-        own->open[sample] = pixelvisibility_ambient(visibility, pixel);
+        own->ambient[sample] = pixelvisibility_ambient(visibility, pixel);
         for (size_t i = 0; i < canvas->look.n_lights; i++)
             if (visibility->lights[i])
-                own->parts[i][sample] = pixelvisibility_light(visibility, i, pixel);
+                own->light_visibility[i][sample] = pixelvisibility_light(visibility, i, pixel);
     }
 }
 

@@ -15,8 +15,8 @@ TileLook tilelook_of(const View *view, const Finish *finish, const Viewpoint *ey
 /* The scratch memory of one thread. */
 typedef struct CanvasWorker {
     TileSurface surface, ground; /* of vessels and of the ground */
-    float open[TILE_SAMPLES];    /* of both, what samples share: */
-    float parts[VIEW_MAX_LIGHTS][TILE_SAMPLES];
+    float ambient[TILE_SAMPLES]; /* of both, what samples share: */
+    float light_visibility[VIEW_MAX_LIGHTS][TILE_SAMPLES];
     float color[3][TILE_SAMPLES]; /* of the tile at hand */
     int row, column;              /* the first tile that is not drawn yet, in pixels */
 } CanvasWorker;

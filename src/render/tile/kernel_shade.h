@@ -93,8 +93,8 @@ LANE_FN void add_light(Shading *shading, size_t number)
     if (finish->specular > 0)
         highlight += specular(shading, towards);
     Lanes part = lanes_set(1);
-    if (shading->surface->parts && shading->surface->is_shared[number])
-        part = lanes_load(&shading->surface->parts[number][shading->first]);
+    if (shading->surface->light_visibility && shading->surface->is_shared[number])
+        part = lanes_load(&shading->surface->light_visibility[number][shading->first]);
     for (int c = 0; c < 3; c++) {
         Lanes pigment = lanes_load(&shading->surface->pigment[c][shading->first]);
         Lanes sum = lanes_fma(pigment, diffuse, highlight) * (part * light->color[c]);
@@ -113,8 +113,8 @@ LANE_TARGET static void LANES_NAME(shade)(const TileLook *look, const TileSurfac
         shading.surface = surface;
         shading.first = first;
         Lanes ambient = lanes_set(look->finish.ambient);
-        if (surface->open)
-            ambient *= lanes_load(&surface->open[first]);
+        if (surface->ambient)
+            ambient *= lanes_load(&surface->ambient[first]);
         for (int c = 0; c < 3; c++) {
             shading.normal[c] = lanes_load(&surface->hits->normal[c][first]);
             shading.direction[c] = lanes_load(&surface->direction[c][first]);

@@ -31,9 +31,10 @@ typedef struct TileSurface {
     float point[3][TILE_SAMPLES];     /* mm from the camera; set if a light is not parallel */
     float pigment[3][TILE_SAMPLES];
     const uint8_t (*shadowed)[TILE_SAMPLES]; /* per light and sample: 1 in shadow; NULL: none is */
-    const float *open; /* per sample: ambient visibility, 0 to 1; NULL: 1 for all */
-    const float (*parts)[TILE_SAMPLES]; /* per light and sample: visibility of the light, 0 to 1, if
-                                         * is_shared[light]; NULL: no light is shared */
+    const float *ambient; /* per sample: ambient visibility, 0 to 1; NULL: 1 for all */
+    const float (
+        *light_visibility)[TILE_SAMPLES]; /* per light and sample: visibility of the light, 0 to 1,
+                                           * if is_shared[light]; NULL: no light is shared */
     bool is_shared[VIEW_MAX_LIGHTS];
 } TileSurface;
 
