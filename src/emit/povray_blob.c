@@ -300,7 +300,7 @@ static int by_key(const void *a, const void *b)
 /* Where a segment's value is on the scale; 0 for none. */
 static double place_of(const Paints *paints, uint32_t number)
 {
-    const double *places = paints->scene->appearance.places;
+    const double *places = paints->scene->appearance.positions;
     double place = places ? places[painted_segment(paints, number)->segment] : 0;
     return isnan(place) ? 0 : place;
 }
@@ -496,7 +496,7 @@ static Status put_functions(Text *out, void *context, Err *err)
 static Status put_weights(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
-    return put_hierarchy(out, geometry, geometry->scene->appearance.places, err);
+    return put_hierarchy(out, geometry, geometry->scene->appearance.positions, err);
 }
 
 /* What finds the mean where colors blend. */

@@ -463,7 +463,7 @@ static Status put_cell_paint(CellWriter *writer, const Cell *cell, CellTextPart 
 static double place_of(const EmitParams *params, const CellTerm *term)
 {
     const Scene *scene = params->scene;
-    return scene->appearance.places[scene->geometry.segments[term->segment].segment];
+    return scene->appearance.positions[scene->geometry.segments[term->segment].segment];
 }
 
 /* The sum of the terms whose segments have places, times these if `placed`; "(0)" without any. */

@@ -79,7 +79,7 @@ static Status examiner_init(Examiner *examiner, const ExplainCase *input, Err *e
     examiner->input = input;
     examiner->view = input->scene->view;
     if (proof_method(input) == PROOF_FIELD)
-        return input->scene->appearance.places
+        return input->scene->appearance.positions
                    ? termmean_new(&input->scene->geometry, &examiner->color_mean, err)
                    : STATUS_OK;
     TRY(create_renderer(examiner, shadow_ray_start_mm, &examiner->ray_renderer, err));
@@ -264,11 +264,12 @@ static VisiblePoint wall_at(const Examiner *examiner, Ray ray, double t)
     const FieldSegment *wall = find_wall(examiner, ray, seen.at.point, &seen.at.normal);
     seen.id = scene->geometry.ids[wall->segment];
     seen.at.finish = &scene->appearance.finish;
-    seen.at.pigment = examiner->color_mean
-                          ? appearance_blended(&scene->appearance,
-                                               termmean_at(examiner->color_mean,
-                                                           scene->appearance.places, seen.at.point))
-                          : appearance_color(&scene->appearance, wall->segment);
+    seen.at.pigment =
+        examiner->color_mean
+            ? appearance_blended(
+                  &scene->appearance,
+                  termmean_at(examiner->color_mean, scene->appearance.positions, seen.at.point))
+            : appearance_color(&scene->appearance, wall->segment);
     return seen;
 }
 

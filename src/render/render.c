@@ -153,7 +153,7 @@ static Status prepare_caster(Renderer *renderer, Drawing *drawing, Err *err)
 /* Makes the term mean if the drawing blends colors, and sets drawing->mean. */
 static Status prepare_mean(Renderer *renderer, Drawing *drawing, Err *err)
 {
-    if (!drawing->appearance->places || !model_has(renderer->geometry->model, MODEL_FIELD))
+    if (!drawing->appearance->positions || !model_has(renderer->geometry->model, MODEL_FIELD))
         return STATUS_OK;
     double start_s = clock_seconds();
     if (!renderer->mean)

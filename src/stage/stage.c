@@ -197,11 +197,11 @@ Status stage_blend(Appearance *appearance, Err *err)
 {
     const size_t n = appearance->n_values;
     TRY(mem_calloc(&appearance->ramp, 1, sizeof *appearance->ramp, "colors", err));
-    TRY(mem_calloc(&appearance->places, n, sizeof *appearance->places, "places", err));
+    TRY(mem_calloc(&appearance->positions, n, sizeof *appearance->positions, "places", err));
     colorramp_init(appearance->ramp, &appearance->scale.map);
     for (size_t i = 0; i < n; i++) {
-        appearance->places[i] = colorscale_place(&appearance->scale, appearance->values[i]);
-        appearance->colors[i] = appearance_blended(appearance, appearance->places[i]);
+        appearance->positions[i] = colorscale_place(&appearance->scale, appearance->values[i]);
+        appearance->colors[i] = appearance_blended(appearance, appearance->positions[i]);
     }
     return STATUS_OK;
 }

@@ -45,8 +45,8 @@ static Rgb pigment_of(const Drawing *drawing, const Surfel *surfel, Vec3 point)
     const Appearance *appearance = drawing->appearance;
     if (!drawing->mean)
         return appearance_color(appearance, surfel->segment);
-    return appearance_blended(
-        appearance, caster_mean(drawing->caster, drawing->mean, surfel, appearance->places, point));
+    return appearance_blended(appearance, caster_mean(drawing->caster, drawing->mean, surfel,
+                                                      appearance->positions, point));
 }
 
 Rgb ray_color(const Drawing *drawing, int worker, Ray ray, double i, double j, const Surfel *surfel)
