@@ -260,7 +260,7 @@ static VisiblePoint wall_at(const Examiner *examiner, Ray ray, double t)
 {
     const Scene *scene = examiner->input->scene;
     VisiblePoint seen = {.t = t,
-                         .at = {.point = ray_at(ray, t), .direction = ray.direction, .open = 1}};
+                         .at = {.point = ray_at(ray, t), .direction = ray.direction, .ambient = 1}};
     const FieldSegment *wall = find_wall(examiner, ray, seen.at.point, &seen.at.normal);
     seen.id = scene->geometry.ids[wall->segment];
     seen.at.finish = &scene->appearance.finish;
@@ -286,7 +286,7 @@ static Status look_to(Examiner *examiner, Ray ray, double t, VisiblePoint *seen,
                                 .point = ray_at(ray, t),
                                 .normal = vec3_scale(ground->normal, below ? -1 : 1),
                                 .direction = ray.direction,
-                                .open = 1},
+                                .ambient = 1},
                                0,
                                {0, 0, 0}};
     } else if (t < HUGE_VAL) {

@@ -7,7 +7,7 @@
  *
  * What is seen on the ground may lie far away from the vessels. It is a quadrangle, a frustum
  * without depth, or, where the horizon is in sight, anywhere on the way there. */
-#include "scene/volume.h"
+#include "scene/rayvolume.h"
 
 #include "scene/geometry.h"
 #include <math.h>

@@ -13,11 +13,11 @@
 #include "scene/geometry.h"
 #include "scene/meshends.h"
 #include "scene/models.h"
+#include "scene/rayvolume.h"
 #include "scene/strokes.h"
 #include "scene/triangles.h"
 #include "scene/vesseltree.h"
 #include "scene/view.h"
-#include "scene/volume.h"
 
 /* What a picture is made of. Owns the three. */
 typedef struct Scene {

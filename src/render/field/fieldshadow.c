@@ -198,8 +198,8 @@ static Status decide(FieldTester *tester, const FieldTile *tile, ShadowPoints *p
 {
     const Viewpoint *eye = &tester->light->view.eye;
     Vec3 place = reflected(&tester->lists->vessels, point_at(tile, points, i));
-    Vec3 towards = viewpoint_to_world(eye, eye->perspective ? place : vec3(0, 0, 1));
-    Ray ray = {viewpoint_point(eye, place), vec3_normalized(vec3_scale(towards, -1))};
+    Vec3 towards = viewpoint_world_direction(eye, eye->perspective ? place : vec3(0, 0, 1));
+    Ray ray = {viewpoint_world_point(eye, place), vec3_normalized(vec3_scale(towards, -1))};
     TRY(fieldspace_reserve_rays(&tester->space, tile->n_terms, err));
     bool dark = fieldspace_is_shadowed(&tester->space, tile->n_terms, ray);
     points->state[i] = dark ? SHADOW_DARK : SHADOW_LIT;

@@ -130,8 +130,8 @@ static Status decide_sample(const FieldTiles *tiles, FieldSpace *space, const Fi
     if (!fieldspace_first_hit(space, tile->n_terms, ray, tile->z_min, &hit))
         return STATUS_OK;
     bool within = vec3_dot(hit.normal, ray.direction) > 0;
-    Vec3 normal =
-        viewpoint_to_frame(&tiles->lists.eye, within ? vec3_scale(hit.normal, -1) : hit.normal);
+    Vec3 normal = viewpoint_frame_direction(&tiles->lists.eye,
+                                            within ? vec3_scale(hit.normal, -1) : hit.normal);
     hits->any_hit = true;
     hits->state[sample] = TILE_HIT;
     hits->z[sample] = hit.t * vec3_dot(ray.direction, tiles->lists.eye.axes[2]);

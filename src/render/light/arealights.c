@@ -56,16 +56,16 @@ static bool is_facing(const AreaJob *job, const ShadingPoint *point, Vec3 positi
 }
 
 /* ShadowPoser.place: points that face away from the light do not query. */
-static uint64_t place_points(const void *context, size_t first, size_t n, HitPoints *places)
+static uint64_t place_points(const void *context, size_t first, size_t n, HitPoints *points)
 {
     const AreaJob *job = context;
     uint64_t wanted = 0;
     for (size_t i = 0; i < n; i++) {
         const ShadingPoint *point = &job->visibility->points[first + i];
         Vec3 at = off_surface(job, point);
-        places->x[i] = at.x;
-        places->y[i] = at.y;
-        places->z[i] = at.z;
+        points->x[i] = at.x;
+        points->y[i] = at.y;
+        points->z[i] = at.z;
         wanted |= (uint64_t)is_facing(job, point, vec3_add(job->visibility->origin, at)) << i;
     }
     return wanted;

@@ -42,16 +42,16 @@ static size_t run_end(const OffPixelPoints *points, size_t run)
 }
 
 /* ShadowPoser.place: all points query. */
-static uint64_t place_points(const void *context, size_t first, size_t n, HitPoints *places)
+static uint64_t place_points(const void *context, size_t first, size_t n, HitPoints *frame_points)
 {
     const OffPixelJob *job = context;
     const OffPixelPoints *points = job->points;
     const Light *light = &job->drawing->view->lights[job->light];
     for (size_t i = 0; i < n; i++) {
-        Vec3 at = viewpoint_place(job->frame, points->at(points->context, light, first + i));
-        places->x[i] = at.x;
-        places->y[i] = at.y;
-        places->z[i] = at.z;
+        Vec3 at = viewpoint_frame_point(job->frame, points->at(points->context, light, first + i));
+        frame_points->x[i] = at.x;
+        frame_points->y[i] = at.y;
+        frame_points->z[i] = at.z;
     }
     return UINT64_MAX >> (TILE_SAMPLES - n);
 }

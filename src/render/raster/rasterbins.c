@@ -321,7 +321,7 @@ double raster_decide(const RasterBins *bins, uint32_t number, double x, double y
         if (hits[i].t >= NEAREST_VISIBLE_MM && hits[i].t < nearest) {
             nearest = hits[i].t;
             if (normal)
-                *normal = viewpoint_to_frame(&bins->view.eye, hits[i].normal);
+                *normal = viewpoint_frame_direction(&bins->view.eye, hits[i].normal);
         }
     return nearest * vec3_dot(ray.direction, bins->view.eye.axes[2]);
 }

@@ -18,7 +18,7 @@ typedef struct RasterKernels {
      * leaves any_hit and any_unsure alone. Of joints, completes *hits. */
     void (*resolve)(const RasterTile *tile, RasterHits *hits, TileHits *surface);
     /* The places that the hits are at. */
-    void (*locate)(const RasterTile *tile, const RasterHits *hits, HitPoints *places);
+    void (*locate)(const RasterTile *tile, const RasterHits *hits, HitPoints *points);
     /* Answers the queries of points in one tile of a light view: sets points->state. Overwrites
      * what follows the last point, up to a multiple of the lanes. If points->item is a sphere or a
      * cylinder whose hit was found in single precision, it is not tested as a blocker of its point:

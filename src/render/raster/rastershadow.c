@@ -49,7 +49,7 @@ static RasterView view_of(const LightView *light)
                         .rows = light->tiles * TILE_SIDE,
                         .listed_columns = light->columns,
                         .listed_rows = light->rows,
-                        .stray = 0.5,
+                        .max_offset = 0.5,
                         .step_x = light->step_x,
                         .step_y = light->step_y,
                         .left = light->left,

@@ -18,8 +18,8 @@ typedef struct RasterView {
     TileSpan listed_columns, listed_rows; /* of tiles: those whose lists are not left empty. All of
                                            * a camera's, set by rasterbins_new; of a light's those
                                            * that places lie in, set before */
-    double stray;    /* how far samples lie off the middles of their pixels, in pixels */
-    double z_middle; /* depths in single precision are relative to it, mm */
+    double max_offset; /* how far samples lie off the middles of their pixels, in pixels */
+    double z_middle;   /* depths in single precision are relative to it, mm */
     bool many; /* primitives, set by rasterbins_new: those that no sample sees are looked for */
     const bool *hidden; /* per primitive: not seen; NULL: none is hidden. Borrowed. */
     bool light;         /* of a light: its bins have boxes, and hulls instead of joints */

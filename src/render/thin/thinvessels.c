@@ -154,7 +154,7 @@ static bool make_strip(const ThinSearch *search, uint32_t number, ThinStrip *str
         parts[end] = (float)thinstrip_part(&search->thin->layer, strip, s);
     }
     memcpy(strip->z, depths, sizeof depths);
-    memcpy(strip->part, parts, sizeof light_visibility);
+    memcpy(strip->part, parts, sizeof parts);
     return true;
 }
 

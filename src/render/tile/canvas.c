@@ -16,10 +16,10 @@ TileLook tilelook_of(const View *view, const Finish *finish, const Viewpoint *ey
     TileLook look = {.finish = *finish, .n_lights = view->n_lights};
     for (size_t i = 0; i < view->n_lights; i++) {
         const Light *light = &view->lights[i];
-        Vec3 v =
-            light->parallel
-                ? viewpoint_to_frame(eye, vec3_normalized(vec3_sub(light->location, light->target)))
-                : viewpoint_place(eye, light->location);
+        Vec3 v = light->parallel
+                     ? viewpoint_frame_direction(
+                           eye, vec3_normalized(vec3_sub(light->location, light->target)))
+                     : viewpoint_frame_point(eye, light->location);
         look.lights[i] = (TileLight){.towards = {(float)v.x, (float)v.y, (float)v.z},
                                      .color = {light->color.r, light->color.g, light->color.b},
                                      .parallel = light->parallel};
@@ -28,7 +28,7 @@ TileLook tilelook_of(const View *view, const Finish *finish, const Viewpoint *ey
 }
 
 /* Whether shading needs the places of points, not their normals alone. */
-static bool needs_places(const View *view)
+static bool needs_points(const View *view)
 {
     bool needs = view->camera.projection == PROJECTION_PERSPECTIVE;
     for (size_t i = 0; i < view->n_lights; i++)
@@ -103,7 +103,7 @@ Status canvas_init(const Drawing *drawing, Frame *frame, const Viewpoint *eye, C
                  .more = resampling_for(frame->color.values ? params->antialias : 1),
                  .look = tilelook_of(drawing->view, &appearance->finish, eye),
                  .ground_look = tilelook_of(drawing->view, &drawing->view->ground.finish, eye),
-                 .needs_places = needs_places(drawing->view) || drawing->mean ||
+                 .needs_points = needs_points(drawing->view) || drawing->mean ||
                                  drawing->visibility || drawing->view->ground.present,
                  .wants_color = frame->color.values || frame->codes.codes8,
                  .wants_geometry = planes_want_geometry(frame)};
@@ -169,7 +169,7 @@ static void set_pigments(const Canvas *canvas, const TracedTile *seen, TileSurfa
             continue;
         Vec3 point = {0, 0, 0};
         if (canvas->drawing->mean)
-            point = viewpoint_point(&canvas->eye, tile_hit_point(seen, sample));
+            point = viewpoint_world_point(&canvas->eye, tile_hit_point(seen, sample));
         Rgb pigment = drawing_color(canvas->drawing, segment_of(canvas, hits, sample), point);
         surface->pigment[0][sample] = pigment.r;
         surface->pigment[1][sample] = pigment.g;
@@ -201,8 +201,8 @@ static uint32_t shared_pixel(const Canvas *canvas, const TracedTile *seen, int s
     double away = seen->perspective ? vec3_dot(normal, line) : normal.z;
     ShadingPoint place = pixelvisibility_point(
         visibility, seen->ground >> sample & 1 ? SURFACE_GROUND : SURFACE_VESSEL,
-        viewpoint_point(&canvas->eye, tile_hit_point(seen, sample)),
-        viewpoint_to_world(&canvas->eye, away > 0 ? vec3_scale(normal, -1) : normal),
+        viewpoint_world_point(&canvas->eye, tile_hit_point(seen, sample)),
+        viewpoint_world_direction(&canvas->eye, away > 0 ? vec3_scale(normal, -1) : normal),
         pixelvisibility_pixel_mm(camera, seen->hits->z[sample]));
     return pixelvisibility_pixel(visibility, line.x * per[0] + (camera->width - 1) / 2.0,
                                  (camera->height - 1) / 2.0 - line.y * per[1], &place);
@@ -255,7 +255,7 @@ static void set_shared(const Canvas *canvas, const TracedTile *seen, CanvasWorke
 void canvas_trace_ground(const Canvas *canvas, TracedTile *seen, TileHits *hits)
 {
     const Ground *ground = &canvas->drawing->view->ground;
-    Vec3 n = viewpoint_to_frame(&canvas->eye, ground->normal);
+    Vec3 n = viewpoint_frame_direction(&canvas->eye, ground->normal);
     double offset = ground->offset_mm - vec3_dot(ground->normal, canvas->eye.location);
     if (!seen->hits)
         memset(hits->state, TILE_MISS, sizeof hits->state);
@@ -284,7 +284,7 @@ static void shade_ground(const Canvas *canvas, const TracedTile *seen,
     float color[3][TILE_SAMPLES];
     own->ground.hits = seen->hits;
     own->ground.shadowed = shadowed;
-    if (canvas->needs_places)
+    if (canvas->needs_points)
         set_places(seen, &own->ground);
     canvas->kernels->shade(&canvas->ground_look, &own->ground, color);
     for (uint64_t left = seen->ground; left; left &= left - 1)
@@ -300,7 +300,7 @@ float (*canvas_shade(const Canvas *canvas, int worker, const TracedTile *seen,
     own->surface.shadowed = shadowed;
     if (canvas->drawing->appearance->colors)
         set_pigments(canvas, seen, &own->surface);
-    if (canvas->needs_places)
+    if (canvas->needs_points)
         set_places(seen, &own->surface);
     if (canvas->drawing->visibility)
         set_shared(canvas, seen, own);
@@ -382,7 +382,7 @@ static void store_geometry(const Canvas *canvas, const TracedTile *seen)
             int sample = tile_sample_at(i, j);
             if (hits->state[sample] != TILE_HIT || seen->ground >> sample & 1)
                 continue;
-            Vec3 normal = viewpoint_to_world(&canvas->eye, load_vec3(hits->normal, sample));
+            Vec3 normal = viewpoint_world_direction(&canvas->eye, load_vec3(hits->normal, sample));
             planes_store(canvas->frame, first + (size_t)i, tile_hit_distance(seen, sample), normal,
                          canvas->drawing->geometry->ids[segment_of(canvas, hits, sample)]);
         }

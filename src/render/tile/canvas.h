@@ -27,7 +27,7 @@ typedef struct Canvas {
     Frame *frame;           /* borrowed */
     Viewpoint eye;
     const TileKernels *kernels;
-    bool needs_places; /* shading reads TileHits.z, because light, visibility or colors depend on
+    bool needs_points; /* shading reads TileHits.z, because light, visibility or colors depend on
                         * the position of the hit */
     bool wants_color, wants_geometry;
     bool wholly_colored; /* the engine also sets the colors of samples without a hit; false at

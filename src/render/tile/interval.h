@@ -16,13 +16,13 @@ typedef struct TileSpan {
     int first, last;
 } TileSpan;
 
-static const TileSpan NOWHERE = {1, 0};
+static const TileSpan NO_TILES = {1, 0};
 
 /* The tiles of both. */
-static inline TileSpan tiles_common(TileSpan a, TileSpan b)
+static inline TileSpan tilespan_intersection(TileSpan a, TileSpan b)
 {
     TileSpan both = {a.first > b.first ? a.first : b.first, a.last < b.last ? a.last : b.last};
-    return both.first <= both.last ? both : NOWHERE;
+    return both.first <= both.last ? both : NO_TILES;
 }
 
 /* Covers rounding where pixels and tiles are told apart, in pixels. */
@@ -45,7 +45,7 @@ static inline Interval interval_union(Interval a, Interval b)
 
 /* What a ball at coordinate c in one direction of a perspective view's plane, and at depth z >
  * radius, covers there. */
-static inline Interval ball_shadow(double c, double z, double radius)
+static inline Interval ball_extent(double c, double z, double radius)
 {
     double half = radius * sqrt(max_of(c * c + z * z - radius * radius, 0));
     double per = 1 / ((z - radius) * (z + radius));
@@ -54,17 +54,17 @@ static inline Interval ball_shadow(double c, double z, double radius)
 
 /* What a capsule covers there, or in a view of parallel lines, whose ends are at c0 and c1; in
  * perspective at depths z0, z1 > radius. */
-static inline Interval capsule_shadow(bool perspective, double c0, double z0, double c1, double z1,
+static inline Interval capsule_extent(bool perspective, double c0, double z0, double c1, double z1,
                                       double radius)
 {
     if (!perspective)
         return (Interval){min_of(c0, c1) - radius, max_of(c0, c1) + radius};
-    return interval_union(ball_shadow(c0, z0, radius), ball_shadow(c1, z1, radius));
+    return interval_union(ball_extent(c0, z0, radius), ball_extent(c1, z1, radius));
 }
 
 /* An interval of a view's plane in samples, the middle of one a whole number; sample 0 is at
  * `first`, and `per` samples follow in a unit, below 0 where they run against it. */
-static inline Interval samples_within(Interval range, double first, double per)
+static inline Interval interval_in_samples(Interval range, double first, double per)
 {
     double from = (range.low - first) * per, to = (range.high - first) * per;
     return (Interval){min_of(from, to) - SLACK_PIXELS, max_of(from, to) + SLACK_PIXELS};
@@ -72,14 +72,15 @@ static inline Interval samples_within(Interval range, double first, double per)
 
 /* The tiles that those of `count` samples lie in which are, up to `stray` off their middles, within
  * an interval of samples. */
-static inline TileSpan tiles_within(Interval samples, double stray, int count)
+static inline TileSpan tilespan_of_samples(Interval samples, double max_offset, int count)
 {
-    double low = max_of(samples.low - stray, 0), high = min_of(samples.high + stray, count - 1);
+    double low = max_of(samples.low - max_offset, 0),
+           high = min_of(samples.high + max_offset, count - 1);
     if (!(low <= high))
-        return NOWHERE;
+        return NO_TILES;
     int first = (int)low, last = (int)high;
     first += first < low; /* rounds up */
-    return first <= last ? (TileSpan){first / TILE_SIDE, last / TILE_SIDE} : NOWHERE;
+    return first <= last ? (TileSpan){first / TILE_SIDE, last / TILE_SIDE} : NO_TILES;
 }
 
 /* The part [*from, *to] of the way where something that is at_a at its beginning and at_b at its

@@ -229,7 +229,7 @@ LANE_TARGET static void LANES_NAME(clear)(const uint8_t *state, const float back
 /* ---- lights ---------------------------------------------------------------------------------- */
 
 /* `near`: the light is not parallel; `slanted`: the camera's view is not. */
-LANE_FN uint64_t face_samples(const TracedTile *seen, const HitPoints *places,
+LANE_FN uint64_t face_samples(const TracedTile *seen, const HitPoints *points,
                               const float normal[3][TILE_SAMPLES], const TileLight *light,
                               bool near, bool slanted)
 {
@@ -239,9 +239,9 @@ LANE_FN uint64_t face_samples(const TracedTile *seen, const HitPoints *places,
         Lanes nz = lanes_load(&normal[2][first]), away = nz, x = lanes_set(light->towards[0]);
         Lanes y = lanes_set(light->towards[1]), z = lanes_set(light->towards[2]);
         if (near) {
-            x -= lanes_of_doubles(&places->x[first], 0);
-            y -= lanes_of_doubles(&places->y[first], 0);
-            z -= lanes_of_doubles(&places->z[first], 0);
+            x -= lanes_of_doubles(&points->x[first], 0);
+            y -= lanes_of_doubles(&points->y[first], 0);
+            z -= lanes_of_doubles(&points->z[first], 0);
         }
         if (slanted)
             away += nx * (lanes_load(&seen->x[first]) + (float)seen->middle_x) +
@@ -253,13 +253,13 @@ LANE_FN uint64_t face_samples(const TracedTile *seen, const HitPoints *places,
     return facing;
 }
 
-LANE_TARGET static uint64_t LANES_NAME(face)(const TracedTile *seen, const HitPoints *places,
+LANE_TARGET static uint64_t LANES_NAME(face)(const TracedTile *seen, const HitPoints *points,
                                              const float normal[3][TILE_SAMPLES],
                                              const TileLight *light)
 {
     if (light->parallel && !seen->perspective)
-        return face_samples(seen, places, normal, light, false, false);
-    return face_samples(seen, places, normal, light, !light->parallel, seen->perspective);
+        return face_samples(seen, points, normal, light, false, false);
+    return face_samples(seen, points, normal, light, !light->parallel, seen->perspective);
 }
 
 /* The tile, of `count`, that a place in tiles lies in. */
@@ -269,14 +269,14 @@ LANE_FN int32_t tile_at(double place, double count)
     return (int32_t)(place < count ? place : count - 1);
 }
 
-LANE_TARGET static void LANES_NAME(aim)(const LightProjection *aim, const HitPoints *places,
+LANE_TARGET static void LANES_NAME(aim)(const LightProjection *aim, const HitPoints *points,
                                         ProjectedPoints *restrict aimed)
 {
     const LightProjection a = *aim;
     const double width = 1 / a.per_x, height = 1 / a.per_y;
     double seen_x[TILE_SAMPLES], seen_y[TILE_SAMPLES]; /* in the view's plane */
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
-        double px = places->x[sample], py = places->y[sample], pz = places->z[sample];
+        double px = points->x[sample], py = points->y[sample], pz = points->z[sample];
         double x = px * a.axes[0].x + py * a.axes[0].y + pz * a.axes[0].z + a.offset.x;
         double y = px * a.axes[1].x + py * a.axes[1].y + pz * a.axes[1].z + a.offset.y;
         double z = px * a.axes[2].x + py * a.axes[2].y + pz * a.axes[2].z + a.offset.z;

@@ -78,11 +78,11 @@ typedef struct TileKernels {
                    const uint8_t background[3], uint8_t *pixels, size_t stride);
     /* Returns a mask: bit i is set if the visible side of the surface at sample i faces the light.
      * Bits of samples that hit nothing are undefined. */
-    uint64_t (*face)(const TracedTile *seen, const HitPoints *places,
+    uint64_t (*face)(const TracedTile *seen, const HitPoints *points,
                      const float normal[3][TILE_SAMPLES], const TileLight *light);
     /* Projects the points to the light view. Points of samples that hit nothing get a valid tile,
      * too. */
-    void (*aim)(const LightProjection *aim, const HitPoints *places, ProjectedPoints *aimed);
+    void (*aim)(const LightProjection *aim, const HitPoints *points, ProjectedPoints *aimed);
     /* Returns a mask of the samples whose projected point lies in the light's tile `tile`. */
     uint64_t (*within)(const ProjectedPoints *aimed, int32_t tile);
 } TileKernels;

@@ -85,33 +85,33 @@ static uint64_t find_hits(const TracedTile *seen)
 
 /* Sets the positions of a tile's hits in the frame of the view. Those of the ground are rounded as
  * the engine rounds its own. */
-static void locate(const TileEngine *engine, const BatchTile *tile, HitPoints *restrict places)
+static void locate(const TileEngine *engine, const BatchTile *tile, HitPoints *restrict points)
 {
     const TracedTile *seen = &tile->seen;
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
-        places->x[sample] = seen->middle_x + (double)seen->x[sample];
-        places->y[sample] = seen->middle_y + (double)seen->y[sample];
-        places->z[sample] = tile->hits.z[sample];
+        points->x[sample] = seen->middle_x + (double)seen->x[sample];
+        points->y[sample] = seen->middle_y + (double)seen->y[sample];
+        points->z[sample] = tile->hits.z[sample];
     }
     for (uint64_t left = engine->single_depths ? seen->ground : 0; left; left &= left - 1) {
-        double *z = &places->z[__builtin_ctzll(left)];
+        double *z = &points->z[__builtin_ctzll(left)];
         *z = tile->depth_base + (double)(float)(*z - tile->depth_base);
     }
     for (int sample = 0; seen->perspective && sample < TILE_SAMPLES; sample++) {
-        places->x[sample] *= places->z[sample];
-        places->y[sample] *= places->z[sample];
+        points->x[sample] *= points->z[sample];
+        points->y[sample] *= points->z[sample];
     }
 }
 
 /* Finds the shadows of one light by rays. */
 static void cast_shadows(const TilePicture *picture, int worker, const Light *light,
-                         const HitPoints *places, uint64_t wanted, uint8_t shadowed[TILE_SAMPLES])
+                         const HitPoints *points, uint64_t wanted, uint8_t shadowed[TILE_SAMPLES])
 {
     const Drawing *drawing = picture->canvas.drawing;
     for (; wanted; wanted &= wanted - 1) {
         int sample = __builtin_ctzll(wanted);
-        Vec3 at = {places->x[sample], places->y[sample], places->z[sample]};
-        Vec3 point = viewpoint_point(&picture->canvas.eye, at);
+        Vec3 at = {points->x[sample], points->y[sample], points->z[sample]};
+        Vec3 point = viewpoint_world_point(&picture->canvas.eye, at);
         shadowed[sample] = !shadowrays_count(drawing, worker, light, ALL_SETS, point);
     }
 }
@@ -122,21 +122,21 @@ static void query_lights(const TilePicture *picture, int worker, const BatchTile
     const TileKernels *kernels = picture->canvas.kernels;
     const TileBatch *batch = &picture->batches[worker];
     const uint64_t hits = find_hits(&tile->seen);
-    HitPoints places;
-    locate(picture->engine, tile, &places);
+    HitPoints points;
+    locate(picture->engine, tile, &points);
     for (uint64_t left = tile->items ? tile->seen.ground : 0; left; left &= left - 1)
         tile->items[__builtin_ctzll(left)] = NO_ITEM;
     for (size_t i = 0; i < view->n_lights; i++) {
         const Light *light = &view->lights[i];
         if (!light->casts_shadows || light->samples > 1)
             continue;
-        uint64_t wanted = hits & kernels->face(&tile->seen, &places, tile->hits.normal,
+        uint64_t wanted = hits & kernels->face(&tile->seen, &points, tile->hits.normal,
                                                &picture->canvas.look.lights[i]);
         size_t answer = (size_t)(tile->shadowed + i - batch->shadowed) * TILE_SAMPLES;
         if (batch->queues[i])
-            shadowqueue_add(batch->queues[i], &places, tile->items, wanted, (uint32_t)answer);
+            shadowqueue_add(batch->queues[i], &points, tile->items, wanted, (uint32_t)answer);
         else
-            cast_shadows(picture, worker, light, &places, wanted, tile->shadowed[i]);
+            cast_shadows(picture, worker, light, &points, wanted, tile->shadowed[i]);
     }
 }
 
@@ -176,7 +176,8 @@ static Surfel surfel_of(const TilePicture *picture, const TracedTile *seen, int 
     const Vec3 normal = {(double)n[0][sample], (double)n[1][sample], (double)n[2][sample]};
     const Geometry *geometry = picture->canvas.drawing->geometry;
     return (Surfel){.t = tile_hit_distance(seen, sample),
-                    .normal = vec3_normalized(viewpoint_to_world(&picture->canvas.eye, normal)),
+                    .normal =
+                        vec3_normalized(viewpoint_world_direction(&picture->canvas.eye, normal)),
                     .segment = geometry->segments[seen->hits->segment[sample]].segment};
 }
 

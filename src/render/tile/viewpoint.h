@@ -21,26 +21,26 @@ static inline Viewpoint viewpoint_of_camera(const Camera *camera)
 }
 
 /* A direction of the world in the frame, and back. */
-static inline Vec3 viewpoint_to_frame(const Viewpoint *eye, Vec3 v)
+static inline Vec3 viewpoint_frame_direction(const Viewpoint *eye, Vec3 v)
 {
     return vec3(vec3_dot(v, eye->axes[0]), vec3_dot(v, eye->axes[1]), vec3_dot(v, eye->axes[2]));
 }
 
-static inline Vec3 viewpoint_to_world(const Viewpoint *eye, Vec3 v)
+static inline Vec3 viewpoint_world_direction(const Viewpoint *eye, Vec3 v)
 {
     Vec3 world = vec3_add_scaled(vec3_scale(eye->axes[0], v.x), eye->axes[1], v.y);
     return vec3_add_scaled(world, eye->axes[2], v.z);
 }
 
 /* A point of the world in the frame, and back. */
-static inline Vec3 viewpoint_place(const Viewpoint *eye, Vec3 point)
+static inline Vec3 viewpoint_frame_point(const Viewpoint *eye, Vec3 point)
 {
-    return viewpoint_to_frame(eye, vec3_sub(point, eye->location));
+    return viewpoint_frame_direction(eye, vec3_sub(point, eye->location));
 }
 
-static inline Vec3 viewpoint_point(const Viewpoint *eye, Vec3 place)
+static inline Vec3 viewpoint_world_point(const Viewpoint *eye, Vec3 place)
 {
-    return vec3_add(eye->location, viewpoint_to_world(eye, place));
+    return vec3_add(eye->location, viewpoint_world_direction(eye, place));
 }
 
 #endif
