@@ -42,7 +42,7 @@ static bool is_field_listed(const void *bins, int column, int worker)
 static Status trace_field(void *bins, int worker, int shift, BatchTile *tile, Err *err)
 {
     (void)shift; /* none */
-    return fieldtiles_trace(bins, worker, &tile->seen, &tile->hits, err);
+    return fieldtiles_trace(bins, worker, &tile->traced, &tile->hits, err);
 }
 
 static const TileEngine field_tiles = {.fine_grid = true,

@@ -41,8 +41,8 @@ static size_t run_end(const OffPixelPoints *points, size_t run)
     return (run + 1) * RUN < points->n ? (run + 1) * RUN : points->n;
 }
 
-/* ShadowPoser.place: all points query. */
-static uint64_t place_points(const void *context, size_t first, size_t n, HitPoints *frame_points)
+/* ShadowPoser.locate: all points query. */
+static uint64_t locate_points(const void *context, size_t first, size_t n, HitPoints *frame_points)
 {
     const OffPixelJob *job = context;
     const OffPixelPoints *points = job->points;
@@ -74,7 +74,7 @@ Status offpixel_query(const Drawing *drawing, const OffPixelViews *views, size_t
 {
     OffPixelJob job = {.drawing = drawing, .points = points, .frame = views->frame, .light = light};
     Status status;
-    job.pass.poser = (ShadowPoser){place_points, add_visible, &job};
+    job.pass.poser = (ShadowPoser){locate_points, add_visible, &job};
     TRY_GOTO(shadowpass_init(drawing, views->bins, views->n_views, NULL, &job.pass, err));
     TRY_GOTO(threads_try(run_count(points), drawing->params->threads, query_run, &job, err));
 done:

@@ -43,9 +43,9 @@ LANE_FN Lanes phong(const Shading *shading, const Lanes towards[3])
     for (int c = 0; c < 3; c++)
         mirrored[c] = lanes_fma(shading->normal[c], twice, shading->direction[c]);
     Lanes cosine = inner(mirrored, towards);
-    LaneMask seen = cosine > 0.0f;
+    LaneMask traced = cosine > 0.0f;
     Lanes power = lanes_power(cosine, finish->phong_size) * finish->phong;
-    return lanes_select(seen, power, lanes_set(0));
+    return lanes_select(traced, power, lanes_set(0));
 }
 
 LANE_FN Lanes specular(const Shading *shading, const Lanes towards[3])
@@ -162,8 +162,8 @@ LANE_TARGET static void LANES_NAME(encode)(const SrgbCodes *codes, float color[3
                          srgb_lanes(codes, &color[1][first]) << 8 |
                          srgb_lanes(codes, &color[2][first]) << 16;
         if (state) {
-            LaneMask seen = lanes_of_bytes(&state[first]);
-            pixel = (pixel & seen) | (other & ~seen);
+            LaneMask traced = lanes_of_bytes(&state[first]);
+            pixel = (pixel & traced) | (other & ~traced);
         }
         __builtin_memcpy(&pixels[first], &pixel, sizeof pixel);
     }
@@ -219,17 +219,17 @@ LANE_TARGET static void LANES_NAME(clear)(const uint8_t *state, const float back
                                           float color[3][TILE_SAMPLES])
 {
     for (int first = 0; first < TILE_SAMPLES; first += LANES) {
-        LaneMask seen = lanes_of_bytes(&state[first]);
+        LaneMask traced = lanes_of_bytes(&state[first]);
         for (int c = 0; c < 3; c++)
-            lanes_store(&color[c][first],
-                        lanes_select(seen, lanes_load(&color[c][first]), lanes_set(background[c])));
+            lanes_store(&color[c][first], lanes_select(traced, lanes_load(&color[c][first]),
+                                                       lanes_set(background[c])));
     }
 }
 
 /* ---- lights ---------------------------------------------------------------------------------- */
 
 /* `near`: the light is not parallel; `slanted`: the camera's view is not. */
-LANE_FN uint64_t face_samples(const TracedTile *seen, const HitPoints *points,
+LANE_FN uint64_t face_samples(const TracedTile *traced, const HitPoints *points,
                               const float normal[3][TILE_SAMPLES], const TileLight *light,
                               bool near, bool slanted)
 {
@@ -244,8 +244,8 @@ LANE_FN uint64_t face_samples(const TracedTile *seen, const HitPoints *points,
             z -= lanes_of_doubles(&points->z[first], 0);
         }
         if (slanted)
-            away += nx * (lanes_load(&seen->x[first]) + (float)seen->middle_x) +
-                    ny * (lanes_load(&seen->y[first]) + (float)seen->middle_y);
+            away += nx * (lanes_load(&traced->x[first]) + (float)traced->middle_x) +
+                    ny * (lanes_load(&traced->y[first]) + (float)traced->middle_y);
         Lanes along = nx * x + ny * y + nz * z;
         LaneMask faces = lanes_select(away > 0.0f, -along, along) > 0.0f;
         facing |= (uint64_t)lanes_bits(faces) << first;
@@ -253,13 +253,13 @@ LANE_FN uint64_t face_samples(const TracedTile *seen, const HitPoints *points,
     return facing;
 }
 
-LANE_TARGET static uint64_t LANES_NAME(face)(const TracedTile *seen, const HitPoints *points,
+LANE_TARGET static uint64_t LANES_NAME(face)(const TracedTile *traced, const HitPoints *points,
                                              const float normal[3][TILE_SAMPLES],
                                              const TileLight *light)
 {
-    if (light->parallel && !seen->perspective)
-        return face_samples(seen, points, normal, light, false, false);
-    return face_samples(seen, points, normal, light, !light->parallel, seen->perspective);
+    if (light->parallel && !traced->perspective)
+        return face_samples(traced, points, normal, light, false, false);
+    return face_samples(traced, points, normal, light, !light->parallel, traced->perspective);
 }
 
 /* The tile, of `count`, that a place in tiles lies in. */

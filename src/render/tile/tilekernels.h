@@ -78,7 +78,7 @@ typedef struct TileKernels {
                    const uint8_t background[3], uint8_t *pixels, size_t stride);
     /* Returns a mask: bit i is set if the visible side of the surface at sample i faces the light.
      * Bits of samples that hit nothing are undefined. */
-    uint64_t (*face)(const TracedTile *seen, const HitPoints *points,
+    uint64_t (*face)(const TracedTile *traced, const HitPoints *points,
                      const float normal[3][TILE_SAMPLES], const TileLight *light);
     /* Projects the points to the light view. Points of samples that hit nothing get a valid tile,
      * too. */

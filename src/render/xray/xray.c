@@ -220,9 +220,9 @@ static double length_by_hits(Caster *caster, int worker, Ray ray)
     for (Ray rest = ray; caster_first(caster, worker, rest, &surfel);
          rest.origin = ray_at(ray, travelled)) {
         travelled += surfel.t;
-        if (surfel.leaves && inside)
+        if (surfel.from_inside && inside)
             length += travelled - start;
-        inside = !surfel.leaves;
+        inside = !surfel.from_inside;
         start = travelled;
     }
     return length;
