@@ -190,7 +190,7 @@ class Report(dict):
 # ---- options -------------------------------------------------------------------------------------
 
 def _number(value):
-    whole = isinstance(value, numbers.Integral) or float(value).is_integer()
+    whole = isinstance(value, numbers.Integral) or (float(value).is_integer() and abs(value) < 2**53)
     return str(int(value)) if whole else repr(float(value))
 
 
