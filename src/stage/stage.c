@@ -200,7 +200,7 @@ Status stage_blend(Appearance *appearance, Err *err)
     TRY(mem_calloc(&appearance->places, n, sizeof *appearance->places, "places", err));
     colorramp_init(appearance->ramp, &appearance->scale.map);
     for (size_t i = 0; i < n; i++) {
-        appearance->places[i] = colorscale_place(&appearance->scale, appearance->values[i]);
+        appearance->places[i] = colorscale_position(&appearance->scale, appearance->values[i]);
         appearance->colors[i] = appearance_blended(appearance, appearance->places[i]);
     }
     return STATUS_OK;

@@ -553,12 +553,11 @@ static Status blend(const PictureOptions *options, Appearance *appearance, Err *
     const ColorScale *scale = &appearance->scale;
     if (options->color_blend == BLEND_SEGMENT || !appearance->colors)
         return STATUS_OK;
-    if (colorscale_counts(scale))
-        return err_set(
-            err, STATUS_USAGE,
-            "--color-blend blended: --colormap %s has separate colors, which blend only "
-            "with --classes",
-            options->coloring.colormap);
+    if (colorscale_selects_by_integer(scale))
+        return err_set(err, STATUS_USAGE,
+                       "--color-blend blended: --colormap %s has separate colors, which blend only "
+                       "with --classes",
+                       options->coloring.colormap);
     if (colorscale_steps(scale) > MOST_STEPS)
         return err_set(err, STATUS_USAGE,
                        "--color-blend blended takes at most %d --classes, not %d", MOST_STEPS,
