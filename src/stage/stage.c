@@ -202,7 +202,7 @@ Status stage_blend(Appearance *appearance, Err *err)
     TRY(mem_calloc(&appearance->positions, n, sizeof *appearance->positions, "coincidence", err));
     colorramp_init(appearance->ramp, &appearance->scale.map);
     for (size_t i = 0; i < n; i++) {
-        appearance->positions[i] = colorscale_place(&appearance->scale, appearance->values[i]);
+        appearance->positions[i] = colorscale_position(&appearance->scale, appearance->values[i]);
         appearance->colors[i] = appearance_blended(appearance, appearance->positions[i]);
     }
     return STATUS_OK;

@@ -553,7 +553,7 @@ static Status blend(const PictureOptions *options, Appearance *appearance, Err *
     const ColorScale *scale = &appearance->scale;
     if (options->color_blend == BLEND_SEGMENT || !appearance->colors)
         return STATUS_OK;
-    if (colorscale_counts(scale))
+    if (colorscale_selects_by_integer(scale))
         return err_set(err, STATUS_USAGE,
                        "--color-blend blended: --colormap %s has separate colors, which blend only "
                        "with --classes",
