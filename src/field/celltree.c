@@ -134,8 +134,8 @@ static Status filter_terms(CellBuilder *builder, const TermList *from, Box box, 
     builder->looks += from->count;
     if (builder->looks > max_looks + max_looks_per_cell * builder->tree.n_cells)
         return err_set(err, STATUS_INFEASIBLE,
-                       "the isosurface has too many vessels that overlap, or radii that are too "
-                       "different, to be cut into cells in a reasonable time; leave out vessels or "
+                       "the isosurface has too many vessels that overlap, or radii that differ too "
+                       "much, to be divided into cells in a reasonable time; leave out vessels or "
                        "choose another model");
     for (size_t i = from->first; i < from->first + from->count; i++) {
         uint32_t number = builder->stack[i];
