@@ -218,11 +218,11 @@ meshes above 8 GB @ mesh_file.c @ .name = "an OBJ file", .most_bytes = 8e9
 pictures above 16 GB @ image_file.c @ .most_bytes = 16e9
 INI files above 1 MB @ ini.c @ .most_bytes = 1e6
 at most 10000 other columns @ builder.h @ BUILDER_MAX_COLUMNS = 10000
-is a whole number from 1 to 100000000 @ tree.h @ TREE_MAX_ID = 100000000
+is an integer from 1 to 100000000 @ tree.h @ TREE_MAX_ID = 100000000
 for `pries`, in [0, 0.95] @ viscosity.h @ MAX_HEMATOCRIT 0.95
 less than a thousandth of the box around it @ domain.c @ least_filled = 1e-3;
 more than 0.002 from its own @ profile.c @ <= 0.002
-Of pictures above 4 million pixels the page has no depths @ report_planes.c @ MOST_PIXELS = 1 << 22
+For pictures above 4 million pixels the page has no depths @ report_planes.c @ MOST_PIXELS = 1 << 22
 END
     run_ok corcast render --help
     tr -s "\n " "  " <stdout >help && mv help stdout
