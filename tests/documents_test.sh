@@ -252,11 +252,11 @@ no wall by more than three times that @ cellfunction.c @ return (3 * erf_form_er
 POV-Ray holds at most 1,048,575 functions @ povray_joint.c @ POV-Ray holds 1,048,575 functions, of which a joint has three
 more than 349,000 joints @ povray_joint.c @ MOST_EXACT = 349000,
 In a scene of more than 8,000 joints @ povray_joint.c @ MANY = 8000,
-scenes of more than 3,000 segments the twelve @ povray_text.h @ MOST_INLINE_TERMS = 3000
+scenes of more than 3,000 segments the twelve @ povray_text.h @ MAX_INLINE_TERMS = 3000
 - `f(x) <= M d(x) / 2`, because after a miss POV-Ray skips @ povray_joint.c @ 2 * steepest, folded
 Its hits are within 2 · 10⁻⁹ radii @ joints.inc @ accuracy 2e-9 open
 no tile has more than 400,000 cylinders @ emit/povray.c @ {MODEL_CYLINDERS, NULL, put_primitive_macros, put_primitives, 400000},
-200,000 pieces of a joined tree, 32,768 segments of a blob @ emit/povray.c @ {MODEL_BLOB, find_painted, put_blob_macros, put_blob, 32768},
+200,000 pieces of a joined tree, 32,768 segments of a blob @ emit/povray.c @ {MODEL_BLOB, find_visible_segments, put_blob_macros, put_blob, 32768},
 of a mesh, or 100,000 cells @ emit/povray.c @ {MODEL_POTENTIAL, find_cells, put_cell_macros, put_cells, 100000},
 tile is narrower than 8 pixels @ povray_tiles.c @ MIN_TILE_SIDE = 8 };
 for at most 65,536 segments @ povray_blob.c @ GROUP = 256, MAX_PAINTED = GROUP * GROUP,
