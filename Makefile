@@ -106,7 +106,7 @@ help: ## list the targets
 	@echo 'make TARGET [MODE=release|debug|asan|tsan] [CC=gcc|clang] [V=1]'
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  %-14s %s\n", $$1, $$2 }' Makefile
 
-deps: ## install missing Debian packages; FOR=bench, fuzz or all for additional sets
+deps: ## install missing Debian packages; FOR=bench, fuzz or all for other sets
 	$(Q).ci/deps $(or $(FOR),build run check page)
 
 demo: ## grow a tree, draw it with POV-Ray and corcast, and verify the pictures; results in out/demo/

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The documents: what they link to is there, and their numbers are those of the program.
+# The documents: their links lead to existing files, and their numbers are those of the program.
 . "$(dirname "$0")/lib.sh"
 
 test_documents_link_only_to_what_exists() {
