@@ -23,7 +23,7 @@ static Status radii_by_id(const Geometry *geometry, double **out, Err *err)
     return STATUS_OK;
 }
 
-static double tolerance_at(const SurfaceSight *sight, size_t pixel, Vec3 direction,
+static double tolerance_at(const SurfacePlanes *sight, size_t pixel, Vec3 direction,
                            const double *radii, ErfForm erf)
 {
     double depth = (double)sight->depth[pixel];
@@ -39,7 +39,7 @@ static double tolerance_at(const SurfaceSight *sight, size_t pixel, Vec3 directi
 }
 
 Status surface_tolerance(const Geometry *geometry, const Camera *camera, ErfForm erf,
-                         const SurfaceSight *seen, const SurfaceSight *exact, float *allowed,
+                         const SurfacePlanes *seen, const SurfacePlanes *exact, float *allowed,
                          Err *err)
 {
     double *radii = NULL;

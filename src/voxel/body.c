@@ -226,7 +226,7 @@ static double ball_volume(const Body *ball, const VoxelCell *cell)
     return volume;
 }
 
-double body_part(const Body *body, const VoxelCell *cell)
+double body_fraction(const Body *body, const VoxelCell *cell)
 {
     if (!body_meets(body, cell))
         return 0;

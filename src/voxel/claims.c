@@ -88,7 +88,7 @@ static Status list_about(const VoxelGrid *grid, const Body *body, int64_t voxel,
         const int64_t at[3] = {voxel % grid->n[0] + i % 3 - 1, row % grid->n[1] + i / 3 % 3 - 1,
                                row / grid->n[1] + i / 9 - 1};
         VoxelCell cell = grid_cell(grid, at[0], at[1], at[2]);
-        if (i != 13 && body_meets(body, &cell) && body_part(body, &cell) > 0)
+        if (i != 13 && body_meets(body, &cell) && body_fraction(body, &cell) > 0)
             TRY(push_voxel(grid, at, list, err));
     }
     return STATUS_OK;
@@ -289,7 +289,7 @@ Status claims_make(const RowSource *source, const Geometry *geometry, Claims *ou
     Claims made = {0};
     Status status;
     TRY_GOTO(claimer_init(&claimer, err));
-    TRY_GOTO(hold_all(&claimer, geometry, &made.taken, err));
+    TRY_GOTO(hold_all(&claimer, geometry, &made.n_taken, err));
     TRY_GOTO(mem_calloc(&made.claim, claimer.n_axes, sizeof *made.claim, "labels", err));
     for (; made.n < claimer.held.n; made.n++) {
         const Held *held = &claimer.held.items[made.n];

@@ -132,15 +132,15 @@ static double part_of(const Body *bodies, const uint32_t *list, size_t n, const 
         thinnest = fmin(thinnest, body->radius);
     }
     if (met <= 1)
-        return met ? body_part(&bodies[lists[0]], cell) : 0;
+        return met ? body_fraction(&bodies[lists[0]], cell) : 0;
     double widest = fmax(cell->half.x, fmax(cell->half.y, cell->half.z));
     if (widest > thinnest && depth < DEEPEST)
         return part_in_eight(bodies, lists, met, cell, depth, lists + met, workspace);
     return part_by_lines(bodies, lists, met, cell, workspace);
 }
 
-double cover_part(const Body *bodies, const uint32_t *list, size_t n, const VoxelCell *cell,
-                  CoverWorkspace *workspace)
+double cover_fraction(const Body *bodies, const uint32_t *list, size_t n, const VoxelCell *cell,
+                      CoverWorkspace *workspace)
 {
     return part_of(bodies, list, n, cell, 0, workspace->lists, workspace);
 }

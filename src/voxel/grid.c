@@ -76,7 +76,7 @@ uint32_t cell_owner(const Bodies *bodies, const uint32_t *list, size_t n, const 
     uint32_t owner = 0;
     for (size_t i = 0; i < n; i++) {
         const Body *body = &bodies->body[list[i]];
-        double part = n > 1 ? body_part(body, cell) : 0;
+        double part = n > 1 ? body_fraction(body, cell) : 0;
         if (part > most || (part == most && bodies->ids[body->segment] < bodies->ids[owner])) {
             most = part;
             owner = body->segment;

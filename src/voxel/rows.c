@@ -165,8 +165,8 @@ static void fill_voxel(const Row *row, int64_t x)
     const RowSource *source = row->source;
     RowWorkspace *workspace = row->workspace;
     VoxelCell cell = grid_cell(source->grid, x, row->y, row->z);
-    double part = cover_part(source->bodies->body, workspace->touching.items, workspace->touching.n,
-                             &cell, &workspace->coverage);
+    double part = cover_fraction(source->bodies->body, workspace->touching.items,
+                                 workspace->touching.n, &cell, &workspace->coverage);
     if (part > 0)
         put_value(row, x, part, &cell);
 }

@@ -60,7 +60,7 @@ static Vec3 first_place(const VoxelGrid *grid)
 
 /* The header in the machine's byte order, which readers tell by its size. Where the voxels are is
  * said twice, as a matrix and, for readers without one, as an offset. */
-static void put_nifti(const VoxelGrid *grid, SampleType type, bool parts, const char *about,
+static void put_nifti(const VoxelGrid *grid, SampleType type, bool is_fraction, const char *about,
                       Text *out)
 {
     static const char no_extension[4] = {0};
@@ -77,8 +77,8 @@ static void put_nifti(const VoxelGrid *grid, SampleType type, bool parts, const 
     header.datatype = samples_of[type].nifti;
     header.bitpix = (short)(8 * samples_of[type].size);
     header.vox_offset = sizeof header + sizeof no_extension;
-    header.scl_slope = parts ? (float)(1 / samples_of[type].full) : 1;
-    header.intent_code = parts ? NIFTI_INTENT_NONE : NIFTI_INTENT_LABEL;
+    header.scl_slope = is_fraction ? (float)(1 / samples_of[type].full) : 1;
+    header.intent_code = is_fraction ? NIFTI_INTENT_NONE : NIFTI_INTENT_LABEL;
     header.xyzt_units = NIFTI_UNITS_MM;
     snprintf(header.descrip, sizeof header.descrip, "%s", about);
     header.qform_code = header.sform_code = NIFTI_XFORM_SCANNER_ANAT;
@@ -106,7 +106,7 @@ static Numbers numbers_of(Vec3 v)
     return numbers;
 }
 
-static void put_nrrd(const VoxelGrid *grid, SampleType type, bool parts, const char *about,
+static void put_nrrd(const VoxelGrid *grid, SampleType type, bool is_fraction, const char *about,
                      Text *out)
 {
     Numbers first = numbers_of(first_place(grid)), step = numbers_of(grid->step);
@@ -120,17 +120,17 @@ static void put_nrrd(const VoxelGrid *grid, SampleType type, bool parts, const c
     text_puts(out, "space units: \"mm\" \"mm\" \"mm\"\nkinds: domain domain domain\n");
     text_printf(out, "space origin: (%s,%s,%s)\n", first.x, first.y, first.z);
     text_printf(out, "endian: %s\nencoding: gzip\n", is_little_endian() ? "little" : "big");
-    if (parts)
+    if (is_fraction)
         text_printf(out, "old max: %.0f\nold min: 0\n", samples_of[type].full);
     text_puts(out, "\n");
 }
 
-static void put_meta(const VoxelGrid *grid, SampleType type, bool parts, const char *about,
+static void put_meta(const VoxelGrid *grid, SampleType type, bool is_fraction, const char *about,
                      Text *out)
 {
     Vec3 place = first_place(grid);
     Numbers first = numbers_of(vec3(-place.x, -place.y, place.z)), step = numbers_of(grid->step);
-    (void)parts;
+    (void)is_fraction;
     text_puts(out, "ObjectType = Image\nNDims = 3\nComment = ");
     text_put_line(out, about);
     text_printf(out, "\nBinaryData = True\nBinaryDataByteOrderMSB = %s\nCompressedData = False\n",
@@ -144,11 +144,11 @@ static void put_meta(const VoxelGrid *grid, SampleType type, bool parts, const c
 }
 
 /* POV-Ray's density file: three sizes, and nothing else. */
-static void put_df3(const VoxelGrid *grid, SampleType type, bool parts, const char *about,
+static void put_df3(const VoxelGrid *grid, SampleType type, bool is_fraction, const char *about,
                     Text *out)
 {
     (void)type;
-    (void)parts;
+    (void)is_fraction;
     (void)about;
     for (int axis = 0; axis < 3; axis++) {
         char size[2] = {(char)(grid->n[axis] >> 8), (char)(grid->n[axis] & 0xff)};
@@ -166,7 +166,7 @@ enum {
 
 #define FORMAT(ending, holds, limit, samples, put, ...)                                            \
     {                                                                                              \
-        .suffix = ending, .description = holds, .most = limit, .types = samples,                   \
+        .suffix = ending, .description = holds, .max_side = limit, .types = samples,               \
         .put_header = put, __VA_ARGS__                                                             \
     }
 
@@ -192,17 +192,17 @@ const VolumeFormat *volume_format_find(const char *path)
     return NULL;
 }
 
-Status volume_check(const VolumeFormat *format, const VoxelGrid *grid, SampleType type, bool parts,
-                    Err *err)
+Status volume_check(const VolumeFormat *format, const VoxelGrid *grid, SampleType type,
+                    bool is_fraction, Err *err)
 {
     for (int axis = 0; axis < 3; axis++)
-        if (grid->n[axis] > format->most)
+        if (grid->n[axis] > format->max_side)
             return err_set(
                 err, STATUS_INFEASIBLE,
                 "`voxel`: %lld x %lld x %lld voxels; %s holds at most %lld along an axis",
                 (long long)grid->n[0], (long long)grid->n[1], (long long)grid->n[2], format->suffix,
-                (long long)format->most);
-    if (!parts && format->is_density)
+                (long long)format->max_side);
+    if (!is_fraction && format->is_density)
         return err_set(err, STATUS_USAGE, "%s holds no labels and no centrelines", format->suffix);
     if (!(format->types & 1u << type))
         return err_set(err, STATUS_USAGE, "%s has no samples of %s", format->suffix,
@@ -224,14 +224,14 @@ typedef struct HeaderBytes {
 } HeaderBytes;
 
 /* Makes the header of a volume in *made, which the caller frees also after an error. */
-static Status make_header(const VolumeStream *stream, const VoxelGrid *grid, bool parts,
+static Status make_header(const VolumeStream *stream, const VoxelGrid *grid, bool is_fraction,
                           const char *about, HeaderBytes *made, Err *err)
 {
     FILE *memory = open_memstream(&made->bytes, &made->size);
     if (!memory)
         return mem_out_of("for", "the header of a volume", err);
     Text header = TEXT_TO(memory);
-    stream->format->put_header(grid, stream->type, parts, about, &header);
+    stream->format->put_header(grid, stream->type, is_fraction, about, &header);
     Status status = text_flush(&header, err);
     text_release(&header);
     /* Closing tells only by NULL that there was no room for the bytes. */
@@ -240,16 +240,16 @@ static Status make_header(const VolumeStream *stream, const VoxelGrid *grid, boo
     return status;
 }
 
-Status volume_begin(VolumeStream *stream, const VoxelGrid *grid, bool parts, const char *about,
-                    Err *err)
+Status volume_begin(VolumeStream *stream, const VoxelGrid *grid, bool is_fraction,
+                    const char *about, Err *err)
 {
     const VolumeFormat *format = stream->format;
-    VolumePart part = {0};
+    VolumeChunk part = {0};
     HeaderBytes header = {0};
     Status status;
     stream->crc = (uint32_t)crc32(0, NULL, 0);
-    stream->plain = 0;
-    TRY_GOTO(make_header(stream, grid, parts, about, &header, err));
+    stream->n_uncompressed = 0;
+    TRY_GOTO(make_header(stream, grid, is_fraction, about, &header, err));
     if (!format->header_deflated)
         fwrite(header.bytes, 1, header.size, stream->to);
     if (format->deflated)
@@ -276,7 +276,7 @@ void volume_end(VolumeStream *stream)
         return;
     fwrite(deflate_end, 1, sizeof deflate_end, stream->to);
     put_little(stream->crc, stream->to);
-    put_little((uint32_t)stream->plain, stream->to);
+    put_little((uint32_t)stream->n_uncompressed, stream->to);
 }
 
 static void swap_bytes(uint8_t *samples, size_t n, size_t size)
@@ -292,7 +292,7 @@ static void swap_bytes(uint8_t *samples, size_t n, size_t size)
 /* Level 1 takes a sixth of the time of level 6, for files that are 6 % larger. */
 enum { LEVEL = 1, RAW = -15, MEMORY_LEVEL = 8 };
 
-static Status deflate_part(const uint8_t *samples, size_t n, VolumePart *out, Err *err)
+static Status deflate_part(const uint8_t *samples, size_t n, VolumeChunk *out, Err *err)
 {
     z_stream zlib = {0};
     if (deflateInit2(&zlib, LEVEL, Z_DEFLATED, RAW, MEMORY_LEVEL, Z_DEFAULT_STRATEGY) != Z_OK)
@@ -312,10 +312,10 @@ done:
     return status;
 }
 
-Status volume_pack(const VolumeStream *stream, uint8_t *samples, size_t n, VolumePart *out,
+Status volume_pack(const VolumeStream *stream, uint8_t *samples, size_t n, VolumeChunk *out,
                    Err *err)
 {
-    VolumePart part = {.plain = n, .n = n};
+    VolumeChunk part = {.n_uncompressed = n, .n = n};
     if (stream->format->big_endian && is_little_endian())
         swap_bytes(samples, n, samples_of[stream->type].size);
     if (stream->format->deflated) {
@@ -328,11 +328,11 @@ Status volume_pack(const VolumeStream *stream, uint8_t *samples, size_t n, Volum
     return STATUS_OK;
 }
 
-Status volume_put(VolumeStream *stream, const VolumePart *part, Err *err)
+Status volume_put(VolumeStream *stream, const VolumeChunk *part, Err *err)
 {
     if (fwrite(part->bytes, 1, part->n, stream->to) != part->n)
         return err_set(err, STATUS_IO, "cannot be written: %s", strerror(errno));
-    stream->crc = (uint32_t)crc32_combine(stream->crc, part->crc, (z_off_t)part->plain);
-    stream->plain += part->plain;
+    stream->crc = (uint32_t)crc32_combine(stream->crc, part->crc, (z_off_t)part->n_uncompressed);
+    stream->n_uncompressed += part->n_uncompressed;
     return STATUS_OK;
 }

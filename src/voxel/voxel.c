@@ -13,7 +13,7 @@ enum { CHUNK_VOXELS = 1 << 18, CHUNKS_A_THREAD = 4, VOLUMES = 3 };
 
 typedef struct VoxelChunk {
     RowBlock rows;
-    VolumePart parts[VOLUMES];
+    VolumeChunk parts[VOLUMES];
 } VoxelChunk;
 
 typedef struct VoxelWork {
@@ -71,18 +71,19 @@ VoxelEstimate voxels_estimate(const Geometry *geometry, const VoxelParams *param
     double voxels = (double)grid->n[0] * (double)grid->n[1] * (double)grid->n[2];
     double chunk = (double)(rows_a_chunk(grid) * grid->n[0]);
     VoxelEstimate estimate = {.voxels = voxels};
-    estimate.walls = fmin(voxels, wall_voxels(geometry, grid->step));
+    estimate.partial_voxels = fmin(voxels, wall_voxels(geometry, grid->step));
     for (int i = 0; i < VOLUMES; i++)
         if (streams[i])
-            estimate.bytes += (double)sample_size(streams[i]->type) *
-                              (streams[i]->format->deflated
-                                   ? voxels * deflated_zeros + estimate.walls * deflated_wall
-                                   : voxels);
+            estimate.bytes +=
+                (double)sample_size(streams[i]->type) *
+                (streams[i]->format->deflated
+                     ? voxels * deflated_zeros + estimate.partial_voxels * deflated_wall
+                     : voxels);
     estimate.memory = own_bytes + (double)geometry->n_primitives * bytes_a_body +
                       threads * CHUNKS_A_THREAD * chunk * 2 * (double)sample_bytes(params);
-    estimate.seconds =
-        (estimate.walls * wall_s + voxels * voxel_s + (double)geometry->n_primitives * body_s) /
-        threads;
+    estimate.seconds = (estimate.partial_voxels * wall_s + voxels * voxel_s +
+                        (double)geometry->n_primitives * body_s) /
+                       threads;
     return estimate;
 }
 
@@ -253,7 +254,7 @@ Status voxels_write(const Geometry *geometry, const VoxelParams *params, VoxelRe
     TRY_GOTO(prepare(&work, err));
     if (params->label)
         TRY_GOTO(claims_make(&work.source, geometry, &work.claims, err));
-    made.claimed = work.claims.taken;
+    made.n_given_voxels = work.claims.n_taken;
     TRY_GOTO(make_chunks(&work, &made, err));
     for (int i = 0; i < VOLUMES; i++)
         if (work.streams[i])

@@ -112,9 +112,9 @@ static Status find_emitter(const ExportOptions *options, const Emitter **emitter
     const Emitter *asked = NULL;
     TRY(scene_files_find(options->output, true, emitter, err));
     if (options->parts)
-        asked = emitter_asked((*emitter)->extension, "parts");
+        asked = emitter_by_option((*emitter)->extension, "parts");
     else if (options->lattice)
-        asked = emitter_asked((*emitter)->extension, "lattice");
+        asked = emitter_by_option((*emitter)->extension, "lattice");
     else
         return STATUS_OK;
     if (options->parts && !asked && !(*emitter)->has_parts)

@@ -29,15 +29,15 @@ void mesh_say_print(const MeshResult *made, const Talk *talk)
                   ids[report->closest.segments[1]]);
     if (report->cavities)
         talk_note(talk, "%zu trees are closed cavities, which cannot drain", report->cavities);
-    if (report->n_longer)
+    if (report->n_lengthened)
         talk_note(talk, "%zu ends are lengthened, so that they can be cut off flat",
-                  report->n_longer);
-    if (settings->params.base.is_there)
+                  report->n_lengthened);
+    if (settings->params.base.is_wanted)
         talk_note(talk,
                   "%zu pins hold it on the base; %zu places hang free, as vessels or open "
                   "ends are in the way",
-                  report->pins, report->hanging);
-    if (settings->params.block.is_there)
+                  report->pins, report->unsupported);
+    if (settings->params.block.is_wanted)
         talk_note(talk, "the block has %zu ports; %zu ends are closed in it", report->openings,
                   report->n_closed);
     if (print_has_wall(&settings->params))
@@ -92,12 +92,12 @@ static json_t *print_json(const MeshResult *made)
         {"nozzle_mm", json_number(settings->nozzle_mm)},
         {"segments_below_two_nozzles", json_count(changes->below_two)},
         {"thinnest_diameter_mm", json_number(changes->thinnest_mm)},
-        {"segments_lengthened", segment_ids(vessels, report->longer, report->n_longer)},
+        {"segments_lengthened", segment_ids(vessels, report->lengthened, report->n_lengthened)},
         {"openings", json_count(report->openings)},
         {"closed_ends", segment_ids(vessels, report->closed, report->n_closed)},
         {"lumen_mm3", json_number(report->lumen_mm3)},
         {"pins", json_count(report->pins)},
-        {"hanging", json_count(report->hanging)},
+        {"hanging", json_count(report->unsupported)},
         {"closed_cavities", json_count(report->cavities)},
         {"rings", json_count(report->rings)},
         {"least_gap_mm", report->has_closest ? json_number(report->closest.gap_mm) : json_null()},
@@ -156,8 +156,8 @@ json_t *mesh_manifest(const MeshResult *made)
         {"points", json_count(mesh->n_points)},
         {"volume_mm3", json_number(report->volume_mm3)},
         {"tolerance", json_number(report->tolerance)},
-        {"max_distance_mm", json_number(report->off.mm)},
-        {"max_distance_over_radius", json_number(report->off.ratio)},
+        {"max_distance_mm", json_number(report->deviation.mm)},
+        {"max_distance_over_radius", json_number(report->deviation.ratio)},
     };
     json_t *all = json_with_members(json_object(), members, sizeof members / sizeof *members);
     return made->print ? json_with(all, "print", print_json(made)) : all;

@@ -81,9 +81,11 @@ static Status build_mesh(void *job, Progress *progress, Err *err)
     if (made->print)
         return print_vessels(work, err);
     if (work->part_overlaps)
-        TRY(vesseltree_part(vessels, &work->params, &made->thinned.at, &made->thinned.n, err));
+        TRY(vesseltree_thin_overlaps(vessels, &work->params, &made->thinned.at, &made->thinned.n,
+                                     err));
     if (made->emitter->has_parts && vessels->body == BODY_POTENTIAL)
-        TRY(vesseltree_free_ends(vessels, &work->params, &made->longer.at, &made->longer.n, err));
+        TRY(vesseltree_lengthen_ends(vessels, &work->params, &made->longer.at, &made->longer.n,
+                                     err));
     return vesselmesh_build(vessels, &work->params, &made->mesh, &made->report, err);
 }
 

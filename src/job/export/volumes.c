@@ -230,9 +230,9 @@ static void say_result(const Volumes *made, const Talk *talk)
                   "rounded to %s bits, voxels hold %.3g %% %s than the vessels; take a --depth of "
                   "more",
                   depths[made->options->depth], fabs(more), more > 0 ? "more" : "less");
-    if (report->claimed)
+    if (report->n_given_voxels)
         talk_warn(talk, "%zu labels fill the most of no voxel, and each has one that it meets",
-                  report->claimed);
+                  report->n_given_voxels);
     talk_note(talk, "%lld voxels hold vessels, %.6g mm^3", (long long)report->filled,
               report->volume_mm3);
 }
@@ -260,7 +260,7 @@ static json_t *manifest(const Volumes *made, const char *command)
         {"segments", json_count(made->geometry.drawn)},
         {"segments_within_others", json_count(made->within)},
         {"labels", json_text(label_kinds[made->options->labels])},
-        {"labels_given_a_voxel", json_count(report->claimed)},
+        {"labels_given_a_voxel", json_count(report->n_given_voxels)},
         {"filled_voxels", json_integer(report->filled)},
         {"volume_mm3", json_number(report->volume_mm3)},
         {"union_mm3", json_number(report->union_mm3)},

@@ -248,9 +248,9 @@ Status coloring_appearance(const Coloring *coloring, const ColoredTree *tree, co
 void coloring_say(const Appearance *appearance, const Talk *talk)
 {
     const double most_decades = 3; /* a linear scale shows hardly anything of the lowest */
-    if (!appearance->said)
+    if (!appearance->meaning)
         return;
-    talk_note(talk, "%s", appearance->said);
+    talk_note(talk, "%s", appearance->meaning);
     const double decades = fieldscale_decades(appearance);
     if (decades > most_decades)
         talk_note(talk, "the field %s spans %.1f decades, which --log shows evenly",
@@ -260,7 +260,7 @@ void coloring_say(const Appearance *appearance, const Talk *talk)
 json_t *coloring_json(const Appearance *appearance)
 {
     const ColorScale *scale = &appearance->scale;
-    if (!appearance->said)
+    if (!appearance->meaning)
         return json_null();
     json_t *bounds = json_array();
     for (int i = 0; i < scale->n_bounds; i++)
@@ -273,7 +273,7 @@ json_t *coloring_json(const Appearance *appearance)
         {"log", json_boolean(scale->log)},
         {"classes", json_integer(colorscale_steps(scale))},
         {"bounds", bounds},
-        {"said", json_text(appearance->said)},
+        {"said", json_text(appearance->meaning)},
     };
     return json_with_members(json_object(), members, sizeof members / sizeof *members);
 }

@@ -49,7 +49,7 @@ static Status lay_down(const ConvertOptions *options, Image *image, Err *err)
     const Rgb ground = rgb_of_option(options->background);
     Status status = STATUS_OK;
     if (options->has_background)
-        status = image_lay_on(image, (const float[3]){ground.r, ground.g, ground.b}, err);
+        status = image_composite(image, (const float[3]){ground.r, ground.g, ground.b}, err);
     if (status != STATUS_OK)
         image_release(image);
     return status;

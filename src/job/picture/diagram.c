@@ -176,7 +176,7 @@ static Status write_pixels(const DiagramOptions *options, const MadeDiagram *mad
                              .picture = true,
                              .dpi = options->size.dpi,
                              .provenance = command,
-                             .colors = made->appearance.said};
+                             .colors = made->appearance.meaning};
     return frames_write(&made->pixels, &form, err);
 }
 

@@ -34,7 +34,7 @@ static const char *const color_blends[] = {
 
 static const char *const erf_names[] = {[ERF_FAST] = "fast", [ERF_EXACT] = "exact", NULL};
 
-const Range antialias_range = {1, RENDER_MOST_ANTIALIAS}, prune_range = {0, 1e7},
+const Range antialias_range = {1, RENDER_MAX_ANTIALIAS}, prune_range = {0, 1e7},
             tolerance_range = {0.002, 0.2};
 
 static const Option rows[] = {
@@ -569,7 +569,7 @@ static Status blend(const PictureOptions *options, Appearance *appearance, Err *
     const ColorScale *scale = &appearance->scale;
     if (options->color_blend == BLEND_SEGMENT || !appearance->colors)
         return STATUS_OK;
-    if (colorscale_counts(scale))
+    if (colorscale_selects_by_integer(scale))
         return err_set(err, STATUS_USAGE,
                        "--color-blend blended: --colormap %s has separate colors, which blend only "
                        "with --classes",

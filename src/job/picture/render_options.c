@@ -242,7 +242,7 @@ RenderParams render_params_of(const RenderOptions *options, int threads, CellPar
                           .method = options->method,
                           .povray_cells = options->hits == HITS_POVRAY ? cells : NULL,
                           .cover_thin = covers_thin(options),
-                          .least_px = options->min_width_px,
+                          .min_width_px = options->min_width_px,
                           .kernels = options->kernels};
 }
 

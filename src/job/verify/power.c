@@ -109,7 +109,7 @@ static Status read_drawn(const PowerOptions *options, const char *path, Picture 
     Image image;
     TRY(image_read(&image, path, ALPHA_KEPT, NULL, err));
     Status status;
-    TRY_GOTO(image_lay_on(&image, background, err));
+    TRY_GOTO(image_composite(&image, background, err));
     status = image.plane.values ? picture_from_plane(picture, &image.plane, ENCODING_SRGB, 16, err)
                                 : picture_to_srgb(picture, &image.picture, image.picture.bits, err);
 done:

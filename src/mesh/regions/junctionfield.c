@@ -2,9 +2,9 @@
  * those at E + rho and max(0, E - rho). Its axial factor is symmetric about the middle of the
  * segment, where it is largest, and falls away from it. In the interval of width 2 rho it is
  * smallest at one of the two ends, and largest at the point nearest to the middle. */
-#include "mesh/zones/junctionfield.h"
+#include "mesh/regions/junctionfield.h"
 
-#include "mesh/zones/gauss.h"
+#include "mesh/regions/gauss.h"
 #include <float.h>
 #include <stdlib.h>
 
