@@ -83,10 +83,10 @@ static double side_of(Vec3 a, Vec3 b, int along_x, int along_y, double x, double
 }
 
 /* Returns true if a point of the triangle's plane lies within the triangle, edges included. */
-static bool holds(const Vec3 at[3], Vec3 normal, Vec3 place)
+static bool holds(const Vec3 at[3], Vec3 normal, Vec3 point)
 {
     int axis = main_axis(normal), along_x = axis == 0, along_y = axis == 2 ? 1 : 2;
-    double px = vec3_component(place, along_x), py = vec3_component(place, along_y);
+    double px = vec3_component(point, along_x), py = vec3_component(point, along_y);
     double a = side_of(at[0], at[1], along_x, along_y, px, py);
     double b = side_of(at[1], at[2], along_x, along_y, px, py);
     double c = side_of(at[2], at[0], along_x, along_y, px, py);
@@ -128,7 +128,7 @@ static bool is_turned(const Vec3 at[3], Vec3 normal)
 /* Returns the interpolated normal at a point of the triangle. u goes from 0 at the first corner to
  * 1 at the opposite edge. v goes along that edge; it is measured along the axis of the edge's
  * largest component. */
-static Vec3 smooth_normal(const VesselMesh *mesh, size_t triangle, Vec3 plane_normal, Vec3 place)
+static Vec3 smooth_normal(const VesselMesh *mesh, size_t triangle, Vec3 plane_normal, Vec3 point)
 {
     Vec3 at[3], normal[3];
     find_corners(mesh, triangle, at);
@@ -144,7 +144,7 @@ static Vec3 smooth_normal(const VesselMesh *mesh, size_t triangle, Vec3 plane_no
     Vec3 edge = vec3_normalized(vec3_sub(at[1], at[2])), from = vec3_sub(at[0], at[2]);
     Vec3 across = single(vec3_normalized(vec3_sub(vec3_scale(edge, vec3_dot(from, edge)), from)));
     Vec3 perp = single(vec3_scale(across, -1 / vec3_dot(from, across)));
-    Vec3 in = vec3_sub(place, at[0]), opposite = vec3_sub(at[2], at[1]);
+    Vec3 in = vec3_sub(point, at[0]), opposite = vec3_sub(at[2], at[1]);
     double u = vec3_dot(in, perp);
     if (u < epsilon)
         return vec3_normalized(normal[0]);
@@ -155,11 +155,11 @@ static Vec3 smooth_normal(const VesselMesh *mesh, size_t triangle, Vec3 plane_no
     return vec3_normalized(vec3_add_scaled(normal[0], ahead, u));
 }
 
-static Vec3 normal_at(const VesselMesh *mesh, size_t triangle, Vec3 plane_normal, Vec3 place)
+static Vec3 normal_at(const VesselMesh *mesh, size_t triangle, Vec3 plane_normal, Vec3 point)
 {
     float flat[3];
     if (!mesh_is_cap(mesh, triangle))
-        return smooth_normal(mesh, triangle, plane_normal, place);
+        return smooth_normal(mesh, triangle, plane_normal, point);
     mesh_flat_normal(mesh, triangle, flat);
     return vec3_normalized(vec3_of(flat));
 }
