@@ -240,7 +240,7 @@ Status put_blob(Text *out, PovrayGeometry *geometry, Err *err)
     return put_declaration(out, geometry, whole ? "blob" : "union", &values, err);
 }
 
-Status find_painted(PovrayGeometry *geometry, Err *err)
+Status find_visible_segments(PovrayGeometry *geometry, Err *err)
 {
     const PovrayItems all = geometry->objects[0];
     uint32_t *index = geometry->indices + all.n;
@@ -257,7 +257,7 @@ Status find_painted(PovrayGeometry *geometry, Err *err)
     for (size_t i = 0; i < all.n; i++)
         if (cells.is_met[i])
             index[n++] = (uint32_t)i;
-    geometry->nothing = n == 0;
+    geometry->is_empty = n == 0;
     geometry->painted = n ? (PovrayItems){index, n} : (PovrayItems){all.index, 1};
 done:
     free(cells.is_met);
@@ -470,7 +470,7 @@ static Status put_hierarchy(Text *out, const PovrayGeometry *geometry, const dou
                      .painted = geometry->painted,
                      .places = places,
                      .node = &templates[0],
-                     .in_matrices = n > MOST_INLINE_TERMS,
+                     .in_matrices = n > MAX_INLINE_TERMS,
                      .text = out};
     Status status;
     TRY_GOTO(load_templates(templates, geometry->params, names, 2, err));

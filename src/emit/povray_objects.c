@@ -4,8 +4,8 @@
  *
  * If only a part of the picture is drawn, only items that a ray of the part can hit are written. A
  * field keeps all its segments, because its values are sums over segments elsewhere; its cells are
- * chosen instead (find_cells, find_painted). POV-Ray thus meets the same pieces in the part as in
- * the whole picture. */
+ * chosen instead (find_cells, find_visible_segments). POV-Ray thus meets the same pieces in the
+ * part as in the whole picture. */
 #include "emit/povray_objects.h"
 
 #include <assert.h>
@@ -77,7 +77,7 @@ static Status choose_items(PovrayGeometry *geometry, Err *err)
         if (primitives ? meets_primitive(geometry, i) : is_met[i])
             geometry->indices[n++] = (uint32_t)i;
     all->n = n;
-    geometry->nothing = n == 0;
+    geometry->is_empty = n == 0;
     free(is_met);
     return STATUS_OK;
 }
@@ -111,7 +111,7 @@ void povray_objects_release(PovrayGeometry *geometry)
          k++)
         celltree_release(&geometry->cells[k]);
     free(geometry->cells);
-    free(geometry->met);
+    free(geometry->hit_cells);
     free(geometry->objects);
     free(geometry->indices);
     indexlists_release(&geometry->trees);
@@ -167,7 +167,7 @@ Status put_objects(Text *out, PovrayGeometry *geometry,
     for (geometry->object = 1; geometry->object < geometry->n_objects; geometry->object++)
         TRY((geometry->objects[geometry->object].n ? put_object : put_nothing)(out, geometry, err));
     geometry->object = 0;
-    if (geometry->nothing)
+    if (geometry->is_empty)
         return put_nothing(out, geometry, err);
     if (geometry->n_objects == 1 || is_field(geometry))
         return put_object(out, geometry, err);

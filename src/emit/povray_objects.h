@@ -23,10 +23,10 @@ typedef struct PovrayGeometry {
     size_t n_objects;
     uint32_t *indices;   /* the items of all objects */
     IndexLists trees;    /* of a forest: the items of each tree */
-    bool nothing;        /* no ray of the part can hit anything */
+    bool is_empty;       /* no ray of the part can hit anything */
     PovrayItems painted; /* blob: the segments that may be visible; borrowed from `indices` */
     CellTree *cells;     /* isosurface: per object; terms have the indices of the scene */
-    Cell *met;           /* isosurface with a part: the cells of params->built that its rays hit */
+    Cell *hit_cells;     /* isosurface with a part: the cells of params->built that its rays hit */
     size_t object;       /* index of the object that is being declared */
 } PovrayGeometry;
 

@@ -44,7 +44,7 @@ static Status wall_vessels(VesselTree *vessels, const GeometryParams *params, Ve
     MeshReport report;
     uint32_t *thinned = NULL;
     if (params->part_overlaps)
-        TRY(vesseltree_part(vessels, &params->mesh, &thinned, &counted->thinned, err));
+        TRY(vesseltree_thin_overlaps(vessels, &params->mesh, &thinned, &counted->thinned, err));
     free(thinned);
     TRY(vesselmesh_build(vessels, &params->mesh, mesh, &report, err));
     Status status = meshreport_check(&report, vessels, err);
@@ -204,7 +204,7 @@ Status stage_blend(Appearance *appearance, Err *err)
     TRY(mem_calloc(&appearance->positions, n, sizeof *appearance->positions, "coincidence", err));
     colorramp_init(appearance->ramp, &appearance->scale.map);
     for (size_t i = 0; i < n; i++) {
-        appearance->positions[i] = colorscale_place(&appearance->scale, appearance->values[i]);
+        appearance->positions[i] = colorscale_position(&appearance->scale, appearance->values[i]);
         appearance->colors[i] = appearance_blended(appearance, appearance->positions[i]);
     }
     return STATUS_OK;

@@ -351,8 +351,8 @@ static Tolerance exact_tolerance(const IdPlane *ids)
 static Status check_surface(Verification *v, Err *err)
 {
     const Frame *seen = &v->native.frame, *exact = &v->exact;
-    const SurfaceSight sight = {seen->depth.values, seen->normal.values, seen->id.ids};
-    const SurfaceSight exact_sight = {exact->depth.values, exact->normal.values, exact->id.ids};
+    const SurfacePlanes sight = {seen->depth.values, seen->normal.values, seen->id.ids};
+    const SurfacePlanes exact_sight = {exact->depth.values, exact->normal.values, exact->id.ids};
     const ErfForm erf = picture_cells(&v->options->picture).erf;
     Plane allowed = {0};
     Status status;

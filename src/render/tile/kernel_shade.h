@@ -135,7 +135,7 @@ LANE_TARGET static void LANES_NAME(shade)(const TileLook *look, const TileSurfac
 LANE_FN LaneMask srgb_lanes(const SrgbCodes *codes, const float *linear)
 {
     Lanes value =
-        lanes_min(lanes_max(lanes_load(linear), lanes_set(SRGB_LEAST)), lanes_set(SRGB_MOST));
+        lanes_min(lanes_max(lanes_load(linear), lanes_set(SRGB_MIN)), lanes_set(SRGB_MAX));
     LaneMask bits = (LaneMask)value - SRGB_CELLS_BEGIN;
     LaneMask cell = lanes_gather(codes->cells, bits >> SRGB_CELL_BITS);
     return (cell + (bits & (SRGB_CELL - 1))) >> SRGB_CELL_BITS;
