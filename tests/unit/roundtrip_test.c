@@ -1,5 +1,5 @@
-/* Every format of trees that is written, with every kind of tree: a file is read again, and holds
- * all that tree_format_losses does not name. */
+/* Every format of trees that corcast writes, with every kind of tree. A file that is read again
+ * has all data that tree_format_losses does not name. */
 #include "scratch.h"
 #include "treeio/treeio.h"
 #include "unit.h"
@@ -190,7 +190,7 @@ static void compare_columns(const char *to, const Tree *tree, size_t i, const Tr
 {
     for (size_t c = 0; c < tree->n_columns; c++) {
         const TreeColumn *column = &tree->column[c], *found = tree_column(back, column->name);
-        if (!tree_format_keeps(to, column))
+        if (!tree_format_stores(to, column))
             continue;
         assert_non_null(found);
         assert_string_equal(found->unit, column->unit);
