@@ -40,7 +40,7 @@ test_the_arteries_of_a_brain_in_metres() {
         .reading.roots[0].reason == "the file says so" and .reading.network.points == 12709 and
         .reading.median_radius_mm > 0.49 and .reading.median_radius_mm < 1.40 and
         (.reading.unit_said and .reading.believed_unit == "m") and
-        (.reading.assumed[2] | startswith("2 more inlets"))' --input-unit m
+        (.reading.assumed[2] | startswith("stated inlets that are not roots: 2 "))' --input-unit m
     run_ok corcast info "$SHARED/brain_pvs/arteries_smooth.vtk"
     expect_sentence 'taken for mm, but the median radius, 0.000536, looks like m; --input-unit'
 }
