@@ -19,30 +19,32 @@ void mesh_say_print(const MeshResult *made, const Talk *talk)
         talk_note(talk, "%zu thin segment%s pruned", made->of.pruned,
                   made->of.pruned == 1 ? " is" : "s are");
     if (changes->below_two)
-        talk_note(talk, "%zu segment%s thinner than two widths of the nozzle", changes->below_two,
+        talk_note(talk, "%zu segment%s thinner than twice the nozzle", changes->below_two,
                   changes->below_two == 1 ? " is" : "s are");
     if (report->has_closest)
-        talk_note(talk,
-                  "vessels that do not belong together are %.3g mm apart at the least, "
-                  "segments %u and %u",
-                  report->closest.gap_mm, ids[report->closest.segments[0]],
-                  ids[report->closest.segments[1]]);
+        talk_note(
+            talk,
+            "the smallest gap between unconnected vessels is %.3g mm, between segments %u and %u",
+            report->closest.gap_mm, ids[report->closest.segments[0]],
+            ids[report->closest.segments[1]]);
     if (report->cavities)
-        talk_note(talk, "%zu trees are closed cavities, which cannot drain", report->cavities);
+        talk_note(talk, "trees that are closed cavities and cannot be drained: %zu",
+                  report->cavities);
     if (report->n_longer)
-        talk_note(talk, "%zu ends are lengthened, so that they can be cut off flat",
+        talk_note(talk, "ends that were lengthened so that a flat cut is possible: %zu",
                   report->n_longer);
     if (settings->params.base.is_there)
         talk_note(talk,
-                  "%zu pins hold it on the base; %zu places hang free, as vessels or open "
-                  "ends are in the way",
+                  "%zu pins support the print; overhangs that could not be supported because of "
+                  "vessels or open ends: %zu",
                   report->pins, report->hanging);
     if (settings->params.block.is_there)
-        talk_note(talk, "the block has %zu ports; %zu ends are closed in it", report->openings,
-                  report->n_closed);
+        talk_note(talk,
+                  "the block has %zu ports; vessel ends that stay closed inside the block: %zu",
+                  report->openings, report->n_closed);
     if (print_has_wall(&settings->params))
-        talk_note(talk, "the wall has %zu openings; %zu ends are closed", report->openings,
-                  report->n_closed);
+        talk_note(talk, "the wall has %zu openings; vessel ends that stay closed: %zu",
+                  report->openings, report->n_closed);
     talk_note(talk, "the print measures %.4g x %.4g x %.4g mm", size[0], size[1], size[2]);
 }
 

@@ -17,11 +17,12 @@ static Status take_vessels(MeshResult *made, VesselBody body, const Talk *talk, 
     TRY(stage_vessels(&made->of.tree, &made->vessels, &report, err));
     made->vessels.body = body;
     if (report.dropped)
-        talk_warn(talk, "%zu segments have no length or no radius and are left out",
+        talk_warn(talk, "segments that are left out, as they have no length or no radius: %zu",
                   report.dropped);
     if (report.covered)
         talk_warn(talk,
-                  "%zu segments lie within others between the same two points and are left out",
+                  "segments that are left out, as they are inside others between the same two "
+                  "points: %zu",
                   report.covered);
     return STATUS_OK;
 }
@@ -53,7 +54,7 @@ static WorkCost estimate_mesh(const void *job, const Talk *talk)
     const Triangulation *work = job;
     char memory[BYTES_TEXT_SIZE];
     const MeshEstimate estimate = vesselmesh_estimate(&work->made->vessels, &work->params);
-    talk_note(talk, "about %.2g triangles, which take %.*f s and %s of memory", estimate.triangles,
+    talk_note(talk, "expecting about %.2g triangles, %.*f s and %s of memory", estimate.triangles,
               estimate.seconds < 10, estimate.seconds, bytes_text(estimate.bytes, memory));
     return (WorkCost){.memory = estimate.bytes};
 }
@@ -92,23 +93,21 @@ static void say_result(const MeshResult *made, const Talk *talk)
     const MeshReport *report = &made->report;
     const size_t n_thinned = made->thinned.n, n_longer = made->longer.n;
     if (n_thinned)
-        talk_warn(talk,
-                  "%zu segment%s thinned, because of an overlap with others that do not belong "
-                  "there, or blend with such",
+        talk_warn(talk, "%zu segment%s thinned until unconnected vessels no longer overlap",
                   n_thinned, n_thinned == 1 ? " is" : "s are");
     if (n_longer)
-        talk_warn(talk, "%zu end%s lengthened to be cut off flat", n_longer,
+        talk_warn(talk, "%zu end%s lengthened so that a flat cut is possible", n_longer,
                   n_longer == 1 ? " is" : "s are");
     if (report->n_enclosed)
-        talk_warn(talk, "%zu segments lie wholly within others and have no wall",
+        talk_warn(talk, "segments that are entirely inside other vessels and have no surface: %zu",
                   report->n_enclosed);
     if (report->n_round)
-        talk_note(talk, "%zu ends are round, because other vessels are in the way of a flat one",
+        talk_note(talk,
+                  "ends that are rounded, because other vessels are too close for a flat cut: %zu",
                   report->n_round);
     if (report->n_near)
-        talk_note(talk, "%zu pairs of vessels that do not belong together come near",
-                  report->n_near);
-    talk_note(talk, "%zu triangles, %.6g mm^3", made->mesh.n_triangles, report->volume_mm3);
+        talk_note(talk, "pairs of unconnected vessels that almost touch: %zu", report->n_near);
+    talk_note(talk, "%zu triangles enclose %.6g mm^3", made->mesh.n_triangles, report->volume_mm3);
     if (made->print && !made->print->params.lids)
         mesh_say_print(made, talk);
 }

@@ -121,13 +121,16 @@ static Status take_geometry(Volumes *made, const Talk *talk, Err *err)
     const GeometryParams rounded = {.model = model_with(MODEL_VOXELS)};
     TRY(stage_geometry(&made->of->tree, &rounded, &made->geometry, &report, err));
     if (report.dropped)
-        talk_warn(talk, "%zu segments have no length or no radius and are left out",
+        talk_warn(talk, "segments that are left out, as they have no length or no radius: %zu",
                   report.dropped);
     made->within = made->geometry.drawn;
     for (size_t i = 0; i < made->geometry.n_primitives; i++)
         made->within -= made->geometry.primitives[i].kind == PRIMITIVE_CYLINDER;
     if (made->within)
-        talk_warn(talk, "%zu segments have both ends of thicker ones and no voxels", made->within);
+        talk_warn(
+            talk,
+            "segments that have both ends of a thicker segment and no voxels of their own: %zu",
+            made->within);
     return STATUS_OK;
 }
 
@@ -199,7 +202,7 @@ static WorkCost estimate_volumes(const void *job, const Talk *talk)
     const int64_t *n = made->params.grid.n;
     char bytes[BYTES_TEXT_SIZE], memory[BYTES_TEXT_SIZE];
     talk_note(
-        talk, "%lld x %lld x %lld voxels, which take about %.*f s, %s of memory and %s of disk",
+        talk, "expecting %lld x %lld x %lld voxels, about %.*f s, %s of memory and %s of disk",
         (long long)n[0], (long long)n[1], (long long)n[2], estimate.seconds < 10, estimate.seconds,
         bytes_text(estimate.memory, memory), bytes_text(estimate.bytes, bytes));
     return (WorkCost){estimate.memory, estimate.bytes};
@@ -224,13 +227,13 @@ static void say_result(const Volumes *made, const Talk *talk)
     double more = 100 * (report->volume_mm3 / report->union_mm3 - 1);
     if (fabs(more) > 0.1)
         talk_warn(talk,
-                  "rounded to %s bits, voxels hold %.3g %% %s than the vessels; take a --depth of "
-                  "more",
+                  "rounding to %s bits makes the volume of the voxels %.3g %% %s than that of the "
+                  "vessels; use a larger --depth",
                   depths[made->options->depth], fabs(more), more > 0 ? "more" : "less");
     if (report->claimed)
-        talk_warn(talk, "%zu labels fill the most of no voxel, and each has one that it meets",
+        talk_warn(talk, "labels that dominate no voxel and were given one that they touch: %zu",
                   report->claimed);
-    talk_note(talk, "%lld voxels hold vessels, %.6g mm^3", (long long)report->filled,
+    talk_note(talk, "%lld voxels contain vessels, %.6g mm^3", (long long)report->filled,
               report->volume_mm3);
 }
 
