@@ -10,7 +10,7 @@
 const char *const length_unit_names[LENGTH_UNITS + 1] = {"mm", "um", "cm", "m", NULL};
 
 const char *const root_reason_texts[ROOT_REASONS] = {
-    [ROOT_SAID] = "the file says so",
+    [ROOT_SAID] = "from the file",
     [ROOT_DIRECTION] = "lines lead away from it alone",
     [ROOT_THICKEST] = "the thickest of the ends",
 };

@@ -228,7 +228,7 @@ test_animations_that_cannot_be_are_refused() {
         expect_status 2
         expect_sentence "$sentence"
     }
-    refused "'x.png' has no place for a number" --turntable 3 -o x.png
+    refused "'x.png' must contain the picture number" --turntable 3 -o x.png
     refused "'x%s.png' has no place" --turntable 3 -o x%s.png
     refused "'x%d%d.png' has no place" --turntable 3 -o x%d%d.png
     refused "'-' has no place" --turntable 3 -o -
@@ -237,7 +237,7 @@ test_animations_that_cannot_be_are_refused() {
     refused "flow does not change with time" --color-by flow --frames all -o x%d.png
     refused "pulse has 8 frames, not 9" --color-by pulse.csv --frames 2..9 -o x%d.png
     refused "--moment 9: pulse has 8 frames" --color-by pulse.csv --moment 9 -o x.png
-    refused "'4..3' is not all or A..B" --color-by pulse.csv --frames 4..3 -o x%d.png
+    refused "'4..3' is not valid; use all or A..B" --color-by pulse.csv --frames 4..3 -o x%d.png
     refused "pulse.csv:1: there is no column 'x'" --color-by pulse.csv:x -o x.png
     sed -i '4s/^[0-9]*/4711/' pulse.csv
     refused "pulse.csv:4: the tree has no segment 4711" --color-by pulse.csv -o x.png

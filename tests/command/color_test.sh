@@ -277,7 +277,7 @@ test_a_map_of_separate_colors_counts_whole_numbers() {
 test_a_field_of_many_decades_gets_a_hint() {
     run_ok corcast grow --quiet --terminals 1234 -o tree.swc
     run_ok corcast render --exact tree.swc --input-unit mm --size 60x80 --color-by flow -o p.ppm
-    grep -qx 'corcast: the field flow spans 3.1 decades, which --log shows evenly' stderr ||
+    grep -qx 'corcast: the field flow spans 3.1 decades; use --log for a logarithmic scale' stderr ||
         fail "expected a hint$(said)"
     run_ok corcast render --exact tree.swc --input-unit mm --size 60x80 --color-by flow --log -o p.ppm
     [ "$(wc -l <stderr)" = 1 ] || fail "expected no hint with --log$(said)"
@@ -333,7 +333,7 @@ test_colors_blend_where_vessels_do() {
         [ "$(numbers steps.ppm | sort -u | wc -l)" = 3 ] || fail "expected two classes as $model"
     done
     refuses '--color-blend is for --model isosurface and blob' --model joined --color-by level --color-blend blended
-    refuses '--colormap Set1 has separate colors, which blend only with --classes' \
+    refuses 'the colors of --colormap Set1 are separate and blend only with --classes' \
         --model blob --color-by level --colormap Set1 --color-blend blended
     refuses '--color-blend needs --color-by' --model blob --color-blend blended
     printf 'id,0,0.5\n2,1,2\n3,3,4\n' >load.csv

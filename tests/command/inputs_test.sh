@@ -57,7 +57,7 @@ test_a_command_that_fails_after_it_read_a_tree_prints_one_line() {
     local command commands=0
     micrometre_tree
     run_ok corcast info t.swc
-    expect_sentence 'looks like um'
+    expect_sentence 'suggests um'
     while read -r command; do
         run corcast $command
         [ "$status" -ge 2 ] || fail "expected this to fail: corcast $command"
@@ -241,7 +241,7 @@ test_the_mask_of_a_transparent_png_is_what_is_opaque() {
     expect_same opaque.swc clear.swc
     run corcast convert clear.png clear.ppm
     expect_status 2
-    expect_sentence "clear\.png: is transparent, which 'clear\.ppm' cannot be"
+    expect_sentence "clear\.png: is transparent, which 'clear\.ppm' cannot store"
 }
 
 test_a_truncated_stl_is_told_its_size() {

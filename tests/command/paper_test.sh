@@ -184,7 +184,7 @@ END
     expect_sentence '--cmyk-intent needs --cmyk-profile'
     run corcast render tree.swc --size 30x20 --bits 16 -o p.jpg
     expect_status 2
-    expect_sentence "--bits: '16': a .jpg has 8 bits"
+    expect_sentence "--bits: '16': a .jpg stores 8 bits"
     run corcast convert tree.swc other.csv --quality 3
     expect_status 2
     expect_sentence '--quality is for pictures'

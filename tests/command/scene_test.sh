@@ -151,7 +151,7 @@ test_all_files_of_a_scene_take_their_names_or_none_does() {
     expect_sentence "POV-Ray reads no INI file named 'a\[b.ini'"
     run corcast scene "$DATA/bifurcation.swc" --ini -o -
     expect_status 2
-    expect_sentence '^corcast scene: --ini is a file beside S.pov'
+    expect_sentence '^corcast scene: --ini writes a file beside S.pov'
     expect_only s.ini own.ini
 }
 

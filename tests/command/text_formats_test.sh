@@ -49,7 +49,7 @@ test_networks_of_secomb_have_loops() {
     [ -r "$file" ] || skip "$file is not here"
     run corcast info "$file"
     expect_status 2
-    expect_sentence 'Tumor1998.network.dat:86: the line closes a loop .* one of 14;'
+    expect_sentence 'Tumor1998.network.dat:86: the line closes a loop .* \(loops in the network: 14\);'
     run_ok corcast info --break-loops "$file"
     expect_stdout ' 92 points and 104 lines$'
     expect_stdout ' 14 lines cut where loops closed$'
@@ -172,7 +172,7 @@ test_what_a_format_has_no_place_for_is_said() {
     printf '%s\n' id,parent,x_mm,y_mm,z_mm,radius_mm,type,flow_share,age 1,,0,9,0,1,3,0, 2,1,0,4,0,1,3,0,41 \
         3,2,-4,0,0,0.5,5,0.75,37.5 4,2,4,0,0,0.5,3,1.5, >tree.csv
     run_ok corcast convert tree.csv tree.vmv
-    expect_sentence '^corcast: the columns age and the types and the flow shares are left out: the format has no place for them$'
+    expect_sentence '^corcast: the columns age and the types and the flow shares are left out: the format cannot store them$'
     run_ok corcast convert tree.csv tree.segments.csv
     expect_sentence '^corcast: the types and the flow shares are left out: '
     run_ok corcast convert tree.csv tree.gxl
@@ -186,7 +186,7 @@ test_what_a_format_has_no_place_for_is_said() {
     for extension in vmv segments.csv in; do
         run_ok corcast convert tree.swc "tree.$extension"
         grep -q "^corcast: the roots' own radii are left out: " stderr || fail "got of $extension: $(cat stderr)"
-        grep -q '^corcast: nodes that lie where others do: 2; ' stderr || fail "got of $extension: $(cat stderr)"
+        grep -q '^corcast: nodes that share a position with another node: 2; ' stderr || fail "got of $extension: $(cat stderr)"
         run_ok corcast info --json "tree.$extension"
         expect_json stdout '.segments == 4'
         run_ok corcast convert tree.swc "tree.$extension" --quiet
@@ -214,7 +214,7 @@ test_derived_fields_become_columns_of_what_is_written() {
     sed -n '4p' tree.segments.csv | awk -F, '{ exit !(($11 - 79.57747) ^ 2 < 1e-8 && ($12 - 0.5570423) ^ 2 < 1e-12) }' ||
         fail "expected velocity and shear stress, got $(sed -n '4p' tree.segments.csv)"
     run_ok corcast convert tree.swc tree.csv --fields all
-    expect_sentence '^corcast: pressure are? left out: neither the tree nor an option says what they? needs?$'
+    expect_sentence '^corcast: pressure are? left out: they need values that neither the tree nor an option gives$'
     run_ok corcast convert tree.swc tree.csv --fields all --p-perf 90
     [ ! -s stderr ] || fail "expected all fields: $(cat stderr)"
     run_ok corcast convert tree.swc other.csv --fields strahler --quiet

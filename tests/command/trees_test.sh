@@ -129,7 +129,7 @@ test_a_column_of_a_csv_colors_its_segments() {
     run corcast render tree.csv --color-by aeg --size 40x30 -o weight.ppm
     expect_sentence "did you mean age?"
     run_ok corcast convert tree.csv tree.swc
-    grep -q "^corcast: the columns age are left out: the format has no place" stderr || fail "got $(cat stderr)"
+    grep -q "^corcast: the columns age are left out: the format cannot store" stderr || fail "got $(cat stderr)"
     run_ok corcast convert tree.csv other.csv
     [ ! -s stderr ] || fail "expected nothing to be lost: $(cat stderr)"
 }

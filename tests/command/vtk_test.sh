@@ -37,12 +37,12 @@ END
 test_the_arteries_of_a_brain_in_metres() {
     expect_network brain_pvs/arteries_smooth.vtk '.segments == 12708 and .bifurcations == 145 and
         .reading.degrees[1] == 147 and .reading.components == 1 and
-        .reading.roots[0].reason == "the file says so" and .reading.network.points == 12709 and
+        .reading.roots[0].reason == "from the file" and .reading.network.points == 12709 and
         .reading.median_radius_mm > 0.49 and .reading.median_radius_mm < 1.40 and
         (.reading.unit_said and .reading.believed_unit == "m") and
         (.reading.assumed[2] | startswith("2 more inlets"))' --input-unit m
     run_ok corcast info "$SHARED/brain_pvs/arteries_smooth.vtk"
-    expect_sentence 'taken for mm, but the median radius, 0.000536, looks like m; --input-unit'
+    expect_sentence 'assuming mm, but a median radius of 0.000536 suggests m; set the unit with --input-unit'
 }
 
 test_vessels_of_the_cortex_with_radii_of_cells() {

@@ -208,8 +208,8 @@ static void refuses_loops_unless_told_to_cut_them(void **state)
     (void)state;
     Net net = {0};
     put_square(&net);
-    refused(&net, "net:204: the line closes a loop at 0, 2.5, 0 mm, one of 1; a tree has none, and "
-                  "`break_loops` cuts each at its thinnest line");
+    refused(&net, "net:204: the line closes a loop at 0, 2.5, 0 mm (loops in the network: 1); "
+                  "use `break_loops` to cut each loop at its thinnest line");
 }
 
 static void cuts_a_loop_at_its_thinnest_line(void **state)

@@ -575,7 +575,7 @@ static void try_shift(Patches *patches, Sentence *out)
          (2 * after < before && explains(patches, before, left_by_blur(patches, &blurred)))) &&
         is_all(patches, &found))
         snprintf(out->text, out->size,
-                 "B is nearly A moved by (%.*f, %.*f) pixels%s, right and down being positive",
+                 "B is nearly A moved by (%.*f, %.*f) pixels (right and down are positive)%s",
                  digits, round_to(dx, unit), digits, round_to(dy, unit),
                  alone         ? ""
                  : blurred > 0 ? " and blurred a little"
@@ -594,8 +594,7 @@ static void try_blur(Patches *patches, Sentence *out)
         if (sigma < 0.98 * most_sigma && explains(patches, before, after) &&
             is_all(patches, &found))
             snprintf(out->text, out->size,
-                     "%s is nearly %s blurred, by as much as a Gaussian of standard deviation "
-                     "%.2g pixels",
+                     "%s is nearly %s blurred (Gaussian, standard deviation %.2g pixels)",
                      sharper ? "A" : "B", sharper ? "B" : "A", sigma);
     }
 }
