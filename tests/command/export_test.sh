@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# `export`: closed meshes, proved and looked at by programs that are not ours.
+# `export`: closed meshes, proved by corcast and checked by independent programs.
 . "$(dirname "$0")/../lib.sh"
 
 # admesh_says FILE LABEL: the number that admesh prints for it.

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# `export --print`: solids for printers, proved and looked at by programs that are not ours.
+# `export --print`: solids for printers, proved by corcast and checked by independent programs.
 . "$(dirname "$0")/../lib.sh"
 
 # grown TERMINALS: a grown tree, t.swc.
