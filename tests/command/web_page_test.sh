@@ -137,7 +137,7 @@ ticks(2, 50, true, false, 3, 10, 30);
 ticks(2, 12, true, false, 2, 3, 5, 7, 10);
 ticks(1e-6, 1e6, true, false, 1e-6, 1e-3, 1, 1e3, 1e6);
 for (const [low, high, log, place, value] of [[2, 10, false, 0.25, 4], [1, 1000, true, 1 / 3, 10], [4, 9, true, 0.5, 6]]) {
-  expect("place", [scale(low, high, log).place(value)], [place]);
+  expect("position", [scale(low, high, log).position(value)], [place]);
   expect("value", [scale(low, high, log).at(place)], [value]);
 }
 const color = [0, 0, 0];
