@@ -345,7 +345,7 @@ Status render_run(void *options, Parsed *parsed, Err *err)
 
 const Command command_render = {
     .name = "render",
-    .summary = "render a tree with the native renderer",
+    .summary = "render a tree to an image",
     .operands = "T.swc -o P.png",
     .examples = "  corcast render tree.swc -o tree.png\n"
                 "  corcast render tree.swc --model isosurface --shadows on -o tree.ppm\n"
