@@ -1,5 +1,5 @@
-/* The proofs of meshes and prints, shown false cases made by hand: for each condition one that no
- * other condition refuses. */
+/* The proofs of meshes and prints, tested with false cases made by hand: for each condition a
+ * case that no other condition refuses. */
 #include "grow/cco/grid.h"
 #include "mesh/precision.h"
 #include "mesh/proof/meshcheck.h"

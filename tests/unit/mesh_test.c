@@ -1,4 +1,5 @@
-/* The triangulation of vessels, stage by stage and whole; distances by the guaranteed search. */
+/* The triangulation of vessels, stage by stage and as a whole. The guaranteed search gives the
+ * distances. */
 #include "base/random.h"
 #include "mesh/lattice/octree.h"
 #include "mesh/proof/boxpairs.h"

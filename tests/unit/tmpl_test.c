@@ -1,3 +1,4 @@
+/* Expansion of templates, and their errors. */
 #include "tmpl/tmpl.h"
 #include "unit.h"
 #include <stdint.h>
