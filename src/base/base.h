@@ -1,4 +1,6 @@
-/* The door of the room base: what every other room stands on. */
+/* The public header of the module base: what all other modules use. Status codes, memory,
+ * text, files, numbers, random numbers, threads and small data structures. Base includes no
+ * other module. */
 #ifndef CORCAST_BASE_BASE_H
 #define CORCAST_BASE_BASE_H
 

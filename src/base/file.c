@@ -1,13 +1,13 @@
-/* A file is written under a temporary name beside its final one and renamed when it is whole, so
- * that a run that fails or is killed leaves the old file alone.
+/* A file is written under a temporary name beside its final name, and renamed when it is complete.
+ * A run that fails or is killed therefore leaves the old file unchanged.
  *
- * Temporary names stand in a fixed table because a signal handler may call nothing but
- * async-signal-safe functions: it walks the table and unlinks. A slot is claimed by storing the
- * pointer and given up by storing NULL, each one atomic store.
+ * Temporary names are in a fixed table, because a signal handler may call only async-signal-safe
+ * functions: it walks the table and unlinks the files. A slot is claimed by storing the pointer and
+ * released by storing NULL, each one atomic store.
  *
- * Of a large file the bytes that its size promises are read in slices side by side, as far as they
- * come and have no fault; block by block, the only code that refuses anything goes on from
- * there. */
+ * Large files are read in slices in parallel, up to the size that the file system states, as long
+ * as bytes arrive and contain no fault. A second, sequential loop reads the rest block by block. It
+ * is the only code that refuses anything. */
 #include "base/file.h"
 
 #include "base/memory.h"
@@ -52,8 +52,8 @@ static void give_up(char *name)
 }
 
 /* Removes a temporary folder and the files in it: a program that was given the folder may have
- * written more files than it was asked for. Calls only what a signal handler may call, which
- * readdir is not. */
+ * written more files than expected. Calls only functions that a signal handler may call; readdir is
+ * not one of them. */
 static void remove_folder(const char *name)
 {
     char block[4096] __attribute__((aligned(8)));
@@ -90,7 +90,7 @@ static void remove_temporaries(int signal_number)
     raise(signal_number); /* SA_RESETHAND: the default action ends the program */
 }
 
-/* Puts `now` in a place that holds `before`. */
+/* Replaces the process group `before` in the table by `now`. */
 static void replace_group(pid_t before, pid_t now)
 {
     int i = 0;
@@ -122,8 +122,8 @@ void file_clean_up_on_signals(void)
     }
 }
 
-/* open() takes the lowest free number, and a stream open the wrong way round fails when it is
- * used. */
+/* open() takes the lowest free number, and a stream open the wrong way round fails when it
+ * is used. */
 void file_hold_standard_streams(void)
 {
     for (int handle = STDIN_FILENO; handle <= STDERR_FILENO; handle++)
@@ -202,7 +202,7 @@ static Status named(const char *name, Status status, Err *err)
     return status;
 }
 
-/* The bytes of a file that says its size, 0 of all else. */
+/* Sets the size of a regular file in bytes; 0 for a pipe or device, whose size is unknown. */
 static Status find_size(FILE *stream, const char *name, const FileForm *form, size_t *size,
                         Err *err)
 {
@@ -223,7 +223,7 @@ enum { SLICE = 1 << 22 /* bytes at least */, MOST_SLICES = 256 };
 typedef struct Slices {
     int handle;
     char *bytes; /* the first of them; with room for all */
-    off_t from;  /* its place in the file */
+    off_t from;  /* its offset in the file */
     size_t n, slice;
     bool is_text;
     size_t sound[MOST_SLICES]; /* bytes of each that are read and may be what they are */
@@ -241,8 +241,8 @@ static void read_slice(size_t index, int worker, void *context)
     slices->sound[index] = slices->is_text && memchr(bytes, '\0', n) ? 0 : n;
 }
 
-/* Reads on to the end of a file of `size` bytes, and moves the stream there: as far as nothing is
- * amiss. */
+/* Reads on to the end of a file of `size` bytes, and moves the stream there: as far as nothing
+ * is amiss. */
 static void read_slices(FILE *stream, const FileForm *form, Bytes *all, size_t size)
 {
     off_t from = ftello(stream);
@@ -457,9 +457,9 @@ Status file_temporary_folder(const char *path, char **folder, Err *err)
     return STATUS_OK;
 }
 
-/* Gives the file the owner and the permissions of the one at `path`, if there is one. The owner
- * comes first, as changing it may take permissions away; where not even the group can be kept, it
- * has no say. */
+/* Gives the file the owner and the permissions of the file at `path`, if there is one. The owner is
+ * set first, because changing it may remove permissions. If not even the group can be set, the
+ * group gets no permissions. */
 static void take_after(const char *temporary, const char *path)
 {
     struct stat old;
@@ -523,7 +523,7 @@ Status file_resolve(const char *path, char **out, Err *err)
     return err_set(err, STATUS_IO, "%s: cannot be written: %s", path, strerror(ELOOP));
 }
 
-/* Whether the folder that `path` is in takes new files; if not, errno says why. */
+/* Returns true if new files can be made in the folder of `path`; if not, errno has the reason. */
 static bool takes_files(const char *path)
 {
     char folder[PATH_MAX];
@@ -536,7 +536,7 @@ static bool takes_files(const char *path)
     return access(length ? folder : ".", W_OK | X_OK) == 0;
 }
 
-/* Why `path`, no link, cannot be written, as errno says it; 0 when it can. */
+/* Returns the errno value why `path`, which is no link, cannot be written; 0 if it can. */
 static int reason_against(const char *path)
 {
     struct stat about;
@@ -623,8 +623,8 @@ done:
     return status;
 }
 
-/* A second name for what stands at the file's path, in *spare (owned), which stays NULL where
- * nothing does. */
+/* Makes a second name (a hard link) for the file that is at the final path. *spare receives the
+ * name, which the caller frees, or NULL if there is no such file. */
 static Status keep_old(const OutFile *file, char **spare, Err *err)
 {
     if (!file->temporary || access(file->path, F_OK) != 0)

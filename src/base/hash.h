@@ -1,14 +1,21 @@
-/* SHA-256 digests [FIPS 180-4], computed by libmd: equal digests stand for equal data. */
+/* SHA-256 digests [FIPS 180-4], computed by libmd. Data with equal digests are taken to be equal.
+ *
+ *     Hash hash;
+ *     hash_begin(&hash);
+ *     hash_add(&hash, bytes, size);
+ *     printf("%s", hash_text(&hash).hex); */
 #ifndef CORCAST_BASE_HASH_H
 #define CORCAST_BASE_HASH_H
 
 #include <sha256.h>
 #include <stddef.h>
 
+/* A digest that is being computed. It owns nothing. */
 typedef struct Hash {
     SHA2_CTX state;
 } Hash;
 
+/* A digest as text. */
 typedef struct HashText {
     char hex[SHA256_DIGEST_STRING_LENGTH]; /* 64 hexadecimal digits and the zero */
 } HashText;
@@ -17,11 +24,11 @@ typedef struct HashText {
 void hash_begin(Hash *hash);
 /* Adds `size` bytes to the data; `bytes` may be NULL if `size` is 0. */
 void hash_add(Hash *hash, const void *bytes, size_t size);
-/* Adds a string with its final zero, so that "a" and "bc" differ from "ab" and "c". NULL counts as
- * "". */
+/* Adds a string with its final zero, so that "a" and "bc" differ from "ab" and "c". NULL counts
+ * as "". */
 void hash_add_text(Hash *hash, const char *text);
-/* Returns the digest of all data added since hash_begin. Call hash_begin before using `hash` again.
- */
+/* Returns the digest of all data added since hash_begin. Call hash_begin before using
+ * `hash` again. */
 HashText hash_text(Hash *hash);
 
 #endif

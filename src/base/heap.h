@@ -1,7 +1,14 @@
 /* A binary heap: a priority queue whose first item has the lowest key.
  *
- * Items with equal keys are ordered by `tie`. If no two items have both numbers equal, the order in
- * which they leave the heap does not depend on the order in which they came. Keys are not NaN. */
+ *     Heap heap = {0};
+ *     TRY_GOTO(heap_push(&heap, (HeapItem){key, tie, value}, "points", err));
+ *     while (heap.n > 0)
+ *         use(heap_pop(&heap));          (by rising key)
+ *     ARRAY_RELEASE(&heap);
+ *
+ * Items with equal keys are ordered by `tie`. If no two items are equal in both numbers, the
+ * order in which they leave the heap does not depend on the order in which they were added. Keys
+ * are not NaN. */
 #ifndef CORCAST_BASE_HEAP_H
 #define CORCAST_BASE_HEAP_H
 

@@ -1,6 +1,6 @@
-/* The file is read whole and cut up in place, line by line: names and values point into it. A ';'
- * begins a comment only at the beginning of a line or value, or after a blank, because values may
- * contain one. */
+/* The file is read as a whole, and split into lines in memory. Names and values point into it. A
+ * ';' begins a comment only at the beginning of a line or value, or after a blank, because values
+ * may contain one. */
 #include "base/ini.h"
 
 #include "base/file.h"

@@ -69,7 +69,7 @@ json_t *json_with_item(json_t *array, json_t *value)
     return whole_or_nothing(array, json_array_append_new(array, value) == 0);
 }
 
-/* Where a value stands in the text that is written. */
+/* The position of a value in the text that is written. */
 typedef struct JsonPlace {
     int indent, depth;
 } JsonPlace;

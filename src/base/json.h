@@ -1,7 +1,17 @@
-/* JSON, made with jansson so that no failed allocation is forgotten: whatever is made of NULL is
- * NULL, and the NULL that comes out at the end is a Status. Values are made by these functions, by
- * json_pack and by those of jansson that return a new value; what sets or appends without saying so
- * is not used. */
+/* Building and reading JSON without losing a failed allocation, on top of jansson.
+ *
+ * A value built from NULL is NULL, so that a failed allocation anywhere makes the final value NULL.
+ * The final function, text_json, turns that NULL into a failure of its Text, and text_check turns
+ * it into STATUS_MEMORY. Values are made by these functions, by json_pack, and by the functions of
+ * jansson that return a new value. Functions of jansson that set or append, and report failure in
+ * another way, are not used.
+ *
+ *     json_t *object = json_with(json_object(), "nodes", json_count(n));
+ *     text_json(&text, object, 2);
+ *     TRY(text_check(&text, err));
+ *
+ * Each function that returns a json_t returns a new reference, or NULL if memory runs out.
+ * Functions that take a json_t take over the reference, also on failure. */
 #ifndef CORCAST_BASE_JSON_H
 #define CORCAST_BASE_JSON_H
 
@@ -9,39 +19,41 @@
 #include <jansson.h>
 #include <stdint.h>
 
-/* A JSON real, or null where the value is not finite. New reference, as of all below. */
+/* Returns a JSON real; JSON null if the value is not finite. */
 json_t *json_number(double value);
-/* A number of things. */
+/* Returns a JSON integer. */
 json_t *json_count(uint64_t n);
-/* An array of json_number, of `n` values. */
+/* Returns an array of `n` values, each as by json_number. */
 json_t *json_numbers(const double *values, size_t n);
-/* A JSON string; what of `chars` is not UTF-8 is replaced as text_utf8 does. NULL when `chars` is
- * NULL, as the characters of a text that failed are. */
+/* Returns a JSON string. Bytes that are not UTF-8 are replaced as text_utf8 does. Returns NULL if
+ * `chars` is NULL, the result of text_chars for a failed Text. */
 json_t *json_text(const char *chars);
-/* As json_text, but null when `chars` is NULL. */
+/* Returns a JSON string, as json_text does, or JSON null if `chars` is NULL. */
 json_t *json_text_or_null(const char *chars);
 
+/* A member of an object; `key` is borrowed. */
 typedef struct JsonMember {
     const char *key;
     json_t *value;
 } JsonMember;
 
-/* Adds a member to `object`, taking over `value`, and returns `object`. NULL when either is NULL or
- * memory runs out; both are then released. */
+/* Adds a member to `object`, and returns `object`. If `object` or `value` is NULL, or memory runs
+ * out, releases both and returns NULL. */
 MUST_CHECK json_t *json_with(json_t *object, const char *key, json_t *value);
-/* As json_with, for `n` members. */
+/* Adds `n` members to `object`, as json_with does. On failure releases `object` and all values. */
 MUST_CHECK json_t *json_with_members(json_t *object, const JsonMember *members, size_t n);
-/* As json_with, for an item appended to `array`. */
+/* Appends an item to `array`, and returns `array`. On failure releases both, and returns NULL. */
 MUST_CHECK json_t *json_with_item(json_t *array, json_t *value);
 
-/* json_loadb of jansson, which may go on without a character that it has no room for: NULL then,
- * and *no_memory is set, as it is when there was no room for the whole. */
+/* Parses JSON text of `size` bytes, as json_loadb of jansson does; `flags` and `error` are those of
+ * json_loadb. If memory runs out, json_loadb may silently drop a character; this function then
+ * returns NULL. *no_memory receives true if memory ran out, and false after a syntax error. */
 json_t *json_read(const char *text, size_t size, size_t flags, json_error_t *error,
                   bool *no_memory);
 
-/* Appends `json` as text, in lines with `indent` blanks a level or, with 0, in one, and lets go of
- * it. A real is the shortest text that reads back to the same double. The text fails when `json` is
- * NULL or memory runs out. */
+/* Appends `json` as text, and releases it. Each nesting level is indented by `indent` blanks; 0
+ * writes a single line. A real is written as the shortest text that reads back to the same double.
+ * The Text fails if `json` is NULL or memory runs out. */
 void text_json(Text *text, json_t *json, int indent);
 
 #endif

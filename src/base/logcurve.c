@@ -1,5 +1,6 @@
-/* The logarithm makes vessels of 0.1 and 1 mm as far apart as those of 1 and 10, as their places in
- * a tree are. A curve has few points, so the one below a place is found by looking at all. */
+/* On a logarithmic scale, radii of 0.1 and 1 mm are as far apart as radii of 1 and 10 mm. So are
+ * the levels of such vessels in a tree. A curve has few points, so a linear search finds those
+ * around x. */
 #include "base/logcurve.h"
 
 #include "base/elementary.h"
@@ -35,7 +36,7 @@ bool logcurve_is_within(const LogCurve *curve, Range range)
     return within;
 }
 
-/* Takes PLACE:VALUE off the text. */
+/* Parses one X:Y pair at *at, and moves *at behind it. */
 static bool take_point(const char **at, LogCurve *curve)
 {
     size_t k = curve->n;

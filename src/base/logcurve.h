@@ -1,7 +1,10 @@
-/* A number that depends on another number, such as Murray's exponent on the parent's radius. The
- * curve has values at some places; between two places the value is linear in the logarithm of the
- * place, and outside it is constant. As text, a curve is a number, "3", or a list of PLACE:VALUE
- * pairs, "0.05:3,1:2.2". */
+/* A function y(x), x > 0, given by points (x, y), such as Murray's exponent as a function of the
+ * parent's radius. Between two points, y is linear in log x. Beyond the first and the last point, y
+ * is constant. As text, a curve is a number, "3", or a list of X:Y pairs, "0.05:3,1:2.2".
+ *
+ *     LogCurve gamma;
+ *     if (logcurve_parse("0.05:3,1:2.2", range, &gamma))
+ *         y = logcurve_at(&gamma, radius_mm); */
 #ifndef CORCAST_BASE_LOGCURVE_H
 #define CORCAST_BASE_LOGCURVE_H
 
@@ -14,8 +17,8 @@ enum { LOGCURVE_MOST_POINTS = 16 };
 
 typedef struct LogCurve {
     size_t n; /* number of points, at most LOGCURVE_MOST_POINTS; 1: a constant; 0: unknown */
-    double place[LOGCURVE_MOST_POINTS]; /* above 0 and increasing; unused if n is 1 */
-    double value[LOGCURVE_MOST_POINTS];
+    double place[LOGCURVE_MOST_POINTS]; /* x: above 0 and increasing; unused if n is 1 */
+    double value[LOGCURVE_MOST_POINTS]; /* y */
 } LogCurve;
 
 /* Returns the curve that has one value everywhere. */
@@ -24,7 +27,7 @@ static inline LogCurve logcurve_constant(double value)
     return (LogCurve){.n = 1, .value = {value}};
 }
 
-/* Returns the value at `place`, which must be above 0. The curve must have n >= 1. Cost: O(n). */
+/* Returns y at x = `place`, which must be above 0. The curve must have n >= 1. Cost: O(n). */
 double logcurve_at(const LogCurve *curve, double place);
 
 /* Returns true if both curves have the same points. */

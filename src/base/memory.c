@@ -1,6 +1,6 @@
-/* Memory is zeroed, but for large arrays: calloc gets it zeroed from the system for nothing when it
- * is large and has not served before, and structs are released alike whether they were filled or
- * not. Arrays double when they grow. */
+/* Small memory is zeroed, so that a struct can be released whether it was filled or not. For large
+ * arrays, calloc gets zeroed pages from the system at no cost, if the memory has not been used
+ * before. Arrays double when they grow. */
 #include "base/memory.h"
 
 #include "base/number.h"

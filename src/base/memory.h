@@ -43,7 +43,7 @@ MUST_CHECK static inline Status mem_reserve(void *items, size_t *capacity, size_
 void mem_trim(void);
 
 /* Makes the C library keep all freed memory from now on, also large blocks. For programs that draw
- * picture after picture: buffers that are allocated anew for each picture then need no new pages,
+ * picture after picture: buffers that are allocated for each picture then need no new pages,
  * which the system would clear. */
 void mem_keep(void);
 

@@ -1,16 +1,14 @@
-/* number_text tries 15, 16 and 17 digits: a double needs at most 17, and the first that reads back
- * is the shortest in all but rare cases of even fewer digits, whose trailing zeros are cut. For
- * values in [1e-4, 1e14) this is exact integer arithmetic, ten times as fast as printing and
- * reading: the value m 2^e scaled to a number of digits before the point is N / 2^shift with the
- * whole number N = m 5^k, which 128 bits hold, and the spacing of doubles there is 5^k in units of
- * N.
+/* number_text tries 15, 16 and 17 digits. A double needs at most 17. The first text that reads back
+ * is the shortest, except in rare cases of even fewer digits, whose trailing zeros are cut. For
+ * values in [1e-4, 1e14) the conversion is exact integer arithmetic, ten times as fast as printing
+ * and reading. The value m 2^e, scaled to a number of digits before the point, is N / 2^shift. The
+ * integer N = m 5^k fits in 128 bits, and the spacing of doubles there is 5^k in units of N.
  *
- * number_take reads what has at most 19 digits and stands for a whole number times 10^k, k from
- * -26 to 26, in the same arithmetic, five times as fast as strtod: the product with 5^k, or the
- * quotient to at least 64 bits and whether anything remains, is rounded once. All else is
- * strtod's, in number_parse.
- * The program never calls setlocale, and the library gives its threads the locale "C", so that
- * printf and strtod use '.'. */
+ * number_take reads numbers of at most 19 digits that equal an integer times 10^k, with k from -26
+ * to 26. It uses the same arithmetic, five times as fast as strtod: the product with 5^k, or the
+ * quotient to at least 64 bits with a flag for a remainder, is rounded once. number_parse leaves
+ * all other numbers to strtod. The program never calls setlocale, and the library gives its threads
+ * the locale "C", so that printf and strtod use '.'. */
 #include "base/number.h"
 
 #include "base/text.h"
@@ -40,8 +38,8 @@ static uint64_t power_of_5(int k)
     return (uint64_t)low[k / 2] * low[k - k / 2];
 }
 
-/* Rounds m 2^e to `count` digits, the first of which stands for 10^exponent; whether they read
- * back. */
+/* Rounds m 2^e to `count` digits, the first of which stands for 10^exponent; whether they
+ * read back. */
 static bool round_decimal(uint64_t m, int e, int count, int exponent, Decimal *out)
 {
     int k = count - 1 - exponent, shift = -(e + k);

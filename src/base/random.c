@@ -1,6 +1,6 @@
-/* The two published algorithms, line by line. A seed is spread over the state by splitmix64, as the
- * authors recommend: from a state with few bits set, xoshiro256** would take long to look
- * random. */
+/* The two published algorithms, unchanged. splitmix64 spreads the seed over the state, as the
+ * authors recommend: from a state with few bits set, xoshiro256** needs many steps until its output
+ * looks random. */
 #include "base/random.h"
 
 static uint64_t splitmix(uint64_t *state)

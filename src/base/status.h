@@ -3,7 +3,7 @@
  * A function that can fail for a reason outside the program returns a Status and takes an
  * `Err *err` as its last argument. The function that detects the error writes one sentence. The
  * sentence names the file and line, or the option; the value; and what is allowed. Callers may put
- * the place of the error in front. main prints the sentence once. After an error the output
+ * the location of the error in front. main prints the sentence once. After an error the output
  * arguments are unchanged, unless the function's comment says otherwise. A broken invariant is
  * caught by assert. A rejected candidate is a normal return value. Neither is a Status. */
 #ifndef CORCAST_BASE_STATUS_H
@@ -42,7 +42,7 @@ typedef struct Err {
  * err_set(err, STATUS_INPUT, "...");`. `err` may be NULL. */
 Status err_set(Err *err, Status status, const char *format, ...) PRINTF_LIKE(3, 4);
 
-/* Fails with STATUS_CANCELLED: a progress callback asked to stop. `err` may be NULL. */
+/* Fails with STATUS_CANCELLED: a progress callback requested a stop. `err` may be NULL. */
 Status err_cancelled(Err *err);
 
 /* Puts text in front of the sentence: err_prefix(err, "%s: ", path). `err` may be NULL. */

@@ -1,5 +1,5 @@
-/* Optimal string alignment: the edit distance in which two neighbours may change places, by three
- * rows of its table. */
+/* The distance is the optimal string alignment: an edit distance in which two neighbours may be
+ * exchanged. It needs three rows of its table. */
 #include "base/suggest.h"
 
 #include <ctype.h>
@@ -20,7 +20,7 @@ static bool same(char a, char b)
            (strchr("-_", a) && strchr("-_", b));
 }
 
-/* Between a word and a name, neither longer than LONGEST. */
+/* Returns the number of edits between a word and a name; neither is longer than LONGEST. */
 static size_t count_edits(const char *word, size_t n, const char *name, size_t m)
 {
     size_t rows[3][LONGEST + 1] = {{0}};

@@ -1,23 +1,33 @@
-/* What somebody may have meant by a word that is no name. */
+/* "Did you mean ...?": finds the known name that is most similar to a mistyped word.
+ *
+ *     Suggestion suggestion = suggestion_for(word, strlen(word));
+ *     suggestion_offer(&suggestion, names[i]);        (for each known name)
+ *     suggestion_add(&suggestion, "--", err);         (appends "; did you mean --width?")
+ *
+ * Upper and lower case count as equal, and so do '-' and '_'. */
 #ifndef CORCAST_BASE_SUGGEST_H
 #define CORCAST_BASE_SUGGEST_H
 
 #include "base/status.h"
 #include <stddef.h>
 
+/* The search for the most similar name. All strings are borrowed. */
 typedef struct Suggestion {
-    const char *word;
-    size_t length;    /* of the word */
-    const char *name; /* the likeliest of those offered; NULL: none is like the word */
-    size_t edits;     /* letters changed, added, left out or exchanged with a neighbour */
+    const char *word; /* the mistyped word */
+    size_t length;    /* characters of the word */
+    const char *name; /* the most similar name offered so far; NULL: none is similar */
+    size_t edits;     /* edits between word and name: letters changed, added, left out or
+                       * exchanged with a neighbour */
 } Suggestion;
 
-/* Nothing is offered yet; the word is borrowed. */
+/* Starts a search for a word of `length` characters, with no name offered yet. */
 Suggestion suggestion_for(const char *word, size_t length);
-/* Offers a name (borrowed), which is like the word when a third of its letters at most differ. Of
- * equally likely names the first stays. */
+/* Offers a name. A name is similar if the number of edits is at most a third of its length; the
+ * bound is a choice that keeps far-fetched names out. Words and names of more than 32 characters
+ * are never similar. On a tie, the name that was offered first stays. */
 void suggestion_offer(Suggestion *suggestion, const char *name);
-/* Appends "; did you mean PREFIXname?" if a name is like the word. */
+/* Appends "; did you mean PREFIXname?" to the error sentence if a similar name was offered. `err`
+ * may be NULL. */
 void suggestion_add(const Suggestion *suggestion, const char *prefix, Err *err);
 
 #endif

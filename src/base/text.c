@@ -1,5 +1,5 @@
-/* The characters stand in one block that doubles when it grows. With a stream, the block is written
- * and emptied whenever it holds PIECE bytes. The first failure is kept in `failed` and makes all
+/* The characters are in one block, which doubles when it grows. With a stream, the block is written
+ * and emptied whenever it holds PIECE bytes. The first failure is stored in `failed`, and then all
  * further appends do nothing. */
 #include "base/text.h"
 
@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* How much a text with a stream gathers before it writes. */
+/* Number of bytes that a text with a stream collects before it writes them. */
 enum { PIECE = 1 << 16 };
 
 void text_release(Text *text)
@@ -226,7 +226,7 @@ void text_clear(Text *text)
         text->chars[0] = '\0';
 }
 
-/* NULL for a character that stands for itself. */
+/* Returns the entity of a character; NULL if it needs none. */
 static const char *entity_of(char plain)
 {
     static const char *const entities[256] = {

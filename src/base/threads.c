@@ -34,8 +34,7 @@ typedef struct Loop {
     void (*body)(size_t index, int worker, void *context);
     void *context;
     locale_t locale; /* of the calling thread, for all */
-    bool spread;     /* whether threads start on processors of their own; then they may run on
-                      * `allowed` */
+    bool spread; /* threads start on different processors; later they may run on any in `allowed` */
     cpu_set_t allowed;
 } Loop;
 

@@ -19,7 +19,7 @@ static const struct {
 
 enum { UNITS = sizeof units / sizeof *units };
 
-/* Its row; UNITS when there is none. */
+/* Returns the row of the unit, or UNITS if the name is unknown. */
 static size_t find_unit(const char *name)
 {
     size_t i = 0;

@@ -1,5 +1,5 @@
-/* Where units change: users speak mmHg, ml/min and cP; inside are mm, g and s, so pressure is in Pa
- * and viscosity in Pa s. */
+/* Conversion of units. Users, options and files use mmHg, ml/min and cP. The code computes in mm, g
+ * and s, so that pressure is in Pa, flow in mm^3/s and viscosity in Pa s. */
 #ifndef CORCAST_BASE_UNITS_H
 #define CORCAST_BASE_UNITS_H
 
@@ -32,19 +32,21 @@ static inline double pa_s_from_cp(double cp)
 
 #define MM_PER_INCH 25.4
 
-/* Angles are in radians: of half a circle, of a circle, of one degree. */
+/* Angles in radians: half a turn, a full turn, and one degree. */
 #define PI 3.14159265358979323846
 #define FULL_TURN (2 * PI)
 #define DEGREE (PI / 180)
 
-/* Units by name, of pressure (Pa, mmHg, dyn/cm2, ...), length, flow and velocity. */
+/* Units by name, of four kinds: pressure (Pa, kPa, mmHg, dyn/cm2, cmH2O), length (mm, um, cm, m),
+ * flow (ml/min, mm3/s, ...) and velocity (mm/s, ...). Names are case-sensitive. */
 
-/* The unit of this name, which lasts; NULL when there is none. */
+/* Returns the unit's name as a string that is valid forever, or NULL if the name is unknown. */
 const char *unit_named(const char *name);
-/* How many of the unit `to` one of the unit `from` is; 0 when one of them is not known or they are
- * of different kinds. */
+/* Returns the factor that converts a value in the unit `from` to the unit `to`; 0 if a unit is
+ * unknown or the two units are of different kinds. */
 double unit_ratio(const char *from, const char *to);
-/* Appends the other units of the same kind: "kPa, mmHg"; nothing of one that is not known. */
+/* Appends a list of the other units of the same kind, "kPa, mmHg". Appends nothing if `unit`
+ * is unknown. */
 void unit_put_others(const char *unit, Text *text);
 
 #endif

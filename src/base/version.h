@@ -1,3 +1,4 @@
+/* The version of the program and the library. */
 #ifndef CORCAST_BASE_VERSION_H
 #define CORCAST_BASE_VERSION_H
 

@@ -7,16 +7,16 @@
 #include <string.h>
 #include <strings.h>
 
-static Status field_radius(const Tree *tree, const TreeMeta *said, double *value, Err *err)
+static Status field_radius(const Tree *tree, const TreeMeta *overrides, double *value, Err *err)
 {
-    (void)said, (void)err;
+    (void)overrides, (void)err;
     memcpy(value, tree->radius_mm, tree->n * sizeof *value);
     return STATUS_OK;
 }
 
-static Status field_length(const Tree *tree, const TreeMeta *said, double *value, Err *err)
+static Status field_length(const Tree *tree, const TreeMeta *overrides, double *value, Err *err)
 {
-    (void)said, (void)err;
+    (void)overrides, (void)err;
     for (size_t i = 0; i < tree->n; i++)
         value[i] = tree_segment_length(tree, i);
     return STATUS_OK;
@@ -76,7 +76,7 @@ static Status unknown_field(const Tree *tree, const char *name, Err *err)
         text_printf(&known, ", %s", tree->column[k].name);
     Status status = text_check(&known, err);
     if (status == STATUS_OK)
-        status = err_set(err, STATUS_USAGE, "there is no field '%.40s'; known are %s", name,
+        status = err_set(err, STATUS_USAGE, "there is no field '%.40s'; the fields are %s", name,
                          text_chars(&known));
     text_release(&known);
     if (status == STATUS_USAGE)
@@ -85,12 +85,12 @@ static Status unknown_field(const Tree *tree, const char *name, Err *err)
 }
 
 /* Fills the field with the values of the row. */
-static Status fill(const FieldRule *rule, const Tree *tree, const TreeMeta *said, Field *field,
+static Status fill(const FieldRule *rule, const Tree *tree, const TreeMeta *overrides, Field *field,
                    Err *err)
 {
     double *value = NULL;
     TRY(mem_calloc(&value, tree->n, sizeof *value, "field values", err));
-    Status status = rule->fill(tree, said, value, err);
+    Status status = rule->fill(tree, overrides, value, err);
     if (status == STATUS_INPUT) /* a need(), whose sentence goes on from here */
         err_prefix(err, "the field %s ", rule->name);
     if (status != STATUS_OK) {
@@ -108,12 +108,13 @@ static void clear_roots(const Tree *tree, Field *field)
             field->value[i] = (double)NAN;
 }
 
-Status derive_rule(const Tree *tree, const TreeMeta *said, const char *name, Field *field, Err *err)
+Status derive_rule(const Tree *tree, const TreeMeta *overrides, const char *name, Field *field,
+                   Err *err)
 {
     const FieldRule *rule = find_rule(name);
     if (!rule)
         return unknown_field(tree, name, err);
-    TRY(fill(rule, tree, said, field, err));
+    TRY(fill(rule, tree, overrides, field, err));
     clear_roots(tree, field);
     return STATUS_OK;
 }
@@ -128,12 +129,12 @@ static Status derive_column(const Tree *tree, const TreeColumn *column, Field *f
     return STATUS_OK;
 }
 
-Status derive_field(const Tree *tree, const TreeMeta *said, const char *name, Field *field,
+Status derive_field(const Tree *tree, const TreeMeta *overrides, const char *name, Field *field,
                     Err *err)
 {
     const TreeColumn *column = tree_column(tree, name);
     return column ? derive_column(tree, column, field, err)
-                  : derive_rule(tree, said, name, field, err);
+                  : derive_rule(tree, overrides, name, field, err);
 }
 
 /* The frames of a series one behind the other. */
@@ -160,15 +161,15 @@ static Status join_frames(const Tree *tree, const Series *frames, const char *na
     return STATUS_OK;
 }
 
-Status derive_series(const Tree *tree, const TreeMeta *said, const char *name, FieldSeries *series,
-                     Err *err)
+Status derive_series(const Tree *tree, const TreeMeta *overrides, const char *name,
+                     FieldSeries *series, Err *err)
 {
     Series frames = {0};
     if (!tree_column(tree, name))
         TRY(tree_series(tree, name, &frames, err));
     if (frames.n == 0) {
         FieldSeries made = {.frames = 1};
-        TRY(derive_field(tree, said, name, &made.field, err));
+        TRY(derive_field(tree, overrides, name, &made.field, err));
         *series = made;
         return STATUS_OK;
     }

@@ -54,15 +54,15 @@ typedef struct Field {
  * blood, or viscosity_pries_pa_s of each segment's radius. Velocity, wall shear stress and Reynolds
  * number of a segment of radius 0 are NAN, and so are the pressures at and below it.
  *
- * said     values that the user specified; they take precedence over those of the tree.
+ * overrides     values that the user specified; they take precedence over those of the tree.
  * field    is released with field_release. Its names are borrowed, from the tree if it is a column.
  * Errors   STATUS_USAGE for an unknown name; STATUS_INPUT if a value is missing that the field
  *          needs, naming the option and the key of the file; STATUS_MEMORY. */
-MUST_CHECK Status derive_field(const Tree *tree, const TreeMeta *said, const char *name,
+MUST_CHECK Status derive_field(const Tree *tree, const TreeMeta *overrides, const char *name,
                                Field *field, Err *err);
 void field_release(Field *field);
 /* Computes a field as derive_field does, but never copies a column. */
-MUST_CHECK Status derive_rule(const Tree *tree, const TreeMeta *said, const char *name,
+MUST_CHECK Status derive_rule(const Tree *tree, const TreeMeta *overrides, const char *name,
                               Field *field, Err *err);
 
 /* A field over time. */
@@ -75,7 +75,7 @@ typedef struct FieldSeries {
 /* Computes a field over time. A series of columns of the tree [tree/series.h] takes precedence over
  * a field that would be computed. Release *series with fieldseries_release. Its name is borrowed
  * from `name` or as in derive_field. Errors: as derive_field, and STATUS_INPUT as tree_series. */
-MUST_CHECK Status derive_series(const Tree *tree, const TreeMeta *said, const char *name,
+MUST_CHECK Status derive_series(const Tree *tree, const TreeMeta *overrides, const char *name,
                                 FieldSeries *series, Err *err);
 void fieldseries_release(FieldSeries *series);
 
@@ -104,10 +104,10 @@ typedef struct TreeSummary {
 
 /* Returns the viscosity law: the one that the user specified; else constant, if the user specified
  * a viscosity; else the tree's. */
-ViscosityLaw derive_viscosity_law(const Tree *tree, const TreeMeta *said);
+ViscosityLaw derive_viscosity_law(const Tree *tree, const TreeMeta *overrides);
 
-/* Computes the summary of a tree. `said` as in derive_field. Errors: STATUS_MEMORY. */
-MUST_CHECK Status derive_summary(const Tree *tree, const TreeMeta *said, TreeSummary *summary,
+/* Computes the summary of a tree. `overrides` as in derive_field. Errors: STATUS_MEMORY. */
+MUST_CHECK Status derive_summary(const Tree *tree, const TreeMeta *overrides, TreeSummary *summary,
                                  Err *err);
 
 #endif

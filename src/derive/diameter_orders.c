@@ -1,12 +1,12 @@
-/* Diameter-defined Strahler orders. A round takes mean and standard deviation of the diameters in
- * every order, which give the bounds between the orders, and then orders all vessels anew,
- * terminals first: from the largest order m among its daughters a vessel rises to m + 1 when it is
- * thicker than the bound between the two. Orders therefore never fall towards the root and leave no
- * gaps.
+/* Diameter-defined Strahler orders. A round computes the mean and standard deviation of the
+ * diameters of each order; they give the bounds between orders. Then the round orders all vessels
+ * again, terminals first. A vessel gets the order m + 1, where m is the largest order among its
+ * daughters, if it is thicker than the bound between m and m + 1. Otherwise it gets m. Orders
+ * therefore never fall towards the root, and have no gaps.
  *
- * The rounds end when fewer than one vessel in a hundred changes, as their authors' do at changes
- * of 1 %: where diameters have no gaps the bounds go on creeping, ever more slowly, and in the end
- * merge orders that belong apart. */
+ * The rounds end when at most one vessel in a hundred changes; the authors of the method also stop
+ * at changes of 1 %. If diameters have no gaps, the bounds would otherwise continue to move, more
+ * and more slowly, and in the end merge orders that should be separate. */
 #include "derive/fields.h"
 #include "derive/vessels.h"
 
@@ -43,8 +43,8 @@ static void measure_bins(const Vessels *vessels, const int32_t *order, OrderBin 
         bin[b].bound = (bin[b].mean + bin[b].sd + bin[b + 1].mean - bin[b + 1].sd) / 2;
 }
 
-/* Orders every vessel anew; returns how many changed. `largest`, zeroed here, holds the largest
- * order among the daughters of each. */
+/* Computes the order of every vessel again. Returns the number of vessels whose order changed.
+ * `largest` is a workspace: per vessel, the largest order among its daughters. */
 static size_t assign(const Vessels *vessels, const OrderBin *bin, int32_t *largest, int32_t *order)
 {
     size_t changed = 0;
@@ -98,9 +98,9 @@ done:
     return status;
 }
 
-Status field_diameter_strahler(const Tree *tree, const TreeMeta *said, double *value, Err *err)
+Status field_diameter_strahler(const Tree *tree, const TreeMeta *overrides, double *value, Err *err)
 {
-    (void)said;
+    (void)overrides;
     Vessels vessels;
     TRY(vessels_init(&vessels, tree, err));
     int32_t *order = NULL;

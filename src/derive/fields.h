@@ -5,20 +5,21 @@
 #include "derive/derive.h"
 
 /* Computes a field in `value`, an entry per node, which the caller zeroes before. The caller
- * replaces the values at roots. `said` has the values that the user specified. Errors: STATUS_INPUT
- * if a value is missing, with a sentence that continues the field's name; STATUS_MEMORY. */
-typedef Status FieldFunction(const Tree *tree, const TreeMeta *said, double *value, Err *err);
+ * replaces the values at roots. `overrides` has the values that the user specified. Errors:
+ * STATUS_INPUT if a value is missing, with a sentence that continues the field's name;
+ * STATUS_MEMORY. */
+typedef Status FieldFunction(const Tree *tree, const TreeMeta *overrides, double *value, Err *err);
 
 FieldFunction field_flow, field_velocity, field_pressure, field_wss, field_reynolds;
 FieldFunction field_level, field_strahler, field_diameter_strahler, field_tree, field_branch;
 
 /* Returns the source of a value: the user, if specified, else the tree. Either may lack it. */
-static inline const TreeMeta *who_says(const Tree *tree, const TreeMeta *said, MetaKey key)
+static inline const TreeMeta *value_source(const Tree *tree, const TreeMeta *overrides, MetaKey key)
 {
-    return said->known[key] ? said : &tree->meta;
+    return overrides->known[key] ? overrides : &tree->meta;
 }
 
 /* Returns true if no input of field_pressure is missing. */
-bool pressure_is_known(const Tree *tree, const TreeMeta *said);
+bool pressure_is_known(const Tree *tree, const TreeMeta *overrides);
 
 #endif

@@ -1,6 +1,6 @@
-/* Flow is gathered from the shares of the nodes by one backward sweep; everything else follows from
- * it segment by segment, but for pressure, which is a forward sweep. Inside are mm, g and s:
- * mm^3/s, Pa, Pa s. */
+/* One backward sweep sums the flow from the shares of the nodes. All other fields follow from the
+ * flow segment by segment, except the pressure, which is a forward sweep. Internal units are mm, g
+ * and s: mm^3/s, Pa, Pa s. */
 #include "derive/fields.h"
 
 #include <stdlib.h>
@@ -8,9 +8,10 @@
 
 static const double density_g_mm3 = 1.05e-3; /* of blood */
 /* The sentence goes on from "the field NAME ". */
-static Status need(const Tree *tree, const TreeMeta *said, MetaKey key, double *value, Err *err)
+static Status need(const Tree *tree, const TreeMeta *overrides, MetaKey key, double *value,
+                   Err *err)
 {
-    const TreeMeta *source = who_says(tree, said, key);
+    const TreeMeta *source = value_source(tree, overrides, key);
     const MetaRow *row = &meta_rows[key];
     *value = source->number[key];
     if (source->known[key])
@@ -27,22 +28,23 @@ typedef struct Blood {
     double hematocrit;     /* by Pries's law */
 } Blood;
 
-ViscosityLaw derive_viscosity_law(const Tree *tree, const TreeMeta *said)
+ViscosityLaw derive_viscosity_law(const Tree *tree, const TreeMeta *overrides)
 {
-    if (said->known[META_VISCOSITY] && !said->known[META_VISCOSITY_LAW])
+    if (overrides->known[META_VISCOSITY] && !overrides->known[META_VISCOSITY_LAW])
         return VISCOSITY_CONSTANT;
-    const TreeMeta *source = who_says(tree, said, META_VISCOSITY_LAW);
+    const TreeMeta *source = value_source(tree, overrides, META_VISCOSITY_LAW);
     return (ViscosityLaw)meta_number(source, META_VISCOSITY_LAW);
 }
 
-static Status blood_of(const Tree *tree, const TreeMeta *said, Blood *blood, Err *err)
+static Status blood_of(const Tree *tree, const TreeMeta *overrides, Blood *blood, Err *err)
 {
-    Blood made = {.law = derive_viscosity_law(tree, said)};
+    Blood made = {.law = derive_viscosity_law(tree, overrides)};
     bool constant = made.law == VISCOSITY_CONSTANT;
     double viscosity_cp;
-    TRY(need(tree, said, constant ? META_VISCOSITY : META_PLASMA_VISCOSITY, &viscosity_cp, err));
+    TRY(need(tree, overrides, constant ? META_VISCOSITY : META_PLASMA_VISCOSITY, &viscosity_cp,
+             err));
     if (!constant)
-        TRY(need(tree, said, META_HEMATOCRIT, &made.hematocrit, err));
+        TRY(need(tree, overrides, META_HEMATOCRIT, &made.hematocrit, err));
     made.viscosity_pa_s = pa_s_from_cp(viscosity_cp);
     *blood = made;
     return STATUS_OK;
@@ -55,13 +57,13 @@ static double viscosity_pa_s(const Blood *blood, double radius_mm)
     return viscosity_pries_pa_s(radius_mm, blood->hematocrit, blood->viscosity_pa_s);
 }
 
-bool pressure_is_known(const Tree *tree, const TreeMeta *said)
+bool pressure_is_known(const Tree *tree, const TreeMeta *overrides)
 {
     Blood blood;
     double value;
-    return need(tree, said, META_Q_PERF, &value, NULL) == STATUS_OK &&
-           need(tree, said, META_P_PERF, &value, NULL) == STATUS_OK &&
-           blood_of(tree, said, &blood, NULL) == STATUS_OK;
+    return need(tree, overrides, META_Q_PERF, &value, NULL) == STATUS_OK &&
+           need(tree, overrides, META_P_PERF, &value, NULL) == STATUS_OK &&
+           blood_of(tree, overrides, &blood, NULL) == STATUS_OK;
 }
 
 /* Fills `value` with the flow shares at and below every node; *total is that of all roots. */
@@ -82,10 +84,10 @@ static Status gather_shares(const Tree *tree, double *value, double *total, Err 
 }
 
 /* mm^3/s; a root has the sum of what leaves it. All 0 in a tree without shares above 0. */
-static Status flow_mm3_s(const Tree *tree, const TreeMeta *said, double *value, Err *err)
+static Status flow_mm3_s(const Tree *tree, const TreeMeta *overrides, double *value, Err *err)
 {
     double q_perf_ml_min, total;
-    TRY(need(tree, said, META_Q_PERF, &q_perf_ml_min, err));
+    TRY(need(tree, overrides, META_Q_PERF, &q_perf_ml_min, err));
     double q_perf = mm3_s_from_ml_min(q_perf_ml_min);
     TRY(gather_shares(tree, value, &total, err));
     for (size_t i = 0; i < tree->n; i++)
@@ -93,17 +95,17 @@ static Status flow_mm3_s(const Tree *tree, const TreeMeta *said, double *value, 
     return STATUS_OK;
 }
 
-Status field_flow(const Tree *tree, const TreeMeta *said, double *value, Err *err)
+Status field_flow(const Tree *tree, const TreeMeta *overrides, double *value, Err *err)
 {
-    TRY(flow_mm3_s(tree, said, value, err));
+    TRY(flow_mm3_s(tree, overrides, value, err));
     for (size_t i = 0; i < tree->n; i++)
         value[i] = ml_min_from_mm3_s(value[i]);
     return STATUS_OK;
 }
 
-Status field_velocity(const Tree *tree, const TreeMeta *said, double *value, Err *err)
+Status field_velocity(const Tree *tree, const TreeMeta *overrides, double *value, Err *err)
 {
-    TRY(flow_mm3_s(tree, said, value, err));
+    TRY(flow_mm3_s(tree, overrides, value, err));
     for (size_t i = 0; i < tree->n; i++) {
         double radius = tree->radius_mm[i];
         value[i] = radius > 0 ? value[i] / (PI * radius * radius) : (double)NAN;
@@ -111,11 +113,11 @@ Status field_velocity(const Tree *tree, const TreeMeta *said, double *value, Err
     return STATUS_OK;
 }
 
-Status field_wss(const Tree *tree, const TreeMeta *said, double *value, Err *err)
+Status field_wss(const Tree *tree, const TreeMeta *overrides, double *value, Err *err)
 {
     Blood blood;
-    TRY(blood_of(tree, said, &blood, err));
-    TRY(flow_mm3_s(tree, said, value, err));
+    TRY(blood_of(tree, overrides, &blood, err));
+    TRY(flow_mm3_s(tree, overrides, value, err));
     for (size_t i = 0; i < tree->n; i++) {
         double radius = tree->radius_mm[i], viscosity = viscosity_pa_s(&blood, radius);
         value[i] =
@@ -124,11 +126,11 @@ Status field_wss(const Tree *tree, const TreeMeta *said, double *value, Err *err
     return STATUS_OK;
 }
 
-Status field_reynolds(const Tree *tree, const TreeMeta *said, double *value, Err *err)
+Status field_reynolds(const Tree *tree, const TreeMeta *overrides, double *value, Err *err)
 {
     Blood blood;
-    TRY(blood_of(tree, said, &blood, err));
-    TRY(field_velocity(tree, said, value, err));
+    TRY(blood_of(tree, overrides, &blood, err));
+    TRY(field_velocity(tree, overrides, value, err));
     for (size_t i = 0; i < tree->n; i++) {
         double radius = tree->radius_mm[i];
         value[i] *= 2 * density_g_mm3 * radius / viscosity_pa_s(&blood, radius);
@@ -142,13 +144,13 @@ static double poiseuille_drop_pa(double viscosity, double length, double flow, d
     return radius > 0 ? 8 * viscosity * length * flow / (PI * radius2 * radius2) : (double)NAN;
 }
 
-Status field_pressure(const Tree *tree, const TreeMeta *said, double *value, Err *err)
+Status field_pressure(const Tree *tree, const TreeMeta *overrides, double *value, Err *err)
 {
     double p_perf_mmhg;
     Blood blood;
-    TRY(need(tree, said, META_P_PERF, &p_perf_mmhg, err));
-    TRY(blood_of(tree, said, &blood, err));
-    TRY(flow_mm3_s(tree, said, value, err));
+    TRY(need(tree, overrides, META_P_PERF, &p_perf_mmhg, err));
+    TRY(blood_of(tree, overrides, &blood, err));
+    TRY(flow_mm3_s(tree, overrides, value, err));
     for (size_t i = 0; i < tree->n; i++) {
         if (!tree_is_segment(tree, i)) {
             value[i] = p_perf_mmhg;

@@ -1,7 +1,7 @@
-/* A published table is text of numbers, and a tree's statistics have the same rows, so that the
- * comparison is one loop over measures and orders. The orders are matched by diameter alone:
- * diameters grow by nearly the same ratio from order to order, so that a wrong shift shows in every
- * order, while lengths and numbers depend on how far down a tree was followed. */
+/* A published table is a text of numbers. The statistics of a tree have the same rows, so that the
+ * comparison is one loop over measures and orders. Orders are matched by diameter alone. Diameters
+ * grow by nearly the same ratio from order to order, so that a wrong shift shows in every order.
+ * Lengths and numbers depend on the diameter down to which a tree was measured. */
 #include "derive/morphometry.h"
 
 #include <math.h>
@@ -22,7 +22,7 @@ const struct MorphometryName morphometry_names[MORPHOMETRY_MEASURES] = {
     [COMPARED_LENGTH_RATIO] = {"ratio of lengths", ""},
 };
 
-enum { ROW_NUMBERS = 8 + DAUGHTERS_SAID, RATIO_NUMBERS = 3 };
+enum { ROW_NUMBERS = 8 + DAUGHTER_ORDERS, RATIO_NUMBERS = 3 };
 
 void morphometry_release(Morphometry *table)
 {
@@ -126,7 +126,7 @@ static MorphometryRow row_of_tree(const TreeStatistics *statistics, size_t k)
                           .length_mm = own->length_mm,
                           .elements = (double)own->elements,
                           .vessels_per_element.mean = (double)own->vessels / (double)own->elements};
-    for (size_t less = 0; less < DAUGHTERS_SAID; less++)
+    for (size_t less = 0; less < DAUGHTER_ORDERS; less++)
         row.daughters[less] = less <= k ? statistics->daughters[k * n + k - less] : (double)NAN;
     return row;
 }
@@ -158,7 +158,8 @@ static double misfit(const TreeStatistics *statistics, const Morphometry *table,
     return count > 0 ? sum / count : HUGE_VAL;
 }
 
-/* The one of the two ranges of orders lies within the other. */
+/* Finds the best shift. At every shift that is tried, one of the two ranges of orders contains
+ * the other. */
 static int best_shift(const TreeStatistics *statistics, const Morphometry *table)
 {
     int spare = (int)table->n - (int)statistics->by_diameter_strahler.n;

@@ -8,7 +8,7 @@
 #include <stddef.h>
 
 /* A published table has the daughters of an element that are 0 to 3 orders lower. */
-enum { DAUGHTERS_SAID = 4 };
+enum { DAUGHTER_ORDERS = 4 };
 
 /* One diameter-defined Strahler order of a published table. A value that is not published is NAN,
  * and so is the standard deviation of a single element. */
@@ -16,7 +16,8 @@ typedef struct MorphometryRow {
     Spread diameter_mm, length_mm; /* of the elements */
     double elements;
     Spread vessels_per_element;
-    double daughters[DAUGHTERS_SAID]; /* [k]: elements k orders lower that branch off one element */
+    double
+        daughters[DAUGHTER_ORDERS]; /* [k]: elements k orders lower that branch off one element */
 } MorphometryRow;
 
 /* A published table: row[k] is order k + 1. */

@@ -1,13 +1,14 @@
-/* Orders of segments, each in one or two sweeps over the tree's arrays, in which a parent stands
- * before its children: forwards for what a segment inherits (level, branch), backwards for what it
- * gets from below (Strahler's order). No recursion, so a tree of any depth needs no stack. */
+/* Orders of segments, each in one or two sweeps over the arrays of the tree, in which parents come
+ * before children. A forward sweep computes what a segment inherits (level, branch); a backward
+ * sweep computes what it gets from its subtree (Strahler order). There is no recursion, so a tree
+ * of any depth needs no stack. */
 #include "derive/fields.h"
 
 #include <stdlib.h>
 
-Status field_level(const Tree *tree, const TreeMeta *said, double *value, Err *err)
+Status field_level(const Tree *tree, const TreeMeta *overrides, double *value, Err *err)
 {
-    (void)said;
+    (void)overrides;
     int32_t *children = NULL;
     TRY(tree_child_counts(tree, &children, err));
     for (size_t i = 0; i < tree->n; i++) {
@@ -18,11 +19,12 @@ Status field_level(const Tree *tree, const TreeMeta *said, double *value, Err *e
     return STATUS_OK;
 }
 
-/* Backwards, all children of a node come before it: until then value[i] holds the largest order
- * among them, and alike[i] how many have it. */
-Status field_strahler(const Tree *tree, const TreeMeta *said, double *value, Err *err)
+/* The backward sweep visits all children of a node before the node. Until then value[i] is
+ * the largest order among its children so far, and alike[i] the number of children that have
+ * this order. */
+Status field_strahler(const Tree *tree, const TreeMeta *overrides, double *value, Err *err)
 {
-    (void)said;
+    (void)overrides;
     int32_t *alike = NULL;
     TRY(mem_calloc(&alike, tree->n, sizeof *alike, "counts of equal orders", err));
     for (size_t i = tree->n; i-- > 0;) {
@@ -42,18 +44,18 @@ Status field_strahler(const Tree *tree, const TreeMeta *said, double *value, Err
     return STATUS_OK;
 }
 
-Status field_tree(const Tree *tree, const TreeMeta *said, double *value, Err *err)
+Status field_tree(const Tree *tree, const TreeMeta *overrides, double *value, Err *err)
 {
-    (void)said, (void)err;
+    (void)overrides, (void)err;
     double trees = 0;
     for (size_t i = 0; i < tree->n; i++)
         value[i] = tree_is_segment(tree, i) ? value[tree->parent[i]] : ++trees;
     return STATUS_OK;
 }
 
-Status field_branch(const Tree *tree, const TreeMeta *said, double *value, Err *err)
+Status field_branch(const Tree *tree, const TreeMeta *overrides, double *value, Err *err)
 {
-    (void)said;
+    (void)overrides;
     enum { NONE = 0 }; /* index 0 is a root, and no node's daughter */
     int32_t *thickest = NULL;
     TRY(mem_calloc(&thickest, tree->n, sizeof *thickest, "thickest daughters", err));

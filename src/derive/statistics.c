@@ -1,6 +1,6 @@
-/* Everything is counted over vessels, so that a measured tree, whose vessels are chains of short
- * segments, stands beside a grown one. Levels and both kinds of order go through the same two
- * steps: merge vessels into elements, then take the elements group by group. */
+/* Everything is counted over vessels, not segments. A measured tree, whose vessels are chains of
+ * short segments, can then be compared with a grown tree. Levels and both kinds of orders use the
+ * same two steps: vessels are merged into elements, and elements are evaluated group by group. */
 #include "derive/derive.h"
 #include "derive/vessels.h"
 

@@ -35,10 +35,11 @@ static void count_ends(const Tree *tree, const int32_t *children, TreeSummary *s
 }
 
 /* The largest value of a field that is a count; 0 when there is no segment. */
-static Status largest(const Tree *tree, const TreeMeta *said, const char *name, int *out, Err *err)
+static Status largest(const Tree *tree, const TreeMeta *overrides, const char *name, int *out,
+                      Err *err)
 {
     Field field;
-    TRY(derive_rule(tree, said, name, &field, err));
+    TRY(derive_rule(tree, overrides, name, &field, err));
     double maximum = 0;
     for (size_t i = 0; i < field.n; i++)
         maximum = fmax(maximum, field.value[i]);
@@ -47,13 +48,14 @@ static Status largest(const Tree *tree, const TreeMeta *said, const char *name, 
     return STATUS_OK;
 }
 
-static Status sum_terminal_pressures(const Tree *tree, const TreeMeta *said,
+static Status sum_terminal_pressures(const Tree *tree, const TreeMeta *overrides,
                                      const int32_t *children, TreeSummary *summary, Err *err)
 {
-    if (!pressure_is_known(tree, said) || summary->terminals == 0 || !(summary->min_radius_mm > 0))
+    if (!pressure_is_known(tree, overrides) || summary->terminals == 0 ||
+        !(summary->min_radius_mm > 0))
         return STATUS_OK;
     Field pressure;
-    TRY(derive_rule(tree, said, "pressure", &pressure, err));
+    TRY(derive_rule(tree, overrides, "pressure", &pressure, err));
     double low = HUGE_VAL, high = -HUGE_VAL, sum = 0;
     for (size_t i = 0; i < tree->n; i++) {
         if (!tree_is_segment(tree, i) || children[i] > 0)
@@ -72,20 +74,20 @@ static Status sum_terminal_pressures(const Tree *tree, const TreeMeta *said,
     return STATUS_OK;
 }
 
-Status derive_summary(const Tree *tree, const TreeMeta *said, TreeSummary *summary, Err *err)
+Status derive_summary(const Tree *tree, const TreeMeta *overrides, TreeSummary *summary, Err *err)
 {
-    const TreeMeta *lambda = who_says(tree, said, META_LAMBDA);
+    const TreeMeta *lambda = value_source(tree, overrides, META_LAMBDA);
     TreeSummary made = {.gamma = meta_gamma(&tree->meta),
                         .lambda = meta_number(lambda, META_LAMBDA),
                         .bounds = tree_bounds(tree)};
     made.has.lambda = made.has.target = lambda->known[META_LAMBDA];
     sum_segments(tree, &made);
-    TRY(largest(tree, said, "level", &made.max_level, err));
-    TRY(largest(tree, said, "strahler", &made.max_strahler, err));
+    TRY(largest(tree, overrides, "level", &made.max_level, err));
+    TRY(largest(tree, overrides, "strahler", &made.max_strahler, err));
     int32_t *children = NULL;
     TRY(tree_child_counts(tree, &children, err));
     count_ends(tree, children, &made);
-    Status status = sum_terminal_pressures(tree, said, children, &made, err);
+    Status status = sum_terminal_pressures(tree, overrides, children, &made, err);
     free(children);
     if (status == STATUS_OK)
         *summary = made;

@@ -1,6 +1,6 @@
-/* One forward sweep: a segment that starts at a root or at a branching begins a vessel, any other
- * continues that of its parent. The radius is a running mean weighted by length, which is the
- * radius itself, to the bit, where a vessel is one segment. */
+/* One forward sweep: a segment that starts at a root or at a branching begins a vessel; any other
+ * segment continues the vessel of its parent. The radius is a running mean weighted by length. For
+ * a vessel of one segment, it is the segment's radius to the last bit. */
 #include "derive/vessels.h"
 
 #include "derive/fields.h"

@@ -1,7 +1,6 @@
-/* The contacts of a segment with the boundary cut it into stretches. A stretch without contacts is
- * inside or outside as a whole, so its middle tells which; and the segment stays in a closed set
- * exactly when all stretches are inside. A segment that only touches the boundary, or ends on it,
- * needs no case of its own. */
+/* A stretch of the segment between two contacts is inside or outside as a whole, so one test of its
+ * middle decides. A segment stays in a closed set exactly if all its stretches are inside.
+ * Therefore a segment that only touches the boundary, or ends on it, needs no special case. */
 #include "domain/contacts.h"
 
 #include "domain/kinds.h"

@@ -1,28 +1,37 @@
-/* The contacts of a segment with the boundary of a domain, from which follows whether the segment
- * stays inside; private to the room domain. */
+/* Tests whether a segment stays inside a domain, by its contacts with the boundary: the points
+ * where it crosses or touches the boundary. Private to the module domain.
+ *
+ *     Contacts contacts = {0};
+ *     for each edge or triangle that the segment may meet:  contacts_add(&contacts, t);
+ *     return contacts_hold_segment(&contacts, domain, a, b); */
 #ifndef CORCAST_DOMAIN_CONTACTS_H
 #define CORCAST_DOMAIN_CONTACTS_H
 
 #include "domain/domain.h"
 
-/* Contacts as fractions of the segment's length. One too many does no harm, a missed one does, so
- * tests for contacts allow for a margin. */
+/* Maximum number of contacts of a segment. A segment with more counts as outside. Reason for 64
+ * not recorded. */
 enum { CONTACTS_MAX = 64 };
+
+/* The contacts of a segment. An extra contact does no harm; a missed contact may give a wrong
+ * result. Callers therefore add contacts within a margin. */
 typedef struct Contacts {
-    int n; /* above CONTACTS_MAX: there were too many to keep */
-    double t[CONTACTS_MAX];
+    int n;                  /* count; above CONTACTS_MAX: there are more than that */
+    double t[CONTACTS_MAX]; /* positions on the segment, in [0, 1] from its start to its end */
 } Contacts;
 
-/* How far beyond its ends an edge counts as met, as a fraction of its length. */
+/* Margin of a boundary edge: how far beyond its ends it still makes a contact, as a fraction of its
+ * length. It must exceed the rounding error of an intersection. */
 #define CONTACT_MARGIN 1e-9
 
-/* Adds a contact at `t`, moved into [0, 1]. */
+/* Adds a contact at the position `t`, clamped to [0, 1]. */
 void contacts_add(Contacts *contacts, double t);
 
-/* Whether the segment from `a` to `b`, mm, in the domain's own coordinates, stays inside: that is,
- * the middle of every stretch between neighbouring contacts or ends is inside, unless the stretch
- * is shorter than the domain's slack_mm. Sorts the contacts. False when there were more than
- * CONTACTS_MAX. */
+/* Returns true if the segment from `a` to `b`, mm, in the domain's own coordinates, stays inside.
+ *
+ * The contacts cut the segment into stretches. The segment is inside if the middle of every stretch
+ * is inside; stretches shorter than domain->slack_mm are ignored. Returns false if there are more
+ * than CONTACTS_MAX contacts. Sorts the contacts. */
 bool contacts_hold_segment(Contacts *contacts, const Domain *domain, Vec3 a, Vec3 b);
 
 #endif

@@ -1,4 +1,5 @@
-/* The map is a mask that keeps the voxels' values: nothing is interpolated between them. */
+/* The map is a mask that also stores the values of the voxels. There is no interpolation
+ * between them. */
 #include "domain/domain.h"
 
 #include "domain/mask.h"
@@ -11,7 +12,7 @@ struct Demand {
     double most; /* value */
 };
 
-/* Points of the domain that are looked at, and the least that they are to ask for in the mean. */
+/* Number of random points of the domain at which the demand is tested, and its minimum mean. */
 enum { LOOKS = 20000 };
 static const double least_mean = 1e-4;
 
@@ -50,8 +51,8 @@ static Status load(Demand *demand, const char *spec, Err *err)
             demand->most = fmax(demand->most, (double)mask->value[i]);
     if (demand->most > 0)
         return STATUS_OK;
-    return err_set(err, STATUS_INPUT,
-                   "%s: the map of demand is empty: none of its values is above 0", demand->file);
+    return err_set(err, STATUS_INPUT, "%s: the demand map is empty: none of its values is above 0",
+                   demand->file);
 }
 
 Status demand_read(Demand **demand, const char *spec, Err *err)
@@ -99,8 +100,8 @@ Status demand_check(const Demand *demand, const Domain *domain, Err *err)
         return STATUS_OK;
     return err_set(
         err, STATUS_INPUT,
-        "%s: the map of demand is of another place: of %d points of the domain, at x %.4g "
-        "to %.4g, y %.4g to %.4g, z %.4g to %.4g mm, next to none asks for blood",
+        "%s: the demand map does not cover the domain: of %d points of the domain, at x %.4g "
+        "to %.4g, y %.4g to %.4g, z %.4g to %.4g mm, almost none has a demand above 0",
         demand->file, LOOKS, domain->bounds.low.x, domain->bounds.high.x, domain->bounds.low.y,
         domain->bounds.high.y, domain->bounds.low.z, domain->bounds.high.z);
 }

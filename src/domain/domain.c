@@ -1,8 +1,9 @@
-/* Every kind of domain is a row of `kinds`, a DomainOps, defined in the file of its family:
- * shapes.c, polygon.c, mask.c, mesh.c, hull.c, surface.c. What is here is the same for all: the
- * place (`@`) that a domain's own coordinates are put at, and sampling. Points are sampled by
- * rejection from the bounding box (acceptance pi/4 in the disc, pi/6 in the ball) unless a kind
- * knows better: exactly uniform, and without functions whose last bit differs between machines. */
+/* Every kind of domain is an entry of `kinds`, a DomainOps, defined in the file of its family:
+ * shapes.c, polygon.c, mask.c, mesh.c, hull.c, surface.c. This file has what is common to all
+ * kinds: the position (`@`) of a domain's own coordinate system, and sampling. Points are sampled
+ * by rejection from the bounding box (acceptance pi/4 in the disc, pi/6 in the ball), unless a kind
+ * has a better method. Rejection is exactly uniform, and uses no function whose last bit differs
+ * between machines. */
 #include "domain/domain.h"
 
 #include "domain/hull.h"
@@ -44,27 +45,29 @@ static Status refuse_shape(const char *spec, Err *err)
                     kinds[kind]->name, kinds[kind]->parameters);
     Status status = STATUS_OK;
     TRY_GOTO(text_check(&shapes, err));
-    status = err_set(err, STATUS_USAGE,
-                     "`domain` %s: unknown shape; use %s, lengths in mm, and @X,Y,Z behind it to "
-                     "place it",
-                     spec, text_chars(&shapes));
+    status =
+        err_set(err, STATUS_USAGE,
+                "`domain` %s: unknown shape; use %s, lengths in mm, and @X,Y,Z after it for its "
+                "position",
+                spec, text_chars(&shapes));
 done:
     text_release(&shapes);
     return status;
 }
 
-/* Whether the domain is large enough for points to be sampled. */
+/* Checks that the domain fills enough of its bounding box for points to be sampled. */
 static Status check_filling(const Domain *domain, Err *err)
 {
     Vec3 size = vec3_sub(domain->bounds.high, domain->bounds.low);
     double box = size.x * size.y * (domain->dimension == 3 ? size.z : 1);
     if (domain->ops->sample || domain->volume >= least_filled * box)
         return STATUS_OK;
-    return err_set(err, domain->file ? STATUS_INPUT : STATUS_USAGE,
-                   "%s%sthe domain is too thin to find points in: it fills %.2g of the box around "
-                   "it, and must fill %g",
-                   domain->file ? domain->file : "", domain->file ? ": " : "", domain->volume / box,
-                   least_filled);
+    return err_set(
+        err, domain->file ? STATUS_INPUT : STATUS_USAGE,
+        "%s%sthe domain is too thin for random points: it fills %.2g of its bounding box, "
+        "and must fill at least %g",
+        domain->file ? domain->file : "", domain->file ? ": " : "", domain->volume / box,
+        least_filled);
 }
 
 static bool try_sample(const Domain *domain, Random *random, Vec3 *point);
@@ -93,8 +96,9 @@ static Status complete(Domain *domain, Vec3 at, Err *err)
     if (!domain->is_placed)
         return STATUS_OK;
     if (domain->dimension == 2 && at.z != 0)
-        return err_set(err, STATUS_USAGE,
-                       "a domain of two dimensions lies in the plane z = 0, so its place is @X,Y");
+        return err_set(
+            err, STATUS_USAGE,
+            "a domain of two dimensions lies in the plane z = 0, so its position is @X,Y");
     domain->at = at;
     domain->inner = vec3_add(domain->inner, at);
     domain->bounds = (Box){vec3_add(domain->bounds.low, at), vec3_add(domain->bounds.high, at)};
@@ -129,8 +133,8 @@ static bool parse_place(const char *text, Vec3 *at)
     return text[-1] == '\0' && n >= 2;
 }
 
-/* Reads the place behind the last `@` of a text, and copies what is before it to *values (owned). A
- * file's name may have an `@` with no place behind it. */
+/* Reads the position after the last `@` of a text. *values receives a copy of the text before it,
+ * which the caller frees. The name of a file may contain an `@` that no position follows. */
 static Status read_place(const DomainOps *ops, const char *text, char **values, Vec3 *at, Err *err)
 {
     const char *mark = strrchr(text, '@');
@@ -138,9 +142,9 @@ static Status read_place(const DomainOps *ops, const char *text, char **values, 
     if (!has_place)
         *at = vec3(0, 0, 0);
     if (mark && !has_place && !ops->release)
-        return err_set(err, STATUS_USAGE, "the place '%s' is not X,Y or X,Y,Z in mm", mark);
+        return err_set(err, STATUS_USAGE, "the position '%s' is not X,Y or X,Y,Z in mm", mark);
     if (has_place && !(fmax(fabs(at->x), fmax(fabs(at->y), fabs(at->z))) <= DOMAIN_MAX_MM))
-        return err_set(err, STATUS_USAGE, "the place '%s' is beyond %g mm", mark, DOMAIN_MAX_MM);
+        return err_set(err, STATUS_USAGE, "the position '%s' is beyond %g mm", mark, DOMAIN_MAX_MM);
     TRY(mem_strdup(values, text, err));
     if (has_place)
         (*values)[mark - text] = '\0';
@@ -244,14 +248,14 @@ bool domain_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
     return ops->holds_segment(domain, a, b);
 }
 
-bool domain_settles(const Domain *domain)
+bool domain_has_projection(const Domain *domain)
 {
-    return domain->ops->settle != NULL;
+    return domain->ops->project != NULL;
 }
 
-Vec3 domain_settle(const Domain *domain, Vec3 point)
+Vec3 domain_project(const Domain *domain, Vec3 point)
 {
-    Vec3 own = domain->ops->settle(domain, to_own(domain, point));
+    Vec3 own = domain->ops->project(domain, to_own(domain, point));
     return domain->is_placed ? vec3_add(own, domain->at) : own;
 }
 

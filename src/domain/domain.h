@@ -1,7 +1,12 @@
 /* The public header of the module domain: the piece of tissue that a tree supplies with blood.
  *
  * Domains of dimension 2 lie in the plane z = 0. The texts that name a domain, `disc:R` and so on,
- * are described in docs/FORMATS.md. */
+ * are described in docs/FORMATS.md.
+ *
+ *     Domain domain;
+ *     TRY(domain_parse(&domain, "ball:20", err));
+ *     bool inside = domain_inside(&domain, vec3(0, 0, 5), 0);
+ *     domain_release(&domain); */
 #ifndef CORCAST_DOMAIN_DOMAIN_H
 #define CORCAST_DOMAIN_DOMAIN_H
 
@@ -107,8 +112,9 @@ bool domain_is_convex(const Domain *domain);
  * Near a curved boundary, the result may be false for points outside that are within the tolerance.
  * A point on the boundary is inside shapes that have a formula; for domains of files it may be
  * inside or outside. In two dimensions, a point off the plane z = 0 is outside.
+ *
  * Cost     O(1); for polygons and meshes of n edges or triangles O(log n + m), where m is the
- * number of their bounding boxes that a ray from the point meets. */
+ *          number of their bounding boxes that a ray from the point meets. */
 bool domain_inside(const Domain *domain, Vec3 point, double tolerance_mm);
 
 /* Returns true if the segment from `a` to `b`, mm, stays in the domain. Stretches of up to slack_mm
@@ -116,19 +122,21 @@ bool domain_inside(const Domain *domain, Vec3 point, double tolerance_mm);
  * Cost     O(log n) for n edges or triangles; for a mask O(m), the m voxels along the segment. */
 bool domain_holds_segment(const Domain *domain, Vec3 a, Vec3 b);
 
-/* Returns true if bifurcations must be moved onto the domain, because the domain is a surface. */
-bool domain_settles(const Domain *domain);
-/* Returns the point of the surface nearest to `point`, mm, which must be in the domain. */
-Vec3 domain_settle(const Domain *domain, Vec3 point);
+/* Returns true if the domain is a thin layer along a surface. Bifurcations must then be moved to
+ * the middle of the layer by domain_project. */
+bool domain_has_projection(const Domain *domain);
+/* Projects a point of the domain, mm, onto the surface in the middle of the layer. The domain must
+ * have a projection. */
+Vec3 domain_project(const Domain *domain, Vec3 point);
 
 /* Returns the distance of a point from the domain, mm, accurate to a thousandth of the distance: 0
  * inside, and `most` if the distance is larger than `most`. */
 double domain_distance(const Domain *domain, Vec3 point, double most);
 
-/* Returns a random point, mm, uniformly distributed in the domain: domain_inside is true for it at
- * tolerance 0. The function draws points in the bounding box until one is inside. After 100,000
- * points it returns `inner`; a domain fills at least 1e-3 of its box, so that the probability is
- * e^-100. */
+/* Returns a random point, mm, uniformly distributed in the domain: domain_inside is true for it
+ * at tolerance 0. The function draws points in the bounding box until one is inside. After
+ * 100,000 points it returns `inner`; a domain fills at least 1e-3 of its box, so that the
+ * probability is e^-100. */
 Vec3 domain_sample(const Domain *domain, Random *random);
 
 /* Return the name of shape `i`, "disc", and the parameters after its colon, "R"; NULL if `i` is the

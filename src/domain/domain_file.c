@@ -1,5 +1,5 @@
-/* What the kinds that read files share: the name and unit behind the colon, of which a number
- * behind the last comma is the unit, and how far from the origin a point may be. */
+/* Functions for all kinds that read a file: the name and the unit after the colon (a number after
+ * the last comma is the unit), and the maximum distance of a point from the origin. */
 #include "domain/kinds.h"
 
 #include <stdio.h>

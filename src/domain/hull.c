@@ -1,16 +1,17 @@
-/* The hull of a tree is the union of its tubes, each widened by the reach. A tree of boxes finds
- * the few tubes near a point. A grid over it says of most cells that they are wholly inside or
- * outside: a point, or a segment, in cells that are inside needs no tube looked at, and points are
- * sampled from the cells that are not outside, however thin the hull is for its bounds.
+/* The hull of a tree is the union of its tubes, each widened by a distance, the reach. A bounding
+ * volume hierarchy finds the few tubes near a point. A grid states for most cells that they are
+ * wholly inside or wholly outside. A point or segment in cells that are inside needs no test of
+ * tubes. Random points are drawn from the cells that are not outside, which is efficient however
+ * thin the hull is relative to its bounds.
  *
- * A segment is inside when the stretches of it that single tubes hold cover it: a tube is convex,
- * so it holds one stretch (stretch_in), and the next stretch is any that goes on furthest. */
+ * A segment is inside if single tubes together cover it. A tube is convex, so it covers one stretch
+ * of the segment (stretch_in). The next stretch is the one that continues furthest. */
 #include "domain/hull.h"
 
 #include "domain/kinds.h"
 #include <stdlib.h>
 
-/* Cells along the reach, and how many of them there are at most. */
+/* Number of cells along the reach, and the maximum number of cells. Reasons not recorded. */
 static const double cells_per_reach = 4, most_cells = 1 << 22;
 /* A segment looks at no more cells than this along each axis before it looks at the tubes. */
 enum { FEW_CELLS = 3 };
@@ -61,7 +62,8 @@ static bool hull_inside(const Domain *domain, Vec3 point, double tolerance_mm)
     return is_near(hull, point, tolerance_mm);
 }
 
-/* Whether all cells of the box about the segment are inside; false, too, when they are many. */
+/* Returns true if all cells of the segment's bounding box are inside. Also returns false if there
+ * are many cells. */
 static bool is_deep(const Hull *hull, Vec3 a, Vec3 b)
 {
     int from[3], to[3];
@@ -94,7 +96,8 @@ static void add_ball(Vec3 a, Vec3 d, Vec3 c, double radius, double out[2])
     out[1] = fmax(out[1], -half + sqrt(root));
 }
 
-/* Likewise where it is in the cylinder about the tube's axis, between its ends. */
+/* Extends the stretch by the part of the segment in the cylinder around the tube's axis, between
+ * the two ends of the axis. */
 static void add_cylinder(Vec3 a, Vec3 d, const DomainTube *tube, double radius, double out[2])
 {
     Vec3 axis = vec3_sub(tube->b, tube->a), from = vec3_sub(a, tube->a);
@@ -169,8 +172,7 @@ static Vec3 hull_sample(const Domain *domain, Random *random)
     return point;
 }
 
-/* ---- building ---------------------------------------------------------------------------------
- */
+/* ---- building ---- */
 
 static Status set_tubes(Domain *domain, const DomainTube *tubes, size_t n, Err *err)
 {
@@ -307,7 +309,7 @@ static Status hull_load(Domain *domain, const char *values, Err *err)
 {
     (void)domain;
     (void)values;
-    return err_set(err, STATUS_USAGE, "takes a tree, which is not known here");
+    return err_set(err, STATUS_USAGE, "needs a tree, which is not available here");
 }
 
 const DomainOps hull_ops = {

@@ -23,7 +23,7 @@ typedef struct DomainOps {
     Vec3 (*sample)(const Domain *domain, Random *random);
     /* Returns the point of the domain to which a bifurcation near `point` is moved. NULL:
      * bifurcations stay where they are. */
-    Vec3 (*settle)(const Domain *domain, Vec3 point);
+    Vec3 (*project)(const Domain *domain, Vec3 point);
     /* Frees what the union holds; NULL for the kinds that read no file. */
     void (*release)(Domain *domain);
 } DomainOps;

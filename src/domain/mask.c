@@ -1,8 +1,8 @@
-/* A point's index coordinates come from the inverse of the voxels' affine map; their whole parts
- * are its voxel. Sampling picks a random voxel of tissue, then a random point in it. A segment is
- * followed from voxel to voxel (Amanatides & Woo, Eurographics 1987): it takes as many steps along
- * each axis as its ends are voxels apart, whatever rounding does to the places where it leaves
- * them. */
+/* The index coordinates of a point come from the inverse of the voxels' affine map; their integer
+ * parts are its voxel. Sampling draws a random tissue voxel, and then a random point in it. A
+ * segment is followed from voxel to voxel (Amanatides & Woo, Eurographics 1987). Along each axis it
+ * takes as many steps as its two ends are voxels apart, so that rounding of the crossing points
+ * cannot lead it astray. */
 #include "domain/mask.h"
 
 #include "domain/kinds.h"
@@ -51,8 +51,8 @@ static Vec3 middle_of(const Domain *domain, uint32_t number)
     return point_at(domain->mask, index);
 }
 
-/* Whether a voxel of tissue comes within `reach` of the point, whose index coordinates are `index`,
- * at the place nearest to them. */
+/* Returns true if a tissue voxel has a point within `reach`, mm, of `point`. `index` has the index
+ * coordinates of the point. Uses the voxel's point with the nearest index coordinates. */
 static bool is_near(const Mask *mask, Vec3 point, const double index[3], double reach)
 {
     int64_t low[3], high[3], voxel[3];

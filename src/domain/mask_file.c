@@ -1,7 +1,7 @@
-/* NIfTI files are read by niftilib, of the format's authors. It prints errors to standard error, so
- * it is told to be quiet, and headers are checked here before it makes an image of one; sizes are
- * checked before voxels are read. It would take the voxels of a.nii.gz from a.nii if there is one,
- * so the file is opened here. */
+/* NIfTI files are read with niftilib, by the authors of the format. Three of its habits are worked
+ * around. It prints errors to standard error, so it is set to be quiet. It trusts headers, so they
+ * are checked here before it makes an image, and sizes before voxels are read. For a.nii.gz it
+ * would read the voxels of a file a.nii, if there is one, so the file is opened here. */
 #include "domain/mask.h"
 
 #include "image/image.h"
@@ -230,14 +230,15 @@ static bool read_header(const char *path, Header *out)
     return good;
 }
 
-/* What the library would refuse in its own words, told to be quiet or not. */
+/* Returns true for a header that the library accepts. The library would print its own message for
+ * any other header, even if it is set to be quiet. */
 static bool is_mask_header(const Header *header)
 {
     return header->is_one_file && header->datatype != DT_UNKNOWN && header->datatype != DT_BINARY &&
            header->width > 0;
 }
 
-/* Whether extensions follow the header: the first of the 4 bytes behind it is not 0. */
+/* Returns true if extensions follow the header: the first of the 4 bytes after it is not 0. */
 static bool has_extensions(const char *path, int version)
 {
     char extender = 0;
@@ -248,8 +249,8 @@ static bool has_extensions(const char *path, int version)
     return read && extender != 0;
 }
 
-/* Finds where the voxels begin, in bytes: behind the header and the 4 bytes that follow it, or at
- * vox_offset. A vox_offset of 0, which many programs write, stands for the first. */
+/* Finds where the voxels begin, in bytes: after the header and the 4 bytes that follow it, or at
+ * vox_offset. A vox_offset of 0, which many programs write, means after the header. */
 static Status find_voxels(const char *path, const Header *header, int64_t *begin, Err *err)
 {
     *begin = header_bytes(header->version) + 4;

@@ -1,11 +1,12 @@
-/* A point is inside when the surface winds round it: a ray from the point leaves the surface more
- * often than it enters. A shell within another, turned the same way, thus changes nothing, and one
- * turned to the inside bounds a hollow. The ray runs nearly along an axis, so that the box around
- * it is thin and meets few triangles. A ray that comes too near to an edge, or to the plane of a
- * triangle, to be counted safely is replaced by one of another direction. The directions are fixed,
- * so that the answer is, too.
+/* A point is inside if the surface winds around it: a ray from the point leaves the surface more
+ * often than it enters. A shell inside another shell with the same orientation therefore changes
+ * nothing; a shell with the opposite orientation bounds a cavity.
  *
- * Crossings of a ray and contacts of a segment are found as by Moeller & Trumbore (J. Graphics
+ * The ray runs nearly along an axis, so that its bounding box is thin and meets few triangles. If a
+ * ray comes so close to an edge, or is so nearly parallel to a triangle, that it cannot be counted
+ * safely, another direction is used. The directions are fixed, so that the result is reproducible.
+ *
+ * Crossings of a ray and contacts of a segment are computed as by Moeller & Trumbore (J. Graphics
  * Tools 2 (1997), 21). */
 #include "domain/mesh.h"
 
@@ -14,14 +15,15 @@
 #include <stdlib.h>
 #include <strings.h>
 
-/* Where the line a + t d meets the plane of a triangle: at t, which is a's corner plus u ab + v ac.
- */
+/* Where the line a + t d meets the plane of a triangle: at t, which is a's corner plus u ab +
+ * v ac. */
 typedef struct MeshCrossing {
     double t, u, v;
     int sign; /* 1 from the back of the triangle to its front, -1 from front to back */
 } MeshCrossing;
 
-/* False when the line and the plane are too nearly parallel to say. */
+/* Computes where the line a + t d meets the plane of the triangle. Returns false if they are too
+ * nearly parallel for a reliable result. */
 static bool cross_plane(const Triangle *triangle, Vec3 a, Vec3 d, MeshCrossing *crossing)
 {
     const double parallel = 1e-12; /* cosine of the line and the normal */
@@ -38,14 +40,14 @@ static bool cross_plane(const Triangle *triangle, Vec3 a, Vec3 d, MeshCrossing *
     return true;
 }
 
-/* How deep in its triangle a crossing is: the least of its barycentric coordinates. */
+/* Returns the least barycentric coordinate of a crossing: above 0 inside the triangle. */
 static double depth(const MeshCrossing *crossing)
 {
     return fmin(fmin(crossing->u, crossing->v), 1 - crossing->u - crossing->v);
 }
 
-/* Sums the signs of the crossings between `point` and `end`; false when a triangle cannot be
- * counted safely. */
+/* Sums the signs of the crossings between `point` and `end`. Returns false if a crossing cannot be
+ * counted reliably. */
 static bool sum_crossings(const Mesh *mesh, Vec3 point, Vec3 end, int *sum)
 {
     Vec3 d = vec3_sub(end, point);
@@ -112,7 +114,7 @@ static bool mesh_inside(const Domain *domain, Vec3 point, double tolerance_mm)
            (tolerance_mm > 0 && is_near(domain->mesh, point, tolerance_mm));
 }
 
-/* Whether the line a + t d meets the triangle or its margin, at t. */
+/* Returns true if the line a + t d meets the triangle or its margin, at t. */
 static bool find_contact(const Triangle *triangle, Vec3 a, Vec3 d, double *t)
 {
     MeshCrossing crossing;
@@ -163,8 +165,8 @@ static Vec3 find_inlet(const Mesh *mesh, const Box *bounds)
     return vec3_add_scaled(from, d, nearest / 2);
 }
 
-/* Six times the signed volume of the tetrahedron from `origin` over the triangle (the divergence
- * theorem). */
+/* Six times the signed volume of the tetrahedron from `origin` over the triangle (the
+ * divergence theorem). */
 static double volume6(const Triangle *triangle, Vec3 origin)
 {
     return vec3_dot(vec3_sub(triangle->a, origin), vec3_cross(triangle->ab, triangle->ac));
@@ -206,7 +208,7 @@ static Status build_tree(Domain *domain, Err *err)
     return status;
 }
 
-/* A shell: triangles that hang together by their edges. */
+/* A shell: triangles that are connected by edges. */
 typedef struct Shell {
     double volume;   /* enclosed, mm^3; below 0 when the triangles are turned to the inside */
     uint32_t widest; /* its triangle of the largest area */

@@ -1,10 +1,15 @@
-/* A closed surface of triangles; private to the room domain. */
+/* A domain bounded by a closed surface of triangles, and the reader of its file. Private to the
+ * module domain.
+ *
+ * soup_read reads triangles that share nothing (a triangle soup). soup_find_shells checks that they
+ * form closed surfaces. mesh_read does both, and builds the domain. */
 #ifndef CORCAST_DOMAIN_MESH_H
 #define CORCAST_DOMAIN_MESH_H
 
 #include "domain/domain.h"
 
-/* Corners a, a + ab, a + ac, counter-clockwise seen from outside. */
+/* A triangle with the corners a, a + ab and a + ac, in mm, counter-clockwise as seen
+ * from outside. */
 typedef struct Triangle {
     Vec3 a, ab, ac;
 } Triangle;
@@ -16,39 +21,50 @@ struct Mesh {
     BoxTree tree; /* over the triangles; owned */
 };
 
-/* Reads domain->file, each unit of it `mm`, and fills mesh, dimension, bounds, volume and inlet.
- * STATUS_INPUT for what is no closed surface. */
+/* Reads the mesh file domain->file, and sets mesh, dimension, bounds, volume and inlet of the
+ * domain. The domain is released with mesh_release, also after an error.
+ *
+ * mm       length of a unit of the file, mm.
+ * Errors   STATUS_INPUT if the file is malformed, or its triangles are not a closed surface;
+ *          STATUS_IO, STATUS_MEMORY. */
 MUST_CHECK Status mesh_read(Domain *domain, double mm, Err *err);
+/* Frees domain->mesh. NULL is allowed. */
 void mesh_release(Domain *domain);
 
-/* Returns how often the surface, whose bounds these are, winds round the point: 0 outside, 1
- * inside, 2 where two shells overlap. The point is in the domain when the number is above 0. */
+/* Returns the winding number of the surface around the point: 0 outside, 1 inside, 2 where two
+ * shells overlap. The point is in the domain if the number is above 0. `bounds` is the bounding box
+ * of the mesh. */
 int mesh_winding(const Mesh *mesh, const Box *bounds, Vec3 point);
-/* The squared distance of a point from a triangle, mm^2. */
+/* Returns the squared distance of a point from a triangle, mm^2. */
 double mesh_distance2(const Triangle *triangle, Vec3 point);
 
-/* Triangles as a file holds them: three corners each, nothing shared. */
+/* Triangles without shared corners: corners 3 i, 3 i + 1 and 3 i + 2 are triangle i. */
 typedef struct Soup {
-    Vec3 *corners; /* owned */
-    size_t n, capacity;
-    uint32_t *shell; /* per triangle, once soup_find_shells has found it; owned */
+    Vec3 *corners;      /* mm; owned */
+    size_t n, capacity; /* corners: three times the number of triangles */
+    uint32_t *shell;    /* per triangle: its shell, set by soup_find_shells; owned */
 } Soup;
 
-/* Reads a file that ends in .stl (binary or ASCII) or .obj, each unit of it `mm`, into an empty
- * soup; faces of more than three corners are cut into triangles. STATUS_INPUT naming the file and,
- * of a text, the line. The caller frees the corners, also on failure. */
+/* Reads a file whose name ends in .stl (binary or ASCII) or .obj. Faces with more than three
+ * corners are cut into triangles.
+ *
+ * soup     is empty before. The caller frees its arrays with free(), also after an error.
+ * mm       length of a unit of the file, mm.
+ * Errors   STATUS_INPUT if the file is missing or malformed, with the name of the file and, for a
+ *          text, the line; STATUS_IO, STATUS_MEMORY. */
 MUST_CHECK Status soup_read(Soup *soup, const char *path, double mm, Err *err);
 
-/* Leaves out triangles that repeat another one, corner by corner and the same way round, and finds
- * the shells of the others: triangles that hang together by their edges. Fills soup->shell with
- * numbers from 0 to *n_shells - 1.
+/* Removes triangles that repeat another triangle with the same orientation, and finds the shells:
+ * sets of triangles that are connected by edges. Sets soup->shell to the index of each triangle's
+ * shell, from 0 to *n_shells - 1.
  *
- * Corners are the same when their coordinates are equal. Triangles with two equal corners are
+ * Two corners are the same if their coordinates are equal. Triangles with two equal corners are
  * allowed; they bound nothing.
  *
- * Errors   STATUS_INPUT, naming `path` and how many edges are wrong, unless each edge has as many
- *          triangles that run along it one way as the other: then the surface is closed and its
- *          sides agree. STATUS_MEMORY.
+ * path     the name of the file, for errors.
+ * Errors   STATUS_INPUT, with `path` and the number of wrong edges, unless each edge is used by as
+ *          many triangles in one direction as in the other. Only then is the surface closed and are
+ *          its sides consistent. STATUS_MEMORY.
  * Cost     O(n log n). */
 MUST_CHECK Status soup_find_shells(Soup *soup, const char *path, size_t *n_shells, Err *err);
 

@@ -1,25 +1,25 @@
-/* A surface is closed, and its sides agree, if every edge is run along by as many triangles in one
- * direction as in the other. Sorting the corners by place gives equal ones the same number. Sorting
- * the edges by the numbers of their two ends brings equal edges together, and then as many must run
- * up as down. Sorting needs less memory than a hash table, and its result does not depend on the
- * order of the file. Shells are the sets that joining the triangles at each edge leaves. */
+/* A surface is closed and consistently oriented if every edge is used by as many triangles in one
+ * direction as in the other. Sorting the corners by position gives equal corners the same number.
+ * Sorting the edges by the numbers of their two ends brings equal edges together; their directions
+ * are then counted. Sorting needs less memory than a hash table, and its result does not depend on
+ * the order of the file. Union-find, which joins the triangles at each edge, gives the shells. */
 #include "domain/mesh.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 typedef struct Corner {
-    Vec3 place;
-    uint32_t index; /* in the soup */
+    Vec3 position;
+    uint32_t index; /* index in Soup.corners */
 } Corner;
 
 typedef struct SoupEdge {
-    uint32_t low, high; /* numbers of the ends */
-    int way;            /* 1: from low to high; -1: from high to low */
+    uint32_t low, high; /* numbers of the two ends */
+    int direction;      /* 1: from low to high; -1: from high to low */
     uint32_t triangle;
 } SoupEdge;
 
-static int compare_places(Vec3 a, Vec3 b)
+static int compare_positions(Vec3 a, Vec3 b)
 {
     int by_x = number_order(a.x, b.x), by_y = number_order(a.y, b.y);
     return by_x ? by_x : by_y ? by_y : number_order(a.z, b.z);
@@ -27,7 +27,7 @@ static int compare_places(Vec3 a, Vec3 b)
 
 static int compare_corners(const void *a, const void *b)
 {
-    return compare_places(((const Corner *)a)->place, ((const Corner *)b)->place);
+    return compare_positions(((const Corner *)a)->position, ((const Corner *)b)->position);
 }
 
 static int compare_edges(const void *a, const void *b)
@@ -76,7 +76,7 @@ static Status check_edges(const SoupEdge *edges, size_t n, const char *path, Err
     for (size_t i = 0, next; i < n; i = next) {
         int balance = 0;
         for (next = i; next < n && compare_edges(&edges[i], &edges[next]) == 0; next++)
-            balance += edges[next].way;
+            balance += edges[next].direction;
         open += (next - i) % 2;
         twisted += balance != 0 && (next - i) % 2 == 0;
     }
@@ -150,8 +150,8 @@ done:
     return status;
 }
 
-/* Replaces the representatives of the sets, which are their lowest triangles, by numbers from 0 on.
- */
+/* Replaces the representatives of the sets, which are their lowest triangles, by numbers from
+ * 0 on. */
 static size_t number_sets(uint32_t *parent, size_t n)
 {
     uint32_t shells = 0;

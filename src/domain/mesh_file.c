@@ -1,9 +1,9 @@
 /* A binary STL file is recognised by its size, 84 + 50 n bytes with the n it states, because its
- * 80-byte title may begin with "solid" as an ASCII file does. One with zero bytes in it may also be
- * longer: some programs write more behind the triangles. Keywords of an ASCII file may be in
- * capitals, "end loop" may be two words, and what stands behind "endsolid" is not read. Normals,
- * colors, textures and groups are not read: the outside of a triangle is where its corners run
- * counter-clockwise. */
+ * 80-byte title may begin with "solid" as an ASCII file does. A file with zero bytes may also be
+ * longer, because some programs write more data after the triangles. Keywords of an ASCII file
+ * may be in capitals, "end loop" may be two words, and the text after "endsolid" is not read.
+ * Normals, colors, textures and groups are not read: the outside of a triangle is where its
+ * corners run counter-clockwise. */
 #include "domain/mesh.h"
 
 #include "domain/kinds.h"
@@ -26,7 +26,7 @@ typedef struct MeshReader {
     size_t n, capacity;
     bool has_ended;   /* STL: the last keyword was endsolid */
     Vec3 first, last; /* OBJ: corners of the face being read */
-    int corners;      /* OBJ: how many the face being read has so far */
+    int corners;      /* OBJ: number of corners of the present face so far */
     bool goes_on;     /* OBJ: the last line was of a face and ended in a backslash */
 } MeshReader;
 
@@ -73,7 +73,7 @@ static bool is_binary_stl(const char *bytes, size_t size)
            (size > stated && stated > STL_HEADER && memchr(bytes, '\0', stated) != NULL);
 }
 
-/* Zero bytes may stand behind a text. What has zero bytes in it can only have been meant for a
+/* Zero bytes are allowed after the text. A file with zero bytes before its end was meant as a
  * binary file. */
 static Status check_ascii_stl(const char *path, char *bytes, size_t *size, Err *err)
 {
@@ -92,8 +92,8 @@ static Status check_ascii_stl(const char *path, char *bytes, size_t *size, Err *
                        "file",
                        path, *size, STL_HEADER);
     return err_set(err, STATUS_INPUT,
-                   "%s: is no text, and a binary STL file of the %u triangles that it states has "
-                   "%zu bytes, this one %zu",
+                   "%s: is not a text; as a binary STL file with %u triangles it must have %zu "
+                   "bytes, but it has %zu",
                    path, little_endian(bytes + STL_TITLE), stated_size(bytes), *size);
 }
 
@@ -118,7 +118,7 @@ static Status refuse_line(const MeshReader *reader, const char *what, const char
                    what);
 }
 
-/* The three numbers that follow `vertex` or `v`; what stands behind them is not looked at. */
+/* Adds the vertex of the three numbers after `vertex` or `v`. The rest of the line is ignored. */
 static Status add_vertex(MeshReader *reader, char **rest, Err *err)
 {
     double value[3];
@@ -140,8 +140,8 @@ static Status add_vertex(MeshReader *reader, char **rest, Err *err)
     return STATUS_OK;
 }
 
-/* Returns the number of the keyword that the line begins with, -1 for none of them. "end loop" is
- * "endloop". */
+/* Returns the number of the keyword that the line begins with, -1 for none of them. "end loop"
+ * is "endloop". */
 static int find_keyword(const char *word, char **rest, const char *const *keywords, int n)
 {
     static const char *const end = "end";
@@ -187,8 +187,8 @@ static Status read_stl_line(MeshReader *reader, char *line, Err *err)
     return add_triangle(reader, corner[0], corner[1], corner[2], err);
 }
 
-/* One corner of a face, "7", "7/1", "7//3" or "7/1/3"; negative numbers count from the last vertex
- * back. */
+/* One corner of a face, "7", "7/1", "7//3" or "7/1/3"; negative numbers count from the last
+ * vertex back. */
 static Status find_corner(const MeshReader *reader, char *word, Vec3 *corner, Err *err)
 {
     word[strcspn(word, "/")] = '\0';
@@ -199,7 +199,7 @@ static Status find_corner(const MeshReader *reader, char *word, Vec3 *corner, Er
     return STATUS_OK;
 }
 
-/* Reads the corners of a face that stand on one line. */
+/* Reads the corners of a face from one line. */
 static Status add_corners(MeshReader *reader, char **rest, Err *err)
 {
     Vec3 corner;
@@ -216,7 +216,7 @@ static Status add_corners(MeshReader *reader, char **rest, Err *err)
     return STATUS_OK;
 }
 
-/* Cuts a backslash off the end of a line, which says that the next line goes on with it. */
+/* Removes a backslash from the end of a line. It means that the next line continues this one. */
 static bool cut_backslash(char *line)
 {
     line = text_trim(line);

@@ -1,6 +1,6 @@
-/* A point is inside when the ray from it along x crosses an odd number of edges, an edge reaching
- * from its lower end, included, to its upper end, excluded. The tree of edges makes this O(log n)
- * for all but ragged outlines. */
+/* A point is inside if the ray from it in the direction x crosses an odd number of edges. An edge
+ * includes its lower end and excludes its upper end. The hierarchy of edges makes this O(log n),
+ * except for very ragged outlines. */
 #include "domain/polygon.h"
 
 #include "domain/contacts.h"
@@ -16,7 +16,8 @@ static bool crosses_ray(const Edge *edge, Vec3 point)
     return low.y <= point.y && point.y < high.y && polygon_turn(low, high, point) > 0;
 }
 
-/* Leaves out the edge `except`. */
+/* Returns true if the ray from the point crosses an odd number of edges, not counting the
+ * edge `except`. */
 static bool is_odd(const Polygon *polygon, const Box *bounds, Vec3 point, uint32_t except)
 {
     bool odd = false;
@@ -46,7 +47,8 @@ static bool polygon_inside(const Domain *domain, Vec3 point, double tolerance_mm
            (tolerance_mm > 0 && is_near(domain->polygon, point, tolerance_mm));
 }
 
-/* Lines that are parallel meet nowhere: where they coincide, the edges at either end meet both. */
+/* Adds the contact of the segment from `a` to `b` with an edge. Parallel lines make no contact; if
+ * they coincide, the neighbouring edges make the contacts. */
 static void find_contact(const Edge *edge, Vec3 a, Vec3 b, Contacts *contacts)
 {
     Vec3 d = vec3_sub(b, a), e = vec3_sub(edge->b, edge->a), to = vec3_sub(edge->a, a);
@@ -94,9 +96,10 @@ static Status find_inlet(Domain *domain, Err *err)
     return STATUS_OK;
 }
 
-/* A ring's signed area is positive when it runs counter-clockwise, and counts as it is when the
- * inside is to the left of it; else its sign is turned. The steepest edge says which: what is right
- * of its middle is to its left when it runs down. */
+/* Computes the area of the polygon. A ring's signed area is positive if the ring runs
+ * counter-clockwise. It is added if the inside of the polygon is to the left of the ring, and
+ * subtracted otherwise. The steepest edge decides: for an edge that runs down, a point to the right
+ * of its middle is on its left side. */
 static double area(const Polygon *polygon, const Box *bounds)
 {
     const Edge *edges = polygon->edges;

@@ -1,7 +1,7 @@
-/* A ring is a run of points between blank lines. In a valid polygon two edges have no point in
- * common, except neighbours the corner between them: then the even-odd rule makes rings within
- * rings holes, rings within holes islands, and so on. The tree of edges finds the few pairs that
- * have to be tested. */
+/* A ring is a sequence of points between blank lines. In a valid polygon two edges have no point in
+ * common, except that neighbours share a corner. By the even-odd rule, rings inside rings are then
+ * holes, rings inside holes are islands, and so on. The hierarchy of edges finds the few pairs that
+ * must be tested. */
 #include "domain/polygon.h"
 
 #include "domain/kinds.h"
@@ -23,7 +23,7 @@ static bool same(Vec3 a, Vec3 b)
     return a.x == b.x && a.y == b.y;
 }
 
-/* Until the next point is known an edge ends where it begins. */
+/* Adds a point to the ring. Its edge gets its second end with the next point. */
 static Status add_point(PolygonReader *reader, Vec3 point, Err *err)
 {
     Polygon *polygon = reader->polygon;
@@ -112,7 +112,7 @@ double polygon_turn(Vec3 a, Vec3 b, Vec3 c)
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-/* Whether `point`, on the line through the edge, is between its ends. */
+/* Returns true if `point`, on the line through the edge, is between its ends. */
 static bool between(const Edge *edge, Vec3 point)
 {
     return fmin(edge->a.x, edge->b.x) <= point.x && point.x <= fmax(edge->a.x, edge->b.x) &&
@@ -134,7 +134,7 @@ static bool have_common_point(const Edge *e, const Edge *f)
            (ea == 0 && between(f, e->a)) || (eb == 0 && between(f, e->b));
 }
 
-/* Whether `next`, which begins where `edge` ends, goes back on it. */
+/* Returns true if `next`, which begins where `edge` ends, leads back along it. */
 static bool folds_back(const Edge *edge, const Edge *next)
 {
     return polygon_turn(edge->a, edge->b, next->b) == 0 &&

@@ -1,10 +1,11 @@
-/* The shapes that formulas describe, centred at the origin, y up: disc, ball, rectangle, box,
- * ellipsoid; and the wall of a left ventricle, an ellipsoid hollowed out by a smaller one and cut
- * off at the base. All but the last are convex.
+/* The shapes that have a formula, centred at the origin, with y up: disc, ball, rectangle, box,
+ * ellipsoid; and the wall of a left ventricle, an ellipsoid with a smaller ellipsoid removed and
+ * cut off at the base. All except the last are convex.
  *
- * A tolerance widens the semi-axes: the ellipsoid of semi-axes a + t lies within t of that of
- * semi-axes a, because its support function |(a_i + t) u_i| is at most |a_i u_i| + t. Likewise a
- * point outside the cavity's ellipsoid of semi-axes a - t is at most t deep in that of a. */
+ * A tolerance t is added to the semi-axes. The ellipsoid with the semi-axes a + t is within t of
+ * the one with the semi-axes a, because its support function |(a_i + t) u_i| is at most |a_i u_i| +
+ * t. By the same argument, a point outside the cavity's ellipsoid with the semi-axes a - t is at
+ * most t deep in the cavity. */
 #include "domain/kinds.h"
 
 #include <string.h>
@@ -163,8 +164,8 @@ const DomainOps ellipsoid_ops = {
     .inside = ellipsoid_inside,
 };
 
-/* The shell's numbers: semi-axes of the outer ellipsoid, how much shorter those of the cavity are,
- * and the height of the base. */
+/* Indices of the shell's numbers. They are: the semi-axes of the outer ellipsoid, how much shorter
+ * the cavity's semi-axes are, and the height of the base. */
 enum { SHELL_THICKNESS = 3, SHELL_BASE = 4 };
 
 static Vec3 cavity_axes(const Domain *domain)

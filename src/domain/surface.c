@@ -1,11 +1,11 @@
-/* A layer along a closed surface: all that is within `half` of the surface at OFFSET mm below it,
- * half a hundredth of the diagonal of its bounds. Vessels are straight, so the layer needs a
- * thickness; terminals and forks are on the surface in its middle, or as near as a mesh lets them:
- * below a concave edge the offset surface has no points.
+/* A layer along a closed surface: all points within `half` of the surface at OFFSET mm below the
+ * mesh. `half` is half a hundredth of the diagonal of the mesh's bounds. Vessels are straight, so
+ * the layer needs a thickness. Terminals and bifurcations are on the surface in its middle, or as
+ * near to it as the mesh allows: below a concave edge the offset surface has no points.
  *
- * The distance from a surface changes along a way by no more than the way is long. So a segment is
- * followed in steps as long as the point they begin at is deep in the layer, but at least a 64th of
- * its half: it may leave the layer by that much. */
+ * Along a path, the distance from a surface changes by no more than the length of the path. So a
+ * segment is tested in steps. A step is as long as its first point is deep in the layer, but at
+ * least a 64th of `half`; the segment may leave the layer by that much. */
 #include "domain/kinds.h"
 #include "domain/mesh.h"
 #include <stdlib.h>
@@ -13,8 +13,8 @@
 
 static const double half_share = 0.005;
 static const double least_step = 1.0 / 64;
-/* How often a point is moved towards the surface. */
-enum { SETTLING = 4 };
+/* Number of moves towards the surface when a point is projected. Reason for 4 not recorded. */
+enum { PROJECTION_STEPS = 4 };
 
 struct Surface {
     double half;  /* of the layer's thickness, mm */
@@ -26,8 +26,8 @@ static Vec3 normal_of(const Triangle *triangle)
     return vec3_normalized(vec3_cross(triangle->ab, triangle->ac));
 }
 
-/* How deep below the surface the point is, mm, above 0 inside it; INFINITY when it is farther than
- * `reach`. `nearest` gets the triangle. */
+/* Returns the depth of the point below the surface, mm: above 0 inside, below 0 outside; INFINITY
+ * if the distance exceeds `reach`. *nearest receives the nearest triangle. */
 static double depth_of(const Domain *domain, Vec3 point, double reach, uint32_t *nearest)
 {
     const Mesh *mesh = domain->mesh;
@@ -48,13 +48,14 @@ static double depth_of(const Domain *domain, Vec3 point, double reach, uint32_t 
     return mesh_winding(mesh, &domain->own_bounds, point) > 0 ? sqrt(least2) : -sqrt(least2);
 }
 
-/* How far the point is from the faces of the layer; below 0 outside. */
+/* Returns the distance of the point from the nearer face of the layer, mm; below 0 outside
+ * the layer. */
 static double clearance_of(const Domain *domain, Vec3 point, double tolerance)
 {
     double offset = domain->size[0], half = domain->surface->half + tolerance;
     uint32_t nearest;
     double depth = depth_of(domain, point, fabs(offset) + half, &nearest);
-    /* At a depth of 0 both sides are near, whatever the sign says. */
+    /* At a depth of 0 the sign is arbitrary, because both sides are equally near. */
     double off = fabs(offset) <= half ? fmin(fabs(depth - offset), fabs(-depth - offset))
                                       : fabs(depth - offset);
     return half - off;
@@ -78,10 +79,10 @@ static bool surface_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
     return clearance_of(domain, b, least) >= 0;
 }
 
-static Vec3 surface_settle(const Domain *domain, Vec3 point)
+static Vec3 surface_project(const Domain *domain, Vec3 point)
 {
     double reach = fabs(domain->size[0]) + 4 * domain->surface->half;
-    for (int k = 0; k < SETTLING; k++) {
+    for (int k = 0; k < PROJECTION_STEPS; k++) {
         uint32_t nearest;
         double depth = depth_of(domain, point, reach, &nearest);
         if (!isfinite(depth))
@@ -113,8 +114,7 @@ static Vec3 surface_sample(const Domain *domain, Random *random)
     return vec3_add_scaled(point, normal_of(triangle), -domain->size[0]);
 }
 
-/* ---- reading ----------------------------------------------------------------------------------
- */
+/* ---- reading ---- */
 
 /* Takes the number behind the last comma off the text. */
 static bool take_last(char *text, double *number)
@@ -170,7 +170,7 @@ static Status build(Domain *domain, Err *err)
                        offset, thinnest);
     domain->volume = area * 2 * surface->half;
     domain->own_bounds = bounds;
-    domain->inlet = surface_settle(domain, domain->inlet);
+    domain->inlet = surface_project(domain, domain->inlet);
     domain->bounds = box_padded(bounds, surface->half + fmax(-offset, 0));
     return STATUS_OK;
 }
@@ -202,6 +202,6 @@ const DomainOps surface_ops = {
     .inside = surface_inside,
     .holds_segment = surface_holds_segment,
     .sample = surface_sample,
-    .settle = surface_settle,
+    .project = surface_project,
     .release = surface_release,
 };

@@ -1,26 +1,32 @@
-/* Axis-aligned boxes. */
+/* Axis-aligned boxes. Faces belong to their box. A box may be flat. Start with box_empty() to
+ * compute the bounds of points:
+ *
+ *     Box bounds = box_empty();
+ *     for each point:  bounds = box_with_ball(bounds, point, radius); */
 #ifndef CORCAST_GEOM_BOX_H
 #define CORCAST_GEOM_BOX_H
 
 #include "geom/vec3.h"
 #include <stdbool.h>
 
+/* The corners with the smallest and with the largest coordinates, mm. */
 typedef struct Box {
     Vec3 low, high;
 } Box;
 
-/* fmin and fmax of numbers, as one instruction each. */
-static inline double box_least(double a, double b)
+/* Return the smaller and the larger of two numbers that are not NaN. Unlike fmin and fmax, each is
+ * one machine instruction. */
+static inline double box_min(double a, double b)
 {
     return a < b ? a : b;
 }
 
-static inline double box_greatest(double a, double b)
+static inline double box_max(double a, double b)
 {
     return a > b ? a : b;
 }
 
-/* The box that holds nothing. */
+/* Returns the box that contains no point. */
 static inline Box box_empty(void)
 {
     return (Box){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
@@ -31,41 +37,40 @@ static inline bool box_is_empty(Box box)
     return !(box.low.x <= box.high.x);
 }
 
-/* The smallest box that holds `box` and the ball of `radius` >= 0 about `center`. */
+/* Returns the smallest box that contains `box` and the ball of `radius` >= 0 around `center`. */
 static inline Box box_with_ball(Box box, Vec3 center, double radius)
 {
-    box.low.x = box_least(box.low.x, center.x - radius);
-    box.low.y = box_least(box.low.y, center.y - radius);
-    box.low.z = box_least(box.low.z, center.z - radius);
-    box.high.x = box_greatest(box.high.x, center.x + radius);
-    box.high.y = box_greatest(box.high.y, center.y + radius);
-    box.high.z = box_greatest(box.high.z, center.z + radius);
+    box.low.x = box_min(box.low.x, center.x - radius);
+    box.low.y = box_min(box.low.y, center.y - radius);
+    box.low.z = box_min(box.low.z, center.z - radius);
+    box.high.x = box_max(box.high.x, center.x + radius);
+    box.high.y = box_max(box.high.y, center.y + radius);
+    box.high.z = box_max(box.high.z, center.z + radius);
     return box;
 }
 
 static inline Box box_union(Box a, Box b)
 {
     return (Box){
-        {box_least(a.low.x, b.low.x), box_least(a.low.y, b.low.y), box_least(a.low.z, b.low.z)},
-        {box_greatest(a.high.x, b.high.x), box_greatest(a.high.y, b.high.y),
-         box_greatest(a.high.z, b.high.z)}};
+        {box_min(a.low.x, b.low.x), box_min(a.low.y, b.low.y), box_min(a.low.z, b.low.z)},
+        {box_max(a.high.x, b.high.x), box_max(a.high.y, b.high.y), box_max(a.high.z, b.high.z)}};
 }
 
-/* The box with all its faces moved outwards by `by`. */
+/* Returns the box with all its faces moved outwards by `by`, mm. */
 static inline Box box_padded(Box box, double by)
 {
     Vec3 pad = vec3(by, by, by);
     return (Box){vec3_sub(box.low, pad), vec3_add(box.high, pad)};
 }
 
-/* Whether they have a point in common, their faces included. */
+/* Returns true if the boxes have a point in common; touching faces count. */
 static inline bool box_meets(Box a, Box b)
 {
     return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y &&
            b.low.y <= a.high.y && a.low.z <= b.high.z && b.low.z <= a.high.z;
 }
 
-/* Whether the point is in the box or at most `margin` outside it along each axis. */
+/* Returns true if the point is in the box, or outside by at most `margin` along each axis. */
 static inline bool box_holds(Box box, Vec3 point, double margin)
 {
     return box.low.x - margin <= point.x && point.x <= box.high.x + margin &&
@@ -73,7 +78,7 @@ static inline bool box_holds(Box box, Vec3 point, double margin)
            box.low.z - margin <= point.z && point.z <= box.high.z + margin;
 }
 
-/* The axis along which it is longest, the first of equals. */
+/* Returns the axis (0: x, 1: y, 2: z) along which the box is longest; on a tie, the lowest. */
 static inline int box_longest_axis(Box box)
 {
     Vec3 size = vec3_sub(box.high, box.low);

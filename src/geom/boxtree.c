@@ -1,7 +1,8 @@
-/* Built top-down by the surface area heuristic over the bins of the boxes' centres along each axis
- * [Wald 2007, On fast construction of SAH-based bounding volume hierarchies]: long boxes beside
- * short ones make median splits overlap. Past half the depth that a walk's stack allows, items are
- * halved, which ends within 32 more levels. */
+/* The tree is built top-down. The surface area heuristic, over bins of the boxes' centres along
+ * each axis, chooses the splits [Wald 2007, On fast construction of SAH-based bounding volume
+ * hierarchies]. Median splits would overlap where long boxes are beside short ones. At more than
+ * half the maximum depth of a walk's stack, the items of a node are halved, which ends within 32
+ * more levels. */
 #include "geom/boxtree.h"
 
 #include <stdlib.h>
@@ -20,7 +21,8 @@ typedef struct BoxTreeBuilder {
     uint32_t n_nodes;
 } BoxTreeBuilder;
 
-/* Half the surface of a box: the chance that a ray meets it. */
+/* Returns half the surface of a box, which is proportional to the probability that a ray
+ * meets it. */
 static double box_area(Box box)
 {
     Vec3 size = vec3_sub(box.high, box.low);
@@ -30,11 +32,11 @@ static double box_area(Box box)
 /* A split of items by the bins of their centres along one axis. */
 typedef struct Split {
     int axis;
-    int bin; /* the first one of the second child */
+    int bin; /* first bin of the second child */
     double cost;
 } Split;
 
-/* How centres are put into bins along an axis. */
+/* The map from centres to bins along an axis. */
 typedef struct Scale {
     int bins;
     double low, per_bin;
@@ -54,7 +56,8 @@ static int bin_of(const BoxTreeItem *item, int axis, Scale scale)
     return bin < scale.bins ? bin : scale.bins - 1;
 }
 
-/* The cheapest split along an axis by the surface area heuristic. */
+/* Returns the cheapest split along an axis by the surface area heuristic; the cost is INFINITY if
+ * there is none. */
 static Split best_split(const BoxTreeItem *items, uint32_t n, Box centers, int axis)
 {
     Box box[BINS];
@@ -67,7 +70,7 @@ static Split best_split(const BoxTreeItem *items, uint32_t n, Box centers, int a
         box[bin] = box_union(box[bin], items[i].box);
         count[bin]++;
     }
-    double cost_above[BINS]; /* of bin i and those above it */
+    double cost_above[BINS]; /* cost_above[i]: cost of a child with the bins i and above */
     Box sum = box_empty();
     uint32_t above = 0;
     for (int i = scale.bins - 1; i > 0; i--) {
@@ -88,7 +91,7 @@ static Split best_split(const BoxTreeItem *items, uint32_t n, Box centers, int a
     return best;
 }
 
-/* Moves the items of the first child to the front; how many they are. */
+/* Moves the items of the first child to the front. Returns their number. */
 static uint32_t partition(BoxTreeItem *items, uint32_t n, Box centers, Split split)
 {
     uint32_t front = 0;
@@ -121,7 +124,8 @@ static uint32_t build_node(BoxTreeBuilder *builder, uint32_t first, uint32_t n, 
         if (split.cost < best.cost)
             best = split;
     }
-    /* Centres that coincide, or a tree that grows too deep, are halved as they stand. */
+    /* If all centres coincide, or the tree gets too deep, the items are halved in their
+     * present order. */
     bool halve = best.cost == (double)INFINITY || depth > BOXTREE_DEPTH / 2;
     uint32_t half = halve ? n / 2 : partition(items, n, centers, best);
     build_node(builder, first, half, depth + 1);
@@ -182,7 +186,7 @@ BoxWalk boxwalk_segment(const BoxTree *tree, Vec3 a, Vec3 b)
     return walk;
 }
 
-/* The next leaf that meets the box looked for. */
+/* Returns the next leaf that meets the box `around`; NULL if there is none. */
 static const BoxNode *leaf_in_box(BoxWalk *walk)
 {
     while (walk->top > 0) {

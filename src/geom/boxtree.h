@@ -1,5 +1,14 @@
-/* A bounding volume hierarchy over boxes: which of many a ray, a segment or a box meets, and few
- * others. */
+/* A bounding volume hierarchy over boxes. It finds the few boxes that a ray, a segment or a box may
+ * meet among many.
+ *
+ *     BoxTree tree;
+ *     TRY(boxtree_build(boxes, n, &tree, err));
+ *     for (BoxWalk walk = boxwalk_box(&tree, around); boxwalk_next(&walk, &i);)
+ *         test object i exactly;
+ *     boxtree_release(&tree);
+ *
+ * A walk finds every box that is met. It may also find boxes that are not met, because it returns
+ * all boxes of each leaf that is met. Threads may walk through one tree at the same time. */
 #ifndef CORCAST_GEOM_BOXTREE_H
 #define CORCAST_GEOM_BOXTREE_H
 
@@ -8,41 +17,50 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Nodes stand in depth-first order, the first child next to its parent. */
+/* A node of the tree. Nodes are in depth-first order; the first child follows its parent. */
 typedef struct BoxNode {
     Box box;
-    uint32_t first;   /* leaf: its part of `items`; inner: the second child */
-    uint32_t n_items; /* 0 for an inner node */
+    uint32_t first;   /* leaf: index of its first entry in `items`; inner node: index of the
+                       * second child */
+    uint32_t n_items; /* leaf: count of its entries in `items`; 0: an inner node */
 } BoxNode;
 
-/* The numbers of the boxes, leaf by leaf. Zeroed: a tree of nothing, for boxtree_release alone. */
+/* The tree; `items` has the indices of the boxes, leaf by leaf. Both arrays are owned. A zeroed
+ * tree may only be released. */
 typedef struct BoxTree {
     BoxNode *nodes;
     uint32_t *items;
 } BoxTree;
 
-/* Builds the tree of `n` boxes, 1 <= n < 2^31, which the numbers 0 to n - 1 stand for. Boxes are
- * widened by a rounding error or two, so that what touches is met. O(n log n). *out is owned by the
- * caller; on failure, STATUS_MEMORY, it is unchanged. */
+/* Builds the tree of `n` boxes, 1 <= n < 2^31. Walks return the indices 0 to n - 1 of the boxes.
+ *
+ * boxes    are not needed after the call. Each is widened by 1e-12 of its distance from the origin,
+ * a few rounding errors, so that objects that touch are found. out      receives the tree; release
+ * it with boxtree_release. Errors   STATUS_MEMORY. Cost     O(n log n). */
 MUST_CHECK Status boxtree_build(const Box *boxes, size_t n, BoxTree *out, Err *err);
 void boxtree_release(BoxTree *tree);
 
-/* A walk through the tree: the nodes still to be looked at are on a stack. */
+/* Maximum depth of a tree, which bounds the stack of a walk. boxtree_build halves the boxes of a
+ * node from half this depth on; 2^31 boxes need at most 32 more levels. */
 enum { BOXTREE_DEPTH = 64 };
+
+/* A walk through the tree, for a ray or for a box. The stack holds the nodes that are still to
+ * be visited. */
 typedef struct BoxWalk {
     const BoxTree *tree;
-    Vec3 origin, direction, inverse; /* of the ray; see hit_box */
+    Vec3 origin, direction, inverse; /* of the ray [hit_box] */
     double t_min;
-    bool near_first; /* the child whose centre is nearer comes before the other */
-    bool is_box;
-    Box around;         /* what is looked for, if it is a box */
-    uint32_t item, end; /* of the leaf reached */
-    int top;
+    bool near_first; /* visits the child first whose centre comes first along the ray */
+    bool is_box;     /* the walk is for the box `around`, not for a ray */
+    Box around;
+    uint32_t item, end; /* range of `items` of the present leaf that is still to be returned */
+    int top;            /* number of nodes on the stack */
     uint32_t stack[BOXTREE_DEPTH + 2];
 } BoxWalk;
 
-/* Walks over the leaves that a ray from `origin` on meets at t_min or more; `direction` may have
- * any length. */
+/* Starts a walk over the leaves that a ray meets at the parameter t >= t_min; t counts in lengths
+ * of `direction`, which may have any length above 0. If `near_first` is true, nearer children are
+ * visited first, so that a caller can lower t_max early. Continue with boxwalk_leaf. */
 static inline void boxwalk_start(BoxWalk *walk, const BoxTree *tree, Vec3 origin, Vec3 direction,
                                  double t_min, bool near_first)
 {
@@ -58,7 +76,8 @@ static inline void boxwalk_start(BoxWalk *walk, const BoxTree *tree, Vec3 origin
     walk->top = 1;
 }
 
-/* The next leaf that the ray meets by t_max, which may fall from call to call; NULL: no more. */
+/* Returns the next leaf that the ray meets at t <= t_max, or NULL if there is none. t_max may be
+ * lowered from call to call. The leaf is borrowed from the tree. */
 static inline const BoxNode *boxwalk_leaf(BoxWalk *walk, double t_max)
 {
     const BoxNode *nodes = walk->tree->nodes;
@@ -79,11 +98,12 @@ static inline const BoxNode *boxwalk_leaf(BoxWalk *walk, double t_max)
     return NULL;
 }
 
-/* Walks over the boxes in the leaves that a box, or the segment from a to b, meets:
- *     for (BoxWalk walk = boxwalk_segment(tree, a, b); boxwalk_next(&walk, &i);)
- * Each comes once; the order is the tree's own. */
+/* Start a walk over the boxes in the leaves that meet a box, or the segment from a to b.
+ * Continue with boxwalk_next. */
 BoxWalk boxwalk_box(const BoxTree *tree, Box box);
 BoxWalk boxwalk_segment(const BoxTree *tree, Vec3 a, Vec3 b);
+/* Sets *item to the index of the next box. Returns false if there is none. Each box comes once, in
+ * the order of the tree. */
 bool boxwalk_next(BoxWalk *walk, uint32_t *item);
 
 #endif

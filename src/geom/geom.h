@@ -1,4 +1,5 @@
-/* The door of the room geom: pure geometry. */
+/* The public header of the module geom: vectors, boxes, a bounding volume hierarchy, and
+ * intersections of rays with spheres, cylinders and joints. Lengths are in mm. */
 #ifndef CORCAST_GEOM_GEOM_H
 #define CORCAST_GEOM_GEOM_H
 

@@ -1,6 +1,6 @@
-/* The predicates follow POV-Ray 3.7 [docs/POVRAY.md section 4]: same formulas, same limits, so that
- * silhouettes fall on the same pixels. The wall of a cylinder is met in the plane across its axis,
- * where POV-Ray's unit cylinder and ours differ by a similarity only. */
+/* The formulas and limits are those of POV-Ray 3.7 [docs/POVRAY.md section 4], so that silhouettes
+ * fall on the same pixels. The wall of a cylinder is intersected in the plane perpendicular to its
+ * axis, where POV-Ray's unit cylinder and this one differ only by a similarity transformation. */
 #include "geom/hit.h"
 
 static const double epsilon = 1e-10; /* POV-Ray's EPSILON */

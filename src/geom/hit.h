@@ -1,4 +1,12 @@
-/* Where rays meet spheres, cylinders and boxes. */
+/* Intersections of rays with spheres, cylinders and boxes.
+ *
+ *     Hit hits[4];
+ *     CylinderFrame cylinder = cylinder_frame(a, b, radius);
+ *     int n = hit_cylinder(ray, &cylinder, hits);
+ *
+ * Spheres and cylinders are tested with the whole line through the ray, so that hits may be behind
+ * the origin (t < 0). The formulas and their limits are those of POV-Ray 3.7 [docs/POVRAY.md
+ * section 4], so that silhouettes fall on the same pixels. */
 #ifndef CORCAST_GEOM_HIT_H
 #define CORCAST_GEOM_HIT_H
 
@@ -11,39 +19,44 @@ typedef struct Ray {
     Vec3 direction; /* unit */
 } Ray;
 
+/* Returns the point at the distance t from the origin of the ray. */
 static inline Vec3 ray_at(Ray ray, double t)
 {
     return vec3_add_scaled(ray.origin, ray.direction, t);
 }
 
-/* A closed cylinder, prepared for many rays. */
+/* A cylinder with two end discs, prepared for many rays. */
 typedef struct CylinderFrame {
-    Vec3 base;
+    Vec3 base; /* centre of the first end disc, mm */
     Vec3 axis; /* unit */
     double length;
     double radius;
 } CylinderFrame;
 
-/* a and b differ, radius > 0. */
+/* Prepares the cylinder from `a` to `b`, which must differ. The radius, mm, is above 0. */
 CylinderFrame cylinder_frame(Vec3 a, Vec3 b, double radius);
 
-/* One crossing of a surface. */
+/* An intersection of a line with a surface. */
 typedef struct Hit {
-    double t;    /* along the ray; may be negative */
+    double t;    /* distance along the ray, mm; may be negative */
     Vec3 normal; /* unit, outward */
 } Hit;
 
-/* All crossings of the line with the sphere, nearest first: 0 or 2. Grazing lines whose half chord
- * squared is below 1e-10 miss, as in POV-Ray (shapes/spheres.cpp). */
+/* Finds the intersections of the line with the sphere, by rising t. Returns their number, 0 or 2. A
+ * line that only grazes the sphere misses: the square of half the chord must exceed 1e-10 mm^2, as
+ * in POV-Ray (shapes/spheres.cpp). */
 int hit_sphere(Ray ray, Vec3 center, double radius, Hit hits[2]);
 
-/* All crossings of the line with the wall and the two end discs of the cylinder, in no order: at
- * most 4, two but for lines through a rim. */
+/* Finds the intersections of the line with the wall and the two end discs of the cylinder, in
+ * no particular order. Returns their number: 0 or 2, or for a line through a rim any number up
+ * to 4. */
 int hit_cylinder(Ray ray, const CylinderFrame *cylinder, Hit hits[4]);
 
-/* Narrows [*low, *high] to where the line lies between two planes across an axis. In the plane of
- * one of them 0 * infinity is NaN, every comparison with it is false, and that plane does not
- * narrow. */
+/* Narrows the interval [*low, *high] of t to the part of the line between two planes perpendicular
+ * to an axis. `from` and `inverse` are the origin and 1 / direction along this axis.
+ *
+ * If the line lies in one of the planes, 0 * infinity gives NaN. Every comparison with NaN is
+ * false, so this plane does not narrow the interval. */
 static inline void clip_slab(double from, double inverse, double box_low, double box_high,
                              double *low, double *high)
 {
@@ -53,8 +66,9 @@ static inline void clip_slab(double from, double inverse, double box_low, double
     *high = far < *high ? far : *high;
 }
 
-/* Whether the line meets the box, its faces included, for some t in [*t0, *t1], and if so that part
- * of the interval. `inverse` holds 1 / direction, infinities allowed. */
+/* Returns true if the line meets the box, or touches a face, for a t in [*t0, *t1], and then
+ * narrows the interval to the part inside the box. `inverse` is vec3_inverse of the direction;
+ * infinite components are allowed. */
 static inline bool hit_box(Vec3 origin, Vec3 inverse, const Box *box, double *t0, double *t1)
 {
     double low = *t0, high = *t1;

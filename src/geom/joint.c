@@ -11,7 +11,8 @@
 
 /* Below this sine of the angle between the axes they are parallel. */
 static const double parallel = 1e-12;
-/* How far, over the size of the joint, a crossing may lie off its line, and off the ends in l. */
+/* Tolerances of an intersection: its distance from the line, relative to the size of the joint, and
+ * how far l may be outside [0, 1]. Reasons for the numbers not recorded. */
 static const double off_line = 1e-6, off_end = 1e-12;
 
 static Vec3 any_square(Vec3 axis)

@@ -1,8 +1,8 @@
 /* The ruled surface that joins the rims of two cylinders [N, figure 1; docs/METHODS.md section 7]:
  * straight lines between points of equal angle p of two circles,
  *   S(p, l) = (1 - l) C_1(p) + l C_2(p),  C_i(p) = c_i + r_i (cos p e_i + sin p f),  l in [0, 1],
- * where f is square to both axes and e_i = f x axis_i, so that the surface is twisted as little as
- * possible. */
+ * where f is square to both axes and e_i = f x axis_i, so that the surface is twisted as
+ * little as possible. */
 #ifndef CORCAST_GEOM_JOINT_H
 #define CORCAST_GEOM_JOINT_H
 
@@ -27,9 +27,10 @@ JointFrame joint_frame(const Vec3 center[2], const Vec3 axis[2], const double ra
  * and sine. */
 Vec3 joint_point(const JointFrame *joint, double cosine, double sine, double l);
 
-/* All crossings of the line with the surface, in no order: at most 4. Lines that graze it, crossing
- * it twice within 2^-32 of half a circle, miss. The normals point outwards when each circle lies on
- * one side of the other's plane. */
+/* Finds the intersections of the line with the surface, in no particular order. Returns their
+ * number, at most 4. A line misses if it only grazes the surface: its two intersections are then
+ * closer than 2^-32 of half a turn in the angle p. Normals are unit vectors; they point outwards if
+ * each circle lies on one side of the other circle's plane. */
 int hit_joint(Ray ray, const JointFrame *joint, Hit hits[4]);
 
 #endif

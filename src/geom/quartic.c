@@ -1,17 +1,19 @@
-/* A quartic in Bernstein form has as many roots in its interval as its coefficients change sign, or
- * fewer by an even number. So no change proves that there is none, and one that there is just one;
- * more are decided by halving [Lane & Riesenfeld 1981, Bounds on a polynomial, BIT 21, 112]. Zero
- * counts as positive, which gives a root at the end of an interval to one of the two that share
- * it. */
+/* The number of roots of a quartic in Bernstein form in its interval is the number of sign changes
+ * of its coefficients, or less by an even number. So no sign change proves that there is no root,
+ * and one sign change proves that there is exactly one. With more sign changes, the interval is
+ * halved [Lane & Riesenfeld 1981, Bounds on a polynomial, BIT 21, 112]. Zero counts as positive, so
+ * that a root at the common end of two intervals belongs to exactly one of them. */
 #include "geom/quartic.h"
 
 #include <math.h>
 #include <stdbool.h>
 
-/* Halvings after which two roots that are still together are a line that grazes. */
+/* Two roots that are not separated after MAX_HALVINGS are those of a grazing line, and are left
+ * out. NEWTON_STEPS suffices for bisection alone. */
 enum { MAX_HALVINGS = 32, NEWTON_STEPS = 64 };
 
-/* The value and slope at x in [0, 1] of a quartic in Bernstein form, by de Casteljau's scheme. */
+/* Returns the value at x in [0, 1] of a quartic in Bernstein form, and its slope, by de
+ * Casteljau's scheme. */
 static double quartic_at(const double b[5], double x, double *slope)
 {
     double c[5] = {b[0], b[1], b[2], b[3], b[4]};
@@ -22,8 +24,9 @@ static double quartic_at(const double b[5], double x, double *slope)
     return c[0] + (c[1] - c[0]) * x;
 }
 
-/* The one root of a quartic whose ends 0 and 1 differ in sign: Newton's method, kept inside the
- * bracket by halving it. An end where it is 0 is not the root: that counts as positive. */
+/* Returns the single root of a quartic whose values at 0 and 1 differ in sign. Newton's method; a
+ * step that leaves the bracket is replaced by halving it. A value of 0 at an end counts as
+ * positive, and is not the root. */
 static double quartic_root(const double b[5])
 {
     double low = 0, high = 1, x = 0.5;
@@ -49,7 +52,8 @@ static int sign_changes(const double b[5])
     return changes;
 }
 
-/* Splits at the middle: `b` becomes its first half, `second` the other. */
+/* Splits the quartic at the middle of its interval: `b` becomes the first half, `second`
+ * the second. */
 static void quartic_halve(double b[5], double second[5])
 {
     double first[5];
@@ -64,8 +68,8 @@ static void quartic_halve(double b[5], double second[5])
         b[i] = first[i];
 }
 
-/* Appends the roots of the quartic, which is that of [low, high], to the `n` at `roots`: how many
- * there are then. */
+/* Appends the roots in [low, high] of the quartic `b` to the `n` roots at `roots`. Returns the
+ * new count. */
 static int isolate_roots(double b[5], double low, double high, int halvings, double roots[4], int n)
 {
     int changes = sign_changes(b);

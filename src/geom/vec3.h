@@ -36,7 +36,7 @@ static inline Vec3 vec3_scale(Vec3 a, double factor)
     return vec3(a.x * factor, a.y * factor, a.z * factor);
 }
 
-/* a + b * factor */
+/* Returns a + b * factor. */
 static inline Vec3 vec3_add_scaled(Vec3 a, Vec3 b, double factor)
 {
     return vec3(a.x + b.x * factor, a.y + b.y * factor, a.z + b.z * factor);
@@ -71,13 +71,13 @@ static inline double vec3_distance2_along(Vec3 a, Vec3 along)
     return vec3_dot(apart, apart);
 }
 
-/* a / |a|; the length of `a` must not be zero. */
+/* Returns a / |a|. The length of `a` must not be 0. */
 static inline Vec3 vec3_normalized(Vec3 a)
 {
     return vec3_scale(a, 1 / vec3_length(a));
 }
 
-/* `a` turned about the unit vector `axis`, right-handed, by radians. */
+/* Returns `a` rotated about the unit vector `axis` by `angle` radians, right-handed. */
 static inline Vec3 vec3_turned(Vec3 a, Vec3 axis, double angle)
 {
     Vec3 result = vec3_scale(a, elementary_cos(angle));
@@ -85,7 +85,8 @@ static inline Vec3 vec3_turned(Vec3 a, Vec3 axis, double angle)
     return vec3_add_scaled(result, axis, vec3_dot(axis, a) * (1 - elementary_cos(angle)));
 }
 
-/* Two unit vectors across the unit vector `axis`, right-handed with it: u x v = axis. */
+/* Sets u and v to unit vectors perpendicular to the unit vector `axis` and to each other, so that
+ * u x v = axis. */
 static inline void vec3_across(Vec3 axis, Vec3 *u, Vec3 *v)
 {
     Vec3 other = fabs(axis.x) < 0.6 ? vec3(1, 0, 0) : vec3(0, 1, 0);
@@ -93,7 +94,7 @@ static inline void vec3_across(Vec3 axis, Vec3 *u, Vec3 *v)
     *v = vec3_cross(axis, *u);
 }
 
-/* 1 / each component; infinite where that is 0. */
+/* Returns the vector of 1 / component; infinite where a component is 0. */
 static inline Vec3 vec3_inverse(Vec3 a)
 {
     return vec3(1 / a.x, 1 / a.y, 1 / a.z);

@@ -1,8 +1,10 @@
-/* The place of a connection is found by the optimiser of a bifurcation [bifurcation.h]. To rank
- * connections (connection_estimate) one round of it from a middling place does, priced to first
- * order by the same weights; the rest of the rounds (connection_optimise) are for the one that is
- * to be made. Whether it may be made is asked last, because that is dearest: whether its segments
- * are in the domain (connection_is_inside), and clear of all others (connection_clearance). */
+/* The optimiser of a bifurcation [bifurcation.h] finds the position of a connection.
+ *
+ * connection_estimate ranks candidates: it makes one round of the optimiser from a position in the
+ * middle, and computes the price to first order with the same weights. connection_optimise makes
+ * the remaining rounds, only for connections that may be used. The most expensive tests come last:
+ * whether the segments are in the domain (connection_is_inside), and whether they are clear of all
+ * other segments (connection_clearance). */
 #include "grow/connection.h"
 
 #include <string.h>
@@ -11,10 +13,10 @@
  * the end of growth for nearly all vessels at their final radii. For length, and for keeping clear
  * of others. */
 static const double length_reserve = 1.15, clearance_reserve = 1.1;
-/* Bifurcations keep this many times the least length from the ends, as radii change a little
- * too. */
+/* Bifurcations keep this many times the least length from the ends, as radii change a
+ * little too. */
 static const double margin = 1.02;
-/* How often the place of the connection that is made is found anew. */
+/* Rounds of the optimiser for a connection that may be used. */
 enum { ROUNDS = 2 };
 
 /* A piece of a vessel may be split into parts a little shorter than a quarter of it, however wide
@@ -55,8 +57,8 @@ static double least_length(const Rules *rules, double radius)
     return fmax(2 * length_reserve * rules->thickness * radius, rules->least_length);
 }
 
-/* Returns the part of a segment at which it is nearest to `terminal`, `least` mm or more from the
- * ends. */
+/* Returns the part of a segment at which it is nearest to `terminal`, `least` mm or more from
+ * the ends. */
 static double nearest_part(Vec3 a, Vec3 b, Vec3 terminal, double length, double least)
 {
     double part = vec3_dot(vec3_sub(terminal, a), vec3_sub(b, a)) / (length * length);
@@ -118,7 +120,7 @@ bool connection_may_split(const Site *site, int32_t segment)
     return grid_length2(item) > least * least;
 }
 
-/* Takes place, price and radii of the connection from the state of its bifurcation. */
+/* Sets position, price and radii of the connection from the state of its bifurcation. */
 static void take_state(const BifurcationState *state, Connection *connection)
 {
     connection->price = state->price;
@@ -147,7 +149,7 @@ bool connection_optimise(const Site *site, Connection *connection)
     return true;
 }
 
-bool connection_settle(const Site *site, Connection *connection)
+bool connection_project(const Site *site, Connection *connection)
 {
     int32_t host = connection->segment;
     if (network_is_given(&site->net, host))
@@ -155,7 +157,7 @@ bool connection_settle(const Site *site, Connection *connection)
     Bifurcation problem = bifurcation_of(site, host, connection->terminal);
     const Law law = network_law(&site->net, host);
     BifurcationState state;
-    bifurcation_at(&law, &problem, domain_settle(site->domain, connection->bifurcation), &state);
+    bifurcation_at(&law, &problem, domain_project(site->domain, connection->bifurcation), &state);
     take_state(&state, connection);
     return isfinite(state.price) && bifurcation_is_long_enough(&problem, &state);
 }

@@ -1,20 +1,27 @@
-/* Connections: where a new terminal is best connected to the tree, and whether there is room. */
+/* Connections: where a new terminal is best connected to the tree, and whether there is room
+ * for it.
+ *
+ * A connection splits a segment at a new bifurcation, from which a new segment leads to the
+ * terminal. The planner [plan.h] first estimates the price of a connection to each candidate
+ * segment. It then takes the connections cheapest first: it optimises the bifurcation, and tests
+ * whether the three segments are inside the domain and clear of all other segments. */
 #ifndef CORCAST_GROW_CONNECTION_H
 #define CORCAST_GROW_CONNECTION_H
 
 #include "grow/cco/bifurcation.h"
 #include "grow/site.h"
 
-/* The segments that a connection makes beside the PROXIMAL one [bifurcation.h]. */
+/* The three segments of a connection: PROXIMAL [bifurcation.h] leads to the bifurcation, DISTAL is
+ * the other part of the split segment, and FRESH leads to the new terminal. */
 enum { DISTAL = LEFT, FRESH = RIGHT };
 
-/* A connection of `terminal`: the segment `segment` is split at `bifurcation`. */
+/* A connection of `terminal`: the segment with the index `segment` is split at `bifurcation`. */
 typedef struct Connection {
     Vec3 terminal; /* mm */
     int32_t segment;
     double price; /* first-order estimate of the increase of S_root [law.h], the tree's target */
     Vec3 bifurcation;    /* mm */
-    double radius[ENDS]; /* mm; set by connection_optimise */
+    double radius[ENDS]; /* of PROXIMAL, DISTAL and FRESH, mm; set by connection_optimise */
 } Connection;
 
 /* Returns true if a segment is long enough to be split into two segments that are longer than wide,
@@ -35,10 +42,10 @@ bool connection_estimate(const Site *site, int32_t segment, Vec3 terminal, Conne
  * rules allow. Cost: O(1). */
 bool connection_optimise(const Site *site, Connection *connection);
 
-/* Moves the bifurcation of an optimised connection onto the domain, which is a surface. A
- * bifurcation on a given segment stays. Returns false if a segment then is shorter than the rules
- * allow. */
-bool connection_settle(const Site *site, Connection *connection);
+/* Moves the bifurcation of an optimised connection onto the surface in the middle of the domain,
+ * which must have a projection [domain_has_projection]. A bifurcation on a given segment stays.
+ * Returns false if a segment then is shorter than the rules allow. */
+bool connection_project(const Site *site, Connection *connection);
 
 /* Returns true if the three segments of an optimised connection are in the domain. In a convex
  * domain they are if the bifurcation is. The two parts of a given segment may be anywhere. */

@@ -1,7 +1,9 @@
-/* Nodes of the tree become nodes of the network one by one, in order, and keep their index in the
- * tree (origin), because network_reorder renumbers them. A vessel that the tree makes up of several
- * segments shows by its nodes of one child; its pieces may be much shorter than wide, as in
- * measured trees, so growth does not hold them to its own rules. */
+/* The nodes of the tree become nodes of the network one by one, in order. Each remembers its index
+ * in the tree (origin), because network_reorder renumbers the nodes.
+ *
+ * A vessel that consists of several segments is recognised by its nodes with one child. Its
+ * pieces may be much shorter than wide, as in measured trees, so growth does not apply its own
+ * rules to them. */
 #include "grow/continue_tree.h"
 
 #include <stdlib.h>
@@ -21,17 +23,16 @@ static Status check_node(const Tree *from, size_t i, int32_t children, const Dom
 {
     int32_t id = from->id[i];
     if (children > 2)
-        return err_set(
-            err, STATUS_INPUT,
-            "`from`: node %d has %d children; growth goes on from trees in which no node "
-            "has more than 2",
-            id, children);
+        return err_set(err, STATUS_INPUT,
+                       "`from`: node %d has %d children; growth can continue only a tree in which "
+                       "no node has more than 2",
+                       id, children);
     if (!tree_is_segment(from, i) && children == 0)
         return err_set(err, STATUS_INPUT, "`from`: node %d is an inlet without a vessel", id);
     if (tree_is_segment(from, i) && children == 0 && !(tree_segment_length(from, i) > 0))
         return err_set(err, STATUS_INPUT,
-                       "`from`: node %d, a terminal, is where its parent is; its segment needs a "
-                       "length",
+                       "`from`: node %d, a terminal, has the position of its parent; its segment "
+                       "must be longer than 0",
                        id);
     if (keep_radii && tree_is_segment(from, i) && !(from->radius_mm[i] > 0))
         return err_set(err, STATUS_INPUT,
@@ -44,7 +45,8 @@ static Status check_node(const Tree *from, size_t i, int32_t children, const Dom
     return STATUS_OK;
 }
 
-/* How far a point is outside the bounds, along the axis along which it is farthest. */
+/* Returns the distance, mm, of a point from the box, along the axis along which it is farthest; 0
+ * or less inside. */
 static double beyond(Box box, Vec3 point)
 {
     Vec3 below = vec3_sub(box.low, point), above = vec3_sub(point, box.high);
@@ -70,7 +72,7 @@ size_t continue_outside(const Tree *from, const Domain *domain, size_t *farthest
     return count;
 }
 
-/* Whether a part of the tree at least is in the domain. */
+/* Checks that at least a part of the tree is in the domain. */
 static Status check_place(const Tree *from, const Domain *domain, Err *err)
 {
     size_t farthest = 0;
@@ -115,7 +117,7 @@ done:
     return status;
 }
 
-/* Whether the vessel that the segment i is part of has other segments. */
+/* Returns true if the vessel that the segment i is part of has other segments. */
 static bool is_piece(const Network *net, int32_t i)
 {
     const Segment *segment = &net->segment[i], *above = &net->segment[segment->parent];

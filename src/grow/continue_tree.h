@@ -1,4 +1,8 @@
-/* Continues the growth of a given tree. */
+/* Continues the growth of a tree that was grown or read before.
+ *
+ * The order of calls is: continue_check accepts the tree and the parameters; continue_from copies
+ * the tree into a network; growth adds terminals; continue_restore gives the nodes of the result
+ * the ids, types and columns of the first tree; continue_changes reports how radii changed. */
 #ifndef CORCAST_GROW_CONTINUE_TREE_H
 #define CORCAST_GROW_CONTINUE_TREE_H
 

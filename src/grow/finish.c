@@ -1,12 +1,14 @@
-/* Radii are r = q g rho: rho is summed up from the terminals, g multiplied down from the root
- * [law.h]. Both sweeps only add and multiply positive numbers, so nothing cancels and every radius
- * is exact to a few units in the last place for any gamma: Murray's law holds by the definition of
- * P, and the daughters of a bifurcation see one pressure by that of g.
+/* Radii are r = q g rho: rho is summed from the terminals up to the root, and g is multiplied
+ * from the root down [law.h]. Both sweeps only add and multiply positive numbers. Nothing
+ * cancels, so every radius is exact to a few units in the last place for any gamma. Murray's law
+ * holds by the definition of P. The daughters of a bifurcation begin at the same pressure by the
+ * definition of g.
  *
- * Where viscosity or gamma depend on the radius, both and the radii are computed in turn until they
- * agree. A radius goes with the fourth root of the viscosity, which falls by far less than the
- * fourth power of the radius in all but the thinnest vessels, and gamma with its logarithm, so this
- * converges; where it does not, steps are shortened. */
+ * If viscosity or gamma depend on the radius, they and the radii are computed in turn until they
+ * agree. The iteration converges, because a radius depends only on the fourth root of the
+ * viscosity, the viscosity changes by far less than the fourth power of the radius in all except
+ * the thinnest vessels, and gamma is a function of the radius's logarithm. Where it does not
+ * converge, the steps are shortened. */
 #include "grow/finish.h"
 
 #include "grow/continue_tree.h"
@@ -63,8 +65,8 @@ static Status sweep_down(const Network *net, Tree *tree, Err *err)
 static const double agreement = 1e-13;
 enum { MAX_ROUNDS = 200 };
 
-/* Computes all radii, with the flows that the terminals' shares ask for and the viscosities and
- * exponents at these radii. `flow` has room for one a node. */
+/* Computes all radii, with the flows of the terminals' shares, and with the viscosities and
+ * exponents at these radii. `flow` is a workspace of one number per node. */
 static Status settle_radii(Network *net, const GrowParams *params, double *flow, Tree *tree,
                            Err *err)
 {
@@ -79,16 +81,17 @@ static Status settle_radii(Network *net, const GrowParams *params, double *flow,
         last = change;
         network_resum(net);
     }
-    return err_set(err, STATUS_INFEASIBLE,
-                   params->gamma.n > 1
-                       ? "`gamma` changes too fast with the radius: the radii of %zu terminals do "
-                         "not settle; put its values at radii that are further apart"
-                       : "the vessels of %zu terminals are too thin for `viscosity_law` pries: "
-                         "radii and viscosities do not settle; lower `terminals` or raise `q_perf`",
-                   net->terminals);
+    return err_set(
+        err, STATUS_INFEASIBLE,
+        params->gamma.n > 1
+            ? "`gamma` changes too fast with the radius: the radii of %zu terminals do "
+              "not converge; put its values at radii that are further apart"
+            : "the vessels of %zu terminals are too thin for `viscosity_law` pries: "
+              "radii and viscosities do not converge; lower `terminals` or raise `q_perf`",
+        net->terminals);
 }
 
-/* Whether the trunk that is kept leaves all that hangs on it some of the drop of pressure. */
+/* Checks that the kept trunk leaves a part of the pressure drop to all subtrees that leave it. */
 static Status check_trunk(const Network *net, const GrowParams *params, Err *err)
 {
     double *spent = NULL;
@@ -101,7 +104,7 @@ static Status check_trunk(const Network *net, const GrowParams *params, Err *err
     Vec3 at = net->position[where];
     return err_set(err, STATUS_INFEASIBLE,
                    "`keep_radii`: the vessels of `from` are too narrow for `q_perf` %g ml/min: on "
-                   "the way to (%.4g, %.4g, %.4g), where the radius is %.4g mm, they take %.4g "
+                   "the path to (%.4g, %.4g, %.4g), where the radius is %.4g mm, they take %.4g "
                    "times the drop from `p_perf` to `p_term`; this tree passes a flow below %.4g "
                    "ml/min",
                    params->blood.q_perf_ml_min, at.x, at.y, at.z, net->trunk->radius[where], most,

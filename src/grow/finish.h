@@ -1,4 +1,4 @@
-/* Turns the grown network into a Tree. */
+/* Turns the grown network into a Tree: the last step of growth. */
 #ifndef CORCAST_GROW_FINISH_H
 #define CORCAST_GROW_FINISH_H
 

@@ -1,17 +1,17 @@
-/* The first terminal of a tree should be far from its inlet, so the distance asked for begins at
- * the size of the domain and is lowered with every few points that will not do. Root segments stay
- * in the Voronoi cells of their inlets, so their centrelines cannot cross; only their thickness is
- * left to test. */
+/* The first terminal of a tree should be far from its inlet. The required distance therefore begins
+ * at the size of the domain, and is lowered after every few points that are not suitable. Root
+ * segments stay in the Voronoi cells of their inlets, so that their centrelines cannot cross; only
+ * their thickness is tested. */
 #include "grow/first_segments.h"
 
 #include "grow/mates.h"
 
-/* After every TRIES_PER_NOTCH points that will not do, the distance asked for falls by the fraction
- * `notch`; after MAX_TRIES there is no root segment. */
+/* After every TRIES_PER_NOTCH points that are not suitable, the required distance falls by the
+ * fraction `notch`. After MAX_TRIES points the search fails. */
 enum { TRIES_PER_NOTCH = 3, MAX_TRIES = 20000 };
 static const double notch = 0.1;
-/* Root segments keep clear of each other at this many times their radii: they widen as trees
- * grow. */
+/* Root segments keep clear of each other at this many times their radii: they widen as
+ * trees grow. */
 static const double reserve = 1.3;
 
 /* A root segment, or a candidate for one. */
@@ -57,8 +57,8 @@ static int32_t first_terminal(const Network *net)
     return net->segment[net->inlet[0]].child[0];
 }
 
-/* Draws a random point of the domain; for the second tree of pairs, a mate of the first tree's
- * terminal. */
+/* Draws a random point of the domain; for the second tree of pairs, a mate of the first
+ * tree's terminal. */
 static Vec3 sample(const Site *site, size_t tree, Random *random)
 {
     if (tree == 0 || site->rules.pair == 0)

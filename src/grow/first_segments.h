@@ -1,10 +1,10 @@
-/* The first segment of every tree. */
+/* Adds the first segment of every tree: the root segment from the inlet to the first terminal. */
 #ifndef CORCAST_GROW_FIRST_SEGMENTS_H
 #define CORCAST_GROW_FIRST_SEGMENTS_H
 
 #include "grow/site.h"
 
-/* Random points that are tossed for first segments. */
+/* State of the random search for the ends of root segments. */
 typedef struct FirstTosses {
     Random *random;
     double distance; /* mm; how far a point must be from its inlet at first */

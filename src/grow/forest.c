@@ -1,6 +1,7 @@
-/* Trees race for tissue: where two meet, a point goes to the one that connects it at the lesser
- * cost. One that is ahead of its share has to wait, and meanwhile the others get the points between
- * them, so that territories come to fit the shares while vessels are still few and long. */
+/* Trees compete for tissue: where two trees meet, a point goes to the tree that connects it at
+ * the lower cost. A tree that is ahead of its share has to wait, and meanwhile the other trees
+ * get the points between them. Territories thus come to fit the shares while vessels are still
+ * few and long. */
 #include "grow/forest.h"
 
 #include <math.h>

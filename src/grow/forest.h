@@ -1,4 +1,9 @@
-/* A forest: how the terminals are shared among trees that grow side by side. */
+/* Shares the terminals among the trees of a forest that grow side by side.
+ *
+ * Each tree has a quota: its number of terminals at the end. Growth runs in rounds [round.h].
+ * Before a round, forest_limit sets for each tree how many terminals it may get, so that no
+ * tree gets far ahead of its share. The round counts the limits down, and forest_count adds
+ * the result. */
 #ifndef CORCAST_GROW_FOREST_H
 #define CORCAST_GROW_FOREST_H
 

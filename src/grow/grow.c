@@ -1,22 +1,24 @@
-/* Terminals are added in rounds [METHODS 1.2] until there are enough (add_terminals). A round calls
+/* Terminals are added in rounds [METHODS 1.2] until there are enough (add_terminals). A
+ * round calls:
  *
- * - check_range, which ends growth when radii span more than a double can hold;
- * - keep_up, which refreshes sums, radii and weights after every fifth of growth, and whenever the
- * number of terminals doubled makes a new grid and, in small trees, relaxes bifurcations
- * [repair.c];
- * - run_round, which tosses points and connects those that can be [round.c], each to that of the
- * nearest segments where it is cheapest, if there is room [plan.c];
- * - adapt_toss_distance, which steers the toss distance so that one point in three is far enough
- * from the tree: it falls as the tree fills the domain, and falls, too, when points have no way to
- * the tree within the tissue, because nearer ones may;
- * - be_patient: when hardly a point finds room at the vessels' real thickness, it takes them to be
- * half as thick, in the end for centrelines, and at last gives up.
+ * - check_range: ends growth if the radii span more than a double can hold.
+ * - keep_up: updates sums, radii and weights after every fifth of growth. Whenever the
+ *   number of terminals has doubled, it makes a new grid and, in small trees, relaxes
+ *   bifurcations [repair.c].
+ * - run_round: draws random points, and connects those that can be connected [round.c], each to the
+ *   one of its nearest segments where that is cheapest, if there is room [plan.c].
+ * - adapt_toss_distance: controls the toss distance so that one point in three is far enough from
+ *   the tree. The distance falls as the tree fills the domain. It also falls if no connection of
+ *   the points stays in the tissue, because points nearer to the tree may have one.
+ * - be_patient: if hardly any point finds room at the vessels' real thickness, counts vessels as
+ *   half as thick, finally only their centrelines, and then gives up.
  *
- * At the end radii are computed anew, the few segments that widened too much are repaired
+ * At the end all radii are computed again, the few segments that widened too much are repaired
  * [repair.c], and the network becomes a Tree [finish.c].
  *
- * The domain has its final size throughout: scaling all lengths scales all costs alike, so this
- * makes the same choices as a domain that grows with the tree. */
+ * The domain has its final size from the beginning. In the original method the domain grows
+ * with the tree. Scaling all lengths scales all costs by the same factor, so the choices are
+ * the same. */
 #include "grow/grow.h"
 
 #include "grow/continue_tree.h"
@@ -29,30 +31,31 @@
 #include "grow/segment_weights.h"
 #include <stdlib.h>
 
-/* Cells of the grid for each terminal, when the grid is made; it is made anew when the terminals
- * have doubled. */
+/* Number of grid cells per terminal when a grid is made. A new grid is made whenever the number of
+ * terminals has doubled. */
 static const double cells_per_terminal = 1;
-/* Radii and sensitivities are computed anew when there are this many times the terminals. */
+/* Growth of the number of terminals after which radii and sensitivities are computed again. Larger
+ * factors save time, but candidates are chosen by older values. */
 static const double refresh_growth = 1.2;
 static const double fine_growth = 1.03; /* with min_radius_mm */
 /* Vessels of different trees keep this many times clearance_mm apart, because they still widen. */
 static const double clearance_spare = 1.05;
 /* A round adds about one terminal for every TERMINALS_PER_ADDED that there are; in tiles, more. */
 enum { TERMINALS_PER_ADDED = 64, TERMINALS_PER_ADDED_IN_TILES = 12 };
-/* Points tossed for each terminal to be added. */
+/* Random points drawn per terminal that should be added. */
 enum { TOSSES_PER_ADDED = 3 };
-/* How far the toss distance falls after a round in which no point is far enough from the tree. */
+/* Fraction by which the toss distance falls after a round in which no point is far enough from
+ * the tree. */
 static const double toss_notch = 0.1, toss_notch_in_tiles = 0.5;
 /* Segments are no shorter than this share of the toss distance. */
 static const double least_length_share = 0.1;
 /* With fewer terminals, the grid's cells are so large that a few points without room do not yet
  * mean that a cell is full. */
 enum { LEAST_WITH_FULL_CELLS = 1000 };
-/* After PATIENCE points in crowded places without a connection, vessels count as half as thick, and
- * below the least thickness as lines; after LAST_PATIENCE points without one, the domain is
- * full. */
+/* After PATIENCE crowded points in succession without a connection, vessels count as half as thick;
+ * below least_thickness they count as lines. After LAST_PATIENCE such points the domain is full. */
 enum { PATIENCE = 200, LAST_PATIENCE = 20000 };
-/* Growth ends after so many rounds in a row that added nothing, whatever the reasons were. */
+/* Growth ends after this many rounds in succession that added nothing, for any reason. */
 enum { IDLE_ROUNDS = 5000 };
 static const double least_thickness = 1.0 / 64;
 /* Memory that growth needs for each terminal, as measured with 10^6 and with 10^7 terminals. */
@@ -64,11 +67,12 @@ typedef struct Growth {
     double size; /* of the domain's box, mm; on a surface, of vessels */
     Forest forest;
     Random random;
-    /* With how many terminals the grid is made anew, radii are refreshed, bifurcations relaxed. */
+    /* Numbers of terminals at which a new grid is made, radii are refreshed, and bifurcations
+     * are relaxed. */
     size_t grid_until, refresh_until, relax_until;
     double toss_distance; /* mm */
     Round round;
-    double skipped; /* the share of the last round's points that lay in full cells */
+    double skipped; /* share of the last round's points that were in full cells */
     uint64_t tosses, rejected;
     double end_radius;       /* mm; the terminals' mean as of the last refresh */
     size_t crowded, outside; /* points far enough from the tree since one was connected */
@@ -130,7 +134,7 @@ static double mean_end_radius(const Network *net)
     return count > 0 ? sum / (double)count : 0;
 }
 
-/* Moves all bifurcations to better places, if the tree has at most params->relax terminals. */
+/* Moves all bifurcations to better positions, if the tree has at most params->relax terminals. */
 static Status relax(Growth *growth, Err *err)
 {
     Network *net = &growth->site.net;
@@ -166,15 +170,15 @@ static void set_toss_distance(Growth *growth, double distance)
     growth->site.rules.least_length = least_length_share * growth->toss_distance;
 }
 
-/* The map that says how densely terminals are to stand; NULL: evenly. */
+/* Returns the map of the density of terminals; NULL: the same density everywhere. */
 static const Demand *density(const GrowParams *params)
 {
     return params->blood.terminal_flow == TERMINAL_FLOW_DEMAND ? NULL : params->demand;
 }
 
-/* Draws a point where blood is asked for. A map asks for 1e-4 of its maximum in the mean
- * (demand_check), so that MOST_TOSSES draws all fail once in e^100 times; then the last one is
- * taken. */
+/* Draws a random point, with a probability proportional to the density map. The mean of a map is at
+ * least 1e-4 of its maximum (demand_check), so that the probability that MOST_TOSSES draws all fail
+ * is e^-100; then the last point is used. */
 static Vec3 toss(Growth *growth)
 {
     enum { MOST_TOSSES = 1000000 };
@@ -190,7 +194,7 @@ static Vec3 toss(Growth *growth)
     return point;
 }
 
-/* How many terminals the next round should add. */
+/* Returns the number of terminals the next round should add. */
 static size_t to_be_added(const Growth *growth, bool tiled)
 {
     size_t terminals = growth->site.net.terminals, left = growth->params->terminals - terminals;
@@ -318,7 +322,7 @@ static Status start_trees(Growth *growth, Err *err)
         network_append(net, -1, params->inlet[k]);
     TRY(first_segments_add(&growth->site, &tosses, err));
     growth->tosses += tosses.count;
-    if (domain_settles(growth->site.domain)) /* where no straight vessel is longer */
+    if (domain_has_projection(growth->site.domain)) /* where no straight vessel is longer */
         growth->size = tosses.distance;
     set_toss_distance(growth, tosses.distance);
     return STATUS_OK;
@@ -385,13 +389,14 @@ static Status start(Growth *growth, Err *err)
     return start_forest(growth, err);
 }
 
-/* Whether the terminals' mean radius has come down to min_radius_mm. */
+/* Returns true if the terminals' mean radius has come down to min_radius_mm. */
 static bool is_fine_enough(const Growth *growth)
 {
     return growth->end_radius > 0 && growth->end_radius <= growth->params->min_radius_mm;
 }
 
-/* Proves the clearance of different trees and the distance of pairs, where they were asked for. */
+/* Proves the clearance of different trees and the distance of pairs, if the parameters
+ * require them. */
 static Status check_apart(const GrowParams *params, const Tree *tree, double *apart, Err *err)
 {
     *apart = INFINITY;

@@ -1,5 +1,21 @@
-/* Grows arterial trees by constrained constructive optimization (CCO), and refines them. Terminals
- * are added one by one, each connected where the target sum of l r^lambda increases least.
+/* The public header of the module grow: grows arterial trees by constrained constructive
+ * optimization (CCO), refines them, and bounds the target from below.
+ *
+ * CCO fills a piece of tissue (the perfusion volume, here the Domain) with a binary tree. A random
+ * point of the domain becomes the end of a new terminal segment. The new segment is connected to
+ * one of the nearest segments (the candidates), which is split at a new bifurcation. The candidate
+ * and the bifurcation are chosen so that the target function, the sum of l r^lambda over all
+ * segments of length l and radius r, increases least. Radii follow from the positions: at each
+ * bifurcation Murray's law holds, r_parent^gamma = r_left^gamma + r_right^gamma, and all terminals
+ * have the same pressure by Poiseuille's law. With lambda = 2 the target is the blood volume
+ * divided by pi.
+ *
+ *     GrowParams params = grow_defaults();
+ *     params.terminals = 5000;
+ *     TRY(grow_tree(&params, &domain, &tree, NULL, err));   (then tree_release)
+ *
+ * Refinement (refine_tree) lowers the target of a whole tree by moving its bifurcations and by
+ * connecting its subtrees elsewhere.
  *
  * Source: Schreiner & Buxbaum, IEEE Trans. Biomed. Eng. 40 (1993) 482-491; in space: Karch et al.,
  * Comput. Biol. Med. 29 (1999) 19-38. */
@@ -43,9 +59,9 @@ typedef struct GrowParams {
     double lambda;  /* exponent of the target; the range is that of its key */
     uint64_t seed;  /* of the random points */
     /* A tree that growth continues, from its own inlets; NULL: none. Its nodes keep their
-     * positions, ids and types, and its segments stay straight. An inlet has one or two children,
-     * any other node at most two. Growth does not read the tree's radii, flow shares and
-     * metadata. */
+     * positions, ids and types, and its segments stay straight. An inlet has one or two
+     * children, any other node at most two. Growth does not read the tree's radii, flow shares
+     * and metadata. */
     const Tree *from;
     bool keep_radii; /* the segments of `from` keep their radii, which growth then reads */
     size_t inlets;   /* number of inlets, at most GROW_MAX_INLETS; one tree grows from each. 0: the
@@ -56,7 +72,7 @@ typedef struct GrowParams {
     const double *inlet_share; /* per tree: its number of terminals relative to the others', > 0 */
     GrowBlood blood;
     /* A map of the relative density of terminals, in terminals per volume; NULL: the same density
-     * everywhere. With TERMINAL_FLOW_DEMAND, the map says instead how the terminals share the flow,
+     * everywhere. With TERMINAL_FLOW_DEMAND, the map determines how the terminals share the flow,
      * and terminals have the same density wherever the map is above 0. */
     const Demand *demand;
     double min_radius_mm; /* growth ends when the terminals' mean radius is this; 0: never */
@@ -108,9 +124,9 @@ void grow_describe(const GrowParams *params, TreeMeta *meta);
  * terminals have the same flow. */
 void grow_take(GrowParams *params, const TreeMeta *meta, const bool given[META_KEYS]);
 
-/* Checks whether growth can begin with these parameters in this domain. Errors: STATUS_USAGE, and
- * STATUS_INPUT for `from`, with a sentence that names the wrong parameter in backquotes;
- * STATUS_MEMORY. */
+/* Checks whether growth can begin with these parameters in this domain. Errors:
+ * STATUS_USAGE, and STATUS_INPUT for `from`, with a sentence that names the wrong parameter
+ * in backquotes; STATUS_MEMORY. */
 MUST_CHECK Status grow_params_check(const GrowParams *params, const Domain *domain, Err *err);
 
 /* Grows a tree, or a forest whose trees share all flow. The same parameters give the same tree, to
@@ -121,8 +137,8 @@ MUST_CHECK Status grow_params_check(const GrowParams *params, const Domain *doma
  * in *out. If viscosity or gamma depend on the radius, they are those at these radii. Centrelines
  * do not cross. With TERMINAL_FLOW_TERRITORY, a terminal's flow share is the number of points of a
  * fine lattice over the domain that are nearer to it than to any other terminal; with
- * TERMINAL_FLOW_DEMAND, the sum of what these points ask for. The metadata describes how the tree
- * was made.
+ * TERMINAL_FLOW_DEMAND, it is the sum of the demands at these points. The metadata describes how
+ * the tree was made.
  *
  * With `pair_mm`, every terminal of the first tree is paired with one of the second tree at that
  * distance, and *out names the pairs [tree/pairs.h]. With `pair_mm` or `clearance_mm`, the distance

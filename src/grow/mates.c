@@ -1,4 +1,5 @@
-/* A point on the unit sphere is even in z and in the angle about it. */
+/* A uniformly distributed point on the unit sphere has a uniformly distributed z, and a uniformly
+ * distributed angle about the z axis. */
 #include "grow/mates.h"
 
 #include <assert.h>
@@ -27,7 +28,8 @@ Status mates_write(const Network *net, Tree *tree, Err *err)
     return status;
 }
 
-/* How far apart the ends of a pair have to be for its walls. */
+/* Returns the distance, mm, that the ends of a pair need so that the walls of its vessels keep
+ * the clearance. */
 static double needed(const GrowParams *params, const Tree *tree, TreePair pair)
 {
     return params->clearance_mm + tree->radius_mm[pair.node[0]] + tree->radius_mm[pair.node[1]];
@@ -54,7 +56,7 @@ Status mates_check(const GrowParams *params, const Tree *tree, Err *err)
         status = err_set(err, STATUS_INFEASIBLE,
                          "`pair_mm` %g: the vessels of the pair of nodes %d and %d are %.4g and "
                          "%.4g mm in radius, so that pairs must be at least %.4g mm apart, with "
-                         "the clearance; or ask for more `terminals` or less `q_perf`",
+                         "the clearance; or raise `terminals` or lower `q_perf`",
                          params->pair_mm, tree->id[pair[worst].node[0]],
                          tree->id[pair[worst].node[1]], tree->radius_mm[pair[worst].node[0]],
                          tree->radius_mm[pair[worst].node[1]], most);

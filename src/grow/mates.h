@@ -1,12 +1,14 @@
-/* Pairs of terminals: every terminal of the first tree has a mate of the second tree. */
+/* Pairs of terminals, such as an artery's and a vein's: every terminal of the first tree has a
+ * partner (its mate) in the second tree, at a fixed distance. */
 #ifndef CORCAST_GROW_MATES_H
 #define CORCAST_GROW_MATES_H
 
 #include "grow/grow.h"
 #include "grow/network.h"
 
-/* Returns a random point `mm` from `terminal`, in mm; in two dimensions, a point of the plane z =
- * 0. Draws one number of `random` in two dimensions, two in three. */
+/* Returns a random point at the distance `mm` from `terminal`, both in mm, as the position of its
+ * mate. The direction is uniformly distributed; in two dimensions it is in the plane z = 0. Draws
+ * one number from `random` in two dimensions, two in three. */
 Vec3 mates_place(Vec3 terminal, double mm, int dimension, Random *random);
 
 /* Records the network's pairs in the tree, which has the same nodes. Errors: STATUS_MEMORY. */

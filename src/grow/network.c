@@ -1,20 +1,20 @@
-/* Every segment holds rho_gamma and cost of its daughters, so a change at one place is carried
- * towards the root by recomputing the segments on the way and nothing else: one cache line each,
- * and exact, because nothing is added to or taken from a running sum.
+/* Every segment stores rho_gamma and cost of its daughters. A change at one segment is carried
+ * towards the root by recomputing only the segments on the path: one cache line each. The result is
+ * exact, because no running sum is added to or subtracted from.
  *
  * network_split carries a new terminal to the nearest LEVELS ancestors at once, where it is a large
- * part of what hangs there. Further up it is a small part, and the sums wait for network_refresh.
- * That makes a split O(1), and lets threads split in different places without a lock.
+ * part of the subtree. Further up it is a small part, and the sums wait for network_refresh. So a
+ * split costs O(1), and threads can split segments far apart without a lock.
  *
- * network_refresh sums up all segments in post-order (sum_up) and then hands gauges and derivatives
- * down in pre-order (refresh_daughters). Subtrees of less than 1 / SUBTREES of the terminals
- * (find_tops) are done side by side by threads, the few segments above them by one thread in
- * between; each segment is computed from its daughters or its mother alone, so the result does not
- * depend on the threads.
+ * network_refresh sums up all segments in post-order (sum_up), and then hands gauges and
+ * derivatives down in pre-order (refresh_daughters). Threads process the subtrees that have less
+ * than 1 / SUBTREES of the terminals (find_tops) in parallel; one thread processes the few segments
+ * above them, between the two passes. Each segment is computed only from its daughters or its
+ * parent, so the result does not depend on the number of threads.
  *
  * The sensitivities are the derivatives of the root's cost, carried down by the chain rule. They
- * price a change below a segment in O(1). They age as the tree grows, which only blurs the choice
- * between candidates, never the tree's own figures. */
+ * give the price of a change below a segment in O(1). They grow out of date as the tree grows. That
+ * only makes the choice between candidates less exact; the tree's own values are not affected. */
 #include "grow/network.h"
 
 #include <float.h>
@@ -108,7 +108,7 @@ static float narrow(double value)
     return (float)fmin(value, (double)FLT_MAX);
 }
 
-/* Stores in the parent of `i` what hangs on it there. */
+/* Stores the sums of segment i in its parent. */
 static void tell_parent(Network *net, int32_t i, const Reduced *reduced)
 {
     Segment *parent = &net->segment[net->segment[i].parent];
@@ -192,8 +192,8 @@ void network_grown(Network *net, size_t terminals)
     set_terminals(net, net->terminals + terminals);
 }
 
-/* Adds a terminal to the sums of the nearest ancestors of `i`, which sums up to `reduced`; see
- * network_split. */
+/* Adds a terminal to the sums of the nearest ancestors of `i`, which sums up to `reduced`;
+ * see network_split. */
 static void tell_ancestors(Network *net, int32_t i, const Reduced *reduced, Box zone)
 {
     Reduced here = *reduced;
@@ -324,8 +324,8 @@ static void count_terminals(Network *net, int32_t i)
         segment->terminals += net->segment[segment->child[slot]].terminals;
 }
 
-/* Sums up segment i from its daughters and stores the sums in its parent. Keeps rho in the place of
- * the sensitivity, for summed, until refresh_daughters overwrites it. */
+/* Sums up segment i from its daughters and stores the sums in its parent. Stores rho in the
+ * sensitivity, from which summed reads it, until refresh_daughters overwrites it. */
 static void sum_up(Network *net, int32_t i)
 {
     count_terminals(net, i);

@@ -1,18 +1,27 @@
-/* The growing network: one binary tree of segments, or several trees (a forest). Each segment has
- * the sums over its subtree from which its radius follows [law.h].
+/* The network: the binary tree of segments while it grows, or several such trees (a forest).
+ *
+ * Each segment stores sums over its subtree, from which its radius follows [cco/law.h]. The
+ * sums also give the change of the target when a terminal is added, without a walk through the
+ * whole tree.
  *
  * Every node except an inlet is the distal end of the segment with the same index. The children of
  * an inlet are root segments: one for a tree that is grown, one or two for a tree that is
  * continued. When a segment is split, its distal part keeps its index.
  *
- * Functions change three kinds of values, and state which values they need and leave:
- * - The structure (positions, parents, children, tree, origin, given, piece) is always right.
- * - The sums (length, terminals, rho_gamma, cost) are exact after network_resum, which computes all
- *   of them, and after network_refresh, which computes all except the lengths. network_append
- *   leaves them out of date, and network_split updates some of them. A change of weights puts them
- *   out of date.
- * - The radii (radius, gauge, sensitivity) are those of the last network_refresh, or of when the
- *   segment was made. They age while terminals are added, until the next refresh. */
+ * A segment has three groups of values. Each function states which values it needs and which it
+ * leaves valid.
+ *
+ * - Structure (positions, parents, children, tree, origin, given, piece): always valid.
+ * - Sums (length, terminals, rho_gamma, cost): exact after network_resum, which computes all of
+ *   them, and after network_refresh, which computes all except the lengths. They are out of date
+ *   after network_append and after a change of weights. network_split updates some of them.
+ * - Radii (radius, gauge, sensitivity): those of the last network_refresh or, for a later segment,
+ *   those from when the segment was made. They grow out of date as terminals are added, until the
+ *   next network_refresh.
+ *
+ *     network_append(&net, -1, inlet);  network_append(&net, 0, terminal);  network_resum(&net);
+ *     network_refresh(&net, threads);   (radii are valid)
+ *     network_split(&net, &split, zone);  network_grown(&net, 1);   (connects one terminal) */
 #ifndef CORCAST_GROW_NETWORK_H
 #define CORCAST_GROW_NETWORK_H
 
@@ -48,7 +57,7 @@ typedef struct Trait {
     double gamma;  /* exponent of the fork at the distal end; as old as the weight */
     double share;  /* of a terminal: its flow relative to the other terminals'; 0 elsewhere */
     int32_t mate;  /* of a terminal: the terminal it is paired with; -1: none */
-    int32_t tree;  /* index of the inlet that the segment hangs on */
+    int32_t tree;  /* index of the inlet of the segment's tree */
     int32_t origin; /* index of the node in the tree that is continued; -1: a new node */
     bool given;     /* a segment of the tree that is continued, which stays straight */
     bool piece;     /* a given segment that makes up a vessel together with others */
@@ -93,6 +102,7 @@ typedef struct NetworkSize {
 /* Makes an empty network. Release it with network_release. Errors: STATUS_MEMORY. */
 MUST_CHECK Status network_init(Network *net, Law law, double radius_scale, NetworkSize size,
                                Err *err);
+/* Frees all arrays and zeroes *net. */
 void network_release(Network *net);
 /* Adds a trunk whose radii are all 0; the caller sets them. Errors: STATUS_MEMORY. */
 MUST_CHECK Status network_add_trunk(Network *net, Err *err);
@@ -152,7 +162,7 @@ static inline Law network_law(const Network *net, int32_t i)
     return net->trait ? (Law){net->trait[i].gamma, net->law.lambda} : net->law;
 }
 
-/* Returns what hangs on the distal end of segment i. Needs its sums. */
+/* Returns the subtree below segment i. Needs its sums. */
 static inline Below network_below(const Network *net, int32_t i)
 {
     const Segment *segment = &net->segment[i];
@@ -161,7 +171,7 @@ static inline Below network_below(const Network *net, int32_t i)
                       segment->cost[0] + segment->cost[1]);
 }
 
-/* Returns segment i together with what hangs on it. Needs its sums. */
+/* Returns segment i together with the subtree below it. Needs its sums. */
 static inline Reduced network_reduce(const Network *net, int32_t i)
 {
     const Segment *segment = &net->segment[i];
@@ -177,8 +187,8 @@ static inline Capsule network_capsule(const Network *net, int32_t i)
     return (Capsule){net->position[segment->parent], net->position[i], (double)segment->radius};
 }
 
-/* Appends a node that hangs on `parent`, or an inlet if `parent` is -1. Returns its index. Sums are
- * out of date until network_resum. */
+/* Appends a node that is a child of `parent`, or an inlet if `parent` is -1. There must be capacity
+ * for it. Returns its index. Sums are out of date until network_resum. */
 int32_t network_append(Network *net, int32_t parent, Vec3 position);
 
 /* Adds spare nodes until there are at least `nodes`. */
@@ -243,8 +253,7 @@ void network_resum(Network *net);
  * Cost     O(n). */
 MUST_CHECK Status network_reorder(Network *net, Err *err);
 
-/* ---- the trunk
- * -------------------------------------------------------------------------------- */
+/* ---- the trunk ---- */
 
 /* The greatest share of the drop of pressure that may be spent along a trunk. */
 #define TRUNK_MOST_SPENT 0.999

@@ -1,5 +1,5 @@
-/* The parameters of growth: their defaults, and whether a set of them makes sense. What a tree's
- * file says of itself is checked by the table of keys [tree/meta.h], the rest here. */
+/* The parameters of growth: their defaults, and the check of their values. The table of keys
+ * [tree/meta.h] checks the values that a tree's file also states; this file checks the others. */
 #include "grow/continue_tree.h"
 #include "grow/grow.h"
 #include <stddef.h>
@@ -91,8 +91,8 @@ static Status check_inlets(const GrowParams *params, const Domain *domain, Err *
 {
     size_t trees = params->inlets > 0 ? params->inlets : 1;
     if (trees > GROW_MAX_INLETS)
-        return err_set(err, STATUS_USAGE, "`inlet`: %zu of them; at most %d may be given", trees,
-                       GROW_MAX_INLETS);
+        return err_set(err, STATUS_USAGE, "`inlet`: there are %zu inlets; at most %d are allowed",
+                       trees, GROW_MAX_INLETS);
     if (params->terminals < trees)
         return err_set(err, STATUS_USAGE,
                        "`terminals` %zu: must be at least one for each of %zu inlets",
@@ -151,7 +151,8 @@ static Status check_pairs(const GrowParams *params, const Domain *domain, Err *e
         return err_set(err, STATUS_USAGE,
                        "`pair_mm`: pairs need two new trees, not those of `from`");
     if (params->inlets != 2)
-        return err_set(err, STATUS_USAGE, "`pair_mm`: pairs need two trees, and so two of `inlet`");
+        return err_set(err, STATUS_USAGE,
+                       "`pair_mm`: pairs need two trees, so `inlet` must be given twice");
     if (params->terminals % 2 != 0 ||
         (params->inlet_shares == 2 && params->inlet_share[0] != params->inlet_share[1]))
         return err_set(err, STATUS_USAGE,
@@ -178,14 +179,14 @@ Status grow_params_check(const GrowParams *params, const Domain *domain, Err *er
     TRY(check_lengths(params, err));
     if (params->clearance_mm > 0 && !params->from && params->inlets <= 1)
         return err_set(err, STATUS_USAGE,
-                       "`clearance_mm` %g: is between trees, and there is one; several of `inlet` "
-                       "grow several",
+                       "`clearance_mm` %g: is the distance between trees, but there is only one; "
+                       "give `inlet` several times to grow several",
                        params->clearance_mm);
     if (params->candidates < 1 || params->candidates > GROW_MAX_CANDIDATES)
         return err_set(err, STATUS_USAGE, "`candidates` %d: must be from 1 to %d",
                        params->candidates, GROW_MAX_CANDIDATES);
     if (params->blood.terminal_flow == TERMINAL_FLOW_DEMAND && !params->demand)
-        return err_set(err, STATUS_USAGE, "`terminal_flow` demand: needs the map of it, `demand`");
+        return err_set(err, STATUS_USAGE, "`terminal_flow` demand: needs a demand map, `demand`");
     if (params->demand)
         TRY(demand_check(params->demand, domain, err));
     if (params->keep_radii && !params->from)

@@ -43,11 +43,11 @@ static int cheapest(const Connection *connection, int count)
     return best;
 }
 
-/* What the nearest segments have to offer to a terminal: their connections are in the planner. */
+/* The candidates of a terminal. Their connections are in the planner. */
 typedef struct Offers {
     int count;   /* of connections */
-    bool ahead;  /* whether a tree is among them that may get no more terminals for now */
-    bool beyond; /* whether that cannot be told within the zone */
+    bool ahead;  /* a candidate belongs to a tree that may get no more terminals for now */
+    bool beyond; /* undecided, because segments outside the zone would have to be known */
 } Offers;
 
 static Offers collect(const Plan *plan, Planner *planner, const Wish *wish)
@@ -78,14 +78,14 @@ static PlanState choose(const Plan *plan, Planner *planner, Offers offers, Conne
 {
     const Site *site = plan->common->site;
     Connection *connection = planner->connection;
-    bool inside = false, outside = false, settles = domain_settles(site->domain);
+    bool inside = false, outside = false, settles = domain_has_projection(site->domain);
     for (int count = offers.count; count > 0; count--) {
         int best = cheapest(connection, count);
         *out = connection[best];
         connection[best] = connection[count - 1];
         if (!connection_optimise(site, out))
             continue;
-        bool is_on_surface = !settles || connection_settle(site, out);
+        bool is_on_surface = !settles || connection_project(site, out);
         if (!is_on_surface || !connection_is_inside(site, out)) {
             outside = true;
             continue;
@@ -98,8 +98,8 @@ static PlanState choose(const Plan *plan, Planner *planner, Offers offers, Conne
     return offers.ahead ? PLAN_AHEAD : outside && !inside ? PLAN_OUTSIDE : PLAN_CROWDED;
 }
 
-/* Returns the toss distance at a point: terminals that are to stand half as densely are further
- * apart. */
+/* Returns the toss distance at a point, mm. Where the density of terminals is lower, the distance
+ * is larger. */
 static double toss_distance_at(const PlanCommon *common, Vec3 point)
 {
     const double most = 8;
@@ -124,8 +124,8 @@ static PlanState connect(const Plan *plan, Planner *planner, const Wish *wish, C
     return offers.beyond ? PLAN_BEYOND : choose(plan, planner, offers, out);
 }
 
-/* Seeds a stream of its own for every point, so that the stream does not depend on what was planned
- * before. */
+/* Seeds a stream of its own for every point, so that the stream does not depend on what was
+ * planned before. */
 static Random random_at(Vec3 place)
 {
     uint64_t bits[3];

@@ -1,4 +1,8 @@
-/* Plans whether and where a tossed point is connected to the tree, without changing anything. */
+/* Plans whether and where a random point is connected to the tree. Planning changes nothing, so
+ * that threads can plan points far apart at the same time.
+ *
+ * A plan either finds a connection (PLAN_READY) or states why there is none. Planning reads only
+ * segments in the plan's zone, a box of grid cells. */
 #ifndef CORCAST_GROW_PLAN_H
 #define CORCAST_GROW_PLAN_H
 
@@ -21,7 +25,7 @@ typedef enum PlanState {
 typedef struct PlanCommon {
     Site *site;
     size_t *limit;        /* per tree: how many more terminals it may get */
-    double toss_distance; /* mm, where demand is greatest; elsewhere the distance is greater */
+    double toss_distance; /* mm, where demand is greatest; larger elsewhere */
     const Demand *demand; /* NULL: the same everywhere */
     bool terminals_only;  /* the toss distance is kept from terminals' ends, not from segments */
     int candidates;       /* number of nearest segments that are tried */

@@ -1,15 +1,15 @@
-/* Radii change all over the tree as it grows, so rules that held when a segment was made may be
- * broken, by a little and for few segments, at the end. Each such segment (find_broken, by its
- * fault) has the bifurcations at its two ends moved (repair_segment, move) to the best of a few
- * places around (best_place, nearest first), where the three segments that meet there break the
- * rules least.
+/* Radii change all over the tree as it grows. Rules that held when a segment was made may therefore
+ * be broken at the end, slightly and by few segments. For each such segment (find_broken, which
+ * calls fault), repair_segment moves the bifurcations at its two ends. A bifurcation moves to the
+ * best of a few positions around it (best_place, nearest first): the one where the three segments
+ * that meet there break the rules least.
  *
- * A move changes the radii by much less than the `spare` that moved segments keep. So all segments
- * are tested once (look_at_chunk), and in later rounds only those that were within `spare` of
- * breaking a rule.
+ * A move changes the radii by much less than the `spare` that moved segments keep. Therefore all
+ * segments are tested once (look_at_chunk), and later rounds test only those that were within
+ * `spare` of breaking a rule.
  *
- * Relaxing (relax) moves bifurcations likewise, but to where the tree's target is less
- * [bifurcation.h], or a part of the way there that keeps the rules with room for growth. */
+ * Relaxing (relax) moves bifurcations to where the target is lower [bifurcation.h], or a part of
+ * the path there if only that keeps the rules with room for growth. */
 #include "grow/repair.h"
 
 #include "grow/cco/bifurcation.h"
@@ -19,21 +19,21 @@
 #include <stdlib.h>
 
 enum { ROUNDS = 6, CHUNK = 512 };
-/* Where more than one segment in FEW breaks a rule, the domain is too full for small moves. */
+/* If more than one segment in FEW breaks a rule, the domain is too full for small moves to help. */
 enum { FEW = 20 };
-/* Segments that repairs move keep to the rules with their radii widened by this fraction. */
+/* Segments that a repair moves keep the rules even if their radii grow by this fraction. */
 static const double spare = 2e-3;
-/* How far bifurcations are moved, relative to the radius of the segment that ends there. */
+/* Distances that bifurcations are moved, in units of the radius of the segment that ends there. */
 static const double steps[] = {0.02, 0.05, 0.1, 0.2, 0.4, 0.8};
 
-/* Segments that relaxing moves keep to the rules with their radii widened by this fraction, because
- * radii still grow; and the bifurcation's best place is this many times the least length off the
- * ends. */
+/* Segments that relaxing moves keep the rules even if their radii grow by relaxed_spare, because
+ * radii still grow. The best position of the bifurcation is at least off_ends times the minimum
+ * length from the ends. */
 static const double relaxed_spare = 0.15, off_ends = 1.02;
-/* Steps tried towards the best place, each half as long as the one before. */
+/* Number of steps tried towards the best position; each is half as long as the one before. */
 enum { TRIES = 3 };
-/* Rounds in which the best place is found; and the least gain, relative to the target, for which a
- * bifurcation moves. */
+/* Rounds of the optimiser that finds the best position; and the minimum gain, relative to the
+ * target, for which a bifurcation moves. */
 enum { PLACE_ROUNDS = 2 };
 static const double least_gain = 1e-9;
 
@@ -63,8 +63,8 @@ static double width_there(const Repair *repair, int32_t i)
     return repair->site->rules.thickness * (double)repair->site->grid.item[i].radius;
 }
 
-/* How far apart segments i and j should be at a thickness: pieces of a vessel only have to keep
- * their centrelines apart. */
+/* Returns the distance, mm, that the centrelines of segments i and j must keep at a thickness.
+ * Pieces of a vessel only have to keep their centrelines apart. */
 static double needed(const Repair *repair, int32_t i, int32_t j, double thickness)
 {
     const Network *net = &repair->site->net;
@@ -73,9 +73,9 @@ static double needed(const Repair *repair, int32_t i, int32_t j, double thicknes
            (network_is_piece(net, i) || network_is_piece(net, j) ? 0 : thickness);
 }
 
-/* By how many mm segment i, as `item` of `radius`, is too near to another, radii multiplied by
- * `scale`. Centrelines that touch count as the worst fault there is; given segments may lie
- * anyhow. */
+/* Returns by how many mm segment i, as `item` of `radius`, is too near to another segment, with
+ * radii multiplied by `scale`. Centrelines that touch count as the worst fault. Two given segments
+ * are never too near. */
 static double overlap(const Repair *repair, int32_t i, const GridItem *item, double radius,
                       double scale, int32_t other)
 {
@@ -88,9 +88,9 @@ static double overlap(const Repair *repair, int32_t i, const GridItem *item, dou
     return apart2 < gap * gap ? repair->site->rules.widest : need - sqrt(apart2);
 }
 
-/* By how many mm segment i is too short, or too near to a segment with an index less than `below`,
- * whichever is more, with all radii widened by the fraction `margin`. *with: the segment that it is
- * nearest to in that sense; unchanged when there is none. */
+/* Returns by how many mm segment i breaks a rule, with all radii widened by the fraction `margin`:
+ * the larger of how much it is too short, and how much it is too near to a segment with an index
+ * below `below`. *with receives the segment to which it is too near; unchanged if there is none. */
 static double fault(const Repair *repair, int32_t i, double margin, int32_t below, int32_t *with)
 {
     const Network *net = &repair->site->net;
@@ -140,7 +140,7 @@ static bool is_inside(const Repair *repair, int32_t node)
              domain_holds_segment(repair->site->domain, place, net->position[child[1]])));
 }
 
-/* Tries the places a step away from a bifurcation's own, up to the first without fault. */
+/* Tries the positions one step away from the bifurcation's own, up to the first without fault. */
 static void try_step(const Repair *repair, int32_t node, Vec3 from, double step, Vec3 *best,
                      double *least)
 {
@@ -161,7 +161,7 @@ static void try_step(const Repair *repair, int32_t node, Vec3 from, double step,
             }
 }
 
-/* The place around a bifurcation with the least fault. */
+/* Returns the position around a bifurcation with the least fault. */
 static Vec3 best_place(const Repair *repair, int32_t node)
 {
     Network *net = &repair->site->net;
@@ -285,7 +285,8 @@ static Bifurcation bifurcation_at_node(const Repair *repair, int32_t node)
         .margin = off_ends};
 }
 
-/* Finds the place where the target is least; false when that is no less than here. */
+/* Finds the position where the target is least. Returns false if the target is not lower there than
+ * at the present position. */
 static bool find_better_place(const Repair *repair, int32_t node, Vec3 *place)
 {
     const Network *net = &repair->site->net;
@@ -316,8 +317,9 @@ static Status relax(const Repair *repair, int32_t node, Err *err)
     Vec3 step = vec3_sub(goal, from);
     for (int k = 0; k < TRIES; k++, step = vec3_scale(step, 0.5)) {
         Vec3 place = vec3_add(from, step);
-        if (domain_settles(repair->site->domain) && domain_inside(repair->site->domain, place, 0))
-            place = domain_settle(repair->site->domain, place);
+        if (domain_has_projection(repair->site->domain) &&
+            domain_inside(repair->site->domain, place, 0))
+            place = domain_project(repair->site->domain, place);
         net->position[node] = place;
         bool is_allowed =
             is_inside(repair, node) && !(fault_at(repair, node, relaxed_spare, DBL_MIN) > 0);

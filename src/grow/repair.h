@@ -1,5 +1,9 @@
-/* Moves bifurcations while a tree grows: to repair the few vessels that came to touch others or to
- * be wider than long, and to lower the target. */
+/* Moves bifurcations while a tree grows, for two reasons: to repair the few vessels that
+ * have come to touch others or to be wider than long (repair_network), and to lower the
+ * target (relax_network).
+ *
+ * The rules [site.h] are: every segment is longer than wide, and clear of all segments with which
+ * it shares no node. */
 #ifndef CORCAST_GROW_REPAIR_H
 #define CORCAST_GROW_REPAIR_H
 

@@ -1,41 +1,42 @@
-/* Tossed points are sorted into square tiles of grid cells, and the points of a tile are planned
- * and connected one after the other. What they need of the tree then stays in the processor's
- * cache, however large the tree is.
+/* The random points are sorted into square tiles of grid cells. The points of a tile are planned
+ * and connected one after another. The data that they need then stays in the processor's cache,
+ * however large the tree is.
  *
- * Threads work on tiles side by side. The points of a tile may read and change what lies in its
- * zone, which reaches half a tile beyond it on all sides. Tiles have 2 x 2 (x 2) colors, like a
- * chessboard's, and one color is done after the other: zones of one color have nothing in common,
- * so the tree does not depend on the number of threads. The few points that would need more than
- * the zone are left over, and connected by one thread at the end. The seams between tiles move from
- * round to round, so that no place is always on one. Small trees are one tile.
+ * Threads work on different tiles in parallel. The points of a tile may read and change what is in
+ * the tile's zone, which extends half a tile beyond it on all sides. Tiles have 2 x 2 (x 2)
+ * colors, like a chessboard, and the colors are processed one after another. Zones of one color
+ * have no point in common, so the tree does not depend on the number of threads. The few points
+ * that would need more than the zone are left over; one thread connects them at the end. The seams
+ * between tiles move from round to round, so that no position is always on a seam. A small tree is
+ * one tile.
  *
- * round_run: run_tiles cuts the grid (make_cut), sorts the points (sort), shares out nodes and
- * limits (endow), and has each tile's points connected (run_tile: run_point, connect); gather adds
- * up what became of them. What is left over then goes through run_tile as one tile that is
- * everywhere. */
+ * round_run: run_tiles cuts the grid (make_cut), sorts the points (sort), distributes nodes and
+ * limits (endow), and connects the points of each tile (run_tile: run_point, connect). gather adds
+ * up the results. The points that are left over then go through run_tile as one tile that covers
+ * the domain. */
 #include "grow/round.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* Cells along a tile: about 1,000 terminals. */
+/* Number of cells along a tile's edge: a tile then has about 1,000 terminals. */
 enum { EDGE_2D = 34, EDGE_3D = 10 };
 /* With fewer tiles, or fewer points in a tile, one thread connects all points. */
 enum { LEAST_TILES = 4, LEAST_POINTS = 16 };
-/* In a tile, at most one point in POINTS_PER_CONNECTED may be connected; one in three is
- * expected. */
+/* In a tile, at most one point in POINTS_PER_CONNECTED may be connected; one in three
+ * is expected. */
 enum { POINTS_PER_CONNECTED = 2 };
-/* How many points ahead memory is asked for. */
+/* Number of points ahead of the present one whose memory is prefetched. */
 enum { AHEAD = 2 };
 
 struct Tile {
     size_t first, end; /* points in `order` */
     Box zone;
-    GridBox box;                   /* a little more than its own cells, for warm */
+    GridBox box;                   /* slightly more than its own cells, for warm */
     const int32_t *spare;          /* nodes that it may use */
     size_t most, made;             /* terminals */
-    size_t over;                   /* points left over, which are then the first ones in `order` */
-    size_t *left;                  /* by tree: how many terminals it may still get here */
+    size_t over;                   /* points left over; they are then the first ones in `order` */
+    size_t *left;                  /* per tree: number of terminals that it may still get here */
     double reach;                  /* its planner's at the end [plan.h] */
     size_t count[PLAN_STATES + 1]; /* as Round.count */
 };
@@ -99,7 +100,7 @@ Status round_start(Round *round, size_t points, Err *err)
     return mem_calloc(&round->order, round->capacity, sizeof *round->order, "points", err);
 }
 
-/* Returns how many terminals a point becomes. */
+/* Returns the number of terminals that a point becomes: 2 if terminals are paired. */
 static size_t terminals_of_point(const PlanCommon *common)
 {
     return common->site->rules.pair > 0 ? 2 : 1;
@@ -187,8 +188,8 @@ static Status run_point(const Running *running, int worker, Tile *tile, Vec3 poi
     return STATUS_OK;
 }
 
-/* Prefetches all that lies in the cells of a box at once: looked up one by one, each would be
- * waited for. The box may reach beyond the grid. */
+/* Prefetches the contents of all cells of a box at once. If they were read one by one, each read
+ * would wait for memory. The box may extend beyond the grid. */
 static void warm(const Site *site, const GridBox *box)
 {
     const Grid *grid = &site->grid;

@@ -1,5 +1,13 @@
-/* A round of growth: points tossed all over the domain are connected where there is room,
- * neighbourhood after neighbourhood, by threads side by side. */
+/* A round of growth: random points all over the domain are connected to the tree where there
+ * is room.
+ *
+ * The grid is cut into tiles. The points of one tile are connected one after another; threads
+ * work on tiles that are far enough apart at the same time. The result does not depend on the
+ * number of threads.
+ *
+ *     TRY(round_start(&round, n, err));                  (then set round.point[0 .. n - 1])
+ *     TRY(round_run(&round, &common, limits, err));      (connects points)
+ *     network_grown(&net, round.made); */
 #ifndef CORCAST_GROW_ROUND_H
 #define CORCAST_GROW_ROUND_H
 
@@ -32,9 +40,9 @@ typedef struct Round {
 /* A cell with this many crowded points in succession counts as full: its points are skipped. */
 enum { ROUND_FULL = 2 };
 
-/* Sets up *round, which may hold anything, for a forest of `trees`, `candidates` candidates for
- * each point and `threads` threads. Release it with round_release, also after an error. Errors:
- * STATUS_MEMORY. */
+/* Sets up *round, which may hold anything, for a forest of `trees`, `candidates` candidates
+ * for each point and `threads` threads. Release it with round_release, also after an error.
+ * Errors: STATUS_MEMORY. */
 MUST_CHECK Status round_init(Round *round, int candidates, size_t trees, int threads, Err *err);
 void round_release(Round *round);
 
@@ -42,8 +50,8 @@ void round_release(Round *round);
  * the rules change. Errors: STATUS_MEMORY. */
 MUST_CHECK Status round_use_grid(Round *round, const Grid *grid, Err *err);
 
-/* Begins a round: makes room for `points` points, which the caller then sets. Errors:
- * STATUS_MEMORY. */
+/* Begins a round: makes room for `points` points, which the caller then sets.
+ * Errors: STATUS_MEMORY. */
 MUST_CHECK Status round_start(Round *round, size_t points, Err *err);
 
 typedef struct RoundLimits {

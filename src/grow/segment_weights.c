@@ -1,10 +1,11 @@
-/* The weight of a segment is its flow over that of as many mean terminals, times its viscosity over
- * the reference, so that terminals times weight is the burden of the law [law.h].
+/* The weight of a segment is its flow divided by the flow of the same number of mean terminals,
+ * times its viscosity divided by the reference viscosity. The number of terminals times the weight
+ * is therefore the burden in the law [law.h].
  *
- * Viscosity and exponent depend on the radius, and the radius on both. While a tree grows, they are
- * computed from the radii of the last refresh: weights_refresh (set_shares, weights_flows, then
- * follow_radii) brings them nearer to agreement every time. At the end finish.c iterates until they
- * agree. */
+ * Viscosity and exponent depend on the radius, and the radius depends on both. While a tree grows,
+ * they are computed from the radii of the last refresh. Each call of weights_refresh (set_shares,
+ * weights_flows, then follow_radii) brings them nearer to agreement. At the end finish.c iterates
+ * until they agree. */
 #include "grow/segment_weights.h"
 
 #include "grow/territory.h"

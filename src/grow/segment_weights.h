@@ -1,7 +1,9 @@
-/* Weights of segments: unequal terminals, and viscosity and Murray exponent that depend on the
- * radius. Flow and viscosity enter the law of radii [law.h] as one weight of a segment, its
- * relative flow times its relative viscosity. The exponent belongs to the fork at the segment's
- * end. */
+/* Weights of segments, for trees whose terminals have unequal flows, or whose viscosity or Murray
+ * exponent depends on the radius.
+ *
+ * Flow and viscosity enter the law of radii [cco/law.h] as one number, the weight of a segment: its
+ * relative flow times its relative viscosity. The Murray exponent belongs to the bifurcation at the
+ * segment's distal end. If all weights are 1 and there is one exponent, none of this is needed. */
 #ifndef CORCAST_GROW_SEGMENT_WEIGHTS_H
 #define CORCAST_GROW_SEGMENT_WEIGHTS_H
 
@@ -9,8 +11,8 @@
 #include "grow/grow.h"
 #include "grow/network.h"
 
-/* Returns true if weights may differ from 1, or exponents from each other. The network then needs
- * traits. */
+/* Returns true if weights may differ from 1, or exponents from each other. The network then
+ * needs traits. */
 bool weights_are_needed(const GrowParams *params);
 
 /* Returns the viscosity, Pa s, that weights are relative to: that of the blood, or by Pries's law
@@ -45,8 +47,8 @@ typedef struct WeightsAt {
 MUST_CHECK Status weights_update(Network *net, const GrowParams *params, WeightsAt at,
                                  double *change, Err *err);
 
-/* Brings shares, weights, exponents, sums and radii up to date, where weights are needed; it takes
- * the place of network_refresh. WEIGHTS_FINE measures territories finely, and computes radii and
+/* Brings shares, weights, exponents, sums and radii up to date, where weights are needed.
+ * Replaces network_refresh. WEIGHTS_FINE measures territories finely, and computes radii and
  * weights in turn three times. Errors: STATUS_INFEASIBLE as weights_update, STATUS_MEMORY. */
 MUST_CHECK Status weights_refresh(Network *net, const GrowParams *params, const Domain *domain,
                                   WeightsPrecision precision, Err *err);

@@ -1,5 +1,5 @@
-/* A segment stands in the grid as a capsule that is wider than the vessel, so that a refresh of the
- * radii only has to enter those segments again that outgrew their capsules. */
+/* A segment is entered in the grid as a capsule that is wider than the vessel. After a refresh of
+ * the radii, only segments that have outgrown their capsules must be entered again. */
 #include "grow/site.h"
 
 #include <string.h>

@@ -1,5 +1,8 @@
-/* The site of growth: a network, the grid that answers what is near its segments, the tissue, and
- * the rules that segments keep. Growth, connections and repairs work on one site. */
+/* The site of growth: the network, a grid that finds the segments near a point or segment, the
+ * domain, and the rules that segments keep. Growth, connections and repairs all work on one site.
+ *
+ * The grid must be kept up to date: site_enter after a segment was added, site_renew after its ends
+ * moved, and site_widen after network_refresh has changed the radii. */
 #ifndef CORCAST_GROW_SITE_H
 #define CORCAST_GROW_SITE_H
 
@@ -33,7 +36,7 @@ static inline double clear_of_mate(const Rules *rules, double clear)
     return clear < most ? clear : most;
 }
 
-/* Returns the radius, mm, of the capsule that stands in the grid for a vessel of `radius` mm. The
+/* Returns the radius, mm, of the capsule that represents a vessel of `radius` mm in the grid. The
  * capsule is 1.4 times as wide as the vessel, so that the vessel may widen for a while before it
  * has to be entered again. */
 static inline double site_reach(const Rules *rules, double radius)
@@ -48,8 +51,8 @@ static inline double site_reach(const Rules *rules, double radius)
  * use the grid meanwhile. Errors: STATUS_MEMORY. */
 MUST_CHECK Status site_enter(Site *site, int32_t segment, Err *err);
 
-/* Removes a segment from the grid and enters it again, after its ends moved or it widened. Errors:
- * STATUS_MEMORY. */
+/* Removes a segment from the grid and enters it again, after its ends moved or it widened.
+ * Errors: STATUS_MEMORY. */
 MUST_CHECK Status site_renew(Site *site, int32_t segment, Err *err);
 
 /* Copies all radii of the last network_refresh into the grid, and enters the segments again that

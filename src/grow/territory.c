@@ -1,20 +1,21 @@
-/* The terminals stand in a grid of their own, as capsules without length or radius, and every
- * lattice point goes to the nearest. A lattice counts all but the cells that a border runs
- * through exactly, so that the count of a territory with p points is off by about
- * p^(1/4), where random points would be off by p^(1/2). Threads take rows of the lattice and count
- * for themselves; whole numbers, in which what a point asks for is rounded to a millionth, add up
- * to the same sums in any order. */
+/* The terminals are entered in a grid of their own, as capsules of length and radius 0. Every
+ * lattice point belongs to the nearest terminal.
+ *
+ * A lattice counts all cells exactly, except those on the border between two territories. The count
+ * of a territory with p points is therefore off by about p^(1/4); with random points it would be
+ * off by p^(1/2). Threads take rows of the lattice and have counters of their own. The counts are
+ * integers, and demands are rounded to a millionth, so that the sums are the same in any order. */
 #include "grow/territory.h"
 
 #include "grow/cco/grid.h"
 #include <stdlib.h>
 
-/* A lattice over a box that is very thin for its length has at most POINTS_PER_ASKED as many points
- * as a box of that volume asks for, and LEAST_POINTS. */
+/* Limit of the lattice over a box that is very thin relative to its length: at most
+ * POINTS_PER_ASKED times the points of a compact box with the same volume, plus LEAST_POINTS. */
 enum { POINTS_PER_ASKED = 8, LEAST_POINTS = 16384 };
-/* What a lattice point counts for where the demand is 1, its maximum. */
+/* Count of a lattice point at which the demand is 1, its maximum. */
 enum { WHOLE = 1 << 20 };
-/* Cells of the grid a terminal. */
+/* Number of grid cells per terminal. */
 static const double cells_per_terminal = 1;
 
 typedef struct TerritorySurvey {

@@ -1,4 +1,5 @@
-/* How much tissue each terminal supplies. */
+/* Territories: how much tissue each terminal supplies. The territory of a terminal is the set of
+ * points that are nearer to it than to any other terminal. */
 #ifndef CORCAST_GROW_TERRITORY_H
 #define CORCAST_GROW_TERRITORY_H
 
@@ -7,13 +8,13 @@
 
 typedef struct TerritoryParams {
     const Domain *domain;
-    const Demand *demand; /* what a point asks for [demand_at]; NULL: every point asks for 1 */
+    const Demand *demand; /* demand of a point [demand_at]; NULL: every point has the demand 1 */
     double points;        /* number of lattice points per terminal */
     int threads;
 } TerritoryParams;
 
 /* Counts the points of a square or cubic lattice over the domain that are nearer to a terminal than
- * to any other terminal, or adds up what these points ask for. Needs no sums.
+ * to any other terminal, or adds up the demands of these points. Needs no sums.
  *
  * share    receives, per node, the result for a terminal, but at least 1/2; 0 for other nodes.
  * Errors   STATUS_MEMORY.

@@ -1,7 +1,8 @@
-/* Each segment's tube is a box in a tree of boxes; a segment asks for those within reach of its own
- * box and takes the distance of both axes less both radii. The distance of two segments is the
- * least of five: where the lines through them come nearest, if that is within both, and from each
- * end to the other segment. */
+/* A bounding volume hierarchy holds the box of each segment's tube. Each segment finds the tubes
+ * within reach of its own box, and computes the distance of the two axes minus both radii. The
+ * distance of two axes is the least of five distances: the one between the nearest points of the
+ * two lines, if both points are on the segments, and those from each of the four ends to the
+ * other segment. */
 #include "grow/grow.h"
 
 #include <stdlib.h>

@@ -1,11 +1,12 @@
 /* Along the trunk, pressures follow from the flows, which are counts of terminals. One walk lists
- * the kept segments, mothers first; forward along the list gauges are handed down, and backward
- * stakes are gathered: what it costs all subtrees that leave the trunk at or below the end of a
- * segment when more of the drop is spent on it. A terminal more then costs, on every kept segment
- * on its way, the stake times what the terminal spends there, which `extra` [network.h] sums up.
+ * the kept segments, parents first. Gauges are handed down forward along the list. Stakes are
+ * gathered backward: the stake of a segment is the cost, for all subtrees that leave the trunk at
+ * or below the segment's end, of spending more of the pressure drop on this segment. A further
+ * terminal costs, on every kept segment on its path, the stake times the share of the drop that it
+ * spends there; Sensitivity.extra [network.h] is the sum.
  *
- * Sums of kept segments are as if their radii followed; nothing but the check of the range of
- * doubles looks at them. */
+ * The sums of kept segments are computed as if their radii followed the law. Only the check of the
+ * range of doubles uses them. */
 #include "grow/network.h"
 
 #include <float.h>

@@ -131,14 +131,14 @@ static void say_near_ends(const Talk *talk, const char *path, const TreeReading 
 static void say_unit(const Talk *talk, const char *path, const TreeReading *reading)
 {
     const char *unit = length_unit_names[reading->unit];
-    if (reading->unit_said || reading->median_radius_mm == 0)
+    if (reading->unit_is_stated || reading->median_radius_mm == 0)
         return;
-    if (reading->believes && reading->believed != reading->unit)
+    if (reading->has_plausible_unit && reading->plausible_unit != reading->unit)
         talk_note(talk,
                   "%s: assuming %s, but a median radius of %.3g suggests %s; set the unit with "
                   "--input-unit",
                   path, unit, reading->median_radius_mm / length_unit_mm(reading->unit),
-                  length_unit_names[reading->believed]);
+                  length_unit_names[reading->plausible_unit]);
     if (reading->looks_like_voxels)
         talk_note(talk,
                   "%s: all coordinates are integers, which suggests voxels; set their size with "
@@ -175,7 +175,7 @@ Status reading_tree_bytes(const Parsed *parsed, const MemoryFile *file, Tree *tr
 
 static Status copy_given(const Parsed *parsed, Tree *tree, TreeReading *reading, Err *err)
 {
-    *reading = (TreeReading){.format = "memory", .unit = LENGTH_MM, .unit_said = true};
+    *reading = (TreeReading){.format = "memory", .unit = LENGTH_MM, .unit_is_stated = true};
     TRY(reading_measure(reading, parsed->given, err));
     return tree_pruned(parsed->given, 0, tree, err);
 }

@@ -1,9 +1,11 @@
-/* Rows are kept as given until all are there. Then parents are found in an index of ids, and
- * rows placed: from each row not yet placed, the walk towards the root collects the ancestors that
- * are not placed either, and they go before it. Rows with parents first keep their order, every row
- * is walked over twice at most, and a walk that meets itself is a cycle. Rows that are in order
- * all become the tree without a copy, and rows with the ids 1, 2, ... and parents first, as those
- * of most large files, without an index of ids. */
+/* Rows are stored as they are added until the file is complete. Then an index of ids gives the
+ * parents, and rows are placed. For each row that is not placed yet, the walk towards the root
+ * collects the ancestors that are not placed either; they are placed before it. Rows whose
+ * parents come first keep their order. Every row is visited at most twice. A walk that meets
+ * itself is a cycle.
+ *
+ * Two shortcuts: rows that are already in order become the tree without a copy. Rows with the ids
+ * 1, 2, ... and parents first, as in most large files, need no index of ids. */
 #include "tree/builder.h"
 
 #include "tree/idindex.h"
@@ -67,22 +69,23 @@ static bool is_id(int64_t id)
 
 static Status unknown_parent(int64_t id, Err *err)
 {
-    return err_set(err, STATUS_INPUT,
-                   "the parent is %lld, which is no node's id; it must be the id of a node, or %d "
-                   "for a root",
-                   (long long)id, TREE_NO_PARENT);
+    return err_set(
+        err, STATUS_INPUT,
+        "the parent is %lld, which is not the id of a node; it must be the id of a node, or %d "
+        "for a root",
+        (long long)id, TREE_NO_PARENT);
 }
 
 static Status unknown_pair(int64_t id, Err *err)
 {
-    return err_set(err, STATUS_INPUT, "%s names the node %lld, which is no node's id",
+    return err_set(err, STATUS_INPUT, "%s names the node %lld, which is not the id of a node",
                    tree_pairs_name, (long long)id);
 }
 
 static Status unknown_share(int64_t id, Err *err)
 {
-    return err_set(err, STATUS_INPUT, "flow_share names the node %lld, which is no node's id",
-                   (long long)id);
+    return err_set(err, STATUS_INPUT,
+                   "flow_share names the node %lld, which is not the id of a node", (long long)id);
 }
 
 static Status check_node(const BuilderNode *node, Err *err)
@@ -242,7 +245,7 @@ static int32_t row_of(const TreeBuilder *builder, const IdIndex *index, int32_t 
     return id > (int32_t)builder->n ? NO_ROW : id - 1;
 }
 
-/* Whether the rows have the ids 1, 2, ... and parents before them. */
+/* Returns true if the rows have the ids 1, 2, ..., and each parent comes before its children. */
 static bool are_numbered(const TreeBuilder *builder)
 {
     for (size_t i = 0; i < builder->n; i++)
@@ -267,7 +270,8 @@ static Status find_parents(TreeBuilder *builder, const IdIndex *index, Err *err)
 
 enum { UNPLACED = -1, WALKED = -2 };
 
-/* Places row `start` and its unplaced ancestors, the topmost at *placed. */
+/* Assigns the next indices of the tree, from *placed, to the unplaced ancestors of row `start`,
+ * topmost first, and then to the row itself. */
 static Status place_with_ancestors(const TreeBuilder *builder, int32_t start, int32_t *place,
                                    int32_t *placed, Err *err)
 {
@@ -292,7 +296,7 @@ static Status place_with_ancestors(const TreeBuilder *builder, int32_t start, in
     return STATUS_OK;
 }
 
-/* The place of every row in the tree in *place (owned). */
+/* Computes each row's index in the tree. The caller frees *place. */
 static Status place_rows(const TreeBuilder *builder, int32_t **place, Err *err)
 {
     int32_t *made = NULL, placed = 0;
@@ -309,7 +313,7 @@ done:
     return status;
 }
 
-/* Without places, rows stay where they are. */
+/* Returns the index of a row in the tree; if `place` is NULL, rows keep their order. */
 static size_t place_of(const int32_t *place, size_t row)
 {
     return place ? (size_t)place[row] : row;
@@ -388,8 +392,8 @@ static Status fill_shares(const TreeBuilder *builder, const IdIndex *index, cons
         if (row == NO_ROW)
             status = unknown_share(said->id, err);
         else if (tree->flow_share[place_of(place, (size_t)row)] > 0)
-            status = err_set(err, STATUS_INPUT, "the flow share of node %d has been said before",
-                             said->id);
+            status =
+                err_set(err, STATUS_INPUT, "the flow share of node %d is stated twice", said->id);
         TRY(builder_blame(builder, said->record, status, err));
         tree->flow_share[place_of(place, (size_t)row)] = said->share;
     }

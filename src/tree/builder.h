@@ -18,7 +18,7 @@ typedef struct TreeReading TreeReading;
 
 enum { BUILDER_MAX_COLUMNS = 10000 };
 
-/* A node as it stands in the file, before ids are resolved. */
+/* A node as the file states it, before ids are resolved. */
 typedef struct BuilderNode {
     int64_t id;     /* unique */
     int64_t parent; /* the id of any other node of the file; TREE_NO_PARENT: a root */
@@ -50,9 +50,9 @@ typedef struct TreeBuilder {
 
 void builder_release(TreeBuilder *builder);
 
-/* Puts "FILE:RECORD: " in front of the error if `status` is STATUS_INPUT. Returns `status`. Call it
- * for errors of the reader and of the functions below, except builder_build, which names the record
- * itself. */
+/* Puts "FILE:RECORD: " in front of the error if `status` is STATUS_INPUT. Returns `status`. Call
+ * it for errors of the reader and of the functions below, except builder_build, which names the
+ * record itself. */
 Status builder_blame(const TreeBuilder *builder, size_t record, Status status, Err *err);
 
 /* Adds a node. O(1) on average.
@@ -87,9 +87,9 @@ MUST_CHECK Status builder_pair(TreeBuilder *builder, int64_t id, int64_t other, 
  *
  * tree     receives the tree; release it with tree_release.
  * Errors   STATUS_INPUT if there is no node, an id occurs twice, a parent does not exist, nodes
- * form a cycle, a share or a pair refers to a node that does not exist or is given twice, or there
- * is a share although the key terminal_flow forbids it. STATUS_MEMORY. Cost     O(n log n) for n
- * nodes. */
+ *          form a cycle, a share or a pair refers to a node that does not exist or occurs twice, or
+ *          there is a share although the key terminal_flow forbids it. STATUS_MEMORY.
+ * Cost     O(n log n) for n nodes. */
 MUST_CHECK Status builder_build(TreeBuilder *builder, Tree *tree, Err *err);
 
 #endif

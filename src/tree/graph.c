@@ -1,11 +1,13 @@
-/* Points, lines and values are kept as given until all are there. */
+/* Stores points, lines and values as they are added; graph_build does all work when they
+ * are complete. */
 #include "tree/graph_parts.h"
 #include "tree/tree.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* Numbers of points and lines fit 32 bits with room to spare. */
+/* Limit of points and of lines. 32-bit code in graph_build.c stores numbers + 1, and up to two
+ * entries per line. */
 enum { MOST_ELEMENTS = 0x7fffffff };
 
 void graph_release(Graph *graph)

@@ -1,59 +1,79 @@
-/* Makes a tree of points and lines without order: the builder of formats that hold a network.
+/* Builds a tree from a network: points, and lines that connect them, in any order.
  *
- * A reader hands over what the file says, in the file's unit: points, lines between them, values of
- * both. graph_build scales, makes one of the points that lie at one place, removes what is not
- * needed, cuts or refuses loops, chooses the root of each component, directs all lines away from
- * it, and hands nodes to a TreeBuilder. What it found and did stands in a TreeReading.
+ * Readers of network formats (VTK, GraphML, Amira, tables, ...) use this module. A reader adds the
+ * points, lines and values of its file, in the file's own unit. graph_build then makes a tree:
  *
- * A node of the tree is a point, and its segment the line that leads to it from the root: the
- * segment has the line's radius, or else its distal point's; and the values of both. */
+ *  1. It scales all lengths to mm, and merges points that have the same position or are closer than
+ *     ReadOptions.merge_tolerance_mm.
+ *  2. It removes what a tree cannot hold: points without a line, lines from a point to itself, and
+ *     lines that repeat another line.
+ *  3. It refuses loops, or cuts each loop at its thinnest line [ReadOptions.break_loops].
+ *  4. It chooses a root in each component, and directs all lines away from the root.
+ *  5. It adds the nodes to a TreeBuilder. The TreeReading counts what was found and changed.
+ *
+ *     Graph graph = {.name = "vessels.vtp", .options = options, .reading = &reading};
+ *     TRY_GOTO(graph_point(&graph, &point, err));     (for each point)
+ *     TRY_GOTO(graph_line(&graph, &line, err));       (for each line)
+ *     TRY_GOTO(graph_build(&graph, &builder, err));   (then builder_build, graph_release)
+ *
+ * A point becomes a node. The line that connects the node to its parent becomes the node's segment.
+ * The segment's radius is the line's radius or, if the line has none, that of the line's distal
+ * point. The segment's values are those of the line and of its distal point.
+ *
+ * Points, lines and columns are numbered from 0 in the order in which they are added. A point may
+ * be used in a line, a join or a value only by its number. */
 #ifndef CORCAST_TREE_GRAPH_H
 #define CORCAST_TREE_GRAPH_H
 
 #include "tree/builder.h"
 #include "tree/reading.h"
 
-/* A point as a file has it. */
+/* A point of the file. */
 typedef struct GraphPoint {
-    Vec3 position; /* in the file's unit; of voxels where it has them */
-    double radius; /* likewise; NAN: none */
-    bool is_inlet; /* the file says that blood enters here */
-    bool has_type;
-    int32_t type;      /* SWC's; else TREE_VESSEL_TYPE */
-    double flow_share; /* as Tree has it; 0: none is said */
-    int64_t id;        /* that the node is to have; 0: its number, from 1 on */
-    size_t record;     /* where in the file, for sentences */
+    Vec3 position;     /* in the file's unit, or in voxels if the file's coordinates are voxels */
+    double radius;     /* in the file's unit, or in voxels like the coordinates; NAN: none */
+    bool is_inlet;     /* the file states that blood enters here */
+    bool has_type;     /* the file states `type` */
+    int32_t type;      /* SWC type code; a point without one gets TREE_VESSEL_TYPE */
+    double flow_share; /* as Tree.flow_share; 0: the file states none */
+    int64_t id;        /* id of the node; 0: the point's number + 1 */
+    size_t record;     /* line or number of the record in the file, for errors */
 } GraphPoint;
 
-/* A line between two points, given before or after; a polyline is several. */
+/* A line between two points. A polyline is several lines. The points may be added later. */
 typedef struct GraphLine {
-    size_t a, b;      /* numbers of points, from 0 on */
-    double radius;    /* NAN: none */
+    size_t a, b;      /* numbers of the two points */
+    double radius;    /* in the file's unit; NAN: none */
     bool is_directed; /* blood flows from a to b */
-    bool is_part; /* of a polyline of several lines, so that values of lines are the polyline's */
-    size_t record;
+    bool is_part;     /* the line is part of a polyline of several lines; a column of lines has the
+                       * same value for all lines of a polyline */
+    size_t record;    /* line or number of the record in the file, for errors */
 } GraphLine;
 
+/* The two kinds of elements that a column can describe. */
 typedef enum GraphElement { GRAPH_POINTS, GRAPH_LINES } GraphElement;
 
-/* Begin with {.name, .point_record, .line_record, .options, .reading, .tree} (all borrowed, the
- * last five may be NULL); release with graph_release. What a reader may set is said. */
+/* A network while it is read. Begin with {.name = ...} and the other borrowed members that are
+ * needed; release with graph_release. */
 typedef struct Graph {
-    const char *name;         /* of the file */
-    const char *point_record; /* what the records of points are called, "point"; NULL: lines */
-    const char *line_record;  /* likewise "cell" */
+    /* Set at the beginning. All are borrowed; all except `name` may be NULL. */
+    const char *name;         /* name of the file, for errors */
+    const char *point_record; /* what errors call the record of a point, "point"; NULL: a line */
+    const char *line_record;  /* what errors call the record of a line, "cell"; NULL: a line */
     const ReadOptions *options;
-    TreeReading *reading;
-    TreeBuilder *tree; /* a reader that finds a tree in its file, with ids and parents, in mm, may
-                        * hand its nodes and meta over here, and leave the graph empty */
-    TreeMeta meta;     /* of the tree, for the reader to fill */
-    LengthUnit unit;   /* that is custom in the format, for the reader to set; mm */
-    bool unit_said;    /* the file itself says the unit; for the reader to set */
-    bool is_named;     /* lines name their points, so that points at one place may be different ones
-                        * where they would close a loop; for the reader to set */
-    bool is_tree;      /* the file was made of a tree, and each line is directed and leads from a
-                        * parent to its child, and each point has its own id but for those that are
-                        * joined: nothing is merged or removed; for the reader to set */
+    TreeReading *reading; /* receives the counts of what was found and changed */
+    TreeBuilder *tree;    /* for a reader whose file holds a tree, with ids and parents, in mm: it
+                           * may add nodes and metadata here, and leave the graph empty */
+    /* Set by the reader: */
+    TreeMeta meta;       /* metadata of the tree; owned */
+    LengthUnit unit;     /* the format's usual unit; default mm */
+    bool unit_is_stated; /* the file itself states the unit */
+    bool is_named;       /* lines refer to points by name. Two points at one position may then be
+                          * different points: they stay apart if merging them closes a loop */
+    bool is_tree;        /* The file was written from a tree: each line is directed and leads from
+                          * parent to child, and each point has its own id, except points that are
+                          * joined. Nothing is merged or removed. */
+    /* Filled by the functions below. All arrays are owned. */
     GraphPoint *point;
     size_t n_points, points_capacity;
     GraphLine *line;
@@ -64,39 +84,63 @@ typedef struct Graph {
     size_t n_joins, joins_capacity;
 } Graph;
 
+/* Frees what the graph owns, and zeroes it. */
 void graph_release(Graph *graph);
 
-/* Puts file and record in front of the sentence of a STATUS_INPUT, as builder_blame; names the
- * records of points or of lines. */
+/* Puts "FILE:RECORD: " in front of the error if `status` is STATUS_INPUT, as builder_blame does.
+ * `of` selects what the record is called: point_record or line_record. Returns `status`. */
 Status graph_blame(const Graph *graph, GraphElement of, size_t record, Status status, Err *err);
 
-/* Adds a point or a line, in O(1) amortised, numbered from 0 on in the order given. STATUS_INPUT,
- * without file and record, for a position that is not finite, a radius that is infinite or below 0,
- * an id beyond 0 .. TREE_MAX_ID. */
+/* Adds a point. O(1) on average.
+ *
+ * Errors   STATUS_INPUT if the position is not finite, the id is not in [0, TREE_MAX_ID],
+ *          reading_radius refuses the radius, or there are 2^31 - 1 points. The sentence names
+ *          neither file nor record; graph_blame adds them. STATUS_MEMORY. */
 MUST_CHECK Status graph_point(Graph *graph, const GraphPoint *point, Err *err);
+/* Adds a line. O(1) on average. Does not check the numbers of its points; graph_build does.
+ *
+ * Errors   STATUS_INPUT if reading_radius refuses the radius, or there are 2^31 - 1 lines. The
+ *          sentence names neither file nor record. STATUS_MEMORY. */
 MUST_CHECK Status graph_line(Graph *graph, const GraphLine *line, Err *err);
 
-/* Says that two points, given before or after, are one, wherever they lie. */
+/* Declares that the points with the numbers a and b are one point, at any distance. The points may
+ * be added later. Errors: STATUS_MEMORY. */
 MUST_CHECK Status graph_join(Graph *graph, size_t a, size_t b, Err *err);
 
-/* Adds a column of values of points or of lines (name and unit copied), numbered in *column from 0
- * on. STATUS_INPUT when the name is empty or that of another of the same elements, or there are too
- * many. Where points and lines have a column of one name, that of the points is called "NAME of
- * points" in the tree. */
+/* Adds a column: a named value for each point, or for each line. Name and unit are copied. If both
+ * points and lines have a column of this name, the tree's column with the values of the points is
+ * called "NAME of points".
+ *
+ * column   receives the number of the column.
+ * Errors   STATUS_INPUT if the name is empty, another column of the same elements has it, or there
+ *          are BUILDER_MAX_COLUMNS columns. STATUS_MEMORY. */
 MUST_CHECK Status graph_column(Graph *graph, GraphElement of, const char *name, const char *unit,
                                size_t *column, Err *err);
-/* Sets the column's value of element number `at`, given before. What is not set is NAN. O(1)
- * amortised in any order. */
+/* Sets the value of a column for the point or line with the number `at`, which must
+ * have been added. Values that are never set are NAN. O(1) on average, in any order.
+ * Errors: STATUS_MEMORY. */
 MUST_CHECK Status graph_value(Graph *graph, size_t column, size_t at, double value, Err *err);
 
-/* Hands the tree over to `builder`, which takes name and meta, and fills graph->reading, if any.
- * O(n log n). STATUS_INPUT when there is no line, a line names a point that there is not, a line
- * and its distal point have no radius, or there are loops and options->break_loops is not set.
- * Afterwards the graph can only be released. */
+/* Makes a tree of the network: adds its nodes, columns and metadata to `builder`, and fills
+ * graph->reading. Afterwards the graph can only be released, also after an error.
+ *
+ * The root of a component is the point with the best reason: a stated inlet; a point that directed
+ * lines only leave; an end; any point. Among points with an equal reason it is the thickest.
+ *
+ * builder  has its name set, and no nodes. The caller then calls builder_build.
+ * Errors   STATUS_INPUT if there is no line, or all lines have length 0; if a line or a join refers
+ *          to a point that does not exist; if neither a line nor its distal point has a radius, and
+ *          the options supply none; if there is a loop and options->break_loops is false.
+ *          STATUS_INFEASIBLE if there are more than TREE_MAX_ID nodes. STATUS_MEMORY.
+ * Cost     O(n log n) for n points and lines. */
 MUST_CHECK Status graph_build(Graph *graph, TreeBuilder *builder, Err *err);
 
-/* How many nodes of a tree lie where earlier ones do, so that graph_build, to which only points and
- * lines are handed, makes one of them and those. O(n). STATUS_MEMORY. */
+/* Counts the nodes of a tree that have the position of an earlier node. If the tree is written as a
+ * network and read again, graph_build merges each of them with the earlier node.
+ *
+ * n        receives the count.
+ * Errors   STATUS_MEMORY.
+ * Cost     O(n). */
 MUST_CHECK Status graph_count_merged(const Tree *tree, size_t *n, Err *err);
 
 #endif

@@ -1,8 +1,14 @@
-/* The lines that are left after merging are sorted, thickest first, when there are loops, and taken
- * one by one unless they close a loop (Kruskal, Proc. AMS 7 (1956), 48): what is left out is then
- * the thinnest line of each loop. Each component's root is the first of the points that rank
- * highest: said to be an inlet, one that directed lines lead away from alone, an end, any; of equal
- * rank the thickest. From there a search in breadth directs the lines. */
+/* Builds the tree of a network in three steps.
+ *
+ * Loops: if the merged lines form loops, the lines are sorted, thickest first, and taken one by one
+ * unless they close a loop (Kruskal, Proc. AMS 7 (1956), 48). The lines that are left out are then
+ * the thinnest line of each loop.
+ *
+ * Roots: the root of a component is the first of the points with the highest rank. The ranks, from
+ * high to low, are: a stated inlet; a point that directed lines only leave; an end; any point.
+ * Among points of equal rank the thickest wins.
+ *
+ * Directions: a breadth-first search from each root directs the lines. */
 #include "tree/graph_parts.h"
 #include "tree/tree.h"
 
@@ -11,10 +17,10 @@
 
 static const ReadOptions no_options = {0};
 
-/* A line of the graph between kept points. */
+/* A line of the graph as a connection of two kept points (points that represent merged points). */
 typedef struct GraphLink {
     uint32_t a, b;
-    uint32_t line;    /* of the graph */
+    uint32_t line;    /* index in Graph.line */
     double thickness; /* mm */
 } GraphLink;
 
@@ -22,20 +28,21 @@ typedef struct Building {
     Graph *graph;
     const ReadOptions *options;
     TreeReading *reading;
-    uint32_t *place; /* the kept point of each point */
+    /* All arrays are owned. */
+    uint32_t *representative; /* per point: the kept point that it is merged with */
     GraphLink *link;
     size_t n_links;
-    uint32_t *component; /* of each kept point, the first of its members */
-    uint32_t *degree;    /* links of each kept point */
-    uint32_t *first;     /* where each point's links begin in `at`; one more at the end */
-    uint32_t *at;
-    uint32_t *parent; /* of each kept point the parent + 1, 0: it has none */
-    uint32_t *above;  /* of each kept point the link to its parent */
+    uint32_t *component; /* per point: the sets of connected points [base/sets.h] */
+    uint32_t *degree;    /* per kept point: count of its links */
+    uint32_t *first;     /* per point: where the list of its links starts in `at` */
+    uint32_t *at;        /* indices of links, the list of one point after another */
+    uint32_t *parent;    /* per kept point: its parent + 1; 0: none */
+    uint32_t *above;     /* per kept point: the link to its parent */
 } Building;
 
 static void release(Building *building)
 {
-    free(building->place);
+    free(building->representative);
     free(building->link);
     free(building->component);
     free(building->degree);
@@ -68,8 +75,8 @@ static Status link_lines(Building *building, Err *err)
                                        "numbered from 0 on",
                                        line->a > line->b ? line->a : line->b, graph->n_points),
                                err);
-        GraphLink link = {building->place[line->a], building->place[line->b], (uint32_t)i,
-                          thickness_of(graph, line)};
+        GraphLink link = {building->representative[line->a], building->representative[line->b],
+                          (uint32_t)i, thickness_of(graph, line)};
         if (link.a == link.b)
             building->reading->network.without_length++;
         else
@@ -92,10 +99,10 @@ static int thickest_first(const void *a, const void *b)
 }
 
 /* Describes a link by numbers that are equal for two links exactly if one repeats the other: both
- * points, the radius, and the values of the line and of its two ends in all columns. A polyline of
- * several lines may overlap another polyline, as where each runs from the root to one outlet; only
- * points and radii count there. `out` has space for 4 numbers and 2 per column. Returns how many
- * there are. */
+ * points, the radii, and the values of the line and of its two ends in all columns. Polylines of
+ * several lines may overlap, such as polylines that each lead from the root to one outlet; for
+ * their lines, only points and radii count. `out` has space for 4 numbers and 2 per column. Returns
+ * the count of numbers. */
 static size_t describe_link(const Building *building, const GraphLink *link, double *out)
 {
     const Graph *graph = building->graph;
@@ -120,9 +127,9 @@ static size_t describe_link(const Building *building, const GraphLink *link, dou
     return n;
 }
 
-/* The links that are kept, by the hash of their descriptions. */
+/* The links found so far, by the hash of their descriptions. */
 typedef struct LinkTable {
-    KeyMap last;         /* the last link + 1 of each hash */
+    KeyMap last;         /* per hash: its last link + 1 */
     uint32_t *next;      /* per link: the next link + 1 with the same hash; owned */
     double *one, *other; /* descriptions of two links; owned */
 } LinkTable;
@@ -132,7 +139,8 @@ static bool joins_same(const GraphLink *one, const GraphLink *other)
     return (one->a == other->a && one->b == other->b) || (one->a == other->b && one->b == other->a);
 }
 
-/* Adds link `kept`, and sets *repeats instead if the link repeats one of the table. */
+/* Adds the link with the index `kept` to the table. If the link repeats a link of the table, sets
+ * *repeats and adds nothing. */
 static Status take_link(const Building *building, LinkTable *table, size_t kept, bool *repeats,
                         Err *err)
 {
@@ -162,8 +170,8 @@ static Status begin_links(const Building *building, LinkTable *table, Err *err)
     return mem_calloc(&table->other, most, sizeof *table->other, "values of a line", err);
 }
 
-/* Of links that repeat each other the first stays. Other links between the same two points are
- * vessels of their own, which close a loop. */
+/* Drops each link that repeats an earlier one. Links between the same two points that differ in
+ * radius or values are vessels of their own, which close a loop. */
 static Status drop_repeated(Building *building, Err *err)
 {
     LinkTable table = {0};
@@ -203,7 +211,8 @@ static Status note_cut(Building *building, const GraphLink *link, Err *err)
     return STATUS_OK;
 }
 
-/* Takes links in their order, and moves those that close loops to the end; *kept are left. */
+/* Finds a spanning forest: takes the links in their order, and moves each link that closes a loop
+ * to the end. *kept receives the count of links before the first moved one. */
 static void span(Building *building, size_t *kept)
 {
     uint32_t *component = building->component;
@@ -219,16 +228,16 @@ static void span(Building *building, size_t *kept)
     }
 }
 
-/* Makes the links, of points that are one where they lie at one place or where the file joins
- * them. Replaces those of a call before. */
-static Status connect_points(Building *building, bool by_place, Err *err)
+/* Merges points, and makes the links between kept points. Replaces the links of an earlier call.
+ * `by_position` as in graph_merge. */
+static Status connect_points(Building *building, bool by_position, Err *err)
 {
-    free(building->place);
+    free(building->representative);
     free(building->link);
-    building->place = NULL;
+    building->representative = NULL;
     building->link = NULL;
     building->n_links = building->reading->network.without_length = 0;
-    TRY(graph_merge(building->graph, by_place, &building->place, err));
+    TRY(graph_merge(building->graph, by_position, &building->representative, err));
     TRY(link_lines(building, err));
     return building->graph->is_tree ? STATUS_OK : drop_repeated(building, err);
 }
@@ -252,8 +261,9 @@ static Status count_loops(Building *building, size_t *loops, size_t *components,
     return STATUS_OK;
 }
 
-/* Points at one place are one, unless that closes a loop in a file whose names make as many trees
- * without loops: a vessel may end where another one passes. */
+/* Merges points at one position. Exception: if merging closes loops in a file whose lines name
+ * their points, and if the names alone give the same number of components without loops, points
+ * stay apart. A vessel may end at a position where another vessel passes. */
 static Status connect(Building *building, Err *err)
 {
     Graph *graph = building->graph;
@@ -304,10 +314,11 @@ static Status cut_loops(Building *building, Err *err)
 
 /* ---- roots ---- */
 
-/* Whether a point becomes a node: of a tree also one that no line leads to. */
+/* Returns true if a point becomes a node. A point without lines does so only if the file was
+ * written from a tree. */
 static bool is_node(const Building *building, size_t point)
 {
-    return building->place[point] == point &&
+    return building->representative[point] == point &&
            (building->degree[point] > 0 || building->graph->is_tree);
 }
 
@@ -337,7 +348,7 @@ static const GraphLink *link_at(const Building *building, uint32_t point, uint32
     return &building->link[building->at[building->first[point] + k]];
 }
 
-/* How well a point would do as the root of its component. */
+/* How good a root a point is for its component; the highest rank wins. */
 typedef enum Rank { RANK_ANY, RANK_END, RANK_SOURCE, RANK_INLET } Rank;
 
 typedef struct LinkCandidate {
@@ -368,7 +379,8 @@ static bool is_better(const LinkCandidate *a, const LinkCandidate *b)
     return !b->point || a->rank > b->rank || (a->rank == b->rank && a->thickness > b->thickness);
 }
 
-/* The best candidate of each component, at its first member. */
+/* Finds the root of each component. best[i] receives the best candidate of the component whose
+ * first point is i. */
 static Status choose_roots(Building *building, LinkCandidate *best, Err *err)
 {
     TreeReading *reading = building->reading;
@@ -384,20 +396,20 @@ static Status choose_roots(Building *building, LinkCandidate *best, Err *err)
     static const RootReason reasons[] = {[RANK_ANY] = ROOT_THICKEST,
                                          [RANK_END] = ROOT_THICKEST,
                                          [RANK_SOURCE] = ROOT_DIRECTION,
-                                         [RANK_INLET] = ROOT_SAID};
+                                         [RANK_INLET] = ROOT_STATED};
     for (uint32_t i = 0; i < graph->n_points; i++) {
         if (!best[i].point)
             continue;
         TRY(mem_reserve(&reading->root, &reading->roots_capacity, reading->n_roots + 1,
                         sizeof *reading->root, "roots", err));
         reading->root[reading->n_roots++] = (ReadRoot){
-            (int32_t)best[i].point, graph->is_tree ? ROOT_SAID : reasons[best[i].rank], 0};
+            (int32_t)best[i].point, graph->is_tree ? ROOT_STATED : reasons[best[i].rank], 0};
     }
     return STATUS_OK;
 }
 
-/* Says how many inlets are not the roots that they could be. */
-static Status tell_inlets(const Building *building, Err *err)
+/* Notes how many stated inlets did not become roots. */
+static Status note_other_inlets(const Building *building, Err *err)
 {
     const TreeReading *reading = building->reading;
     const GraphPoint *point = building->graph->point;
@@ -408,12 +420,13 @@ static Status tell_inlets(const Building *building, Err *err)
         inlets -= point[reading->root[i].id - 1].is_inlet;
     if (inlets == 0)
         return STATUS_OK;
-    return reading_note(building->reading, err,
-                        "%zu more inlets are ends, as each tree has one root, the thickest",
-                        inlets);
+    return reading_note(
+        building->reading, err,
+        "stated inlets that are not roots: %zu (each tree has one root, the thickest)", inlets);
 }
 
-/* Gives all points that hang on a root their parents; `queue` has room for all points. */
+/* Sets the parents of all points of the root's component, breadth first. `queue` has space for
+ * all points. */
 static void direct_from(Building *building, uint32_t root, uint32_t *queue)
 {
     size_t done = 0, n = 0;
@@ -442,7 +455,7 @@ static Status direct_links(Building *building, Err *err)
     Status status = STATUS_OK;
     TRY_GOTO(mem_calloc(&best, n, sizeof *best, "roots", err));
     TRY_GOTO(choose_roots(building, best, err));
-    TRY_GOTO(tell_inlets(building, err));
+    TRY_GOTO(note_other_inlets(building, err));
     TRY_GOTO(mem_calloc(&queue, n, sizeof *queue, "points", err));
     TRY_GOTO(mem_calloc(&building->parent, n, sizeof *building->parent, "parents", err));
     TRY_GOTO(mem_calloc(&building->above, n, sizeof *building->above, "parents", err));
@@ -456,8 +469,9 @@ done:
 
 /* ---- nodes ---- */
 
-/* The ids of all kept points, in *id (owned): those that the file gives if it gives all, or else
- * their numbers, or else numbers without gaps. */
+/* Chooses the ids of all nodes. They are the ids of the file if all nodes have one; else the
+ * points' numbers + 1; else, if these exceed TREE_MAX_ID, 1, 2, ... in order. The caller
+ * frees *id. */
 static Status number_points(const Building *building, int32_t **id, Err *err)
 {
     const Graph *graph = building->graph;
@@ -484,8 +498,8 @@ static Status number_points(const Building *building, int32_t **id, Err *err)
     return STATUS_OK;
 }
 
-/* The point, as the file has it, whose values the node of a kept point has: the end of the line
- * that leads to it, or at a root the kept point itself. */
+/* Returns the point of the file whose values the node of a kept point gets: the distal end of the
+ * line that leads to it, before merging; for a root, the kept point itself. */
 static size_t distal_point(const Building *building, uint32_t kept)
 {
     if (!building->parent[kept])
@@ -599,7 +613,7 @@ static int by_id(const void *a, const void *b)
     return (one->id > other->id) - (one->id < other->id);
 }
 
-/* The kept points, which have ids above 0, by their ids, in *order (owned). */
+/* Lists the kept points (their ids are above 0) by rising id. The caller frees *order. */
 static Status order_points(const Building *building, const int32_t *id, Numbered **order, size_t *n,
                            Err *err)
 {
@@ -615,8 +629,8 @@ static Status order_points(const Building *building, const int32_t *id, Numbered
     return STATUS_OK;
 }
 
-/* In the order of the file; those of a tree in that of its ids, which were in order there, while
- * its points may be anywhere. */
+/* Adds the nodes in the order of the file. If the file was written from a tree, adds them by rising
+ * id: the tree's nodes were in this order, but the file's points may be in any order. */
 static Status add_nodes(const Building *building, TreeBuilder *builder, const int32_t *id, Err *err)
 {
     size_t n = building->graph->n_points;
@@ -659,7 +673,7 @@ static void count_points(const Building *building)
 {
     const Graph *graph = building->graph;
     for (size_t i = 0; i < graph->n_points; i++)
-        if (building->place[i] != i)
+        if (building->representative[i] != i)
             building->reading->network.merged++;
         else if (!is_node(building, i))
             building->reading->network.unused++;
@@ -673,8 +687,9 @@ static bool looks_like_voxels(const Graph *graph)
     return graph->n_points >= READ_FEW;
 }
 
-/* A gap at an end counts as one of rounding if it is below the radius, and below half the last line
- * or, in dense centre lines, a twentieth of the radius: a tolerance as wide as the gap joins little
+/* Returns the widest gap, mm, at an end that is taken for a rounding error. It is at most the
+ * radius, and at most half the length of the last line or, in dense centrelines with short lines, a
+ * twentieth of the radius. With these bounds, a merge tolerance as wide as the gap joins little
  * more than the ends. */
 static double reach_of(const Graph *graph, const GraphLink *link)
 {
@@ -700,7 +715,7 @@ static Status find_near_ends(Building *building, Err *err)
     Graph *graph = building->graph;
     size_t nodes = 0;
     double median = 0, *reach = NULL;
-    uint32_t *part = NULL;
+    uint32_t *component = NULL;
     Status status = STATUS_OK;
     for (size_t i = 0; i < graph->n_points; i++)
         nodes += is_node(building, i);
@@ -710,29 +725,30 @@ static Status find_near_ends(Building *building, Err *err)
     if (median == 0)
         return STATUS_OK;
     TRY_GOTO(mem_calloc(&reach, graph->n_points, sizeof *reach, "reaches of ends", err));
-    TRY_GOTO(mem_calloc(&part, graph->n_points, sizeof *part, "components", err));
+    TRY_GOTO(mem_calloc(&component, graph->n_points, sizeof *component, "components", err));
     for (uint32_t i = 0; i < graph->n_points; i++) {
-        part[i] = is_node(building, i) ? sets_find(building->component, i) + 1 : 0;
-        if (part[i] && building->degree[i] == 1)
+        component[i] = is_node(building, i) ? sets_find(building->component, i) + 1 : 0;
+        if (component[i] && building->degree[i] == 1)
             reach[i] = fmin(median, reach_of(graph, link_at(building, i, 0)));
     }
-    status = graph_near_ends(graph, part, reach, median, building->reading, err);
+    status = graph_near_ends(graph, component, reach, median, building->reading, err);
 done:
     free(reach);
-    free(part);
+    free(component);
     return status;
 }
 
-/* What the reading says before anything is changed. */
+/* Records what the file contains, before anything is changed. */
 static void describe(const Graph *graph, const ReadOptions *options, TreeReading *reading)
 {
     reading->is_network = true;
     reading->network.points = graph->n_points;
     reading->network.lines = graph->n_lines;
     reading->unit = options->has_unit ? options->unit : graph->unit;
-    reading->unit_said = options->has_unit || graph->unit_said;
+    reading->unit_is_stated = options->has_unit || graph->unit_is_stated;
     reading->voxels = options->has_voxel_size;
-    reading->looks_like_voxels = !reading->voxels && !graph->unit_said && looks_like_voxels(graph);
+    reading->looks_like_voxels =
+        !reading->voxels && !graph->unit_is_stated && looks_like_voxels(graph);
 }
 
 static Status build(Building *building, TreeBuilder *builder, Err *err)
@@ -745,9 +761,12 @@ static Status build(Building *building, TreeBuilder *builder, Err *err)
     graph_scale(graph);
     TRY(connect(building, err));
     for (size_t i = 0; i < graph->n_points; i++)
-        graph->point[building->place[i]].is_inlet |= graph->point[i].is_inlet;
+        graph->point[building->representative[i]].is_inlet |= graph->point[i].is_inlet;
     if (building->n_links == 0 && !graph->is_tree)
-        return err_set(err, STATUS_INPUT, "%s: all lines begin and end at one place", graph->name);
+        return err_set(err, STATUS_INPUT,
+                       "%s: each line has both ends at the same position; a tree needs a line that "
+                       "is longer than 0",
+                       graph->name);
     TRY(cut_loops(building, err));
     TRY(list_links(building, err));
     if (!graph->is_tree)

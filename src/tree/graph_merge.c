@@ -1,8 +1,13 @@
-/* Points that are joined are one, by union-find whose first member stands for all. Of the rest, in
- * the order of the file, each becomes the nearest point kept before it within the tolerance, or is
- * kept itself; so what is kept does not depend on chance, and a row of close points does not melt
- * into one. Kept points are found in a hash table of cubes whose side is the tolerance: those in
- * reach are in 27 of them, and few fit into one. Without a tolerance a cube is a place. */
+/* Merging of points.
+ *
+ * Joined points are merged by union-find; the first member of a set represents the set. Then each
+ * other point, in the order of the file, merges with the nearest kept point within the tolerance,
+ * or is kept itself. The kept points therefore depend only on the order of the file, and a row of
+ * close points does not collapse into one point.
+ *
+ * Kept points are in a hash table of cubes whose side is the tolerance. All points within reach of
+ * a point are in the 27 cubes around it, and few kept points fit into one cube. Without a
+ * tolerance, a cube is a single position. */
 #include "tree/graph_parts.h"
 #include "tree/tree.h"
 
@@ -19,10 +24,10 @@ void graph_scale(Graph *graph)
         graph->line[i].radius *= scale.radius;
 }
 
-/* Kept points by the cube they are in. */
+/* The kept points, by the cube that each is in. */
 typedef struct Cubes {
     const GraphPoint *point;
-    double side;    /* of a cube; 0: a cube is a place */
+    double side;    /* of a cube, mm; 0: a cube is a single position */
     KeyMap last;    /* the last point + 1 of each cube, by the cube's key */
     uint32_t *next; /* per point: the next point + 1 with the same key; owned */
 } Cubes;
@@ -47,8 +52,9 @@ static uint32_t last_in(const Cubes *cubes, Vec3 cube)
     return last ? *last : 0;
 }
 
-/* The nearest kept point of a cube that is nearer than *nearest, which becomes its distance, or
- * *found. Of equally near ones the first of the file. */
+/* Finds the kept point of a cube that is nearest to the position `at`, if its distance is below
+ * *nearest, and sets *nearest to its distance. If there is none, returns `found`. On a tie, returns
+ * the point that comes first in the file. */
 static uint32_t nearest_in(const Cubes *cubes, Vec3 cube, Vec3 at, uint32_t found, double *nearest)
 {
     for (uint32_t i = last_in(cubes, cube); i; i = cubes->next[i - 1]) {
@@ -61,7 +67,7 @@ static uint32_t nearest_in(const Cubes *cubes, Vec3 cube, Vec3 at, uint32_t foun
     return found;
 }
 
-/* The kept point that `i` becomes: another within reach, or itself. */
+/* Returns the kept point that point `i` merges with; `i` if no kept point is within reach. */
 static uint32_t find_kept(const Cubes *cubes, uint32_t i)
 {
     Vec3 at = cubes->point[i].position, cube = cube_of(cubes, at);
@@ -101,14 +107,16 @@ static Status begin_cubes(Cubes *cubes, const Graph *graph, double side, Err *er
     return keymap_begin(&cubes->last, graph->n_points, "cubes of points", err);
 }
 
-static Status merge_places(const Graph *graph, double tolerance, uint32_t *place, Err *err)
+static Status merge_positions(const Graph *graph, double tolerance, uint32_t *representative,
+                              Err *err)
 {
     Cubes cubes;
     Status status = STATUS_OK;
     TRY_GOTO(begin_cubes(&cubes, graph, tolerance, err));
     for (uint32_t i = 0; i < graph->n_points; i++) {
-        place[i] = place[i] == i ? find_kept(&cubes, i) : place[place[i]];
-        if (place[i] == i)
+        representative[i] =
+            representative[i] == i ? find_kept(&cubes, i) : representative[representative[i]];
+        if (representative[i] == i)
             TRY_GOTO(keep(&cubes, i, err));
     }
 done:
@@ -118,7 +126,7 @@ done:
 
 /* Returns the distance of point `i` to the nearest point of another component that is nearer than
  * `reach`, or `reach`. Counts comparisons down in *left. */
-static double gap_of(const Cubes *cubes, const uint32_t *part, uint32_t i, double reach,
+static double gap_of(const Cubes *cubes, const uint32_t *component, uint32_t i, double reach,
                      int64_t *left)
 {
     Vec3 at = cubes->point[i].position, cube = cube_of(cubes, at);
@@ -126,24 +134,24 @@ static double gap_of(const Cubes *cubes, const uint32_t *part, uint32_t i, doubl
     for (int k = 0; k < 27; k++) {
         Vec3 near = {cube.x + k % 3 - 1, cube.y + k / 3 % 3 - 1, cube.z + k / 9 - 1};
         for (uint32_t j = last_in(cubes, near); j && *left > 0; j = cubes->next[j - 1], --*left)
-            if (part[j - 1] != part[i])
+            if (component[j - 1] != component[i])
                 nearest = fmin(nearest, vec3_distance(cubes->point[j - 1].position, at));
     }
     return nearest;
 }
 
-Status graph_near_ends(const Graph *graph, const uint32_t *part, const double *reach, double most,
-                       TreeReading *reading, Err *err)
+Status graph_near_ends(const Graph *graph, const uint32_t *component, const double *reach,
+                       double max_reach, TreeReading *reading, Err *err)
 {
     Cubes cubes;
     int64_t left = 100 * (int64_t)graph->n_points;
     Status status = STATUS_OK;
-    TRY_GOTO(begin_cubes(&cubes, graph, most, err));
+    TRY_GOTO(begin_cubes(&cubes, graph, max_reach, err));
     for (uint32_t i = 0; i < graph->n_points; i++)
-        if (part[i])
+        if (component[i])
             TRY_GOTO(keep(&cubes, i, err));
     for (uint32_t i = 0; i < graph->n_points && left > 0; i++) {
-        double gap = reach[i] > 0 ? gap_of(&cubes, part, i, reach[i], &left) : reach[i];
+        double gap = reach[i] > 0 ? gap_of(&cubes, component, i, reach[i], &left) : reach[i];
         if (gap < reach[i]) {
             reading->network.near_ends++;
             reading->network.near_mm = fmax(reading->network.near_mm, gap);
@@ -154,31 +162,31 @@ done:
     return status;
 }
 
-static Status join_points(const Graph *graph, uint32_t *place, Err *err)
+static Status join_points(const Graph *graph, uint32_t *representative, Err *err)
 {
     for (size_t k = 0; k < graph->n_joins; k++) {
         GraphJoin join = graph->join[k];
         if (join.a >= graph->n_points || join.b >= graph->n_points)
-            return err_set(err, STATUS_INPUT, "%s: a joint names a point that there is not",
+            return err_set(err, STATUS_INPUT, "%s: a joint refers to a point that does not exist",
                            graph->name);
-        sets_join(place, (uint32_t)join.a, (uint32_t)join.b);
+        sets_join(representative, (uint32_t)join.a, (uint32_t)join.b);
     }
     return STATUS_OK;
 }
 
-Status graph_merge(const Graph *graph, bool by_place, uint32_t **place, Err *err)
+Status graph_merge(const Graph *graph, bool by_position, uint32_t **representative, Err *err)
 {
     uint32_t *made = NULL;
     Status status = STATUS_OK;
-    TRY(mem_calloc(&made, graph->n_points, sizeof *made, "places of points", err));
+    TRY(mem_calloc(&made, graph->n_points, sizeof *made, "merged points", err));
     sets_begin(made, graph->n_points);
     TRY_GOTO(join_points(graph, made, err));
     for (uint32_t i = 0; i < graph->n_points; i++)
-        made[i] = made[made[i]]; /* a chain leads to lower numbers, which are settled */
-    if (by_place)
-        TRY_GOTO(merge_places(graph, graph->options ? graph->options->merge_tolerance_mm : 0, made,
-                              err));
-    *place = made;
+        made[i] = made[made[i]]; /* lower numbers already have their final representative */
+    if (by_position)
+        TRY_GOTO(merge_positions(graph, graph->options ? graph->options->merge_tolerance_mm : 0,
+                                 made, err));
+    *representative = made;
 done:
     if (status != STATUS_OK)
         free(made);
@@ -188,17 +196,17 @@ done:
 Status graph_count_merged(const Tree *tree, size_t *n, Err *err)
 {
     Graph graph = {.n_points = tree->n};
-    uint32_t *place = NULL;
+    uint32_t *representative = NULL;
     Status status;
     TRY(mem_calloc(&graph.point, tree->n, sizeof *graph.point, "points", err));
     for (size_t i = 0; i < tree->n; i++)
         graph.point[i].position = tree->position[i];
-    TRY_GOTO(graph_merge(&graph, true, &place, err));
+    TRY_GOTO(graph_merge(&graph, true, &representative, err));
     *n = 0;
     for (size_t i = 0; i < tree->n; i++)
-        *n += place[i] != i;
+        *n += representative[i] != i;
 done:
-    free(place);
+    free(representative);
     free(graph.point);
     return status;
 }

@@ -1,6 +1,6 @@
-/* Most files have ids with few gaps: a table is fastest then. A file of two rows may have the ids 1
- * and 100000000: entries sorted by id take their place where the table would be much longer than
- * the file. */
+/* Most files have ids with few gaps; a table is then fastest. A file of two rows may have the
+ * ids 1 and 100000000. If the table would be much longer than the file, entries sorted by id
+ * replace it. */
 #include "tree/idindex.h"
 
 #include <stdlib.h>

@@ -1,7 +1,7 @@
-/* A value is kept by its key's number, not in a member of its own, so that reading, writing,
- * checking and overriding are each one loop or one lookup for all keys. Where a key stood in its
- * file is kept apart from its value: a tree that the program makes has no lines, and is written in
- * the order of the table. */
+/* Values are stored in arrays indexed by key, not in a member per key. Reading, writing, checking
+ * and overriding are then each one loop, or one lookup, for all keys. The position of a key in its
+ * file is stored apart from its value: a tree that the program makes has no lines, and is written
+ * in the order of the table. */
 #include "tree/meta.h"
 
 #include <assert.h>
@@ -261,7 +261,7 @@ static bool parse_word(const MetaRow *row, const char *text, double *value)
 
 static Status contradict(MetaKey key, const char *value, Err *err)
 {
-    return err_set(err, STATUS_INPUT, "%s is '%.40s', but an earlier line says otherwise",
+    return err_set(err, STATUS_INPUT, "%s is '%.40s', but an earlier line has another value",
                    meta_rows[key].name, value);
 }
 
@@ -367,13 +367,13 @@ Status meta_add_lines(TreeMeta *meta, Err *err)
     return STATUS_OK;
 }
 
-/* What stands about the name of a value: options are named in backquotes. */
+/* Returns the quotation mark for the name of a value: names of options are in backquotes. */
 static const char *quote_of(MetaSource source)
 {
     return source == META_OF_OPTIONS ? "`" : "";
 }
 
-/* `allowed` and what follows it say what the number must be. */
+/* `allowed` is a format that describes the accepted numbers. */
 static Status refuse_number(const TreeMeta *meta, MetaKey key, MetaSource source,
                             const char *allowed, const char *more, Err *err)
 {

@@ -1,22 +1,23 @@
-/* Shares are relative, so that radii are taken over the largest: no power of them overflows. */
+/* Shares are relative. Radii are divided by the largest radius first, so that no power of
+ * them overflows. */
 #include "tree/outlets.h"
 
 #include "tree/tree.h"
 #include <stdlib.h>
 
-void tree_part_flow(Tree *tree, double *share)
+void tree_set_flow_shares(Tree *tree, double *share)
 {
     free(tree->flow_share);
     tree->flow_share = share;
     tree->meta.known[META_TERMINAL_FLOW] = false;
 }
 
-void tree_part_flow_equally(Tree *tree)
+void tree_set_flow_equal(Tree *tree)
 {
-    tree_part_flow(tree, NULL);
+    tree_set_flow_shares(tree, NULL);
 }
 
-Status tree_part_flow_by_radius(Tree *tree, double gamma, Err *err)
+Status tree_set_flow_by_radius(Tree *tree, double gamma, Err *err)
 {
     int32_t *children = NULL;
     double *share = NULL, largest = 0;
@@ -27,10 +28,11 @@ Status tree_part_flow_by_radius(Tree *tree, double gamma, Err *err)
         if (tree_is_segment(tree, i) && children[i] == 0)
             largest = fmax(largest, share[i] = tree->radius_mm[i]);
     if (!(largest > 0))
-        TRY_GOTO(err_set(err, STATUS_INPUT, "no terminal has a radius above 0 to part flow by"));
+        TRY_GOTO(err_set(err, STATUS_INPUT,
+                         "no terminal has a radius above 0, so flow cannot be divided by radius"));
     for (size_t i = 0; i < tree->n; i++)
         share[i] = share[i] > 0 ? elementary_pow(share[i] / largest, gamma) : 0;
-    tree_part_flow(tree, share);
+    tree_set_flow_shares(tree, share);
     share = NULL;
 done:
     free(share);

@@ -1,5 +1,5 @@
-/* A number stays right when nodes are renumbered, pruned or written to another format; ids would
- * not. */
+/* A pair's number stays valid when nodes are renumbered, pruned or written to another format. The
+ * id of the partner would not. */
 #include "tree/pairs.h"
 
 #include "tree/tree.h"

@@ -1,5 +1,6 @@
-/* Pairs of nodes, as of the terminals of an artery and of the vein beside it: a column of the tree
- * that holds the number of each pair, from 1 on, at both of its nodes. */
+/* Pairs of nodes, such as a terminal of an artery and a terminal of the vein beside it. A column of
+ * the tree stores the pairs: both nodes of a pair have the number of the pair, from 1; all other
+ * nodes have NAN. */
 #ifndef CORCAST_TREE_PAIRS_H
 #define CORCAST_TREE_PAIRS_H
 
@@ -9,7 +10,7 @@
 
 typedef struct Tree Tree;
 
-/* The column's name. */
+/* The name of the column. */
 extern const char tree_pairs_name[];
 
 /* Indices of two nodes; the first is the lower one. */
@@ -17,11 +18,17 @@ typedef struct TreePair {
     int32_t node[2];
 } TreePair;
 
-/* Numbers the pairs in their order, in place of those that the tree has. STATUS_MEMORY. */
+/* Replaces the pairs of the tree by the `n` pairs at `pair`, numbered from 1 in their order.
+ * Errors: STATUS_MEMORY. */
 MUST_CHECK Status tree_set_pairs(Tree *tree, const TreePair *pair, size_t n, Err *err);
 
-/* The tree's pairs by their numbers, in *pair (owned; NULL where there are none). What stands at
- * other than two nodes, or is no number from 1 to that of the nodes, is no pair. O(n). */
+/* Lists the pairs of the tree by rising number. A number that is not exactly at two nodes, or that
+ * is not an integer from 1 to the count of nodes, is ignored.
+ *
+ * pair     receives a new array of *n pairs, which the caller frees; NULL if the tree has no column
+ *          of pairs.
+ * Errors   STATUS_MEMORY.
+ * Cost     O(n). */
 MUST_CHECK Status tree_pairs(const Tree *tree, TreePair **pair, size_t *n, Err *err);
 
 #endif

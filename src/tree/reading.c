@@ -1,6 +1,6 @@
-/* What a tree shows is measured on the tree that was built, for every format alike. A unit is
- * believed when the median radius, so read, is that of a vessel: the one that the tree was read
- * with first, then the commoner before the rarer. */
+/* The report is measured on the tree that was built, in the same manner for all formats. A unit is
+ * plausible if the median radius, read in that unit, is a vessel's. The unit with which the tree
+ * was read is tried first; then the other units, more common ones before rarer ones. */
 #include "tree/reading.h"
 
 #include "tree/tree.h"
@@ -10,7 +10,7 @@
 const char *const length_unit_names[LENGTH_UNITS + 1] = {"mm", "um", "cm", "m", NULL};
 
 const char *const root_reason_texts[ROOT_REASONS] = {
-    [ROOT_SAID] = "from the file",
+    [ROOT_STATED] = "from the file",
     [ROOT_DIRECTION] = "lines lead away from it alone",
     [ROOT_THICKEST] = "the thickest of the ends",
 };
@@ -136,7 +136,7 @@ Status reading_fill_radii(TreeReading *reading, const ReadOptions *options, Tree
     return fill_roots(tree, options->radius_mm > 0, err);
 }
 
-/* Counts the nodes of each component. Roots that have no reason yet get ROOT_SAID. */
+/* Counts the nodes of each component. Roots that have no reason yet get ROOT_STATED. */
 static Status measure_roots(TreeReading *reading, const Tree *tree, Err *err)
 {
     bool has_roots = reading->n_roots > 0;
@@ -152,7 +152,7 @@ static Status measure_roots(TreeReading *reading, const Tree *tree, Err *err)
             if (!has_roots) {
                 TRY_GOTO(mem_reserve(&reading->root, &reading->roots_capacity, n,
                                      sizeof *reading->root, "roots", err));
-                reading->root[reading->n_roots++] = (ReadRoot){tree->id[i], ROOT_SAID, 0};
+                reading->root[reading->n_roots++] = (ReadRoot){tree->id[i], ROOT_STATED, 0};
             }
         }
         reading->root[root[i]].nodes++;
@@ -179,11 +179,11 @@ static void believe(TreeReading *reading)
     static const Range of_vessels = {0.001, 2.5}; /* mm: median radii */
     static const LengthUnit commoner[] = {LENGTH_MM, LENGTH_UM, LENGTH_M, LENGTH_CM};
     double median = reading->median_radius_mm / length_unit_mm(reading->unit);
-    reading->believed = reading->unit;
-    reading->believes = range_has(of_vessels, reading->median_radius_mm);
-    for (size_t k = 0; k < LENGTH_UNITS && !reading->believes; k++) {
-        reading->believed = commoner[k];
-        reading->believes = range_has(of_vessels, median * length_unit_mm(commoner[k]));
+    reading->plausible_unit = reading->unit;
+    reading->has_plausible_unit = range_has(of_vessels, reading->median_radius_mm);
+    for (size_t k = 0; k < LENGTH_UNITS && !reading->has_plausible_unit; k++) {
+        reading->plausible_unit = commoner[k];
+        reading->has_plausible_unit = range_has(of_vessels, median * length_unit_mm(commoner[k]));
     }
 }
 
@@ -221,7 +221,7 @@ Status reading_measure(TreeReading *reading, const Tree *tree, Err *err)
     TRY_GOTO(measure_roots(reading, tree, err));
     TRY_GOTO(measure_degrees(reading, tree, err));
     measure_radii(reading, tree, radius);
-    if (!reading->is_network && !reading->unit_said && !reading->voxels)
+    if (!reading->is_network && !reading->unit_is_stated && !reading->voxels)
         reading->looks_like_voxels = looks_like_voxels(tree);
     believe(reading);
 done:

@@ -55,7 +55,7 @@ Vec3 length_scaled(const LengthScale *scale, Vec3 position);
 
 /* Why a node is a root. */
 typedef enum RootReason {
-    ROOT_SAID,      /* the file states it */
+    ROOT_STATED,    /* the file states it */
     ROOT_DIRECTION, /* directed lines leave it, and none ends there */
     ROOT_THICKEST,  /* it is the thickest end of its component */
     ROOT_REASONS
@@ -108,10 +108,10 @@ typedef struct TreeReading {
     size_t repaired_radii;              /* count of segments that got the radius of their parent */
     double median_radius_mm;            /* of all segments; 0 if there are none */
     LengthUnit unit;                    /* the unit that was used for coordinates and radii */
-    bool unit_said;                     /* options or the file state the unit */
+    bool unit_is_stated;                /* options or the file state the unit */
     bool voxels;                        /* coordinates were multiplied by the size of a voxel */
-    bool believes;                      /* in some unit, the radii are plausible for vessels ... */
-    LengthUnit believed;                /* ... and this is the unit */
+    bool has_plausible_unit;            /* in some unit, the radii are plausible for vessels ... */
+    LengthUnit plausible_unit;          /* ... and this is the unit */
     bool looks_like_voxels; /* there are READ_FEW points or more, and all are integers */
     char **note;            /* sentences about what was assumed; owned */
     size_t n_notes, notes_capacity;

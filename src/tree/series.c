@@ -1,11 +1,12 @@
-/* A name is taken apart from its end, as what stands before the time may hold anything. */
+/* A name is split from its end, because the part before the time may contain anything. */
 #include "tree/series.h"
 
 #include "tree/tree.h"
 #include <stdlib.h>
 #include <string.h>
 
-/* Shortens `length` by a word that the name ends with there. */
+/* If the first *length characters of the name end with `word`, shortens *length by the word.
+ * Returns true if so. */
 static bool take_off(const char *name, size_t *length, const char *word)
 {
     size_t size = strlen(word);
@@ -15,7 +16,8 @@ static bool take_off(const char *name, size_t *length, const char *word)
     return true;
 }
 
-/* Likewise by "_INCR_00012". */
+/* If the first *length characters of the name end with "_INCR_00012", or other digits, shortens
+ * *length by that ending. */
 static void take_off_increment(const char *name, size_t *length)
 {
     size_t end = *length, digits = 0;
@@ -70,7 +72,7 @@ static Status check(const Tree *tree, const Series *series, Err *err)
         const TreeColumn *one = &tree->column[series->frame[k - 1].column];
         const TreeColumn *next = &tree->column[series->frame[k].column];
         if (series->frame[k - 1].time == series->frame[k].time)
-            return err_set(err, STATUS_INPUT, "the columns '%.60s' and '%.60s' are of one time",
+            return err_set(err, STATUS_INPUT, "the columns '%.60s' and '%.60s' have the same time",
                            one->name, next->name);
         if (strcmp(one->unit, next->unit) != 0)
             return err_set(err, STATUS_INPUT,

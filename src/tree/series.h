@@ -1,9 +1,12 @@
-/* Columns of a tree that are one value over time. Their names are that of the value and the time,
+/* Time series: several columns of a tree that hold one quantity at different times.
+ *
+ * The name of such a column consists of the quantity's name and the time:
  *
  *     NAME[_INCR_digits]_[TIME_]number
  *
- * as svOneDSolver ("Pressure_mmHg_INCR_00004_TIME_0.20000") and SimVascular's projections
- * ("pressure_0.2") write them. Two columns or more are a series. */
+ * The form covers svOneDSolver ("Pressure_mmHg_INCR_00004_TIME_0.20000") and the projections of
+ * SimVascular ("pressure_0.2"). Two or more columns with the same NAME are a series. The unit of
+ * time is that of the file. */
 #ifndef CORCAST_TREE_SERIES_H
 #define CORCAST_TREE_SERIES_H
 
@@ -13,25 +16,30 @@
 
 typedef struct Tree Tree;
 
-/* One moment. */
+/* One point in time. */
 typedef struct SeriesFrame {
-    double time;
-    size_t column; /* of the tree */
+    double time;   /* in the unit of the file */
+    size_t column; /* index of the tree's column */
 } SeriesFrame;
 
 typedef struct Series {
-    SeriesFrame *frame; /* owned; upwards in time */
+    SeriesFrame *frame; /* owned; by rising time */
     size_t n;           /* 0: no series, else at least 2 */
 } Series;
 
-/* The columns of the series called `name`, in *series (owned; series_release); none when the tree
- * has no such series. STATUS_INPUT, naming no file, when two columns are of the same time or have
- * different units. O(columns). */
+/* Finds the columns of the series called `name`, by rising time.
+ *
+ * series   receives the series; release it with series_release. n is 0 if the tree has fewer than
+ *          two such columns.
+ * Errors   STATUS_INPUT if two columns have the same time or different units; the sentence does not
+ *          name the file. STATUS_MEMORY.
+ * Cost     O(columns). */
 MUST_CHECK Status tree_series(const Tree *tree, const char *name, Series *series, Err *err);
 void series_release(Series *series);
 
-/* Takes the name of a column apart: the length of the value's name in *length, and the time. False
- * when it is not of that form. */
+/* Splits the name of a column. *length receives the length of NAME in characters, and *time
+ * the time. Returns false, and leaves both unchanged, if the name does not have the form of
+ * a series. */
 bool series_parse(const char *column, size_t *length, double *time);
 
 #endif

@@ -1,5 +1,6 @@
-/* One array a quantity, all indexed by node, parents first: every function here is one loop, and
- * none recurses, so that a chain of a million segments is no deeper than a bush. */
+/* One array per quantity, indexed by node, with parents first. Every function here is a loop
+ * and none is recursive, so that a chain of a million segments needs no more stack than any
+ * other tree. */
 #include "tree/tree.h"
 
 #include <assert.h>
@@ -215,9 +216,9 @@ done:
 
 enum { DROPPED = -1 };
 
-/* Gives `out` the flow shares of `tree`, those of dropped nodes summed into the node they hung on:
- * backwards, whatever hangs on a node has arrived before it is passed on. `place` is where each
- * node of `tree` is in `out`. */
+/* Sets the flow shares of `out`. The shares of dropped nodes are added to the share of their
+ * nearest kept ancestor. The loop runs backwards, so that a node has the shares of its whole
+ * subtree before it passes them on. `place` has, per node of `tree`, its index in `out`. */
 static Status prune_flow_shares(const Tree *tree, const int32_t *place, Tree *out, Err *err)
 {
     if (out->n == tree->n && !tree->flow_share)
@@ -250,7 +251,7 @@ static Status prune_columns(const Tree *tree, const int32_t *place, Tree *out, E
     return STATUS_OK;
 }
 
-/* A new tree of the nodes that have a place. */
+/* Makes a new tree of the nodes that have an index in `place`. */
 static Status take_placed(const Tree *tree, const int32_t *place, size_t n, Tree *out, Err *err)
 {
     Tree made = {0};
@@ -316,7 +317,7 @@ static void cut_ends(const Tree *tree, const int32_t *place, const double *way, 
     }
 }
 
-Status tree_grown(const Tree *tree, double part, Tree *out, Err *err)
+Status tree_proximal_part(const Tree *tree, double part, Tree *out, Err *err)
 {
     int32_t *place = NULL, n = 0;
     double *way = NULL;

@@ -116,7 +116,7 @@ MUST_CHECK Status tree_pruned(const Tree *tree, double radius_mm, Tree *out, Err
  * reach farther are shortened, with their radius unchanged. Ids, order, columns and flow shares are
  * treated as in tree_pruned. If `part` is 1 or more, the copy is complete. Errors: STATUS_MEMORY.
  */
-MUST_CHECK Status tree_grown(const Tree *tree, double part, Tree *out, Err *err);
+MUST_CHECK Status tree_proximal_part(const Tree *tree, double part, Tree *out, Err *err);
 
 /* Sets the ids to 1 to n, in the order of the arrays. */
 void tree_renumber(Tree *tree);

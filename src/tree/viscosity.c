@@ -1,5 +1,5 @@
-/* The law as published, with the quotient of the two powers written as expm1(C a) / expm1(C b),
- * which keeps its digits where C passes through zero, near a diameter of 8 micrometres. */
+/* The law as published. The quotient of the two powers is written as expm1(C a) / expm1(C b), which
+ * keeps its digits where C passes through zero, near a diameter of 8 micrometres. */
 #include "tree/viscosity.h"
 
 #include "base/base.h"

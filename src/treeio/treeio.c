@@ -572,7 +572,7 @@ static void scale_tree(Tree *tree, const Format *format, const ReadOptions *opti
                        TreeReading *reading)
 {
     reading->unit = options->has_unit ? options->unit : LENGTH_MM;
-    reading->unit_said = options->has_unit || format->read_graph; /* CSV's titles say mm */
+    reading->unit_is_stated = options->has_unit || format->read_graph; /* CSV's titles say mm */
     reading->voxels = options->has_voxel_size;
     LengthScale scale = length_scale(options, LENGTH_MM);
     if (!options->has_unit && !options->has_voxel_size)
@@ -641,7 +641,7 @@ static Status read_source(const TreeSource *source, Tree *tree, const ReadOption
     TRY_GOTO(status);
     TRY_GOTO(tree_check(&made, err));
     TRY_GOTO(reading_measure(reading, &made, err));
-    reading->unit_said = reading->unit_said || is_own(&made.meta);
+    reading->unit_is_stated = reading->unit_is_stated || is_own(&made.meta);
     *tree = made;
     made = (Tree){0};
 done:

@@ -71,8 +71,8 @@ test_pairs_that_cannot_be_are_refused() {
         expect_sentence "$sentence"
         expect_only
     done <<'END'
---pair: pairs need two trees, and so two of --inlet|--pair 1.25
---pair: pairs need two trees, and so two of --inlet|--pair 1.25 --inlet 0,30,0 --inlet 0,-30,0 --inlet 30,0,0
+--pair: pairs need two trees, so --inlet must be given twice|--pair 1.25
+--pair: pairs need two trees, so --inlet must be given twice|--pair 1.25 --inlet 0,30,0 --inlet 0,-30,0 --inlet 30,0,0
 --pair: .*an even number of --terminals|--pair 1.25 --inlet 0,30,0 --inlet 0,-30,0 --terminals 61
 --pair: .*no other --inlet-shares than equal ones|--pair 1.25 --inlet 0,30,0 --inlet 0,-30,0 --inlet-shares 2,1
 --pair 1.25: must be at least the clearance, --clearance 1.3|--pair 1.25 --clearance 1.3 --inlet 0,30,0 --inlet 0,-30,0
@@ -100,7 +100,7 @@ test_wrong_pairs_in_a_file_are_refused_by_line() {
     done <<'END'
 terminal_pair is '3'; it must be the ids of two nodes|3
 terminal_pair is '3 4 5'; it must be the ids of two nodes|3 4 5
-terminal_pair names the node 77, which is no node's id|3 77
+terminal_pair names the node 77, which is not the id of a node|3 77
 node 3 is of a pair twice|3 3
 END
 }

@@ -260,7 +260,7 @@ test_a_domain_too_thin_to_find_points_in_is_refused() {
     printf '0 0\n1000 1000\n1000 1000.000001\n' >thin.txt
     run timeout 20 "$CORCAST" grow --domain polygon:thin.txt -o tree.swc
     expect_status 2
-    expect_sentence 'thin.txt: the domain is too thin to find points in: it fills [0-9.e-]+ of the box'
+    expect_sentence 'thin.txt: the domain is too thin for random points: it fills [0-9.e-]+ of its bounding box'
     run timeout 20 "$CORCAST" grow --domain shell:10,10,10,1e-6 -o tree.swc
     expect_status 2
     expect_sentence '^corcast grow: --domain shell:10,10,10,1e-6: the domain is too thin'

@@ -248,7 +248,7 @@ test_a_truncated_stl_is_told_its_size() {
     { printf '%-80s' title; printf '\004\0\0\0'; head -c 150 /dev/zero; } >body.stl
     run corcast grow --domain mesh:body.stl -o t.swc
     expect_status 2
-    expect_sentence 'body\.stl: is no text, and a binary STL file of the 4 triangles that it states has 284 bytes, this one 234'
+    expect_sentence 'body\.stl: is not a text; as a binary STL file with 4 triangles it must have 284 bytes, but it has 234'
 }
 
 test_what_is_too_far_or_too_short_to_draw_is_named() {

@@ -113,7 +113,7 @@ test_trees_keep_the_clearance_that_was_asked_for() {
     expect_sentence "clearance.*-1"
     run corcast grow --terminals 160 --clearance 1.5 -o none.swc
     expect_status 2
-    expect_sentence '^corcast grow: --clearance 1.5: is between trees, and there is one; several of --inlet grow several$'
+    expect_sentence '^corcast grow: --clearance 1.5: is the distance between trees, but there is only one; give --inlet several times to grow several$'
     run corcast grow --terminals 160 --inlet 0,50 --inlet 4.5,49 --clearance 30.5 -o none.swc
     expect_status 2
     expect_sentence 'no straight vessel leads from --inlet 4.5,49,0 into the domain, clear of those of the other inlets'
@@ -147,7 +147,7 @@ test_flow_parts_as_the_map_demands() {
         fail "expected about five times as much blood on the left, through as many terminals"
     run corcast grow --terminal-flow demand -o none.swc
     expect_status 2
-    expect_sentence '--terminal-flow demand: needs the map of it, --demand'
+    expect_sentence '--terminal-flow demand: needs a demand map, --demand'
 }
 
 test_maps_of_demand_that_say_nothing_are_refused() {
@@ -160,8 +160,8 @@ test_maps_of_demand_that_say_nothing_are_refused() {
         expect_status 2
         expect_sentence "$sentence"
     done <<'END'
-zero.pgm: the map of demand is empty: none of its values is above 0|--demand zero.pgm,1
-demand.pgm: the map of demand is of another place: of 20000 points of the domain, at x 490 to 510|--demand demand.pgm,1 --domain disc:10@500,0
+zero.pgm: the demand map is empty: none of its values is above 0|--demand zero.pgm,1
+demand.pgm: the demand map does not cover the domain: of 20000 points of the domain, at x 490 to 510|--demand demand.pgm,1 --domain disc:10@500,0
 --demand demand.pgm: a picture needs the width of a pixel in mm, FILE,MM|--demand demand.pgm
 a pixel must be from 1e-06 to 1e.06 mm wide|--demand demand.pgm,0
 END

@@ -220,7 +220,7 @@ test_derived_fields_become_columns_of_what_is_written() {
     run_ok corcast convert tree.swc other.csv --fields strahler --quiet
     run corcast convert tree.swc tree.csv --fields speed
     expect_status 2
-    expect_sentence "there is no field 'speed'; known are radius, "
+    expect_sentence "there is no field 'speed'; the fields are radius, "
 }
 
 run_tests "$@"

@@ -169,7 +169,7 @@ static void rejects_rows_naming_line_and_column(void **state)
         {"1,,0,0,0,1,,inf", ":3: the wss is 'inf'; it must be a finite number"},
         {"7,4,0,0,0,1,,", ":3: the id 7 is already that of line 2; every node needs its own"},
         {"1,8,0,0,0,1,,",
-         ":3: the parent is 8, which is no node's id; it must be the id of a node, "
+         ":3: the parent is 8, which is not the id of a node; it must be the id of a node, "
          "or -1 for a root"},
         {"1,1,0,0,0,1,,", ":3: node 1 is its own parent; parents must lead to a root, whose parent "
                           "is -1"},

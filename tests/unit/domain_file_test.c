@@ -92,11 +92,11 @@ static void texts_that_are_no_domain_are_refused(void **state)
         {"cube:3", "use disc:R, ball:R, rect:W,H, box:A,B,C, ellipsoid:A,B,C, "
                    "shell:A,B,C,THICKNESS[,BASE], polygon:FILE[,MM], mask:FILE[,MM], "
                    "mesh:FILE[,MM], hull:[FILE,]MM or surface:FILE[,OFFSET[,MM]]"},
-        {"disc:30@5", "the place '@5' is not X,Y or X,Y,Z in mm"},
-        {"ball:30@5,6,7,8", "the place '@5,6,7,8' is not X,Y or X,Y,Z in mm"},
-        {"ball:30@5,2e6", "the place '@5,2e6' is beyond 1e+06 mm"},
-        {"disc:30@5,6,7", "so its place is @X,Y"},
-        {"hull:3", "takes a tree, which is not known here"},
+        {"disc:30@5", "the position '@5' is not X,Y or X,Y,Z in mm"},
+        {"ball:30@5,6,7,8", "the position '@5,6,7,8' is not X,Y or X,Y,Z in mm"},
+        {"ball:30@5,2e6", "the position '@5,2e6' is beyond 1e+06 mm"},
+        {"disc:30@5,6,7", "so its position is @X,Y"},
+        {"hull:3", "needs a tree, which is not available here"},
         {"Disc:3", "unknown shape"},
         {"disc", "'' is not a number of mm from"},
         {"disc:", "as in disc:50"},

@@ -708,7 +708,7 @@ static void a_surface_is_a_layer_at_its_offset(void **state)
             if (fabs(apart - half) > 1e-9)
                 assert_int_equal(domain_inside(&layer, off, 0), apart < half);
             if (apart < half)
-                assert_true(fabs(depth_in_cube(domain_settle(&layer, off)) - cases[k].offset) <
+                assert_true(fabs(depth_in_cube(domain_project(&layer, off)) - cases[k].offset) <
                             (k < 2 ? 1e-6 : half));
             Vec3 to = domain_sample(&layer, &random);
             bool whole = true;

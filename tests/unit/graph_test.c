@@ -123,7 +123,7 @@ static void the_file_says_the_root_by_an_inlet_or_else_by_directions(void **stat
         net.graph.point[1].is_inlet = inlet;
         must(build(&net, &tree), &net.err);
         assert_int_equal(net.reading.root[0].id, inlet ? 2 : 4);
-        assert_int_equal(net.reading.root[0].reason, inlet ? ROOT_SAID : ROOT_DIRECTION);
+        assert_int_equal(net.reading.root[0].reason, inlet ? ROOT_STATED : ROOT_DIRECTION);
         assert_int_equal(net.reading.network.against, inlet ? 2 : 0);
         release(&net, &tree);
     }
@@ -141,9 +141,10 @@ static void an_inlet_among_merged_points_is_one_and_others_are_told(void **state
     net.graph.point[2].is_inlet = net.graph.point[0].is_inlet = true;
     must(build(&net, &tree), &net.err);
     assert_int_equal(net.reading.root[0].id, 2);
-    assert_int_equal(net.reading.root[0].reason, ROOT_SAID);
-    assert_string_equal(net.reading.note[0],
-                        "1 more inlets are ends, as each tree has one root, the thickest");
+    assert_int_equal(net.reading.root[0].reason, ROOT_STATED);
+    assert_string_equal(
+        net.reading.note[0],
+        "stated inlets that are not roots: 1 (each tree has one root, the thickest)");
     release(&net, &tree);
 }
 
@@ -263,12 +264,12 @@ static void scales_units_and_voxels(void **state)
     release(&net, &tree);
 }
 
-static void believes_the_unit_in_which_radii_are_those_of_vessels(void **state)
+static void finds_the_unit_in_which_radii_are_plausible_for_vessels(void **state)
 {
     (void)state;
     static const struct {
         double radius;
-        LengthUnit believed;
+        LengthUnit plausible;
     } cases[] = {{0.35, LENGTH_MM}, {12.5, LENGTH_UM}, {0.0007, LENGTH_M}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         Net net = {0};
@@ -278,9 +279,9 @@ static void believes_the_unit_in_which_radii_are_those_of_vessels(void **state)
         put_line(&net, 0, 1, NONE);
         must(build(&net, &tree), &net.err);
         assert_int_equal(net.reading.unit, LENGTH_MM);
-        assert_false(net.reading.unit_said);
-        assert_true(net.reading.believes);
-        assert_int_equal(net.reading.believed, cases[i].believed);
+        assert_false(net.reading.unit_is_stated);
+        assert_true(net.reading.has_plausible_unit);
+        assert_int_equal(net.reading.plausible_unit, cases[i].plausible);
         release(&net, &tree);
     }
 }
@@ -332,7 +333,8 @@ static void refuses_what_no_tree_can_be_made_of(void **state)
     put_point(&net, 1, 2, 3, 4);
     put_point(&net, 1, 2, 3, 4);
     put_line(&net, 0, 1, NONE);
-    refused(&net, "net: all lines begin and end at one place");
+    refused(&net, "net: each line has both ends at the same position; a tree needs a line that is "
+                  "longer than 0");
     const GraphPoint bad = {.position = {0, 0, 0}, .radius = -0.5};
     assert_int_equal(graph_point(&net.graph, &bad, &net.err), STATUS_INPUT);
     assert_string_equal(net.err.text, "the radius is '-0.5'; it must be a finite number that is "
@@ -352,7 +354,7 @@ int main(void)
         cmocka_unit_test(cuts_a_loop_at_its_thinnest_line),
         cmocka_unit_test(joined_points_are_one_wherever_they_lie),
         cmocka_unit_test(scales_units_and_voxels),
-        cmocka_unit_test(believes_the_unit_in_which_radii_are_those_of_vessels),
+        cmocka_unit_test(finds_the_unit_in_which_radii_are_plausible_for_vessels),
         cmocka_unit_test(values_of_lines_and_of_distal_points_come_along),
         cmocka_unit_test(refuses_what_no_tree_can_be_made_of),
     };

@@ -241,7 +241,7 @@ static void rejects_a_known_key_of_bad_value(void **state)
     assert_refused("# terminal_flow:",
                    ":1: terminal_flow is ''; it must be equal or territory or demand");
     assert_refused("# terminal_flow: equal\n#terminal_flow: territory",
-                   ":2: terminal_flow is 'territory', but an earlier line says otherwise");
+                   ":2: terminal_flow is 'territory', but an earlier line has another value");
     static const char seed[] = "it must be a whole number from 0 to 18446744073709551615";
     char expected[120];
     snprintf(expected, sizeof expected, ":1: seed is '-1'; %s", seed);
@@ -249,7 +249,7 @@ static void rejects_a_known_key_of_bad_value(void **state)
     snprintf(expected, sizeof expected, ":1: seed is '18446744073709551616'; %s", seed);
     assert_refused("# seed: 18446744073709551616", expected);
     assert_refused("# gamma: 2.5\n#gamma: 3\n",
-                   ":2: gamma is '3', but an earlier line says otherwise");
+                   ":2: gamma is '3', but an earlier line has another value");
 }
 
 static void flow_shares_follow_their_nodes(void **state)
@@ -289,9 +289,9 @@ static void rejects_flow_shares_that_make_no_sense(void **state)
         assert_refused(text, expected);
     }
     assert_refused("1 0 0 0 0 1 -1\n# flow_share: 2 1.5\n",
-                   ":2: flow_share names the node 2, which is no node's id");
+                   ":2: flow_share names the node 2, which is not the id of a node");
     assert_refused("# flow_share: 1 1.5\n# flow_share: 1 1.5\n1 0 0 0 0 1 -1\n",
-                   ":2: the flow share of node 1 has been said before");
+                   ":2: the flow share of node 1 is stated twice");
     assert_refused("# terminal_flow: territory\n1 0 0 0 0 1 -1\n",
                    ": terminal_flow is territory, but there are no flow shares");
     assert_refused("# terminal_flow: equal\n# flow_share: 1 2\n1 0 0 0 0 1 -1\n",
@@ -434,11 +434,11 @@ static void rejects_an_unknown_parent(void **state)
     for (size_t i = 0; i < sizeof parents / sizeof *parents; i++) {
         char text[80], expected[160];
         snprintf(text, sizeof text, "7 2 0 0 0 .5 -1\n8 2 0 0 1 .5 %s\n", parents[i]);
-        snprintf(
-            expected, sizeof expected,
-            ":2: the parent is %s, which is no node's id; it must be the id of a node, or -1 for "
-            "a root",
-            parents[i]);
+        snprintf(expected, sizeof expected,
+                 ":2: the parent is %s, which is not the id of a node; it must be the id of a "
+                 "node, or -1 for "
+                 "a root",
+                 parents[i]);
         assert_refused(text, expected);
     }
     assert_refused("7 2 0 0 0 .5 -2\n",

@@ -234,12 +234,12 @@ static void a_builder_names_file_and_record(void **state)
     } bad[] = {
         {7, 4, 0, "t: point 1: the id 7 is already that of point 0; every node needs its own"},
         {1, 6, 0,
-         "t: point 1: the parent is 6, which is no node's id; it must be the id of a "
+         "t: point 1: the parent is 6, which is not the id of a node; it must be the id of a "
          "node, or -1 for a root"},
         {8, 8, 0,
          "t: point 1: node 8 is its own parent; parents must lead to a root, whose parent "
          "is -1"},
-        {8, 7, 9, "t: point 31: flow_share names the node 9, which is no node's id"},
+        {8, 7, 9, "t: point 31: flow_share names the node 9, which is not the id of a node"},
     };
     Err err;
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
@@ -259,7 +259,7 @@ static void a_builder_names_file_and_record(void **state)
     assert_int_equal(builder_node(&builder, &node, &err), STATUS_INPUT);
     node = (BuilderNode){.id = 1, .parent = 4000000000};
     assert_int_equal(builder_node(&builder, &node, &err), STATUS_INPUT);
-    assert_non_null(strstr(err.text, "the parent is 4000000000, which is no node's id"));
+    assert_non_null(strstr(err.text, "the parent is 4000000000, which is not the id of a node"));
     node = (BuilderNode){.id = 1, .parent = TREE_NO_PARENT, .position = {0, HUGE_VAL, 0}};
     assert_int_equal(builder_blame(&builder, 3, builder_node(&builder, &node, &err), &err),
                      STATUS_INPUT);
@@ -337,7 +337,7 @@ static void what_is_known_keeps_the_order_of_its_lines(void **state)
     meta_release(&copy);
 
     assert_int_equal(meta_parse(&meta, META_LAMBDA, "2", &err), STATUS_INPUT);
-    assert_string_equal(err.text, "lambda is '2', but an earlier line says otherwise");
+    assert_string_equal(err.text, "lambda is '2', but an earlier line has another value");
     assert_true(meta.number[META_LAMBDA] == 1.5);
     assert_int_equal(meta_add_text(&meta, META_KEYS, "a\rb", &err), STATUS_INPUT);
     assert_int_equal(meta_set_text(&meta, META_DOMAIN, "mesh:a\nb.stl", &err), STATUS_INPUT);
@@ -432,17 +432,17 @@ static void growth_cuts_vessels_at_the_same_way_from_their_roots(void **state)
         tree.position[i] = vec3(x[i], y[i], 0.5);
         tree.radius_mm[i] = 1.375;
     }
-    must(tree_grown(&tree, 0.5, &part, &err), &err); /* 3.5 mm */
+    must(tree_proximal_part(&tree, 0.5, &part, &err), &err); /* 3.5 mm */
     must(tree_check(&part, &err), &err);
     assert_int_equal(part.n, 6);
     assert_true(part.position[2].x == 3.5 && part.position[3].y == 1);
     assert_true(part.position[5].x == 10.75);
     tree_release(&part);
-    must(tree_grown(&tree, 0.25, &part, &err), &err);
+    must(tree_proximal_part(&tree, 0.25, &part, &err), &err);
     assert_int_equal(part.n, 4);
     assert_true(part.position[1].x == 1.75 && part.id[3] == 53 && part.parent[3] == 2);
     tree_release(&part);
-    must(tree_grown(&tree, 1, &part, &err), &err);
+    must(tree_proximal_part(&tree, 1, &part, &err), &err);
     assert_memory_equal(part.position, tree.position, 6 * sizeof *part.position);
     tree_release(&part);
     tree_release(&tree);

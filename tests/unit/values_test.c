@@ -201,7 +201,7 @@ static void refuses_two_columns_of_one_time(void **state)
                         "the columns 'q_0.5' and 'q_1' have different units, 'Pa' and 'mmHg'");
     must(tree_add_column(&tree, "q_0.50", "Pa", &value, &err), &err);
     assert_int_equal(tree_series(&tree, "q", &series, &err), STATUS_INPUT);
-    assert_string_equal(err.text, "the columns 'q_0.5' and 'q_0.50' are of one time");
+    assert_string_equal(err.text, "the columns 'q_0.5' and 'q_0.50' have the same time");
     tree_release(&tree);
 }
 
@@ -226,12 +226,12 @@ static void flow_parts_as_is_asked_for(void **state)
     tree.meta.number[META_Q_PERF] = 90;
     assert_flows(&tree, (const double[]){60, 30, 30, 30});
     double thick = pow(1.655, 2.5), thin = pow(0.75, 2.5), all = thick + thin;
-    must(tree_part_flow_by_radius(&tree, 2.5, &err), &err);
+    must(tree_set_flow_by_radius(&tree, 2.5, &err), &err);
     assert_flows(&tree, (const double[]){90, 90 * thick / all, 90 * thin / all, 0});
     write_input("id,flow [ml/min]\n5,12.5\n8,2.5\n");
     must(tree_read_flows(&tree, input, &err), &err);
     assert_flows(&tree, (const double[]){2.5, 0, 2.5, 12.5});
-    tree_part_flow_equally(&tree);
+    tree_set_flow_equal(&tree);
     assert_flows(&tree, (const double[]){10, 5, 5, 5});
     tree_release(&tree);
 }
@@ -253,7 +253,7 @@ static void refuses_flows_that_make_no_sense(void **state)
     }
     for (size_t i = 0; i < 5; i++)
         tree.radius_mm[i] = 0;
-    assert_int_equal(tree_part_flow_by_radius(&tree, 3, &err), STATUS_INPUT);
+    assert_int_equal(tree_set_flow_by_radius(&tree, 3, &err), STATUS_INPUT);
     assert_null(tree.flow_share);
     tree_release(&tree);
 }

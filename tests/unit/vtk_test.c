@@ -219,7 +219,7 @@ static void an_array_says_where_the_inlets_are(void **state)
     Tree tree = read_text(
         "vtk", CHAIN "POINT_DATA 2\nFIELD f 2\nroot 1 2 int\n1 2\nradius 1 2 int\n2 1\n", &reading);
     assert_int_equal(reading.root[0].id, 2);
-    assert_int_equal(reading.root[0].reason, ROOT_SAID);
+    assert_int_equal(reading.root[0].reason, ROOT_STATED);
     assert_string_equal(reading.note[1], "inlets are the points whose 'root' is 2");
     tree_release(&tree);
     reading_release(&reading);

@@ -166,10 +166,11 @@ static void print_unit(const TreeReading *reading)
     if (reading->median_radius_mm > 0)
         printf("  median radius %.6g mm\n", reading->median_radius_mm);
     printf("  unit          %s, %s", length_unit_names[reading->unit],
-           reading->unit_said ? "given" : "assumed");
+           reading->unit_is_stated ? "given" : "assumed");
     if (reading->median_radius_mm > 0)
-        printf("; radii look like %s",
-               reading->believes ? length_unit_names[reading->believed] : "no vessel's");
+        printf("; radii look like %s", reading->has_plausible_unit
+                                           ? length_unit_names[reading->plausible_unit]
+                                           : "no vessel's");
     printf("%s\n", reading->looks_like_voxels ? ", and coordinates like voxels" : "");
     if (reading->without_radius > 0)
         printf("  no radius     %zu segment%s\n", reading->without_radius,

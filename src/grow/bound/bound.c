@@ -1,28 +1,30 @@
 /* The least target of a tree whose radii, bifurcations and pressures are free is the minimum of a
- * convex function, which bound_newton.h minimises, with the dual solution at hand at every step
- * [bound_dual.h]. Where bifurcations would merge, lengths of 0 make the function rough, so lengths
- * are smoothed: by much at first, and by less as soon as a step gains little. Gaps by smoothing
- * over the mean length, 1,000 terminals: 0.3: 5.5 %, 0.09: 0.6 %, 0.03: 0.09 %, 0.008: 0.016 %.
+ * convex function. Newton's method [bound_newton.h] minimises it, and every step also gives the
+ * dual solution [bound_dual.h]. Where bifurcations merge, lengths of 0 make the function
+ * non-smooth. Lengths are therefore smoothed: strongly at first, and less as soon as a step gains
+ * little. For 1,000 terminals, the gap between target and bound depends on smoothing / mean length:
+ * 0.3: 5.5 %, 0.09: 0.6 %, 0.03: 0.09 %, 0.008: 0.016 %.
  *
- * It ends when bound and target are within `wanted` of each other, or where less smoothing gains
- * little or the budget of steps is spent: what is proved is right wherever it ends. */
+ * The search ends when bound and target are within `wanted` of each other, when less smoothing
+ * gains little, or when all steps are used. The bound is a valid proof wherever the search ends. */
 #include "grow/bound/bound.h"
 
 #include "grow/bound/bound_dual.h"
 #include "grow/cco/law.h"
 #include <stdlib.h>
 
-/* The share of the bound within which the best target is to be; the next smoothing over the
- * last. */
+/* Gap between the best target and the bound at which the search ends, as a share of the bound. */
 static const double wanted = 2e-4;
+/* Ratio of a smoothing to the one before. */
 static const double next_smoothing = 0.3;
-/* Less smoothing that does not lessen the gap by this share is the last. */
+/* The search ends at a smoothing that reduces the gap by less than this share. */
 static const double least_progress = 0.05;
-/* A step of less slope, as a share of the target, is worth a look at its proof, or is the last of
- * its smoothing. */
+/* Slopes of a step as shares of the target. Below slope_to_prove, the bound of the step is
+ * computed; below slope_to_end, it is the last step at its smoothing. Reasons for these numbers and
+ * for the limits of steps not recorded. */
 static const double slope_to_prove = 0.1, slope_to_end = 2e-4;
 enum { MAX_STEPS = 80, MAX_STEPS_A_SMOOTHING = 25 };
-/* Outlets whose drops differ by a smaller share have one pressure. */
+/* Outlets whose pressure drops differ by a smaller share count as having the same pressure. */
 static const double same_drop = 1e-6;
 
 typedef struct BoundSearch {
@@ -41,7 +43,7 @@ static void search_release(BoundSearch *search)
     dual_release(&search->dual);
 }
 
-/* INFINITY as long as nothing is proved. */
+/* Returns the relative gap between target and bound; INFINITY while no bound is proved. */
 static double gap(const BoundSearch *search)
 {
     return search->best / search->dual.bound - 1;

@@ -44,9 +44,9 @@ typedef struct Bound {
  *
  * out      receives the bound; release it with bound_release.
  * Errors   STATUS_USAGE if `lambda` is out of BOUND_LAMBDA_RANGE. STATUS_INPUT if no blood flows,
- * if blood flows through a segment of radius 0, or if no pressure drops on the path to an outlet.
- * STATUS_MEMORY. Cost     O(n) for each of 15 to 30 steps: 20 s for 10^6 outlets, and 300 bytes per
- * node. */
+ *          if blood flows through a segment of radius 0, or if no pressure drops on the path to an
+ *          outlet. STATUS_MEMORY.
+ * Cost     O(n) for each of 15 to 30 steps: 20 s for 10^6 outlets, and 300 bytes per node. */
 MUST_CHECK Status bound_tree(const Tree *tree, double lambda, Bound *out, Err *err);
 void bound_release(Bound *bound);
 

@@ -1,6 +1,7 @@
-/* Numbers are written so that they read back to the same double; what is proved holds for the
- * decimals, too, as their margin is far wider than the last digit. The last line is the SHA-256 of
- * all before it, so that a slip of one digit is found even where the proof survives it. */
+/* Numbers are written so that they read back to the same double. The proof also holds for the
+ * decimal numbers, because its margin is far wider than their last digit. The last line is the
+ * SHA-256 of all lines before it, so that a change of one digit is found even if the proof would
+ * survive it. */
 #include "grow/bound/bound.h"
 
 #include <string.h>

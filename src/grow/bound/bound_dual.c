@@ -1,12 +1,15 @@
-/* Forces y and charges z of the outlets, summed to Y and Z of every segment, prove the bound B =
- * sum over the segments of Y . v - Z d, v from end to end of the segment, wherever its ends are, as
- * long as no |Y| is above what a mm costs, dual_mm [METHODS 1.5]. At the optimum |Y| is that cost,
- * but for smoothed lengths, which only make it less. Newton's linearised forces balance exactly, so
- * they need little to become a proof: from the outlets upwards, where |Y| is too large, all pulls
- * below are made smaller by one factor. What a few segments that have not settled yet lose by that
- * is little, where one factor for the whole tree would spoil the bound. Charges may then be
- * multiplied by any s, and y by s^(a / (1 + a)), which the cost of a mm follows, and the best s is
- * known. A share of `margin` covers rounding. */
+/* Let each outlet have a force y and a charge z, and let Y and Z be their sums at and below a
+ * segment. They prove the bound B = sum over the segments of Y . v - Z d, with v the vector from
+ * end to end of the segment and d its pressure drop, for any positions of its ends. The condition
+ * is that no |Y| is above the cost of a mm of the segment, dual_mm [METHODS 1.5].
+ *
+ * At the optimum, |Y| equals that cost, except that smoothed lengths make |Y| smaller. Newton's
+ * linearised forces balance exactly, so little is missing for a proof. From the outlets upwards,
+ * where |Y| is too large, all pulls below are reduced by one factor. The few segments that have not
+ * converged yet lose little by that; one factor for the whole tree would spoil the bound.
+ *
+ * Charges may then be multiplied by any s, and forces by s^(a / (1 + a)), the factor by which the
+ * cost of a mm changes; the best s is known. A share of `margin` covers rounding. */
 #include "grow/bound/bound_dual.h"
 
 #include <stdlib.h>
@@ -39,9 +42,9 @@ static double length_of(const State force)
     return sqrt(force[0] * force[0] + force[1] * force[1] + force[2] * force[2]);
 }
 
-/* The forces of all outlets, summed, made smaller where a segment cannot bear them. An outlet that
- * would rather have less drop pays nothing. Returns the factor, at least 1, by which all pulls may
- * grow. */
+/* The forces of all outlets, summed, made smaller where a segment cannot bear them. An outlet
+ * that would rather have less drop pays nothing. Returns the factor, at least 1, by which all
+ * pulls may grow. */
 static double sum_forces(Dual *dual, const Problem *problem, const Newton *newton, double smoothing)
 {
     double room = INFINITY;

@@ -1,4 +1,6 @@
-/* The lower bound that a step of Newton's method proves. */
+/* The lower bound that a step of Newton's method proves. Each outlet gets a force (a dual
+ * variable): its pull on the tree and the charge for its pressure drop. Forces that balance prove
+ * that no tree of this topology has a lower target [METHODS 1.5]. */
 #ifndef CORCAST_GROW_BOUND_DUAL_H
 #define CORCAST_GROW_BOUND_DUAL_H
 
@@ -12,8 +14,8 @@ typedef struct Dual {
     double *kept; /* workspace, per joint: share of its pulls that the segment to it lets pass */
 } Dual;
 
-/* Allocates the arrays. Release *dual with dual_release, also after an error. Errors:
- * STATUS_MEMORY. */
+/* Allocates the arrays. Release *dual with dual_release, also after an error.
+ * Errors: STATUS_MEMORY. */
 MUST_CHECK Status dual_init(Dual *dual, const Problem *problem, Err *err);
 void dual_release(Dual *dual);
 

@@ -1,11 +1,12 @@
-/* Every segment costs phi = factor l^(1 + a) d^-a, jointly convex in both its ends' states [METHODS
- * 1.10]. Its second derivatives H are one matrix of 4 x 4, and the matrix of the whole tree is that
- * of springs H along its segments, which are eliminated from the outlets to the inlets, O(n):
+/* Every segment costs phi = factor l^(1 + a) d^-a, which is jointly convex in the states of both
+ * its ends [METHODS 1.10]. Its second derivatives H are a 4 x 4 matrix. The matrix of the whole
+ * tree is that of springs H along its segments. They are eliminated from the outlets to the inlets
+ * in O(n):
  *
- * With K and b, the spring and load that a joint's daughters hand up together, and g the gradient,
- * the joint's step s follows from its parent's s' by (K + H) s = H s' - (b + g), and it hands up
- * K (K + H)^-1 H, which is H - H (K + H)^-1 H without its cancellation, and H (K + H)^-1 (b + g)
- * - g. A fixed joint hands up H and -g. */
+ * Let K and b be the spring and the load that a joint's daughters hand up together, and g the
+ * gradient. The joint's step s follows from its parent's step s' by (K + H) s = H s' - (b + g). The
+ * joint hands up the spring K (K + H)^-1 H, which is H - H (K + H)^-1 H without its cancellation,
+ * and the load H (K + H)^-1 (b + g) - g. A fixed joint hands up H and -g. */
 #include "grow/bound/bound_newton.h"
 
 #include <stdlib.h>
@@ -157,8 +158,8 @@ static void eliminate(const Problem *problem, Newton *newton, double smoothing, 
         load_above[k] += handed[k] - gradient[k];
 }
 
-/* The step of joint i, whose parent's is known. Returns by how much what its segment costs changes
- * along it, to first order. */
+/* Computes the step of joint i from its parent's step. Returns the first-order change of its
+ * segment's cost along the step. */
 static double descend(const Problem *problem, Newton *newton, double smoothing, size_t i)
 {
     const Joint *joint = &problem->joint[i];

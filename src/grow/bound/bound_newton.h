@@ -1,4 +1,5 @@
-/* One step of Newton's method on all free joints at once. */
+/* One step of Newton's method on all free joints at once, to minimise the target of a Problem.
+ * Lengths are smoothed [bound_problem.h] by `smoothing`, mm. */
 #ifndef CORCAST_GROW_BOUND_NEWTON_H
 #define CORCAST_GROW_BOUND_NEWTON_H
 
@@ -11,8 +12,8 @@ typedef double Symmetric[STATE * (STATE + 1) / 2];
 /* Arrays have one entry per joint and are owned. */
 typedef struct Newton {
     State *step;       /* 0 where the joint is fixed */
-    State *load;       /* workspace: load of what hangs on the joint */
-    Symmetric *spring; /* workspace: spring of what hangs on the joint */
+    State *load;       /* workspace: load of the subtree below the joint */
+    Symmetric *spring; /* workspace: spring of the subtree below the joint */
 } Newton;
 
 /* Allocates the arrays for `n` joints. Release *newton with newton_release, also after an error.
@@ -25,8 +26,8 @@ void newton_release(Newton *newton);
 double newton_cost(const Problem *problem, const Newton *newton, double smoothing, double part);
 
 /* Computes the step to the minimum of the target's second-order model, with smoothed lengths.
- * Returns the derivative of the target along the step, at its beginning; it is at most 0. Cost:
- * O(n). */
+ * Returns the derivative of the target along the step, at its beginning; it is at most 0.
+ * Cost: O(n). */
 double newton_step(const Problem *problem, Newton *newton, double smoothing);
 
 /* Computes the force that segment i exerts on its joint at the end of the step, by the second-order

@@ -1,18 +1,20 @@
-/* Shares are summed towards the inlets; drops of the tree are summed from them, in units that leave
- * out what all segments have in common, so that neither viscosity nor flow need be known: the drop
- * on a segment is share * length / radius^4. Then one forward loop numbers the joints that stay.
+/* Flow shares are summed towards the inlets. Pressure drops of the tree are summed away from the
+ * inlets, in units that leave out the factors common to all segments, so that neither viscosity nor
+ * flow must be known: the drop on a segment is share * length / radius^4. Then one forward loop
+ * numbers the joints that remain.
  *
- * Free joints begin with the drops that are best where they are, which has a closed form as long as
- * all outlets have one drop D: all below and including a segment costs W^(1 + a) D^-a at the least,
- * W = w + (sum of W^(1 + a) over its daughters)^(1 / (1 + a)), w = flow^(a / (1 + a)) length, and
- * the segment's part of D is w / W. Lengths are smoothed, as at the first step. Of the drops of all
- * outlets below the least is parted, so that drops rise along every way. */
+ * Free joints begin with the drops that are best at their positions. These have a closed form if
+ * all outlets have the same drop D: a segment and all below it cost at least W^(1 + a) D^-a, with W
+ * = w + (sum of W^(1 + a) over its daughters)^(1 / (1 + a)) and w = flow^(a / (1 + a)) length, and
+ * the segment's part of D is w / W. Lengths are smoothed, as at the first step. If outlets have
+ * different drops, the least drop of all outlets below is divided in this manner, so that drops
+ * rise along every path. */
 #include "grow/bound/bound_problem.h"
 
 #include "grow/bound/bound.h"
 #include <stdlib.h>
 
-/* What the tree says of each node; owned. */
+/* Data of the tree per node; the arrays are owned. */
 typedef struct ProblemSurvey {
     double *share; /* what leaves there */
     double *flow;  /* the shares at and below it */
@@ -30,7 +32,7 @@ static void survey_release(ProblemSurvey *survey)
     free(survey->joint);
 }
 
-/* Whether blood flows through segment i. */
+/* Returns true if blood flows through segment i. */
 static bool is_open(const Tree *tree, const ProblemSurvey *survey, size_t i)
 {
     return tree_is_segment(tree, i) && survey->flow[i] > 0;
@@ -54,7 +56,7 @@ static Status survey_node(const Tree *tree, ProblemSurvey *survey, size_t i, Pro
         survey->drop[tree->parent[i]] + survey->flow[i] * length / (radius2 * radius2);
     if (is_outlet(tree, survey, i) && !(survey->drop[i] > 0))
         return err_set(err, STATUS_INPUT,
-                       "node %d: blood leaves the tree where its root is, without a way to it",
+                       "node %d: blood leaves the tree where its root is, without a path to it",
                        tree->id[i]);
     if (!isfinite(survey->drop[i]))
         return err_set(err, STATUS_INPUT, "node %d: radius %g mm lets too little blood through",
@@ -86,7 +88,7 @@ static Status survey_init(ProblemSurvey *survey, const Tree *tree, Problem *prob
     return STATUS_OK;
 }
 
-/* Whether node i is a joint, and not only passed. */
+/* Returns true if node i becomes a joint, and false if it is left out. */
 static bool is_joint(const Tree *tree, const ProblemSurvey *survey, size_t i)
 {
     return !tree_is_segment(tree, i) || (survey->flow[i] > 0 && survey->ways[i] > 1) ||
@@ -125,14 +127,14 @@ static void add_node(Problem *problem, const Tree *tree, ProblemSurvey *survey, 
     problem->node[problem->outlets++] = (int32_t)i;
 }
 
-/* What hangs on a joint, at the start. */
+/* The subtree below a joint, at the start of the search. */
 typedef struct Hanging {
     double weight; /* w of the segment to the joint */
     double costs;  /* the sum of W^(1 + a) over its daughters */
     double least;  /* the least drop of the outlets below */
 } Hanging;
 
-/* Gathers what hangs on all joints, which is zeroed. */
+/* Sums up the subtrees below all joints into `hanging`, which is zeroed before. */
 static void gather(const Problem *problem, Hanging *hanging)
 {
     const double a = problem->a, smoothing = FIRST_SMOOTHING * problem->mean_length;

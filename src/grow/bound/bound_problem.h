@@ -1,5 +1,9 @@
 /* States a tree as a convex optimisation problem: move the joints so that the sum of the costs of
- * all segments is least. Outlets and inlets are fixed; all other joints are free. */
+ * all segments is least.
+ *
+ * A joint is a node of the tree with its state: its position and its pressure drop from the inlet.
+ * Outlets and inlets are fixed; all other joints are free. The radius of a segment follows from its
+ * length and pressure drop by Poiseuille's law, so that radii are no unknowns. */
 #ifndef CORCAST_GROW_BOUND_PROBLEM_H
 #define CORCAST_GROW_BOUND_PROBLEM_H
 
@@ -7,8 +11,8 @@
 #include "tree/tree.h"
 #include <stdbool.h>
 
-/* The state of a joint: x, y, z in mm, and the drop of pressure from the inlet in the unit of
- * Outlet. */
+/* The state of a joint: x, y, z in mm, and the drop of pressure from the inlet in the unit
+ * of Outlet. */
 enum { PLACE_AXES = 3, DROP = 3, STATE = 4 };
 
 /* Lengths are smoothed, see Reach. The first smoothing is this multiple of Problem.mean_length. */
@@ -46,8 +50,8 @@ static inline bool joint_is_inlet(const Joint *joint)
     return joint->parent < 0;
 }
 
-/* The segment to a joint as a difference of states. Its length l is smoothed: sqrt(l^2 +
- * smoothing^2). */
+/* The segment to a joint as a difference of states. Its length l is smoothed: sqrt(l^2
+ * + smoothing^2). */
 typedef struct Reach {
     double by[STATE];
     double length2; /* mm^2 */

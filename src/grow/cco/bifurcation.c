@@ -1,12 +1,13 @@
-/* With all else as it is, S_root depends on the bifurcation through three lengths only. Where it is
- * least, the derivatives with respect to them pull evenly: the point is the weighted Fermat point
- * for these derivatives as weights [fermat.h]. They vary slowly, so weights at one place
- * (bifurcation_at) and the Fermat point for them (bifurcation_next) in turn converge in a few
- * rounds.
+/* With the rest of the tree held fixed, S_root depends on the bifurcation only through three
+ * lengths. At its minimum, the derivatives with respect to the lengths are in equilibrium: the
+ * position is the weighted Fermat point with these derivatives as weights [fermat.h]. The
+ * derivatives vary slowly. Computing the weights at a position (bifurcation_at) and the Fermat
+ * point for the weights (bifurcation_next) in turn therefore converges in a few rounds.
  *
- * A point that collapses onto an end is pushed off it to the least length allowed, in the direction
- * that costs least: such bifurcations are among the best there are, so they must not be lost. A
- * segment that must stay straight is split at the best place along it. */
+ * If the Fermat point coincides with an end, the bifurcation is moved off the end to the
+ * minimum length, in the direction that costs least. Such bifurcations are among the best there
+ * are, so they must not be lost. A segment that must stay straight is split at the best
+ * position along it. */
 #include "grow/cco/bifurcation.h"
 
 #include "grow/cco/fermat.h"

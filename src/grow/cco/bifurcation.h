@@ -1,5 +1,10 @@
-/* The best position of a bifurcation, as an optimisation problem of its own: for a new connection,
- * and for a bifurcation that is moved. */
+/* The best position of a bifurcation: an optimisation problem on its own, for a new connection and
+ * for a bifurcation that is moved.
+ *
+ * Three segments meet at the bifurcation. Their far ends are fixed, and so is the rest of the tree.
+ * The price of a position is the change of the target (as S_root [law.h]). bifurcation_at computes
+ * the price and its derivatives; bifurcation_optimise repeats that and a move to the Fermat point
+ * of these derivatives, which converges in a few rounds. */
 #ifndef CORCAST_GROW_BIFURCATION_H
 #define CORCAST_GROW_BIFURCATION_H
 
@@ -14,12 +19,12 @@ enum { PROXIMAL, LEFT, RIGHT, ENDS };
 typedef struct Bifurcation {
     Vec3 end[ENDS];      /* mm; the far ends of the three segments, which differ */
     double burden[ENDS]; /* per segment: flow times viscosity [law.h] */
-    Below below[2];      /* what hangs on the far ends of LEFT and RIGHT */
+    Below below[2];      /* the subtrees below LEFT and RIGHT */
     Adjoint adjoint;     /* of the proximal segment */
     double radius_unit;  /* mm^(3/4); q times the proximal segment's gauge [law.h] */
-    /* The price is the change of S_root, to first order, from a segment of load_before and
-     * cost_before to the bifurcation in its place, plus `extra`. If all three are 0, the price is
-     * S_root plus a constant. */
+    /* The price is the change of S_root, to first order, when the bifurcation replaces a segment
+     * with the load load_before and the cost cost_before, plus `extra`. If all three are 0, the
+     * price is S_root plus a constant. */
     double load_before, cost_before, extra;
     double least_length; /* mm; segments are no shorter than this */
     double least_widths; /* and no shorter than this many diameters */
@@ -44,12 +49,12 @@ void bifurcation_at(const Law *law, const Bifurcation *problem, Vec3 place, Bifu
 /* Returns true if all three segments are as long as they must be. */
 bool bifurcation_is_long_enough(const Bifurcation *problem, const BifurcationState *state);
 
-/* Sets *place to the point that is best for the state's weights, kept off the ends. Returns false
- * if the state is not finite. */
+/* Sets *place to the Fermat point for the state's weights, moved away from the ends by at least the
+ * minimum lengths. Returns false if the state is not finite. */
 bool bifurcation_next(const Bifurcation *problem, const BifurcationState *state, Vec3 *place);
 
-/* Moves *state, which bifurcation_at computed, `rounds` times to the next place. Does not check
- * that segments are long enough. Returns false if a state is not finite. */
+/* Moves *state, which bifurcation_at computed, `rounds` times to its bifurcation_next. Does not
+ * check that segments are long enough. Returns false if a state is not finite. */
 bool bifurcation_optimise(const Law *law, const Bifurcation *problem, int rounds,
                           BifurcationState *state);
 

@@ -1,15 +1,18 @@
-/* At a minimum inside the triangle the three weighted unit vectors add up to zero, so they form a
- * triangle with sides w_i, and the angle at which two edges meet is pi minus its angle theta_i
- * opposite the third weight. The point that sees the corners at these angles has the barycentric
- * coordinates 1 / h_i, h_i = cot A_i + cot theta_i with A_i the corners' angles (for equal weights
- * the classical csc(A + 60 deg) construction). h_i <= 0 says that corner i sees the other two under
- * too wide an angle and is itself the minimum, and so it is when its weight is no less than the
- * other two together. All h_i are kept multiplied by sin A and sin theta, so nothing is divided by
- * an area that may be zero.
+/* At a minimum inside the triangle, the three weighted unit vectors to the corners add up to
+ * zero. They form a triangle with the sides w_i, so that two edges meet at the angle pi -
+ * theta_i, with theta_i the angle of that triangle opposite the third weight. The point from
+ * which the corners appear at these angles has the barycentric coordinates 1 / h_i, h_i = cot A_i
+ * + cot theta_i, with A_i the angles at the corners. (For equal weights this is the classical
+ * csc(A + 60 deg) construction.)
  *
- * On the line through the first two corners, at x, the sum is w_0 x - w_1 x + w_2 sqrt(h^2 + (x -
- * f)^2) but for a constant, with the third corner at the height h above f: least where the third's
- * unit vector has the component (w_1 - w_0) / w_2 along the line, or at an end. */
+ * h_i <= 0 means that the other two corners appear from corner i at too wide an angle; then corner
+ * i is the minimum. Corner i is also the minimum if its weight is at least the sum of the other
+ * two. All h_i are multiplied by sin A and sin theta, so that nothing is divided by an area that
+ * may be zero.
+ *
+ * On the line through the first two corners, at x, the sum is a constant plus w_0 x - w_1 x + w_2
+ * sqrt(h^2 + (x - f)^2), with the third corner at the height h above f. It is least where the third
+ * corner's unit vector has the component (w_1 - w_0) / w_2 along the line, or at an end. */
 #include "grow/cco/fermat.h"
 
 static Fermat at_corner(const Vec3 corner[3], const double weight[3], int i)

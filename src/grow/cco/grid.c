@@ -1,19 +1,20 @@
-/* A cell lists its segments in one block of memory, in a few block sizes; a block that is outgrown
- * is kept for another cell. What distance queries need of a segment lies in one table of half cache
- * lines, so that a cell costs four bytes a segment and a neighbourhood a few cache lines.
+/* A cell lists its segments in one block of memory, of one of a few sizes. A block that has become
+ * too small for its cell is reused for another cell. Distance queries read a separate table, in
+ * which a segment takes half a cache line. A cell therefore costs four bytes per segment, and a
+ * neighbourhood a few cache lines.
  *
  * A segment is entered wherever its capsule may reach, so that two capsules that meet always share
- * a cell, and so that the number of entries grows with the segments' total length and not with the
- * boxes around them: the walk cuts the capsule into slabs of cells across its longest axis and
- * bounds each piece by itself. It reads the item alone, so that the same cells come out again when
- * the segment is taken out.
+ * a cell. The number of entries grows with the total length of the segments, not with their
+ * bounding boxes: the walk cuts the capsule into slabs of cells across its longest axis, and bounds
+ * each piece on its own. The walk reads only the item, so that it visits the same cells again when
+ * the segment is removed.
  *
- * Coordinates are floats relative to the grid's low corner, so rounding moves them by less than
- * 3e-8 of the grid's size. Distances do not suffer from that; whoever must keep segments from
- * crossing keeps them further apart than that.
+ * Coordinates are floats relative to the grid's low corner. Rounding changes them by less than 3e-8
+ * of the grid's size, which distances tolerate. Callers that must keep segments from crossing keep
+ * them further apart than that.
  *
- * Threads that touch different cells need no locks: each worker has an arena of blocks. Which block
- * holds the tags of a cell, and in what order, has no influence on any answer. */
+ * Threads that touch different cells need no locks: each worker has its own arena of blocks. Which
+ * block holds the tags of a cell, and in what order, does not influence any result. */
 #include "grow/cco/grid.h"
 
 #include <stdlib.h>
@@ -42,7 +43,7 @@ static double clamp01(double t)
     return t < 0 ? 0 : t > 1 ? 1 : t;
 }
 
-/* A grid has at most this many cells more than LEAST_CELLS for each that is asked for. */
+/* A grid has at most CELLS_PER_ASKED times the requested number of cells, plus LEAST_CELLS. */
 enum { CELLS_PER_ASKED = 8, LEAST_CELLS = 512 };
 
 /* The edge of the cells: cubes, unless the box is so thin for its length that these would be far
@@ -180,7 +181,7 @@ static bool enter_small_box(GridWalk *walk)
 
 GridWalk grid_walk(const Grid *grid, const GridItem *item)
 {
-    /* Wider by the rounding of places on cell borders. */
+    /* Wider by the rounding error of positions on cell borders. */
     GridWalk walk = {.grid = grid, .radius = (double)item->reach + grid->rounding};
     for (int i = 0; i < 3; i++) {
         walk.from[i] = (double)item->proximal[i];

@@ -1,5 +1,13 @@
-/* A uniform grid of cells over the domain, which finds the segments near a point or near a segment.
- * It does not depend on trees: segments are indices that the caller chooses. */
+/* A uniform grid of cells over the domain. It finds the segments near a point or near a segment.
+ *
+ * The grid does not depend on trees: segments are indices that the caller chooses. Each segment has
+ * a GridItem, its position and radius. Its capsule, a tube around the centreline with the radius
+ * `reach`, decides in which cells it is entered: in all cells that the capsule may meet. Two
+ * capsules that meet therefore have a cell in common.
+ *
+ *     TRY(grid_reset(&grid, box, cells, n_segments, 1, err));       (grid was zeroed)
+ *     TRY(grid_add(&grid, 0, i, is_terminal, grid_item(&grid, capsule, radius), err));
+ *     int found = grid_nearest(&grid, point, INFINITY, 8, near); */
 #ifndef CORCAST_GROW_GRID_H
 #define CORCAST_GROW_GRID_H
 
@@ -106,8 +114,8 @@ double grid_clearance(Box zone, Vec3 point);
 /* Returns true if all cells that the item's capsule may meet are in the zone. */
 bool grid_zone_holds(const Grid *grid, Box zone, const GridItem *item);
 
-/* Returns the item of a vessel of `radius` mm from capsule.a (proximal) to capsule.b. Its reach is
- * capsule.radius. */
+/* Returns the item of a vessel of `radius` mm from capsule.a (proximal) to capsule.b. Its reach
+ * is capsule.radius. */
 GridItem grid_item(const Grid *grid, Capsule capsule, double radius);
 
 /* Adds a segment, which is not in the grid, to every cell that may meet its item's capsule.

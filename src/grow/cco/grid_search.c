@@ -1,12 +1,12 @@
-/* The grid's queries. The cells about a point list more segments than are near it, so most of the
- * work is to find that a segment is not near. That is done for four segments at a time, and without
+/* The grid's queries. The cells around a point list more segments than are near it, so that most of
+ * the work is to find that a segment is not near. The search tests four segments at a time, without
  * branches, which no processor could predict.
  *
- * The nearest segments are looked for within a guessed distance first (grid_nearest_quick). A
- * segment counts only in the one cell that holds its point nearest to the query, so each is found
- * once; they are ranked by counting how many are nearer (sort_catch). Where the guess was too
- * short, rings of cells around the point are searched one after the other (grid_nearest), keeping a
- * sorted list. */
+ * grid_nearest_quick first searches within a guessed distance. A segment counts only in the one
+ * cell that holds its point nearest to the query, so that each is found once. Segments are
+ * ranked by counting how many are nearer (sort_catch). If the guess was too small, grid_nearest
+ * searches rings of cells around the point, one after another, with a sorted list of the
+ * nearest segments. */
 #include "grow/cco/grid.h"
 
 #include <assert.h>
@@ -274,7 +274,7 @@ static void gather_row(NearestSearch *search, int ring, int step, int y, int z)
             gather_cell(search, grid_index(grid, x, y, z));
 }
 
-/* Whether one of the ring's two faces across `axis` is in the grid. */
+/* Returns true if one of the ring's two faces across `axis` is in the grid. */
 static bool has_face(const NearestSearch *search, int ring, int axis)
 {
     int home = search->home[axis];
@@ -339,8 +339,8 @@ static void bounds_of(const Grid *grid, int cell, int axis, float out[2])
     out[1] = cell < grid->count[axis] - 1 ? (float)((cell + 1) * grid->edge) : FLT_MAX;
 }
 
-/* Catches those segments of a cell whose point next to `point` is in this very cell, so each
- * once. */
+/* Catches those segments of a cell whose point next to `point` is in this very cell, so
+ * each once. */
 static void catch_cell(const Grid *grid, const GridCell *cell, float bounds[3][2],
                        const float point[3], float reach2, Catch *out)
 {

@@ -37,14 +37,15 @@ typedef struct Law {
     double lambda; /* >= 0 */
 } Law;
 
-/* What hangs on the distal end of a segment: all daughters together. All 0 at a terminal. */
+/* The subtree below a segment, that is at its distal end: all daughters together. All members are 0
+ * at a terminal. */
 typedef struct Below {
     double rho_gamma, cost; /* G, and the sum of S */
     double inverse;         /* 1 / P */
     double load;            /* P^4 */
 } Below;
 
-/* A segment together with all that hangs on its distal end. */
+/* A segment together with the subtree below it. */
 typedef struct Reduced {
     double load;            /* W, mm */
     double rho_gamma;       /* X */
@@ -62,9 +63,10 @@ typedef struct Adjoint {
     double cost;
 } Adjoint;
 
-/* x^(-1/3) for normal x > 0 to about one unit in the last place: exponent arithmetic for the first
- * guess (3.4 % off), then two steps of order three and one of order two of Newton's kind. No
- * library function, so every machine gives the same bits. */
+/* Returns x^(-1/3) for a normal double x > 0, accurate to about one unit in the last place.
+ * Exponent arithmetic gives the first guess (3.4 % off); then follow two iterations of order three
+ * and one of order two, as in Newton's method. No library function is used, so every machine gives
+ * the same bits. */
 static inline double inverse_cube_root(double x)
 {
     uint64_t bits;
@@ -100,8 +102,8 @@ static inline double law_lambda_power(const Law *law, double x)
     return elementary_pow(x, law->lambda);
 }
 
-/* Returns what hangs on a distal end at which `law` holds, from the sums of the daughters'
- * rho_gamma and cost; both sums are 0 at a terminal. */
+/* Returns the subtree below a segment, from the sums of the daughters' rho_gamma and cost; both
+ * sums are 0 at a terminal. `law` is the law at the segment's distal end. */
 static inline Below law_gather(const Law *law, double rho_gamma, double cost)
 {
     Below out = {.rho_gamma = rho_gamma, .cost = cost};
@@ -117,8 +119,8 @@ static inline Below law_gather(const Law *law, double rho_gamma, double cost)
     return out;
 }
 
-/* Returns the segment of `length` mm with this `burden`, together with what hangs on its distal
- * end. The law is that at its proximal end. */
+/* Returns the segment of `length` mm with this `burden`, together with the subtree `below` it.
+ * `law` is the law at the segment's proximal end. */
 static inline Reduced law_extend(const Law *law, double burden, double length, const Below *below)
 {
     Reduced out = {.below = *below};

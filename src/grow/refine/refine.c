@@ -1,25 +1,29 @@
-/* Refinement is local search with two moves [refine_move.h]: a bifurcation moves to a better place,
- * or a subtree is cut off and connected elsewhere. A round (one turn of the loop in descend, anneal
- * or mend) tries all subtrees in random order (shuffle) and then all bifurcations one by one
- * (sweep), in descend after a joint move of them all [refine_joint.h]; the geometry level has no
- * shuffles.
+/* Refinement is a local search with two moves [refine_move.h]: a bifurcation moves to a better
+ * position, or a subtree is cut off and connected elsewhere. A round is one pass of the loop in
+ * descend, anneal or mend. It tries all subtrees in random order (shuffle), and then all
+ * bifurcations one by one (sweep); in descend, a joint move of all bifurcations comes first
+ * [refine_joint.h]. The geometry level has no shuffles.
  *
- * Within the rules of clearance the search soon gets stuck where vessels are in each other's way:
- * better trees lie behind trees that cross. The levels above geometry therefore anneal where rules
- * may be broken for a penalty [refine_penalty.h]: the temperature falls geometrically, and the
- * penalty for a mm rises, until few segments still break a rule. Then rates rise further, those of
- * the segments at fault most, until none does (mend). When little more is to be gained meanwhile,
- * only segments that break a rule and their neighbours are moved (repair). A last descent keeps the
- * rules. Annealing within the rules ends 1 % higher; joint moves settle what heat is to stir.
+ * If every move must keep the rules of clearance, the search soon gets stuck where vessels are in
+ * each other's way: the path to better trees leads through trees whose vessels cross. The levels
+ * above geometry therefore anneal with penalties for broken rules [refine_penalty.h]. The
+ * temperature falls geometrically, and the penalty per mm rises, until few segments still break a
+ * rule. Then the rates rise further, most for the segments that break a rule, until no segment does
+ * (mend). When little more is to be gained meanwhile, only segments that break a rule and their
+ * neighbours move (repair). A last descent keeps the rules. Annealing within the rules ends at a
+ * target that is 1 % higher. Joint moves are not used while annealing, because they would undo the
+ * random changes.
  *
- * Annealing, mending and that descent are a cycle. Moves for several are spent on cycles from the
- * same tree, side by side (refine_in_cycles), and the best tree is kept.
+ * Annealing, mending and that descent are one cycle. If there are enough moves for several cycles,
+ * they run in parallel from the same tree (refine_in_cycles), and the best tree is the result.
  *
- * Refinement may be stopped after any move, and then has a tree that keeps the rules: the present
- * one in descend; while annealing or mending, the one before, which recall restores. So it does if
- * mending fails. What follows the radii, viscosities or exponents, is held fixed within a round and
- * computed anew after it (settle). If vessels meet because of that at the end, the tree is the one
- * of the last round before which none did. */
+ * Refinement may be stopped after any move, and then returns a tree that keeps the rules. In
+ * descend, it is the present tree. During annealing and mending it is the tree from before, which
+ * recall restores; so does a mending that fails.
+ *
+ * Viscosities and exponents that depend on radii are held fixed within a round, and computed again
+ * after it (settle). If vessels meet at the end because of that, the result is the tree of the last
+ * round after which none did. */
 #include "grow/grow.h"
 
 #include "grow/refine/refine_arbor.h"
@@ -33,27 +37,29 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Temperatures over S_root a segment: of annealing at first and at last, and of repairs. */
+/* Temperatures in units of S_root per segment: at the beginning and at the end of annealing, and of
+ * repairs. Reasons for these and the next numbers, where not stated, not recorded. */
 static const double hot = 1, cold = 0.02, warm = 0.05;
-/* The penalty for a mm meanwhile, relative to S_root for each mm of vessels, at first and at
- * last. */
+/* Penalty per mm during annealing, relative to S_root per mm of vessels: at the beginning and at
+ * the end. */
 static const double first_rate = 0.1, last_rate = 2;
-/* The share of the budget that is left then: what so many moves a terminal take, within limits. */
+/* Share of the budget that is left after annealing: that of last_moves moves per terminal, but at
+ * least least_left and at most most_left. */
 static const double last_moves = 40, least_left = 0.1, most_left = 0.5;
-/* A round that gains less than this of S_root is the last: of sweeps; before annealing, of shuffles
- * while mending, and after it. */
+/* A round that gains less than this share of S_root is the last: rounds of sweeps and joint moves;
+ * then rounds of shuffles before annealing, while mending, and after it. */
 static const double least_sweep_gain = 1e-4, least_joint_gain = 1e-4, least_large_gain = 1e-2;
 static const double least_gain_before = 2e-3, least_gain_mending = 2e-4, least_gain_after = 5e-5;
 enum { ROUNDS_OF_MENDING = 120 };
-/* The moves of a cycle over the square of the number of terminals, and over the number at most:
- * where it cools more slowly, segments lean on broken rules, and mending costs more than was
- * gained. */
+/* Moves of a cycle divided by the square of the number of terminals, and their maximum divided by
+ * that number. If a cycle cools more slowly, the tree comes to depend on broken rules, and mending
+ * costs more than annealing gained. */
 static const double moves_per_square = 20, most_per_terminal = 2000;
-/* Cycles at most, however small the tree is and long the time. */
+/* Maximum number of cycles, for small trees and long times. */
 static const double most_cycles = 1 << 20;
-/* Segments that are moved around either end of one that breaks a rule. */
+/* Number of segments that are moved around each end of a segment that breaks a rule. */
 enum { NEIGHBOURS = 8 };
-/* Rounds after which reserved radii are computed anew. */
+/* Rounds after which reserved radii are computed again. */
 enum { ROUNDS_PER_RESERVATION = 4 };
 /* Moves after which the clock is read. */
 enum { MOVES_PER_LOOK = 16 };
@@ -65,7 +71,7 @@ typedef struct Refinement {
     double begun; /* clock */
     uint64_t moves;
     double fraction;     /* of the budget that is spent */
-    double shown, shows; /* the progress to tell of at first, and how much more at the end */
+    double shown, shows; /* progress to report at the beginning, and its increase until the end */
     bool stopped;
     atomic_bool *cancelled; /* the progress callback asked to stop; shared by all cycles */
     LocalSearch search;
@@ -84,8 +90,9 @@ typedef struct Cycle {
     double first_fraction; /* of the budget */
 } Cycle;
 
-/* The most moves that a level tries on a tree of so many terminals if neither moves nor seconds are
- * given. Geometry ends earlier when there is little left to gain. */
+/* Returns the maximum number of moves that a level tries on a tree of `terminals` terminals if
+ * neither moves nor seconds are specified. The geometry level ends earlier when there is little
+ * left to gain. */
 static uint64_t most_moves(GrowRefine level, size_t terminals)
 {
     const uint64_t moves_per_terminal[] = {[GROW_REFINE_NONE] = 0,
@@ -95,7 +102,7 @@ static uint64_t most_moves(GrowRefine level, size_t terminals)
     return moves_per_terminal[level] * terminals;
 }
 
-/* Whether the budget is spent; asked after every move. */
+/* Returns true if the budget is used up. Called after every move. */
 static bool is_over(Refinement *refinement)
 {
     const RefineParams *params = refinement->params;
@@ -133,8 +140,8 @@ static Status sweep(Refinement *refinement, bool *over, Err *err)
     return STATUS_OK;
 }
 
-/* Moves all bifurcations at once, which counts as one move; *gains: whether that gains enough for
- * another one to be worth its time. */
+/* Moves all bifurcations at once, which counts as one move. *gains receives true if the gain
+ * justifies another such move. */
 static Status move_jointly(Refinement *refinement, bool *gains, bool *over, Err *err)
 {
     LocalSearch *search = &refinement->search;
@@ -150,7 +157,8 @@ static Status move_jointly(Refinement *refinement, bool *gains, bool *over, Err 
     return STATUS_OK;
 }
 
-/* Whether sweeps, O(depth) a bifurcation, would take minutes to gain a tenth of a joint move. */
+/* Returns true if the tree is so large that sweeps, at O(depth) per bifurcation, would take minutes
+ * to gain a tenth of what a joint move gains. */
 static bool is_large(const Refinement *refinement)
 {
     return refinement->params->level == GROW_REFINE_GEOMETRY &&
@@ -206,7 +214,7 @@ static Status settle_for_round(LocalSearch *search, int round, Err *err)
     return is_due ? settle(search, err) : STATUS_OK;
 }
 
-/* How many segments break a rule, as of the last clearance_reserve. */
+/* Returns the number of segments break a rule, as of the last clearance_reserve. */
 static size_t count_unclear(const LocalSearch *search)
 {
     size_t count = 0;
@@ -288,16 +296,16 @@ static Status repair(Refinement *refinement, bool *over, Err *err)
     return STATUS_OK;
 }
 
-/* The moves of a cycle: of annealing, mending and the descent after it. Several cycles find more in
- * a small tree than one long one: where bifurcations would merge, T is right only after a
- * descent. */
+/* The moves of a cycle: of annealing, mending and the descent after it. Several cycles find
+ * more in a small tree than one long one: where bifurcations would merge, T is right only after
+ * a descent. */
 static double cycle_moves(const Refinement *refinement)
 {
     double terminals = (double)refinement->search.arbor.terminals;
     return terminals * fmin(moves_per_square * terminals, most_per_terminal);
 }
 
-/* How much of a cycle's annealing is done, 1: all. */
+/* Returns the share of a cycle's annealing that is done; 1: all. */
 static double part_done(const Refinement *refinement, const Cycle *cycle)
 {
     const LocalSearch *search = &refinement->search;
@@ -334,7 +342,8 @@ static Status anneal(Refinement *refinement, bool *over, Err *err)
     return STATUS_OK;
 }
 
-/* Rounds in which penalties rise. *done: whether no segment breaks a rule any more. */
+/* Makes rounds in which penalties rise. *done receives true if no segment breaks a rule
+ * any more. */
 static Status mend(Refinement *refinement, bool *done, bool *over, Err *err)
 {
     LocalSearch *search = &refinement->search;
@@ -375,7 +384,7 @@ static Status improve_topology(Refinement *refinement, bool *over, Err *err)
     return arbor_cost(&search->arbor) < best ? STATUS_OK : recall(refinement, err);
 }
 
-/* How far apart the terminals of a pair are, mm, where terminals are pairs; else 0. */
+/* Sets *mm to the distance of the terminals of a pair, mm; 0 if the tree has no pairs. */
 static Status pair_distance(const Tree *tree, double *mm, Err *err)
 {
     TreePair *pair = NULL;
@@ -555,7 +564,7 @@ done:
     return status;
 }
 
-/* Whether a worker may begin another cycle. */
+/* Returns true if a worker may begin another cycle. */
 static bool has_time(const Refinement *from, const Found *found)
 {
     double end = clock_seconds() - from->begun + found->seconds;

@@ -1,30 +1,35 @@
-/* All nodes are put to their goals at once. Then, round by round, what breaks a rule that it kept
- * gives way (give_way), until nothing does. A segment that is shorter than wide is stretched, and
- * two that overlap are pushed apart: just as far as the rule asks, each end by its part in the
- * distance, and the more the thinner its segment is. Goals are near minima, so that a small push
- * costs little. Where two overlap so deeply that a push might take them past each other, the ends
- * of the thinner one go half of the way back to where the two were clear, and so do those of a
- * segment that leaves the domain, and of any that is still broken after PUSHES rounds.
+/* First all nodes move to their goals at once. Then, round by round, every segment that has come to
+ * break a rule gives way (give_way), until none breaks a rule.
  *
- * Radii follow all that moves, so that a segment may break a rule where it stands; then it is
- * pushed, too. Where many segments are in each other's way, giving way costs more than going that
- * far gains, and the way is given up (most_broken). */
+ * - A segment that is shorter than wide is stretched, and two segments that overlap are pushed
+ *   apart, exactly as far as the rule requires. Each end moves in proportion to its part in the
+ *   distance, and more for a thinner segment. Goals are near minima of the target, so a small push
+ *   costs little.
+ * - If two segments overlap so deeply that a push might move them past each other, the ends of
+ *   the thinner segment go half of the path back to where the two were clear. So do the ends
+ *   of a segment that leaves the domain, and of any segment that still breaks a rule after
+ *   PUSHES rounds.
+ *
+ * Radii change with every move, so that a segment may break a rule although it did not move; then
+ * it is pushed, too. If many segments are in each other's way, giving way costs more than a move of
+ * this length gains, and the approach fails (most_broken). */
 #include "grow/refine/refine_approach.h"
 
 #include <string.h>
 
-/* Rounds in which segments are pushed, and all of them; RETURNS times half of the way back is all
- * of it. */
+/* PUSHES rounds push segments; there are at most ROUNDS rounds. A node that went back RETURNS times
+ * half of the path is put to its start. Reasons for the numbers not recorded. */
 enum { PUSHES = 8, ROUNDS = 20, RETURNS = 6 };
-/* Pushes go so much further than the rules ask, and in each round by as much more: radii change
- * with them. */
+/* Fraction by which a push exceeds what the rules require, in the first round; each round adds the
+ * same fraction again, because radii change with every push. */
 static const double margin = 0.01;
 /* The share of the segments that may break a rule at the goals. */
 static const double most_broken = 0.025;
-/* Nearer than this share of what the rules ask is too deep for a push. */
+/* Two segments nearer than this share of the required distance overlap too deeply for a push. */
 static const double too_deep = 0.4;
 
-/* Has the node go half of the way back. False where it stands at its start, or has to stay. */
+/* Moves the node half of the path back to its start. Returns false if it is at its start, or
+ * must stay. */
 static bool go_back(Joints *joints, int32_t i)
 {
     if (joints->fixed[i] || joints->returns[i] > RETURNS)
@@ -107,13 +112,13 @@ static void make_room(Joints *joints, const Arbor *arbor, const Clearance *clear
             separate(joints, arbor, clearance, i, other);
 }
 
-/* Whether the node is elsewhere than at its start. */
+/* Returns true if the node is not at its start. */
 static bool is_away(const Joints *joints, int32_t i)
 {
     return vec3_distance(joints->place[i], joints->start[i]) > 0;
 }
 
-/* Has all segments that break a rule which they kept give way; returns how many there are. */
+/* Makes all segments give way that break a rule which they kept before. Returns their number. */
 static size_t give_way(Joints *joints, const Arbor *arbor, const Clearance *clearance, bool pushes)
 {
     size_t broken = 0;

@@ -1,4 +1,5 @@
-/* Moves all bifurcations towards their goals [refine_joint.h]. */
+/* Moves all bifurcations from their starts towards their goals at the same time [refine_joint.h],
+ * as far as the rules of clearance allow. */
 #ifndef CORCAST_GROW_REFINE_APPROACH_H
 #define CORCAST_GROW_REFINE_APPROACH_H
 

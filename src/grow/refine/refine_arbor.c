@@ -1,7 +1,7 @@
-/* Every segment holds rho_gamma, cost and utilisation of itself with all that hangs on it, so a
- * change at one place is carried to the root by recomputing the segments on the way and nothing
- * else: O(depth) and exact, because nothing is added to or taken from a running sum. What a move
- * overwrites is saved first, each segment once, so undoing it restores the very bits. */
+/* Every segment stores rho_gamma, cost and utilisation of itself together with its subtree. A
+ * change at one segment is carried to the root by recomputing only the segments on the path:
+ * O(depth), and exact, because no running sum is added to or subtracted from. Values that a move
+ * overwrites are saved first, once per segment, so that undoing a move restores the same bits. */
 #include "grow/refine/refine_arbor.h"
 
 #include <stdlib.h>
@@ -91,7 +91,7 @@ static Local local_at(const Arbor *arbor, double radius)
                    logcurve_at(&arbor->gamma, radius)};
 }
 
-/* Fills in what the tree says of each node, and sums up. */
+/* Copies the data of each node from the tree, and sums up. */
 static Status fill(Arbor *arbor, const Tree *tree, const int32_t *parent, Err *err)
 {
     double *share = NULL, total = 0;
@@ -247,9 +247,9 @@ static Status disagree(const Arbor *arbor, Err *err)
 {
     return err_set(err, STATUS_INFEASIBLE,
                    arbor->gamma.n > 1
-                       ? "gamma changes too fast with the radius: the radii do not settle"
+                       ? "gamma changes too fast with the radius: the radii do not converge"
                        : "vessels are too thin for the viscosity law pries: radii and viscosities "
-                         "do not settle");
+                         "do not converge");
 }
 
 Status arbor_agree(Arbor *arbor, Err *err)
@@ -305,7 +305,7 @@ int32_t arbor_find_overuse(const Arbor *arbor, double *radius)
         const int32_t *child = arbor->branch[i].child;
         if (*radius * arbor->branch[i].inverse_limit > 1)
             return i;
-        if (child[0] < 0) /* rounding alone said that there was one */
+        if (child[0] < 0) /* only rounding made it look like one */
             return 0;
         scale *= reduced.widening;
         i = child[arbor->branch[child[1]].utilisation > arbor->branch[child[0]].utilisation];
@@ -410,8 +410,8 @@ static void sum_from_both(Arbor *arbor, int32_t i, int32_t j)
     arbor_sum_from(arbor, i);
 }
 
-/* Puts the bifurcation at the end of segment i to `place` and sums up from there and from segment
- * `also`. */
+/* Moves the bifurcation at the end of segment i to `place`, and sums up from there and from
+ * segment `also`. */
 static void pivot(Arbor *arbor, int32_t i, Vec3 from, Vec3 place, int32_t also)
 {
     for (int side = 0; side < 2; side++) {

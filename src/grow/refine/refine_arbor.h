@@ -57,7 +57,8 @@ typedef struct Local {
     double gamma;     /* of the fork at its end */
 } Local;
 
-/* The most segments that one move may place or reserve anew. */
+/* Maximum number of segments whose position or reservation one move may change. Reason for 24
+ * not recorded. */
 enum { ARBOR_MOVE_SHAPES = 24 };
 
 typedef struct Arbor {
@@ -66,7 +67,7 @@ typedef struct Arbor {
     size_t inlets; /* of them, the first ones */
     size_t terminals;
     int32_t *node;      /* the node's index in the Tree it was made from */
-    int32_t *tree;      /* of each node: the inlet it hangs on; NULL: there is one */
+    int32_t *tree;      /* per node: the inlet of its tree; NULL: there is one inlet */
     double radius_unit; /* q, mm^(3/4) */
     Branch *branch;
     Shape *shape;
@@ -156,7 +157,7 @@ static inline double arbor_cost(const Arbor *arbor)
 /* Returns the segment after `i` in depth-first order, tree after tree; 0 after the last. */
 int32_t arbor_next(const Arbor *arbor, int32_t i);
 
-/* Returns what hangs on the distal end of segment i. */
+/* Returns the subtree below segment i. */
 static inline Below arbor_below(const Arbor *arbor, int32_t i)
 {
     const int32_t *child = arbor->branch[i].child;
@@ -167,10 +168,10 @@ static inline Below arbor_below(const Arbor *arbor, int32_t i)
     return law_gather(&law, left->rho_gamma + right->rho_gamma, left->cost + right->cost);
 }
 
-/* Returns segment i together with what hangs on it. */
+/* Returns segment i together with the subtree below it. */
 Reduced arbor_reduce(const Arbor *arbor, int32_t i);
-/* Returns the marginal of segment i, from its parent's present sums and stored marginal. Cost:
- * O(1). */
+/* Returns the marginal of segment i, from its parent's present sums and stored marginal.
+ * Cost: O(1). */
 Marginal arbor_marginal(const Arbor *arbor, int32_t i);
 
 /* Returns the radius of segment i, mm, with its gauge of the last arbor_refresh. Cost: O(1). */
@@ -204,19 +205,19 @@ void arbor_begin(Arbor *arbor);
 /* Restores the arbor as it was at arbor_begin, to the last bit. */
 void arbor_undo(Arbor *arbor);
 
-/* Moves the bifurcation at the end of segment i to `place`, mm, and sums up to the root. Cost:
- * O(depth). */
+/* Moves the bifurcation at the end of segment i to `place`, mm, and sums up to the root.
+ * Cost: O(depth). */
 void arbor_shift(Arbor *arbor, int32_t i, Vec3 place);
 /* Cuts segment i off with all below it, together with the bifurcation that it comes from. Its
  * sibling then begins where the parent segment began. Neither the bifurcation nor the segment is
  * part of the tree until arbor_graft. Cost: O(1); sums further up still include the segment. */
 void arbor_prune(Arbor *arbor, int32_t i);
-/* Splits segment `host` at `place`, mm, and connects segment i, which is pruned, there. Cost:
- * O(depth). */
+/* Splits segment `host` at `place`, mm, and connects segment i, which is pruned, there.
+ * Cost: O(depth). */
 void arbor_graft(Arbor *arbor, int32_t i, int32_t host, Vec3 place);
 
-/* Sets reserved_radius and inverse_limit of segment i. Then the caller must call arbor_sum_from for
- * it. */
+/* Sets reserved_radius and inverse_limit of segment i. Then the caller must call arbor_sum_from
+ * for it. */
 void arbor_reserve(Arbor *arbor, int32_t i, double reserved_radius, double inverse_limit);
 /* Computes the sums of segment i and of all segments above it. Cost: O(depth). */
 void arbor_sum_from(Arbor *arbor, int32_t i);

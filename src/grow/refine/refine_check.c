@@ -1,7 +1,7 @@
-/* Refinement assumes more of a tree than a file has to promise: one root with one child, two
- * children or none elsewhere, segments with a length, flow out of terminals alone, all numbers of
- * the law, and a place inside the domain. All of it is tested before anything is allocated for the
- * tree. */
+/* Refinement requires more of a tree than a file guarantees: one or two children at a root, two or
+ * none elsewhere after vessels are made straight, segments longer than 0, flow that leaves only at
+ * terminals, all numbers of the law, and positions inside the domain. All of that is tested before
+ * memory is allocated for the tree. */
 #include "grow/refine/refine_check.h"
 
 #include <stdlib.h>
@@ -38,7 +38,7 @@ static Status check_node(const Tree *tree, const int32_t *counts, size_t i, Err 
     if (tree_is_segment(tree, i) && children != 1 &&
         !(vec3_distance(tree->position[i], tree->position[proximal(tree, counts, i)]) > 0))
         return err_set(err, STATUS_INPUT,
-                       "node %d is where its vessel begins; refinement needs vessels with a length",
+                       "node %d is where its vessel begins; refinement needs vessels longer than 0",
                        id);
     if (tree->flow_share && (children == 0 ? !(tree->flow_share[i] > 0) : tree->flow_share[i] != 0))
         return err_set(err, STATUS_INPUT,

@@ -1,4 +1,4 @@
-/* Checks whether a tree can be refined. */
+/* Checks whether a tree can be refined, before anything is changed. */
 #ifndef CORCAST_GROW_REFINE_CHECK_H
 #define CORCAST_GROW_REFINE_CHECK_H
 

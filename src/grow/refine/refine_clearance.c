@@ -1,14 +1,14 @@
-/* Radii change all over the tree with every move, so testing the moved segments alone cannot keep
- * vessels clear. Therefore every segment has a reserved radius a little above its own, to which no
- * other vessel's reserved radius comes near, and which is at most half its length. While every
- * radius stays within its reservation the rules hold for the whole tree, and one number at the root
- * tells whether it does [Branch.utilisation]. A move that makes some radius exceed its reservation
- * must find more room for it, or is undone (clearance_allows: reserve_moved, then
+/* Radii change all over the tree with every move, so testing only the moved segments cannot keep
+ * vessels clear. Therefore every segment has a reserved radius slightly above its own radius. No
+ * other vessel's reserved radius meets it, and it is at most half the segment's length. While every
+ * radius stays within its reservation, the rules hold for the whole tree; one number at the root
+ * shows whether that is so [Branch.utilisation]. If a move makes a radius exceed its reservation,
+ * it must find more room for the segment, or it is undone (clearance_allows: reserve_moved, then
  * arbor_find_overuse until there is none).
  *
- * clearance_reserve shares out the room between segments: first every segment wants its radius and
- * the reserve; then each is given the greatest share of that wish that it and all segments it meets
- * can have together (fair_share, of common_share). */
+ * clearance_reserve distributes the room between segments. First every segment requests its radius
+ * plus the reserve. Then each gets the largest share of its request that it and all segments that
+ * it meets can have together (fair_share, of common_share). */
 #include "grow/refine/refine_clearance.h"
 
 #include <stdlib.h>
@@ -149,8 +149,8 @@ static void share_out(size_t batch, int worker, void *context)
             clearance->share[i] = fair_share(clearance, sharing->arbor, (int32_t)i);
 }
 
-/* Reserves radii for all segments at the level; *clear: the share of segments that keep the
- * rules. */
+/* Reserves radii for all segments at the level; *clear: the share of segments that keep
+ * the rules. */
 static Status reserve_all(Clearance *clearance, Arbor *arbor, double *clear, Err *err)
 {
     TRY(measure(clearance, arbor, err));

@@ -1,10 +1,12 @@
-/* With the weights dS_root / d length held, S_root is a sum of weighted lengths along a tree:
- * convex in all places together. Lengths are rounded, sqrt(l^2 + smoothing^2), and one step of
- * Newton's method takes all bifurcations to its minimum: its matrix is that of springs along the
- * segments, eliminated from the terminals to the inlet as in bound_newton.c. A few steps with
- * weights computed anew give the goals (find_goals); segments that would be shorter than wide are
- * pushed apart. Where bifurcations would merge, moving them one by one gets stuck far from there:
- * each waits for the other. The rules are kept on the way to the goals [refine_approach.h]. */
+/* With the weights dS_root / d length held constant, S_root is a weighted sum of lengths along a
+ * tree. It is convex in all positions together. Lengths are smoothed, sqrt(l^2 + smoothing^2), and
+ * one step of Newton's method takes all bifurcations to the minimum of its second-order model. The
+ * step's matrix is that of springs along the segments. It is eliminated from the terminals to the
+ * inlet, as in bound_newton.c. A few steps with weights computed again give the goals (find_goals).
+ * Segments that would be shorter than wide are pushed apart.
+ *
+ * Moving bifurcations one by one gets stuck far from the optimum where bifurcations would merge:
+ * each waits for the other. On the path to the goals the rules are kept [refine_approach.h]. */
 #include "grow/refine/refine_joint.h"
 
 #include "grow/refine/refine_approach.h"
@@ -12,17 +14,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Over the mean length of the segments. */
+/* Smoothing relative to the mean length of the segments. Reasons for this and the next numbers
+ * not recorded. */
 static const double smoothing_share = 0.1;
-/* Segments shorter than so many radii are pushed apart as by a spring so many times as stiff as
- * their weight over that length. */
+/* Segments shorter than need_radii times their radius are stretched, as by a spring that is `push`
+ * times as stiff as their weight divided by that length. */
 static const double need_radii = 2.4, push = 10;
 enum { STEPS = 8, HALVINGS = 5 };
 /* A step is taken if it gains this share of what its first derivatives promise (Armijo's rule). */
 static const double least_share = 0.1;
 /* A step that gains less than this of S_root is the last. */
 static const double least_gain = 1e-5;
-/* Where that does not lower S_root, all set out for this share of the way. */
+/* If the move does not lower S_root, all nodes try this share of the path. */
 static const double next_scale = 0.3;
 enum { SCALES = 3 };
 
@@ -167,7 +170,7 @@ static void find_step(Joints *joints, const Arbor *arbor)
     }
 }
 
-/* Puts every node a part of the way from one place to another. */
+/* Moves every node a part of the path from one position to another. */
 static void arrange(const Joints *joints, Arbor *arbor, const Vec3 *from, const Vec3 *by,
                     double part)
 {

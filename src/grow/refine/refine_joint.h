@@ -1,4 +1,7 @@
-/* Moves all bifurcations at once. */
+/* The joint move: moves all bifurcations at once. The positions where the target is least for the
+ * present topology are the goals; approach_goals [refine_approach.h] moves the nodes towards
+ * them. Joint moves are needed where bifurcations would merge: moved one by one, each waits for
+ * the other. */
 #ifndef CORCAST_GROW_REFINE_JOINT_H
 #define CORCAST_GROW_REFINE_JOINT_H
 
@@ -22,8 +25,8 @@ typedef struct Joints {
     double margin;       /* by which pushes exceed what the rules require, as a fraction */
 } Joints;
 
-/* Allocates the workspace. Release it with joints_release, also after an error. Errors:
- * STATUS_MEMORY. */
+/* Allocates the workspace. Release it with joints_release, also after an error.
+ * Errors: STATUS_MEMORY. */
 MUST_CHECK Status joints_init(Joints *joints, size_t nodes, Err *err);
 void joints_release(Joints *joints);
 

@@ -1,37 +1,39 @@
-/* A move is made in the arbor, which costs O(depth); then S_root is exact, and only a move that
- * gains is tested for clearance (shift and connect, which call surcharge). A move that is not
- * wanted is undone.
+/* A move is first made in the arbor, which costs O(depth). Then S_root is exact. Only a move that
+ * gains is tested for clearance (shift and connect, which call surcharge). A move that is rejected
+ * is undone.
  *
- * move_bifurcation optimises the place [bifurcation.h], from further up as well where it is next to
- * an end (leave_end), and tries shorter and shorter steps towards it; while rules may be broken,
- * also random ones.
+ * move_bifurcation optimises the position [bifurcation.h], and if it is next to an end also from
+ * further up (leave_end). It tries shorter and shorter steps towards the optimum; while rules may
+ * be broken, also random steps.
  *
- * move_subtree prunes the subtree, prices its connection to the nearest segments in O(1) by their
- * marginals (find_candidates, propose, price), chooses one (choose) and grafts it there (connect).
- * Marginals age a little: that blurs the choice between candidates, never the decision to keep a
- * move. At a temperature, connections are chosen from Boltzmann's distribution of their prices, so
- * that one draw stands for many proposals of which all but one would be rejected; Metropolis's rule
- * (tolerance) makes up for the error of the price.
+ * move_subtree prunes the subtree, and computes the price of its connection to each of the nearest
+ * segments in O(1) from their marginals (find_candidates, propose, price). It chooses a connection
+ * (choose), and grafts the subtree there (connect). Marginals are slightly out of date. That makes
+ * the choice between candidates less exact, but never the decision to accept a move. At a
+ * temperature above 0, the connection is drawn from the Boltzmann distribution of the prices, so
+ * that one draw replaces many proposals of which all but one would be rejected. Metropolis's rule
+ * (tolerance) corrects for the error of the price.
  *
- * Penalties are counted exactly, by reserved radii: those that the changed segments paid before,
- * and those they pay after. A subtree changes places in two steps; what it pays in a place is by
- * how much the penalties rise when it is put there from nowhere. */
+ * Penalties are computed exactly from reserved radii: what the changed segments paid before the
+ * move, and what they pay after it. A subtree is moved in two steps. The penalty that it pays at a
+ * position is the increase of all penalties when it is added there. */
 #include "grow/refine/refine_move.h"
 
 #include "grow/cco/bifurcation.h"
 
 #include <float.h>
 
-/* Candidates for a connection, and how many segments are looked at to find them. */
+/* Number of candidates for a connection, and number of nearest segments from which they are chosen.
+ * Reasons not recorded. */
 enum { CANDIDATES = 12, NEIGHBOURS = 20 };
-/* Rounds of settling: of a candidate, and of the one that is chosen. */
+/* Rounds of the optimiser: for each candidate, and for the chosen one. */
 enum { ROUGH_ROUNDS = 1, ROUNDS = 2 };
-/* A bifurcation that may not be where it should tries shorter and shorter steps, and where it pays
- * penalties, then random ones; a subtree that cannot be connected where it was to be tries other
- * candidates. */
+/* A bifurcation whose best position breaks a rule tries STEPS shorter and shorter steps. If it pays
+ * penalties, it then tries JOLTS random steps. A subtree that cannot be connected to the chosen
+ * candidate tries others, up to ATTEMPTS. */
 enum { STEPS = 3, JOLTS = 4, ATTEMPTS = 4 };
-/* Bifurcations keep so many times the least length from the ends: radii move a little too, and
- * vessels are given more room than they need [refine_clearance.c]. */
+/* Bifurcations keep this many times the minimum length from the ends, because radii change slightly
+ * with a move, and vessels reserve more room than they need [refine_clearance.c]. */
 static const double margin = 1.06;
 /* A bifurcation is next to an end if its shortest segment is this share of its longest at most; the
  * parts of its mother by which it is then moved up, each half of the one before. */
@@ -60,9 +62,10 @@ static Bifurcation bifurcation_of(const LocalSearch *search, int32_t proximal, i
         .margin = margin};
 }
 
-/* Where the best place is next to an end, takes one further up the mother if that is better. The
- * shorter a daughter, the thinner it is, and the faster T rises as it becomes longer: next to an
- * end T has a minimum of its own, from which no short step leads away, and often not the least. */
+/* If the best position is next to an end, tries positions further up the parent segment. The
+ * shorter a daughter, the thinner it is, and the faster the target rises as it becomes longer. Next
+ * to an end the target therefore has a local minimum, which no short step leaves, and which is
+ * often not the global minimum. */
 static void leave_end(const Law *law, const Bifurcation *problem, BifurcationState *best)
 {
     const double *length = best->length;
@@ -108,8 +111,8 @@ static double penalty(LocalSearch *search, const int32_t *segment, int count)
     return penalty_of(&search->penalties, &search->clearance, &search->arbor, segment, count);
 }
 
-/* Puts the bifurcation at the end of segment i to `place` if S_root and penalties then are below
- * `cost`. */
+/* Moves the bifurcation at the end of segment i to `place` if S_root plus penalties are then
+ * below `cost`. */
 static bool shift(LocalSearch *search, int32_t i, Vec3 place, double cost)
 {
     Arbor *arbor = &search->arbor;
@@ -175,8 +178,8 @@ typedef struct MoveCandidate {
     BifurcationState state;
 } MoveCandidate;
 
-/* The marginal of a segment: the stored one where the present move has changed nothing beside
- * it. */
+/* The marginal of a segment: the stored one where the present move has changed nothing
+ * beside it. */
 static Marginal marginal_of(const Arbor *arbor, int32_t i)
 {
     const Branch *branch = &arbor->branch[i];
@@ -265,14 +268,14 @@ static int choose(LocalSearch *search, const MoveCandidate *candidate, int count
     return best;
 }
 
-/* By how much the cost of a move may exceed what was expected of it, by Metropolis's rule. */
+/* Returns by how much the cost of a move may exceed its estimate, by Metropolis's rule. */
 static double tolerance(LocalSearch *search, double temperature)
 {
     return -temperature * elementary_log(random_uniform(&search->random));
 }
 
-/* Connects `subtree`, which is pruned, as the candidate says, if S_root and penalties are then
- * below `limit`. If not, the move is to be undone. */
+/* Connects `subtree`, which is pruned, to the candidate if S_root plus penalties are then below
+ * `limit`. If not, the caller must undo the move. */
 static bool connect(LocalSearch *search, int32_t subtree, MoveCandidate *to, double limit)
 {
     Arbor *arbor = &search->arbor;

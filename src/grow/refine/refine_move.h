@@ -1,4 +1,5 @@
-/* The two kinds of moves of the local search that refines a tree. */
+/* The two moves of the local search that refines a tree: a bifurcation moves to a better position,
+ * or a subtree is cut off and connected elsewhere. */
 #ifndef CORCAST_GROW_REFINE_MOVE_H
 #define CORCAST_GROW_REFINE_MOVE_H
 

@@ -1,16 +1,17 @@
-/* An exterior penalty in the l1 norm: at a high enough but finite rate, the best tree keeps the
- * rules exactly, wherever breaking one by a mm gains less than the rate. The tree's topology is
- * free, too, so one rising rate for all would freeze it before the rules hold. Each segment has a
- * rate of its own instead, higher where a mm of it costs more, which in the end rises most while
- * the segment breaks a rule ([METHODS M], the breakout method): rates stay low where the rules
- * hold, and there the tree can go on giving way to where they do not. */
+/* This is an exterior penalty in the l1 norm. At a rate that is high enough but finite, the best
+ * tree keeps the rules exactly wherever breaking a rule by 1 mm gains less than the rate. The
+ * tree's topology is free, too, so one rising rate for all segments would freeze it before the
+ * rules hold. Each segment therefore has a rate of its own: higher where a mm of the segment
+ * costs more, and rising fastest while the segment breaks a rule ([METHODS M], the breakout
+ * method). Rates stay low where the rules hold, so that the tree there can give way to where they
+ * do not hold. */
 #include "grow/refine/refine_penalty.h"
 
 #include <stdlib.h>
 
 /* How rates rise after a round: all, and those of segments that break a rule. */
 static const double rise = 1.1, steep_rise = 2.2;
-/* Reserved radii over the radii, which grow a little until they are reserved for anew. */
+/* Ratio of reserved radii to radii: radii grow slightly until they are reserved again. */
 static const double reserve = 1.05;
 
 Status penalties_init(Penalties *penalties, size_t segments, Err *err)

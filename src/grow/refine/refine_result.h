@@ -1,4 +1,4 @@
-/* Turns a refined arbor back into a Tree. */
+/* Turns a refined arbor back into a Tree: the last step of refinement. */
 #ifndef CORCAST_GROW_REFINE_RESULT_H
 #define CORCAST_GROW_REFINE_RESULT_H
 

@@ -162,7 +162,7 @@ static Status grow_to(const AnimationSubject *subject, double part, Scene *grown
     const Scene *whole = subject->whole;
     const Tree *tree = &subject->source->of.tree;
     PictureSource young = *subject->source;
-    TRY(tree_grown(tree, part, &young.of.tree, err));
+    TRY(tree_proximal_part(tree, part, &young.of.tree, err));
     Status status =
         picture_geometry(subject->options, &young, subject->common, &grown->geometry, NULL, err);
     if (status == STATUS_OK)

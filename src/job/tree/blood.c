@@ -113,12 +113,12 @@ static Status part_flow(const BloodOptions *blood, Tree *tree, const char *tree_
     if (!law)
         return STATUS_OK;
     if (strcmp(law, "equal") == 0) {
-        tree_part_flow_equally(tree);
+        tree_set_flow_equal(tree);
         return STATUS_OK;
     }
     if (strcmp(law, "murray") == 0) {
         TRY(check_gamma(blood, tree, tree_path, err));
-        Status status = tree_part_flow_by_radius(tree, gamma_of(blood, tree), err);
+        Status status = tree_set_flow_by_radius(tree, gamma_of(blood, tree), err);
         if (status == STATUS_INPUT)
             err_prefix(err, "%s: ", tree_path);
         return status;

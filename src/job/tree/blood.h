@@ -21,7 +21,7 @@ TreeMeta blood_said(const BloodOptions *blood);
 ConditionSet blood_unmet(ViscosityLaw law);
 /* Checks the options for the tree that is the first operand, and divides the flow among the tree's
  * terminals as terminal_flow says. Errors: STATUS_USAGE for options of another viscosity law than
- * the tree's, and for a terminal_flow that is no rule and no file; as tree_part_flow_by_radius and
+ * the tree's, and for a terminal_flow that is no rule and no file; as tree_set_flow_by_radius and
  * tree_read_flows. */
 MUST_CHECK Status blood_settle(const BloodOptions *blood, const Parsed *parsed, Tree *tree,
                                Err *err);

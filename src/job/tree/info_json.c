@@ -75,9 +75,10 @@ static json_t *reading_json(const TreeReading *reading)
         {"near_ends", json_count(reading->network.near_ends)},
         {"near_ends_mm", json_number(reading->network.near_mm)},
         {"unit", json_text(length_unit_names[reading->unit])},
-        {"unit_said", json_boolean(reading->unit_said)},
-        {"believed_unit",
-         reading->believes ? json_text(length_unit_names[reading->believed]) : json_null()},
+        {"unit_said", json_boolean(reading->unit_is_stated)},
+        {"believed_unit", reading->has_plausible_unit
+                              ? json_text(length_unit_names[reading->plausible_unit])
+                              : json_null()},
         {"looks_like_voxels", json_boolean(reading->looks_like_voxels)},
         {"assumed", notes_json(reading)},
     };

@@ -587,7 +587,7 @@ Status tree_read_flows(Tree *tree, const char *path, Err *err)
     TRY_GOTO(tree_read_values(&only, path, "flow", NULL, err));
     TRY_GOTO(mem_calloc(&share, tree->n, sizeof *share, "flow shares", err));
     TRY_GOTO(sum_flows(&only, path, share, &sum, err));
-    tree_part_flow(tree, share);
+    tree_set_flow_shares(tree, share);
     tree->meta.number[META_Q_PERF] = sum;
     tree->meta.known[META_Q_PERF] = true;
     share = NULL;

@@ -87,7 +87,7 @@ static void take_unit(Graph *graph, const char *name)
     for (int unit = 0; unit < LENGTH_UNITS; unit++)
         if (strcmp(is_micro ? "um" : name, length_unit_names[unit]) == 0) {
             graph->unit = (LengthUnit)unit;
-            graph->unit_said = true;
+            graph->unit_is_stated = true;
         }
 }
 

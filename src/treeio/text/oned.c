@@ -107,7 +107,7 @@ static const DialectField fields[] = {
 static Status read_comment(Graph *graph, const char *comment, Err *err)
 {
     if (strcasestr(comment, "units in cgs") || strcasestr(comment, "units: cm, g, s"))
-        graph->unit_said = true;
+        graph->unit_is_stated = true;
     return comment_read_key(&graph->meta, comment, err);
 }
 

@@ -364,8 +364,10 @@ static Status judge_units(Table *table, Err *err)
     }
     Graph *graph = table->graph;
     if (!table->beside) {
-        graph->unit_said = unit != LENGTH_UNITS;
-        graph->unit = graph->unit_said ? unit : of_radius != LENGTH_UNITS ? of_radius : LENGTH_MM;
+        graph->unit_is_stated = unit != LENGTH_UNITS;
+        graph->unit = graph->unit_is_stated       ? unit
+                      : of_radius != LENGTH_UNITS ? of_radius
+                                                  : LENGTH_MM;
     }
     table->radius_factor = table->at[ROLE_RADIUS] ? 1 : 0.5;
     if (of_radius != LENGTH_UNITS)
