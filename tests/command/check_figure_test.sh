@@ -63,7 +63,7 @@ test_a_preset_says_what_nobody_else_does() {
     expect_sentence '--column needs --preset'
     run corcast render tree.swc --preset sience -o x.png
     expect_status 2
-    expect_sentence "--preset: 'sience' is not elsevier, nature, plos, poster-a0 or springer"
+    expect_sentence "--preset: 'sience' is unknown; available: elsevier, nature, plos, poster-a0 or springer"
 }
 
 test_figures_and_pages_of_several_parts_go_by_presets() {
@@ -242,7 +242,7 @@ END
     expect_sentence 'none.tif: cannot be read: No such file'
     run corcast check-figure fine.tif
     expect_status 2
-    expect_sentence '--preset is missing; corcast presets lists those there are'
+    expect_sentence '--preset is missing; `corcast presets` lists the names'
     while IFS='|' read -r change sentence; do
         sed "$change" "$REPO/templates/presets/nature.ini" >mine.ini
         run corcast check-figure fine.tif --preset ./mine.ini

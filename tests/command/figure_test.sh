@@ -178,7 +178,7 @@ refused() {
 
 test_mistakes_are_named_with_file_and_line() {
     run_ok corcast grow --terminals 12 --quiet -o t.swc
-    refused '[panel a]\ntree = t.swc\ncolor-by = flow\n' "r\.ini:3: 'color-by' is not a key of \[panel\]; did you mean color-by"
+    refused '[panel a]\ntree = t.swc\ncolr-by = flow\n' "r\.ini:3: 'colr-by' is not a key of \[panel\]; did you mean color-by"
     refused '[panel a]\ntree = t.swc\nsize = 3x3\n' "r\.ini:3: 'size' is not a key of"
     refused '[panel a]\ntree = t.swc\n[panel a]\n' 'r\.ini:3: there is a section \[panel a\] already'
     refused '[figure]\n[figure]\n' 'r\.ini:2: there is a section \[figure\] already'
@@ -236,7 +236,7 @@ test_numbers_beyond_all_bounds_are_refused_in_a_short_sentence() {
 test_names_that_there_are_none_of() {
     run corcast figure nosuch -o x.pdf
     expect_status 2
-    expect_sentence "no such figure: 'nosuch' is not fig1, fig2, fig3 or fig4"
+    expect_sentence "figure 'nosuch' is unknown; available: fig1, fig2, fig3 or fig4"
     ! grep -q -- --figure stderr || fail "expected no option that there is none of: $(cat stderr)"
     for word in --help -h; do
         refused "[panel a]\ngrow = --terminals 3 $word\n" "panel a\]: grow: $word is for the command alone"

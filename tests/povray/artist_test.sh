@@ -2,7 +2,7 @@
 # Scenes as an artist uses them: POV-Ray alone, values set on its command line and by #declare.
 . "$(dirname "$0")/../lib.sh"
 
-MODELS=$(corcast models)
+MODELS=$(corcast models | cut -f 1)
 
 # draw SCENE ARGUMENT...: a small picture, SCENE.png, and POV-Ray's words in SCENE.log.
 draw() {

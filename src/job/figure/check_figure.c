@@ -245,7 +245,7 @@ Status check_figure_make(const CheckFigureOptions *options, const char *path,
     Preset preset = {0};
     if (!options->preset)
         return err_set(err, STATUS_USAGE,
-                       "--preset is missing; corcast presets lists those there are");
+                       "--preset is missing; `corcast presets` lists the names");
     TRY(preset_read(options->preset, &preset, err));
     Check check = {.preset = &preset, .kind = options->kind, .path = path, .found = findings};
     Status status = check_file(&check, err);
