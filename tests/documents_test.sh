@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The documents: what they link to is there, and their numbers are those of the program.
+# The documents: their links lead to existing files, and their numbers are those of the program.
 . "$(dirname "$0")/lib.sh"
 
 test_documents_link_only_to_what_exists() {
@@ -218,11 +218,11 @@ meshes above 8 GB @ mesh_file.c @ .name = "an OBJ file", .most_bytes = 8e9
 pictures above 16 GB @ image_file.c @ .most_bytes = 16e9
 INI files above 1 MB @ ini.c @ .most_bytes = 1e6
 at most 10000 other columns @ builder.h @ BUILDER_MAX_COLUMNS = 10000
-is a whole number from 1 to 100000000 @ tree.h @ TREE_MAX_ID = 100000000
+is an integer from 1 to 100000000 @ tree.h @ TREE_MAX_ID = 100000000
 for `pries`, in [0, 0.95] @ viscosity.h @ MAX_HEMATOCRIT 0.95
 less than a thousandth of the box around it @ domain.c @ least_filled = 1e-3;
 more than 0.002 from its own @ profile.c @ <= 0.002
-Of pictures above 4 million pixels the page has no depths @ report_planes.c @ MOST_PIXELS = 1 << 22
+For pictures above 4 million pixels the page has no depths @ report_planes.c @ MOST_PIXELS = 1 << 22
 END
     run_ok corcast render --help
     tr -s "\n " "  " <stdout >help && mv help stdout
@@ -247,13 +247,13 @@ test_formats_lists_the_keys_of_a_tolerance() {
 test_the_numbers_for_povray_are_those_of_the_source() {
     agree POVRAY.md <<'END'
 for each light with n . L >= 1e-10 @ shade.h @ #define MIN_LIT_COSINE 1e-10
-is within 2.85 · 10⁻⁴ of it @ cellfunction.c @ return form == ERF_FAST ? 2.85e-4
+is within 2.85 · 10⁻⁴ of erf @ cellfunction.c @ return form == ERF_FAST ? 2.85e-4
 no wall by more than three times that @ cellfunction.c @ return (3 * erf_form_error(form) + 2e-5) * radius_mm;
 POV-Ray holds at most 1,048,575 functions @ povray_joint.c @ POV-Ray holds 1,048,575 functions, of which a joint has three
 more than 349,000 joints @ povray_joint.c @ MOST_EXACT = 349000,
-where there are more than 8,000 @ povray_joint.c @ MANY = 8000,
+In a scene of more than 8,000 joints @ povray_joint.c @ MANY = 8000,
 scenes of more than 3,000 segments the twelve @ povray_text.h @ MAX_INLINE_TERMS = 3000
-- `f(x) <= M d(x) / 2`, because a ray that missed @ povray_joint.c @ 2 * steepest, folded
+- `f(x) <= M d(x) / 2`, because after a miss POV-Ray skips @ povray_joint.c @ 2 * steepest, folded
 Its hits are within 2 · 10⁻⁹ radii @ joints.inc @ accuracy 2e-9 open
 no tile has more than 400,000 cylinders @ emit/povray.c @ {MODEL_CYLINDERS, NULL, put_primitive_macros, put_primitives, 400000},
 200,000 pieces of a joined tree, 32,768 segments of a blob @ emit/povray.c @ {MODEL_BLOB, find_visible_segments, put_blob_macros, put_blob, 32768},

@@ -1,7 +1,7 @@
-/* POV-Ray's root finder stops within the accuracy of its cell, measured along the ray. What the
- * cells leave out of the potential moves the surface along its normal, by cell_displacement, so
- * that along the ray it is that over the cosine between both. Depth planes hold single precision.
- */
+/* POV-Ray's root finder stops within the accuracy of its cell, measured along the ray. The terms
+ * that the cells leave out move the surface along its normal by cell_displacement. Along the ray
+ * that is the displacement divided by the cosine between ray and normal. Depths are stored in
+ * single precision. */
 #include "field/field.h"
 
 #include <float.h>

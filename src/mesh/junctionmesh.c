@@ -416,18 +416,19 @@ static Status refuse(const JunctionBuild *build, double grid_mm, Err *err)
     if (*build->crossing == PATCHCROSS_ROUNDING)
         return precision_refuse(build->tree, first, grid_mm, err);
     if (build->workspace->patch.n_triangles == 0)
-        return err_set(err, STATUS_INFEASIBLE,
-                       "segment %u, and what it meets, is so short for its radius that it has no "
-                       "surface",
-                       ids[build->plan->field.terms[0].segment]);
+        return err_set(
+            err, STATUS_INFEASIBLE,
+            "segment %u and the segments that it meets are so short for their radii that "
+            "they have no surface",
+            ids[build->plan->field.terms[0].segment]);
     if (find_gap(build, pair) < 0)
         return err_set(err, STATUS_INFEASIBLE,
-                       "the vessels of segments %u and %u overlap, though they do not meet there, "
-                       "so that their wall is no tube",
+                       "the vessels of segments %u and %u overlap where they are unconnected, so "
+                       "their common surface is not a tube",
                        ids[pair[0]], ids[pair[1]]);
     return err_set(err, STATUS_INFEASIBLE,
-                   "the vessels about segment %u run into each other: they make a loop, or cells "
-                   "as fine as are tried do not show their wall to be without one",
+                   "the vessels near segment %u touch each other: their surface has a loop, or a "
+                   "gap too narrow for the finest cells",
                    ids[build->plan->field.terms[0].segment]);
 }
 

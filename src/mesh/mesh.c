@@ -238,8 +238,8 @@ static Status refuse_overlap(const MeshBuild *build, Err *err)
     const uint32_t *ids = build->tree->ids;
     return err_set(
         err, STATUS_INPUT,
-        "the vessels of segments %u and %u, which do not belong together, overlap by %.3g "
-        "mm (%zu such pairs); their walls cannot both be kept (`part_overlaps` thins them)",
+        "the vessels of segments %u and %u are unconnected, but overlap by %.3g mm (pairs "
+        "of this kind: %zu), so they have no valid surface; `part_overlaps` thins them",
         ids[pair->segments[0]], ids[pair->segments[1]], -pair->gap_mm,
         build->junctions.n_overlapping);
 }

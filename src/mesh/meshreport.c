@@ -27,16 +27,18 @@ Status meshreport_check(const MeshReport *report, const VesselTree *tree, Err *e
     if (meshreport_is_valid(report))
         return STATUS_OK;
     if (report->n_missing)
-        return err_set(err, STATUS_DIFFERS,
-                       "%zu segments have no triangles, segment %u among them; nothing is written",
-                       report->n_missing, tree->ids[report->missing[0]]);
+        return err_set(
+            err, STATUS_DIFFERS,
+            "%zu segments have no triangles, for example segment %u; no file was written",
+            report->n_missing, tree->ids[report->missing[0]]);
     if (report->crossings > 0 && precision_is_short(tree))
         return precision_refuse(tree, precision_thinnest_segment(tree),
                                 mesh_grid(mesh_max_coordinate(tree)), err);
-    return err_set(err, STATUS_DIFFERS,
-                   "the surface is not sound: %zu parts for %zu trees, genus %zu, %zu open edges, "
-                   "%zu crossing pairs of triangles, %zu bridges; nothing is written (a smaller "
-                   "`tolerance` may help)",
-                   report->components, report->trees, report->genus, report->open_edges,
-                   report->crossings, report->bridges);
+    return err_set(
+        err, STATUS_DIFFERS,
+        "the mesh is not valid: %zu components for %zu trees, genus %zu, %zu open edges, "
+        "%zu crossing pairs of triangles, %zu bridges between trees; no file was written "
+        "(a smaller `tolerance` may help)",
+        report->components, report->trees, report->genus, report->open_edges, report->crossings,
+        report->bridges);
 }

@@ -101,8 +101,8 @@ static Status take_changes(PrintMaking *making, Err *err)
         if (*radius < 0.05 * before)
             return err_set(
                 err, STATUS_INPUT,
-                "segment %u and one that it does not belong with come so near that their "
-                "walls leave it no lumen; they cannot be parted",
+                "the wall of segment %u is so close to an unconnected vessel that thinning leaves "
+                "it no lumen; use a thinner wall",
                 tree->ids[k]);
     }
     return STATUS_OK;
@@ -130,10 +130,11 @@ static Status prepare(PrintMaking *making, Err *err)
     report->pins = making->pins.n_pins;
     report->unsupported = making->pins.n_unsupported;
     if (report->pins == 0)
-        return err_set(err, STATUS_INFEASIBLE,
-                       "no pin can be led from the vessels to a base: all %zu places that need one "
-                       "have other vessels, or open ends, in the way",
-                       report->unsupported);
+        return err_set(
+            err, STATUS_INFEASIBLE,
+            "no support pin is possible: at all %zu points that need one, vessels or open "
+            "ends are in the way",
+            report->unsupported);
     return STATUS_OK;
 }
 
@@ -327,10 +328,11 @@ static Status add_lids(PrintMaking *making, Err *err)
     const CutEnds *ends = &making->sides[1].ends;
     const PrintReport *report = &making->report;
     if (report->n_closed)
-        return err_set(err, STATUS_INPUT,
-                       "the lumen of segment %u is not open at its end, because another vessel is "
-                       "in the way of its wall",
-                       making->tree->ids[report->closed[0]]);
+        return err_set(
+            err, STATUS_INPUT,
+            "the lumen of segment %u cannot be open at its end, because another vessel is "
+            "too close to its wall",
+            making->tree->ids[report->closed[0]]);
     for (size_t i = 0; i < ends->n; i++) {
         const CutEnd *end = &ends->items[i];
         const FieldSegment *segment = &making->tree->segments[end->segment];

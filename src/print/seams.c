@@ -126,10 +126,11 @@ static Status check_parts(const Seams *seams, const VesselMesh *mesh, MeshReport
     report->bridges = take_found(seams, mesh, part_of, euler);
     for (uint32_t i = 0; i < surface_count(seams); i++)
         if (euler[i] != 0)
-            TRY_GOTO(err_set(err, STATUS_DIFFERS,
-                             "the solid is not sound: a part of it has the Euler number %+lld off "
-                             "that of the surfaces it is made of; nothing is written",
-                             -euler[i] / 2));
+            TRY_GOTO(
+                err_set(err, STATUS_DIFFERS,
+                        "the solid is not valid: the Euler number of a component differs by %+lld "
+                        "from that of the surfaces it was built from; no file was written",
+                        -euler[i] / 2));
 done:
     free(euler);
     free(part_of);

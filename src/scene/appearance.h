@@ -33,7 +33,7 @@ typedef struct Appearance {
     ColorScale scale;  /* from values to colors; zeroed if `colors` is NULL */
     char *name, *unit; /* of the scale */
     size_t n_values;
-    ScaleOutside outside; /* how many of the drawn segments lie outside of the scale */
+    ScaleOutside outside; /* number of drawn segments whose value is outside the scale */
     double *positions;    /* per segment index: the value's position on the scale, if colors
                            * blend [stage_blend]; else NULL */
     ColorRamp *ramp;      /* the colors that positions are mapped to, if colors blend; else NULL */

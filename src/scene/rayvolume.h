@@ -1,5 +1,6 @@
-/* The volume that the rays of a part of a picture pass through. A conservative test: what lies
- * outside is hit by none of these rays. */
+/* The volume that the rays of a part of a picture pass through. Emitters use it to leave out
+ * vessels that are not visible in this part. The test is conservative: no ray of the part hits an
+ * object outside the volume. */
 #ifndef CORCAST_SCENE_RAYVOLUME_H
 #define CORCAST_SCENE_RAYVOLUME_H
 

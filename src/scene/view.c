@@ -1,10 +1,11 @@
-/* Camera, lights and ground are POV-Ray's, whose arithmetic camera_ray and ground_hit repeat
- * operation by operation, so that rays of both programs are the same to the last bit. */
+/* Camera, lights and ground are those of POV-Ray. camera_ray and ground_hit repeat POV-Ray's
+ * arithmetic operation by operation, so that rays of both programs are the same to the last bit. */
 #include "scene/view.h"
 
 #include "scene/geometry.h"
 
-/* A pixel in parts of the picture's width and height, from its middle, right and up. */
+/* Returns the position of a pixel as a fraction of the picture's width and height, from its middle,
+ * right and up. */
 static Vec3 across(const Camera *camera, double i, double j)
 {
     double x0 = (i + 0.5) / camera->width - 0.5;

@@ -1,5 +1,6 @@
-/* Camera, lights, ground and effects. Coordinates are right-handed and in mm, colors are linear
- * RGB. */
+/* A View: camera, lights, ground, background and effects. The image has its origin at the upper
+ * left: pixel (i, j) is in column i and row j, and integers are the centres of pixels. World
+ * coordinates are right-handed and in mm, colors are linear RGB. */
 #ifndef CORCAST_SCENE_VIEW_H
 #define CORCAST_SCENE_VIEW_H
 

@@ -1,5 +1,16 @@
-/* The segments of a tree that are drawn, and its nodes that are at the same place. Private to the
- * module stage. */
+/* Finds which nodes and segments of a tree coincide. Two vessel surfaces at the same position would
+ * make pictures undefined, so one of them is left out.
+ *
+ * A junction is a set of nodes at the same position: nodes that segments without length connect.
+ * One node of the set represents the junction. A twin of a segment is another segment between the
+ * same two junctions that is at least as thick. A segment with a twin is not drawn. Private to the
+ * module stage.
+ *
+ *     Coincidence found;
+ *     TRY(coincidence_find(&tree, &found, err));
+ *     if (coincidence_draws(&found, i))
+ *         ... draw segment i from junction[parent[i]] to junction[i]
+ *     coincidence_release(&found); */
 #ifndef CORCAST_STAGE_COINCIDENCE_H
 #define CORCAST_STAGE_COINCIDENCE_H
 
@@ -7,26 +18,25 @@
 #include "stage/stage.h"
 #include "tree/tree.h"
 
-/* POV-Ray refuses cylinders shorter than this [docs/POVRAY.md]. */
+/* POV-Ray rejects cylinders shorter than this, mm [docs/POVRAY.md]. */
 #define SHORTEST_MM 1e-9
 
 /* Values of Coincidence.cover that are not the index of a sister. */
 enum { NO_TWIN = -1, CANNOT_DRAW = -2, BACKWARD_TWIN = -3 };
 
 typedef struct Coincidence {
-    /* Per node, about the segment that ends there. A twin of a segment lies between the same two
-     * points and is at least as thick. A segment with a twin is not drawn.
-     *   0 or more                  the index of its twin, a sister that starts at the same node
-     *   BACKWARD_TWIN   it has a twin that runs in the opposite direction
-     *   NO_TWIN           it has no twin, and is drawn
-     *   CANNOT_DRAW         no segment that can be drawn ends here
-     * Owned. */
+    /* Per node: the twin of the segment that ends at the node. Owned.
+     *     0 or more       index of the twin, which starts at the same junction
+     *     BACKWARD_TWIN   the twin runs in the opposite direction
+     *     NO_TWIN         the segment has no twin, and is drawn
+     *     CANNOT_DRAW     no segment ends here, or it has no length or no radius */
     int32_t *twin;
-    int32_t *junction; /* per node: the node that represents all nodes at the same place; owned */
+    int32_t *junction; /* per node: the node that represents its junction; owned */
 } Coincidence;
 
-/* Finds the twins and places of a tree. Release *places with coincidence_release. Errors:
- * STATUS_MEMORY. Cost: O(n) for n nodes, and more if many nodes lie close together. */
+/* Finds the twins and junctions of a tree. Release *coincidence with coincidence_release; there is
+ * nothing to release after an error. Errors: STATUS_MEMORY. Cost: O(n) for n nodes, and more if
+ * many nodes lie close together. */
 MUST_CHECK Status coincidence_find(const Tree *tree, Coincidence *coincidence, Err *err);
 void coincidence_release(Coincidence *coincidence);
 /* Returns a report in which only `drawn`, `dropped` and `covered` are set. */

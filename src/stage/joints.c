@@ -1,24 +1,29 @@
-/* At each place the ends of vessels meet: that of the parent, the trunk, and those of the
- * daughters; where a tree begins with several vessels, the thickest is the trunk. All are cut back
- * (cuts.c), and a ruled surface leads from the rim of the trunk to that of each daughter. Cylinders
- * stay closed, so every joint is a solid between two discs, whose wall neither folds nor has holes
- * as long as each disc lies on one side of the other's plane, which the cuts see to.
+/* At each junction, the end of the parent (the trunk) meets the ends of the daughters. If a tree
+ * starts with several vessels, the thickest one is the trunk. All ends are cut back [cuts.c], and a
+ * ruled surface leads from the rim of the trunk to the rim of each daughter. Cylinders remain
+ * closed, so every joint is a solid between two discs. Its surface neither folds nor has holes as
+ * long as each disc lies on one side of the other disc's plane, which the cuts ensure.
  *
- * The construction breaks down at a place whose cuts do not fit into its vessels, or where a
- * daughter leaves at less than 60 degrees from the trunk's own direction, so that the joint would
- * be pinched to less than half its width. A robust model draws such a place as `rounded` does:
- * cylinders that are not cut, and one sphere. Both ends of a vessel need room on it; places take
- * their turns, those that need the smallest part of a vessel first, so that few are lost. */
+ * The construction fails at a junction whose cuts do not fit into its vessels. It also fails where
+ * a daughter leaves at less than 60 degrees from the trunk's own direction: the joint would be
+ * pinched to less than half its width. JOINTS_ROBUST draws such a junction as `rounded` does: with
+ * uncut cylinders and one sphere. The cuts at both ends of a vessel share its length. Junctions are
+ * decided in ascending order of the largest fraction of a vessel that they need, so that few of
+ * them fail. */
 #include "stage/joints.h"
 
 #include "stage/cuts.h"
 #include <stdlib.h>
 
-static const double sharp_cosine = 0.5;   /* of the angle between trunk and daughter */
-static const double usable_part = 0.999;  /* of a vessel, for the cuts at its ends */
-static const double straight_part = 1e-6; /* cuts below this part of the radius are none */
+static const double sharp_cosine = 0.5;   /* cosine of the angle between trunk and daughter: 60
+                                           * degrees */
+static const double usable_part = 0.999;  /* fraction of a vessel's length that the cuts at its two
+                                           * ends may use */
+static const double straight_part = 1e-6; /* a cut below this fraction of the radius counts as no
+                                           * cut */
 
-/* Comparisons of vessel ends for the cuts of all places: some seconds. */
+/* Maximum number of comparisons of vessel ends for the cuts of all junctions; takes some
+ * seconds. */
 static const uint64_t most_steps = 100000000;
 
 typedef enum JunctionKind {
@@ -29,18 +34,18 @@ typedef enum JunctionKind {
     JUNCTION_CROWDED
 } JunctionKind;
 
-/* End 2 i is where segment i begins, 2 i + 1 where it ends. */
+/* The ends of vessels: end 2 i is the start of segment i, end 2 i + 1 is its end. */
 typedef struct JointBuilder {
     const Tree *tree;
     const Coincidence *coincidence;
     IndexLists ends;     /* by place, rising */
     double *cut;         /* one an end, mm */
-    JunctionKind *kinds; /* one a node; of those that stand for a place */
+    JunctionKind *kinds; /* per node; set for nodes that represent a junction */
     uint64_t steps;      /* left of most_steps */
 } JointBuilder;
 
 typedef struct CutDemand {
-    double part; /* the largest part of a vessel that a cut at the place takes */
+    double part; /* largest fraction of a vessel that a cut at the junction takes */
     size_t junction;
 } CutDemand;
 
@@ -51,7 +56,8 @@ static size_t junction_of(const JointBuilder *builder, size_t end)
         builder->coincidence->junction[end % 2 ? node : (size_t)builder->tree->parent[node]];
 }
 
-/* The point at an end before it is cut, and the unit axis from there along the vessel. */
+/* Returns the unit axis from an end along the vessel, and sets *at to the point at the end before
+ * it is cut. */
 static Vec3 end_axis(const JointBuilder *builder, size_t end, Vec3 *at)
 {
     const Tree *tree = builder->tree;
@@ -83,7 +89,7 @@ static Status collect_ends(JointBuilder *builder, Err *err)
     return STATUS_OK;
 }
 
-/* The end that all joints of a place begin at. */
+/* Returns the end at which all joints of a junction start. */
 static size_t trunk_of(const JointBuilder *builder, size_t junction)
 {
     size_t trunk = builder->ends.items[builder->ends.first[junction]];
@@ -97,8 +103,9 @@ static size_t trunk_of(const JointBuilder *builder, size_t junction)
     return trunk;
 }
 
-/* Cuts the ends of a place as its joints ask for, and tells what kind of place that makes it and
- * which part of a vessel it takes. `ends` and `cut` have room for those of any place. */
+/* Computes the cuts of the ends at a junction and sets the junction's kind. Sets *part to the
+ * largest fraction of a vessel that a cut takes. `ends` and `cut` are workspaces for the ends of
+ * any junction. */
 static Status cut_junction(JointBuilder *builder, size_t junction, VesselEnd *ends, double *cut,
                            double *demand, Err *err)
 {
@@ -140,7 +147,7 @@ static int by_demand(const void *a, const void *b)
     return first->junction < second->junction ? -1 : 1;
 }
 
-/* Returns true if the cuts of a place fit beside those already made at the other ends of its
+/* Returns true if the cuts of a junction fit beside the cuts already made at the other ends of its
  * vessels. */
 static bool cuts_fit(const JointBuilder *builder, size_t junction, const bool *made)
 {
@@ -153,7 +160,8 @@ static bool cuts_fit(const JointBuilder *builder, size_t junction, const bool *m
     return true;
 }
 
-/* Decides the places whose cuts are known, in the order of their demands. */
+/* Decides the junctions whose cuts are known, in ascending order of the fraction of a vessel that
+ * they need. */
 static Status settle_places(JointBuilder *builder, CutDemand *demands, size_t n, Err *err)
 {
     bool *made = NULL; /* one an end */
@@ -262,8 +270,8 @@ static void add_joint(const JointBuilder *builder, size_t trunk, size_t end, Vec
                     .segment = (uint32_t)(end / 2)};
 }
 
-/* The sphere of a place that cannot be joined; of equals, the trunk gives it its size and
- * color. */
+/* Adds the sphere of a junction that cannot be joined. Among equally thick vessels, the trunk
+ * determines size and color. */
 static void add_sphere(const JointBuilder *builder, size_t junction, Geometry *geometry)
 {
     const Tree *tree = builder->tree;
@@ -303,7 +311,7 @@ static void add_junction(const JointBuilder *builder, size_t junction, JointForm
     }
 }
 
-/* Makes room for the axes of all joints. */
+/* Allocates the axes of all joints. */
 static Status reserve_axes(const JointBuilder *builder, JointForm form, Geometry *geometry,
                            Err *err)
 {

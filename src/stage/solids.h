@@ -8,7 +8,7 @@
 /* Makes the cylinders of a tree and, if the model has balls, the spheres.
  *
  * params    uses params->mesh.threads threads, which do not change the result.
- * geometry  its `primitives` is empty and has room for two per node.
+ * geometry  its `primitives` is empty and has space for two primitives per node.
  * Errors    STATUS_MEMORY.
  * Cost      O(n). */
 MUST_CHECK Status solids_add(const Tree *tree, const Coincidence *coincidence,

@@ -1,8 +1,7 @@
-/* The shape of a tree is that of its model; its appearance is the look's, but for colors that show
- * a field. Neither knows of the other, so that a picture in other colors shares the shape.
- *
- * No two surfaces of a primitive model coincide, because which of two coincident surfaces is seen
- * is nobody's to say; hence places.c. */
+/* The geometry of a tree depends on its model, and the appearance on the look and on fields. The
+ * two are independent, so that pictures in other colors reuse the geometry. No two surfaces of a
+ * model of primitives coincide, because it would be undefined which of two coincident surfaces is
+ * visible; coincidence.c ensures this. */
 #include "stage/stage.h"
 
 #include "stage/coincidence.h"
@@ -24,7 +23,8 @@ static Status add_field(const Tree *tree, const Coincidence *coincidence, Geomet
     return STATUS_OK;
 }
 
-/* The field whose segments blend where they meet: that of stage_vessels. */
+/* Adds the field whose segments blend only where they are connected: the vessels of
+ * stage_vessels. */
 static Status add_graph(const Tree *tree, Geometry *geometry, Err *err)
 {
     VesselTree vessels;
@@ -37,7 +37,7 @@ static Status add_graph(const Tree *tree, Geometry *geometry, Err *err)
     return status;
 }
 
-/* Triangulates the wall of the vessels. */
+/* Triangulates the surface of the vessels. */
 static Status wall_vessels(VesselTree *vessels, const GeometryParams *params, VesselMesh *mesh,
                            StageReport *counted, Err *err)
 {
@@ -52,7 +52,7 @@ static Status wall_vessels(VesselTree *vessels, const GeometryParams *params, Ve
     return status;
 }
 
-/* The wall of the segments that the geometry has, where they are now. */
+/* Adds the mesh of the geometry's segments, at their present positions. */
 static Status add_mesh(const Tree *tree, const GeometryParams *params, Geometry *geometry,
                        StageReport *counted, Err *err)
 {
@@ -93,7 +93,8 @@ static Status copy_ids(const Tree *tree, Geometry *geometry, Err *err)
     return STATUS_OK;
 }
 
-/* Of a field there are no ends; those of cylinders have the balls of these. */
+/* A field has no spheres at ends. The spheres of cylinders are inside the balls that are added
+ * here. */
 static void find_bounds(Geometry *geometry)
 {
     Box box = box_empty();
@@ -112,8 +113,9 @@ static double largest_of(Vec3 v)
     return fmax(fabs(v.x), fmax(fabs(v.y), fabs(v.z)));
 }
 
-/* Moves what lies far from the origin, for its size, next to it, by whole millimetres, so that no
- * digits are lost to the distance. POV-Ray keeps bounding boxes in single precision. */
+/* Moves a geometry that is far from the origin, compared with its size, next to the origin, by
+ * whole millimetres. Otherwise digits are lost: POV-Ray stores bounding boxes in single
+ * precision. */
 static void move_to_origin(Geometry *geometry)
 {
     Vec3 center = box_center(geometry->bounds);

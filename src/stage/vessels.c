@@ -1,5 +1,6 @@
-/* A tree as lines with radii; see stage_vessels. Nodes that segments of no length join are one, and
- * what lies within a twin is left out [coincidence.h], so that no two segments coincide. */
+/* Lists a tree's vessels as lines with radii [stage_vessels]. Nodes that segments without length
+ * connect become one node, and segments with a twin are left out [coincidence.h], so that no two
+ * segments coincide. */
 #include "stage/coincidence.h"
 #include "stage/stage.h"
 

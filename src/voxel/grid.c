@@ -1,5 +1,5 @@
-/* Middles of voxels lie at multiples of the step whatever the tree, so that volumes of one tree and
- * of another, or of a part of it, fit together. */
+/* Centres of voxels are at multiples of the step for any tree. So the volumes of two trees, or of a
+ * tree and a part of it, have voxels at the same positions. */
 #include "voxel/grid.h"
 
 #include <stdlib.h>
@@ -14,9 +14,9 @@ Status voxelgrid_make(const Geometry *geometry, Vec3 step, VoxelGrid *out, Err *
         double n = floor((vec3_component(geometry->bounds.high, axis) + origin) / mm + 0.5) -
                    low[axis] + 2;
         if (!(n < INT32_MAX))
-            return err_set(err, STATUS_INFEASIBLE,
-                           "`voxel`: %g mm would make %.3g voxels along an axis; there may be 2^31",
-                           mm, n);
+            return err_set(
+                err, STATUS_INFEASIBLE,
+                "`voxel`: %g mm would make %.3g voxels along an axis; the maximum is 2^31", mm, n);
         grid.n[axis] = (int64_t)n;
         first[axis] = low[axis] * mm - origin;
     }

@@ -1,6 +1,6 @@
-/* Wrong use of the library: each call is an error with a sentence that contains the words beside
- * it, and never a crash. Then the callbacks: one that stops the work, at each operation, and one
- * that takes no bytes. */
+/* Wrong use of the library: each call must return an error whose message contains the words
+ * beside the call, and must never crash. Then the callbacks: a callback that stops the work, in
+ * each operation, and a sink that refuses bytes. */
 #include "corcast.h"
 #include <math.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
-/* How long the triangulation of trees takes, and how far it is off the surface: a row for each tree
- * file that the command line names. Distances are found by the guaranteed search for rays
+/* Times the triangulation of trees and measures its distance from the surface. Prints a row for
+ * each tree file on the command line. The guaranteed search for rays finds the distances
  * [unit/mesh_distance.h]. */
 #include "stage/stage.h"
 #include "treeio/treeio.h"

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# What is made of the options' descriptions: help, manual pages, docs/REFERENCE.md, completions of three shells.
+# Texts generated from the option tables: help, manual pages, docs/REFERENCE.md, and completions of
+# three shells.
 . "$(dirname "$0")/../lib.sh"
 
 # options_of COMMAND: the options that its help names.

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The command line itself: help, versions, and what is refused.
+# The command line itself: help, version, and what is refused.
 . "$(dirname "$0")/../lib.sh"
 
 COMMANDS="grow info convert scene povray render view compare verify"

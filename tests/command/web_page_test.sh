@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Pages of trees for browsers: what they hold, and in headless Chromium what they show; see tests/page/tree.js.
+# Web pages of trees: their contents, and what they show in headless Chromium; see
+# tests/page/tree.js.
 . "$(dirname "$0")/../lib.sh"
 
 VIEW="--projection orthographic --turn 0,0 --look-at 1.5,-0.75,0 --height 56"

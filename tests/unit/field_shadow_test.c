@@ -1,4 +1,5 @@
-/* Slow: sums the potential by brute force along each ray. */
+/* Slow: sums the potential by brute force along each ray. Checks shadows of isosurfaces and
+ * blobs. */
 /* Shadows of the potential by views of lights against brute force, in long double, of rays from
  * what a camera sees to a light. With C the level, such a ray must be dark if, once the potential
  * has fallen below 0.998 C - e, it reaches C + e, and lit if from there on it does not reach C - e,

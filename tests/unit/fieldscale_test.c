@@ -1,3 +1,4 @@
+/* Color scales of fields: ranges, logarithms, values that cannot be drawn. */
 #include "stage/stage.h"
 #include "unit.h"
 

@@ -1,4 +1,5 @@
-/* The triangulation of vessels, stage by stage and whole; distances by the guaranteed search. */
+/* The triangulation of vessels, stage by stage and as a whole. The guaranteed search gives the
+ * distances. */
 #include "base/random.h"
 #include "mesh/lattice/octree.h"
 #include "mesh/proof/boxpairs.h"
@@ -242,7 +243,7 @@ static void a_zone_of_too_many_cells_is_refused(void **state)
     cut(&sketch.tree, &junctions);
     assert_int_equal(junctionplan_make(&sketch.tree, &junctions, 0, &plan, NULL), STATUS_OK);
     assert_int_equal(octree_build(&tree, &plan, &size, &err), STATUS_INFEASIBLE);
-    assert_non_null(strstr(err.text, "its surface needs more than 2385 cells"));
+    assert_non_null(strstr(err.text, "their surface needs more than 2385 cells"));
     size.max_cells = 100000;
     assert_int_equal(octree_build(&tree, &plan, &size, NULL), STATUS_OK);
     octree_release(&tree);

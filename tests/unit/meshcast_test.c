@@ -1,4 +1,4 @@
-/* Rays and triangles: which is met first, where, and the normal that is seen there. */
+/* Rays and triangles: the first triangle that is hit, the position, and the visible normal. */
 #include "unit.h"
 
 #include "base/base.h"

@@ -1,5 +1,5 @@
-/* Thin vessels of a grown tree have the shadows that rays find, from the views of lights, and of
- * the points of area lights. */
+/* Thin vessels of a grown tree have the same shadows from light views, and from the points of
+ * area lights, as from rays. */
 #include "render/field/fieldshadow.h"
 #include "render/light/offpixel.h"
 #include "render/raster/rastershadow.h"

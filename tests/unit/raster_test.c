@@ -1,6 +1,6 @@
-/* Pictures drawn tile by tile in single precision: those that single rays give in double
- * precision but for rounding, whatever the kernel, the same whatever the threads, and right
- * where single precision is not. */
+/* Pictures drawn tile by tile in single precision. They equal the pictures of single rays in
+ * double precision except for rounding, for any kernel and any number of threads, also where
+ * single precision is not sufficient. */
 #include "render/render.h"
 #include "unit.h"
 

@@ -1,3 +1,4 @@
+/* The volumes that the rays of a tile can meet. */
 #include "scene/scene.h"
 #include "unit.h"
 

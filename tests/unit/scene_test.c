@@ -1,3 +1,4 @@
+/* Cameras, lights and grounds; parts and ends of meshes; the list of models. */
 #include "scene/scene.h"
 #include "unit.h"
 

@@ -1,3 +1,4 @@
+/* How a tree and a look become geometry, appearance and view. */
 #include "stage/stage.h"
 #include "unit.h"
 

@@ -1,3 +1,4 @@
+/* The implicit surface: value, gradient and first hits. */
 #include "field/field.h"
 #include "unit.h"
 

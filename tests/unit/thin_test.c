@@ -1,4 +1,4 @@
-/* Vessels thinner than a pixel cover their own area of it. */
+/* Vessels thinner than a pixel cover their exact area. */
 #include "render/render.h"
 #include "render/thin/thinvessels.h"
 #include "unit.h"

@@ -1,3 +1,4 @@
+/* The filled fraction of voxels, labels, and grids. */
 #include "unit.h"
 #include "voxel/cover.h"
 #include "voxel/grid.h"

@@ -227,12 +227,13 @@ static void say_result(const Volumes *made, const Talk *talk)
     double more = 100 * (report->volume_mm3 / report->union_mm3 - 1);
     if (fabs(more) > 0.1)
         talk_warn(talk,
-                  "rounded to %s bits, voxels hold %.3g %% %s than the vessels; take a --depth of "
-                  "more",
+                  "rounded to %s bits, voxels hold %.3g %% %s than the vessels; use a larger "
+                  "--depth",
                   depths[made->options->depth], fabs(more), more > 0 ? "more" : "less");
     if (report->n_given_voxels)
-        talk_warn(talk, "%zu labels fill the most of no voxel, and each has one that it meets",
-                  report->n_given_voxels);
+        talk_warn(talk, "%zu label%s no voxel; each was given a voxel that it touches",
+                  report->n_given_voxels,
+                  report->n_given_voxels == 1 ? " dominates" : "s dominate");
     talk_note(talk, "%lld voxels hold vessels, %.6g mm^3", (long long)report->filled,
               report->volume_mm3);
 }

@@ -153,8 +153,8 @@ static Status settle(OctreeBuilder *builder, uint32_t number, const LocalField *
 static Status refuse(const OctreeBuilder *builder, Err *err)
 {
     return err_set(err, STATUS_INFEASIBLE,
-                   "a chain of junctions, of %u segments, has no free interval to be cut at, and "
-                   "its surface needs more than %zu cells, 4 GB of memory; a larger `tolerance` "
+                   "%u segments are too close together to be divided into smaller regions; "
+                   "their surface needs more than %zu cells, 4 GB of memory; a larger `tolerance` "
                    "needs fewer",
                    builder->plan->field.n_terms, builder->size->max_cells);
 }

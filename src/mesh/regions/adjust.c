@@ -70,10 +70,11 @@ static Status thin_pairs(Parting *parting, Err *err)
     for (size_t i = 0; i < tree->n_segments; i++) {
         tree->segments[i].radius_mm *= parting->kept[i];
         if (tree->segments[i].radius_mm < least_kept * parting->radii[i])
-            return err_set(err, STATUS_INPUT,
-                           "segment %u and one that it does not belong with come so near that it "
-                           "would keep less than %g of its radius; their walls cannot be parted",
-                           tree->ids[i], least_kept);
+            return err_set(
+                err, STATUS_INPUT,
+                "segment %u overlaps an unconnected vessel so far that it would have to be "
+                "thinned to less than %g of its radius",
+                tree->ids[i], least_kept);
     }
     return STATUS_OK;
 }

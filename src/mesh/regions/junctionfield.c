@@ -135,8 +135,7 @@ static Status reserve_part(LocalFieldPool *pool, size_t terms, size_t words, Err
 Status localfield_refuse(Err *err)
 {
     return err_set(err, STATUS_INFEASIBLE,
-                   "more than %d segments come together at one place; leave some out",
-                   MAX_LOCAL_TERMS);
+                   "more than %d segments meet at one point; leave some out", MAX_LOCAL_TERMS);
 }
 
 /* Begins an empty part at the top of the pool. Its groups come after its terms. */

@@ -1,5 +1,5 @@
-/* Primitives in a hierarchy of boxes. What the crossings of a primitive need besides the primitive
- * is computed once [primitive_frame]. */
+/* primitive_search: a bounding volume hierarchy of primitives. Data that depend on the primitive
+ * alone are computed once [primitive_frame]. */
 #include "render/cast/boxcast.h"
 
 static Box primitive_box(const RayIndex *index, size_t i)

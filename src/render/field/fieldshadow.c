@@ -18,11 +18,12 @@ typedef struct FieldLists {
     TileSpan *columns; /* a workspace for each worker while lists are made */
 } FieldLists;
 
-/* What one thread answers queries with. */
+/* The workspace in which one thread answers queries. */
 typedef struct FieldTester {
     const LightBins *light;
     const FieldLists *lists;
-    const bool *hidden; /* per segment: the camera does not see it; NULL: it sees all. Borrowed. */
+    const bool *hidden; /* per segment: true if it is hidden from the camera; NULL: none is hidden.
+                         * Borrowed. */
     ShadowKernel *kernel;
     ShadowPoints near;               /* points at hidden segments */
     uint8_t is_near[POINT_CAPACITY]; /* per point of a tile */
@@ -39,7 +40,7 @@ static bool can_look(const Geometry *geometry, const View *view, const Light *li
 
 static Status list_segments_of_row(size_t row, int worker, void *context, Err *err)
 {
-    (void)err; /* list_segments says what memory is for */
+    (void)err; /* list_segments reports the error */
     FieldLists *lists = context;
     return vessellists_row(&lists->vessels, row,
                            lists->columns + (size_t)worker * lists->vessels.longest,

@@ -1,6 +1,6 @@
-/* A row of tiles is the unit of work: the lists of its tiles are made, and each tile's terms are
- * set out and traced by the kernel. What the kernel leaves undecided is cast ray by ray in double
- * precision among the terms of the tile. */
+/* A row of tiles is the unit of work. The lists of its tiles are made, and the kernel traces each
+ * tile's terms. Samples that the kernel cannot decide are cast as single rays in double precision
+ * among the terms of the tile. */
 #include "render/field/fieldtiles.h"
 
 #include "render/field/fieldspace.h"
@@ -10,7 +10,7 @@ typedef struct FieldWorker {
     TileSpan *columns; /* per segment of a row: the tiles that it touches */
     IndexLists lists;  /* per tile of the row: its segments */
     FieldSpace space;
-    FieldTile row; /* what all tiles of the row share */
+    FieldTile row; /* fields that all tiles of the row share */
 } FieldWorker;
 
 /* The samples of a column or a row of tiles, in the plane of the view. */

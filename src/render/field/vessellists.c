@@ -1,8 +1,8 @@
 /* Segments are moved to the camera's frame once, in double precision, and sorted into the rows of
- * tiles that their support touches (a capsule: the segment, widened by its reach). Of a row every
- * segment is clipped to the slab of space that the row's rays fill, which gives the columns that it
- * touches there, and with them the list of every tile. Lists hold their segments by rising index,
- * whatever the number of threads. */
+ * tiles that their support touches. The support is a capsule: the segment, widened by its reach. In
+ * a row, each segment is clipped to the slab of space that the row's rays fill. This gives the
+ * columns that the segment touches there, and with them the list of every tile. Segments ascend in
+ * each list, for any number of threads. */
 #include "render/field/vessellists.h"
 
 #include "field/field.h"
@@ -27,7 +27,8 @@ static Status list_spans(const TileSpan *spans, const uint32_t *items, size_t n,
 
 /* ---- rows ------------------------------------------------------------------------------------ */
 
-/* 1: all in front of the camera, or orthographic; -1: all behind; 0: beside it. */
+/* Returns 1 if the support is in front of the camera or the view is orthographic, -1 if it is
+ * behind the camera, 0 if it is beside the camera. */
 static int side_of_camera(const VesselLists *lists, const FrameSegment *segment)
 {
     if (!lists->eye.perspective)
@@ -52,8 +53,8 @@ static TileSpan rows_of(const VesselLists *lists, const FrameSegment *segment)
 
 enum { CHUNK = 2048 };
 
-/* How far from the segment its term counts, mm; 0: nowhere. The peak of the potential's, erf(x), is
- * at most 1 and 2 x / sqrt(pi). */
+/* Returns the distance from the segment within which its term counts, mm; 0: nowhere. The peak of a
+ * term of the potential, erf(x), is at most 1 and at most 2 x / sqrt(pi). */
 static double reach_of(const Geometry *geometry, const FieldSegment *segment)
 {
     if (model_has(geometry->model, MODEL_BLOB))
@@ -91,7 +92,8 @@ static void prepare_chunk(size_t chunk, int worker, void *context)
     }
 }
 
-/* Sorts the segments into rows, once all about the view but the places of its samples is set. */
+/* Sorts the segments into rows. All other fields of the lists, including the sample positions, must
+ * be set. */
 static Status fill_lists(const Geometry *geometry, int threads, VesselLists *lists, Err *err)
 {
     size_t n = lists->n_segments = geometry->n_segments;
@@ -172,8 +174,8 @@ static double above(const VesselLists *lists, Vec3 p, double y)
     return lists->eye.perspective ? (p.y - y * p.z) / sqrt(1 + y * y) : p.y - y;
 }
 
-/* The tiles of a row, whose rays are between y_low and y_high, that the support of the segment may
- * touch: those of the part of the segment that is within reach of the slab. */
+/* Returns the tiles of a row that the segment's support may touch: the tiles of the part of the
+ * segment within reach of the slab between y_low and y_high. */
 static TileSpan columns_of(const VesselLists *lists, const FrameSegment *segment, double y_low,
                            double y_high)
 {

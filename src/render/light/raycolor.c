@@ -1,6 +1,6 @@
-/* Ground, occlusion, shadows and shading of one ray, whichever engine has found what it meets, so
- * that every model is lit alike. The ground is tested here and not by the casters: it belongs to
- * the view, and no plane but that of colors shows it. */
+/* Computes ground, occlusion, shadows and shading of one ray. It does not depend on the engine that
+ * found the hit, so that every model is lit in the same manner. The ground is intersected here and
+ * not by the casters, because it belongs to the view and appears in the color plane only. */
 #include "render/light/raycolor.h"
 
 #include "render/light/rayocclusion.h"

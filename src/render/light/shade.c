@@ -58,15 +58,15 @@ static Rgb lit_by(Rgb light, const Finish *finish, Rgb pigment, Vec3 normal, Vec
     return color;
 }
 
-/* The part of a light's points that reach the place, from 0 to 1. */
-static double visible_part(const Light *light, Vec3 place, ShadowTest *shadow, void *context)
+/* Returns the fraction, 0..1, of a light's points that are visible from a shading point. */
+static double visible_part(const Light *light, Vec3 point, ShadowTest *shadow, void *context)
 {
     int n = light_points(light), reach = 0;
     if (!shadow || !light->casts_shadows)
         return 1;
     for (int k = 0; k < n; k++) {
-        LightDirection way = light_direction_to_point(light, k, place);
-        reach += !shadow(context, place, way.towards, way.distance);
+        LightDirection to_light = light_direction_to_point(light, k, point);
+        reach += !shadow(context, point, to_light.towards, to_light.distance);
     }
     return (double)reach / n;
 }

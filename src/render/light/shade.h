@@ -22,7 +22,8 @@ typedef struct ShadingInput {
     Vec3 direction; /* unit, of the camera ray that hits the point */
     double ambient; /* ambient visibility, in [0, 1] */
     const float
-        *light_visibility; /* visibility of each light, in [0, 1]; negative, or NULL: not known */
+        *light_visibility; /* per light of the view: its visibility, in [0, 1], or a negative number
+                            * if it is not known; NULL: not known for any light */
 } ShadingInput;
 
 /* Returns the linear color of a point: the ambient light, and the diffuse and specular light of

@@ -1,14 +1,16 @@
-/* A primitive becomes an item: its middle in double precision, all else in single precision
- * about that middle, so that single precision is left with numbers as small as the primitive.
+/* A primitive becomes an item: its middle in double precision, everything else in single precision
+ * relative to that middle. Single precision then has to hold only numbers as small as the
+ * primitive.
  *
- * What single precision cannot hold to a thousandth of a pixel, or the kernels do not solve, is
- * an item of the kind RASTER_EXACT: what is near the eye or about it, longer than 16384 pixels,
- * or looked at along its axis, and joints that need not be the wall of a solid. */
+ * An item is RASTER_EXACT if single precision cannot draw it to a thousandth of a pixel, or if the
+ * kernels do not solve it: items that are near the viewer or around the viewer, longer than 16384
+ * pixels, or viewed along their axis, and joints that may not be the surface of a solid. */
 #include "render/raster/rasteritem.h"
 
-static const double most_pixels = 16384; /* 2^-24 of it are a thousandth of a pixel */
+static const double most_pixels = 16384; /* pixels; 2^-24 of it is a thousandth of a pixel */
 static const double least_sine =
-    0.02; /* of the angle at which a wall is looked at along its axis */
+    0.02; /* sine of the smallest angle between axis and line of sight at which a cylinder is drawn
+           * in single precision; reason for the value not recorded */
 
 static void store_floats(float to[3], Vec3 v)
 {
@@ -17,8 +19,9 @@ static void store_floats(float to[3], Vec3 v)
     to[2] = (float)v.z;
 }
 
-/* Turns the angle p of a joint by that of the ruling that faces `sight`, a direction in the
- * frame, most: where the first harmonic of sight . (S_p x S_l) at l = 1/2 is least. */
+/* Rotates the parameter p of a joint so that p = 0 is the ruling that faces `sight`, a direction in
+ * the frame, most: the ruling where the first harmonic of sight . (S_p x S_l) at l = 1/2 is
+ * minimal. */
 static void face_sight(JointFrame *joint, Vec3 sight, Vec3 out[6])
 {
     Vec3 a = joint->across, b = vec3_scale(joint->side, joint->radius);
@@ -45,7 +48,8 @@ RasterJoint rasterjoint_make(const RasterView *view, const Primitive *primitive,
     Vec3 from_eye = vec3_sub(joint.base, view->eye.location), part[6];
     joint.base = vec3_sub(viewpoint_frame_direction(&view->eye, from_eye), middle);
     joint.span = viewpoint_frame_direction(&view->eye, joint.span);
-    /* The frame is left-handed; turning the other way round keeps S_p x S_l outward in it. */
+    /* The frame is left-handed. Reversing the direction of rotation keeps S_p x S_l pointing
+     * outward. */
     joint.side = vec3_scale(viewpoint_frame_direction(&view->eye, joint.side), -1);
     joint.across = viewpoint_frame_direction(&view->eye, joint.across);
     joint.across_change = viewpoint_frame_direction(&view->eye, joint.across_change);
@@ -71,7 +75,7 @@ static void store_plane(float to[4], Vec3 inward, Vec3 center, double radius)
     to[3] = (float)(1e-3 * radius - vec3_dot(inward, center));
 }
 
-/* `turn`: 1 if the item's axis leads from a to b, or -1. */
+/* Returns the hull of a joint. `turn` is 1 if the item's axis leads from a to b, else -1. */
 static RasterHull make_hull(const RasterView *view, const Primitive *primitive, Vec3 span,
                             double length, double turn)
 {

@@ -1,5 +1,5 @@
-/* The tile engine of primitives. Shifted samples of antialiasing use the lists of the tiles of the
- * pixels, whose bins hold what any of the samples may see. */
+/* The tile engine of primitives. Shifted passes of antialiasing use the lists of the tiles of the
+ * centre samples. The bins therefore hold every item that any sample of a pixel may hit. */
 #include "render/raster/rasterrender.h"
 
 #include "render/light/resample.h"
@@ -52,7 +52,7 @@ static Status make_grids(const RenderParams *params, const RasterView *view, Ras
 
 static Status bin_raster(const Drawing *drawing, const SampleGrid *grid, void **bins, Err *err)
 {
-    (void)grid; /* of the pixels */
+    (void)grid; /* the grid of the centre samples: shifted passes use its tiles */
     Status status;
     const RenderParams *params = drawing->params;
     RasterView view =
@@ -84,7 +84,7 @@ static bool is_raster_listed(const void *bins, int column, int worker)
     return indexlists_length(&scene->rows[worker], (size_t)column) > 0;
 }
 
-/* Sets the tile of an image and its list. */
+/* Sets the position of a tile of the image and its list of items. */
 static void place_tile(const RasterScene *scene, int worker, BatchTile *tile)
 {
     RasterOwn *own = tile->own;

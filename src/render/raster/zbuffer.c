@@ -1,11 +1,10 @@
-/* Every surface is covered with points a quarter of a pixel apart in both of its directions, at
- * the scale of the pixel where the primitive is nearest to the camera. Each point of the surface
- * has one of them within half the diagonal of a cell, 0.177 pixels, and a projection brings them
- * no farther apart. So a point that falls within that distance of a pixel's middle is kept if it
- * is the nearest to the camera there, others are not looked at: where a surface covers the
- * middle of a pixel the pixel has a point of it, and outlines are right to 0.177 pixels.
- *
- * A row of tiles is the unit of work, with a depth buffer of its own. */
+/* Every surface is covered with points a quarter of a pixel apart in both directions, at the scale
+ * of the pixel where the primitive is nearest to the camera. Each point of the surface is within
+ * half the diagonal of a cell, 0.177 pixels, of a sampled point, and projection does not increase
+ * this distance. Only sampled points within 0.177 pixels of a pixel's centre are used, and the
+ * nearest to the camera is kept. Where a surface covers the centre of a pixel, the pixel therefore
+ * has a point of it, and outlines are right to 0.177 pixels. A row of tiles is the unit of work,
+ * with its own depth buffer. */
 #include "render/raster/zbuffer.h"
 
 #include "render/light/raycolor.h"

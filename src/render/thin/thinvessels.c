@@ -20,8 +20,8 @@
 
 enum { SHADED = 5, ROWS = 8 };
 static const double piece_px = 1.5;
-/* Height of shading points above the wall, in radii: less than a sample can tell, more than
- * rounding. */
+/* Height of shading points above the vessel's surface, in radii: less than a sample can resolve,
+ * more than rounding. */
 static const double lift = 0.25;
 
 /* ---- which are thin -------------------------------------------------------------------------- */
@@ -51,7 +51,7 @@ static ThinVessel vessel_at(const Geometry *geometry, size_t i)
     return (ThinVessel){s->a, s->b, s->radius_mm, s->radius_mm, s->segment, true};
 }
 
-/* The part of a vessel between two places, 0..1 from its first end. */
+/* Returns the part of a vessel between two positions, 0..1 from its first end. */
 static ThinVessel vessel_part(const ThinVessel *vessel, double from, double to)
 {
     Vec3 span = vec3_sub(vessel->b, vessel->a);
@@ -99,7 +99,7 @@ static void clip_above(double a, double b, double *from, double *to)
         *to = fmin(*to, a / (a - b));
 }
 
-/* Cuts [*from, *to] of a vessel down to what lies in front of an orthographic camera. */
+/* Clips the range [*from, *to] of a vessel to the part in front of an orthographic camera. */
 static void clip_at_camera(const ThinVessel *vessel, const Camera *camera, double *from, double *to)
 {
     if (camera->projection == PROJECTION_ORTHOGRAPHIC)
@@ -427,7 +427,7 @@ done:
 
 /* ---- colors --------------------------------------------------------------------------------- */
 
-/* Sets the visibility of each light at a piece; below 0 of lights that cast no shadows. */
+/* Sets the visibility of each light at a piece, 0..1; -1 for a light that casts no shadows. */
 static void find_light_visibility(const ThinVessels *thin, const View *view, size_t piece,
                                   float light_visibility[VIEW_MAX_LIGHTS])
 {
@@ -437,7 +437,7 @@ static void find_light_visibility(const ThinVessels *thin, const View *view, siz
                                                         : -1;
 }
 
-/* The mean color of the visible half of a piece's wall. */
+/* Returns the mean color of the visible half of a piece's surface. */
 static Rgb wall_color(const Drawing *drawing, const ThinVessels *thin, const ThinWall *wall,
                       size_t piece)
 {
@@ -479,7 +479,7 @@ typedef struct ThinJob {
     ThinCells *cells; /* per worker; owned */
 } ThinJob;
 
-/* Whether the strip may touch the rows of a band. */
+/* Returns true if the strip may touch the rows of a band. */
 static bool touches_band(const ThinStrip *strip, const Band *band)
 {
     float top = (float)(band->first - TILE_SIDE) - strip->width;

@@ -1,7 +1,6 @@
-/* Tiles come row by row, and in a row from left to right, and only those that may see something:
- * what lies between them is filled row of pixels by row of pixels, so that a pixel is written once.
- * A worker that fails draws nothing any more, and its error is returned when all others are done.
- */
+/* Tiles come row by row, and from left to right in a row. Only tiles that may have hits are drawn;
+ * the pixels between them are filled row by row, so that a pixel is written once. If a worker
+ * fails, it draws nothing more, and its error is returned when all others are done. */
 #include "render/tile/canvas.h"
 
 #include "render/cast/caster.h"
@@ -27,7 +26,7 @@ TileLook tilelook_of(const View *view, const Finish *finish, const Viewpoint *ey
     return look;
 }
 
-/* Whether shading needs the places of points, not their normals alone. */
+/* Returns true if shading needs the positions of points, and not only their normals. */
 static bool needs_points(const View *view)
 {
     bool needs = view->camera.projection == PROJECTION_PERSPECTIVE;
@@ -36,7 +35,7 @@ static bool needs_points(const View *view)
     return needs;
 }
 
-/* A surface of one color, seen along the view. */
+/* Initialises a surface of one color whose camera rays are all parallel to the view. */
 static void begin_surface(Rgb color, TileSurface *surface)
 {
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
@@ -47,7 +46,7 @@ static void begin_surface(Rgb color, TileSurface *surface)
     }
 }
 
-/* Lets the worker's surfaces have what samples share. */
+/* Connects the worker's surfaces to its arrays of shared visibility. */
 static void share_surfaces(const PixelVisibility *visibility, CanvasWorker *own)
 {
     TileSurface *surfaces[] = {&own->surface, &own->ground};
@@ -59,7 +58,7 @@ static void share_surfaces(const PixelVisibility *visibility, CanvasWorker *own)
     }
 }
 
-/* Fills a row with the mean of so many samples of the background, summed in float. */
+/* Fills a row with the mean of `samples` samples of the background, summed in float. */
 static void fill_row(const Canvas *canvas, int samples, float *row)
 {
     const Rgb color = canvas->drawing->view->background;
@@ -177,7 +176,8 @@ static void set_pigments(const Canvas *canvas, const TracedTile *traced, TileSur
     }
 }
 
-/* Points, and in perspective the directions towards them; parallel lines of sight never change. */
+/* Sets the points of a surface and, in perspective, the directions of their camera rays. Parallel
+ * lines of sight never change. */
 static void set_places(const TracedTile *traced, TileSurface *surface)
 {
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
@@ -208,7 +208,7 @@ static uint32_t shared_pixel(const Canvas *canvas, const TracedTile *traced, int
                                  (camera->height - 1) / 2.0 - line.y * per[1], &place);
 }
 
-/* Asks memory for what the pixels of a tile to come share: of each of its rows that is little. */
+/* Prefetches the shared visibility of a later tile's pixels: a small part of each of its rows. */
 static void fetch_shared(const Canvas *canvas, const TracedTile *traced)
 {
     const PixelVisibility *visibility = canvas->drawing->visibility;
@@ -278,7 +278,7 @@ void canvas_trace_ground(const Canvas *canvas, TracedTile *traced, TileHits *hit
         traced->hits = hits;
 }
 
-/* Gives the samples that see the ground its colors. */
+/* Shades the samples that hit the ground. */
 static void shade_ground(const Canvas *canvas, const TracedTile *traced,
                          const uint8_t (*shadowed)[TILE_SAMPLES], CanvasWorker *own)
 {
@@ -372,7 +372,7 @@ static void store_codes(const Canvas *canvas, const TracedTile *traced,
         memcpy(pixels + (size_t)row * stride, whole[row], 3 * (size_t)traced->n_columns);
 }
 
-/* Stores what is seen of geometry in a tile. */
+/* Stores the geometry planes of a tile. */
 static void store_geometry(const Canvas *canvas, const TracedTile *traced)
 {
     const TileHits *hits = traced->hits;
@@ -390,7 +390,7 @@ static void store_geometry(const Canvas *canvas, const TracedTile *traced)
     }
 }
 
-/* Pixels, not of one tile alone, where nothing is seen. */
+/* A rectangle of pixels, which may cover several tiles, without hits. */
 static void store_nothing(const Canvas *canvas, const TracedTile *empty, const float *background)
 {
     const Frame *frame = canvas->frame;

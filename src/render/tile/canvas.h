@@ -1,5 +1,9 @@
-/* A band of a picture that is drawn tile by tile: shading, encoding and storing of tiles, the
- * passes of antialiasing, and the threads. Any engine may trace the tiles. */
+/* Draws a band of an image tile by tile: shades, encodes and stores tiles, runs the passes of
+ * antialiasing, and distributes rows of tiles to threads. The engine only traces the tiles:
+ *
+ *     TRY(canvas_init(&drawing, frame, &eye, &canvas, err));
+ *     TRY(canvas_pass(&canvas, false, 1, draw_rows, context, err));  calls draw_rows per row of
+ * tiles, which calls canvas_shade and canvas_draw per tile canvas_release(&canvas); */
 #ifndef CORCAST_RENDER_CANVAS_H
 #define CORCAST_RENDER_CANVAS_H
 
@@ -9,34 +13,35 @@
 #include "render/tile/tilekernels.h"
 #include "render/tile/viewpoint.h"
 
-/* A finish, and the lights of a view in the frame of a viewpoint. */
+/* Returns a finish, and the lights of a view in the frame of a viewpoint. */
 TileLook tilelook_of(const View *view, const Finish *finish, const Viewpoint *eye);
 
 /* The scratch memory of one thread. */
 typedef struct CanvasWorker {
-    TileSurface surface, ground; /* of vessels and of the ground */
-    float ambient[TILE_SAMPLES]; /* of both, what samples share: */
+    TileSurface surface, ground; /* hits of vessels, and hits of the ground */
+    float ambient[TILE_SAMPLES]; /* ambient visibility of the samples of both surfaces */
     float light_visibility[VIEW_MAX_LIGHTS][TILE_SAMPLES];
-    float color[3][TILE_SAMPLES]; /* of the tile at hand */
-    int row, column;              /* the first tile that is not drawn yet, in pixels */
+    float color[3][TILE_SAMPLES]; /* colors of the present tile */
+    int row, column;              /* upper left pixel of the first tile that is not drawn yet */
 } CanvasWorker;
 
-/* A canvas. It is constant while rows are drawn, except its workers, one per thread. */
+/* The state of one band. It is constant while rows are drawn, except its workers, one per
+ * thread. */
 typedef struct Canvas {
     const Drawing *drawing; /* borrowed */
     Frame *frame;           /* borrowed */
     Viewpoint eye;
     const TileKernels *kernels;
-    bool needs_points; /* shading reads TileHits.z, because light, visibility or colors depend on
-                        * the position of the hit */
+    bool needs_points; /* shading reads TileHits.z: lights, visibility or colors depend on the
+                        * position of the hit */
     bool wants_color, wants_geometry;
-    bool wholly_colored; /* the engine also sets the colors of samples without a hit; false at
-                          * first */
+    bool wholly_colored; /* the engine also sets the colors of samples without a hit; initially
+                          * false */
     TileLook look, ground_look;
     Resampling more;   /* owned, like all members below */
-    SrgbCodes codes;   /* if the frame has codes */
-    float *background; /* a row of the picture */
-    float *blank;      /* colors of pixels in tiles that are not drawn: a row of the picture */
+    SrgbCodes codes;   /* set if the frame stores codes */
+    float *background; /* background of one row of the image */
+    float *blank;      /* colors of one row of the image for pixels in tiles that are not drawn */
     uint8_t *background_codes;
     CanvasWorker *each;
     int workers;
@@ -48,17 +53,17 @@ MUST_CHECK Status canvas_init(const Drawing *drawing, Frame *frame, const Viewpo
                               Canvas *canvas, Err *err);
 void canvas_release(Canvas *canvas);
 
-/* Makes pixels of tiles that are not drawn the mean of the background's samples, from now on. The
+/* From now on, pixels of tiles that are not drawn get the mean of the background's samples. This
  * mean may differ from the background in the last digit. */
 void canvas_blank_is_mean(Canvas *canvas);
 
 /* Draws `rows` rows of tiles; `first` is the index of the first row from the top of the picture. */
 typedef Status CanvasRows(void *context, int first, int rows, int worker, Err *err);
 
-/* Draws all rows of tiles in the band: calls `draw` for `at_once` rows at a time, in parallel, each
+/* Draws all rows of tiles in the band. Calls `draw` for `at_once` rows at a time, in parallel, each
  * call with its own worker, and reports progress. In the pass of the centre samples (`further` is
  * false), tiles that were not passed to canvas_draw become blank. Errors: the first error of
- * `draw`. */
+ * `draw`; STATUS_CANCELLED if the progress callback asks to stop. */
 MUST_CHECK Status canvas_pass(Canvas *canvas, bool further, int at_once, CanvasRows *draw,
                               void *context, Err *err);
 

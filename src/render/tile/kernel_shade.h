@@ -1,12 +1,14 @@
-/* shade.c's model for the samples of a tile, their pixels, and the codes of the colors, several at
- * once and in single precision: included by each source that compiles it for its lanes,
- * LANES_NAME(name) making the names of its functions. */
+/* The kernels of TileKernels: the shading model of shade.c for the samples of a tile, storing their
+ * pixels, and encoding their colors. They process several samples at once, in single precision.
+ * Each source that compiles them for its lanes includes this file. LANES_NAME(name) makes the names
+ * of its functions. */
 #include "render/tile/lanes.h"
 #include "render/tile/tilekernels.h"
 #include <endian.h>
 
-/* x^y of x in (0, 1], y >= 0: by squaring where y is a small whole number, as it mostly is. What is
- * below 1e-15 need not be right, and so never comes near the slow arithmetic of tiny numbers. */
+/* Returns x^y for x in (0, 1] and y >= 0. Uses repeated squaring if y is a small integer, which is
+ * the usual case. Results below 1e-15 may be wrong; this avoids slow arithmetic with subnormal
+ * numbers. */
 LANE_FN Lanes lanes_power(Lanes x, float y)
 {
     const Lanes least = lanes_set(1e-15f);
@@ -228,7 +230,8 @@ LANE_TARGET static void LANES_NAME(clear)(const uint8_t *state, const float back
 
 /* ---- lights ---------------------------------------------------------------------------------- */
 
-/* `near`: the light is not parallel; `slanted`: the camera's view is not. */
+/* Returns the mask of TileKernels.face. `near`: the light is not parallel; `slanted`: the camera's
+ * view is not parallel. */
 LANE_FN uint64_t face_samples(const TracedTile *traced, const HitPoints *points,
                               const float normal[3][TILE_SAMPLES], const TileLight *light,
                               bool near, bool slanted)
@@ -262,7 +265,7 @@ LANE_TARGET static uint64_t LANES_NAME(face)(const TracedTile *traced, const Hit
     return face_samples(traced, points, normal, light, !light->parallel, traced->perspective);
 }
 
-/* The tile, of `count`, that a place in tiles lies in. */
+/* Returns the tile, in [0, count), that contains a position in tiles. */
 LANE_FN int32_t tile_at(double place, double count)
 {
     place = place > 0 ? place : 0;

@@ -17,14 +17,14 @@ typedef struct TileLight {
     bool parallel;
 } TileLight;
 
-/* What shading needs beside the surface. */
+/* The finish and the lights with which a surface is shaded. */
 typedef struct TileLook {
     Finish finish;
     TileLight lights[VIEW_MAX_LIGHTS];
     size_t n_lights;
 } TileLook;
 
-/* The visible points of a tile, in the camera's frame. */
+/* The surface points that the samples of a tile hit, in the camera's frame. */
 typedef struct TileSurface {
     const TileHits *hits;
     float direction[3][TILE_SAMPLES]; /* unit, of the camera ray */

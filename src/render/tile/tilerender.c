@@ -293,7 +293,7 @@ static Status draw_shifted(const TilePicture *picture, int worker, Err *err)
 
 /* ---- the fine grid --------------------------------------------------------------------------- */
 
-/* Keeps the colors of a tile of the fine grid until those of a row of pixel tiles are complete. */
+/* Stores the colors of a tile of the fine grid until the tiles of a row of pixels are complete. */
 static void keep_fine(const TilePicture *picture, const TileBatch *batch, const TracedTile *traced,
                       float (*color)[TILE_SAMPLES])
 {
@@ -600,7 +600,7 @@ static void release_picture(TilePicture *picture)
     canvas_release(&picture->canvas);
 }
 
-/* Allocates what batches need for the further samples. */
+/* Allocates the memory of batches for the further samples. */
 static Status make_further(TilePicture *picture, Err *err)
 {
     const SampleGrid *grid = &picture->pass->grid;
