@@ -50,7 +50,7 @@ test_architecture_names_each_mutable_global() {
 
 test_the_numbers_of_growth_are_those_of_the_source() {
     run_ok corcast grow --help
-    expect_stdout 'nearest segments tried for each terminal; from 1 to 1000 \(8\)'
+    expect_stdout '^ +default: 8\]$|1000; default: 8\]$'
     says METHODS.md 'The nearest segments (8; `--candidates`)'
     agree METHODS.md <<'END'
 one point in three is far enough @ grow/grow.c @ TOSSES_PER_ADDED = 3 }
@@ -226,7 +226,7 @@ For pictures above 4 million pixels the page has no depths @ report_planes.c @ M
 END
     run_ok corcast render --help
     tr -s "\n " "  " <stdout >help && mv help stdout
-    expect_stdout "memory MB [^-]*\(128\)"
+    expect_stdout "memory MB [^-]*default: 128\\]"
     says FORMATS.md 'larger pictures than `--memory` MB (128)'
 }
 

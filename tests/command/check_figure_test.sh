@@ -64,7 +64,7 @@ test_a_preset_says_what_nobody_else_does() {
     expect_sentence '--column needs --preset'
     run corcast render tree.swc --preset sience -o x.png
     expect_status 2
-    expect_sentence "--preset: 'sience' is not elsevier, nature, plos, poster-a0 or springer"
+    expect_sentence "--preset: 'sience' is unknown; available: elsevier, nature, plos, poster-a0 or springer"
 }
 
 test_figures_and_pages_of_several_parts_go_by_presets() {

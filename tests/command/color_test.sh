@@ -3,7 +3,7 @@
 # matplotlib's published tables, as 8-bit codes and as linear numbers computed by hand.
 . "$(dirname "$0")/../lib.sh"
 
-MODELS=$(corcast models)
+MODELS=$(corcast models | cut -f 1)
 
 # Vessels 2, 4, 6, 8 and 10, each alone, of radii 1.37 mm times 1, 2, 4, 8 and 16, and a look that shows
 # nothing but their colors. From the least to the greatest, the radii are at the entries 0, 17, 51, 119 and 255

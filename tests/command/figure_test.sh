@@ -236,7 +236,7 @@ test_numbers_beyond_all_bounds_are_refused_in_a_short_sentence() {
 test_names_that_there_are_none_of() {
     run corcast figure nosuch -o x.pdf
     expect_status 2
-    expect_sentence "no such figure: 'nosuch' is not fig1, fig2, fig3 or fig4"
+    expect_sentence "figure 'nosuch' is unknown; available: fig1, fig2, fig3 or fig4"
     ! grep -q -- --figure stderr || fail "expected no option that there is none of: $(cat stderr)"
     for word in --help -h; do
         refused "[panel a]\ngrow = --terminals 3 $word\n" "panel a\]: grow: $word cannot be used here"

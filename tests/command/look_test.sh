@@ -9,9 +9,9 @@ make_crossing() {
 
 test_looks_are_listed_with_what_povray_does_not_draw() {
     run_ok corcast looks
-    expect_stdout '^clinical	POV-Ray draws the same	the bright red of textbooks'
-    expect_stdout '^journal	POV-Ray draws it without outlines and halos	true colors'
-    expect_stdout '^depth	POV-Ray draws it without halos and fading with depth	'
+    expect_stdout '^clinical	also in POV-Ray	the bright red of textbooks'
+    expect_stdout '^journal	in POV-Ray without outlines and halos	true colors'
+    expect_stdout '^depth	in POV-Ray without halos and fading with depth	'
     [ "$(corcast looks | wc -l)" = "$(ls "$REPO"/templates/looks | wc -l)" ] || fail "expected every look to be listed"
     ! corcast looks | awk -F '	' 'NF != 3 || $3 == ""' | grep . || fail "expected every look to say what it is"
 }
@@ -32,7 +32,7 @@ test_halos_part_vessels_whatever_the_model() {
     make_crossing
     sed 's/^width = 2.5/width = 40/' "$REPO/templates/looks/journal.ini" >wide.ini
     sed '/^\[halo\]/,$d' wide.ini >bare.ini
-    for model in $(corcast models | grep -v mesh); do
+    for model in $(corcast models | cut -f 1 | grep -v mesh); do
         run_ok corcast render tree.swc --quiet --model "$model" --size 64x64 --background 0,0,1 --look ./wide.ini -o with.ppm
         run_ok corcast render tree.swc --quiet --model "$model" --size 64x64 --background 0,0,1 --look ./bare.ini -o without.ppm
         expect_differing 30 600 without.ppm with.ppm

@@ -2,7 +2,7 @@
 # `render` and the image formats. netpbm, which shares no code with corcast, reads the pictures.
 . "$(dirname "$0")/../lib.sh"
 
-MODELS=$(corcast models)
+MODELS=$(corcast models | cut -f 1)
 
 # colors FILE.ppm: how many different pixels there are.
 colors() {
@@ -413,7 +413,7 @@ test_adaptive_antialiasing_needs_antialiasing() {
 test_tiles_agree_with_rays_to_tier_b_and_to_the_measured_floor() {
     local model projection tree method
     for tree in disc200 disc200-lambda0 ball60; do
-        for model in $(corcast models --of primitives) blob; do
+        for model in $(corcast models --of primitives | cut -f 1) blob; do
             for projection in orthographic perspective; do
                 for method in trace raster; do
                     run_ok corcast render "$REPO/tests/golden/$tree.swc" --model $model --projection $projection \
@@ -647,7 +647,7 @@ test_implicit_surfaces_of_odd_trees_are_drawn_or_refused() {
         expect_status 2
     done
     rows '1 3 0 0 0 1 -1' '2 3 5 0 0 1 1' '3 3 8 3 0 .5 2' '4 3 8 -3 0 .5 2'
-    for how in $(corcast models --of field); do
+    for how in $(corcast models --of field | cut -f 1); do
         survives --model $how --projection perspective --location 2.5,0,0 --look-at 8,0,0
         expect_status 0
     done

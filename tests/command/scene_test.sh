@@ -2,7 +2,7 @@
 # `scene`, and `povray` with scripts in place of POV-Ray. tests/povray runs the real program.
 . "$(dirname "$0")/../lib.sh"
 
-MODELS=$(corcast models)
+MODELS=$(corcast models | cut -f 1)
 
 # stand_in BODY: makes ./povray.sh and has corcast call it instead of POV-Ray.
 stand_in() {

@@ -361,7 +361,7 @@ static Status find_recipe(const char *name, char **path, Err *err)
 {
     if (strchr(name, '/') || strcmp(file_extension(name), "ini") == 0)
         return mem_strdup(path, name, err);
-    return template_find("no such figure:", "figures", name, ".ini", path, err);
+    return template_find("figure", "figures", name, ".ini", path, err);
 }
 
 static Status find_folder(const char *recipe, char **folder, Err *err)
