@@ -64,7 +64,7 @@ const Emitter *emitter_find(const char *extension, bool of_meshes)
     return NULL;
 }
 
-const Emitter *emitter_asked(const char *extension, const char *option)
+const Emitter *emitter_by_option(const char *extension, const char *option)
 {
     for (const Emitter *emitter = emitters; emitter->name; emitter++)
         if (emitter->option && strcmp(emitter->option, option) == 0 &&

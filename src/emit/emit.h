@@ -90,7 +90,7 @@ extern const Emitter emitters[];
  * NULL if there is none. */
 const Emitter *emitter_find(const char *extension, bool of_meshes);
 /* Returns the emitter with this extension that the option selects, or NULL. */
-const Emitter *emitter_asked(const char *extension, const char *option);
+const Emitter *emitter_by_option(const char *extension, const char *option);
 /* Appends the extensions of emitters of scenes, or of meshes and curves: ".pov or .scad". */
 void emitter_extensions(bool of_meshes, Text *out);
 

@@ -22,10 +22,10 @@ typedef struct GlbVertex {
 
 typedef struct Glb {
     const EmitParams *params;
-    IndexLists parts;              /* triangles by order */
-    ARRAY(GlbVertex) vertices;     /* order by order */
-    size_t first[MOST_ORDERS + 2]; /* vertex of each order, as in parts */
-    uint32_t (*corners)[3];        /* owned; of parts.items: numbers within the order */
+    IndexLists parts;             /* triangles by order */
+    ARRAY(GlbVertex) vertices;    /* order by order */
+    size_t first[MAX_ORDERS + 2]; /* vertex of each order, as in parts */
+    uint32_t (*corners)[3];       /* owned; of parts.items: numbers within the order */
     uint32_t *slots; /* owned; of each point, of the wall and of a cap: 1 + its last vertex */
 } Glb;
 
@@ -45,7 +45,7 @@ static Status find_vertex(Glb *glb, uint32_t triangle, uint32_t point, size_t fi
 static Status find_vertices(Glb *glb, Err *err)
 {
     const VesselMesh *mesh = glb->params->mesh;
-    for (size_t order = 0; order <= MOST_ORDERS; order++) {
+    for (size_t order = 0; order <= MAX_ORDERS; order++) {
         glb->first[order] = glb->vertices.n;
         for (size_t i = glb->parts.first[order]; i < glb->parts.first[order + 1]; i++)
             for (int k = 0; k < 3; k++) {
@@ -54,7 +54,7 @@ static Status find_vertices(Glb *glb, Err *err)
                                 &glb->corners[i][k], err));
             }
     }
-    glb->first[MOST_ORDERS + 1] = glb->vertices.n;
+    glb->first[MAX_ORDERS + 1] = glb->vertices.n;
     return STATUS_OK;
 }
 
@@ -190,10 +190,10 @@ static json_t *asset(const EmitParams *params)
 static json_t *document(const Glb *glb, size_t buffer_bytes)
 {
     size_t orders = 0;
-    for (size_t order = 0; order <= MOST_ORDERS; order++)
+    for (size_t order = 0; order <= MAX_ORDERS; order++)
         orders += glb->first[order] < glb->first[order + 1];
     GlbLists lists = {json_array(), json_array(), json_pack("[o]", root_node(glb, orders)), 0};
-    for (size_t order = 0; order <= MOST_ORDERS; order++)
+    for (size_t order = 0; order <= MAX_ORDERS; order++)
         if (glb->first[order] < glb->first[order + 1])
             add_order(glb, order, &lists);
     return json_pack("{s:o, s:i, s:[{s:[i]}], s:o, s:o, s:[o], s:o, s:o, s:[{s:I}]}", "asset",

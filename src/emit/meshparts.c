@@ -15,7 +15,7 @@ static size_t order_of(const EmitParams *params, size_t triangle)
 Status triangles_by_order(const EmitParams *params, IndexLists *out, Err *err)
 {
     const size_t n = params->mesh->n_triangles;
-    TRY(indexlists_begin(out, MOST_ORDERS + 1, "triangles", err));
+    TRY(indexlists_begin(out, MAX_ORDERS + 1, "triangles", err));
     for (size_t i = 0; i < n; i++)
         indexlists_count(out, order_of(params, i));
     TRY(indexlists_allot(out, "triangles", err));

@@ -6,10 +6,10 @@
 #include "emit/emit.h"
 
 /* Upper bound of Strahler orders. An order needs twice as many segments as the order below it. */
-enum { MOST_ORDERS = 32 };
+enum { MAX_ORDERS = 32 };
 
 /* Lists the triangles of params->mesh by the Strahler order of their segments, as list 0 to
- * MOST_ORDERS. Triangles of one order keep the order of the mesh. Release *out with
+ * MAX_ORDERS. Triangles of one order keep the order of the mesh. Release *out with
  * indexlists_release, also after an error. Errors: STATUS_MEMORY. */
 MUST_CHECK Status triangles_by_order(const EmitParams *params, IndexLists *out, Err *err);
 

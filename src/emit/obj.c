@@ -48,7 +48,7 @@ static void put_groups(const EmitParams *params, const IndexLists *orders, Text 
 {
     uint32_t material = UINT32_MAX;
     size_t flat = 0;
-    for (size_t order = 0; order <= MOST_ORDERS; order++) {
+    for (size_t order = 0; order <= MAX_ORDERS; order++) {
         if (orders->first[order] < orders->first[order + 1])
             text_printf(out, "g order_%zu\n", order);
         for (size_t i = orders->first[order]; i < orders->first[order + 1]; i++) {

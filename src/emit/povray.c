@@ -22,7 +22,7 @@ static const struct PovrayRow {
                     * for fields; a load of 1 [povray_load] */
 } geometries[] = {
     {MODEL_POTENTIAL, find_cells, put_cell_macros, put_cells, 100000},
-    {MODEL_BLOB, find_painted, put_blob_macros, put_blob, 32768},
+    {MODEL_BLOB, find_visible_segments, put_blob_macros, put_blob, 32768},
     {MODEL_TRIANGLES, NULL, put_mesh_macros, put_mesh, 4000},
     {MODEL_JOINTS, NULL, put_joined_macros, put_primitives, 200000},
     {MODEL_CYLINDERS, NULL, put_primitive_macros, put_primitives, 400000},
@@ -141,7 +141,7 @@ static void add_scale(Values *values, const Appearance *appearance)
     const ColorScale *scale = &appearance->scale;
     put_quoted(add_value(values, "value_name"), scale->name);
     put_quoted(add_value(values, "value_unit"), scale->unit);
-    put_quoted(add_value(values, "value_said"), appearance->said);
+    put_quoted(add_value(values, "value_said"), appearance->meaning);
     add_number(values, "value_low", scale->range[0]);
     add_number(values, "value_high", scale->range[1]);
     add_flag(values, "value_log", scale->log);
@@ -150,10 +150,10 @@ static void add_scale(Values *values, const Appearance *appearance)
     Text *bounds = add_value(values, "bounds");
     for (int i = 0; i < scale->n_bounds; i++)
         put_text(bounds, "%n, ", scale->bounds[i]);
-    put_value_part(add_value(values, "value_part"), scale);
+    put_value_fraction(add_value(values, "value_part"), scale);
     put_value_map(add_value(values, "value_map"), scale);
     text_printf(add_value(values, "count"), "%d",
-                colorscale_counts(scale) ? colorscale_steps(scale) : 0);
+                colorscale_selects_by_integer(scale) ? colorscale_steps(scale) : 0);
 }
 
 /* Appends a frame as a case of a #switch, of which POV-Ray reads one. */

@@ -9,10 +9,10 @@
 bool povray_blends(const PovrayGeometry *geometry)
 {
     const Scene *scene = geometry->scene;
-    return scene->appearance.places && model_has(scene->geometry.model, MODEL_FIELD);
+    return scene->appearance.positions && model_has(scene->geometry.model, MODEL_FIELD);
 }
 
-void put_value_part(Text *text, const ColorScale *scale)
+void put_value_fraction(Text *text, const ColorScale *scale)
 {
     char low[NUMBER_TEXT_SIZE], width[NUMBER_TEXT_SIZE];
     const double *range = scale->range;
@@ -20,7 +20,7 @@ void put_value_part(Text *text, const ColorScale *scale)
     number_text(scale->log ? elementary_log(range[1]) - elementary_log(range[0])
                            : range[1] - range[0],
                 width);
-    if (colorscale_counts(scale))
+    if (colorscale_selects_by_integer(scale))
         text_puts(text, "x");
     else if (!(range[1] > range[0]))
         text_printf(text, "x - (%s) + 0.5", low);
@@ -44,10 +44,10 @@ void put_value_map(Text *text, const ColorScale *scale)
 {
     char slack[NUMBER_TEXT_SIZE];
     const int n = colorscale_steps(scale);
-    number_text(colorscale_slack(scale), slack);
+    number_text(colorscale_tolerance(scale), slack);
     if (scale->n_bounds)
         put_bounds(text, scale);
-    else if (colorscale_counts(scale))
+    else if (colorscale_selects_by_integer(scale))
         text_printf(text, "(mod(mod(floor(x) - 1, %d) + %d, %d) + 0.5) / %d", n, n, n, n);
     else if (n > 0)
         text_printf(text, "(0.5 + min(max(floor((x + %s) * %d), 0), %d)) / %d", slack, n, n - 1, n);
@@ -65,7 +65,7 @@ static void put_own(Text *text, const ScaleColor *own)
 static bool all_are_known(const Appearance *appearance)
 {
     for (size_t i = 0; i < appearance->n_values; i++)
-        if (isnan(appearance->places[i]))
+        if (isnan(appearance->positions[i]))
             return false;
     return true;
 }

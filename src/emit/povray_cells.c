@@ -190,7 +190,7 @@ static Status put_terms(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     size_t n = geometry->scene->geometry.n_segments;
-    bool in_matrices = n > MOST_INLINE_TERMS;
+    bool in_matrices = n > MAX_INLINE_TERMS;
     Tmpl templates[TERM_TEMPLATES] = {0};
     uint8_t *used = NULL;
     Status status;
@@ -463,7 +463,7 @@ static Status put_cell_paint(CellWriter *writer, const Cell *cell, CellTextPart 
 static double place_of(const EmitParams *params, const CellTerm *term)
 {
     const Scene *scene = params->scene;
-    return scene->appearance.places[scene->geometry.segments[term->segment].segment];
+    return scene->appearance.positions[scene->geometry.segments[term->segment].segment];
 }
 
 /* The sum of the terms whose segments have places, times these if `placed`; "(0)" without any. */
@@ -611,15 +611,16 @@ static Status part_cells(const PovrayGeometry *geometry, PovrayItems items, Cell
 static Status take_cells(PovrayGeometry *geometry, Err *err)
 {
     const CellTree *built = geometry->params->built;
-    TRY(mem_calloc(&geometry->met, built->n_cells, sizeof *geometry->met, "cells", err));
+    TRY(mem_calloc(&geometry->hit_cells, built->n_cells, sizeof *geometry->hit_cells, "cells",
+                   err));
     size_t n = 0;
     for (size_t i = 0; i < built->n_cells; i++) {
         const Cell *cell = &built->cells[i];
-        if (sight_meets(geometry->sight, (Box){cell->low, cell->high}))
-            geometry->met[n++] = *cell;
+        if (rayvolume_meets(geometry->volume, (Box){cell->low, cell->high}))
+            geometry->hit_cells[n++] = *cell;
     }
     geometry->cells[0] = *built;
-    geometry->cells[0].cells = geometry->met;
+    geometry->cells[0].cells = geometry->hit_cells;
     geometry->cells[0].n_cells = n;
     return STATUS_OK;
 }

@@ -23,7 +23,7 @@ Status put_blob_macros(Text *out, void *geometry, Err *err);
 Status find_cells(PovrayGeometry *geometry, Err *err);
 /* Finds geometry->painted of a blob: the segments that rays of the part can hit. Without a part
  * these are all. If there are none, one segment remains, because POV-Ray needs one to paint. */
-Status find_painted(PovrayGeometry *geometry, Err *err);
+Status find_visible_segments(PovrayGeometry *geometry, Err *err);
 
 /* Append the declaration of geometry->object: a macro call for each primitive, an isosurface for
  * each cell, the calls that make a blob, the lists of a mesh2. Errors: also STATUS_INFEASIBLE if
@@ -40,8 +40,8 @@ void put_joint(Text *text, const EmitParams *params, const Primitive *joint);
  */
 
 /* Appends the fraction of the scale's range below the value x, as an expression of POV-Ray's
- * functions [colorscale_place]. For a scale that counts colors, the fraction is x itself. */
-void put_value_part(Text *text, const ColorScale *scale);
+ * functions [colorscale_position]. For a scale that counts colors, the fraction is x itself. */
+void put_value_fraction(Text *text, const ColorScale *scale);
 /* Appends the position on Value_Color_Map, 0 to 1, of a fraction x of the range, as an expression.
  */
 void put_value_map(Text *text, const ColorScale *scale);

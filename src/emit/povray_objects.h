@@ -12,21 +12,21 @@ typedef struct PovrayItems {
     size_t n;
 } PovrayItems;
 
-/* A geometry that is being written. Everything from `sight` on is owned; release it with
+/* A geometry that is being written. Everything from `volume` on is owned; release it with
  * povray_objects_release. */
 typedef struct PovrayGeometry {
     const EmitParams *params;
     const Scene *scene;
     EmitReport *report;
-    Sight *sight;         /* of params->part, or NULL */
+    RayVolume *volume;    /* of params->part, or NULL */
     PovrayItems *objects; /* [0]: Tree; of a forest, [k]: Tree_k */
     size_t n_objects;
     uint32_t *indices;   /* the items of all objects */
     IndexLists trees;    /* of a forest: the items of each tree */
-    bool nothing;        /* no ray of the part can hit anything */
+    bool is_empty;       /* no ray of the part can hit anything */
     PovrayItems painted; /* blob: the segments that may be visible; borrowed from `indices` */
     CellTree *cells;     /* isosurface: per object; terms have the indices of the scene */
-    Cell *met;           /* isosurface with a part: the cells of params->built that its rays hit */
+    Cell *hit_cells;     /* isosurface with a part: the cells of params->built that its rays hit */
     size_t object;       /* index of the object that is being declared */
 } PovrayGeometry;
 

@@ -17,7 +17,7 @@ void put_linear(Text *text, const Linear *linear);
 /* POV-Ray searches all numbers of all functions for each number in a function. If a scene has more
  * terms than this, their numbers are in matrices, whose products with a point are functions, too.
  * Matrices take POV-Ray longer to evaluate, by a quarter of the time for a picture. */
-enum { MOST_INLINE_TERMS = 3000 };
+enum { MAX_INLINE_TERMS = 3000 };
 /* Declares the arrays Vs and Ve of `n` matrices. */
 void put_matrix_arrays(Text *text, size_t n);
 /* Declares V..[number], `which` being 's' or 'e': the function whose x, y and z are the columns at

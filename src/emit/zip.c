@@ -161,7 +161,7 @@ static Status put_entry(const ZipEntry *entry, Stored *stored, Text *out, Err *e
 
 Status zip_put(const ZipEntry *entries, size_t n, Text *out, Err *err)
 {
-    Stored stored[ZIP_MOST_ENTRIES];
+    Stored stored[ZIP_MAX_ENTRIES];
     uint32_t offset = 0, central = 0;
     for (size_t i = 0; i < n; i++) {
         uint32_t name = (uint32_t)strlen(entries[i].name);

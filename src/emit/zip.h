@@ -11,9 +11,9 @@ typedef struct ZipEntry {
     void *context;
 } ZipEntry;
 
-enum { ZIP_MOST_ENTRIES = 8 }; /* largest number of entries of an archive */
+enum { ZIP_MAX_ENTRIES = 8 }; /* largest number of entries of an archive */
 
-/* Appends a ZIP archive of `n` <= ZIP_MOST_ENTRIES entries to `out`. Each entry is compressed while
+/* Appends a ZIP archive of `n` <= ZIP_MAX_ENTRIES entries to `out`. Each entry is compressed while
  * its callback produces it. Every entry is dated 1 January 1980, so equal entries give equal bytes.
  *
  * Errors   STATUS_INFEASIBLE if the archive would have 4 GB or more; STATUS_MEMORY; any error of an

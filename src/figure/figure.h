@@ -160,7 +160,7 @@ void figure_add_text(FigurePage *page, const FigureText *text);
 MUST_CHECK Status figure_check(const FigurePage *page, Err *err);
 /* Appends a sentence that names the characters the font lacks: those with a substitute, or those
  * that a box stands for. Appends nothing if there are none. */
-void figure_put_lacking(const FigurePage *page, bool substituted, Text *out);
+void figure_put_missing(const FigurePage *page, bool substituted, Text *out);
 
 /* Returns the bounds of the items from index `first` on. */
 FigureBox figure_bounds(const FigurePage *page, size_t first);
@@ -190,7 +190,7 @@ void figure_add_scale_bar(FigurePage *page, double length_mm, const char *label,
                           FigureColor ink);
 
 /* Stores about `wanted` round numbers within the range of a scale, ascending, and returns how many.
- * The scale must not count colors [colorscale_counts]. `whole`: only integers. */
+ * The scale must not count colors [colorscale_selects_by_integer]. `whole`: only integers. */
 enum { FIGURE_TICKS = 32 };
 int figure_ticks(const ColorScale *scale, int wanted, bool whole, double ticks[FIGURE_TICKS]);
 

@@ -145,7 +145,7 @@ static void put_ramp(const LegendLayout *layout)
     int most = (int)fmin(fmax(layout->length / (legend->across ? 2.9 : 2.2) / layout->em, 2), 8);
     int n = figure_ticks(legend->scale, most, legend->whole, ticks);
     for (int i = 0; i < n; i++)
-        along[i] = layout->length * colorscale_place(legend->scale, ticks[i]);
+        along[i] = layout->length * colorscale_position(legend->scale, ticks[i]);
     put_ticks(layout, ticks, along, n);
     put_points(layout);
 }
@@ -166,9 +166,9 @@ static void put_classes(const LegendLayout *layout)
     const ColorScale *scale = layout->legend->scale;
     int steps = colorscale_steps(scale), n = 0;
     double each = layout->length / steps;
-    double values[COLORSCALE_MOST_BOUNDS + 2], along[COLORSCALE_MOST_BOUNDS + 2];
+    double values[COLORSCALE_MAX_BOUNDS + 2], along[COLORSCALE_MAX_BOUNDS + 2];
     double pitch = (layout->legend->across ? 2.9 : 1.2) * layout->em;
-    int apart = (int)fmax(ceil(pitch / each), steps / COLORSCALE_MOST_BOUNDS + 1);
+    int apart = (int)fmax(ceil(pitch / each), steps / COLORSCALE_MAX_BOUNDS + 1);
     for (int i = 0; i < steps; i++) {
         float color[3];
         bool is_under = scale->n_bounds && i == 0, is_over = scale->n_bounds && i == steps - 1;
@@ -251,7 +251,7 @@ void figure_add_legend(FigurePage *page, const FigureLegend *legend)
                            .legend = legend,
                            .em = legend->size_pt * MM_PER_POINT,
                            .length = legend->length_mm};
-    if (colorscale_counts(legend->scale))
+    if (colorscale_selects_by_integer(legend->scale))
         layout.length = put_counts(&layout);
     else if (colorscale_steps(legend->scale))
         put_classes(&layout);

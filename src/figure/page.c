@@ -200,7 +200,7 @@ Status figure_check(const FigurePage *page, Err *err)
     return page->failed ? mem_out_of("for", "the page", err) : STATUS_OK;
 }
 
-void figure_put_lacking(const FigurePage *page, bool substituted, Text *out)
+void figure_put_missing(const FigurePage *page, bool substituted, Text *out)
 {
     const FigureLetters *replaced = &page->replaced;
     const uint32_t *letters = substituted ? replaced->substituted : replaced->boxed;

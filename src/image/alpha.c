@@ -89,7 +89,7 @@ static Status refuse(const Image *image, size_t pixel, const char *name, Err *er
                    name, pixel % width, pixel / width);
 }
 
-Status image_settle_alpha(Image *image, ImageAlpha alpha, const char *name, Err *err)
+Status image_apply_alpha(Image *image, ImageAlpha alpha, const char *name, Err *err)
 {
     if (!has_alpha(image))
         return STATUS_OK;
@@ -150,7 +150,7 @@ static Status lay_picture(Image *image, const float background[3], Err *err)
     return STATUS_OK;
 }
 
-Status image_lay_on(Image *image, const float background[3], Err *err)
+Status image_composite(Image *image, const float background[3], Err *err)
 {
     Plane laid;
     if (!has_alpha(image))

@@ -59,7 +59,7 @@ Status colorscale_percentiles(const ColorScale *scale, const double *values, siz
     return STATUS_OK;
 }
 
-double colorscale_place(const ColorScale *scale, double value)
+double colorscale_position(const ColorScale *scale, double value)
 {
     double low = scaled(scale, scale->range[0]), high = scaled(scale, scale->range[1]);
     double width = high - low, above = scaled(scale, value) - low;
@@ -68,7 +68,7 @@ double colorscale_place(const ColorScale *scale, double value)
 
 /* Large compared with the rounding of a mean of positions, about 1e-15, and too small to be
  * visible. Positions in a range without width have the unit of the value. */
-double colorscale_slack(const ColorScale *scale)
+double colorscale_tolerance(const ColorScale *scale)
 {
     const double part = 1e-6;
     return scale->range[1] > scale->range[0] ? part : part * fabs(scaled(scale, scale->range[0]));
@@ -76,18 +76,18 @@ double colorscale_slack(const ColorScale *scale)
 
 double colorscale_bound(const ColorScale *scale, int i)
 {
-    return colorscale_place(scale, scale->bounds[i]) - colorscale_slack(scale);
+    return colorscale_position(scale, scale->bounds[i]) - colorscale_tolerance(scale);
 }
 
 double colorscale_lowest(const ColorScale *scale)
 {
-    return scale->n_bounds ? colorscale_bound(scale, 0) : -colorscale_slack(scale);
+    return scale->n_bounds ? colorscale_bound(scale, 0) : -colorscale_tolerance(scale);
 }
 
 double colorscale_highest(const ColorScale *scale)
 {
     return scale->n_bounds ? colorscale_bound(scale, scale->n_bounds - 1)
-                           : 1 + colorscale_slack(scale);
+                           : 1 + colorscale_tolerance(scale);
 }
 
 static bool is_below(const ColorScale *scale, double place)
@@ -106,7 +106,7 @@ ScaleOutside colorscale_outside(const ColorScale *scale, const double *values, s
 {
     ScaleOutside outside = {0};
     for (size_t i = 0; i < n; i++) {
-        double place = colorscale_place(scale, values[i]);
+        double place = colorscale_position(scale, values[i]);
         outside.none += isnan(place);
         outside.below += is_below(scale, place);
         outside.above += is_above(scale, place);
@@ -114,7 +114,7 @@ ScaleOutside colorscale_outside(const ColorScale *scale, const double *values, s
     return outside;
 }
 
-bool colorscale_counts(const ColorScale *scale)
+bool colorscale_selects_by_integer(const ColorScale *scale)
 {
     return scale->map.separate && !scale->n_bounds && scale->classes < 2;
 }
@@ -141,7 +141,7 @@ static int step_at(const ColorScale *scale, double place)
 {
     int step = 0;
     if (!scale->n_bounds) {
-        double part = place + colorscale_slack(scale);
+        double part = place + colorscale_tolerance(scale);
         return (int)fmin(fmax(floor(part * scale->classes), 0), scale->classes - 1);
     }
     while (step < scale->n_bounds && colorscale_bound(scale, step) <= place)
@@ -183,7 +183,7 @@ void colorramp_init(ColorRamp *ramp, const Colormap *map)
 {
     for (int i = 0; i < COLORRAMP_ENTRIES; i++) {
         double place = i / (COLORRAMP_ENTRIES - 1.0);
-        ramp->place[i] = (float)place;
+        ramp->position[i] = (float)place;
         colormap_linear(map, place, ramp->rgb[i]);
     }
 }
@@ -198,9 +198,10 @@ void colorscale_on_ramp(const ColorScale *scale, const ColorRamp *ramp, double p
     }
     place = fmin(fmax(place, 0), 1);
     int i = (int)(place * (COLORRAMP_ENTRIES - 1));
-    i -= i > 0 && place <= (double)ramp->place[i];
+    i -= i > 0 && place <= (double)ramp->position[i];
     i = i < COLORRAMP_ENTRIES - 2 ? i : COLORRAMP_ENTRIES - 2;
-    double low = (double)ramp->place[i], part = (place - low) / ((double)ramp->place[i + 1] - low);
+    double low = (double)ramp->position[i],
+           part = (place - low) / ((double)ramp->position[i + 1] - low);
     for (int c = 0; c < 3; c++) {
         double a = (double)ramp->rgb[i][c], b = (double)ramp->rgb[i + 1][c];
         rgb[c] = (float)(a + part * (b - a));
@@ -216,8 +217,8 @@ static size_t number_of(const ColorScale *scale, double value)
 
 void colorscale_linear(const ColorScale *scale, double value, float rgb[3])
 {
-    double place = colorscale_place(scale, value);
-    if (colorscale_counts(scale) && !isnan(place) && !own_color(scale, place))
+    double place = colorscale_position(scale, value);
+    if (colorscale_selects_by_integer(scale) && !isnan(place) && !own_color(scale, place))
         colormap_color(&scale->map, number_of(scale, value), rgb);
     else
         colorscale_at(scale, place, rgb);

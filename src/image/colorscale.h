@@ -11,7 +11,7 @@ typedef struct ScaleColor {
     float rgb[3]; /* linear */
 } ScaleColor;
 
-enum { COLORSCALE_MOST_BOUNDS = 64 };
+enum { COLORSCALE_MAX_BOUNDS = 64 };
 
 typedef struct ColorScale {
     const char *name; /* of the quantity, borrowed; NULL: there is no scale */
@@ -21,7 +21,7 @@ typedef struct ColorScale {
     int classes;      /* N >= 2: N equal classes of one color each; else continuous */
     /* Bounds of classes, ascending. They replace `classes`: n bounds make n + 1 classes, the first
      * below bounds[0] and the last from bounds[n - 1] on. */
-    double bounds[COLORSCALE_MOST_BOUNDS];
+    double bounds[COLORSCALE_MAX_BOUNDS];
     int n_bounds;           /* 0: there are none */
     ScaleColor under, over; /* of values below and above the range, or all bounds; default: the
                              * colors of the ends */
@@ -32,11 +32,11 @@ typedef struct ColorScale {
 /* Returns the position of a value on the scale: 0 and 1 at the ends of the range; 0.5 at the one
  * value of a range without width; NAN for a value that cannot be shown, which is NAN or, with
  * `log`, not above 0. */
-double colorscale_place(const ColorScale *scale, double value);
+double colorscale_position(const ColorScale *scale, double value);
 /* Returns the tolerance of positions: a position this far below a bound of two classes is on the
  * bound, and one this far outside the range is in the range. A mean of positions that are all on a
  * bound may be rounded to either side, so every comparison with a bound allows for it. */
-double colorscale_slack(const ColorScale *scale);
+double colorscale_tolerance(const ColorScale *scale);
 /* Returns the position where the class above bounds[i] begins, slack included. */
 double colorscale_bound(const ColorScale *scale, int i);
 /* Return the positions between which values have neither the color `under` nor the color `over`.
@@ -69,10 +69,10 @@ void colorscale_step_color(const ColorScale *scale, int step, float rgb[3]);
 
 /* Returns true if integers select the colors of a separate map, from 1 on, modulo the number of
  * colors. */
-bool colorscale_counts(const ColorScale *scale);
+bool colorscale_selects_by_integer(const ColorScale *scale);
 
 /* Stores the linear color at a position of a scale that does not count colors. A value on a
- * bound, or up to colorscale_slack below the bound, belongs to the class above. */
+ * bound, or up to colorscale_tolerance below the bound, belongs to the class above. */
 void colorscale_at(const ColorScale *scale, double place, float rgb[3]);
 /* Stores the linear color of a value. */
 void colorscale_linear(const ColorScale *scale, double value, float rgb[3]);
@@ -81,7 +81,7 @@ void colorscale_linear(const ColorScale *scale, double value, float rgb[3]);
  * 1, interpolated between them. */
 enum { COLORRAMP_ENTRIES = 256 };
 typedef struct ColorRamp {
-    float place[COLORRAMP_ENTRIES];
+    float position[COLORRAMP_ENTRIES];
     float rgb[COLORRAMP_ENTRIES][3];
 } ColorRamp;
 

@@ -165,5 +165,5 @@ const RowEncoder exr_encoder = {.format = "OpenEXR",
                                 .rows = write_chunk,
                                 .end = end,
                                 .release = release,
-                                .folds = 2 * DEFLATE_MAX_RATIO, /* halves */
+                                .max_ratio = 2 * DEFLATE_MAX_RATIO, /* halves */
                                 .traits = {.keeps_dpi = true, .floats = true}};

@@ -117,7 +117,7 @@ void imageinput_close(ImageInput *input); /* NULL is allowed */
 /* Removes or converts the alpha channel of an image as a decoder leaves it, the last of 2 or 4
  * channels. Errors: STATUS_INPUT, naming the file, if the image is transparent and that is
  * refused. */
-MUST_CHECK Status image_settle_alpha(Image *image, ImageAlpha alpha, const char *name, Err *err);
+MUST_CHECK Status image_apply_alpha(Image *image, ImageAlpha alpha, const char *name, Err *err);
 
 /* ---- writing --------------------------------------------------------------------------------- */
 
@@ -155,9 +155,9 @@ typedef struct RowEncoder {
     GuardedWork *rows;  /* writes the next rows */
     GuardedWork *end;   /* writes what comes after the rows; NULL: nothing */
     void (*release)(
-        void *self); /* releases what the state owns; runs in the guard; NULL: nothing */
-    int channels;    /* in the file; 0: as the form states */
-    double folds;    /* a file is at most this many times smaller than its values; 0: unknown */
+        void *self);  /* releases what the state owns; runs in the guard; NULL: nothing */
+    int channels;     /* in the file; 0: as the form states */
+    double max_ratio; /* a file is at most this many times smaller than its values; 0: unknown */
     ImageTraits traits;
 } RowEncoder;
 

@@ -113,8 +113,8 @@ enum {
     SRGB_CELLS_BEGIN = 0x39000000,   /* the bits of 2^-13 */
     SRGB_CELLS = (0x3f800000 - SRGB_CELLS_BEGIN) / SRGB_CELL
 };
-#define SRGB_LEAST 0x1p-13f      /* has code 0 */
-#define SRGB_MOST 0x1.fffffep-1f /* the float before 1; has code 255 */
+#define SRGB_MIN 0x1p-13f       /* has code 0 */
+#define SRGB_MAX 0x1.fffffep-1f /* the float before 1; has code 255 */
 
 typedef struct SrgbCodes {
     uint32_t cells[SRGB_CELLS];
@@ -124,8 +124,8 @@ void srgb_codes_init(SrgbCodes *codes);
 /* Returns the code that image_code gives. */
 static inline uint8_t srgb_code(const SrgbCodes *codes, float linear)
 {
-    float value = linear > SRGB_LEAST ? linear : SRGB_LEAST;
-    value = value < SRGB_MOST ? value : SRGB_MOST;
+    float value = linear > SRGB_MIN ? linear : SRGB_MIN;
+    value = value < SRGB_MAX ? value : SRGB_MAX;
     uint32_t bits;
     memcpy(&bits, &value, sizeof bits);
     bits -= SRGB_CELLS_BEGIN;
@@ -205,10 +205,10 @@ typedef struct ImageChannel {
 /* The form of an image that is written or read. */
 typedef struct ImageForm {
     int width, height;
-    int channels;      /* 1, 3 or, in PNG and TIFF, 4: with alpha, by which the colors are not
-                        * multiplied; in OpenEXR with `named` as many as that has */
-    int bits;          /* 8 or 16: codes; 32: floats */
-    Encoding encoding; /* of codes */
+    int channels;            /* 1, 3 or, in PNG and TIFF, 4: with alpha, by which the colors are not
+                              * multiplied; in OpenEXR with `named` as many as that has */
+    int bits;                /* 8 or 16: codes; 32: floats */
+    Encoding encoding;       /* of codes */
     const ImageNotes *notes; /* borrowed; may be NULL when an image is written */
     ImagePacking packing;
     const ImageChannel *named; /* borrowed; NULL: R G B, or Y */
@@ -289,7 +289,7 @@ void imagereader_close(ImageReader *reader);
 typedef struct Image {
     Picture picture;     /* has no codes if the file holds floats */
     Plane plane;         /* has no values if the file holds codes */
-    Picture transparent; /* the picture before image_lay_on; has no codes if it was opaque */
+    Picture transparent; /* the picture before image_composite; has no codes if it was opaque */
     const char *lossy;   /* the compression that changed the codes: "JPEG", "WebP"; NULL: none */
 } Image;
 
@@ -326,7 +326,7 @@ MUST_CHECK Status plane_read(Plane *plane, const char *path, ImageAlpha alpha, E
 /* Composites an image with alpha over a background, red, green and blue from 0 to 1, in linear
  * light. The result has 3 channels; its codes are linear if they were, else of sRGB. A picture with
  * alpha moves to image->transparent. Errors: STATUS_MEMORY; *image is unchanged then. */
-MUST_CHECK Status image_lay_on(Image *image, const float background[3], Err *err);
+MUST_CHECK Status image_composite(Image *image, const float background[3], Err *err);
 
 /* What a renderer makes, or what is read back from the files of another. Planes that were not
  * requested have NULL values. */

@@ -71,7 +71,7 @@ static Status decode(const ImageBytes *file, ImageAlpha alpha, Image *image, Err
     Status status;
     TRY_GOTO(imageinput_open(decoder, file, NULL, &input, err));
     TRY_GOTO(guard_run(&input->guard, decoder->decode, input, err));
-    TRY_GOTO(image_settle_alpha(&input->image, alpha, file->name, err));
+    TRY_GOTO(image_apply_alpha(&input->image, alpha, file->name, err));
     *image = input->image;
     input->image = (Image){0};
 done:

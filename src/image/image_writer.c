@@ -204,8 +204,8 @@ static Status begin(ImageWriter *writer, Err *err)
     ImageForm form = writer->form; /* of the file */
     int channels = encoder->channels ? encoder->channels : form.channels;
     double bytes = (double)form.width * form.height * channels * form.bits / 8;
-    if (encoder->folds > 0)
-        TRY(outfile_check_room(&writer->file, bytes / encoder->folds, err));
+    if (encoder->max_ratio > 0)
+        TRY(outfile_check_room(&writer->file, bytes / encoder->max_ratio, err));
     if (form.packing.inks) {
         form.channels = 4;
         TRY(mem_calloc(&writer->inked_row, (size_t)form.width, (size_t)form.bits / 2,

@@ -121,5 +121,5 @@ const RowEncoder pfm_encoder = {.format = "PFM",
                                 .begin = begin,
                                 .rows = write_rows,
                                 .release = release,
-                                .folds = 1,
+                                .max_ratio = 1,
                                 .traits = {.floats = true}};

@@ -397,5 +397,5 @@ const RowEncoder png_encoder = {.format = "PNG",
                                 .rows = write_rows,
                                 .end = end_writing,
                                 .release = release_writer,
-                                .folds = DEFLATE_MAX_RATIO,
+                                .max_ratio = DEFLATE_MAX_RATIO,
                                 .traits = {.keeps_dpi = true, .keeps_alpha = true}};

@@ -253,6 +253,6 @@ static void release(void *work)
 #define PNM_ENCODER(file_channels)                                                                 \
     {                                                                                              \
         .format = "PNM", .state_size = sizeof(PnmWriter), .begin = begin, .rows = write_rows,      \
-        .release = release, .channels = (file_channels), .folds = 1                                \
+        .release = release, .channels = (file_channels), .max_ratio = 1                            \
     }
 const RowEncoder ppm_encoder = PNM_ENCODER(3), pgm_encoder = PNM_ENCODER(1);

@@ -110,5 +110,5 @@ const RowEncoder tiff_encoder = {
     .rows = write_strip,
     .end = end,
     .release = release,
-    .folds = 1400, /* LZW */
+    .max_ratio = 1400, /* LZW */
     .traits = {.keeps_dpi = true, .has_profile = true, .keeps_alpha = true}};

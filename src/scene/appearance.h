@@ -34,11 +34,11 @@ typedef struct Appearance {
     char *name, *unit; /* of the scale */
     size_t n_values;
     ScaleOutside outside; /* how many of the drawn segments lie outside of the scale */
-    double *places;       /* per segment index: the value's position on the scale, if colors
+    double *positions;    /* per segment index: the value's position on the scale, if colors
                            * blend [stage_blend]; else NULL */
-    ColorRamp *ramp; /* the colors that positions are mapped to, if colors blend; else NULL */
-    char *said;  /* the meaning of the colors in words: "wss 3.70 to 54.1 Pa, of ..."; or NULL */
-    bool fitted; /* the range of the scale was computed from values, and not specified */
+    ColorRamp *ramp;      /* the colors that positions are mapped to, if colors blend; else NULL */
+    char *meaning; /* the meaning of the colors in words: "wss 3.70 to 54.1 Pa, of ..."; or NULL */
+    bool fitted;   /* the range of the scale was computed from values, and not specified */
     /* If colors change with time, `colors`, `values` and `places` hold n_frames frames one after
      * another, of n_segments entries each. */
     double *time; /* per frame: its time, rising; NULL: colors do not change */

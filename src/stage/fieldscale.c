@@ -177,7 +177,7 @@ static Status say(const FieldScaleParams *params, const FieldValues *range_of,
     put_steps(&appearance->scale, &text);
     appearance->outside = colorscale_outside(&appearance->scale, drawn->drawn, drawn->n_drawn);
     put_outside(&appearance->scale, appearance->outside, &text);
-    Status status = text_take(&text, &appearance->said, err);
+    Status status = text_take(&text, &appearance->meaning, err);
     text_release(&text);
     appearance->fitted = !params->has_ends;
     return status;

@@ -37,7 +37,7 @@ typedef struct FieldScaleParams {
     bool of_tree;          /* the range is that of the whole tree; read for the words only */
     const double *classes; /* one number: the count of equal classes, 1..256, where 1 is no classes;
                             * several numbers: ascending bounds between classes; borrowed */
-    size_t n_classes;      /* at least 1, at most COLORSCALE_MOST_BOUNDS */
+    size_t n_classes;      /* at least 1, at most COLORSCALE_MAX_BOUNDS */
     ScaleColor under, over, none; /* as in ColorScale */
     const char *map_name;         /* of the color map, for sentences */
     int frame; /* of values that change with time, the frame that is shown, from 1; 0: all */

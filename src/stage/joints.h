@@ -3,7 +3,7 @@
 #ifndef CORCAST_STAGE_JOINTS_H
 #define CORCAST_STAGE_JOINTS_H
 
-#include "stage/places.h"
+#include "stage/coincidence.h"
 #include "stage/stage.h"
 
 /* Appends cylinders, joints, and spheres where the construction of joints fails. Counts joints and
@@ -11,7 +11,7 @@
  *
  * geometry  its `primitives` has room for two per node.
  * Errors    STATUS_MEMORY. */
-MUST_CHECK Status joints_add(const Tree *tree, const Places *places, JointForm form,
+MUST_CHECK Status joints_add(const Tree *tree, const Coincidence *coincidence, JointForm form,
                              Geometry *geometry, StageReport *report, Err *err);
 
 #endif

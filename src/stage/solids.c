@@ -12,7 +12,7 @@ enum { CHUNK = 1 << 15 };
 
 typedef struct Solids {
     const Tree *tree;
-    const Places *places;
+    const Coincidence *coincidence;
     Geometry *geometry;
     int threads;
     bool implied_ends;
@@ -47,7 +47,7 @@ static void count_cylinders(size_t chunk, int worker, void *context)
     const Solids *solids = context;
     size_t count = 0;
     for (size_t i = chunk * CHUNK; i < chunk_end(solids, chunk); i++)
-        count += places_draw(solids->places, i);
+        count += coincidence_draws(solids->coincidence, i);
     solids->first[0][chunk] = count;
 }
 
@@ -59,7 +59,7 @@ static void fill_cylinders(size_t chunk, int worker, void *context)
     size_t number = solids->first[0][chunk];
     for (size_t i = chunk * CHUNK; i < chunk_end(solids, chunk); i++) {
         solids->cylinder[i] = -1;
-        if (!places_draw(solids->places, i))
+        if (!coincidence_draws(solids->coincidence, i))
             continue;
         solids->cylinder[i] = (int32_t)number;
         solids->geometry->primitives[number++] = (Primitive){.kind = PRIMITIVE_CYLINDER,
@@ -82,19 +82,19 @@ static void add_cylinders(Solids *solids)
 static Status flag_free_ends(const Solids *solids, Err *err)
 {
     const Tree *tree = solids->tree;
-    const int32_t *place = solids->places->place, *cylinder = solids->cylinder;
+    const int32_t *junction = solids->coincidence->junction, *cylinder = solids->cylinder;
     uint32_t *meeting = NULL; /* by node that stands for a place: the cylinders that end there */
     TRY(mem_calloc(&meeting, tree->n, sizeof *meeting, "nodes", err));
     for (size_t i = 0; i < tree->n; i++)
         if (cylinder[i] >= 0) {
-            meeting[place[tree->parent[i]]]++;
-            meeting[place[i]]++;
+            meeting[junction[tree->parent[i]]]++;
+            meeting[junction[i]]++;
         }
     for (size_t i = 0; i < tree->n; i++)
         if (cylinder[i] >= 0) {
             Primitive *one = &solids->geometry->primitives[cylinder[i]];
-            one->free_a = meeting[place[tree->parent[i]]] == 1;
-            one->free_b = meeting[place[i]] == 1;
+            one->free_a = meeting[junction[tree->parent[i]]] == 1;
+            one->free_b = meeting[junction[i]] == 1;
         }
     free(meeting);
     return STATUS_OK;
@@ -111,19 +111,19 @@ static bool is_before(const Tree *tree, size_t i, int32_t other)
 static void find_thickest(const Solids *solids)
 {
     const Tree *tree = solids->tree;
-    const Places *places = solids->places;
+    const Coincidence *coincidence = solids->coincidence;
     int32_t *thickest = solids->thickest;
     for (size_t i = 0; i < tree->n; i++)
-        thickest[i] = places_can_draw(places, i) ? (int32_t)i : -1;
+        thickest[i] = coincidence_can_draw(coincidence, i) ? (int32_t)i : -1;
     for (size_t i = 0; i < tree->n; i++) {
-        if (!places_can_draw(places, i))
+        if (!coincidence_can_draw(coincidence, i))
             continue;
-        int32_t *best = &thickest[places->place[tree->parent[i]]];
+        int32_t *best = &thickest[coincidence->junction[tree->parent[i]]];
         if (*best < 0 || is_before(tree, i, *best))
             *best = (int32_t)i;
     }
     for (size_t i = 0; i < tree->n; i++)
-        if (places->place[i] != (int32_t)i)
+        if (coincidence->junction[i] != (int32_t)i)
             thickest[i] = -1;
 }
 
@@ -191,11 +191,11 @@ static void add_spheres(Solids *solids)
     threads_for(solids->n_chunks, solids->threads, fill_spheres, solids);
 }
 
-Status solids_add(const Tree *tree, const Places *places, const GeometryParams *params,
+Status solids_add(const Tree *tree, const Coincidence *coincidence, const GeometryParams *params,
                   Geometry *geometry, Err *err)
 {
     Solids solids = {.tree = tree,
-                     .places = places,
+                     .coincidence = coincidence,
                      .geometry = geometry,
                      .threads = params->mesh.threads,
                      .implied_ends = params->implied_ends,

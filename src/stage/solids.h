@@ -2,7 +2,7 @@
 #ifndef CORCAST_STAGE_SOLIDS_H
 #define CORCAST_STAGE_SOLIDS_H
 
-#include "stage/places.h"
+#include "stage/coincidence.h"
 #include "stage/stage.h"
 
 /* Makes the cylinders of a tree and, if the model has balls, the spheres.
@@ -11,7 +11,7 @@
  * geometry  its `primitives` is empty and has room for two per node.
  * Errors    STATUS_MEMORY.
  * Cost      O(n). */
-MUST_CHECK Status solids_add(const Tree *tree, const Places *places, const GeometryParams *params,
-                             Geometry *geometry, Err *err);
+MUST_CHECK Status solids_add(const Tree *tree, const Coincidence *coincidence,
+                             const GeometryParams *params, Geometry *geometry, Err *err);
 
 #endif

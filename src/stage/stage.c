@@ -5,16 +5,17 @@
  * is nobody's to say; hence places.c. */
 #include "stage/stage.h"
 
+#include "stage/coincidence.h"
 #include "stage/joints.h"
-#include "stage/places.h"
 #include "stage/solids.h"
 #include <stdlib.h>
 
-static Status add_field(const Tree *tree, const Places *places, Geometry *geometry, Err *err)
+static Status add_field(const Tree *tree, const Coincidence *coincidence, Geometry *geometry,
+                        Err *err)
 {
     TRY(mem_calloc(&geometry->segments, tree->n, sizeof *geometry->segments, "segments", err));
     for (size_t i = 0; i < tree->n; i++)
-        if (places_draw(places, i))
+        if (coincidence_draws(coincidence, i))
             geometry->segments[geometry->n_segments++] =
                 (FieldSegment){.a = tree->position[tree->parent[i]],
                                .b = tree->position[i],
@@ -43,7 +44,7 @@ static Status wall_vessels(VesselTree *vessels, const GeometryParams *params, Ve
     MeshReport report;
     uint32_t *thinned = NULL;
     if (params->part_overlaps)
-        TRY(vesseltree_part(vessels, &params->mesh, &thinned, &counted->thinned, err));
+        TRY(vesseltree_thin_overlaps(vessels, &params->mesh, &thinned, &counted->thinned, err));
     free(thinned);
     TRY(vesselmesh_build(vessels, &params->mesh, mesh, &report, err));
     Status status = meshreport_check(&report, vessels, err);
@@ -65,19 +66,20 @@ static Status add_mesh(const Tree *tree, const GeometryParams *params, Geometry 
     return status;
 }
 
-static Status add_model(const Tree *tree, const Places *places, const GeometryParams *params,
-                        Geometry *geometry, StageReport *report, Err *err)
+static Status add_model(const Tree *tree, const Coincidence *coincidence,
+                        const GeometryParams *params, Geometry *geometry, StageReport *report,
+                        Err *err)
 {
     if (model_has(geometry->model, MODEL_TRIANGLES))
         return add_graph(tree, geometry, err);
     if (model_has(geometry->model, MODEL_FIELD))
         return params->graph ? add_graph(tree, geometry, err)
-                             : add_field(tree, places, geometry, err);
+                             : add_field(tree, coincidence, geometry, err);
     TRY(mem_calloc(&geometry->primitives, 2 * tree->n, sizeof *geometry->primitives, "primitives",
                    err));
     return model_has(geometry->model, MODEL_JOINTS)
-               ? joints_add(tree, places, params->joints, geometry, report, err)
-               : solids_add(tree, places, params, geometry, err);
+               ? joints_add(tree, coincidence, params->joints, geometry, report, err)
+               : solids_add(tree, coincidence, params, geometry, err);
 }
 
 /* ---- what all models have -------------------------------------------------------------------- */
@@ -136,10 +138,10 @@ Status stage_geometry(const Tree *tree, const GeometryParams *params, Geometry *
                       StageReport *report, Err *err)
 {
     Geometry built = {.model = params->model, .open_joints = params->joints == JOINTS_PAPER};
-    Places places = {0};
+    Coincidence coincidence = {0};
     Status status;
-    TRY(places_find(tree, &places, err));
-    StageReport counted = places_count(tree, &places);
+    TRY(coincidence_find(tree, &coincidence, err));
+    StageReport counted = coincidence_count(tree, &coincidence);
     if (counted.drawn == 0)
         TRY_GOTO(err_set(err, STATUS_INPUT,
                          "the tree has nothing to draw: no segment is longer than %g mm and has a "
@@ -147,7 +149,7 @@ Status stage_geometry(const Tree *tree, const GeometryParams *params, Geometry *
                          SHORTEST_MM));
     built.drawn = counted.drawn;
     TRY_GOTO(copy_ids(tree, &built, err));
-    TRY_GOTO(add_model(tree, &places, params, &built, &counted, err));
+    TRY_GOTO(add_model(tree, &coincidence, params, &built, &counted, err));
     TRY_GOTO(geometry_check(&built, err));
     find_bounds(&built);
     move_to_origin(&built);
@@ -158,7 +160,7 @@ Status stage_geometry(const Tree *tree, const GeometryParams *params, Geometry *
     if (report)
         *report = counted;
 done:
-    places_release(&places);
+    coincidence_release(&coincidence);
     geometry_release(&built);
     return status;
 }
@@ -197,11 +199,11 @@ Status stage_blend(Appearance *appearance, Err *err)
 {
     const size_t n = appearance->n_values;
     TRY(mem_calloc(&appearance->ramp, 1, sizeof *appearance->ramp, "colors", err));
-    TRY(mem_calloc(&appearance->places, n, sizeof *appearance->places, "places", err));
+    TRY(mem_calloc(&appearance->positions, n, sizeof *appearance->positions, "coincidence", err));
     colorramp_init(appearance->ramp, &appearance->scale.map);
     for (size_t i = 0; i < n; i++) {
-        appearance->places[i] = colorscale_place(&appearance->scale, appearance->values[i]);
-        appearance->colors[i] = appearance_blended(appearance, appearance->places[i]);
+        appearance->positions[i] = colorscale_position(&appearance->scale, appearance->values[i]);
+        appearance->colors[i] = appearance_blended(appearance, appearance->positions[i]);
     }
     return STATUS_OK;
 }

@@ -153,7 +153,7 @@ typedef struct StageReport {
                      * points that is at least as thick; they add nothing to any model */
     size_t thinned; /* segments that part_overlaps made thinner */
     size_t joints;  /* joints drawn */
-    /* Places where the construction of joints fails: */
+    /* Coincidence where the construction of joints fails: */
     size_t places_short;   /* a vessel is too short for its joints */
     size_t places_sharp;   /* else: a vessel turns back too sharply */
     size_t places_crowded; /* not tried, because too many vessels meet */

@@ -309,7 +309,7 @@ static Effects place_effects(const Look *look, const Camera *camera, const Subje
     return effects;
 }
 
-/* Places ground and lights about the subject by the axes of the camera. */
+/* Coincidence ground and lights about the subject by the axes of the camera. */
 static void place_surroundings(const Look *look, const ViewParams *params, const Subject *subject,
                                View *view)
 {

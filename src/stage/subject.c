@@ -103,7 +103,7 @@ static int own_ends(const Framed *framed, size_t number, Ball ends[2])
 /* Makes the ball that about its shadow; false when that is too long. */
 static bool cast_shadow(const Ground *ground, const Light *light, Ball *ball)
 {
-    Vec3 towards = light_way(light, ball->center).towards;
+    Vec3 towards = light_direction(light, ball->center).towards;
     double slope = vec3_dot(ground->normal, towards);
     if (!(slope > least_slope))
         return false;

@@ -24,7 +24,7 @@ static const char *key_value(const char *comment, MetaKey *key)
     return *key == META_KEYS ? NULL : comment_value(name, meta_rows[*key].name);
 }
 
-Status comment_keep(TreeMeta *meta, const char *comment, Err *err)
+Status comment_store(TreeMeta *meta, const char *comment, Err *err)
 {
     MetaKey key;
     const char *value = key_value(comment, &key);
@@ -33,7 +33,7 @@ Status comment_keep(TreeMeta *meta, const char *comment, Err *err)
 
 Status comment_read(TreeMeta *meta, const char *comment, Err *err)
 {
-    return comment_keep(meta, comment + (*comment == ' '), err);
+    return comment_store(meta, comment + (*comment == ' '), err);
 }
 
 Status comment_read_key(TreeMeta *meta, const char *comment, Err *err)

@@ -38,7 +38,7 @@ Status lines_read(const char *name, char *text, size_t size, ReadLine *read, voi
 {
     Cursor cursor = cursor_of(name, NULL, text, size);
     for (char *line; (line = cursor_line(&cursor));)
-        TRY(cursor_blame(&cursor, read(reader, cursor.line, line, err), err));
+        TRY(cursor_locate_error(&cursor, read(reader, cursor.line, line, err), err));
     return STATUS_OK;
 }
 
@@ -115,7 +115,7 @@ bool cursor_word_in_line(Cursor *cursor, char word[CURSOR_WORD])
     return length > 0;
 }
 
-bool cursor_take(Cursor *cursor, const char *word)
+bool cursor_accept(Cursor *cursor, const char *word)
 {
     char *before = cursor->at, next[CURSOR_WORD];
     if (cursor_word(cursor, next) && strcasecmp(next, word) == 0)
@@ -147,7 +147,7 @@ Status cursor_numbers(Cursor *cursor, const char *what, size_t n, double *out, E
 
 /* ---- places ---------------------------------------------------------------------------------- */
 
-Status cursor_blame(const Cursor *cursor, Status status, Err *err)
+Status cursor_locate_error(const Cursor *cursor, Status status, Err *err)
 {
     size_t line = cursor->line ? cursor->line : 1;
     if (status != STATUS_INPUT)

@@ -1,7 +1,7 @@
 /* A position in a file that is read as text: by lines, or by words and numbers.
  *
  * A line is cut out of the text in place. A word is copied, because the text behind it may be
- * packed numbers. Errors name the file and the line, which cursor_blame finds. */
+ * packed numbers. Errors name the file and the line, which cursor_locate_error finds. */
 #ifndef CORCAST_TREEIO_CURSOR_H
 #define CORCAST_TREEIO_CURSOR_H
 
@@ -56,7 +56,7 @@ bool cursor_word(Cursor *cursor, char word[CURSOR_WORD]);
 /* As cursor_word, but stops at the end of the line. */
 bool cursor_word_in_line(Cursor *cursor, char word[CURSOR_WORD]);
 /* Moves behind the next word and returns true if it is `word`. Case does not matter. */
-bool cursor_take(Cursor *cursor, const char *word);
+bool cursor_accept(Cursor *cursor, const char *word);
 /* Reads `n` numbers that stand between blanks. `what` names them in errors. Errors: STATUS_INPUT,
  * without file and line. */
 MUST_CHECK Status cursor_numbers(Cursor *cursor, const char *what, size_t n, double *out, Err *err);
@@ -70,7 +70,7 @@ static inline size_t cursor_left(const Cursor *cursor)
 }
 
 /* Puts "FILE:LINE: " in front of the sentence if `status` is STATUS_INPUT. Returns `status`. */
-Status cursor_blame(const Cursor *cursor, Status status, Err *err);
+Status cursor_locate_error(const Cursor *cursor, Status status, Err *err);
 
 /* Returns the index of a keyword in a list of `n`, or `n` if it is not there. Case does not matter.
  * Entries may be NULL. */

@@ -26,11 +26,11 @@ typedef Status GraphRead(Graph *graph, char *bytes, size_t size, Err *err);
  * cannot hold; STATUS_MEMORY. */
 typedef Status TreeWrite(const Tree *tree, Text *text, Err *err);
 /* Returns true if a column of the tree is written, although the format writes no others. */
-typedef bool TreeKeeps(const TreeColumn *column);
+typedef bool TreeStores(const TreeColumn *column);
 /* Appends the keywords of a format, one per line, from the tables of its reader. */
 typedef void TreeKeywords(Text *text);
 
-TreeKeeps swc_keeps, oned_keeps;
+TreeStores swc_stores, oned_stores;
 TreeKeywords csv_keywords, table_keywords, vtk_keywords, vtp_keywords, graphml_keywords,
     oned_keywords, vmv_keywords, vita_keywords, metaio_keywords, amira_keywords;
 TreeDetect amira_detect, csv_detect, opencco_detect, metaio_detect, vtk_detect, vtp_detect,
@@ -48,18 +48,18 @@ TreeWrite swc_write, csv_write, csv_segments_write, oned_write, vmv_write, vtk_w
  * and points, lines or cells. Data of vessels take at least a byte per point and compress less than
  * 64 times. A file that claims more is refused before memory is allocated, even if the claim is
  * true. */
-static inline double most_unpacked_bytes(size_t size)
+static inline double max_unpacked_bytes(size_t size)
 {
     return 64e6 + 64 * (double)size;
 }
-static inline double most_elements(size_t size)
+static inline double max_elements(size_t size)
 {
     return 1e6 + (double)size;
 }
-/* Checks a number of elements against most_elements. Errors: STATUS_INPUT, without the file's name.
+/* Checks a number of elements against max_elements. Errors: STATUS_INPUT, without the file's name.
  */
 MUST_CHECK Status check_elements(const char *what, double count, size_t size, Err *err);
-/* Checks bytes of numbers against most_unpacked_bytes. Errors: STATUS_INPUT, without the file's
+/* Checks bytes of numbers against max_unpacked_bytes. Errors: STATUS_INPUT, without the file's
  * name. */
 MUST_CHECK Status check_unpacked(double bytes, size_t size, Err *err);
 
@@ -78,13 +78,13 @@ const char *decimal_comma_hint(const char *text);
 /* Each of these reads one field, which errors call `what`. Errors: STATUS_INPUT, without file and
  * record.
  *
- * field_number reads a finite number of at least `minimum`; field_whole an integer in a range;
+ * field_number reads a finite number of at least `minimum`; field_integer an integer in a range;
  * field_value a finite number, or NAN for an empty field, NA or NaN; field_radius a radius or a
  * diameter, or NAN for a bad one if the options repair radii [reading_radius]. */
 MUST_CHECK Status field_number(const char *what, const char *text, double minimum, double *out,
                                Err *err);
-MUST_CHECK Status field_whole(const char *what, const char *text, int32_t minimum, int32_t maximum,
-                              int32_t *out, Err *err);
+MUST_CHECK Status field_integer(const char *what, const char *text, int32_t minimum,
+                                int32_t maximum, int32_t *out, Err *err);
 MUST_CHECK Status field_value(const char *what, const char *text, double *out, Err *err);
 MUST_CHECK Status field_radius(const ReadOptions *options, const char *what, const char *text,
                                double *out, Err *err);

@@ -11,21 +11,21 @@ enum { SHOWN = 40 /* characters of a bad value */ };
 Status check_elements(const char *what, double count, size_t size, Err *err)
 {
     char bytes[BYTES_TEXT_SIZE];
-    if (count <= most_elements(size))
+    if (count <= max_elements(size))
         return STATUS_OK;
     return err_set(err, STATUS_INPUT, "it claims %.0f %s; a file of %s holds at most %.0f", count,
-                   what, bytes_text((double)size, bytes), most_elements(size));
+                   what, bytes_text((double)size, bytes), max_elements(size));
 }
 
 Status check_unpacked(double bytes, size_t size, Err *err)
 {
     char claim[BYTES_TEXT_SIZE], file[BYTES_TEXT_SIZE], most[BYTES_TEXT_SIZE];
-    if (bytes <= most_unpacked_bytes(size))
+    if (bytes <= max_unpacked_bytes(size))
         return STATUS_OK;
     return err_set(err, STATUS_INPUT,
                    "its numbers take %s unpacked; a file of %s is unpacked to at most %s",
                    bytes_text(bytes, claim), bytes_text((double)size, file),
-                   bytes_text(most_unpacked_bytes(size), most));
+                   bytes_text(max_unpacked_bytes(size), most));
 }
 
 const char *text_first_row(const char *start)
@@ -105,8 +105,8 @@ Status field_radius(const ReadOptions *options, const char *what, const char *te
     return STATUS_OK;
 }
 
-Status field_whole(const char *what, const char *text, int32_t minimum, int32_t maximum,
-                   int32_t *out, Err *err)
+Status field_integer(const char *what, const char *text, int32_t minimum, int32_t maximum,
+                     int32_t *out, Err *err)
 {
     double value;
     if (!number_parse(text, &value) || !(value >= minimum && value <= maximum) ||

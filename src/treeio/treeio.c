@@ -52,8 +52,8 @@ typedef struct Format {
     const char *name, *description;
     const char *extensions[MAX_EXTENSIONS + 1]; /* without the '.'; ends with NULL */
     unsigned loses;                             /* bits of what there is no place for */
-    TreeKeeps *keeps; /* of the columns that are lost, those that are not; NULL: none */
-    unsigned takes;   /* bits of the options of reading */
+    TreeStores *stores; /* of the columns that are lost, those that are not; NULL: none */
+    unsigned takes;     /* bits of the options of reading */
     FileForm form;
     TreeDetect *detect;     /* NULL: nothing tells */
     TreeRead *read;         /* one of a tree ... */
@@ -68,7 +68,7 @@ typedef struct Format {
 static const Format formats[] = {
     {.name = "SWC",
      .loses = LOSES_COLUMNS,
-     .keeps = swc_keeps,
+     .stores = swc_stores,
      .takes = UNIT | VOXELS,
      .description = "id type x y z radius parent, a node a line, in mm",
      .extensions = {"swc"},
@@ -154,7 +154,7 @@ static const Format formats[] = {
      .read_graph = amiraxml_read},
     {.name = "SimVascular 1-D",
      .loses = IS_NETWORK | LOSES_COLUMNS,
-     .keeps = oned_keeps,
+     .stores = oned_stores,
      .description = "a deck of svOneDSolver: nodes, segments and joints, in cm",
      .extensions = {"in"},
      .takes = ANY_GRAPH,
@@ -336,7 +336,7 @@ static Status look_at_roots(const Tree *tree, TreeLosses *lost, Err *err)
     }
     for (size_t i = 0; i < tree->n; i++) {
         bool root = !tree_is_segment(tree, i);
-        lost->lone_roots = lost->lone_roots || (root && thickest[i] < 0);
+        lost->isolated_roots = lost->isolated_roots || (root && thickest[i] < 0);
         lost->root_radii =
             lost->root_radii || (root && thickest[i] >= 0 && tree->radius_mm[i] != thickest[i]);
     }
@@ -352,10 +352,10 @@ static bool loses_rule(const Format *format, const Tree *tree)
            meta_number(&tree->meta, META_TERMINAL_FLOW) != TERMINAL_FLOW_EQUAL;
 }
 
-bool tree_format_keeps(const char *path, const TreeColumn *column)
+bool tree_format_stores(const char *path, const TreeColumn *column)
 {
     const Format *format = find_written(path);
-    return !format || !(format->loses & LOSES_COLUMNS) || (format->keeps && format->keeps(column));
+    return !format || !(format->loses & LOSES_COLUMNS) || (format->stores && format->stores(column));
 }
 
 Status tree_format_losses(const char *path, const Tree *tree, TreeLosses *out, Err *err)
@@ -367,7 +367,7 @@ Status tree_format_losses(const char *path, const Tree *tree, TreeLosses *out, E
                        .terminal_flow = loses_rule(format, tree),
                        .root_values = (loses & LOSES_ROOT_VALUES) && has_root_values(tree)};
     for (size_t k = 0; k < tree->n_columns; k++)
-        lost.columns += !tree_format_keeps(path, &tree->column[k]);
+        lost.columns += !tree_format_stores(path, &tree->column[k]);
     if (loses & LOSES_ROOT_RADII)
         TRY(look_at_roots(tree, &lost, err));
     if (loses & LOSES_IDS)

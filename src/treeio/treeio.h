@@ -23,16 +23,16 @@ MUST_CHECK Status tree_format_check(const char *path, Err *err);
 /* What a tree holds and the format of a path cannot hold. */
 typedef struct TreeLosses {
     bool types, flow_shares, terminal_flow;
-    bool root_values; /* values of roots in columns whose other values are written */
-    bool root_radii;  /* radii of roots that differ from the thickest segment there */
-    bool lone_roots;  /* roots without segments */
-    size_t columns;   /* number of columns that tree_format_keeps denies */
-    size_t merged;    /* number of nodes at the position of others; a reader makes one of them */
+    bool root_values;    /* values of roots in columns whose other values are written */
+    bool root_radii;     /* radii of roots that differ from the thickest segment there */
+    bool isolated_roots; /* roots without segments */
+    size_t columns;      /* number of columns that tree_format_stores denies */
+    size_t merged;       /* number of nodes at the position of others; a reader makes one of them */
 } TreeLosses;
 /* Finds what is lost when a tree is written to such a path. Errors: STATUS_MEMORY. Cost: O(n). */
 MUST_CHECK Status tree_format_losses(const char *path, const Tree *tree, TreeLosses *out, Err *err);
 /* Returns true if the format of a path can hold a column. */
-bool tree_format_keeps(const char *path, const TreeColumn *column);
+bool tree_format_stores(const char *path, const TreeColumn *column);
 
 /* Returns the name ("SWC"), the chief extension ("swc") or the description of format `i`, from 0
  * on; NULL after the last. Format 0 is written to standard output. */

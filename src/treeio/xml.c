@@ -174,7 +174,7 @@ const char *xml_attribute(const XmlElement *element, const char *name)
     return NULL;
 }
 
-Status xml_needed(const XmlElement *element, const char *name, const char **value, Err *err)
+Status xml_require(const XmlElement *element, const char *name, const char **value, Err *err)
 {
     const char *found = xml_attribute(element, name);
     if (!found)
@@ -194,7 +194,7 @@ size_t xml_depth(const Xml *xml)
     return xml->depth;
 }
 
-const char *xml_around(const Xml *xml, size_t up)
+const char *xml_ancestor(const Xml *xml, size_t up)
 {
     return up <= xml->depth && up > 0 ? xml->names.at + xml->name_at[xml->depth - up] : "";
 }

@@ -31,14 +31,14 @@ MUST_CHECK Status xml_read(const char *name, const char *bytes, size_t size,
 const char *xml_attribute(const XmlElement *element, const char *name);
 /* Finds the value of an attribute. Errors: STATUS_INPUT, without file and line, if there is none.
  */
-MUST_CHECK Status xml_needed(const XmlElement *element, const char *name, const char **value,
-                             Err *err);
+MUST_CHECK Status xml_require(const XmlElement *element, const char *name, const char **value,
+                              Err *err);
 
 /* For a handler: the line of the current element; the number of elements around it; and the name of
  * the element `up` steps further out (1: its parent), or "" if there is none. */
 size_t xml_line(const Xml *xml);
 size_t xml_depth(const Xml *xml);
-const char *xml_around(const Xml *xml, size_t up);
+const char *xml_ancestor(const Xml *xml, size_t up);
 /* For a handler: stops reading. The rest need not be XML. */
 void xml_stop(Xml *xml);
 /* For a handler: the number of bytes before the current element. */

@@ -93,6 +93,7 @@ static void wrong_options(void)
     EXPECT(2, "gamma", corcast_options_set(options, "gama", "3", error));
     EXPECT(2, "--gamma", corcast_options_set(options, "gamma", "three", error));
     EXPECT(2, "standard streams", corcast_options_set(options, "from", "-", error));
+    EXPECT(2, "standard streams", corcast_options_set(options, "domain", "mask:-,0.5", error));
     EXPECT(2, "command line alone", corcast_options_set(options, "help", "on", error));
     OK(corcast_options_set(options, "gamma", "2.5", error));
     EXPECT(2, "--gamma", corcast_options_set(options, "gamma", "-1", error));

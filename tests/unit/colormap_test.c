@@ -333,7 +333,7 @@ static void whole_numbers_count_separate_colors_round_and_round(void **state)
     (void)state;
     ColorScale scale = ramp(false, 0, 1, 7);
     scale.map.separate = true;
-    assert_true(colorscale_counts(&scale));
+    assert_true(colorscale_selects_by_integer(&scale));
     assert_place(&scale, 1, 0);
     assert_place(&scale, 2, 1);
     assert_place(&scale, 7, 0);
@@ -341,7 +341,7 @@ static void whole_numbers_count_separate_colors_round_and_round(void **state)
     assert_place(&scale, -1, 0);
     assert_place(&scale, NAN, 0.5);
     scale.classes = 7; /* of which the third has the first color again */
-    assert_false(colorscale_counts(&scale));
+    assert_false(colorscale_selects_by_integer(&scale));
     assert_place(&scale, 3.2, 0);
     colormap_release(&scale.map);
 }

@@ -44,7 +44,7 @@ static void keep_answer(const TracedTile *seen, Answer *answer)
         const TileHits *hits = seen->hits;
         answer->t[sample] = tile_hit_distance(seen, sample);
         answer->segment[sample] = hits->segment[sample];
-        answer->normal[sample] = viewpoint_to_world(
+        answer->normal[sample] = viewpoint_world_direction(
             &answer->eye, vec3((double)hits->normal[0][sample], (double)hits->normal[1][sample],
                                (double)hits->normal[2][sample]));
     }

@@ -267,7 +267,7 @@ static void keeps_alpha_or_lays_it_on_a_background(void **state)
     const char *path = "tests/data/images/glassy.exr";
     assert_int_equal(image_read(&kept, path, ALPHA_KEPT, NULL, &err), STATUS_OK);
     assert_int_equal(image_read(&laid, path, ALPHA_KEPT, NULL, &err), STATUS_OK);
-    assert_int_equal(image_lay_on(&laid, grey, &err), STATUS_OK);
+    assert_int_equal(image_composite(&laid, grey, &err), STATUS_OK);
     assert_int_equal(kept.plane.channels, 4);
     assert_int_equal(laid.plane.channels, 3);
     for (int i = 0; i < W * H; i++)

@@ -190,7 +190,7 @@ static void compare_columns(const char *to, const Tree *tree, size_t i, const Tr
 {
     for (size_t c = 0; c < tree->n_columns; c++) {
         const TreeColumn *column = &tree->column[c], *found = tree_column(back, column->name);
-        if (!tree_format_keeps(to, column))
+        if (!tree_format_stores(to, column))
             continue;
         assert_non_null(found);
         assert_string_equal(found->unit, column->unit);

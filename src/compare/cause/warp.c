@@ -499,7 +499,7 @@ static bool has_unmoved_part(const Patches *patches, double dx, double dy)
                 moved++;
                 equal += pixels_apart(a, x, y, b, x, y) == 0;
             }
-    return equal > 0.005 * (double)moved;
+    return (double)equal > 0.005 * (double)moved;
 }
 
 /* A blur leaves slopes as they are, and edges not. */

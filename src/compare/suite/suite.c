@@ -234,7 +234,7 @@ static Status read_image(Image *image, Picture *alpha, const char *path, const f
 {
     TRY(image_read(image, path, ALPHA_KEPT, NULL, err));
     TRY(alpha_take(alpha, image, err));
-    TRY(image_lay_on(image, background, err));
+    TRY(image_composite(image, background, err));
     if (!image->plane.values)
         return STATUS_OK;
     TRY(picture_from_plane(&image->picture, &image->plane, ENCODING_SRGB, 16, err));

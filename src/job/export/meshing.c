@@ -82,9 +82,11 @@ static Status build_mesh(void *job, Progress *progress, Err *err)
     if (made->print)
         return print_vessels(work, err);
     if (work->part_overlaps)
-        TRY(vesseltree_part(vessels, &work->params, &made->thinned.at, &made->thinned.n, err));
+        TRY(vesseltree_thin_overlaps(vessels, &work->params, &made->thinned.at, &made->thinned.n,
+                                     err));
     if (made->emitter->has_parts && vessels->body == BODY_POTENTIAL)
-        TRY(vesseltree_free_ends(vessels, &work->params, &made->longer.at, &made->longer.n, err));
+        TRY(vesseltree_lengthen_ends(vessels, &work->params, &made->longer.at, &made->longer.n,
+                                     err));
     return vesselmesh_build(vessels, &work->params, &made->mesh, &made->report, err);
 }
 
@@ -93,20 +95,25 @@ static void say_result(const MeshResult *made, const Talk *talk)
     const MeshReport *report = &made->report;
     const size_t n_thinned = made->thinned.n, n_longer = made->longer.n;
     if (n_thinned)
-        talk_warn(talk, "%zu segment%s thinned until unconnected vessels no longer overlap",
-                  n_thinned, n_thinned == 1 ? " is" : "s are");
+        talk_warn(
+            talk,
+            "%zu segment%s thinned, so that unconnected vessels no longer overlap; this includes "
+            "segments that blend with them",
+            n_thinned, n_thinned == 1 ? " is" : "s are");
     if (n_longer)
-        talk_warn(talk, "%zu end%s lengthened so that a flat cut is possible", n_longer,
+        talk_warn(talk, "%zu end%s lengthened to make room for a flat cut", n_longer,
                   n_longer == 1 ? " is" : "s are");
     if (report->n_enclosed)
-        talk_warn(talk, "segments that are entirely inside other vessels and have no surface: %zu",
+        talk_warn(talk, "%zu segments are inside other vessels and have no surface",
                   report->n_enclosed);
     if (report->n_round)
         talk_note(talk,
-                  "ends that are rounded, because other vessels are too close for a flat cut: %zu",
-                  report->n_round);
+                  "%zu end%s could not be cut flat because other vessels are too close; %s rounded",
+                  report->n_round, report->n_round == 1 ? "" : "s",
+                  report->n_round == 1 ? "it is" : "they are");
     if (report->n_near)
-        talk_note(talk, "pairs of unconnected vessels that almost touch: %zu", report->n_near);
+        talk_note(talk, "%zu pair%s of unconnected vessels almost touch", report->n_near,
+                  report->n_near == 1 ? "" : "s");
     talk_note(talk, "%zu triangles enclose %.6g mm^3", made->mesh.n_triangles, report->volume_mm3);
     if (made->print && !made->print->params.lids)
         mesh_say_print(made, talk);

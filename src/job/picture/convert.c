@@ -28,13 +28,14 @@ static const Option own[] = {
      .argument = "N",
      .otherwise = "",
      .when = WHEN(KEEPS_DPI),
-     .help = "pixels an inch on paper, kept in a .png, .tif or .jpg"},
+     .help = "resolution in pixels per inch, to store in a .png, .tif or .jpg"},
     {.name = "background",
      SETS(COLOR, ConvertOptions, background),
      GIVEN(ConvertOptions, has_background),
      .group = GROUP_PRESS,
-     .otherwise = "none",
-     .help = "what a transparent picture is laid on"},
+     .otherwise = "none: keep the transparency",
+     .help =
+         "color to composite a transparent image over: a CSS name, #RRGGBB, or R,G,B each 0..1"},
 };
 
 static void set_defaults(void *options)
@@ -48,7 +49,7 @@ static Status lay_down(const ConvertOptions *options, Image *image, Err *err)
     const Rgb ground = rgb_of_option(options->background);
     Status status = STATUS_OK;
     if (options->has_background)
-        status = image_lay_on(image, (const float[3]){ground.r, ground.g, ground.b}, err);
+        status = image_composite(image, (const float[3]){ground.r, ground.g, ground.b}, err);
     if (status != STATUS_OK)
         image_release(image);
     return status;
@@ -216,7 +217,7 @@ static const OptionTable own_table = {OPTION_ROWS(own), .unmet = unmet};
 
 const Command command_convert = {
     .name = "convert",
-    .summary = "convert trees and images",
+    .summary = "convert a tree or an image to another file format",
     .operands = "IN OUT",
     .examples = "  corcast convert measured.swc tidy.swc\n"
                 "  corcast convert tree.swc tree.csv\n"

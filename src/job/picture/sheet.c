@@ -31,8 +31,8 @@ Status sheet_describe(Sheet *sheet, Text *description, const char *command, Err 
 void sheet_say(const Sheet *sheet, const Talk *talk)
 {
     Text boxed = TEXT_INIT, substituted = TEXT_INIT;
-    figure_put_lacking(&sheet->page, false, &boxed);
-    figure_put_lacking(&sheet->page, true, &substituted);
+    figure_put_missing(&sheet->page, false, &boxed);
+    figure_put_missing(&sheet->page, true, &substituted);
     if (boxed.length)
         talk_warn(talk, "%s", text_chars(&boxed));
     if (substituted.length)

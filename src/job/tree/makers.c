@@ -48,10 +48,10 @@ static void put_left_out(const Tree *tree, const char *path, const TreeLosses *l
                   {lost->terminal_flow, "the key terminal_flow"},
                   {lost->root_values, "the roots' values"},
                   {lost->root_radii, "the roots' own radii"},
-                  {lost->lone_roots, "the roots without segments"}};
+                  {lost->isolated_roots, "the roots without segments"}};
     size_t n = 0;
     for (size_t k = 0; k < tree->n_columns; k++)
-        if (!tree_format_keeps(path, &tree->column[k]))
+        if (!tree_format_stores(path, &tree->column[k]))
             text_printf(text, "%s%.40s", n++ ? ", " : "the columns ", tree->column[k].name);
     for (size_t i = 0; i < sizeof others / sizeof *others; i++)
         if (others[i].is_lost)

@@ -115,7 +115,7 @@ static Status get_image(const SidesReading *reading, size_t index, Err *err)
     if (!color)
         return STATUS_OK;
     TRY(alpha_take(&side->alpha, &side->image, err));
-    TRY(image_lay_on(&side->image, background, err));
+    TRY(image_composite(&side->image, background, err));
     return bits ? set_bits(&side->image, bits, err) : STATUS_OK;
 }
 

@@ -91,7 +91,7 @@ bool caster_first(Caster *caster, int worker, Ray ray, Surfel *surfel)
                        .normal = inwards ? vec3_scale(hit.normal, -1) : hit.normal,
                        .segment = geometry->n_primitives ? geometry->primitives[hit.index].segment
                                                          : geometry->segments[hit.index].segment,
-                       .leaves = caster->index.planes ? hit.leaves : inwards,
+                       .from_inside = caster->index.planes ? hit.from_inside : inwards,
                        .cell = hit.cell};
     return true;
 }

@@ -19,7 +19,7 @@ typedef struct Surfel {
     double t;         /* mm along the ray */
     Vec3 normal;      /* unit, facing the viewer */
     uint32_t segment; /* index of the vessel segment, in Geometry.ids */
-    bool leaves;      /* the ray comes from inside the vessel */
+    bool from_inside; /* the ray comes from inside the vessel */
     uint32_t cell;    /* index of POV-Ray's cell; 0 if the caster has no cells */
 } Surfel;
 

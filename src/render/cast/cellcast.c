@@ -172,4 +172,4 @@ static bool any_cell(const RayIndex *index, void *workspace, const RayPart *part
 }
 
 const RaySearch cell_search = {
-    .nearest_mm = NEAREST_SEEN_MM, .build = build, .first = first_cell, .any = any_cell};
+    .nearest_mm = NEAREST_VISIBLE_MM, .build = build, .first = first_cell, .any = any_cell};

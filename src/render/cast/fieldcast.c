@@ -351,7 +351,7 @@ static Status build(RayIndex *index, const CellParams *cells, Err *err)
     return fieldindex_build(index->geometry, &index->field, err);
 }
 
-const RaySearch field_search = {.nearest_mm = NEAREST_SEEN_MM,
+const RaySearch field_search = {.nearest_mm = NEAREST_VISIBLE_MM,
                                 .build = build,
                                 .workspace_new = fieldscratch_new,
                                 .workspace_free = fieldscratch_free,

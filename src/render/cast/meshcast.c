@@ -172,7 +172,7 @@ static bool first_triangle(const RayIndex *index, void *workspace, const RayPart
         return false;
     const Vec3 plane_normal = vec3_of(index->planes[triangle].normal);
     hit->t = nearest.t;
-    hit->leaves = vec3_dot(plane_normal, part->ray.direction) < 0;
+    hit->from_inside = vec3_dot(plane_normal, part->ray.direction) < 0;
     hit->normal = normal_at(mesh, triangle, plane_normal, ray_at(part->ray, nearest.t));
     hit->index = mesh_segment(mesh, triangle);
     return true;
@@ -185,4 +185,4 @@ static bool any_triangle(const RayIndex *index, void *workspace, const RayPart *
 }
 
 const RaySearch triangle_search = {
-    .nearest_mm = NEAREST_SEEN_MM, .build = build, .first = first_triangle, .any = any_triangle};
+    .nearest_mm = NEAREST_VISIBLE_MM, .build = build, .first = first_triangle, .any = any_triangle};

@@ -48,5 +48,7 @@ static bool any_primitive(const RayIndex *index, void *workspace, const RayPart 
     return boxcast_any(&index->boxes, part, part->t_min, primitive_crossings, index);
 }
 
-const RaySearch primitive_search = {
-    .nearest_mm = NEAREST_SEEN_MM, .build = build, .first = first_primitive, .any = any_primitive};
+const RaySearch primitive_search = {.nearest_mm = NEAREST_VISIBLE_MM,
+                                    .build = build,
+                                    .first = first_primitive,
+                                    .any = any_primitive};

@@ -8,7 +8,7 @@
 #include "scene/scene.h"
 
 /* POV-Ray's limit [docs/POVRAY.md section 3]: crossings nearer than this are not visible. */
-#define NEAREST_SEEN_MM 1e-4
+#define NEAREST_VISIBLE_MM 1e-4
 /* Crossings of a blob nearer than this are not visible and cast no shadow. */
 #define BLOB_NEAREST_MM 1e-2
 
@@ -20,11 +20,11 @@ typedef struct RayPart {
 
 /* Where a ray first meets a surface. */
 typedef struct RayHit {
-    double t;       /* mm along the ray */
-    Vec3 normal;    /* unit, outward; of cells on either side */
-    uint32_t index; /* index of the primitive; for other geometry, of the field segment */
-    bool leaves;    /* triangles only: the ray comes from inside the vessel */
-    uint32_t cell;  /* cells only: index of the cell */
+    double t;         /* mm along the ray */
+    Vec3 normal;      /* unit, outward; of cells on either side */
+    uint32_t index;   /* index of the primitive; for other geometry, of the field segment */
+    bool from_inside; /* triangles only: the ray comes from inside the vessel */
+    uint32_t cell;    /* cells only: index of the cell */
 } RayHit;
 
 /* What rays search. Immutable once built, and shared by threads. A search uses only its own search

@@ -33,7 +33,7 @@ typedef struct FieldTester {
 
 static bool can_look(const Geometry *geometry, const View *view, const Light *light)
 {
-    LightWay way = light_way(light, box_center(geometry->bounds));
+    LightDirection way = light_direction(light, box_center(geometry->bounds));
     return lightview_sees_all(geometry, view, light) && way.distance > lightview_radius(geometry);
 }
 
@@ -198,8 +198,8 @@ static Status decide(FieldTester *tester, const FieldTile *tile, ShadowPoints *p
 {
     const Viewpoint *eye = &tester->light->view.eye;
     Vec3 place = reflected(&tester->lists->vessels, point_at(tile, points, i));
-    Vec3 towards = viewpoint_to_world(eye, eye->perspective ? place : vec3(0, 0, 1));
-    Ray ray = {viewpoint_point(eye, place), vec3_normalized(vec3_scale(towards, -1))};
+    Vec3 towards = viewpoint_world_direction(eye, eye->perspective ? place : vec3(0, 0, 1));
+    Ray ray = {viewpoint_world_point(eye, place), vec3_normalized(vec3_scale(towards, -1))};
     TRY(fieldspace_reserve_rays(&tester->space, tile->n_terms, err));
     bool dark = fieldspace_is_shadowed(&tester->space, tile->n_terms, ray);
     points->state[i] = dark ? SHADOW_DARK : SHADOW_LIT;
@@ -350,7 +350,7 @@ static Status test_by_terms(const LightBins *light, void *workspace, const TileQ
     return decide_points(tester, &tile, points, err);
 }
 
-const ShadowEngine field_shadows = {.can = can_look,
+const ShadowEngine field_shadows = {.supports = can_look,
                                     .tiles = tiles_for_segments,
                                     .slack = slack_of_field,
                                     .bin = bin_segments,

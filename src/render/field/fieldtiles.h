@@ -31,9 +31,9 @@ MUST_CHECK Status fieldtiles_list(FieldTiles *tiles, int row, int worker, Err *e
 bool fieldtiles_is_listed(const FieldTiles *tiles, int column, int worker);
 
 /* Sets the sample positions of a tile of the row whose column, row, columns and rows are set, and
- * its hits. seen->hits becomes `hits`, or NULL if no sample hits anything. No sample is TILE_UNSURE
- * then. Errors: STATUS_MEMORY. */
-MUST_CHECK Status fieldtiles_trace(FieldTiles *tiles, int worker, TracedTile *seen, TileHits *hits,
-                                   Err *err);
+ * its hits. traced->hits becomes `hits`, or NULL if no sample hits anything. No sample is
+ * TILE_UNSURE then. Errors: STATUS_MEMORY. */
+MUST_CHECK Status fieldtiles_trace(FieldTiles *tiles, int worker, TracedTile *traced,
+                                   TileHits *hits, Err *err);
 
 #endif

@@ -40,14 +40,14 @@ static TileSpan rows_of(const VesselLists *lists, const FrameSegment *segment)
 {
     int side = side_of_camera(lists, segment);
     if (side < 0)
-        return NOWHERE;
+        return NO_TILES;
     Interval range = {-HUGE_VAL, HUGE_VAL};
     if (side > 0)
-        range = capsule_shadow(lists->eye.perspective, segment->a.y, segment->a.z, segment->b.y,
+        range = capsule_extent(lists->eye.perspective, segment->a.y, segment->a.z, segment->b.y,
                                segment->b.z, segment->reach);
-    TileSpan rows =
-        tiles_within(samples_within(range, lists->y[0], lists->per_y), lists->stray, lists->n_rows);
-    return tiles_common(rows, lists->listed_rows);
+    TileSpan rows = tilespan_of_samples(interval_in_samples(range, lists->y[0], lists->per_y),
+                                        lists->max_offset, lists->n_rows);
+    return tilespan_intersection(rows, lists->listed_rows);
 }
 
 enum { CHUNK = 2048 };
@@ -78,16 +78,16 @@ static void prepare_chunk(size_t chunk, int worker, void *context)
         const FieldSegment *segment = &job->geometry->segments[i];
         Vec3 span = vec3_sub(segment->b, segment->a);
         FrameSegment *out = &lists->segments[i];
-        *out = (FrameSegment){.a = viewpoint_place(&lists->eye, segment->a),
-                              .b = viewpoint_place(&lists->eye, segment->b),
+        *out = (FrameSegment){.a = viewpoint_frame_point(&lists->eye, segment->a),
+                              .b = viewpoint_frame_point(&lists->eye, segment->b),
                               .length = vec3_length(span),
                               .k = potential_k(segment->radius_mm)};
-        out->axis = vec3_scale(viewpoint_to_frame(&lists->eye, span), 1 / out->length);
+        out->axis = vec3_scale(viewpoint_frame_direction(&lists->eye, span), 1 / out->length);
         out->sine = sqrt(out->axis.x * out->axis.x + out->axis.y * out->axis.y);
         out->per_sine = out->sine > 0 ? 1 / out->sine : 0;
         out->reach = reach_of(job->geometry, segment);
         const bool hidden = lists->hidden && lists->hidden[i];
-        lists->segment_rows[i] = out->reach > 0 && !hidden ? rows_of(lists, out) : NOWHERE;
+        lists->segment_rows[i] = out->reach > 0 && !hidden ? rows_of(lists, out) : NO_TILES;
     }
 }
 
@@ -149,7 +149,7 @@ Status vessellists_of_light(const Geometry *geometry, const LightView *view, int
     }
     lists->listed_columns = view->columns;
     lists->listed_rows = view->rows;
-    lists->stray = 0.5 + SLACK_PIXELS;
+    lists->max_offset = 0.5 + SLACK_PIXELS;
     lists->per_x = 1 / view->step_x;
     lists->per_y = 1 / view->step_y;
     return fill_lists(geometry, threads, lists, err);
@@ -187,15 +187,15 @@ static TileSpan columns_of(const VesselLists *lists, const FrameSegment *segment
         clip_part(heights[plane][0] + segment->reach, heights[plane][1] + segment->reach, &from,
                   &to);
     if (from > to)
-        return NOWHERE;
+        return NO_TILES;
     Vec3 span = vec3_sub(segment->b, segment->a);
     Vec3 first = vec3_add_scaled(segment->a, span, from);
     Vec3 last = vec3_add_scaled(segment->a, span, to);
     Interval range =
-        capsule_shadow(lists->eye.perspective, first.x, first.z, last.x, last.z, segment->reach);
-    TileSpan columns = tiles_within(samples_within(range, lists->x[0], lists->per_x), lists->stray,
-                                    lists->n_columns);
-    return tiles_common(columns, lists->listed_columns);
+        capsule_extent(lists->eye.perspective, first.x, first.z, last.x, last.z, segment->reach);
+    TileSpan columns = tilespan_of_samples(interval_in_samples(range, lists->x[0], lists->per_x),
+                                           lists->max_offset, lists->n_columns);
+    return tilespan_intersection(columns, lists->listed_columns);
 }
 
 Status vessellists_row(const VesselLists *lists, size_t row, TileSpan *columns, IndexLists *tiles,
@@ -205,7 +205,7 @@ Status vessellists_row(const VesselLists *lists, size_t row, TileSpan *columns, 
     size_t n = indexlists_length(&lists->rows, (size_t)row);
     int first = (int)row * TILE_SIDE, last = first + TILE_SIDE - 1;
     last = last < lists->n_rows ? last : lists->n_rows - 1;
-    double more = lists->stray / lists->per_y;
+    double more = lists->max_offset / lists->per_y;
     for (size_t i = 0; i < n; i++)
         columns[i] = columns_of(lists, &lists->segments[segments[i]], lists->y[last] + more,
                                 lists->y[first] - more);

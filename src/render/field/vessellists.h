@@ -15,7 +15,7 @@ typedef struct VesselLists {
     int n_columns, n_rows; /* samples */
     double *x, *y;         /* positions of the columns and rows in the camera's plane */
     double per_x, per_y;   /* samples per unit of x and y; per_y is below 0 */
-    double stray;          /* largest distance of a sample from the grid, in samples */
+    double max_offset;     /* largest distance of a sample from the grid, in samples */
     int tile_columns, tile_rows;
     TileSpan listed_columns, listed_rows; /* the tiles that get lists */
     FrameSegment *segments;

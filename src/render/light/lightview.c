@@ -16,7 +16,7 @@ double lightview_radius(const Geometry *geometry)
 /* Whether light and geometry are on one side of the ground. */
 static bool is_before_ground(const Ground *ground, const Light *light, Vec3 center)
 {
-    Vec3 towards = light_way(light, center).towards;
+    Vec3 towards = light_direction(light, center).towards;
     double above = vec3_dot(ground->normal, center) - ground->offset_mm;
     double to_light = light->parallel
                           ? vec3_dot(ground->normal, towards)
@@ -54,7 +54,7 @@ static Box seen_box(const Viewpoint *eye, const Box *world)
 {
     Box box = box_empty();
     for (int i = 0; i < 8; i++) {
-        Vec3 at = viewpoint_place(eye, corner(world, i));
+        Vec3 at = viewpoint_frame_point(eye, corner(world, i));
         if (eye->perspective && at.z <= 0)
             return (Box){vec3(-HUGE_VAL, -HUGE_VAL, -HUGE_VAL), vec3(HUGE_VAL, HUGE_VAL, HUGE_VAL)};
         if (eye->perspective)
@@ -105,8 +105,8 @@ LightProjection lightview_projection(const LightView *view, const Viewpoint *cam
                            .rows = view->tiles,
                            .slack = slack,
                            .z_middle = view->z_middle,
-                           .offset = viewpoint_place(&view->eye, camera->location)};
+                           .offset = viewpoint_frame_point(&view->eye, camera->location)};
     for (int i = 0; i < 3; i++)
-        aim.axes[i] = viewpoint_to_frame(camera, view->eye.axes[i]);
+        aim.axes[i] = viewpoint_frame_direction(camera, view->eye.axes[i]);
     return aim;
 }

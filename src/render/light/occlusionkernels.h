@@ -53,7 +53,7 @@ typedef struct ConeGroup {
 /* The workspace of one thread. Cones are sorted into the cells of a grid across the direction. Each
  * row of the grid begins with a new group. All arrays are owned. */
 typedef struct ConeScratch {
-    ProjectedBlock seen;        /* the present block of capsules */
+    ProjectedBlock projected;   /* the present block of capsules */
     ConeGroup *listed, *sorted; /* by shading point, and by cell */
     uint32_t *at;   /* per listed cone: its cell, then its index among the sorted cones */
     uint32_t *ends; /* row by row: where the row begins, and the end of each of its cells */

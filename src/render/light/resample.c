@@ -52,7 +52,7 @@ void resample_mask(const Plane *color, int above, int below, float threshold, in
 
 Resampling resampling_for(int antialias)
 {
-    assert(antialias <= RENDER_MOST_ANTIALIAS);
+    assert(antialias <= RENDER_MAX_ANTIALIAS);
     Resampling more = {.side = antialias > 1 ? antialias : 0};
     if (more.side > 0)
         camera_sample_offsets(more.side, more.offsets);

@@ -62,7 +62,7 @@ typedef struct LightBins {
 typedef struct ShadowEngine {
     /* Returns true if the engine supports light views of this light, which is a point or
      * parallel. */
-    bool (*can)(const Geometry *geometry, const View *view, const Light *light);
+    bool (*supports)(const Geometry *geometry, const View *view, const Light *light);
     /* Returns the number of tiles along a side of a light view. */
     int (*tiles)(const Drawing *drawing);
     /* Returns how near to a point blockers cast no shadow on it, mm. */
@@ -83,7 +83,7 @@ typedef struct ShadowEngine {
 } ShadowEngine;
 
 /* Returns true if the engine supports light views from all points of a light. */
-bool shadowengine_can(const ShadowEngine *engine, const Drawing *drawing, const Light *light);
+bool shadowengine_supports(const ShadowEngine *engine, const Drawing *drawing, const Light *light);
 
 /* Returns true if hard shadows of a light come from a light view. False for a light that casts no
  * shadows, for an area light, for RENDER_TRACE and for a light that the engine does not support. */

@@ -12,7 +12,7 @@ enum { SHADOW_RUN = 8192 };
 typedef struct ShadowPoser {
     /* Sets points[k] to point first + k for k < n <= TILE_SAMPLES, in the frame for which the light
      * bins were made. Returns as bits the points that query; the others count as dark. */
-    uint64_t (*place)(const void *context, size_t first, size_t n, HitPoints *points);
+    uint64_t (*locate)(const void *context, size_t first, size_t n, HitPoints *points);
     /* Receives from how many of the light views point `index` is lit. Calls for different points
      * may come from different threads. */
     void (*store)(const void *context, size_t index, int n_lit);

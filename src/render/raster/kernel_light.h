@@ -12,16 +12,16 @@
 /* ---- aiming ---------------------------------------------------------------------------------- */
 
 LANE_TARGET static void RASTER_KERNEL(locate)(const RasterTile *tile, const RasterHits *hits,
-                                              HitPoints *places)
+                                              HitPoints *points)
 {
     const RasterGrid *grid = tile->grid;
     double middle_x = tile->x, middle_y = tile->y, z_middle = tile->z_middle;
     bool perspective = tile->perspective;
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
         double z = z_middle + (double)hits->z[sample], scale = perspective ? z : 1;
-        places->x[sample] = (middle_x + (double)grid->x[sample]) * scale;
-        places->y[sample] = (middle_y + (double)grid->y[sample]) * scale;
-        places->z[sample] = z;
+        points->x[sample] = (middle_x + (double)grid->x[sample]) * scale;
+        points->y[sample] = (middle_y + (double)grid->y[sample]) * scale;
+        points->z[sample] = z;
     }
 }
 

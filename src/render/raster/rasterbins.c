@@ -83,7 +83,7 @@ static void make_chunk(size_t chunk, int worker, void *context)
         rasteritem_make(bins->geometry, &bins->view, (uint32_t)i, item,
                         bins->joints ? &bins->joints[joint] : NULL,
                         bins->hulls ? &bins->hulls[joint] : NULL);
-        item->joint = joint & (MOST_ITEMS - 1);
+        item->joint = joint & (MAX_ITEMS - 1);
         joint += is_joint(bins, i);
         if (!bins->view.light)
             item->primitive = (uint32_t)i;
@@ -166,14 +166,14 @@ static size_t chunks_for(const Geometry *geometry, size_t threads)
 bool rasterbins_take(const Geometry *geometry, int width, int height)
 {
     const int most = UINT16_MAX * TILE_SIDE;
-    return rasterbins_items(geometry) <= MOST_ITEMS && width <= most && height <= most;
+    return rasterbins_items(geometry) <= MAX_ITEMS && width <= most && height <= most;
 }
 
 static Status make_bins(RasterBins *bins, int threads, Err *err)
 {
     size_t n = rasterbins_items(bins->geometry),
            chunks = chunks_for(bins->geometry, (size_t)threads);
-    if (n > MOST_ITEMS)
+    if (n > MAX_ITEMS)
         return err_set(err, STATUS_MEMORY, "too many primitives for `method` raster");
     if (bins->tile_columns > UINT16_MAX || bins->tile_rows > UINT16_MAX)
         return err_set(err, STATUS_USAGE,
@@ -318,10 +318,10 @@ double raster_decide(const RasterBins *bins, uint32_t number, double x, double y
     if (primitive->round_b)
         n += hit_sphere(ray, primitive->b, primitive->radius_mm, &hits[n]);
     for (int i = 0; i < n; i++)
-        if (hits[i].t >= NEAREST_SEEN_MM && hits[i].t < nearest) {
+        if (hits[i].t >= NEAREST_VISIBLE_MM && hits[i].t < nearest) {
             nearest = hits[i].t;
             if (normal)
-                *normal = viewpoint_to_frame(&bins->view.eye, hits[i].normal);
+                *normal = viewpoint_frame_direction(&bins->view.eye, hits[i].normal);
         }
     return nearest * vec3_dot(ray.direction, bins->view.eye.axes[2]);
 }

@@ -43,12 +43,12 @@ RasterJoint rasterjoint_make(const RasterView *view, const Primitive *primitive,
     RasterJoint made;
     JointFrame joint = primitive_joint(primitive);
     Vec3 from_eye = vec3_sub(joint.base, view->eye.location), part[6];
-    joint.base = vec3_sub(viewpoint_to_frame(&view->eye, from_eye), middle);
-    joint.span = viewpoint_to_frame(&view->eye, joint.span);
+    joint.base = vec3_sub(viewpoint_frame_direction(&view->eye, from_eye), middle);
+    joint.span = viewpoint_frame_direction(&view->eye, joint.span);
     /* The frame is left-handed; turning the other way round keeps S_p x S_l outward in it. */
-    joint.side = vec3_scale(viewpoint_to_frame(&view->eye, joint.side), -1);
-    joint.across = viewpoint_to_frame(&view->eye, joint.across);
-    joint.across_change = viewpoint_to_frame(&view->eye, joint.across_change);
+    joint.side = vec3_scale(viewpoint_frame_direction(&view->eye, joint.side), -1);
+    joint.across = viewpoint_frame_direction(&view->eye, joint.across);
+    joint.across_change = viewpoint_frame_direction(&view->eye, joint.across_change);
     face_sight(&joint, view->eye.perspective ? middle : vec3(0, 0, 1), part);
     Vec3 base = part[0], span = part[1], a = part[2], b = part[3], da = part[4], db = part[5];
     store_floats(made.base, base);
@@ -78,9 +78,10 @@ static RasterHull make_hull(const RasterView *view, const Primitive *primitive, 
     RasterHull hull;
     double a = primitive->radius_mm, b = primitive->radius_b_mm;
     bool tapers = fabs(a - b) < length;
-    store_plane(hull.plane[0], viewpoint_to_frame(&view->eye, primitive->axes[0]),
+    store_plane(hull.plane[0], viewpoint_frame_direction(&view->eye, primitive->axes[0]),
                 vec3_scale(span, -0.5), a);
-    store_plane(hull.plane[1], vec3_scale(viewpoint_to_frame(&view->eye, primitive->axes[1]), -1),
+    store_plane(hull.plane[1],
+                vec3_scale(viewpoint_frame_direction(&view->eye, primitive->axes[1]), -1),
                 vec3_scale(span, 0.5), b);
     hull.middle = (float)((tapers ? (a + b) / 2 : max_of(a, b)) * 1.0005);
     hull.taper = (float)(tapers ? turn * (a - b) / length : 0);
@@ -134,11 +135,11 @@ void rasteritem_make(const Geometry *geometry, const RasterView *view, uint32_t 
 {
     const Primitive *primitive = &geometry->primitives[number];
     Vec3 middle = vec3_scale(vec3_add(primitive->a, primitive->b), 0.5);
-    middle = viewpoint_place(&view->eye, middle);
-    Vec3 span = viewpoint_to_frame(&view->eye, vec3_sub(primitive->b, primitive->a));
+    middle = viewpoint_frame_point(&view->eye, middle);
+    Vec3 span = viewpoint_frame_direction(&view->eye, vec3_sub(primitive->b, primitive->a));
     double radius = max_of(primitive->radius_mm, primitive_radius_b(primitive));
     if ((view->hidden && view->hidden[number]) || rasterreach_misses(view, middle, span, radius)) {
-        item->rows = item->columns = rastertiles_of(NOWHERE);
+        item->rows = item->columns = rastertiles_of(NO_TILES);
         return;
     }
     const ItemAxis axis = axis_of(span);

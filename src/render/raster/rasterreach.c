@@ -23,8 +23,8 @@ RasterSlab rasterslab_of(const RasterView *view, size_t row)
 {
     int first = (int)row * TILE_SIDE, last = first + TILE_SIDE - 1;
     RasterSlab slab;
-    slab.y[0] = view->top + (last + view->stray + SLACK_PIXELS) * view->step_y;
-    slab.y[1] = view->top + (first - view->stray - SLACK_PIXELS) * view->step_y;
+    slab.y[0] = view->top + (last + view->max_offset + SLACK_PIXELS) * view->step_y;
+    slab.y[1] = view->top + (first - view->max_offset - SLACK_PIXELS) * view->step_y;
     for (int i = 0; i < 2; i++)
         slab.per_length[i] = 1 / sqrt(1 + slab.y[i] * slab.y[i]);
     return slab;
@@ -61,12 +61,13 @@ static Interval perspective_range(const RasterItem *item, const RasterSlab *slab
     if (from > to)
         return nothing;
     Vec3 first = vec3_add_scaled(a, span, from), last = vec3_add_scaled(a, span, to);
-    return capsule_shadow(true, first.x, first.z, last.x, last.z, radius);
+    return capsule_extent(true, first.x, first.z, last.x, last.z, radius);
 }
 
 static TileSpan columns_of(const RasterView *view, Interval across)
 {
-    return tiles_common(tiles_within(across, view->stray, view->columns), view->listed_columns);
+    return tilespan_intersection(tilespan_of_samples(across, view->max_offset, view->columns),
+                                 view->listed_columns);
 }
 
 /* ---- boxes ----------------------------------------------------------------------------------- */
@@ -98,10 +99,10 @@ static inline Interval whole_pixels(const RasterView *view, const RasterItem *it
         if (item_is_close(item))
             return everywhere;
         Vec3 a = item_point(item, -half), b = item_point(item, half);
-        range = capsule_shadow(true, across ? a.x : a.y, a.z, across ? b.x : b.y, b.z, radius);
+        range = capsule_extent(true, across ? a.x : a.y, a.z, across ? b.x : b.y, b.z, radius);
     }
-    return across ? samples_within(range, view->left, view->per_x)
-                  : samples_within(range, view->top, view->per_y);
+    return across ? interval_in_samples(range, view->left, view->per_x)
+                  : interval_in_samples(range, view->top, view->per_y);
 }
 
 static bool is_behind(const RasterItem *item)
@@ -117,10 +118,11 @@ typedef struct SampleSpan {
 /* Those of `count`, `per` in a unit from `first` on, that what reaches `reach` to either side of
  * `middle` does not leave out. */
 static inline SampleSpan samples_about(double middle, double reach, double first, double per,
-                                       double stray, int count)
+                                       double max_offset, int count)
 {
-    Interval range = samples_within((Interval){middle - reach, middle + reach}, first, per);
-    double low = max_of(range.low - stray, 0), high = min_of(range.high + stray, count - 1);
+    Interval range = interval_in_samples((Interval){middle - reach, middle + reach}, first, per);
+    double low = max_of(range.low - max_offset, 0),
+           high = min_of(range.high + max_offset, count - 1);
     int from = low < count ? (int)low : count;
     return (SampleSpan){from + (from < low), high < 0 ? -1 : (int)high};
 }
@@ -177,26 +179,27 @@ bool rasterreach_misses(const RasterView *view, Vec3 middle, Vec3 span, double r
     if (view->eye.perspective)
         return is_beside(view, middle, radius + vec3_length(span) / 2);
     SampleSpan columns = samples_about(middle.x, fabs(span.x) / 2 + radius, view->left, view->per_x,
-                                       view->stray, view->columns);
+                                       view->max_offset, view->columns);
     SampleSpan rows = samples_about(middle.y, fabs(span.y) / 2 + radius, view->top, view->per_y,
-                                    view->stray, view->rows);
+                                    view->max_offset, view->rows);
     int wide = columns.last - columns.first + 1, high = rows.last - rows.first + 1;
     if (wide <= 0 || high <= 0)
         return true;
-    return view->many && wide <= FEW && high <= FEW && wide * high <= FEW && view->stray == 0 &&
-           2 * radius < view->step_x &&
+    return view->many && wide <= FEW && high <= FEW && wide * high <= FEW &&
+           view->max_offset == 0 && 2 * radius < view->step_x &&
            samples_are_beside(view, columns, rows, middle, span, radius);
 }
 
 void rasterreach_set(const RasterView *view, RasterItem *item)
 {
-    TileSpan rows = NOWHERE, columns = NOWHERE;
+    TileSpan rows = NO_TILES, columns = NO_TILES;
     if (!is_behind(item)) {
         Interval across = whole_pixels(view, item, true), down = whole_pixels(view, item, false);
-        rows = tiles_common(tiles_within(down, view->stray, view->rows), view->listed_rows);
+        rows = tilespan_intersection(tilespan_of_samples(down, view->max_offset, view->rows),
+                                     view->listed_rows);
         columns = columns_of(view, across);
         if (columns.first > columns.last)
-            rows = NOWHERE;
+            rows = NO_TILES;
         if (view->light)
             item->box = RASTERBOX_GUARDS | parts_of(across, columns) | parts_of(down, rows) << 16;
     }
@@ -223,8 +226,8 @@ TileSpan rasterreach_in_row(const RasterView *view, const RasterItem *item, int 
     Interval range =
         view->eye.perspective ? perspective_range(item, slab) : parallel_range(item, slab);
     if (range.low > range.high)
-        return NOWHERE;
-    range = samples_within(range, view->left, view->per_x);
+        return NO_TILES;
+    range = interval_in_samples(range, view->left, view->per_x);
     columns = columns_of(view, range);
     if (view->light)
         *box = (*box & ~(RASTERBOX_HIGH_X | RASTERBOX_LOW_X)) | parts_of(range, columns);

@@ -89,12 +89,12 @@ static void place_tile(const RasterScene *scene, int worker, BatchTile *tile)
 {
     RasterOwn *own = tile->own;
     const IndexLists *lists = &scene->rows[worker];
-    const int column = tile->seen.column / TILE_SIDE, row = tile->seen.row / TILE_SIDE;
+    const int column = tile->traced.column / TILE_SIDE, row = tile->traced.row / TILE_SIDE;
     const uint32_t first = lists->first[column];
     own->tile = rasterbins_tile(scene->bins, column, row, lists->items + first,
                                 lists->first[column + 1] - first, &scene->center);
-    tile->seen.middle_x = own->tile.x;
-    tile->seen.middle_y = own->tile.y;
+    tile->traced.middle_x = own->tile.x;
+    tile->traced.middle_y = own->tile.y;
     tile->depth_base = own->tile.z_middle;
 }
 
@@ -106,14 +106,14 @@ static Status trace_raster(void *bins, int worker, int shift, BatchTile *tile, E
     place_tile(scene, worker, tile);
     if (shift >= 0)
         own->tile.grid = &scene->shifted[shift];
-    tile->seen.x = own->tile.grid->x;
-    tile->seen.y = own->tile.grid->y;
-    tile->seen.hits = NULL;
+    tile->traced.x = own->tile.grid->x;
+    tile->traced.y = own->tile.grid->y;
+    tile->traced.hits = NULL;
     tile->items = own->hits.item;
     if (!scene->kernels->trace(&own->tile, &own->hits, &tile->hits))
         return STATUS_OK;
     scene->kernels->resolve(&own->tile, &own->hits, &tile->hits);
-    tile->seen.hits = &tile->hits;
+    tile->traced.hits = &tile->hits;
     return STATUS_OK;
 }
 
@@ -150,9 +150,9 @@ static Status prepare_raster(const Drawing *drawing, void **prepared, Err *err)
 }
 
 const Engine raster_engine = {.name = "raster",
-                              .makes_codes = true,
-                              .covers = true,
-                              .can = can_draw_raster,
+                              .writes_codes = true,
+                              .draws_thin = true,
+                              .supports = can_draw_raster,
                               .needs_rays = raster_needs_rays,
                               .prepare = prepare_raster,
                               .rows = tilerender_rows,

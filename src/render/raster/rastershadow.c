@@ -49,7 +49,7 @@ static RasterView view_of(const LightView *light)
                         .rows = light->tiles * TILE_SIDE,
                         .listed_columns = light->columns,
                         .listed_rows = light->rows,
-                        .stray = 0.5,
+                        .max_offset = 0.5,
                         .step_x = light->step_x,
                         .step_y = light->step_y,
                         .left = light->left,
@@ -180,7 +180,7 @@ static Status test_by_cover(const LightBins *light, void *workspace, const TileQ
     return STATUS_OK;
 }
 
-const ShadowEngine raster_shadows = {.can = lightview_sees_all,
+const ShadowEngine raster_shadows = {.supports = lightview_sees_all,
                                      .tiles = tiles_for_primitives,
                                      .slack = slack_of_rounding,
                                      .bin = bin_primitives,

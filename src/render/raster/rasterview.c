@@ -14,7 +14,7 @@ RasterView rasterview_of_camera(const Camera *camera, Box bounds, int antialias)
                         .step_y = -height / camera->height,
                         .columns = camera->width,
                         .rows = camera->height,
-                        .stray = antialias > 1 ? 0.5 : 0,
+                        .max_offset = antialias > 1 ? 0.5 : 0,
                         .z_middle = (near + far) / 2};
 }
 

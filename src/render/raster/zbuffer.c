@@ -166,8 +166,8 @@ static void draw_primitive(const ZBuffers *buffers, const RasterItem *item, ZBru
         pixel *= item_nearest(item) / (1 + view->left * view->left + view->top * view->top);
     brush->apart = pixel * pixels_apart;
     brush->primitive = item->primitive;
-    Vec3 a = viewpoint_place(&view->eye, primitive->a);
-    Vec3 b = viewpoint_place(&view->eye, primitive->b);
+    Vec3 a = viewpoint_frame_point(&view->eye, primitive->a);
+    Vec3 b = viewpoint_frame_point(&view->eye, primitive->b);
     if (primitive->kind == PRIMITIVE_CYLINDER) {
         draw_cylinder(brush, a, b, primitive->radius_mm);
         if (primitive->round_a)
@@ -179,10 +179,10 @@ static void draw_primitive(const ZBuffers *buffers, const RasterItem *item, ZBru
     } else {
         JointFrame joint = primitive_joint(primitive);
         joint.base = a;
-        joint.span = viewpoint_to_frame(&view->eye, joint.span);
-        joint.side = viewpoint_to_frame(&view->eye, joint.side);
-        joint.across = viewpoint_to_frame(&view->eye, joint.across);
-        joint.across_change = viewpoint_to_frame(&view->eye, joint.across_change);
+        joint.span = viewpoint_frame_direction(&view->eye, joint.span);
+        joint.side = viewpoint_frame_direction(&view->eye, joint.side);
+        joint.across = viewpoint_frame_direction(&view->eye, joint.across);
+        joint.across_change = viewpoint_frame_direction(&view->eye, joint.across_change);
         draw_joint(brush, &joint);
     }
 }
@@ -198,7 +198,7 @@ static void finish_pixel(const ZBuffers *buffers, const ZPoint *point, int i, in
     Surfel surfel;
     planes_store_nothing(buffers->frame, pixel, 1);
     if (seen) {
-        Vec3 normal = viewpoint_to_world(&view->eye, point->normal);
+        Vec3 normal = viewpoint_world_direction(&view->eye, point->normal);
         bool away = vec3_dot(normal, ray.direction) > 0;
         surfel = (Surfel){.t = point->z / vec3_dot(ray.direction, view->eye.axes[2]),
                           .normal = away ? vec3_scale(normal, -1) : normal,
@@ -293,7 +293,7 @@ static bool zbuffer_needs_rays(const Drawing *drawing)
 }
 
 const Engine zbuffer_engine = {.name = "zbuffer",
-                               .can = can_draw_zbuffer,
+                               .supports = can_draw_zbuffer,
                                .needs_rays = zbuffer_needs_rays,
                                .prepare = prepare_zbuffer,
                                .rows = draw_zbuffer,

@@ -16,13 +16,13 @@ typedef struct ThinVessels {
     ThinLayer layer;        /* has no colors before thinvessels_color */
     uint32_t *piece_strips; /* per piece: index of its strip; owned */
     OffPixelPoints lights;  /* shading points of the pieces; no lights before offpixel_init */
-    float *open;            /* per piece: ambient visibility, 0 to 1; owned. NULL: all are 1. */
+    float *ambient;         /* per piece: ambient visibility, 0 to 1; owned. NULL: all are 1. */
 } ThinVessels;
 
 /* Widths on the picture, pixels. */
 typedef struct ThinWidths {
-    double below_px; /* narrower vessels are thin */
-    double least_px; /* so are these, and are drawn this wide; 0: at their true widths */
+    double below_px;     /* narrower vessels are thin */
+    double min_width_px; /* so are these, and are drawn this wide; 0: at their true widths */
 } ThinWidths;
 
 /* Finds the vessels that are narrower than one of the two widths in this view. Triangles are never
@@ -38,15 +38,15 @@ void thinvessels_release(ThinVessels *thin);
 
 /* Finds the ambient visibility of the pieces, by `drawing->params->occlusion` occlusion directions.
  * Errors   STATUS_MEMORY. */
-MUST_CHECK Status thinvessels_find_open(const Drawing *drawing, const OccluderSet *beams,
-                                        ThinVessels *thin, Err *err);
+MUST_CHECK Status thinvessels_find_ambient(const Drawing *drawing, const OccluderSet *occluders,
+                                           ThinVessels *thin, Err *err);
 
 /* Sets the colors of pieces whose strips may touch the drawing's band. Uses thin->lights and
- * thin->open as they are now. */
+ * thin->ambient as they are now. */
 void thinvessels_color(const Drawing *drawing, const ThinVessels *thin);
 
 /* Points thin->lights to the shading points of the pieces; it has no lights yet. */
-void thinvessels_place(ThinVessels *thin);
+void thinvessels_init_lights(ThinVessels *thin);
 
 /* Draws the vessels over the colors of a frame that has depths along the rays. The frame has the
  * drawing's band, one sample per pixel. Errors: STATUS_MEMORY. */

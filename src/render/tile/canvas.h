@@ -15,8 +15,8 @@ TileLook tilelook_of(const View *view, const Finish *finish, const Viewpoint *ey
 /* The scratch memory of one thread. */
 typedef struct CanvasWorker {
     TileSurface surface, ground; /* of vessels and of the ground */
-    float open[TILE_SAMPLES];    /* of both, what samples share: */
-    float parts[VIEW_MAX_LIGHTS][TILE_SAMPLES];
+    float ambient[TILE_SAMPLES]; /* of both, what samples share: */
+    float light_visibility[VIEW_MAX_LIGHTS][TILE_SAMPLES];
     float color[3][TILE_SAMPLES]; /* of the tile at hand */
     int row, column;              /* the first tile that is not drawn yet, in pixels */
 } CanvasWorker;
@@ -27,7 +27,7 @@ typedef struct Canvas {
     Frame *frame;           /* borrowed */
     Viewpoint eye;
     const TileKernels *kernels;
-    bool needs_places; /* shading reads TileHits.z, because light, visibility or colors depend on
+    bool needs_points; /* shading reads TileHits.z, because light, visibility or colors depend on
                         * the position of the hit */
     bool wants_color, wants_geometry;
     bool wholly_colored; /* the engine also sets the colors of samples without a hit; false at
@@ -75,8 +75,9 @@ static inline size_t canvas_pixel(const Canvas *canvas, int column, int row)
 }
 
 /* Traces the ground plane. Adds hits of the ground to *hits where no vessel is nearer, and sets
- * seen->hits and seen->ground. If seen->hits is not NULL, *hits already has the hits of vessels. */
-void canvas_trace_ground(const Canvas *canvas, TracedTile *seen, TileHits *hits);
+ * traced->hits and traced->ground. If traced->hits is not NULL, *hits already has the hits of
+ * vessels. */
+void canvas_trace_ground(const Canvas *canvas, TracedTile *traced, TileHits *hits);
 
 /* Shades the samples of a tile that has hits. Samples without a hit get the background, unless the
  * frame stores codes.
@@ -85,7 +86,7 @@ void canvas_trace_ground(const Canvas *canvas, TracedTile *seen, TileHits *hits)
  * sample is in shadow.
  *
  * Returns the colors, in the memory of the worker; they are valid until its next call. */
-float (*canvas_shade(const Canvas *canvas, int worker, const TracedTile *seen,
+float (*canvas_shade(const Canvas *canvas, int worker, const TracedTile *traced,
                      const uint8_t (*shadowed)[TILE_SAMPLES]))[TILE_SAMPLES];
 
 /* Draws thin vessels over the colors of a tile, whose hits must have depths.
@@ -96,12 +97,12 @@ float (*canvas_shade(const Canvas *canvas, int worker, const TracedTile *seen,
  *
  * Returns the colors in the memory of the worker, or `color` if no thin vessel touches the tile.
  */
-float (*canvas_cover(const Canvas *canvas, int worker, const TracedTile *seen, ThinCells *cells,
+float (*canvas_cover(const Canvas *canvas, int worker, const TracedTile *traced, ThinCells *cells,
                      int x, int y, float (*color)[TILE_SAMPLES]))[TILE_SAMPLES];
 
 /* Stores a tile of centre samples in the planes of the frame. Tiles must come row by row, from left
  * to right. `color` NULL: all samples have the background's color. */
-void canvas_draw(const Canvas *canvas, int worker, const TracedTile *seen,
+void canvas_draw(const Canvas *canvas, int worker, const TracedTile *traced,
                  float color[3][TILE_SAMPLES]);
 
 /* Copies the first `columns` and `rows` of a tile's colors to rows of pixels; `stride` is the

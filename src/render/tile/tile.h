@@ -67,27 +67,27 @@ static inline int tile_extent(int left)
 
 /* Returns the position of a sample in the view's plane, with z = 1. In perspective this is the
  * point of its line of sight at depth 1. */
-static inline Vec3 tile_line(const TracedTile *seen, int sample)
+static inline Vec3 tile_line(const TracedTile *traced, int sample)
 {
-    return vec3(seen->middle_x + (double)seen->x[sample], seen->middle_y + (double)seen->y[sample],
-                1);
+    return vec3(traced->middle_x + (double)traced->x[sample],
+                traced->middle_y + (double)traced->y[sample], 1);
 }
 
 /* Returns the point where the line of sight of a TILE_HIT meets the surface, in the view's frame.
  */
-static inline Vec3 tile_hit_point(const TracedTile *seen, int sample)
+static inline Vec3 tile_hit_point(const TracedTile *traced, int sample)
 {
-    Vec3 line = tile_line(seen, sample);
-    double z = seen->hits->z[sample], scale = seen->perspective ? z : 1;
+    Vec3 line = tile_line(traced, sample);
+    double z = traced->hits->z[sample], scale = traced->perspective ? z : 1;
     return vec3(line.x * scale, line.y * scale, z);
 }
 
 /* Returns the distance along the line of sight to the hit of a sample, mm. */
-static inline double tile_hit_distance(const TracedTile *seen, int sample)
+static inline double tile_hit_distance(const TracedTile *traced, int sample)
 {
-    Vec3 line = tile_line(seen, sample);
-    double z = seen->hits->z[sample];
-    return seen->perspective ? z * sqrt(1 + line.x * line.x + line.y * line.y) : z;
+    Vec3 line = tile_line(traced, sample);
+    double z = traced->hits->z[sample];
+    return traced->perspective ? z * sqrt(1 + line.x * line.x + line.y * line.y) : z;
 }
 
 #endif

@@ -10,7 +10,7 @@
 
 /* A tile of a batch and what its samples show. */
 typedef struct BatchTile {
-    TracedTile seen; /* seen.hits is `hits`, or NULL if the tile shows nothing */
+    TracedTile traced; /* traced.hits is `hits`, or NULL if the tile shows nothing */
     TileHits hits;
     double depth_base;                 /* mm; TileEngine.single_depths */
     void *own;                         /* TileEngine.tile_bytes for the engine, zeroed at first */

@@ -220,9 +220,9 @@ static double length_by_hits(Caster *caster, int worker, Ray ray)
     for (Ray rest = ray; caster_first(caster, worker, rest, &surfel);
          rest.origin = ray_at(ray, travelled)) {
         travelled += surfel.t;
-        if (surfel.leaves && inside)
+        if (surfel.from_inside && inside)
             length += travelled - start;
-        inside = !surfel.leaves;
+        inside = !surfel.from_inside;
         start = travelled;
     }
     return length;
@@ -277,7 +277,7 @@ done:
     return status;
 }
 
-static bool can(const Drawing *drawing)
+static bool supports_xray(const Drawing *drawing)
 {
     return drawing->view->effects.xray.per_mm > 0 && drawing->params->want_color;
 }
@@ -288,4 +288,4 @@ static bool needs_rays(const Drawing *drawing)
 }
 
 const Engine xray_engine = {
-    .name = "xray", .can = can, .needs_rays = needs_rays, .rows = draw_rows};
+    .name = "xray", .supports = supports_xray, .needs_rays = needs_rays, .rows = draw_rows};

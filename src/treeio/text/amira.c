@@ -126,7 +126,7 @@ static Status read_count(AmiraReader *reader, const char *name, Err *err)
         return err_set(err, STATUS_INPUT, "the header ends behind '%.40s'", name);
     if (of == ELEMENTS)
         return STATUS_OK;
-    TRY(field_whole(name, count, 0, INT32_MAX, &number, err));
+    TRY(field_integer(name, count, 0, INT32_MAX, &number, err));
     reader->count[of] = (size_t)number;
     reader->has_count[of] = true;
     return check_elements(name, number, reader->size, err);
@@ -153,10 +153,10 @@ static Status read_packing(Cursor *cursor, AmiraField *field, Err *err)
 {
     char name[CURSOR_WORD], bytes[CURSOR_WORD];
     long long size = 0;
-    if (!cursor_take(cursor, "("))
+    if (!cursor_accept(cursor, "("))
         return STATUS_OK;
     if (!cursor_word(cursor, name) || !cursor_word(cursor, bytes) ||
-        !integer_parse(bytes, 0, INT64_MAX, &size) || !cursor_take(cursor, ")"))
+        !integer_parse(bytes, 0, INT64_MAX, &size) || !cursor_accept(cursor, ")"))
         return err_set(err, STATUS_INPUT, "the block @%lld is packed in no way that is known",
                        field->block);
     field->packing = (AmiraPacking)keyword_find(name, packing_names, PLAIN);
@@ -174,8 +174,8 @@ static Status read_declaration(AmiraReader *reader, size_t of, Err *err)
     Cursor *cursor = &reader->cursor;
     char type[CURSOR_WORD], name[CURSOR_WORD], block[CURSOR_WORD];
     AmiraField field = {.of = of, .packing = PLAIN};
-    if (!cursor_take(cursor, "{") || !cursor_word(cursor, type) || !cursor_word(cursor, name) ||
-        !cursor_take(cursor, "}") || !cursor_word(cursor, block) || *block != '@' ||
+    if (!cursor_accept(cursor, "{") || !cursor_word(cursor, type) || !cursor_word(cursor, name) ||
+        !cursor_accept(cursor, "}") || !cursor_word(cursor, block) || *block != '@' ||
         !integer_parse(block + 1, 0, INT32_MAX, &field.block))
         return err_set(err, STATUS_INPUT, "a declaration is '%s { TYPE NAME } @BLOCK'",
                        element_names[of]);
@@ -199,7 +199,7 @@ static Status read_statement(AmiraReader *reader, const char *word, Err *err)
         return read_declaration(reader, of, err);
     if (*word == 'n' && keyword_find(word + 1, element_names, ELEMENTS) < ELEMENTS)
         return read_count(reader, word + 1, err);
-    return cursor_take(&reader->cursor, "{") ? read_parameters(reader, err) : STATUS_OK;
+    return cursor_accept(&reader->cursor, "{") ? read_parameters(reader, err) : STATUS_OK;
 }
 
 static Status check_header(const AmiraReader *reader, Err *err)
@@ -628,8 +628,8 @@ Status amira_read(Graph *graph, char *bytes, size_t size, Err *err)
                           .content = CONTENTS};
     Status status = STATUS_OK;
     graph->unit = LENGTH_UM;
-    TRY_GOTO(cursor_blame(&reader.cursor, read_header(&reader, err), err));
-    TRY_GOTO(cursor_blame(&reader.cursor, read_blocks(&reader, err), err));
+    TRY_GOTO(cursor_locate_error(&reader.cursor, read_header(&reader, err), err));
+    TRY_GOTO(cursor_locate_error(&reader.cursor, read_blocks(&reader, err), err));
     TRY_GOTO(add[reader.content](&reader, err));
     if (reader.content != SPATIAL_GRAPH)
         TRY_GOTO(add_arrays(&reader, NULL, err));

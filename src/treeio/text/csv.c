@@ -75,8 +75,8 @@ static Status read_id(NodeColumn column, const char *text, int64_t *id, Err *err
     bool is_parent = column == PARENT;
     int32_t number = TREE_NO_PARENT;
     if (*text || !is_parent)
-        TRY(field_whole(node_columns[column], text, is_parent ? TREE_NO_PARENT : 1, TREE_MAX_ID,
-                        &number, err));
+        TRY(field_integer(node_columns[column], text, is_parent ? TREE_NO_PARENT : 1, TREE_MAX_ID,
+                          &number, err));
     *id = number;
     return STATUS_OK;
 }
@@ -93,7 +93,7 @@ static Status read_node_field(NodeColumn column, const char *text, BuilderNode *
     if (column == ID || column == PARENT)
         return read_id(column, text, column == ID ? &node->id : &node->parent, err);
     if (column == TYPE)
-        return field_whole("type", text, INT32_MIN, INT32_MAX, &node->type, err);
+        return field_integer("type", text, INT32_MIN, INT32_MAX, &node->type, err);
     if (column == SHARE && !*text)
         return STATUS_OK;
     return field_number(node_columns[column], text, not_negative ? 0 : -HUGE_VAL, number[column],

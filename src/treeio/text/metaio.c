@@ -194,7 +194,7 @@ static Status read_value(TubeReader *reader, size_t k, char *value, Err *err)
         *(bool *)member = is_true(value);
         return STATUS_OK;
     case KEY_WHOLE:
-        return field_whole(keys[k].name, value, -1, INT32_MAX, member, err);
+        return field_integer(keys[k].name, value, -1, INT32_MAX, member, err);
     case KEY_VECTOR:
         return read_numbers(keys[k].name, value, (size_t)header->dimensions, member, err);
     case KEY_MATRIX:
@@ -245,7 +245,7 @@ static Status read_key(TubeReader *reader, const char *key, char *value, Err *er
     if (strcasecmp(key, "ObjectType") == 0)
         return begin_object(reader, value, err);
     if (strcasecmp(key, "NDims") == 0)
-        return field_whole(key, value, 2, 3, &header->dimensions, err);
+        return field_integer(key, value, 2, 3, &header->dimensions, err);
     if (strcasecmp(key, "Artery") == 0)
         header->artery = is_true(value);
     if (strcasecmp(key, "ID") == 0)
@@ -470,7 +470,7 @@ static Status read_all(TubeReader *reader, Err *err)
     TRY(graph_column(graph, GRAPH_POINTS, "tube", "", &column, err));
     TRY(graph_column(graph, GRAPH_POINTS, "artery", "", &column, err));
     for (char *line; (line = cursor_line(&reader->cursor));)
-        TRY(cursor_blame(&reader->cursor, read_line(reader, line, err), err));
+        TRY(cursor_locate_error(&reader->cursor, read_line(reader, line, err), err));
     if (reader->objects.n == 0)
         return err_set(err, STATUS_INPUT, "%s: there is no tube in the file", graph->name);
     for (size_t i = 0; i < reader->objects.n; i++)

@@ -54,7 +54,7 @@ static Status read_list(DialectReader *reader, DialectRow *row, Err *err)
     SegmentLists *lists = reader->section == JOINT_INLET ? &deck->inlets : &deck->outlets;
     size_t n = lists->list.n, first = deck->word.n;
     int32_t count = 0;
-    TRY(field_whole("number of segments", row->field[2], 1, INT32_MAX, &count, err));
+    TRY(field_integer("number of segments", row->field[2], 1, INT32_MAX, &count, err));
     if ((size_t)count != row->count - 3)
         return err_set(err, STATUS_INPUT, "the card says %d segments and names %zu", count,
                        row->count - 3);
@@ -280,7 +280,7 @@ done:
     return status;
 }
 
-bool oned_keeps(const TreeColumn *column)
+bool oned_stores(const TreeColumn *column)
 {
     for (size_t k = 0; k < DECK_COLUMNS; k++)
         if (strcmp(column->name, fields[k].name) == 0 && strcmp(column->unit, fields[k].unit) == 0)
@@ -292,7 +292,7 @@ bool oned_keeps(const TreeColumn *column)
 static double deck_value(const Tree *tree, size_t k, size_t i, double otherwise)
 {
     const TreeColumn *column = tree_column(tree, fields[k].name);
-    return column && oned_keeps(column) && column->value[i] > 0 ? column->value[i] : otherwise;
+    return column && oned_stores(column) && column->value[i] > 0 ? column->value[i] : otherwise;
 }
 
 static void put_segment(const DeckTree *deck, size_t i)

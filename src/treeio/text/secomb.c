@@ -80,7 +80,7 @@ static Status choose_table(DialectReader *reader, DialectRow *row, bool *is_row,
     if (state->table == TABLES)
         return STATUS_OK;
     snprintf(what, sizeof what, "number of %s", tables[state->table].title);
-    TRY(field_whole(what, row->field[0], 0, TREE_MAX_ID, &state->left, err));
+    TRY(field_integer(what, row->field[0], 0, TREE_MAX_ID, &state->left, err));
     state->table += state->left == 0;
     reader->skip = 1;
     return STATUS_OK;

@@ -46,8 +46,8 @@ static int64_t id_of(const SwcReader *reader, int32_t number)
 static Status read_id(const SwcReader *reader, const char *text, int64_t *id, Err *err)
 {
     int32_t number = 0;
-    TRY(field_whole("id", text, reader->lowest_id, TREE_MAX_ID - 1 + reader->lowest_id, &number,
-                    err));
+    TRY(field_integer("id", text, reader->lowest_id, TREE_MAX_ID - 1 + reader->lowest_id, &number,
+                      err));
     *id = id_of(reader, number);
     return STATUS_OK;
 }
@@ -55,7 +55,7 @@ static Status read_id(const SwcReader *reader, const char *text, int64_t *id, Er
 static Status read_parent(const SwcReader *reader, const char *text, int64_t *parent, Err *err)
 {
     int32_t number = 0;
-    TRY(field_whole("parent", text, TREE_NO_PARENT, TREE_MAX_ID, &number, err));
+    TRY(field_integer("parent", text, TREE_NO_PARENT, TREE_MAX_ID, &number, err));
     *parent = id_of(reader, number);
     return STATUS_OK;
 }
@@ -66,7 +66,7 @@ static Status read_row(const SwcReader *reader, size_t line, char *const *field,
     TreeBuilder *builder = reader->builder;
     BuilderNode node = {.record = line};
     TRY(read_id(reader, field[0], &node.id, err));
-    TRY(field_whole("type", field[1], INT32_MIN, INT32_MAX, &node.type, err));
+    TRY(field_integer("type", field[1], INT32_MIN, INT32_MAX, &node.type, err));
     TRY(field_number("x coordinate", field[2], any, &node.position.x, err));
     TRY(field_number("y coordinate", field[3], any, &node.position.y, err));
     TRY(field_number("z coordinate", field[4], any, &node.position.z, err));
@@ -450,7 +450,7 @@ done:
     return status;
 }
 
-bool swc_keeps(const TreeColumn *column)
+bool swc_stores(const TreeColumn *column)
 {
     return strcmp(column->name, tree_pairs_name) == 0;
 }

@@ -524,7 +524,7 @@ static Status read_node(Table *table, size_t line, Err *err)
     point.id = id_of(id);
     point.has_type = type != NULL;
     if (type)
-        TRY(field_whole("type", type, INT32_MIN, INT32_MAX, &point.type, err));
+        TRY(field_integer("type", type, INT32_MIN, INT32_MAX, &point.type, err));
     if (share && *share)
         TRY(field_number("flow_share", share, 0, &point.flow_share, err));
     TRY(graph_point(graph, &point, err));
@@ -564,8 +564,8 @@ static Status find_node(const Table *table, Role role, size_t *node, Err *err)
     int32_t number;
     if (table->nodes->name.n > 0)
         return names_find(table->nodes, name, node, err);
-    TRY(field_whole(roles[role].alias[0], name, 0, (int32_t)table->graph->n_points - 1, &number,
-                    err));
+    TRY(field_integer(roles[role].alias[0], name, 0, (int32_t)table->graph->n_points - 1, &number,
+                      err));
     *node = (size_t)number;
     return STATUS_OK;
 }

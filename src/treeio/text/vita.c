@@ -56,7 +56,7 @@ static Status choose_section(DialectReader *reader, DialectRow *row, bool *is_ro
     if (reader->section != VESSELS || *expected >= 0)
         return STATUS_OK;
     *is_row = false;
-    return field_whole("number of vessels", first, 1, TREE_MAX_ID, expected, err);
+    return field_integer("number of vessels", first, 1, TREE_MAX_ID, expected, err);
 }
 
 static const Dialect dialect = {.section = sections,

@@ -49,14 +49,14 @@ static Status read_parameter(DialectReader *reader, DialectRow *row, Err *err)
     if (!value)
         return STATUS_OK;
     if (strcasecmp(name, "NUM_VERTS") == 0)
-        return field_whole(name, value, 0, INT32_MAX, &state->vertices, err);
+        return field_integer(name, value, 0, INT32_MAX, &state->vertices, err);
     if (strcasecmp(name, "NUM_STRANDS") == 0)
-        return field_whole(name, value, 0, INT32_MAX, &state->strands, err);
+        return field_integer(name, value, 0, INT32_MAX, &state->strands, err);
     for (size_t section = RADIUS; section < SECTIONS; section++) {
         const char *title = reader->dialect->section[section].title;
         if (strncasecmp(name, title, strlen(title)) == 0 &&
             strcasecmp(name + strlen(title), "_TIME_STEPS") == 0)
-            return field_whole(name, value, 0, INT32_MAX, &state->series[section].stated, err);
+            return field_integer(name, value, 0, INT32_MAX, &state->series[section].stated, err);
     }
     return STATUS_OK;
 }

@@ -178,7 +178,7 @@ static Status read_field(LegacyReader *reader, Err *err)
     cursor_word(cursor, word);
     TRY(read_count(reader, "arrays", &n_arrays, err));
     for (size_t i = 0; i < n_arrays; i++) {
-        while (cursor_take(cursor, "METADATA"))
+        while (cursor_accept(cursor, "METADATA"))
             skip_metadata(cursor);
         if (!cursor_word(cursor, word))
             return err_set(err, STATUS_INPUT, "the file ends after %zu of %zu arrays", i, n_arrays);
@@ -199,7 +199,7 @@ static Status read_scalars(LegacyReader *reader, Err *err)
     TRY(read_type(reader, NULL, &type, err));
     if (cursor_word_in_line(&reader->cursor, word) && !integer_parse(word, 1, 1000, &components))
         return err_set(err, STATUS_INPUT, "the number of components is '%.40s'", word);
-    if (cursor_take(&reader->cursor, "LOOKUP_TABLE"))
+    if (cursor_accept(&reader->cursor, "LOOKUP_TABLE"))
         cursor_word(&reader->cursor, word);
     return read_array(reader, name, type, (size_t)components, reader->n, err);
 }
@@ -304,7 +304,7 @@ static Status read_offset_cells(LegacyReader *reader, size_t n_offsets, VtkCells
     VtkType type;
     TRY(read_type(reader, "OFFSETS", &type, err));
     TRY(read_numbers(reader, type, "OFFSETS", n_offsets, &cells->end, err));
-    if (!cursor_take(&reader->cursor, "CONNECTIVITY"))
+    if (!cursor_accept(&reader->cursor, "CONNECTIVITY"))
         return err_set(err, STATUS_INPUT, "OFFSETS must be followed by CONNECTIVITY");
     TRY(read_type(reader, "CONNECTIVITY", &type, err));
     TRY(read_numbers(reader, type, "CONNECTIVITY", cells->n_corners, &cells->corner, err));
@@ -346,7 +346,7 @@ static Status read_cells(LegacyReader *reader, VtkCells *cells, Err *err)
     TRY(read_count(reader, "cells", &n, err));
     TRY(read_count(reader, "numbers", &size, err));
     cells->n_corners = size;
-    return cursor_take(&reader->cursor, "OFFSETS")
+    return cursor_accept(&reader->cursor, "OFFSETS")
                ? read_offset_cells(reader, n, cells, err)
                : read_counted_cells(reader, n, size, cells, err);
 }
@@ -387,7 +387,7 @@ static Status read_head(LegacyReader *reader, Err *err)
     if (coding == 2)
         return err_set(err, STATUS_INPUT, "the third line is '%.40s'; it must be ASCII or BINARY",
                        word);
-    if (!cursor_take(cursor, "DATASET"))
+    if (!cursor_accept(cursor, "DATASET"))
         return err_set(err, STATUS_INPUT, "there is no DATASET after '%.40s'", word);
     cursor_word(cursor, word);
     if (keyword_find(word, sets, 2) == 2)
@@ -438,7 +438,7 @@ Status vtk_read(Graph *graph, char *bytes, size_t size, Err *err)
 {
     LegacyReader reader = {.cursor = cursor_of(graph->name, &syntax, bytes, size)};
     Status status = STATUS_OK;
-    TRY_GOTO(cursor_blame(&reader.cursor, read_all(&reader, err), err));
+    TRY_GOTO(cursor_locate_error(&reader.cursor, read_all(&reader, err), err));
     status = add_all_cells(&reader, err);
     if (status == STATUS_INPUT)
         err_prefix(err, "%s: ", graph->name);

@@ -212,7 +212,7 @@ VtkArray *vtk_find_array(const VtkArrays *arrays, const char *name)
     return NULL;
 }
 
-double *vtk_take_values(VtkArrays *arrays, const char *name)
+double *vtk_detach_values(VtkArrays *arrays, const char *name)
 {
     VtkArray *array = name ? vtk_find_array(arrays, name) : NULL;
     if (!array)
@@ -316,11 +316,11 @@ static Status set_positions(VtkData *data, double *const axis[3], const char *na
     return STATUS_OK;
 }
 
-Status vtk_take_positions(VtkData *data, const char *const axes[3], const char *name, Err *err)
+Status vtk_detach_positions(VtkData *data, const char *const axes[3], const char *name, Err *err)
 {
     double *axis[3];
     for (int k = 0; k < 3; k++)
-        axis[k] = vtk_take_values(&data->arrays[GRAPH_POINTS], axes[k]);
+        axis[k] = vtk_detach_values(&data->arrays[GRAPH_POINTS], axes[k]);
     Status status = set_positions(data, axis, name, err);
     for (int k = 0; k < 3; k++)
         free(axis[k]);

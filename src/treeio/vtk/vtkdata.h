@@ -7,7 +7,7 @@
 
 /* Name of the array of text that holds the metadata of a tree that corcast wrote, one comment per
  * line. */
-#define VTK_KNOWN "corcast"
+#define VTK_METADATA "corcast"
 
 /* ---- types of arrays ---- */
 
@@ -84,7 +84,7 @@ MUST_CHECK Status vtk_add_array(VtkArrays *arrays, VtkArray *array, Err *err);
 VtkArray *vtk_find_array(const VtkArrays *arrays, const char *name);
 /* Removes the array of this name and releases it. Returns its values (owned), or NULL if there is
  * no such array. `name` may be NULL. */
-double *vtk_take_values(VtkArrays *arrays, const char *name);
+double *vtk_detach_values(VtkArrays *arrays, const char *name);
 
 /* Sets the value of one element in the array of this name, which is made if there is none. Earlier
  * elements without a value get NAN.
@@ -132,8 +132,8 @@ MUST_CHECK Status vtk_add_line(VtkData *data, size_t cell, const double *corner,
  * axes     names; an axis of NULL has no array.
  * name     the file's name, for errors.
  * Errors   STATUS_INPUT, with the file's name, for a point without a position; STATUS_MEMORY. */
-MUST_CHECK Status vtk_take_positions(VtkData *data, const char *const axes[3], const char *name,
-                                     Err *err);
+MUST_CHECK Status vtk_detach_positions(VtkData *data, const char *const axes[3], const char *name,
+                                       Err *err);
 
 /* ---- cells ---- */
 

@@ -129,7 +129,7 @@ Status vtk_to_graph(const VtkData *data, Graph *graph, Err *err)
     TRY(check_corners(data, graph, err));
     TRY(check_arrays(&data->arrays[GRAPH_POINTS], data->n_points, "points", graph, err));
     TRY(check_arrays(&data->arrays[GRAPH_LINES], data->n_cells, "cells", graph, err));
-    if (data->n_lines == 0 && !vtk_find_known(data))
+    if (data->n_lines == 0 && !vtk_find_metadata(data))
         return err_set(err, STATUS_INPUT, "%s: there are no lines in it%s", graph->name,
                        data->n_cells ? ", only other cells" : "");
     TRY(vtk_find_meaning(&meaning, data, graph, err));

@@ -150,11 +150,11 @@ static void find_inlets(VtkMeaning *meaning, const VtkData *data)
     }
 }
 
-const VtkArray *vtk_find_known(const VtkData *data)
+const VtkArray *vtk_find_metadata(const VtkData *data)
 {
     const VtkArrays *arrays = &data->arrays[VTK_OF_FILE];
     for (size_t i = 0; i < arrays->n; i++)
-        if (!arrays->array[i].value && strcmp(arrays->array[i].name, VTK_KNOWN) == 0)
+        if (!arrays->array[i].value && strcmp(arrays->array[i].name, VTK_METADATA) == 0)
             return &arrays->array[i];
     return NULL;
 }
@@ -182,7 +182,7 @@ static void find_tree(VtkMeaning *meaning, const VtkData *data)
     const VtkArrays *points = &data->arrays[GRAPH_POINTS];
     const VtkArray *id = find_scalars(points, "id", true);
     const VtkArray *radius = find_scalars(points, "radius", true);
-    if (!vtk_find_known(data) || !radius || !id || !are_ids(id) || !are_columns(points) ||
+    if (!vtk_find_metadata(data) || !radius || !id || !are_ids(id) || !are_columns(points) ||
         !are_columns(&data->arrays[GRAPH_LINES]))
         return;
     *meaning = (VtkMeaning){.radius = radius,

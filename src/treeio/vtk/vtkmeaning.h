@@ -28,7 +28,7 @@ MUST_CHECK Status vtk_note_meaning(const VtkMeaning *meaning, const VtkData *dat
 bool vtk_is_used(const VtkMeaning *meaning, const VtkArray *array);
 
 /* Returns the array of the metadata that corcast wrote [vtkwrite.c], or NULL. */
-const VtkArray *vtk_find_known(const VtkData *data);
+const VtkArray *vtk_find_metadata(const VtkData *data);
 
 /* Returns the position of point `i`. */
 static inline Vec3 vtk_position(const VtkData *data, size_t i)

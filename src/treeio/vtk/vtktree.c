@@ -31,11 +31,11 @@ typedef struct VtkTree {
 
 static Status read_remarks(const VtkTree *tree, Err *err)
 {
-    const VtkArray *remarks = vtk_find_known(tree->data);
+    const VtkArray *remarks = vtk_find_metadata(tree->data);
     Status status = STATUS_OK;
     for (size_t at = 0; at < remarks->text_size && status == STATUS_OK;
          at += strlen(remarks->text + at) + 1)
-        status = comment_keep(&tree->builder->meta, remarks->text + at, err);
+        status = comment_store(&tree->builder->meta, remarks->text + at, err);
     if (status == STATUS_INPUT)
         err_prefix(err, "%s: ", tree->builder->name);
     return status;

@@ -17,7 +17,7 @@
 #include <string.h>
 
 /* Kinds of arrays, in the order of the XML file. */
-typedef enum SheetKind {
+typedef enum WrittenArrayKind {
     RADIUS,
     COLUMN,
     ID,
@@ -29,7 +29,7 @@ typedef enum SheetKind {
     LINES,
     LINE_ENDS,
     KINDS
-} SheetKind;
+} WrittenArrayKind;
 
 static const struct {
     const char *section, *name; /* in XML */
@@ -49,11 +49,11 @@ static const struct {
 };
 
 /* An array of numbers that a file has. */
-typedef struct VtkSheet {
-    SheetKind kind;
+typedef struct WrittenArray {
+    WrittenArrayKind kind;
     size_t column; /* of the tree, for COLUMN */
     size_t n;      /* number of numbers */
-} VtkSheet;
+} WrittenArray;
 
 /* The points of a polyline have consecutive indices. */
 typedef struct VtkLines {
@@ -62,7 +62,7 @@ typedef struct VtkLines {
     int32_t *node;   /* per point: its node; owned */
     int32_t *values; /* per point: the node whose values it has; owned */
     size_t n_points, n_roots;
-    ARRAY(VtkSheet) sheets;
+    ARRAY(WrittenArray) arrays;
 } VtkLines;
 
 static void release(VtkLines *lines)
@@ -70,7 +70,7 @@ static void release(VtkLines *lines)
     branches_release(&lines->branches);
     free(lines->node);
     free(lines->values);
-    ARRAY_RELEASE(&lines->sheets);
+    ARRAY_RELEASE(&lines->arrays);
 }
 
 static void add_point(VtkLines *lines, int32_t node, int32_t values)
@@ -109,7 +109,7 @@ static bool has_types(const Tree *tree)
 }
 
 /* Lists the arrays in the order of the file. */
-static Status list_sheets(VtkLines *lines, Err *err)
+static Status list_arrays(VtkLines *lines, Err *err)
 {
     const Tree *tree = lines->tree;
     size_t points = lines->n_points, roots = lines->n_roots;
@@ -124,18 +124,19 @@ static Status list_sheets(VtkLines *lines, Err *err)
                              [LINE_ENDS] = lines->branches.n};
     for (int kind = 0; kind < KINDS; kind++) {
         for (size_t k = 0; kind == COLUMN && k < tree->n_columns; k++)
-            TRY(ARRAY_PUSH(&lines->sheets, "arrays", err, (VtkSheet){COLUMN, k, points}));
+            TRY(ARRAY_PUSH(&lines->arrays, "arrays", err, (WrittenArray){COLUMN, k, points}));
         if (n[kind] > 0 || kind >= POSITION)
-            TRY(ARRAY_PUSH(&lines->sheets, "arrays", err, (VtkSheet){(SheetKind)kind, 0, n[kind]}));
+            TRY(ARRAY_PUSH(&lines->arrays, "arrays", err,
+                           (WrittenArray){(WrittenArrayKind)kind, 0, n[kind]}));
     }
     return STATUS_OK;
 }
 
 /* Returns number `i` of an array. */
-static double number_at(const VtkLines *lines, const VtkSheet *sheet, size_t i)
+static double number_at(const VtkLines *lines, const WrittenArray *array, size_t i)
 {
     const Tree *tree = lines->tree;
-    switch (sheet->kind) {
+    switch (array->kind) {
     case RADIUS:
         return tree->radius_mm[lines->values[i]];
     case ID:
@@ -145,7 +146,7 @@ static double number_at(const VtkLines *lines, const VtkSheet *sheet, size_t i)
     case SHARE:
         return tree->flow_share[lines->node[i]];
     case COLUMN:
-        return tree->column[sheet->column].value[lines->values[i]];
+        return tree->column[array->column].value[lines->values[i]];
     case POSITION:
         return vec3_component(tree->position[lines->node[i / 3]], (int)(i % 3));
     case LINES:
@@ -159,29 +160,29 @@ static double number_at(const VtkLines *lines, const VtkSheet *sheet, size_t i)
     }
 }
 
-static void put_numbers(const VtkLines *lines, const VtkSheet *sheet, bool is_big_endian,
+static void put_numbers(const VtkLines *lines, const WrittenArray *array, bool is_big_endian,
                         Text *text)
 {
     enum { PIECE = 2048 };
-    VtkType type = kinds[sheet->kind].type;
+    VtkType type = kinds[array->kind].type;
     double numbers[PIECE];
     char bytes[PIECE * sizeof *numbers];
-    for (size_t done = 0, n; done < sheet->n; done += n) {
-        n = sheet->n - done < PIECE ? sheet->n - done : PIECE;
+    for (size_t done = 0, n; done < array->n; done += n) {
+        n = array->n - done < PIECE ? array->n - done : PIECE;
         for (size_t i = 0; i < n; i++)
-            numbers[i] = number_at(lines, sheet, done + i);
+            numbers[i] = number_at(lines, array, done + i);
         vtk_bytes(type, is_big_endian, numbers, n, bytes);
         text_append(text, bytes, n * vtk_type_size(type));
     }
 }
 
 /* Writes the array's name, for a column "NAME [UNIT]", into `text`. Returns its characters. */
-static const char *name_of(const VtkLines *lines, const VtkSheet *sheet, Text *text)
+static const char *name_of(const VtkLines *lines, const WrittenArray *array, Text *text)
 {
-    if (sheet->kind != COLUMN)
-        return kinds[sheet->kind].name;
+    if (array->kind != COLUMN)
+        return kinds[array->kind].name;
     text_clear(text);
-    vtk_put_column_name(&lines->tree->column[sheet->column], text);
+    vtk_put_column_name(&lines->tree->column[array->column], text);
     return text_chars(text);
 }
 
@@ -202,7 +203,7 @@ static void put_remarks(const TreeMeta *meta, Text *text)
 {
     Text line = TEXT_INIT;
     text_printf(text,
-                "    <FieldData>\n      <DataArray type=\"String\" Name=\"" VTK_KNOWN "\" "
+                "    <FieldData>\n      <DataArray type=\"String\" Name=\"" VTK_METADATA "\" "
                 "NumberOfTuples=\"%zu\" format=\"ascii\">\n",
                 count_remarks(meta));
     for (MetaWalk walk = {.meta = meta}; comments_next(&walk, &line);) {
@@ -215,31 +216,31 @@ static void put_remarks(const TreeMeta *meta, Text *text)
     text_release(&line);
 }
 
-static size_t bytes_of(const VtkSheet *sheet)
+static size_t bytes_of(const WrittenArray *array)
 {
-    return sheet->n * vtk_type_size(kinds[sheet->kind].type);
+    return array->n * vtk_type_size(kinds[array->kind].type);
 }
 
 /* Appends the declarations of all arrays, by sections. */
-static void put_sheets(const VtkLines *lines, Text *text)
+static void put_arrays(const VtkLines *lines, Text *text)
 {
     Text name = TEXT_INIT;
     const char *section = NULL;
     size_t offset = 0;
-    for (size_t i = 0; i < lines->sheets.n; i++) {
-        const VtkSheet *sheet = &lines->sheets.items[i];
-        const char *own = kinds[sheet->kind].section;
+    for (size_t i = 0; i < lines->arrays.n; i++) {
+        const WrittenArray *array = &lines->arrays.items[i];
+        const char *own = kinds[array->kind].section;
         if (section && section != own)
             text_printf(text, "      </%s>\n", section);
         if (section != own)
             text_printf(text, i == 0 ? "      <%s Scalars=\"radius\">\n" : "      <%s>\n", own);
         section = own;
         text_printf(text, "        <DataArray type=\"%s\" Name=\"",
-                    vtk_type_name(NAMING_XML, kinds[sheet->kind].type));
-        text_escaped(text, name_of(lines, sheet, &name));
+                    vtk_type_name(NAMING_XML, kinds[array->kind].type));
+        text_escaped(text, name_of(lines, array, &name));
         text_printf(text, "\" NumberOfComponents=\"%zu\" format=\"appended\" offset=\"%zu\"/>\n",
-                    kinds[sheet->kind].components, offset);
-        offset += sizeof(uint64_t) + bytes_of(sheet);
+                    kinds[array->kind].components, offset);
+        offset += sizeof(uint64_t) + bytes_of(array);
     }
     text_printf(text, "      </%s>\n", section);
     text_release(&name);
@@ -250,7 +251,7 @@ Status vtp_write(const Tree *tree, Text *text, Err *err)
     VtkLines lines = {.tree = tree};
     Status status = STATUS_OK;
     TRY_GOTO(list_points(&lines, err));
-    TRY_GOTO(list_sheets(&lines, err));
+    TRY_GOTO(list_arrays(&lines, err));
     text_puts(text, "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" "
                     "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n  <PolyData>\n");
     put_remarks(&tree->meta, text);
@@ -258,14 +259,14 @@ Status vtp_write(const Tree *tree, Text *text, Err *err)
                 "    <Piece NumberOfPoints=\"%zu\" NumberOfVerts=\"%zu\" NumberOfLines=\"%zu\" "
                 "NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n",
                 lines.n_points, lines.n_roots, lines.branches.n);
-    put_sheets(&lines, text);
+    put_arrays(&lines, text);
     text_puts(text, "    </Piece>\n  </PolyData>\n  <AppendedData encoding=\"raw\">\n_");
-    for (size_t i = 0; i < lines.sheets.n; i++) {
-        const double size = (double)bytes_of(&lines.sheets.items[i]);
+    for (size_t i = 0; i < lines.arrays.n; i++) {
+        const double size = (double)bytes_of(&lines.arrays.items[i]);
         char header[sizeof(uint64_t)];
         vtk_bytes(VTK_UINT64, false, &size, 1, header);
         text_append(text, header, sizeof header);
-        put_numbers(&lines, &lines.sheets.items[i], false, text);
+        put_numbers(&lines, &lines.arrays.items[i], false, text);
     }
     text_puts(text, "\n  </AppendedData>\n</VTKFile>\n");
 done:
@@ -304,7 +305,7 @@ static void put_string(const char *chars, Text *text)
 static void put_legacy_remarks(const TreeMeta *meta, Text *text)
 {
     Text line = TEXT_INIT;
-    text_printf(text, "FIELD FieldData 1\n" VTK_KNOWN " 1 %zu string\n", count_remarks(meta));
+    text_printf(text, "FIELD FieldData 1\n" VTK_METADATA " 1 %zu string\n", count_remarks(meta));
     for (MetaWalk walk = {.meta = meta}; comments_next(&walk, &line);) {
         const char *chars = text_chars(&line);
         if (chars)
@@ -349,8 +350,8 @@ Status vtk_write(const Tree *tree, Text *text, Err *err)
     Text name = TEXT_INIT;
     Status status = STATUS_OK;
     TRY_GOTO(list_points(&lines, err));
-    TRY_GOTO(list_sheets(&lines, err));
-    const VtkSheet *positions = lines.sheets.items;
+    TRY_GOTO(list_arrays(&lines, err));
+    const WrittenArray *positions = lines.arrays.items;
     while (positions->kind != POSITION)
         positions++;
     text_puts(text, "# vtk DataFile Version 3.0\narterial tree, mm\nBINARY\nDATASET POLYDATA\n");
@@ -360,12 +361,12 @@ Status vtk_write(const Tree *tree, Text *text, Err *err)
     text_puts(text, "\n");
     put_cells(&lines, text);
     text_printf(text, "\nPOINT_DATA %zu\nFIELD FieldData %zu\n", lines.n_points,
-                (size_t)(positions - lines.sheets.items));
-    for (const VtkSheet *sheet = lines.sheets.items; sheet < positions; sheet++) {
-        put_encoded(name_of(&lines, sheet, &name), text);
-        text_printf(text, " 1 %zu %s\n", sheet->n,
-                    vtk_type_name(NAMING_LEGACY, kinds[sheet->kind].type));
-        put_numbers(&lines, sheet, true, text);
+                (size_t)(positions - lines.arrays.items));
+    for (const WrittenArray *array = lines.arrays.items; array < positions; array++) {
+        put_encoded(name_of(&lines, array, &name), text);
+        text_printf(text, " 1 %zu %s\n", array->n,
+                    vtk_type_name(NAMING_LEGACY, kinds[array->kind].type));
+        put_numbers(&lines, array, true, text);
         text_puts(text, "\n");
     }
 done:

@@ -125,7 +125,7 @@ static double max_numbers_of(const VtpReader *reader, const XmlArray *of)
         return reader->points * components;
     if (of->type != VTK_TEXT && of->section == GRAPH_LINES)
         return reader->cells * components;
-    return fmin(100 * (reader->points + reader->cells) + 1e6, 2 * most_elements(reader->size));
+    return fmin(100 * (reader->points + reader->cells) + 1e6, 2 * max_elements(reader->size));
 }
 
 static Status begin_array(VtpReader *reader, size_t section, const XmlElement *element, Err *err)
@@ -133,7 +133,7 @@ static Status begin_array(VtpReader *reader, size_t section, const XmlElement *e
     enum { MAX_COMPONENTS = 1000 };
     const char *type = NULL, *format = attribute_or_empty(element, "format");
     XmlArray made = {.section = section, .piece = reader->pieces};
-    TRY(xml_needed(element, "type", &type, err));
+    TRY(xml_require(element, "type", &type, err));
     TRY(vtk_find_type(NAMING_XML, type, NULL, &made.type, err));
     made.is_appended = strcmp(format, "appended") == 0;
     reader->is_base64 = strcmp(format, "binary") == 0;
@@ -172,7 +172,7 @@ static Status begin(void *context, Xml *xml, const XmlElement *element, Err *err
         return STATUS_OK;
     }
     for (size_t section = 0; is_array_element(element->name) && section < SECTIONS; section++)
-        if (strcmp(section_name(section), xml_around(xml, 1)) == 0)
+        if (strcmp(section_name(section), xml_ancestor(xml, 1)) == 0)
             return begin_array(reader, section, element, err);
     return STATUS_OK;
 }

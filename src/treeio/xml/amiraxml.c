@@ -23,7 +23,7 @@ typedef struct WorkbookReader {
     char *title[MAX_COLUMNS]; /* per column: borrowed from `texts`, or NULL */
 } WorkbookReader;
 
-static void begin_sheet(WorkbookReader *reader, const char *name)
+static void begin_worksheet(WorkbookReader *reader, const char *name)
 {
     bool is_points = name && strcasecmp(name, "Points") == 0;
     reader->is_read = is_points || (name && strcasecmp(name, "Segments") == 0);
@@ -50,7 +50,7 @@ static Status begin(void *context, Xml *xml, const XmlElement *element, Err *err
 {
     WorkbookReader *reader = context;
     if (strcmp(element->name, "Worksheet") == 0)
-        begin_sheet(reader, xml_attribute(element, "Name"));
+        begin_worksheet(reader, xml_attribute(element, "Name"));
     if (strcmp(element->name, "Cell") == 0)
         return begin_cell(reader, element, err);
     if (strcmp(element->name, "Row") != 0)
@@ -68,7 +68,7 @@ static Status take_value(WorkbookReader *reader, const char *title, char *text, 
     double value;
     if (reader->of == GRAPH_LINES && strcasecmp(title, "Point IDs") == 0) {
         for (char *id; (id = text_field(&text));)
-            TRY(namednetwork_go_to(&reader->network, id, err));
+            TRY(namednetwork_add_end(&reader->network, id, err));
         return STATUS_OK;
     }
     if (reader->of == GRAPH_POINTS && strcasecmp(title, "Point ID") == 0)

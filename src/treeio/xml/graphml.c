@@ -53,7 +53,7 @@ static Status begin_key(GraphmlReader *reader, const XmlElement *element, size_t
 {
     const char *id, *name = xml_attribute(element, "attr.name");
     GraphmlKey key = {.of = key_of(xml_attribute(element, "for"))};
-    TRY(xml_needed(element, "id", &id, err));
+    TRY(xml_require(element, "id", &id, err));
     TRY(keep(reader, id, &key.id, err));
     TRY(keep(reader, name ? name : id, &key.name, err));
     TRY(names_add(&reader->ids, key.id, reader->keys.n, line, err));
@@ -74,7 +74,7 @@ static Status set_defaults(GraphmlReader *reader, GraphElement of, Err *err)
 static Status begin_node(GraphmlReader *reader, const XmlElement *element, size_t line, Err *err)
 {
     const char *id;
-    TRY(xml_needed(element, "id", &id, err));
+    TRY(xml_require(element, "id", &id, err));
     TRY(namednetwork_begin(&reader->network, GRAPH_POINTS, line, err));
     TRY(namednetwork_name(&reader->network, id, line, err));
     return set_defaults(reader, GRAPH_POINTS, err);
@@ -83,8 +83,8 @@ static Status begin_node(GraphmlReader *reader, const XmlElement *element, size_
 static Status begin_edge(GraphmlReader *reader, const XmlElement *element, size_t line, Err *err)
 {
     const char *from, *to;
-    TRY(xml_needed(element, "source", &from, err));
-    TRY(xml_needed(element, "target", &to, err));
+    TRY(xml_require(element, "source", &from, err));
+    TRY(xml_require(element, "target", &to, err));
     TRY(namednetwork_edge(&reader->network, from, to, line, err));
     return set_defaults(reader, GRAPH_LINES, err);
 }
@@ -93,7 +93,7 @@ static Status begin_data(GraphmlReader *reader, const XmlElement *element, Err *
 {
     const char *id;
     char *name;
-    TRY(xml_needed(element, "key", &id, err));
+    TRY(xml_require(element, "key", &id, err));
     TRY(mem_strdup(&name, id, err));
     Status status = names_find(&reader->ids, name, &reader->data, err);
     free(name);
@@ -177,8 +177,9 @@ static Status end_data(GraphmlReader *reader, const char *around, char *text, Er
     int of = key_of(around);
     double value, position[3];
     if (of == OF_GRAPH)
-        return strcmp(key->name, VTK_KNOWN) == 0 ? namednetwork_known(&reader->network, text, err)
-                                                 : STATUS_OK;
+        return strcmp(key->name, VTK_METADATA) == 0
+                   ? namednetwork_set_metadata(&reader->network, text, err)
+                   : STATUS_OK;
     if (of == GRAPH_POINTS && is_position(key->name) && read_tuple(text, position))
         return set_position(reader, OF_TEXT, position, err);
     if (of == OF_ALL || !read_value(text, &value))
@@ -192,10 +193,10 @@ static Status end(void *context, Xml *xml, const char *name, char *text, Err *er
     const char *id = reader->network.last;
     double at[3];
     if (strcmp(name, "data") == 0)
-        return end_data(reader, xml_around(xml, 1), text, err);
+        return end_data(reader, xml_ancestor(xml, 1), text, err);
     if (strcmp(name, "node") == 0 && *id == '(' && read_tuple(id, at))
         return set_position(reader, OF_ID, (const double[]){at[2], at[1], at[0]}, err);
-    if (strcmp(name, "default") == 0 && strcmp(xml_around(xml, 1), "key") == 0) {
+    if (strcmp(name, "default") == 0 && strcmp(xml_ancestor(xml, 1), "key") == 0) {
         GraphmlKey *key = &reader->keys.items[reader->keys.n - 1];
         key->has_default = read_value(text, &key->by_default);
     }
@@ -340,7 +341,7 @@ static void put_key(Text *text, const char *key, size_t number, const char *of, 
 
 static void put_keys(const Tree *tree, Text *text, Text *name)
 {
-    put_key(text, "g", 0, "graph", VTK_KNOWN);
+    put_key(text, "g", 0, "graph", VTK_METADATA);
     for (size_t k = 0; k < NODE_KEYS; k++)
         put_key(text, "v", k, "node", node_keys[k]);
     if (tree->flow_share)
@@ -384,7 +385,7 @@ Status graphml_write(const Tree *tree, Text *text, Err *err)
                     "<graphml xmlns=\"http://graphml.graphdrawing.org/xmlns\">\n");
     put_keys(tree, text, &name);
     text_puts(text, "<graph id=\"tree\" edgedefault=\"directed\">\n<data key=\"g0\">");
-    namednetwork_put_known(&tree->meta, text);
+    namednetwork_put_metadata(&tree->meta, text);
     text_puts(text, "</data>\n");
     for (size_t i = 0; i < tree->n; i++)
         put_node(tree, i, text);

@@ -23,15 +23,15 @@ typedef struct GxlReader {
 static const char *described(const Xml *xml)
 {
     size_t up = 1;
-    while (*xml_around(xml, up) && strcmp(xml_around(xml, up), "attr") != 0)
+    while (*xml_ancestor(xml, up) && strcmp(xml_ancestor(xml, up), "attr") != 0)
         up++;
-    return xml_around(xml, up + 1);
+    return xml_ancestor(xml, up + 1);
 }
 
 static Status begin_attribute(GxlReader *reader, const XmlElement *element, Err *err)
 {
     const char *name;
-    TRY(xml_needed(element, "name", &name, err));
+    TRY(xml_require(element, "name", &name, err));
     name += strspn(name, TEXT_BLANKS);
     size_t length = strlen(name);
     while (length > 0 && strchr(TEXT_BLANKS, name[length - 1]))
@@ -50,14 +50,14 @@ static Status begin(void *context, Xml *xml, const XmlElement *element, Err *err
     if (strcmp(element->name, "attr") == 0)
         return begin_attribute(reader, element, err);
     if (strcmp(element->name, "node") == 0) {
-        TRY(xml_needed(element, "id", &name, err));
+        TRY(xml_require(element, "id", &name, err));
         TRY(namednetwork_begin(network, GRAPH_POINTS, xml_line(xml), err));
         return namednetwork_name(network, name, xml_line(xml), err);
     }
     if (strcmp(element->name, "edge") != 0)
         return STATUS_OK;
-    TRY(xml_needed(element, "from", &from, err));
-    TRY(xml_needed(element, "to", &to, err));
+    TRY(xml_require(element, "from", &from, err));
+    TRY(xml_require(element, "to", &to, err));
     return namednetwork_edge(network, from, to, xml_line(xml), err);
 }
 
@@ -65,8 +65,8 @@ static Status begin(void *context, Xml *xml, const XmlElement *element, Err *err
 static Status take_remark(GxlReader *reader, const char *text, Err *err)
 {
     const char *name = text_chars(&reader->attribute);
-    if (strcmp(name, VTK_KNOWN) == 0)
-        return namednetwork_known(&reader->network, text, err);
+    if (strcmp(name, VTK_METADATA) == 0)
+        return namednetwork_set_metadata(&reader->network, text, err);
     Text comment = TEXT_INIT;
     text_printf(&comment, "%s: ", name);
     text_put_line(&comment, text);
@@ -183,8 +183,8 @@ static void put_graph(const Tree *tree, const int32_t *children, Text *text)
     Text name = TEXT_INIT;
     text_puts(text, "<gxl><graph id=\"tree\" edgeids=\" true\" edgemode=\" directed\" "
                     "hypergraph=\" false\">\n<info_graph>\n"
-                    "    <attr name=\" " VTK_KNOWN "\"><string>");
-    namednetwork_put_known(&tree->meta, text);
+                    "    <attr name=\" " VTK_METADATA "\"><string>");
+    namednetwork_put_metadata(&tree->meta, text);
     text_puts(text, "</string></attr>\n</info_graph>\n");
     for (size_t i = 0; i < tree->n; i++)
         put_node(tree, children, i, text);

@@ -42,7 +42,7 @@ Status namednetwork_name(NamedNetwork *network, const char *name, size_t record,
     return names_add(&network->names, kept, network->data.n_points - 1, record, err);
 }
 
-Status namednetwork_go_to(NamedNetwork *network, const char *name, Err *err)
+Status namednetwork_add_end(NamedNetwork *network, const char *name, Err *err)
 {
     char *kept;
     TRY(copy(network, name, &kept, err));
@@ -55,8 +55,8 @@ Status namednetwork_edge(NamedNetwork *network, const char *from, const char *to
                          Err *err)
 {
     TRY(namednetwork_begin(network, GRAPH_LINES, record, err));
-    TRY(namednetwork_go_to(network, from, err));
-    return namednetwork_go_to(network, to, err);
+    TRY(namednetwork_add_end(network, from, err));
+    return namednetwork_add_end(network, to, err);
 }
 
 Status namednetwork_set(NamedNetwork *network, GraphElement of, const char *name, double value,
@@ -69,11 +69,11 @@ Status namednetwork_set(NamedNetwork *network, GraphElement of, const char *name
 
 /* ---- metadata -------------------------------------------------------------------------------- */
 
-Status namednetwork_known(NamedNetwork *network, const char *comments, Err *err)
+Status namednetwork_set_metadata(NamedNetwork *network, const char *comments, Err *err)
 {
     VtkArray array = {.text_size = *comments ? strlen(comments) + 1 : 0};
     Status status = STATUS_OK;
-    TRY_GOTO(mem_strdup(&array.name, VTK_KNOWN, err));
+    TRY_GOTO(mem_strdup(&array.name, VTK_METADATA, err));
     TRY_GOTO(mem_strdup(&array.text, comments, err));
     for (char *rest = array.text; text_line(&rest);)
         ;
@@ -83,7 +83,7 @@ done:
     return status;
 }
 
-void namednetwork_put_known(const TreeMeta *meta, Text *text)
+void namednetwork_put_metadata(const TreeMeta *meta, Text *text)
 {
     Text line = TEXT_INIT;
     for (MetaWalk walk = {.meta = meta}; comments_next(&walk, &line);) {
@@ -131,8 +131,8 @@ Status namednetwork_to_graph(NamedNetwork *network, const char *const axes[3], G
     TRY(vtk_fill_up(&data->arrays[GRAPH_POINTS], data->n_points, network->file_size, err));
     TRY(vtk_fill_up(&data->arrays[GRAPH_LINES], data->n_cells, network->file_size, err));
     if (data->arrays[VTK_OF_FILE].n > 0)
-        free(vtk_take_values(&data->arrays[GRAPH_LINES], "radius"));
+        free(vtk_detach_values(&data->arrays[GRAPH_LINES], "radius"));
     TRY(add_lines(network, graph, err));
-    TRY(vtk_take_positions(data, axes, graph->name, err));
+    TRY(vtk_detach_positions(data, axes, graph->name, err));
     return vtk_to_graph(data, graph, err);
 }

@@ -34,7 +34,7 @@ MUST_CHECK Status namednetwork_name(NamedNetwork *network, const char *name, siz
                                     Err *err);
 /* Continues the line that was begun last to the point of this name, which may come later. The name
  * is copied. Errors: STATUS_MEMORY. */
-MUST_CHECK Status namednetwork_go_to(NamedNetwork *network, const char *name, Err *err);
+MUST_CHECK Status namednetwork_add_end(NamedNetwork *network, const char *name, Err *err);
 /* Begins a line from one point to another. Errors: STATUS_MEMORY. */
 MUST_CHECK Status namednetwork_edge(NamedNetwork *network, const char *from, const char *to,
                                     size_t record, Err *err);
@@ -44,9 +44,9 @@ MUST_CHECK Status namednetwork_set(NamedNetwork *network, GraphElement of, const
 
 /* Sets the metadata of a tree that corcast wrote, one comment per line [treeio/comments.h]. Nodes
  * then have its ids, and nodes have the radii of edges. Errors: STATUS_MEMORY. */
-MUST_CHECK Status namednetwork_known(NamedNetwork *network, const char *comments, Err *err);
-/* Appends the metadata for namednetwork_known, with entities where XML needs them. */
-void namednetwork_put_known(const TreeMeta *meta, Text *text);
+MUST_CHECK Status namednetwork_set_metadata(NamedNetwork *network, const char *comments, Err *err);
+/* Appends the metadata for namednetwork_set_metadata, with entities where XML needs them. */
+void namednetwork_put_metadata(const TreeMeta *meta, Text *text);
 
 /* Hands the network over to the graph [vtk_to_graph].
  *

@@ -1,28 +1,28 @@
 /* The volume that the rays of a part of a picture pass through. A conservative test: what lies
  * outside is hit by none of these rays. */
-#ifndef CORCAST_SCENE_SIGHT_H
-#define CORCAST_SCENE_SIGHT_H
+#ifndef CORCAST_SCENE_RAYVOLUME_H
+#define CORCAST_SCENE_RAYVOLUME_H
 
 #include "base/base.h"
 #include "geom/geom.h"
 #include "image/image.h"
 #include "scene/view.h"
 
-typedef struct Sight Sight;
+typedef struct RayVolume RayVolume;
 
 /* Builds the volume of the rays through the pixels of `part`, antialiasing samples included.
  *
  * bounds   the box that holds all vessels.
  * shadows  adds the shadow rays: those from vessels within `bounds` and from the ground, as far as
  *          they are visible in `part`, to the lights.
- * sight    receives the volume; release it with sight_free.
+ * volume   receives the volume; release it with rayvolume_free.
  * Errors   STATUS_MEMORY. */
-MUST_CHECK Status sight_new(const View *view, Box bounds, PixelRect part, bool shadows,
-                            Sight **sight, Err *err);
-void sight_free(Sight *sight);
+MUST_CHECK Status rayvolume_new(const View *view, Box bounds, PixelRect part, bool shadows,
+                                RayVolume **volume, Err *err);
+void rayvolume_free(RayVolume *volume);
 
 /* Returns false only if no ray can hit anything in the box, which must lie within the bounds. May
- * return true for a box that no ray hits. Returns true for every box if `sight` is NULL. */
-bool sight_meets(const Sight *sight, Box box);
+ * return true for a box that no ray hits. Returns true for every box if `volume` is NULL. */
+bool rayvolume_meets(const RayVolume *volume, Box box);
 
 #endif

@@ -2,7 +2,7 @@
  * thinner ones lie inside the thickest and are left out; measured trees hold such pairs. They are
  * sisters, which begin at one node and whose distal nodes are one place; or one of them returns
  * from the other's distal node to the other's proximal place. */
-#include "stage/places.h"
+#include "stage/coincidence.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -109,19 +109,19 @@ static void put(const Tree *tree, SisterBins *bins, size_t i)
 }
 
 /* Compares each segment with its elder sisters. */
-static void find_covers(const Tree *tree, SisterBins *bins, int32_t *cover)
+static void find_twins(const Tree *tree, SisterBins *bins, int32_t *twin)
 {
     for (size_t i = 0; i < tree->n; i++) {
-        cover[i] = segment_can_be_drawn(tree, i) ? PLACES_UNCOVERED : PLACES_CANNOT_DRAW;
-        if (cover[i] == PLACES_CANNOT_DRAW)
+        twin[i] = segment_can_be_drawn(tree, i) ? NO_TWIN : CANNOT_DRAW;
+        if (twin[i] == CANNOT_DRAW)
             continue;
         int32_t self = (int32_t)i, *sister = find_sister(tree, bins, i);
         if (sister && !(tree->radius_mm[i] > tree->radius_mm[*sister])) {
-            cover[self] = *sister;
+            twin[self] = *sister;
             continue;
         }
         if (sister) {
-            cover[*sister] = self;
+            twin[*sister] = self;
             *sister = bins->next[*sister];
         }
         put(tree, bins, i);
@@ -130,43 +130,43 @@ static void find_covers(const Tree *tree, SisterBins *bins, int32_t *cover)
 
 /* Returns true if segment i leads from the end of its parent's segment back to where that one
  * begins. */
-static bool returns(const Tree *tree, const int32_t *cover, size_t i)
+static bool returns(const Tree *tree, const int32_t *twin, size_t i)
 {
     const int32_t parent = tree->parent[i];
-    return cover[i] != PLACES_CANNOT_DRAW && cover[parent] != PLACES_CANNOT_DRAW &&
+    return twin[i] != CANNOT_DRAW && twin[parent] != CANNOT_DRAW &&
            vec3_distance(tree->position[i], tree->position[tree->parent[parent]]) <= SHORTEST_MM;
 }
 
 /* The last of the sisters that cover each other from `self` on; shortens the way there. */
-static int32_t outermost(int32_t *cover, int32_t self)
+static int32_t outermost(int32_t *twin, int32_t self)
 {
-    for (; cover[self] >= 0; self = cover[self])
-        if (cover[cover[self]] >= 0)
-            cover[self] = cover[cover[self]];
+    for (; twin[self] >= 0; self = twin[self])
+        if (twin[twin[self]] >= 0)
+            twin[self] = twin[twin[self]];
     return self;
 }
 
 /* Compares each segment that returns with the thickest of those that it returns along. */
-static void find_returning_covers(const Tree *tree, int32_t *cover)
+static void find_backward_twins(const Tree *tree, int32_t *twin)
 {
     for (size_t i = 0; i < tree->n; i++) {
-        if (!returns(tree, cover, i) || cover[i] != PLACES_UNCOVERED)
+        if (!returns(tree, twin, i) || twin[i] != NO_TWIN)
             continue;
-        int32_t along = outermost(cover, tree->parent[i]);
+        int32_t along = outermost(twin, tree->parent[i]);
         bool is_thicker = tree->radius_mm[i] > tree->radius_mm[along];
-        cover[is_thicker ? along : (int32_t)i] = PLACES_COVERED_BACKWARDS;
+        twin[is_thicker ? along : (int32_t)i] = BACKWARD_TWIN;
     }
 }
 
 /* The place of node i, those of the nodes before it being known. */
-static int32_t place_of(const Tree *tree, const Places *found, size_t i)
+static int32_t junction_of(const Tree *tree, const Coincidence *found, size_t i)
 {
     const int32_t parent = tree->parent[i];
-    if (tree_is_segment(tree, i) && !has_length(tree, i) && !places_can_draw(found, i))
-        return found->place[parent];
-    if (returns(tree, found->cover, i))
-        return found->place[tree->parent[parent]];
-    return outermost(found->cover, (int32_t)i);
+    if (tree_is_segment(tree, i) && !has_length(tree, i) && !coincidence_can_draw(found, i))
+        return found->junction[parent];
+    if (returns(tree, found->twin, i))
+        return found->junction[tree->parent[parent]];
+    return outermost(found->twin, (int32_t)i);
 }
 
 /* Finds where each segment begins, and counts those that begin together. */
@@ -201,45 +201,46 @@ static Status init_bins(const Tree *tree, SisterBins *bins, Err *err)
     return mem_calloc(&bins->next, bins->n, sizeof *bins->next, "nodes", err);
 }
 
-Status places_find(const Tree *tree, Places *places, Err *err)
+Status coincidence_find(const Tree *tree, Coincidence *coincidence, Err *err)
 {
     SisterBins bins = {0};
-    Places found = {0};
+    Coincidence found = {0};
     Status status = STATUS_OK;
     TRY_GOTO(init_bins(tree, &bins, err));
-    TRY_GOTO(mem_calloc(&found.cover, tree->n, sizeof *found.cover, "nodes", err));
-    TRY_GOTO(mem_calloc(&found.place, tree->n, sizeof *found.place, "nodes", err));
-    find_covers(tree, &bins, found.cover);
-    find_returning_covers(tree, found.cover);
+    TRY_GOTO(mem_calloc(&found.twin, tree->n, sizeof *found.twin, "nodes", err));
+    TRY_GOTO(mem_calloc(&found.junction, tree->n, sizeof *found.junction, "nodes", err));
+    find_twins(tree, &bins, found.twin);
+    find_backward_twins(tree, found.twin);
     for (size_t i = 0; i < tree->n; i++)
-        found.place[i] = place_of(tree, &found, i);
-    *places = found;
-    found = (Places){0};
+        found.junction[i] = junction_of(tree, &found, i);
+    *coincidence = found;
+    found = (Coincidence){0};
 done:
     free(bins.start);
     free(bins.daughters);
     free(bins.first);
     free(bins.next);
-    places_release(&found);
+    coincidence_release(&found);
     return status;
 }
 
-StageReport places_count(const Tree *tree, const Places *places)
+StageReport coincidence_count(const Tree *tree, const Coincidence *coincidence)
 {
     StageReport report = {0};
     for (size_t i = 0; i < tree->n; i++) {
         if (!tree_is_segment(tree, i))
             continue;
-        report.drawn += places_can_draw(places, i);
-        report.dropped += !places_can_draw(places, i);
-        report.covered += places_can_draw(places, i) && !places_draw(places, i);
+        report.drawn += coincidence_can_draw(coincidence, i);
+        report.dropped += !coincidence_can_draw(coincidence, i);
+        report.covered +=
+            coincidence_can_draw(coincidence, i) && !coincidence_draws(coincidence, i);
     }
     return report;
 }
 
-void places_release(Places *places)
+void coincidence_release(Coincidence *coincidence)
 {
-    free(places->cover);
-    free(places->place);
-    *places = (Places){0};
+    free(coincidence->twin);
+    free(coincidence->junction);
+    *coincidence = (Coincidence){0};
 }

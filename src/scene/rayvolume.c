@@ -7,7 +7,7 @@
  *
  * What is seen on the ground may lie far away from the vessels. It is a quadrangle, a frustum
  * without depth, or, where the horizon is in sight, anywhere on the way there. */
-#include "scene/sight.h"
+#include "scene/rayvolume.h"
 
 #include "scene/geometry.h"
 #include <math.h>
@@ -27,7 +27,7 @@ typedef struct SightHull {
     int n_planes;
 } SightHull;
 
-struct Sight {
+struct RayVolume {
     size_t n;
     SightHull
         hulls[]; /* of the pixels' rays; of the rays from vessels to each light, and from ground */
@@ -177,12 +177,12 @@ static void reach_to_light(SightHull *hull, const Light *light, Box bounds)
         add_edges(hull, hull->point[CORNERS + k], false);
 }
 
-Status sight_new(const View *view, Box bounds, PixelRect part, bool shadows, Sight **sight,
-                 Err *err)
+Status rayvolume_new(const View *view, Box bounds, PixelRect part, bool shadows, RayVolume **volume,
+                     Err *err)
 {
     Ray rays[4];
     size_t most = shadows ? 1 + 2 * view->n_lights : 1;
-    Sight *made;
+    RayVolume *made;
     TRY(mem_calloc(&made, 1, sizeof *made + most * sizeof *made->hulls, "part", err));
     corner_rays(&view->camera, part, rays);
     SightHull seen = frustum_of_box(&view->camera, rays, bounds);
@@ -196,19 +196,19 @@ Status sight_new(const View *view, Box bounds, PixelRect part, bool shadows, Sig
     }
     add_faces(&seen);
     made->hulls[made->n++] = seen;
-    *sight = made;
+    *volume = made;
     return STATUS_OK;
 }
 
-void sight_free(Sight *sight)
+void rayvolume_free(RayVolume *volume)
 {
-    free(sight);
+    free(volume);
 }
 
-bool sight_meets(const Sight *sight, Box box)
+bool rayvolume_meets(const RayVolume *volume, Box box)
 {
-    bool meets = !sight;
-    for (size_t i = sight ? sight->n : 0; i-- > 0 && !meets;)
-        meets = hull_meets(&sight->hulls[i], box);
+    bool meets = !volume;
+    for (size_t i = volume ? volume->n : 0; i-- > 0 && !meets;)
+        meets = hull_meets(&volume->hulls[i], box);
     return meets;
 }
