@@ -121,7 +121,7 @@ test_what_cannot_be_drawn_is_refused_in_one_sentence_and_nothing_is_written() {
         expect_sentence "$1"
     }
     refused '\-\-legend needs --color-by' --legend -o x.png
-    refused 'scale-bar is for orthographic' --scale-bar 10 --projection perspective -o x.png
+    refused 'scale-bar needs an orthographic picture' --scale-bar 10 --projection perspective -o x.png
     refused 'scale-bar.*0.*not a number from' --scale-bar 0 -o x.png
     refused '700 mm is longer than the width of the picture' --scale-bar 700 -o x.png
     refused '\-\-legend-at needs --legend' --legend-at bottom -o x.png
