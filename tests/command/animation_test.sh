@@ -229,9 +229,9 @@ test_animations_that_cannot_be_are_refused() {
         expect_sentence "$sentence"
     }
     refused "'x.png' must contain the picture number" --turntable 3 -o x.png
-    refused "'x%s.png' has no place" --turntable 3 -o x%s.png
-    refused "'x%d%d.png' has no place" --turntable 3 -o x%d%d.png
-    refused "'-' has no place" --turntable 3 -o -
+    refused "'x%s.png' must contain the picture number" --turntable 3 -o x%s.png
+    refused "'x%d%d.png' must contain the picture number" --turntable 3 -o x%d%d.png
+    refused "'-' must contain the picture number" --turntable 3 -o -
     refused "exclude each other" --turntable 3 --growth 3 -o x%d.png
     refused "does not change with time" --frames all -o x%d.png
     refused "flow does not change with time" --color-by flow --frames all -o x%d.png

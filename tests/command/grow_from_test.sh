@@ -231,7 +231,7 @@ test_what_cannot_grow_on_is_refused() {
 2 names no domain; give --domain|--from homeless.swc
 2 node 2 is at z = .*plane z = 0|--from ball.swc --domain disc:50
 2 --from: node 1 is an inlet without a vessel|--from bare.swc --domain disc:50
-2 --from: node 2, a terminal, is where its parent is|--from point.swc --domain disc:50
+2 --from: node 2, a terminal, has the position of its parent|--from point.swc --domain disc:50
 2 --refine would move the --from tree|--from tree.swc --refine geometry
 2 give --terminal-flow equal, territory or demand|--from shares.swc --domain disc:50
 END

@@ -23,7 +23,7 @@ missed() {
 test_says_from_which_size_on_a_tolerance_finds_each_fault() {
     draw_picture
     run_ok corcast power --quiet --render "pnmtopng $PWD/drawn.ppm >{}" --levels 9.5 --ppm 0
-    expect_stdout '^96 x 64 pixels of 8 bits; two drawings are the same$'
+    expect_stdout '^96 x 64 pixels of 8 bits; two drawings are identical$'
     expect_stdout '^codes lower by 0.3 to 30 levels +10 '
     expect_stdout '^bits lost by 1 to 4 bits +4 '
     expect_stdout '^codes lower .* 1$'

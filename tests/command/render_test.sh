@@ -546,10 +546,10 @@ test_methods_say_what_they_do_not_draw() {
     grow_tree 20
     run corcast render tree.swc --method raster --model isosurface -o picture.ppm
     expect_status 2
-    expect_sentence 'raster is for cylinders, joined, rounded and blob, not for isosurface'
+    expect_sentence 'raster needs cylinders, joined, rounded and blob, not isosurface'
     run corcast render tree.swc --method zbuffer --model blob -o picture.ppm
     expect_status 2
-    expect_sentence 'zbuffer is for cylinders, joined and rounded, not for blob'
+    expect_sentence 'zbuffer needs cylinders, joined and rounded, not blob'
     run corcast render tree.swc --method zbuffer --shadows on -o picture.ppm
     expect_status 2
     expect_sentence 'zbuffer draws neither shadows nor antialiased pictures'
@@ -603,10 +603,10 @@ test_a_least_width_needs_a_picture_that_can_have_it() {
     run_ok corcast render tree.swc --size 60x60 --min-width 1.5 --quiet -o wide.png
     run corcast render tree.swc --min-width 1.5 --exact -o wide.png
     expect_status 2
-    expect_sentence 'min-width is for --method fastest'
+    expect_sentence 'min-width needs --method fastest'
     run corcast render tree.swc --min-width 1.5 --look journal -o wide.png
     expect_status 2
-    expect_sentence 'min-width: --look journal'
+    expect_sentence 'min-width has no effect with --look journal'
     run corcast render tree.swc --min-width 65 -o wide.png
     expect_status 2
     expect_sentence 'min-width.*from 0 to 64'

@@ -58,7 +58,7 @@ test_networks_of_secomb_have_loops() {
                   $column != "" { boundary++ } END { print n - 1, boundary }' cut.csv)" = "92 17" ] ||
         fail "expected 92 nodes, 17 of them with a boundary type"
     run corcast info "$SHARED/secomb/Brain.network.dat"
-    expect_sentence 'one of 3;'
+    expect_sentence 'loops in the network: 3\)'
 }
 
 # 31 columns without titles: both ends of a vessel in the first six, its radius in the 22nd.

@@ -100,7 +100,7 @@ test_vessels_thinner_than_a_voxel_do_not_break_up() {
     grown
     awk '!/^#/ { $6 *= 0.01 } 1' t.swc >thin.swc
     run_ok corcast export thin.swc -o v.nii.gz --voxel 0.8 --labels segment --centreline c.nii.gz
-    grep -qE 'rounding to 8 bits makes the volume of the voxels .* more than that of the vessels' stderr || fail "expected a word on the rounding: $(cat stderr)"
+    grep -qE 'rounded to 8 bits, voxels hold .* more than the vessels' stderr || fail "expected a word on the rounding: $(cat stderr)"
     run_ok corcast export thin.swc -o w.nii.gz --voxel 0.8 --depth float --quiet
     expect_json w.nii.gz.json '(.volume_mm3 / .union_mm3 - 1) * 1e6 | . > -1 and . < 1'
     python <<'END'

@@ -57,7 +57,7 @@ test_vessels_of_the_cortex_with_radii_of_cells() {
     expect_stdout '^  left out      1 line cut where a loop closed$'
     run corcast info "$SHARED/bluebrain_vascpy/one_loop.vtk"
     expect_status 2
-    expect_sentence 'one_loop.vtk: cell 120: the line closes a loop .* one of 1; .* --break-loops'
+    expect_sentence 'one_loop.vtk: cell 120: the line closes a loop .* \(loops in the network: 1\); .* --break-loops'
     run corcast info "$SHARED/bluebrain_vascpy/fork_multiple_properties.vtk"
     expect_status 2
     expect_sentence "no array is called a radius, --radius-array names none, and --radius gives none; .*'edge_property1'"

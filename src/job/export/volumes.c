@@ -237,7 +237,7 @@ static void say_result(const Volumes *made, const Talk *talk)
         talk_warn(talk, "%zu label%s no voxel; each was given a voxel that it touches",
                   report->n_given_voxels,
                   report->n_given_voxels == 1 ? " dominates" : "s dominate");
-    talk_note(talk, "%lld voxels hold vessels, %.6g mm^3", (long long)report->filled,
+    talk_note(talk, "%lld voxels contain vessels, %.6g mm^3", (long long)report->filled,
               report->volume_mm3);
 }
 
