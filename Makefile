@@ -1,11 +1,11 @@
-# corcast: one Makefile for everything. `make help` lists the targets.
+# Builds, tests and installs corcast. `make help` lists the targets.
 #
-# MODE     release (default), debug, asan, tsan, fuzz (clang only); objects live in build/$(MODE)/
+# MODE     release (default), debug, asan, tsan, fuzz (clang only); objects are stored in build/$(MODE)/
 # CC       gcc or clang
-# V=1      show the commands
-# JOBS     how many to run at once where the Makefile calls itself (all processors)
-# PREFIX   where `make install` puts things (/usr/local); DESTDIR goes in front of it
-# CFLAGS, CPPFLAGS, LDFLAGS   further flags, from the environment or the command line; they follow the Makefile's own
+# V=1      print the commands that run
+# JOBS     number of parallel jobs where the Makefile calls itself (default: all processors)
+# PREFIX   folder that `make install` installs into (default: /usr/local); DESTDIR goes in front of it
+# CFLAGS, CPPFLAGS, LDFLAGS   additional flags, from the environment or the command line; they follow the Makefile's own
 
 MODE ?= release
 comma := ,
@@ -15,7 +15,7 @@ JOBS ?= $(shell nproc)
 BUILD := build/$(MODE)
 Q := $(if $(V),,@)
 say = $(if $(V),,@printf '  %-6s %s\n' $(1) $(2))
-# This Makefile again, with what `make deps` has installed; -j only when the caller gave none.
+# Runs this Makefile again, after `make deps` has installed packages. Adds -j only if the caller gave none.
 AGAIN = $(MAKE) --no-print-directory $(if $(filter -j%,$(MAKEFLAGS)),,-j$(JOBS))
 
 ROOMS := $(filter-out cli python,$(notdir $(patsubst %/,%,$(wildcard src/*/))))
@@ -26,7 +26,7 @@ FORMATTED := $(sort $(wildcard src/*/*.[ch] src/*/*/*.[ch] tests/unit/*.c tests/
 	tests/alloc/*.c tests/bench/*.c tests/fuzz/*.c tests/fuzz/*.h tests/power/*.c tests/power/*.h tests/fit/*.c tests/fit/*.h tests/optima/*.c \
 	tests/api/*.c docs/examples/*.c src/*.h))
 
-# Kernels of the renderer are compiled once for each kind of processor [src/render/tile/lanes.h].
+# Kernels of the renderer are compiled once for each instruction set [src/render/tile/lanes.h].
 KERNELS := $(if $(filter x86_64%,$(shell $(CC) -dumpmachine)),$(wildcard src/render/*/*kernels.c))
 ROOM_OBJECTS := $(ROOM_SOURCES:%.c=$(BUILD)/%.o) $(foreach kind,avx2 avx512,$(KERNELS:%.c=$(BUILD)/%.$(kind).o))
 CLI_OBJECTS := $(CLI_SOURCES:%.c=$(BUILD)/%.o)
@@ -49,17 +49,17 @@ FUZZ_PROGRAMS := $(HARNESSES:%=$(BUILD)/tests/fuzz/%)
 WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wdouble-promotion \
 	-Wstrict-prototypes -Wmissing-prototypes -Wold-style-definition -Wvla -Wformat=2 -Wcast-qual \
 	-Wpointer-arith -Wundef -Wwrite-strings
-# clang takes the standard's INFINITY and NAN, which are floats, for promotions.
+# clang reports the standard's INFINITY and NAN, which are floats, as promotions to double.
 WARNINGS += $(if $(findstring clang,$(CC)),-Wno-double-promotion)
-# Other levels of optimisation warn of other things, so a warning is an error only at the project's own flags.
+# Other levels of optimisation give other warnings, so a warning is an error only with the project's own flags.
 WARNINGS += $(if $(strip $(CFLAGS)),,-Werror)
 OPTIMISE_release := -O2 -g
 OPTIMISE_debug := -O0 -g3
 OPTIMISE_asan := -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
 OPTIMISE_fuzz := -O1 -g -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
-# Handles that were freed are found where speed does not matter [src/api/handle.c].
+# Uses of freed handles are detected in modes where speed does not matter [src/api/handle.c].
 FIND_FREED := $(if $(filter debug asan fuzz,$(MODE)),-DCORCAST_DEBUG)
-# A sanitizer's runtime is in the program.
+# The runtime of a sanitizer is in the program, so a library built with sanitizers has undefined symbols.
 DEFINED := $(if $(filter release debug,$(MODE)),-Wl$(comma)-z$(comma)defs)
 OPTIMISE_tsan := -O1 -g -fsanitize=thread
 VECTORS_release := -O3 -fno-math-errno -fno-trapping-math
@@ -67,15 +67,16 @@ PACKAGES := libpng libdeflate libisal zlib libtiff-4 libjpeg libwebp lcms2 janss
 # `view` loads SDL 2 when it opens a window; only its header is needed here.
 HEADERS := sdl2
 PACKAGE_LIBS := $(shell pkg-config --exists $(HEADERS) && pkg-config --libs $(PACKAGES) 2>/dev/null)
-# libnifti2-dev has no pkg-config file, and OpenEXR's asks for the whole of it.
+# libnifti2-dev has no pkg-config file, and OpenEXR's links its C++ libraries as well.
 NIFTI := /usr/include/nifti
 EXR := /usr/include/OpenEXR
 PLAIN_HEADERS := $(and $(wildcard $(NIFTI)/nifti2_io.h),$(wildcard $(EXR)/openexr.h))
-# Hardening of the program that users run: checks of the stack, of the C library's buffers, and tables of addresses that are
-# read-only before main. _FORTIFY_SOURCE needs optimisation, and a caller's own level is kept.
+# Hardening of the release: checks of the stack and of the C library's buffers, and tables of addresses that are read-only
+# before main runs. _FORTIFY_SOURCE needs optimisation. A level of _FORTIFY_SOURCE given by the caller is kept.
 HARDEN_release = -fstack-protector-strong $(if $(filter -O0,$(OPTIMISE_$(MODE)) $(CFLAGS))$(findstring _FORTIFY_SOURCE,$(CPPFLAGS) $(CFLAGS)),, \
 	-U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=3)
-# Same seed, same bytes with every compiler: no contraction of a * b + c, no reassociation. This flag comes last.
+# The same seed must give the same bytes with every compiler: no contraction of a * b + c, no reassociation. This flag
+# comes last, so that no flag of the caller overrides it.
 EXACT := -ffp-contract=off
 INEXACT := $(filter -Ofast -ffast-math -funsafe-math-optimizations -fassociative-math -freciprocal-math -ffinite-math-only \
 	-fno-signed-zeros -ffp-model=fast -mrecip%,$(CC) $(CPPFLAGS) $(CFLAGS) $(LDFLAGS))
@@ -98,88 +99,88 @@ LIBS := $(PACKAGE_LIBS) -lOpenEXRCore -lnifti2 -lznz -lpthread -lm
 .DELETE_ON_ERROR:
 .SECONDARY:
 
-all: build/corcast $(and $(shell command -v npm),$(shell command -v esbuild),$(VIEWER)) ## the program, build/corcast (the default), and what its pages hold
+all: build/corcast $(and $(shell command -v npm),$(shell command -v esbuild),$(VIEWER)) ## build the program, build/corcast, and the viewer for web pages of trees (the default target)
 	@:
 
-help: ## this list
+help: ## list the targets
 	@echo 'make TARGET [MODE=release|debug|asan|tsan] [CC=gcc|clang] [V=1]'
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  %-14s %s\n", $$1, $$2 }' Makefile
 
-deps: ## install the Debian packages that are missing
+deps: ## install missing Debian packages; FOR=bench, fuzz or all for other sets
 	$(Q).ci/deps $(or $(FOR),build run check page)
 
-demo: ## grow a tree, have POV-Ray and corcast draw it, verify; results in out/demo/
+demo: ## grow a tree, draw it with POV-Ray and corcast, and verify the pictures; results in out/demo/
 	$(Q).ci/deps build run
 	$(Q)$(AGAIN) all
 	$(Q)docs/demo
 
-figures: ## the figures of the paper, as pages and by POV-Ray; results in out/figures/
+figures: ## draw the figures of the paper, as pages and with POV-Ray; results in out/figures/
 	$(Q).ci/deps build run
 	$(Q)$(AGAIN) all
 	$(Q)docs/figures
 
-gallery: build/corcast ## the pictures of docs/GALLERY.md anew, each by the command beside it
+gallery: build/corcast ## redraw the pictures of docs/GALLERY.md, each with the command beside it
 	$(Q)docs/images/gallery-pictures
 
-validate: ## the statistics of docs/VALIDATION.md, from trees grown anew
+validate: ## grow the trees of docs/VALIDATION.md, section 1, again and check its table
 	$(Q).ci/deps build check
 	$(Q)$(AGAIN) all
 	$(Q)tests/validate
 
-bench: ## the benchmarks, one after another
+bench: ## run all benchmarks, one after another
 	$(Q)for part in grow render view compare mesh trees large; do $(MAKE) --no-print-directory bench-$$part || exit; done
 
-bench-grow: ## how long growth takes; BENCH=full for 10^6 terminals, too
+bench-grow: ## time growth; BENCH=full adds 10^6 terminals
 	$(Q).ci/deps build bench
 	$(Q)$(AGAIN) all
 	$(Q)tests/bench/grow
 
-bench-render: ## how fast pictures are drawn, beside POV-Ray and others; BENCH=full|quick
+bench-render: ## time drawing, compared with POV-Ray and other renderers; BENCH=full|quick
 	$(Q).ci/deps build run bench
 	$(Q)$(AGAIN) all $(EMBREE) $(FRAMES)
 	$(Q)tests/bench/render
 
-bench-view: ## how many pictures a second a window is turned at; BENCH=full for 10^6 terminals, too
+bench-view: ## count pictures per second while a window is turned; BENCH=full adds 10^6 terminals
 	$(Q).ci/deps build run check
 	$(Q)$(AGAIN) all
 	$(Q)tests/bench/view
 
-bench-compare: ## time `compare` on large pictures, beside idiff and odiff
+bench-compare: ## time `compare` on large pictures, compared with idiff and odiff
 	$(Q).ci/deps build check
 	$(Q)$(AGAIN) all
 	$(Q)tests/bench/compare
 
-bench-mesh: ## time the triangulation, and measure how far it is off the surface; BENCH=quick
+bench-mesh: ## time the triangulation, and measure its distance from the surface; BENCH=quick
 	$(Q).ci/deps build
 	$(Q)$(AGAIN) all $(MESHES)
 	$(Q)tests/bench/mesh
 
-export-all: ## export hundreds of grown and of random trees, each looked at by admesh; GROWN=96 RANDOM=200
+export-all: ## export hundreds of grown and random trees, and check each mesh with admesh; GROWN=96 RANDOM=200
 	$(Q).ci/deps build check
 	$(Q)$(AGAIN) all
 	$(Q)tests/export-all $(or $(GROWN),96) $(or $(RANDOM),200)
 
-bench-trees: ## time reading and writing a tree, beside numpy and VTK; BENCH=full for 10^6 terminals
+bench-trees: ## time reading and writing a tree, compared with numpy and VTK; BENCH=full for 10^6 terminals
 	$(Q).ci/deps build check
 	$(Q)$(AGAIN) all
 	$(Q)tests/bench/trees
 
-bench-large: ## time growing, reading and drawing 10^6 terminals; BENCH=full for 10^7, too
+bench-large: ## time growing, reading and drawing 10^6 terminals; BENCH=full adds 10^7
 	$(Q).ci/deps build check
 	$(Q)$(AGAIN) all
 	$(Q)tests/bench/large
 
-verify-all: ## verify models x trees x projections x shadows x antialiasing; report in out/verify/
+verify-all: ## verify all models x trees x projections x shadows x antialiasing; report in out/verify/
 	$(Q).ci/deps build run
 	$(Q)$(AGAIN) all
 	$(Q)JOBS=$(JOBS) tests/verify-all
 
-coronary: ## a coronary artery on a measured heart, in stages, beside published morphometry; results in out/coronary/
+coronary: ## grow a coronary artery on a measured heart in stages, and compare it with published morphometry; results in out/coronary/
 	$(Q).ci/deps build run
 	$(Q)$(AGAIN) all
 	$(Q)docs/coronary/run
 
-power: ## plant faults and see what the judge finds, and the tests; writes its parts of docs/VALIDATION.md
+power: ## plant faults and count which `verify` and the tests find; writes docs/VALIDATION.md, sections 5 and 6
 	$(Q).ci/deps build run check
 	$(Q)$(AGAIN) all power-program unit-programs
 	$(Q)tests/power/run
@@ -187,24 +188,25 @@ power: ## plant faults and see what the judge finds, and the tests; writes its p
 
 power-program: $(POWER)
 
-optima: $(OPTIMA) ## the best trees of small point sets, and how often annealing finds them
+optima: $(OPTIMA) ## find the best trees of small point sets, and count how often annealing finds them
 	$(Q)$(OPTIMA) tests/optima/sets.txt
-fit-blob: $(FIT) ## how far the blob is from the potential; HOW=fit searches for its numbers anew
+
+fit-blob: $(FIT) ## measure how far the blob is from the potential; HOW=fit searches its numbers again
 	$(Q)$(FIT) $(HOW)
 
-check: ## every test; ends in "N passed, N failed"
+check: ## run every test; ends with "N passed, N failed"
 	$(Q).ci/deps build run check page
 	$(Q)JOBS=$(JOBS) tests/check
 
-check-all: ## `make check`, and what needs packages of hundreds of MB: PrusaSlicer, Blender
+check-all: ## run `make check`, and tests that need large packages (400 MB): PrusaSlicer, Blender, gmsh, Slurm
 	$(Q).ci/deps build run check page
-	$(Q).ci/deps all || echo 'what needs these packages is skipped' >&2
+	$(Q).ci/deps all || echo 'tests that need these packages are skipped' >&2
 	$(Q)JOBS=$(JOBS) ALLOC=all tests/check usual all
 
-check-quick: ## what half a minute can test, of what is installed
+check-quick: ## run the fast tests that need no other program, in half a minute
 	$(Q)JOBS=$(JOBS) tests/check quick
 
-# The program users run is always the release build.
+# build/corcast is always the release build.
 ifeq ($(MODE),release)
 build/corcast: $(BUILD)/corcast
 	$(Q)cp --remove-destination $< $@
@@ -213,12 +215,12 @@ build/corcast:
 	$(Q)$(MAKE) MODE=release build/corcast
 endif
 
-# What pages of `export T -o P.html` hold. The program is complete without it.
+# The viewer in pages of `export T -o P.html`. The program is complete without it.
 $(VIEWER): $(wildcard templates/viewer/*)
 	$(call say,MADE,$@)
 	$(Q)templates/viewer/bundle $(@D) || :
 
-program: $(BUILD)/corcast ## the program of this MODE, build/MODE/corcast
+program: $(BUILD)/corcast ## build the program of this MODE, build/MODE/corcast
 
 $(BUILD)/corcast: $(CLI_OBJECTS) $(BUILD)/rooms.a
 	$(call say,LINK,$@)
@@ -228,8 +230,8 @@ $(BUILD)/rooms.a: $(ROOM_OBJECTS)
 	$(call say,AR,$@)
 	$(Q)rm -f $@ && $(AR) rcs $@ $^
 
-# The library: all modules but cli. Everything is compiled with hidden visibility, so that only what corcast.h declares is
-# seen from outside; the static library hides the rest, too.
+# The library: all modules except cli. Everything is compiled with hidden visibility, so only the declarations of corcast.h
+# are visible from outside. The static library hides all other symbols too.
 SONAME := libcorcast.so.0
 $(BUILD)/$(SONAME): $(BUILD)/rooms.a src/api/libcorcast.map
 	$(call say,LINK,$@)
@@ -242,7 +244,7 @@ $(BUILD)/libcorcast.a: $(BUILD)/rooms.a
 	$(Q)ld -r -o $(@:.a=.o) --whole-archive $< && objcopy --localize-hidden --wildcard --localize-symbol='_TIFF*alloc' $(@:.a=.o) && $(AR) rcs $@ $(@:.a=.o)
 	$(Q)rm -f $(@:.a=.o)
 
-lib: build/$(SONAME) build/libcorcast.a ## the library, build/libcorcast.so.0 and build/libcorcast.a
+lib: build/$(SONAME) build/libcorcast.a ## build the library, build/libcorcast.so.0 and build/libcorcast.a
 
 ifeq ($(MODE),release)
 build/$(SONAME): $(BUILD)/$(SONAME)
@@ -278,7 +280,7 @@ $(BUILD)/tests/%_test: $(BUILD)/tests/unit/%_test.o $(BUILD)/cli.a $(BUILD)/room
 	$(Q)mkdir -p $(@D)
 	$(Q)$(LINK) -o $@ $^ $(LIBS) -lcmocka
 
-# Programs that use the library as others do: through its header, its shared object and nothing else.
+# Programs that use the library as its users do: through its header and its shared object only.
 $(API_PROGRAMS): $(BUILD)/tests/api/%: tests/api/%.c src/corcast.h $(BUILD)/$(SONAME)
 	$(call say,LINK,$@)
 	$(Q)mkdir -p $(@D)
@@ -296,7 +298,7 @@ $(FRAMES): $(BUILD)/tests/bench/frames.o $(BUILD)/rooms.a
 	$(call say,LINK,$@)
 	$(Q)$(LINK) -o $@ $^ $(LIBS)
 
-# Replayed from files, or driven by libFuzzer.
+# Fuzzing harnesses: driven by libFuzzer in the mode fuzz; in other modes they replay files.
 $(FUZZ_PROGRAMS): $(BUILD)/tests/fuzz/%: $(BUILD)/tests/fuzz/%.o $(BUILD)/tests/fuzz/fuzz.o \
 	$(if $(filter fuzz,$(MODE)),,$(BUILD)/tests/fuzz/replay.o) $(BUILD)/cli.a $(BUILD)/rooms.a
 	$(call say,LINK,$@)
@@ -306,7 +308,7 @@ $(MESHES): $(BUILD)/tests/bench/meshes.o $(BUILD)/rooms.a
 	$(call say,LINK,$@)
 	$(Q)$(LINK) -o $@ $^ $(LIBS)
 
-# A peer to measure against; libembree-dev is a package of `make deps FOR=bench`.
+# A renderer for comparison; `make deps FOR=bench` installs libembree-dev.
 $(EMBREE): $(BUILD)/tests/bench/embree.o $(BUILD)/rooms.a
 	$(call say,LINK,$@)
 	$(Q)$(LINK) -o $@ $^ $(LIBS) -lembree3
@@ -316,27 +318,27 @@ $(POWER): $(POWER_OBJECTS) $(BUILD)/rooms.a
 	$(Q)mkdir -p $(@D)
 	$(Q)$(LINK) -o $@ $^ $(LIBS)
 
-# The oracles stand alone: they share no code with the program they check.
+# The oracles share no code with the program they check.
 $(BUILD)/tests/%: tests/oracle/%.c Makefile
 	$(call say,CC,$<)
 	$(Q)mkdir -p $(@D)
 	$(Q)$(filter-out -Isrc,$(COMPILE)) $(OWN_LDFLAGS) $(LDFLAGS) -o $@ $< -lm
 
-# It reads nothing, and takes minutes to build with sanitizers.
+# The module render reads no files and takes minutes to build with sanitizers, so fuzzing builds it without.
 ifeq ($(MODE),fuzz)
 $(filter $(BUILD)/src/render/%,$(ROOM_OBJECTS)): OWN_CFLAGS := $(filter-out -fsanitize%,$(OWN_CFLAGS))
 endif
 
-# What fails allocations is loaded before the program's own libraries, and is sanitized in no mode.
+# failing.so makes allocations fail. It is loaded before the program's own libraries, and is never sanitized.
 $(FAILING): tests/alloc/failing.c Makefile
 	$(call say,CC,$<)
 	$(Q)mkdir -p $(@D)
 	$(Q)$(CC) -D_GNU_SOURCE -std=c11 -O1 -g $(WARNINGS) -fPIC -shared -o $@ $<
 
-# Loops over pixels gain from vectors, growth from square roots that set no errno.
+# Loops over pixels get faster with vectors, and growth with square roots that do not set errno.
 $(filter $(BUILD)/src/image/% $(BUILD)/src/compare/% $(BUILD)/src/grow/% $(BUILD)/src/render/raster/% $(BUILD)/src/render/light/% $(BUILD)/src/mesh/% $(BUILD)/src/render/tile/%,$(ROOM_OBJECTS)): VECTORS := $(VECTORS_$(MODE))
 
-# Kernels of pictures read no input and write to arrays of fixed size; a check of the stack costs them 2 %.
+# Kernels of pictures read no input and write to arrays of fixed size. The stack protector would cost them 2 % of their speed.
 $(filter %kernels.o %kernels.avx2.o %kernels.avx512.o,$(ROOM_OBJECTS)): HARDEN_release += -fno-stack-protector
 
 -include $(ROOM_OBJECTS:.o=.d) $(CLI_OBJECTS:.o=.d) $(TEST_OBJECTS:.o=.d) $(POWER_OBJECTS:.o=.d) $(EMBREE).d $(FRAMES).d $(MESHES).d $(FIT).d $(FUZZ_SOURCES:%.c=$(BUILD)/%.d)
@@ -350,26 +352,26 @@ unit-programs: $(TEST_PROGRAMS) $(API_PROGRAMS) $(OPTIMA) $(ORACLE) $(FAILING)
 
 fuzz-programs: $(FUZZ_PROGRAMS)
 
-abi: $(BUILD)/$(SONAME) ## store the library's binary interface anew, after a change that users may see
+abi: $(BUILD)/$(SONAME) ## store the library's binary interface again, after a change that is visible to users
 	$(Q)rm -rf build/abi && mkdir -p build/abi && cp src/corcast.h build/abi
 	$(Q)abidw --no-show-locs --drop-private-types --headers-dir build/abi --exported-interfaces-only --no-corpus-path \
 		--no-comp-dir-path $< --out-file tests/api/libcorcast.abi
 
-fuzz: ## have libFuzzer think out input for every reader, FUZZ=60 seconds each; TARGET=NAME for one
+fuzz: ## fuzz every reader with libFuzzer, FUZZ=60 seconds each; TARGET=NAME for one harness
 	$(Q).ci/deps build fuzz
 	$(Q)$(AGAIN) MODE=fuzz CC=clang fuzz-programs
 	$(Q)tests/fuzz/run "$(or $(FUZZ),60)" $(or $(TARGET),$(HARNESSES))
 
-unit: unit-programs ## the unit tests, in this MODE
+unit: unit-programs ## build and run the unit tests in this MODE
 	$(Q)for program in $(TEST_PROGRAMS); do $$program || exit 1; done
 
-layers: ## hold the includes against src/LAYERS
+layers: ## check the includes against src/LAYERS
 	$(Q)tests/check-layers
 
-format: ## rewrite the C sources in the project's layout
+format: ## format the C sources
 	$(Q)clang-format -i $(FORMATTED)
 
-format-check: ## name the C sources that are not in the project's layout
+format-check: ## list the C sources that are not formatted
 	$(Q)clang-format --dry-run -Werror $(FORMATTED)
 
 asan: ## build and run the unit tests with the address and undefined-behaviour sanitizers
@@ -378,10 +380,10 @@ asan: ## build and run the unit tests with the address and undefined-behaviour s
 tsan: ## build and run the unit tests with the thread sanitizer
 	$(Q)$(AGAIN) MODE=tsan program unit
 
-golden-update: build/corcast ## rewrite a golden: CASE=name REASON="why"; without, record today's scenes of all
+golden-update: build/corcast ## redraw one golden picture: CASE=name REASON="why"; without CASE, record the current scenes of all
 	$(Q)tests/golden-update "$(CASE)" "$(REASON)"
 
-# Manual pages and completions, made of the program's own descriptions.
+# Manual pages and completions, generated from the program's own option tables.
 PAGES := build/share/man/man1
 build/share: build/corcast src/corcast.h src/api/manual.awk
 	$(call say,MADE,$@)
@@ -395,12 +397,12 @@ build/share: build/corcast src/corcast.h src/api/manual.awk
 	$(Q)mkdir -p $@/man/man3
 	$(Q)awk -v version=$(VERSION) -f src/api/manual.awk src/corcast.h > $@/man/man3/corcast.h.3
 
-reference: build/corcast ## write docs/REFERENCE.md anew
+reference: build/corcast ## generate docs/REFERENCE.md
 	$(Q)build/corcast help --as markdown > build/REFERENCE.md && mv build/REFERENCE.md docs/
 
 SHARE = $(DESTDIR)$(PREFIX)/share
 LIBRARIES = $(DESTDIR)$(PREFIX)/lib
-install: build/corcast lib build/share ## install under $(DESTDIR)$(PREFIX), with library, manual pages and completions
+install: build/corcast lib build/share ## install program, library, manual pages and completions under $(DESTDIR)$(PREFIX)
 	install -Dm755 build/corcast $(DESTDIR)$(PREFIX)/bin/corcast
 	install -Dm755 build/$(SONAME) $(LIBRARIES)/$(SONAME)
 	ln -sf $(SONAME) $(LIBRARIES)/libcorcast.so
@@ -421,7 +423,7 @@ install: build/corcast lib build/share ## install under $(DESTDIR)$(PREFIX), wit
 	install -Dm644 -t $(SHARE)/doc/corcast/docs/images/looks docs/images/looks/*.png
 	install -Dm644 -t $(SHARE)/doc/corcast/docs/images/gallery docs/images/gallery/*.png
 
-uninstall: ## remove what `make install` put there
+uninstall: ## remove the files of `make install`
 	rm -f $(DESTDIR)$(PREFIX)/bin/corcast $(SHARE)/man/man1/corcast.1 $(SHARE)/man/man1/corcast-*.1
 	rm -f $(SHARE)/bash-completion/completions/corcast $(SHARE)/zsh/site-functions/_corcast
 	rm -f $(SHARE)/fish/vendor_completions.d/corcast.fish
@@ -431,7 +433,7 @@ uninstall: ## remove what `make install` put there
 	rm -rf $(SHARE)/corcast $(SHARE)/doc/corcast
 
 VERSION := $(shell sed -n 's/^.define CORCAST_VERSION "\(.*\)"/\1/p' src/base/version.h)
-dist: ## build/corcast-VERSION.tar.gz, the sources of the last commit, the same bytes each time
+dist: ## pack the sources of the last commit into build/corcast-VERSION.tar.gz, with the same bytes each time
 	$(Q)mkdir -p build
 	$(Q)git archive --format=tar --prefix=corcast-$(VERSION)/ -o build/corcast-$(VERSION).tar HEAD
 	$(Q)gzip -9nf build/corcast-$(VERSION).tar

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The documents: what they link to is there, and their numbers are those of the program.
+# The documents: their links lead to existing files, and their numbers are those of the program.
 . "$(dirname "$0")/lib.sh"
 
 test_documents_link_only_to_what_exists() {
@@ -61,12 +61,12 @@ ahead of its share by more than a sixteenth @ forest.c @ lead = 1.0 / 16;
 all by 1.1, and those of segments that break a rule by 2.2 @ refine_penalty.c @ rise = 1.1, steep_rise = 2.2;
 as far as the rules are kept with 0.15 of the radii to spare @ repair.c @ relaxed_spare = 0.15,
 Penalties rise twentyfold @ grow/refine/refine.c @ first_rate = 0.1, last_rate = 2;
-a tenth of the budget is left, or what 40 moves a terminal take, half of it at most @ grow/refine/refine.c @ last_moves = 40, least_left = 0.1, most_left = 0.5;
-the same with 2,000 moves a terminal @ grow/refine/refine.c @ [GROW_REFINE_ANNEAL] = 2000}
-20 moves times the square of the number of terminals, or 2,000 times the number if that is less, @ grow/refine/refine.c @ moves_per_square = 20, most_per_terminal = 2000;
-topology has 88 @ grow/refine/refine.c @ [GROW_REFINE_TOPOLOGY] = 88,
+a tenth of it, or the cost of 40 moves per terminal, at most half @ grow/refine/refine.c @ last_moves = 40, least_left = 0.1, most_left = 0.5;
+the same method with 2,000 moves per terminal @ grow/refine/refine.c @ [GROW_REFINE_ANNEAL] = 2000}
+20 moves times the square of the number of terminals, or 2,000 times the number if that is less @ grow/refine/refine.c @ moves_per_square = 20, most_per_terminal = 2000;
+*topology* has 88 @ grow/refine/refine.c @ [GROW_REFINE_TOPOLOGY] = 88,
 until they agree to 10⁻¹³ @ finish.c @ agreement = 1e-13;
-256 points a terminal, up to 4,096 where that makes less than two million in all @ segment_weights.c @ least_points = 256, most_points = 4096, all_points = 2e6;
+256 points per terminal, and up to 4,096 if the total stays below two million @ segment_weights.c @ least_points = 256, most_points = 4096, all_points = 2e6;
 END
 }
 
@@ -83,13 +83,13 @@ does not count where Phi is within 1 % of C and falls @ fieldcast.c @ sample->ph
 lie in one plane (to 10⁻⁷ / k) @ fieldterms.c @ <= 1e-7;
 to within 4 · 10⁻⁶ of ln C @ kernel_trace_flat.h @ #define PLANE_CLOSE 3e-6f
 10⁻⁶ each: `exp(-d^2)` times the term's peak is below it @ field.h @ #define TILE_TERM_CUTOFF 1e-6
-20 terms being allowed to be left out @ kernel_trace_common.h @ #define MARGIN_DROPPED 2e-5f
+with an allowance for 20 dropped terms @ kernel_trace_common.h @ #define MARGIN_DROPPED 2e-5f
 6 · 10⁻⁷ for each term @ kernel_trace_common.h @ #define MARGIN_TERM 6e-7f
 1.2 · 10⁻⁷ e k B for each term @ kernel_trace_common.h @ #define MARGIN_PLACE 1.2e-7f
 of at most 2 of its own radii @ vesseltree.h @ #define BLEND_REACH 2
 1 % of the one weighing as much as 4.3° of the other @ fit_blob.c @ #define DISTANCE 0.03
 1 % of the one weighing as much as 4.3° of the other @ fit_blob.c @ #define ANGLE 13.0
-it is at most `1.05 exp(2 - 2 D^2)` @ kernel_blob.h @ #define ENVELOPE 1.05f
+At the distance D r the field is at most `1.05 exp(2 - 2 D^2)` @ kernel_blob.h @ #define ENVELOPE 1.05f
 nowhere below -0.0085 @ kernel_blob.h @ #define DIP 0.0085f
 1/2 + 0.62 y of it y r within an end @ kernel_blob.h @ #define INWARDS 0.62f
 the largest of 37.5 (1 @ kernel_blob.h @ #define NEAR_END_CURVED 37.5f
@@ -118,14 +118,14 @@ within 10⁻⁴ r of the ray @ kernel_joint.h @ off_joint_line = 1e-4f;
 0.001 mm and 3 · 2^-23 of the scene's radius @ shadowengine.h @ SHADOW_NEAREST_MM 1e-3
 within 1.16 radii of the scene's middle cast rays @ lightview.c @ least_radii = 1.16;
 at most a quarter of a pixel apart @ zbuffer.c @ pixels_apart = 0.25;
-nothing below the horizon covers it, and than 3.5 mean radii @ occluders.c @ wide_in_radii = 3.5;
+nothing below the horizon covers it, and at most 3.5 mean radii @ occluders.c @ wide_in_radii = 3.5;
 and face within 60 degrees of where it does @ occlusion.c @ least_cosine = 0.5f;
 each within 5 / 4 of a pixel of the other's tangent plane @ visibility.h @ limit = 1.25f * a->pixel_mm;
-else of the pixel within two @ visibility.c @ enum { SEARCH_PIXELS = 2 };
+Otherwise it has the value of another pixel within two @ visibility.c @ enum { SEARCH_PIXELS = 2 };
 followed over 16 of its ellipses @ ink.c @ RULINGS = 16 };
 found on each by Newton's iteration @ inkjoint.c @ NEWTON = 4 };
 a ray from 10⁻⁶ radii beside it @ ink.c @ #define BESIDE 1e-6
-changes halved to a hundredth of it @ ink.c @ HALVINGS = 6,
+located by bisection to a hundredth of the line width @ ink.c @ HALVINGS = 6,
 END
 }
 
@@ -180,7 +180,7 @@ as many rays as graze | 200 ppm, or 12 pixels | @ settled.c @ "pixels at which P
 | 1000 ppm, or 20 pixels | @ settled.c @ "pixels on their own horizon, left to POV-Ray's shadow cache", 1000, 20},
 it may be off by the accuracy of its cell, r / 300 @ celltree.c @ accuracy_ratio = 1.0 / 300,
 not judged but the mean difference is, to 1.5 levels @ verification.c @ [LIMIT_BIAS_LEVELS] = 1.5;
-at 67.02 pixels a degree @ flip_kernels.c @ pixels_per_degree = 67.0206451f;
+at 67.02 pixels per degree @ flip_kernels.c @ pixels_per_degree = 67.0206451f;
 Gaussian window of 11 x 11 @ ssim.c @ RADIUS = 5, TAPS = 2 * RADIUS + 1
 K1 = 0.01, K2 = 0.03 @ ssim.c @ c1 = 0.01 * 255 * 0.01 * 255, c2 = 0.03 * 255 * 0.03 * 255
 END
@@ -218,11 +218,11 @@ meshes above 8 GB @ mesh_file.c @ .name = "an OBJ file", .most_bytes = 8e9
 pictures above 16 GB @ image_file.c @ .most_bytes = 16e9
 INI files above 1 MB @ ini.c @ .most_bytes = 1e6
 at most 10000 other columns @ builder.h @ BUILDER_MAX_COLUMNS = 10000
-is a whole number from 1 to 100000000 @ tree.h @ TREE_MAX_ID = 100000000
+is an integer from 1 to 100000000 @ tree.h @ TREE_MAX_ID = 100000000
 for `pries`, in [0, 0.95] @ viscosity.h @ MAX_HEMATOCRIT 0.95
 less than a thousandth of the box around it @ domain.c @ least_filled = 1e-3;
 more than 0.002 from its own @ profile.c @ <= 0.002
-Of pictures above 4 million pixels the page has no depths @ report_planes.c @ MOST_PIXELS = 1 << 22
+For pictures above 4 million pixels the page has no depths @ report_planes.c @ MOST_PIXELS = 1 << 22
 END
     run_ok corcast render --help
     tr -s "\n " "  " <stdout >help && mv help stdout
@@ -247,13 +247,13 @@ test_formats_lists_the_keys_of_a_tolerance() {
 test_the_numbers_for_povray_are_those_of_the_source() {
     agree POVRAY.md <<'END'
 for each light with n . L >= 1e-10 @ shade.h @ #define MIN_LIT_COSINE 1e-10
-is within 2.85 · 10⁻⁴ of it @ cellfunction.c @ return form == ERF_FAST ? 2.85e-4
+is within 2.85 · 10⁻⁴ of erf @ cellfunction.c @ return form == ERF_FAST ? 2.85e-4
 no wall by more than three times that @ cellfunction.c @ return (3 * erf_form_error(form) + 2e-5) * radius_mm;
 POV-Ray holds at most 1,048,575 functions @ povray_joint.c @ POV-Ray holds 1,048,575 functions, of which a joint has three
 more than 349,000 joints @ povray_joint.c @ MOST_EXACT = 349000,
-where there are more than 8,000 @ povray_joint.c @ MANY = 8000,
+In a scene of more than 8,000 joints @ povray_joint.c @ MANY = 8000,
 scenes of more than 3,000 segments the twelve @ povray_text.h @ MAX_INLINE_TERMS = 3000
-- `f(x) <= M d(x) / 2`, because a ray that missed @ povray_joint.c @ 2 * steepest, folded
+- `f(x) <= M d(x) / 2`, because after a miss POV-Ray skips @ povray_joint.c @ 2 * steepest, folded
 Its hits are within 2 · 10⁻⁹ radii @ joints.inc @ accuracy 2e-9 open
 no tile has more than 400,000 cylinders @ emit/povray.c @ {MODEL_CYLINDERS, NULL, put_primitive_macros, put_primitives, 400000},
 200,000 pieces of a joined tree, 32,768 segments of a blob @ emit/povray.c @ {MODEL_BLOB, find_visible_segments, put_blob_macros, put_blob, 32768},

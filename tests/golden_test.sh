@@ -1,7 +1,9 @@
 #!/usr/bin/env bash
-# The golden pictures, case by case of tests/golden/cases: the stored picture is what its record
-# says, corcast draws the snapshot exactly and the oracle within its tolerance, and the oracle is of
-# the scene that corcast writes today. POV-Ray does not run: golden-update runs it.
+# The golden pictures, case by case of tests/golden/cases. A case has two stored pictures: a
+# snapshot by corcast, and one by POV-Ray, the oracle. The stored pictures must match their record.
+# corcast must draw the snapshot exactly and the oracle's picture within its tolerance. The oracle's
+# picture must come from the scene that corcast writes now. POV-Ray does not run here; golden-update
+# runs it.
 . "$(dirname "$0")/lib.sh"
 . "$(dirname "$0")/golden/golden.sh"
 

@@ -1,21 +1,21 @@
-# What every *_test.sh starts from. A test is a function whose name is a sentence, test_grow_..., run
-# in a subshell of its own inside a temporary folder of its own; its first failed expectation ends it.
-# The file ends with `run_tests`, which prints TAP: one "ok" or "not ok" line a test, the reason of a
-# failure in "# " lines below it. `FILE_test.sh NAME...` runs only the tests named.
+# Sourced by every *_test.sh. A test is a function whose name is a sentence, test_grow_.... It runs
+# in a subshell and a temporary folder of its own, and ends at its first failed expectation. A test
+# file ends with `run_tests`, which prints TAP: one "ok" or "not ok" line per test, and the reason
+# of a failure in "# " lines below it. `FILE_test.sh NAME...` runs only the named tests.
 #
-#   run COMMAND ...            runs it; status in $status, output in the files ./stdout and ./stderr
-#   expect_status N            the exit status of the last run
-#   expect_sentence PATTERN    standard error of the last run is one line that says PATTERN (grep -E)
-#   expect_stdout PATTERN      standard output of the last run says PATTERN
-#   expect_same A B            two files hold the same bytes
+#   run COMMAND ...            runs the command; its status is in $status, its output in the files ./stdout and ./stderr
+#   expect_status N            the last run had exit status N
+#   expect_sentence PATTERN    standard error of the last run is one line that matches PATTERN (grep -E)
+#   expect_stdout PATTERN      standard output of the last run has a line that matches PATTERN
+#   expect_same A B            two files have the same bytes
 #   expect_differing N M A B   N to M pixels of two PPM or PNG pictures differ
-#   expect_file F              the file is there and not empty
-#   expect_only F ...          the current folder holds these files and no other
-#   expect_json FILE FILTER    the jq filter is true of the file
-#   npm_module NAME            installs what tests/npm/package.json lists into $NPM_MODULES, or skips the test
-#   expect_tree FILE FILTER ... it is true of what info, with the options, says of a file of ../shared/data
-#   skip REASON                ends the test: not run, and said so
-#   fail REASON                ends the test: failed
+#   expect_file F              the file exists and is not empty
+#   expect_only F ...          the current folder contains these files and no other
+#   expect_json FILE FILTER    the jq filter is true for the file
+#   expect_tree FILE FILTER OPTION ...   the jq filter is true for `info --json OPTION ...` of a file of ../shared/data
+#   npm_module NAME            installs the packages of tests/npm/package.json into $NPM_MODULES, or skips the test
+#   skip REASON                ends the test as skipped
+#   fail REASON                ends the test as failed
 set -u
 export LC_ALL=C
 

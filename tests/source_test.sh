@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# The house itself: compilers, the Makefile's promises, the dependency script.
+# The build itself: compilers, promises of the Makefile, the dependency script, and rules for the
+# sources.
 . "$(dirname "$0")/lib.sh"
 
 CLANG_CORCAST=$REPO/build/clang/corcast

@@ -133,6 +133,18 @@ done:
     return status;
 }
 
+/* Refuses a value such as "mask:-,0.5", whose file "-" is standard input on the command line. */
+static Status check_no_stream(const char *name, const char *value, Err *err)
+{
+    for (const char *at = strstr(value, ":-"); at; at = strstr(at + 1, ":-"))
+        if (at[2] == '\0' || at[2] == ',' || at[2] == '@')
+            return err_set(err, STATUS_USAGE,
+                           "%s is \"%s\", which reads the file \"-\": the library does not use "
+                           "the standard streams",
+                           name, value);
+    return STATUS_OK;
+}
+
 /* A new text takes the place of the one before, unless the option collects values. */
 static Status set(corcast_options *options, const Option *option, const char *value, Err *err)
 {
@@ -142,6 +154,7 @@ static Status set(corcast_options *options, const Option *option, const char *va
         return unset(options, option, err);
     if (option_is_path(option))
         TRY(path_check(value, option->name, err));
+    TRY(check_no_stream(option->name, value, err));
     TRY(ARRAY_RESERVE(texts, 1, "options", err));
     TRY(mem_strdup(&made, value, err));
     Status status = options_set(options->parsed, option->name, value, err);

@@ -1,5 +1,5 @@
-/* The commands there are, in the order of the help. A new one is its row here, its declaration, and
- * a file cmd_NAME.c. */
+/* The rows of the command table, and what all commands have in common: the templates folder,
+ * progress and messages on the screen, --help and --dump-recipe. */
 #include "cli/commands.h"
 
 #include "cli/help.h"
@@ -8,46 +8,60 @@
 #include "job/export/scene.h"
 #include "job/picture/convert.h"
 #include "job/picture/diagram.h"
+#include "options/output.h"
 #include "options/templates.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+const char *const command_group_names[COMMAND_GROUPS] = {
+    [COMMANDS_GROW] = "Grow and measure",
+    [COMMANDS_DRAW] = "Draw",
+    [COMMANDS_EXPORT] = "Hand on to other programs",
+    [COMMANDS_CHECK] = "Check",
+    [COMMANDS_LIST] = "List what options accept",
+    [COMMANDS_HELP] = "Help",
+};
+
+/* The bits of most commands. */
+enum { OBEYS_ALL = OBEYS_RUN | OBEYS_THREADS | OBEYS_SEED, OBEYS_MOST = OBEYS_RUN | OBEYS_THREADS };
+
 const CommandRow command_rows[] = {
-    {&command_grow, run_tree_maker},
-    {&command_refine, run_tree_maker},
-    {&command_bifurcation, run_tree_maker},
-    {&command_study, run_study},
-    {&command_info, run_info},
-    {&command_certify, run_certify},
-    {&command_convert, convert_run},
-    {&command_scene, scene_run},
-    {&command_export, export_run},
-    {&command_povray, run_povray},
-    {&command_render, run_render},
-    {&command_merge, run_merge},
-    {&command_diagram, diagram_run},
-    {&command_figure, run_figure},
-    {&command_view, run_view},
-    {&command_verify, run_verify},
-    {&command_compare, run_compare},
-    {&command_report, run_report},
-    {&command_power, run_power},
-    {&command_check_figure, run_check_figure},
-    {&command_models, run_models},
-    {&command_fields, run_list},
-    {&command_looks, run_list},
-    {&command_presets, run_list},
-    {&command_colormaps, run_colormaps},
-    {&command_domains, run_list},
-    {&command_formats, run_list},
-    {&command_morphometries, run_list},
-    {&command_help, run_help},
-    {&command_version, run_version},
+    {&command_grow, run_tree_maker, COMMANDS_GROW, OBEYS_ALL},
+    {&command_info, run_info, COMMANDS_GROW, OBEYS_RUN},
+    {&command_refine, run_tree_maker, COMMANDS_GROW, OBEYS_ALL},
+    {&command_bifurcation, run_tree_maker, COMMANDS_GROW, OBEYS_RUN},
+    {&command_study, run_study, COMMANDS_GROW, OBEYS_MOST},
+    {&command_certify, run_certify, COMMANDS_GROW, OBEYS_RUN},
+    {&command_render, run_render, COMMANDS_DRAW, OBEYS_MOST},
+    {&command_view, run_view, COMMANDS_DRAW, OBEYS_MOST},
+    {&command_figure, run_figure, COMMANDS_DRAW, OBEYS_MOST},
+    {&command_diagram, diagram_run, COMMANDS_DRAW, OBEYS_MOST},
+    {&command_povray, run_povray, COMMANDS_DRAW, OBEYS_MOST},
+    {&command_merge, run_merge, COMMANDS_DRAW, OBEYS_MOST},
+    {&command_convert, convert_run, COMMANDS_EXPORT, OBEYS_MOST},
+    {&command_export, export_run, COMMANDS_EXPORT, OBEYS_MOST},
+    {&command_scene, scene_run, COMMANDS_EXPORT, OBEYS_MOST},
+    {&command_verify, run_verify, COMMANDS_CHECK, OBEYS_MOST},
+    {&command_compare, run_compare, COMMANDS_CHECK, OBEYS_MOST},
+    {&command_report, run_report, COMMANDS_CHECK, OBEYS_RUN},
+    {&command_power, run_power, COMMANDS_CHECK, OBEYS_MOST},
+    {&command_check_figure, run_check_figure, COMMANDS_CHECK, OBEYS_RUN},
+    {&command_models, run_models, COMMANDS_LIST, 0},
+    {&command_fields, run_list, COMMANDS_LIST, 0},
+    {&command_looks, run_list, COMMANDS_LIST, 0},
+    {&command_colormaps, run_colormaps, COMMANDS_LIST, 0},
+    {&command_domains, run_list, COMMANDS_LIST, 0},
+    {&command_formats, run_list, COMMANDS_LIST, 0},
+    {&command_presets, run_list, COMMANDS_LIST, 0},
+    {&command_morphometries, run_list, COMMANDS_LIST, 0},
+    {&command_help, run_help, COMMANDS_HELP, 0},
+    {&command_version, run_version, COMMANDS_HELP, 0},
     {0},
 };
 
-/* The row of this name; the one that ends the rows when there is none. */
+/* Returns the row of the command with this name, or the row without a command that ends the
+ * table. */
 static const CommandRow *find_row(const char *name)
 {
     const CommandRow *row = command_rows;
@@ -61,18 +75,30 @@ const Command *command_find(const char *name)
     return find_row(name)->command;
 }
 
+bool command_obeys(const Parsed *parsed, const Setting *setting)
+{
+    static const char *const run_options[] = {"recipe", "dump-recipe", "quiet", NULL};
+    const unsigned obeys = find_row(parsed->command->name)->obeys;
+    const char *name = setting->option->name;
+    if (!setting_is_common(parsed, setting) || strcmp(name, "help") == 0)
+        return true;
+    if (is_one_of(name, run_options))
+        return obeys & OBEYS_RUN;
+    return obeys & (strcmp(name, "seed") == 0 ? OBEYS_SEED : OBEYS_THREADS);
+}
+
 Status command_unknown(const char *name, Err *err)
 {
     Suggestion suggestion = suggestion_for(name, strlen(name));
     for (const CommandRow *row = command_rows; row->command; row++)
         suggestion_offer(&suggestion, row->command->name);
-    Status status = err_set(err, STATUS_USAGE,
-                            "unknown command '%s'; corcast --help lists those there are", name);
+    Status status =
+        err_set(err, STATUS_USAGE, "unknown command '%s'; corcast --help lists all commands", name);
     suggestion_add(&suggestion, "", err);
     return status;
 }
 
-/* What is printed may be what is written, too. */
+/* Returns STATUS_USAGE if the recipe would be printed into the output on standard output. */
 static Status check_dump(const Parsed *parsed, Err *err)
 {
     const char *path = parsed_text(parsed, "output");
@@ -90,7 +116,8 @@ static Status run(Parsed *parsed, Err *err)
     TRY(check_dump(parsed, err));
     if (!parsed->common.dump || command->own_recipe)
         return run_command(parsed->options, parsed, err);
-    Text recipe = TEXT_INIT; /* made first: what is written is not to be followed by a failure */
+    /* The recipe is made first, so that no error can follow after the output has been written. */
+    Text recipe = TEXT_INIT;
     options_put_recipe(parsed, &recipe);
     Status status = text_check(&recipe, err);
     if (status == STATUS_OK)

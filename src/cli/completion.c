@@ -1,6 +1,6 @@
-/* What shells complete: the command, then its options, and of an option's value the choices there
- * are, the names that a command of corcast's own lists, or files. Each shell gets one script in its
- * own language, made anew with each version. */
+/* Formats completion scripts for bash, zsh and fish. The scripts complete commands, options, and
+ * option values: accepted words, names that a command such as `corcast looks` lists, or files. */
+#include "cli/commands.h"
 #include "cli/help.h"
 #include <string.h>
 
@@ -14,7 +14,7 @@ static bool takes_value(const Option *option)
     return option->kind != OPTION_FLAG;
 }
 
-/* Whether files are what the value can be completed to. */
+/* Returns true if the value is completed to file names. */
 static bool takes_file(const Option *option)
 {
     return option_is_path(option) && !option->list;
@@ -22,7 +22,7 @@ static bool takes_file(const Option *option)
 
 static const char *const switch_words[] = {"on", "off", NULL};
 
-/* NULL when the value is no choice. */
+/* Returns the accepted words, ended by NULL; NULL if the option accepts other values than words. */
 static const char *const *words_of(const Option *option)
 {
     return option->kind == OPTION_SWITCH ? switch_words : option->choices;
@@ -39,7 +39,8 @@ static void put_commands(const Parsed *plain, Text *text)
     text_printf(text, " %s", plain->command->name);
 }
 
-/* In single quotes, for a shell that takes \' there only outside of them. */
+/* Appends `chars` for use between single quotes of a shell. A single quote in them becomes '\\'',
+ * because the shell knows no escapes between single quotes. */
 static void put_quoted(const char *chars, Text *text)
 {
     if (!chars)
@@ -68,7 +69,7 @@ static void put_bash_value(const char *command, const Option *option, Text *text
 static void put_bash_values(const Parsed *plain, Text *text)
 {
     for (size_t i = 0; i < plain->n_settings; i++)
-        if (takes_value(plain->settings[i].option))
+        if (takes_value(plain->settings[i].option) && command_obeys(plain, &plain->settings[i]))
             put_bash_value(plain->command->name, plain->settings[i].option, text);
 }
 
@@ -76,7 +77,8 @@ static void put_bash_options(const Parsed *plain, Text *text)
 {
     text_printf(text, "    %s) words='", plain->command->name);
     for (size_t i = 0; i < plain->n_settings; i++)
-        text_printf(text, "%s--%s", i ? " " : "", plain->settings[i].option->name);
+        if (command_obeys(plain, &plain->settings[i]))
+            text_printf(text, "--%s ", plain->settings[i].option->name);
     text_puts(text, "' ;;\n");
 }
 
@@ -145,7 +147,8 @@ static void put_zsh_command(const Parsed *plain, Text *text)
 {
     text_printf(text, "  %s) _arguments", plain->command->name);
     for (size_t i = 0; i < plain->n_settings; i++)
-        put_zsh_option(plain->settings[i].option, text);
+        if (command_obeys(plain, &plain->settings[i]))
+            put_zsh_option(plain->settings[i].option, text);
     text_printf(text, " \\\n      '*:file:_files' ;;\n");
 }
 
@@ -215,7 +218,8 @@ static void put_fish_command(const Parsed *plain, Text *text)
     put_fish_text(command->summary, text);
     text_puts(text, "\n");
     for (size_t i = 0; i < plain->n_settings; i++)
-        put_fish_option(command->name, plain->settings[i].option, text);
+        if (command_obeys(plain, &plain->settings[i]))
+            put_fish_option(command->name, plain->settings[i].option, text);
 }
 
 Status completion_put_fish(Text *text, Err *err)

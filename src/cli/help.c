@@ -1,24 +1,27 @@
-/* The help of a command, made from its descriptions: usage, examples, and its options under their
- * headings, each with what it takes and what holds without it. */
+/* Formats the help of a command: usage, examples, and the options under their headings, each with
+ * its accepted values and its default. */
 #include "cli/help.h"
 
 #include "cli/commands.h"
 #include "options/output.h"
 #include "options/schema.h"
+#include <ctype.h>
 #include <stdio.h>
 #include <string.h>
 
+/* Columns. The indent has room for most placeholders; a longer option gets a line of its own. */
 enum { HELP_INDENT = 27, HELP_WIDTH = 90 };
 
-/* Appends words, wrapped, from column `column` on. */
-static void put_wrapped(const char *words, size_t column, Text *text)
+/* Appends words, wrapped to HELP_WIDTH columns. The first word begins in column `column`, all other
+ * lines in column `indent`. */
+static void put_wrapped(const char *words, size_t column, size_t indent, Text *text)
 {
     while (*words) {
         size_t length = strcspn(words, " ");
-        if (column > HELP_INDENT && column + 1 + length > HELP_WIDTH) {
-            text_printf(text, "\n%*s", HELP_INDENT, "");
-            column = HELP_INDENT;
-        } else if (column > HELP_INDENT) {
+        if (column > indent && column + 1 + length > HELP_WIDTH) {
+            text_printf(text, "\n%*s", (int)indent, "");
+            column = indent;
+        } else if (column > indent) {
             text_puts(text, " ");
             column++;
         }
@@ -29,28 +32,73 @@ static void put_wrapped(const char *words, size_t column, Text *text)
     text_puts(text, "\n");
 }
 
+/* Returns true if `word` is in `chars`, between characters that are no letters or digits. */
+static bool has_word(const char *chars, const char *word)
+{
+    const size_t length = strlen(word);
+    for (const char *at = chars; (at = strstr(at, word)); at++)
+        if ((at == chars || !isalnum((unsigned char)at[-1])) && !isalnum((unsigned char)at[length]))
+            return true;
+    return false;
+}
+
+/* Appends the accepted words, unless the help contains all of them, as it does to explain them. */
+static void put_choices(const Option *option, Text *text)
+{
+    bool explained = true;
+    for (int i = 0; option->choices && option->choices[i]; i++)
+        explained = explained && has_word(option->help, option->choices[i]);
+    for (int i = 0; !explained && option->choices[i]; i++)
+        text_printf(text, "%s%s", i ? ", " : ": ", option->choices[i]);
+}
+
+/* Appends "0..64", "above 0", "above 0, at most 10" or "at least 3"; nothing if all numbers are
+ * accepted. */
+static void put_range(const Range *range, Text *text)
+{
+    char low[NUMBER_TEXT_SIZE], high[NUMBER_TEXT_SIZE];
+    const bool has_high = range->high < RANGE_NO_END, above_0 = range->low == RANGE_ABOVE_0;
+    const bool has_low = range->low > -RANGE_NO_END;
+    number_text(range->low, low);
+    number_text(range->high, high);
+    if (has_low && has_high && !above_0)
+        text_printf(text, "%s..%s", low, high);
+    else if (has_low)
+        text_printf(text, above_0 ? "above 0" : "at least %s", low);
+    if (has_high && (above_0 || !has_low))
+        text_printf(text, "%sat most %s", above_0 ? ", " : "", high);
+}
+
+/* Appends the value or the phrase that applies if the option is not given. */
+static void put_default(const Setting *plain, Text *text)
+{
+    const Option *option = plain->option;
+    if (option->otherwise)
+        text_puts(text, option->otherwise);
+    else if (option->kind != OPTION_FLAG && setting_count(plain) > 0)
+        setting_put(plain, 0, text);
+}
+
 void help_put_meaning(const Setting *plain, Text *text)
 {
     const Option *option = plain->option;
-    Text allowed = TEXT_INIT, value = TEXT_INIT;
+    Text range = TEXT_INIT, value = TEXT_INIT;
     text_puts(text, option->help);
-    option_put_allowed(option, &allowed);
-    const char *chars = text_chars(&allowed);
-    if (!chars || *chars)
-        text_puts(text, option->choices ? ": " : "; ");
-    text_puts(text, chars && strncmp(chars, "of ", 3) == 0 ? chars + 3 : chars);
+    put_choices(option, text);
     if (option->list)
-        text_printf(text, "; corcast %s lists them", option->list);
-    if (option->otherwise)
-        text_puts(&value, option->otherwise);
-    else if (option->kind != OPTION_FLAG && setting_count(plain) > 0)
-        setting_put(plain, 0, &value);
-    if (value.length || !text_chars(&value)) {
-        text_puts(text, " (");
-        text_add(text, &value);
-        text_puts(text, ")");
-    }
-    text_release(&allowed);
+        text_printf(text, "; `corcast %s` lists the names", option->list);
+    if (option_range(option) && option->kind != OPTION_SIZE)
+        put_range(option_range(option), &range);
+    put_default(plain, &value);
+    const bool has_range = range.length || !text_chars(&range);
+    const bool has_value = value.length || !text_chars(&value);
+    text_puts(text, has_range || has_value ? " [" : "");
+    text_add(text, &range);
+    if (has_value)
+        text_puts(text, has_range ? "; default: " : "default: ");
+    text_add(text, &value);
+    text_puts(text, has_range || has_value ? "]" : "");
+    text_release(&range);
     text_release(&value);
 }
 
@@ -78,7 +126,7 @@ static void put_option(const Setting *plain, Text *text)
     }
     text_printf(text, "%*s", (int)(HELP_INDENT - column), "");
     if (text_chars(&meaning))
-        put_wrapped(text_chars(&meaning), HELP_INDENT, text);
+        put_wrapped(text_chars(&meaning), HELP_INDENT, HELP_INDENT, text);
     else
         text_add(text, &meaning);
     text_release(&left);
@@ -89,7 +137,7 @@ static void put_group(const Parsed *plain, OptionGroup group, Text *text)
 {
     bool headed = false;
     for (size_t i = 0; i < plain->n_settings; i++) {
-        if (plain->settings[i].option->group != group)
+        if (plain->settings[i].option->group != group || !command_obeys(plain, &plain->settings[i]))
             continue;
         if (!headed)
             text_printf(text, "\n%s:\n", option_group_names[group]);
@@ -141,19 +189,38 @@ done:
 }
 
 const char help_exit_status[] =
-    "0 done, 1 a comparison found a difference, 2 wrong usage or input, 3 a file, program or the "
-    "memory failed.";
+    "0 success, 1 a comparison found a difference, 2 wrong usage or input, 3 a file, another "
+    "program or memory failed.";
+
+const char help_json_rule[] =
+    "`--json FILE` of grow, refine and render writes a summary of the run to FILE. `--json` of "
+    "all other commands prints their result as JSON.";
+
+const char help_first_steps[] = "  corcast grow --terminals 1000 -o tree.swc   # grow a tree\n"
+                                "  corcast render tree.swc -o tree.png         # draw it\n"
+                                "  corcast info tree.swc                       # measure it\n";
 
 static void put_usage(Text *text)
 {
-    text_puts(text, GENERATOR ": grow, draw and verify arterial trees\n\n"
-                              "usage: corcast COMMAND [options] [files]\n\n");
-    for (const CommandRow *row = command_rows; row->command; row++)
-        text_printf(text, "  %-9s %s\n", row->command->name, row->command->summary);
     text_printf(text,
-                "\ncorcast COMMAND --help tells the options of a command; '-' stands for standard "
-                "input\nor output wherever a file may stand.\n\nexit status: %s\n",
-                help_exit_status);
+                GENERATOR ": grow, draw and verify arterial trees\n\n"
+                          "usage: corcast COMMAND [options] [files]\n\nfirst steps:\n%s",
+                help_first_steps);
+    int group = -1;
+    for (const CommandRow *row = command_rows; row->command; row++) {
+        if ((int)row->group != group)
+            text_printf(text, "\n%s:\n", command_group_names[row->group]);
+        group = (int)row->group;
+        text_printf(text, "  %-14s %s\n", row->command->name, row->command->summary);
+    }
+    text_puts(text, "\n");
+    put_wrapped(
+        "`corcast COMMAND --help` shows the options of a command. A file name '-' stands for "
+        "standard input or output.",
+        0, 0, text);
+    put_wrapped(help_json_rule, 0, 0, text);
+    text_puts(text, "exit status: ");
+    put_wrapped(help_exit_status, strlen("exit status: "), 0, text);
 }
 
 Status help_print(const Command *command, Err *err)

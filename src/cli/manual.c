@@ -1,11 +1,12 @@
-/* Manual pages in the language of man [groff_man(7)], and docs/REFERENCE.md. Both go through the
- * options by heading, as the help does. A page has no date: the same sources make the same page. */
+/* Formats manual pages, in the macros of groff_man(7), and docs/REFERENCE.md. Both list the options
+ * under the headings of the help. Pages have no date, so the same sources give the same bytes. */
 #include "cli/commands.h"
 #include "cli/help.h"
 #include "options/output.h"
 #include <string.h>
 
-/* Calls `put` for the options of each heading that has some, after `head` for the heading. */
+/* Calls `head` for each heading that has options, then `put` for each option under it. Skips common
+ * options if `common` is false. */
 static void for_groups(const Parsed *plain, bool common, void (*head)(const char *name, Text *text),
                        void (*put)(const Setting *setting, Text *text), Text *text)
 {
@@ -13,7 +14,7 @@ static void for_groups(const Parsed *plain, bool common, void (*head)(const char
         bool headed = false;
         for (size_t i = 0; i < plain->n_settings; i++) {
             const Setting *setting = &plain->settings[i];
-            if ((int)setting->option->group != group ||
+            if ((int)setting->option->group != group || !command_obeys(plain, setting) ||
                 (!common && setting_is_common(plain, setting)))
                 continue;
             if (!headed)
@@ -26,7 +27,7 @@ static void for_groups(const Parsed *plain, bool common, void (*head)(const char
 
 /* ---- man ------------------------------------------------------------------------------------- */
 
-/* Appends text that troff is to print as it is; it begins no line. */
+/* Appends text that troff prints verbatim. It must not begin a line, where troff reads requests. */
 static void put_troff(const char *chars, Text *text)
 {
     if (!chars)
@@ -41,7 +42,7 @@ static void put_troff(const char *chars, Text *text)
                                          : (const char[]){*chars, '\0'});
 }
 
-/* Lines that are printed as they are. */
+/* Appends lines that troff prints verbatim, without filling them. */
 static void put_lines(const char *lines, Text *text)
 {
     text_puts(text, ".EX\n");
@@ -124,17 +125,24 @@ void manual_put(const Parsed *plain, Text *text)
 void manual_put_overview(Text *text)
 {
     put_title("corcast", text);
-    text_puts(text, "grow, draw and verify arterial trees\n.SH SYNOPSIS\n"
-                    "\\fBcorcast\\fR \\fIcommand\\fR [options] [files]\n.SH COMMANDS\n");
+    text_puts(text,
+              "grow, draw and verify arterial trees\n.SH SYNOPSIS\n"
+              "\\fBcorcast\\fR \\fIcommand\\fR [options] [files]\n"
+              ".SH DESCRIPTION\ncorcast grows, reads, measures, draws, exports and checks arterial "
+              "trees. "
+              "A file\nname \\(aq\\-\\(aq stands for standard input or output. Options can also be "
+              "read from an INI\nfile with \\fB\\-\\-recipe\\fR.\n.SH EXAMPLES\n");
+    put_lines(help_first_steps, text);
+    text_puts(text, ".SH COMMANDS\n");
+    int group = -1;
     for (const CommandRow *row = command_rows; row->command; row++) {
+        if ((int)row->group != group)
+            put_man_heading(command_group_names[row->group], text);
+        group = (int)row->group;
         text_printf(text, ".TP\n\\fBcorcast\\-%s\\fR(1)\n", row->command->name);
         put_troff(row->command->summary, text);
         text_puts(text, "\n");
     }
-    text_puts(text,
-              ".SH DESCRIPTION\nA file may be \\(aq\\-\\(aq, standard input or output, wherever "
-              "one is named.\nOptions may also stand in an INI file, which "
-              "\\fB\\-\\-recipe\\fR names.\n");
     put_exit_status(text);
 }
 
@@ -183,16 +191,16 @@ static void put_common(const Parsed *plain, Text *text)
 
 Status reference_put(Text *text, Err *err)
 {
-    text_puts(text,
-              "# Reference\n\n`make reference` writes this page from the descriptions that the "
-              "program itself goes by. What holds\nwithout an option stands in brackets behind "
-              "it.\n\nEvery command takes these options:\n");
+    text_puts(text, "# Reference\n\n`make reference` writes this page from the option tables of "
+                    "the program. The accepted\n"
+                    "range and the default of an option are in square brackets.\n\nEvery command "
+                    "accepts these options:\n");
     TRY(help_put(put_common, command_rows[0].command, text, err));
     text_printf(
         text,
-        "\nA recipe holds options, `name = value` a line; below `[COMMAND]` they are of that "
-        "command. `-` stands for\nstandard input or output wherever a file may stand.\n\n"
-        "Exit status: %s\n",
-        help_exit_status);
+        "\nA recipe contains options, one `name = value` per line; options below `[COMMAND]` apply "
+        "to that\ncommand only. A file name `-` stands for standard input or output.\n\n%s\n\nExit "
+        "status: %s\n",
+        help_json_rule, help_exit_status);
     return help_put_all(put_markdown, text, err);
 }

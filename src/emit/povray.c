@@ -141,7 +141,7 @@ static void add_scale(Values *values, const Appearance *appearance)
     const ColorScale *scale = &appearance->scale;
     put_quoted(add_value(values, "value_name"), scale->name);
     put_quoted(add_value(values, "value_unit"), scale->unit);
-    put_quoted(add_value(values, "value_said"), appearance->said);
+    put_quoted(add_value(values, "value_said"), appearance->meaning);
     add_number(values, "value_low", scale->range[0]);
     add_number(values, "value_high", scale->range[1]);
     add_flag(values, "value_log", scale->log);

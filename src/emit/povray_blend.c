@@ -9,7 +9,7 @@
 bool povray_blends(const PovrayGeometry *geometry)
 {
     const Scene *scene = geometry->scene;
-    return scene->appearance.places && model_has(scene->geometry.model, MODEL_FIELD);
+    return scene->appearance.positions && model_has(scene->geometry.model, MODEL_FIELD);
 }
 
 void put_value_fraction(Text *text, const ColorScale *scale)
@@ -65,7 +65,7 @@ static void put_own(Text *text, const ScaleColor *own)
 static bool all_are_known(const Appearance *appearance)
 {
     for (size_t i = 0; i < appearance->n_values; i++)
-        if (isnan(appearance->places[i]))
+        if (isnan(appearance->positions[i]))
             return false;
     return true;
 }

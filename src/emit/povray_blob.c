@@ -39,10 +39,10 @@ static Box reach_of(const FieldSegment *segment, double reach)
 
 typedef struct BlobCells {
     const Scene *scene;
-    const Sight *sight; /* cells that it does not meet are left out */
-    Text *text;         /* where the others are written to, or NULL */
-    bool *is_met;       /* where the segments of the others are marked, or NULL */
-    double reach;       /* of all segments, over their radius */
+    const RayVolume *volume; /* cells that it does not meet are left out */
+    Text *text;              /* where the others are written to, or NULL */
+    bool *is_met;            /* where the segments of the others are marked, or NULL */
+    double reach;            /* of all segments, over their radius */
     uint32_t *lists; /* a stack: the segments of both halves of a cell follow those of the cell */
     size_t room;
     size_t written; /* none when all is one blob */
@@ -157,7 +157,7 @@ static Status put_cells_of(BlobCells *cells, CellList list, size_t top, Box box,
                            Err *err)
 {
     CellHalves halves;
-    if (!whole && !sight_meets(cells->sight, box_padded(box, overlap_mm)))
+    if (!whole && !rayvolume_meets(cells->volume, box_padded(box, overlap_mm)))
         return STATUS_OK;
     TRY(halve(cells, list, top, box, &halves, err));
     for (size_t i = 0; !halves.is_cut && cells->is_met && i < list.n; i++)
@@ -184,7 +184,7 @@ static Status cells_begin(const PovrayGeometry *geometry, Text *text, BlobCells 
     const Geometry *all = &geometry->scene->geometry;
     const PovrayItems *items = &geometry->objects[geometry->object];
     *cells = (BlobCells){.scene = geometry->scene,
-                         .sight = geometry->sight,
+                         .volume = geometry->volume,
                          .text = text,
                          .reach = blob_reach(&blob_shape),
                          .room = items->n};
@@ -247,7 +247,7 @@ Status find_visible_segments(PovrayGeometry *geometry, Err *err)
     size_t n = 0;
     Status status;
     geometry->painted = all;
-    if (!geometry->sight)
+    if (!geometry->volume)
         return STATUS_OK;
     TRY_GOTO(cells_begin(geometry, NULL, &cells, &box, err));
     TRY_GOTO(mem_calloc(&cells.is_met, all.n, sizeof *cells.is_met, "segments", err));
@@ -298,7 +298,7 @@ static int by_key(const void *a, const void *b)
 /* Where a segment's value is on the scale; 0 for none. */
 static double place_of(const Paints *paints, uint32_t number)
 {
-    const double *places = paints->scene->appearance.places;
+    const double *places = paints->scene->appearance.positions;
     double place = places ? places[painted_segment(paints, number)->segment] : 0;
     return isnan(place) ? 0 : place;
 }
@@ -494,7 +494,7 @@ static Status put_functions(Text *out, void *context, Err *err)
 static Status put_weights(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
-    return put_hierarchy(out, geometry, geometry->scene->appearance.places, err);
+    return put_hierarchy(out, geometry, geometry->scene->appearance.positions, err);
 }
 
 /* What finds the mean where colors blend. */

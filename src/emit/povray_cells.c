@@ -462,7 +462,7 @@ static Status put_cell_paint(CellWriter *writer, const Cell *cell, CellTextPart 
 static double place_of(const EmitParams *params, const CellTerm *term)
 {
     const Scene *scene = params->scene;
-    return scene->appearance.places[scene->geometry.segments[term->segment].segment];
+    return scene->appearance.positions[scene->geometry.segments[term->segment].segment];
 }
 
 /* The sum of the terms whose segments have places, times these if `placed`; "(0)" without any. */
@@ -615,7 +615,7 @@ static Status take_cells(PovrayGeometry *geometry, Err *err)
     size_t n = 0;
     for (size_t i = 0; i < built->n_cells; i++) {
         const Cell *cell = &built->cells[i];
-        if (sight_meets(geometry->sight, (Box){cell->low, cell->high}))
+        if (rayvolume_meets(geometry->volume, (Box){cell->low, cell->high}))
             geometry->hit_cells[n++] = *cell;
     }
     geometry->cells[0] = *built;

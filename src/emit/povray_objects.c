@@ -50,7 +50,7 @@ static void mark_triangles(const PovrayGeometry *geometry, bool *is_met)
         for (int k = 0; k < 3; k++)
             box = box_with_ball(box, mesh_point(mesh, mesh->triangles[i][k]), 0);
         bool *met = &is_met[mesh_segment(mesh, i)];
-        *met = *met || sight_meets(geometry->sight, box);
+        *met = *met || rayvolume_meets(geometry->volume, box);
     }
 }
 
@@ -61,7 +61,7 @@ static bool meets_primitive(const PovrayGeometry *geometry, size_t item)
         Ball ball = geometry_ball(&geometry->scene->geometry, 2 * item + end);
         box = box_with_ball(box, ball.center, ball.radius);
     }
-    return sight_meets(geometry->sight, box);
+    return rayvolume_meets(geometry->volume, box);
 }
 
 /* Keeps the items that rays of the part can hit. */
@@ -91,8 +91,8 @@ Status povray_objects_find(PovrayGeometry *geometry, Err *err)
     const size_t n = items_are_primitives(all) ? all->n_primitives : all->n_segments;
     assert(!params->part || !anatomy);
     if (params->part)
-        TRY(sight_new(&scene->view, all->bounds, *params->part, params->shadows, &geometry->sight,
-                      err));
+        TRY(rayvolume_new(&scene->view, all->bounds, *params->part, params->shadows,
+                          &geometry->volume, err));
     geometry->n_objects = anatomy && anatomy->n_trees > 1 ? 1 + anatomy->n_trees : 1;
     TRY(mem_calloc(&geometry->objects, geometry->n_objects, sizeof *geometry->objects, "trees",
                    err));
@@ -100,7 +100,7 @@ Status povray_objects_find(PovrayGeometry *geometry, Err *err)
     for (size_t i = 0; i < n; i++)
         geometry->indices[i] = (uint32_t)i;
     geometry->objects[0] = (PovrayItems){geometry->indices, n};
-    if (geometry->sight && !is_field(geometry))
+    if (geometry->volume && !is_field(geometry))
         TRY(choose_items(geometry, err));
     return geometry->n_objects > 1 ? sort_items(geometry, err) : STATUS_OK;
 }
@@ -115,7 +115,7 @@ void povray_objects_release(PovrayGeometry *geometry)
     free(geometry->objects);
     free(geometry->indices);
     indexlists_release(&geometry->trees);
-    sight_free(geometry->sight);
+    rayvolume_free(geometry->volume);
 }
 
 Status put_declaration(Text *out, const PovrayGeometry *geometry, const char *kind, Values *members,

@@ -12,13 +12,13 @@ typedef struct PovrayItems {
     size_t n;
 } PovrayItems;
 
-/* A geometry that is being written. Everything from `sight` on is owned; release it with
+/* A geometry that is being written. Everything from `volume` on is owned; release it with
  * povray_objects_release. */
 typedef struct PovrayGeometry {
     const EmitParams *params;
     const Scene *scene;
     EmitReport *report;
-    Sight *sight;         /* the rays of params->part; NULL: there is no part */
+    RayVolume *volume;    /* the rays of params->part; NULL: there is no part */
     PovrayItems *objects; /* [0]: Tree; of a forest, [k]: Tree_k */
     size_t n_objects;
     uint32_t *indices;   /* the items of all objects */

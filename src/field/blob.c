@@ -1,14 +1,14 @@
-/* The numbers of blob_shape are a least maximum of two errors, in the place of the surface and in
- * its normal, over 30 bifurcations and a free end [docs/METHODS.md section 2.6, which derives what
- * is fitted; tests/fit/fit_blob.c, which finds them]. The distance from the potential's surface is
- * at most 0.028 of the radius there. */
+/* The numbers of blob_shape minimise the maximum of two errors, in the position of the surface and
+ * in its normal, over 30 bifurcations and a free end. docs/METHODS.md section 2.6 derives what is
+ * fitted; tests/fit/fit_blob.c finds the numbers. In these cases the distance from the potential's
+ * surface is at most 0.028 of the radius. */
 #include "field/blob.h"
 
 #include <math.h>
 
 const BlobShape blob_shape = BLOB_SHAPE;
 
-/* (1 - d^2 / R^2)^2, of squares. */
+/* Returns (1 - d^2 / R^2)^2 from d^2 and R^2, or 0 for d > R. */
 static double profile(double distance2, double radius2)
 {
     double inside = 1 - distance2 / radius2;
@@ -67,7 +67,7 @@ void blob_components(const BlobShape *shape, const FieldSegment *segment,
     }
 }
 
-/* x less its foot on the component's axis. */
+/* Returns the vector to x from the nearest point of the component's axis. */
 static Vec3 from_axis(const BlobComponent *component, bool tube, Vec3 x)
 {
     Vec3 from_a = vec3_sub(x, component->a);

@@ -1,8 +1,12 @@
-/* Along a line of unit direction a component's field is f = S (1 - q)^2, q = d^2 / R^2, where q
- * < 1. With 0 <= q'' <= 2 / R^2 and q'^2 <= 4 q / R^2, f'' = 2 S (q'^2 - (1 - q) q'') lies between
- * -4 S / R^2 and 8 S / R^2; f' has no jump. So |F''| is at most M, the sum of 8 |S| / R^2 over what
- * is felt in an interval of width w, and F is within M w^2 / 8 of the straight line between its
- * ends. If that keeps F off 1, it holds no root; else it is halved. */
+/* Intervals of the ray are halved until a bound proves that an interval has no root, or until it is
+ * as narrow as the precision allows.
+ *
+ * Along a line of unit direction a component's field is f = S (1 - q)^2, with q = d^2 / R^2 < 1.
+ * With 0 <= q'' <= 2 / R^2 and q'^2 <= 4 q / R^2, f'' = 2 S (q'^2 - (1 - q) q'') is between
+ * -4 S / R^2 and 8 S / R^2, and f' has no jump. So |F''| of the sum F is at most M, the sum of
+ * 8 |S| / R^2 over the components that reach into the interval. In an interval of width w, F is
+ * within M w^2 / 8 of the straight line between its values at the ends. If this keeps F away from
+ * 1, the interval holds no root. */
 
 #include "field/blob.h"
 
@@ -14,9 +18,9 @@ typedef struct LongVec {
     long double x, y, z;
 } LongVec;
 
-/* A component as the ray feels it, from t0 to t1 at most. */
+/* A component whose field is above 0 on the ray only between t0 and t1. */
 typedef struct Felt {
-    LongVec a, axis;     /* an end and a unit axis */
+    LongVec a, axis;     /* an end, and the unit direction to the other end */
     long double length;  /* 0: a ball */
     long double radius2; /* mm^2 */
     long double strength;
@@ -26,8 +30,8 @@ typedef struct Felt {
 typedef struct RootSearch {
     LongVec origin, direction;
     ARRAY(Felt) felt;
-    long double low, high; /* where a component is felt */
-    long double least;     /* smallest radius of a segment that is felt, mm */
+    long double low, high; /* the range of the ray that any component reaches */
+    long double least;     /* smallest radius of a segment with such a component, mm */
     long double narrow;    /* intervals are halved until they are this wide, mm */
     BlobRoots *roots;
 } RootSearch;
@@ -52,8 +56,8 @@ static LongVec less(LongVec a, LongVec b)
     return along(a, b, -1);
 }
 
-/* The component, if the ray comes as near as its radius to a ball about it between t_min and
- * t_max. */
+/* Sets *felt to the component. Returns false if the ray misses the ball about the component between
+ * t_min and t_max. */
 static bool take_component(const RootSearch *search, const BlobComponent *component, bool tube,
                            long double t_min, long double t_max, Felt *felt)
 {
@@ -86,7 +90,7 @@ static long double field_of(const Felt *felt, LongVec x)
     return inside > 0 ? felt->strength * inside * inside : 0;
 }
 
-/* The sum of the first n less 1. */
+/* Returns the sum of the first n components at t, minus 1. */
 static long double excess(const RootSearch *search, size_t n, long double t)
 {
     long double sum = -1;
@@ -96,7 +100,8 @@ static long double excess(const RootSearch *search, size_t n, long double t)
     return sum;
 }
 
-/* Brings what is felt between `low` and `high` to the front of the first n: how many. */
+/* Moves the components that reach into [low, high] to the front of the first n. Returns their
+ * number. *curvature receives the bound M of the second derivative. */
 static size_t keep_felt(Felt *felt, size_t n, long double low, long double high,
                         long double *curvature)
 {

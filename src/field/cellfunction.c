@@ -1,14 +1,14 @@
-/* A term is split into parts that POV-Ray evaluates cheaply and that lose nothing far from the
- * origin: two axes v and w across the segment and one along it, each an affine function of x in
- * units of 1/c = sqrt(2) s. The Gaussian is exp(-(v^2 + w^2)), a sum of squares and not a
- * difference of large ones. v is perpendicular to the coordinate axis that the segment is least
- * along, so that it has one coefficient less, and in a planar tree w has only one.
+/* A term is split into affine functions of x that POV-Ray evaluates cheaply, and that stay precise
+ * far from the origin: two axes v and w across the segment and one along it, in units of
+ * 1/c = sqrt(2) s. The Gaussian is exp(-(v^2 + w^2)), a sum of squares instead of a difference of
+ * large squares. v is perpendicular to the coordinate axis that the segment is least along. So v
+ * has only two nonzero coefficients, and in a planar tree w has only one.
  *
- * The axial factor is (erf(start) + erf(end)) / 2, start and end being how far x is inside either
- * end. It is step(start) + step(end) - 1 with step(u) = (1 + erf u) / 2, and where one end is so
- * far inside that its step is 1, the other step alone, or 1. erf u is tanh(odd polynomial of u),
- * least in the largest error over all u for its degree; then step(u) = 1 / (1 + exp(-2 polynomial))
- * takes one exp. */
+ * The axial factor is (erf(start) + erf(end)) / 2, where start and end are the distances of x from
+ * the two ends, positive inwards. With step(u) = (1 + erf u) / 2 it is step(start) + step(end) - 1.
+ * Where the step of one end is 1, it is the step of the other end alone, or 1. erf u is replaced by
+ * tanh of an odd polynomial of u, which minimises the largest error over all u for its degree. Then
+ * step(u) = 1 / (1 + exp(-2 polynomial)) takes one exp. */
 #include "field/field.h"
 
 const double erf_forms[][ERF_TERMS] = {
@@ -27,9 +27,9 @@ double cell_displacement(double radius_mm, ErfForm form)
     return (3 * erf_form_error(form) + 2e-5) * radius_mm;
 }
 
-/* c (direction . x) + offset, zero at the origin given. Rounded to 12 digits of c and to 1e-10, so
- * that equal numbers are equal to the last bit: POV-Ray's time to read a scene grows with the
- * square of how many different ones there are. */
+/* Returns the function c direction . (x - origin). Its coefficients are rounded to 12 digits of c,
+ * and its offset to 1e-10, so that equal numbers are equal to the last bit: POV-Ray's time to read
+ * a scene grows with the square of the number of different constants. */
 static Linear linear(Vec3 direction, double c, Vec3 origin)
 {
     double unit = elementary_pow(10, 11 - floor(elementary_log10(c)));
@@ -106,13 +106,13 @@ typedef struct TermSum {
     uint32_t segment;
 } TermSum;
 
-/* Of the `n` terms at the places given, or of the first n. */
-static TermSum sum_terms(const CellTree *cells, const CellTerm *terms, const uint32_t *places,
+/* Sums n of the terms: those at these positions, or, if positions is NULL, the first n. */
+static TermSum sum_terms(const CellTree *cells, const CellTerm *terms, const uint32_t *positions,
                          uint32_t n, Vec3 x)
 {
     TermSum sum = {.largest = -1};
     for (uint32_t i = 0; i < n; i++) {
-        const CellTerm *term = &terms[places ? places[i] : i];
+        const CellTerm *term = &terms[positions ? positions[i] : i];
         double value = term_at(cells, term, x);
         sum.phi += value;
         if (value > sum.largest) {
@@ -123,7 +123,7 @@ static TermSum sum_terms(const CellTree *cells, const CellTerm *terms, const uin
     return sum;
 }
 
-/* The largest of the sums of the groups. */
+/* Returns the largest of the sums of the cell's groups at x. */
 static TermSum largest_sum(const CellTree *cells, const Cell *cell, Vec3 x)
 {
     const CellTerm *terms = cells->terms + cell->first;
@@ -132,8 +132,8 @@ static TermSum largest_sum(const CellTree *cells, const Cell *cell, Vec3 x)
     TermSum best = {.phi = -1};
     for (uint32_t group = 0; group < cell->n_groups; group++) {
         uint32_t n;
-        const uint32_t *places = cell_group(cells, cell, group, &n);
-        TermSum sum = sum_terms(cells, terms, places, n, x);
+        const uint32_t *positions = cell_group(cells, cell, group, &n);
+        TermSum sum = sum_terms(cells, terms, positions, n, x);
         best = sum.phi > best.phi ? sum : best;
     }
     return best;
@@ -154,7 +154,7 @@ uint32_t cell_largest_term(const CellTree *cells, const Cell *cell, Vec3 x)
     return largest_sum(cells, cell, x).segment;
 }
 
-/* The group whose sum is largest at x, the first of equals. */
+/* Returns the group whose sum at x is largest; on a tie, the first. */
 static uint32_t largest_group(const CellTree *cells, const Cell *cell, Vec3 x)
 {
     const CellTerm *terms = cells->terms + cell->first;
@@ -162,8 +162,8 @@ static uint32_t largest_group(const CellTree *cells, const Cell *cell, Vec3 x)
     uint32_t best = 0;
     for (uint32_t group = 0; group < cell->n_groups; group++) {
         uint32_t n;
-        const uint32_t *places = cell_group(cells, cell, group, &n);
-        double phi = sum_terms(cells, terms, places, n, x).phi;
+        const uint32_t *positions = cell_group(cells, cell, group, &n);
+        double phi = sum_terms(cells, terms, positions, n, x).phi;
         best = phi > most ? group : best;
         most = fmax(phi, most);
     }
@@ -174,11 +174,11 @@ double cell_mean(const CellTree *cells, const Cell *cell, const FieldSegment *se
                  const double *numbers, Vec3 x)
 {
     uint32_t n = cell->count;
-    const uint32_t *places =
+    const uint32_t *positions =
         cell->n_groups ? cell_group(cells, cell, largest_group(cells, cell, x), &n) : NULL;
     double all = 0, known = 0, sum = 0;
     for (uint32_t i = 0; i < n; i++) {
-        const CellTerm *term = &cells->terms[cell->first + (places ? places[i] : i)];
+        const CellTerm *term = &cells->terms[cell->first + (positions ? positions[i] : i)];
         double value = term_at(cells, term, x), number = numbers[segments[term->segment].segment];
         all += value;
         if (isnan(number))

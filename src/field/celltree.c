@@ -1,13 +1,14 @@
-/* One descent from at most eight cubes about everything: each cube filters its parent's list of
- * terms by their bound in it, and is dropped when the bounds do not add up to the level; so empty
- * space costs nothing and a segment is looked at only where it may matter. A cube of side 4 r_max *
- * 2^j lies on the lattice of multiples of its side, so that neighbours share their faces to the
- * last bit. The box of a cell is its cube with an overlap about it.
+/* The octree is descended once, from at most eight cubes that hold all vessels. Each cube filters
+ * its parent's list of terms by their bounds in the cube. A cube is dropped if the bounds do not
+ * add up to the level. So empty space costs nothing, and a segment is tested only where it may
+ * matter. A cube of side 4 r_max 2^j is on the lattice of multiples of its side, so that neighbours
+ * share their faces to the last bit. The box of a cell is its cube with an overlap about it.
  *
  * The bound of the gradient. In units of s, the axial factor A of a term is the probability that a
- * normal variable is within the segment, and |A'| = |E[g; inside]| <= A sqrt(-2 ln A), because a
- * law whose mean is m has an entropy of at least m^2 / 2 relative to the normal law, and that of
- * the normal law confined to a set of probability A is -ln A. With the radial factor
+ * normal variable is within the segment, and |A'| = |E[g; inside]| <= A sqrt(-2 ln A). The reason:
+ * a distribution with mean m has a relative entropy of at least m^2 / 2 to the normal distribution,
+ * and that of the normal distribution confined to a set of probability A is -ln A. With the radial
+ * factor
  *   s |grad phi| <= phi sqrt(-2 ln phi).
  * For the sum, with L^2 = -2 ln Phi, p_i = phi_i / Phi and q_i = (s_min / s_i)^2 <= 1, by
  * Cauchy-Schwarz, q_i <= 1, and Gibbs' variational principle
@@ -15,32 +16,36 @@
  *                              <= 2 (sum p_i q_i L^2 / 2 - sum p_i ln p_i)
  *                              <= 2 ln sum exp(q_i L^2 / 2),
  * and grad (log form) = -grad Phi / (Phi L): s_min |grad| <= sqrt(2 ln(sum exp(q_i L^2 / 2))) / L,
- * which grows with Phi. Equality for one term, and for n that coincide. For the largest of sums of
- * some of the terms it holds as it does for each. */
+ * which grows with Phi. Equality holds for one term, and for n terms that coincide. The bound holds
+ * for each sum of some of the terms, so it holds for the largest of such sums. */
 #include "field/field.h"
 
 #include <float.h>
 #include <stdlib.h>
 
-/* There is no surface where the potential is below or above these. The hundredth of the level
- * covers a thousand dropped terms, and an erf approximated to 2.8e-4 in four terms. */
+/* There is no surface where the potential is below empty_below or above full_above. The margin of a
+ * hundredth of the level covers a thousand terms that are left out, and an erf approximated
+ * to 2.8e-4 in four terms. */
 static const double empty_below = 0.99 * FIELD_LEVEL;
 static const double full_above = 1.01 * FIELD_LEVEL;
 
-/* A term matters for the size of a cell when its bound is above this. */
+/* A term matters for the size of a cell if its bound is above this. How the number was chosen is
+ * not recorded; a smaller one makes more cells. */
 static const double significant = 1e-2;
 
-/* The accuracy of a cell over its local radius, and the most that a shadow may ask for. */
+/* In units of the local radius: the accuracy of a cell, and the largest accuracy that
+ * SHADOW_ACCURACY_MM may raise it to. */
 static const double accuracy_ratio = 1.0 / 300, largest_accuracy_ratio = 1.0 / 60;
 
-/* Boxes reach beyond their cubes by this many accuracies and up to 2 SHIFTS spacings, in which they
- * are shifted against each other. */
+/* A box reaches beyond its cube by this many accuracies, and by up to 2 SHIFTS spacings. Boxes are
+ * shifted against each other by whole spacings [box_shifted]. */
 static const double overlap_accuracies = 5;
 enum { SHIFTS = 13 };
 
-/* The box of a cell is that of the parts of its cube, halved so many times, that the surface may
- * meet; of many terms, that of the whole cube. */
-enum { HALVINGS = 2, MOST_HALVED_TERMS = 16 };
+/* To make a cell's box small, its cube is halved HALVINGS times along each axis. The box holds the
+ * parts that the surface may meet. With more than MAX_HALVED_TERMS terms, the box holds the whole
+ * cube. */
+enum { HALVINGS = 2, MAX_HALVED_TERMS = 16 };
 
 /* With erf as a polynomial's tanh, s |A'| is at most this times A sqrt(-2 ln A) down to A =
  * LOG_FORM_FLOOR / 10, and within the bound of the exact form from A = 1e-3 up (tabulated in
@@ -48,44 +53,45 @@ enum { HALVINGS = 2, MOST_HALVED_TERMS = 16 };
 static const double tail_steepness[] = {[ERF_FAST] = 1.14, [ERF_EXACT] = 1.21};
 
 static const size_t max_cells = 1000000;
-/* Terms looked at in all cubes, those without surface included, and KEPT times more for one that is
- * kept: seconds of work. Of most trees, 80 a cell. */
+/* The work is limited to seconds: the number of terms tested in all cubes, also in cubes without
+ * surface. A term that passes the test counts KEPT times more. Most trees need 80 per cell. */
 enum { KEPT = 3 };
 static const uint64_t max_looks = 30000000, max_looks_per_cell = 150;
 
-/* A term's bound is peak exp(-decay dist^2), above the cut-off up to dist^2 = reach2. */
+/* A term's bound at the distance dist is peak exp(-decay dist^2). It is above CELL_TERM_CUTOFF up
+ * to dist^2 = reach2. */
 typedef struct Support {
     double peak, decay, reach2;
 } Support;
 
 typedef struct CellBuilder {
     const FieldSegment *segments;
-    Support *supports; /* one a segment */
+    Support *supports; /* per segment */
     double beta;
     double root_side;
-    /* mm, a power of 2: single precision holds its multiples in all boxes, and their differences.
-     * POV-Ray keeps the least corner and the size of a box in single precision, and looks into no
-     * box that these miss: so the sides of boxes are such multiples. */
+    /* mm, a power of 2. Single precision holds its multiples in all boxes, and their differences.
+     * POV-Ray stores the lowest corner and the size of a box in single precision, and skips a box
+     * that a ray misses by these. So the faces of boxes are at multiples of the spacing. */
     double spacing;
     uint32_t *stack; /* the lists of the cubes from the first down to the current one */
     size_t depth, stack_capacity;
-    uint64_t looks;      /* at terms, in all cubes so far */
-    LocalGroups *groups; /* NULL where all segments blend */
+    uint64_t looks;      /* number of terms tested so far, in all cubes */
+    LocalGroups *groups; /* NULL if all segments blend */
     CellTree tree;
     size_t cell_capacity, term_capacity, member_capacity, group_capacity;
 } CellBuilder;
 
-/* Part of the stack, and what its terms have in common. */
+/* A list of terms: a part of the stack, and properties of its terms. */
 typedef struct TermList {
     size_t first, count;
-    double bound_sum;
+    double bound_sum; /* sum of the bounds of the terms */
     double smallest_radius, largest_radius;
-    double local_radius; /* smallest of the significant terms, of all when none is */
+    double local_radius; /* smallest radius of the significant terms; of all terms if none is */
     double steepness;    /* the bound of s_min |grad (log form)| below the level; 0 where there is
                           * no surface by bound_sum */
 } TermList;
 
-/* A cube of the octree: the multiples of `side` from at[] on. */
+/* A cube of the octree, with its lowest corner at at[] times `side`. */
 typedef struct Cube {
     double side;
     int64_t at[3];
@@ -113,7 +119,7 @@ static Box cube_box(const Cube *cube, double margin)
                  {low.x + side, low.y + side, low.z + side}};
 }
 
-/* The bound of s_min |grad (log form)| for potentials up to `phi`. */
+/* Returns the bound of s_min |grad (log form)| for potentials up to `phi`. */
 static double gradient_bound(const CellBuilder *builder, const TermList *terms, double phi)
 {
     double half_l2 = -elementary_log(phi), sum = 0;
@@ -134,8 +140,8 @@ static Status filter_terms(CellBuilder *builder, const TermList *from, Box box, 
     builder->looks += from->count;
     if (builder->looks > max_looks + max_looks_per_cell * builder->tree.n_cells)
         return err_set(err, STATUS_INFEASIBLE,
-                       "the isosurface has too many vessels that overlap, or radii that are too "
-                       "different, to be cut into cells in a reasonable time; leave out vessels or "
+                       "the isosurface has too many vessels that overlap, or radii that differ too "
+                       "much, to be divided into cells in a reasonable time; leave out vessels or "
                        "choose another model");
     for (size_t i = from->first; i < from->first + from->count; i++) {
         uint32_t number = builder->stack[i];
@@ -162,19 +168,19 @@ static Status filter_terms(CellBuilder *builder, const TermList *from, Box box, 
     return STATUS_OK;
 }
 
-/* A sum of terms at the centre of a cube, and what it is at least all over the cube: each term
- * loses at most the largest phi sqrt(-2 ln phi) / s, exp(-1/2) / s, a mm. */
+/* A sum of terms at the centre of a cube, and its lower bound in the cube. Per mm, each term loses
+ * at most the maximum of phi sqrt(-2 ln phi) / s, which is exp(-1/2) / s. */
 typedef struct CubeSum {
     double phi, at_least;
 } CubeSum;
 
-/* Of the `n` terms at the places given of the list, or of the first n. */
-static CubeSum sum_in(const CellBuilder *builder, const uint32_t *list, const uint32_t *places,
+/* Sums n terms of the list: those at these positions, or, if positions is NULL, the first n. */
+static CubeSum sum_in(const CellBuilder *builder, const uint32_t *list, const uint32_t *positions,
                       size_t n, Vec3 center, double half_diagonal)
 {
     CubeSum sum = {0};
     for (size_t i = 0; i < n; i++) {
-        const FieldSegment *segment = &builder->segments[list[places ? places[i] : i]];
+        const FieldSegment *segment = &builder->segments[list[positions ? positions[i] : i]];
         double term = potential_term(segment, center);
         sum.phi += term;
         sum.at_least +=
@@ -183,7 +189,7 @@ static CubeSum sum_in(const CellBuilder *builder, const uint32_t *list, const ui
     return sum;
 }
 
-/* The largest of the sums of the groups. */
+/* Returns the largest of the sums of the groups. */
 static CubeSum largest_sum(const CellBuilder *builder, const TermList *terms, Vec3 center,
                            double half_diagonal)
 {
@@ -194,17 +200,17 @@ static CubeSum largest_sum(const CellBuilder *builder, const TermList *terms, Ve
     size_t n_groups = localgroups_find(builder->groups, list, terms->count);
     for (size_t group = 0; group < n_groups; group++) {
         size_t n;
-        const uint32_t *places = localgroups_members(builder->groups, group, &n);
-        CubeSum sum = sum_in(builder, list, places, n, center, half_diagonal);
+        const uint32_t *positions = localgroups_members(builder->groups, group, &n);
+        CubeSum sum = sum_in(builder, list, positions, n, center, half_diagonal);
         largest.phi = fmax(largest.phi, sum.phi);
         largest.at_least = fmax(largest.at_least, sum.at_least);
     }
     return largest;
 }
 
-/* Whether the potential at the centre proves that the level is not met in the cube widened by
- * `margin`: it is too small to reach the level by the bound of the log form's gradient, or so large
- * that it stays above. */
+/* Returns true if the potential at the centre proves that the cube, widened by `margin`, does not
+ * meet the surface. By the bound of the log form's gradient, the potential is too small to reach
+ * the level, or so large that it stays above. */
 static bool misses_surface(const CellBuilder *builder, const TermList *terms, const Cube *cube,
                            double margin)
 {
@@ -218,7 +224,7 @@ static bool misses_surface(const CellBuilder *builder, const TermList *terms, co
     return rise * terms->smallest_radius / 2 > terms->steepness * half_diagonal;
 }
 
-/* x down (sign 1) or up (sign -1) to `decimals` places behind the point, which may be negative. */
+/* Rounds x down (sign 1) or up (sign -1) to this number of decimals, which may be negative. */
 static double round_down(double x, int decimals, double sign)
 {
     double unit = elementary_pow(10, abs(decimals));
@@ -226,7 +232,7 @@ static double round_down(double x, int decimals, double sign)
                         : sign * floor(sign * x * unit) / unit;
 }
 
-/* Decimals that keep `digits` digits of x > 0. */
+/* Returns the number of decimals that keep `digits` significant digits of x > 0. */
 static int decimals_of(double x, int digits)
 {
     return digits - 1 - (int)floor(elementary_log10(x));
@@ -239,7 +245,7 @@ double cell_accuracy(double radius)
     return round_down(accuracy, decimals_of(accuracy, 3), 1);
 }
 
-/* Which ends of the segment the term feels somewhere in the box. */
+/* Returns which ends of the segment matter for the term in the box. */
 static TermPart part_in(const TermForm *form, Box box)
 {
     Vec3 center = box_center(box), half = vec3_sub(box.high, center);
@@ -265,7 +271,7 @@ static Status push_terms(CellBuilder *builder, const TermList *terms, Box box, E
     return STATUS_OK;
 }
 
-/* Adds the groups of the cell, unless its terms are all one. */
+/* Adds the groups of the cell, unless all its terms are in one group. */
 static Status push_groups(CellBuilder *builder, const TermList *terms, Cell *cell, Err *err)
 {
     CellTree *tree = &builder->tree;
@@ -280,18 +286,18 @@ static Status push_groups(CellBuilder *builder, const TermList *terms, Cell *cel
                     sizeof *tree->group_ends, "groups of cells", err));
     for (size_t group = 0; group < n_groups; group++) {
         size_t n;
-        const uint32_t *places = localgroups_members(builder->groups, group, &n);
+        const uint32_t *positions = localgroups_members(builder->groups, group, &n);
         TRY(mem_reserve(&tree->members, &builder->member_capacity, tree->n_members + n,
                         sizeof *tree->members, "groups of cells", err));
         for (size_t i = 0; i < n; i++)
-            tree->members[tree->n_members++] = places[i];
+            tree->members[tree->n_members++] = positions[i];
         tree->group_ends[tree->n_groups++] = tree->n_members;
     }
     return STATUS_OK;
 }
 
-/* The segment whose term is more than half the level where the sum reaches it, because all others
- * together stay below. */
+/* Returns the segment whose term is above half of the level wherever the sum reaches the level,
+ * because all other terms together stay below half of it. Returns CELL_MIXED if there is none. */
 static uint32_t largest_in(const CellBuilder *builder, const TermList *terms, Box box)
 {
     for (size_t i = 0; i < terms->count; i++) {
@@ -303,7 +309,7 @@ static uint32_t largest_in(const CellBuilder *builder, const TermList *terms, Bo
     return CELL_MIXED;
 }
 
-/* The bound of the gradient of the cell's function, whose scale is `scale`. */
+/* Returns the bound of the gradient of the cell's function. cell->scale must be set. */
 static double max_gradient(const CellBuilder *builder, const TermList *terms, const Cell *cell)
 {
     double bound = 1;
@@ -316,23 +322,24 @@ static double max_gradient(const CellBuilder *builder, const TermList *terms, co
     return round_down(gradient, decimals_of(gradient, 4), -1);
 }
 
-/* SHIFTS, or 1, which is no shift, where single precision is too coarse. */
+/* Returns the number of different shifts: SHIFTS, or 1, which means no shift, where single
+ * precision is too coarse for shifts. */
 static int shifts_at(const CellBuilder *builder, double accuracy)
 {
     return 2 * SHIFTS * builder->spacing <= overlap_accuracies * accuracy ? SHIFTS : 1;
 }
 
-/* How far the box of a cell reaches beyond its cube, before it is shifted. */
+/* Returns how far the box of a cell reaches beyond its cube before the box is shifted, mm. */
 static double overlap_of(const CellBuilder *builder, double accuracy)
 {
     double step = shifts_at(builder, accuracy) * builder->spacing;
     return ceil(overlap_accuracies * accuracy / step) * step;
 }
 
-/* The shift of a cell's box, in spacings, below SHIFTS - 1. Two cells that touch have different
- * shifts where their boxes, before the overlap is added, may begin and end in the same two planes
- * across an axis: the cubes of such cells are at most HALVINGS levels of the octree apart, and if
- * they are of one level, they differ in one or two of their three coordinates. */
+/* Returns the shift of a cell's box, in spacings, below SHIFTS - 1. Two cells that touch need
+ * different shifts if their boxes, before the overlap is added, may begin and end in the same two
+ * planes across an axis. The cubes of such cells are at most HALVINGS levels of the octree apart.
+ * If they are of one level, they differ in one or two of their three coordinates. */
 static int shift_of(const CellBuilder *builder, const Cube *cube)
 {
     int level = ilogb(builder->root_side / cube->side) % (HALVINGS + 1);
@@ -340,16 +347,15 @@ static int shift_of(const CellBuilder *builder, const Cube *cube)
     return 4 * level + (int)((x ^ z) | (y ^ z) << 1);
 }
 
-/* The box of a cell of this cube and accuracy, by what it has of the surface: its sides are
- * multiples of the spacing, and it is shifted.
+/* Returns the box of a cell: `box`, rounded outwards to multiples of the spacing, and shifted.
  *
- * POV-Ray halves the stretch of a ray in a box again and again, and so finds the wall at a fraction
- * k / 2^i of the stretch. Where a ray along an axis meets the boxes of two cells that shift_of
- * tells apart, equal fractions of the two stretches are different places: with overlaps of 13 m and
- * 13 m' spacings and shifts s and s' they would be one place if 13 (m - m') (2 k - 2^i) were 2^i (s
- * - s'), which 13 does not divide. Unequal fractions may be one place; but as the two boxes begin
- * at different places, it is known which of them POV-Ray looks into first.
- */
+ * The shift makes the order of hits certain. POV-Ray halves the interval of a ray in a box again
+ * and again, and so finds the surface at a fraction k / 2^i of the interval. Take a ray along an
+ * axis that meets the boxes of two cells with different shifts s and s', and overlaps of 13 m and
+ * 13 m' spacings. Equal fractions of the two intervals are different points: they would be one
+ * point if 13 (m - m') (2 k - 2^i) were 2^i (s - s'), which 13 does not divide. Unequal fractions
+ * may be one point. But the two boxes begin at different points, so it is known which box POV-Ray
+ * searches first. */
 static Box box_shifted(const CellBuilder *builder, Box box, const Cube *cube, double accuracy)
 {
     double unit = builder->spacing;
@@ -366,8 +372,8 @@ static bool box_has_box(Box box, Box other)
     return box_holds(box, other.low, 0) && box_holds(box, other.high, 0);
 }
 
-/* Widens *box to hold the parts of the cube, halved `times` times, in which the surface can lie,
- * each with `margin` about it. */
+/* Widens *box to hold the parts of the cube, halved `times` times, in which the surface can be.
+ * Each part has `margin` about it. */
 static Status hold_surface(CellBuilder *builder, const TermList *candidates, const Cube *cube,
                            double margin, int times, Box *box, Err *err)
 {
@@ -389,11 +395,12 @@ static Status hold_surface(CellBuilder *builder, const TermList *candidates, con
     return STATUS_OK;
 }
 
-/* These looks are bounded by the number of cells, and not counted. */
+/* Finds the box of the surface in a cube. Its tests of terms are not counted, because the number of
+ * cells bounds them. */
 static Status box_of_surface(CellBuilder *builder, const TermList *candidates, const Cube *cube,
                              double margin, Box *box, Err *err)
 {
-    int times = candidates->count > MOST_HALVED_TERMS ? 0 : HALVINGS;
+    int times = candidates->count > MAX_HALVED_TERMS ? 0 : HALVINGS;
     uint64_t looks = builder->looks;
     *box = box_empty();
     TRY(hold_surface(builder, candidates, cube, margin, times, box, err));
@@ -434,8 +441,8 @@ static Status add_cell(CellBuilder *builder, const TermList *candidates, const C
     return STATUS_OK;
 }
 
-/* Adds the cells of a cube, whose parent has the terms `parent`. Terms are kept where they matter
- * in the cube widened by the overlap of any cell that it may hold. */
+/* Adds the cells of a cube, whose parent has the terms `parent`. A term is kept if it matters in
+ * the cube widened by the overlap of any cell in it. */
 static Status descend(CellBuilder *builder, const TermList *parent, const Cube *cube, Err *err)
 {
     size_t depth = builder->depth;
@@ -458,7 +465,7 @@ static Status descend(CellBuilder *builder, const TermList *parent, const Cube *
     return STATUS_OK;
 }
 
-/* Descends from the cubes of the lattice, two along each axis at most, that hold the box; `all` is
+/* Descends from the cubes of the lattice that hold the box, at most two along each axis. `all` is
  * the list of all terms. */
 static Status descend_from_top(CellBuilder *builder, const TermList *all, Box box, Err *err)
 {
@@ -483,8 +490,8 @@ static Status descend_from_top(CellBuilder *builder, const TermList *all, Box bo
     return STATUS_OK;
 }
 
-/* The power of 2 whose multiples within a box, and up to two root cubes beyond, single precision
- * holds, and so their differences. */
+/* Returns the smallest power of 2 whose multiples, in a box and up to two root cubes beyond it, are
+ * exact in single precision, as are their differences. */
 static double spacing_within(Box box, double root_side)
 {
     double farthest = fmax(fmax(fmax(-box.low.x, box.high.x), fmax(-box.low.y, box.high.y)),

@@ -1,5 +1,11 @@
 /* The public header of the module field: the implicit potential of a scene.
  *
+ * Each segment has a term of the potential: a Gaussian across the segment's axis, cut off smoothly
+ * at both ends. The surface of the vessels is a level set of the sum of the terms. This header has
+ * the terms and the constants. Other headers of the module prepare them for rays [fieldindex.h],
+ * for POV-Ray's isosurface [cells.h] and blob [blob.h], restrict blend groups to few segments
+ * [localgroups.h], and mix values of segments [termmean.h].
+ *
  * Phi(x) = sum_i exp(-d_i^2 / (2 s_i^2)) (erf((l_i - t_i) / (sqrt2 s_i)) + erf(t_i / (sqrt2 s_i)))
  * / 2, with s_i = radius / 2, the segment's length l_i, the distance d_i of x from its axis line,
  * and the distance t_i of x from its first end along the axis [Neumann et al. eq. 4-6;
@@ -24,10 +30,10 @@ static inline double potential_k(double radius_mm)
     return sqrt(2) / radius_mm;
 }
 
-/* Returns one term of the potential at x, in [0, 1]. The error is a few units in the last place of
- * its larger factor, also far from the segment. */
+/* Returns the term of a segment at x, in [0, 1]. The error is a few units in the last place of the
+ * term's larger factor, also far from the segment. The segment's ends must differ. */
 double potential_term(const FieldSegment *segment, Vec3 x);
-/* Returns the same term, and sets *gradient to its gradient, 1/mm. */
+/* Returns the term of a segment at x, and sets *gradient to the term's gradient, 1/mm. */
 double potential_term_gradient(const FieldSegment *segment, Vec3 x, Vec3 *gradient);
 
 /* Returns the maximum of the term over all points: erf(l / (2 sqrt2 s)), half way along the
@@ -60,27 +66,30 @@ double segment_box_distance2(const FieldSegment *segment, const Box *box);
  */
 double potential_log_form(double phi);
 
-/* Counts the segments that have no surface about them: half way along the segment the sum of all
- * terms, or of the terms of each of its groups, is below the level. Errors: STATUS_MEMORY. */
+/* Sets *count to the number of segments that have no surface about them: half way along the segment
+ * the sum of all terms, or of the terms of each of its groups, is below FIELD_LEVEL. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status surface_count_hidden(const Geometry *geometry, size_t *count, Err *err);
 
-/* Planes of a picture of the surface, rows from the top. All arrays are borrowed. */
-typedef struct SurfaceSight {
+/* Depths, normals and ids of a picture of the surface, rows from the top. All arrays are
+ * borrowed. */
+typedef struct SurfacePlanes {
     const float *depth;  /* per pixel: mm along the ray; INFINITY where nothing is hit */
     const float *normal; /* per pixel: three components of the unit normal */
-    const uint32_t *ids; /* per pixel: id of the segment of the geometry, where something is hit */
-} SurfaceSight;
+    const uint32_t *ids; /* per pixel: SWC id of the segment; not read where nothing is hit */
+} SurfacePlanes;
 
-/* Finds how far apart the depths of two pictures may be.
+/* Computes how far apart the depths of two pictures of one surface may be: a picture by POV-Ray's
+ * root finder, and a picture of the exact surface.
  *
- * erf      the form that POV-Ray's cells have.
+ * erf      the form of erf in POV-Ray's cells.
  * seen     the hits of POV-Ray's root finder.
  * exact    the hits on the exact surface.
  * allowed  receives, per pixel, the maximum difference along the ray, mm: 0 where neither picture
- *          has a hit, HUGE_VAL where the ray grazes a surface.
+ *          has a hit, HUGE_VAL where the ray grazes a surface. The caller owns the array.
  * Errors   STATUS_MEMORY. */
 MUST_CHECK Status surface_tolerance(const Geometry *geometry, const Camera *camera, ErfForm erf,
-                                    const SurfaceSight *seen, const SurfaceSight *exact,
+                                    const SurfacePlanes *seen, const SurfacePlanes *exact,
                                     float *allowed, Err *err);
 
 #endif

@@ -1,6 +1,7 @@
-/* Top-down, the longest side of the box of the middles split at its median: the depth is at most
- * log2 n + 1, so that a short fixed stack is enough for traversal, and the tubes end up in the
- * order of the leaves. */
+/* The hierarchy is built from the top down. The tubes of a node are split at the median of their
+ * midpoints, along the longest side of the midpoints' box. So the depth is at most log2 n + 1, and
+ * a short stack of fixed size is enough for traversal. The tubes end up in the order of the leaves.
+ */
 #include "field/field.h"
 
 #include <stdlib.h>

@@ -1,5 +1,9 @@
-/* The segments of a scene prepared for rays, and a bounding volume hierarchy over them. Exported by
- * the module's public header. */
+/* The segments of a scene prepared for rays, and a bounding volume hierarchy over them.
+ *
+ * Each segment is a tube: its term of the potential with precomputed constants. A node of the
+ * hierarchy is a box about tubes and the space where their terms matter. Ray casters traverse the
+ * nodes themselves; fieldindex_potential evaluates the potential at a point. Exported by the public
+ * header of the module field. */
 #ifndef CORCAST_FIELD_FIELDINDEX_H
 #define CORCAST_FIELD_FIELDINDEX_H
 
@@ -17,26 +21,26 @@ typedef struct FieldTube {
     double length_k; /* k length */
     double peak;     /* maximum of the term */
     double log_peak;
-    double reach2;    /* the term is below RAY_TERM_CUTOFF at a squared distance from the segment
-                       * beyond this,    in units of 1 / k^2; below 0: everywhere */
+    double reach2;    /* beyond this squared distance from the segment, in units of 1 / k^2, the
+                       * term is below RAY_TERM_CUTOFF. Not above 0: it is below everywhere. */
     uint32_t segment; /* index into geometry->segments */
 } FieldTube;
 
-/* Returns the tube of the segment with this index. */
+/* Returns the tube of a segment whose index in geometry->segments is `index`. */
 FieldTube fieldtube_of(const FieldSegment *segment, uint32_t index);
 
-/* Maximum number of tubes in a leaf; size of a stack that traverses the hierarchy. */
+/* Maximum number of tubes in a leaf, and the size of a stack that can traverse any hierarchy. */
 enum { FIELD_LEAF_SIZE = 2, FIELD_STACK_SIZE = 64 };
 
-/* A box about tubes and their reach. */
+/* A node: a box about its tubes and their reach. */
 typedef struct FieldNode {
     double bounds[2][3]; /* low, high, mm */
-    uint32_t first; /* of a leaf: its first tube; else the second child. The first child is next to
-                     * its parent. */
+    uint32_t first;   /* of a leaf: index of its first tube; of an inner node: index of its second
+                       * child. The first child follows its parent. */
     uint32_t n_tubes; /* 0 for an inner node */
 } FieldNode;
 
-/* Immutable after construction; threads may share it. */
+/* The index. Immutable after construction; threads may share it. */
 typedef struct FieldIndex {
     const Geometry *geometry; /* borrowed */
     FieldTube *tubes;         /* without segments whose term is below RAY_TERM_CUTOFF everywhere */
@@ -45,9 +49,10 @@ typedef struct FieldIndex {
     size_t n_nodes;
 } FieldIndex;
 
-/* Builds the index of the segments of a geometry, of which there may be none. The geometry must
- * outlive the index. Free it with fieldindex_free. Errors: STATUS_MEMORY. O(n log^2 n). */
+/* Builds the index of the segments of a geometry, which may have none. The geometry must outlive
+ * the index. Free *out with fieldindex_free. Errors: STATUS_MEMORY. O(n log^2 n). */
 MUST_CHECK Status fieldindex_build(const Geometry *geometry, FieldIndex **out, Err *err);
+/* Frees the index; NULL is allowed. */
 void fieldindex_free(FieldIndex *index);
 
 /* Returns the sum of all terms at x, regardless of which segments blend. Terms below

@@ -1,29 +1,30 @@
-/* Whether a segment is in the list, and whether a group has been met, is marked by a number that
- * need not be initialised or cleared: place[s] is that of s if the list has s there [Briggs &
- * Torczon, "An efficient representation for sparse sets", 1993].
+/* Two sparse sets mark which segments are in the list and which groups have been found, without
+ * initialising or clearing an array: position[s] counts only if the list has s at this position
+ * [Briggs & Torczon, "An efficient representation for sparse sets", 1993].
  *
- * A group that holds all of another holds its rarest member, so it is among that one's groups;
- * how many segments both have in the list, and the lowest and the highest, settle most pairs. */
+ * A group that contains another group contains its rarest member. So only the groups of this member
+ * are compared. The number of listed segments of both groups, and the lowest and the highest of
+ * these, decide most comparisons. */
 #include "field/localgroups.h"
 
 #include <stdlib.h>
 
-/* What the list has of a group. */
+/* The listed segments of a group. */
 typedef struct GroupPart {
     uint32_t group;
-    uint32_t count, low, high; /* how many segments, and between which */
-    bool held;                 /* by another part */
+    uint32_t count, low, high; /* number of listed segments, their lowest and highest index */
+    bool is_subset;            /* another part has all of them */
 } GroupPart;
 
 struct LocalGroups {
     const Blend *blend;
     const uint32_t *list;
     size_t n_list;
-    uint32_t *place;  /* one a segment */
-    uint32_t *met;    /* one a group: its part */
-    GroupPart *parts; /* in the order in which the list meets them */
+    uint32_t *position; /* per segment: its position in the list */
+    uint32_t *met;      /* per group: the index of its part */
+    GroupPart *parts;   /* in the order in which the list has their first members */
     size_t n_parts;
-    uint32_t *members; /* one a segment */
+    uint32_t *members; /* per segment: result of localgroups_members */
 };
 
 Status localgroups_new(const Geometry *geometry, LocalGroups **out, Err *err)
@@ -33,8 +34,8 @@ Status localgroups_new(const Geometry *geometry, LocalGroups **out, Err *err)
     Status status;
     TRY_GOTO(mem_calloc(&groups, 1, sizeof *groups, "groups", err));
     groups->blend = blend;
-    TRY_GOTO(
-        mem_calloc(&groups->place, geometry->n_segments, sizeof *groups->place, "groups", err));
+    TRY_GOTO(mem_calloc(&groups->position, geometry->n_segments, sizeof *groups->position, "groups",
+                        err));
     TRY_GOTO(
         mem_calloc(&groups->members, geometry->n_segments, sizeof *groups->members, "groups", err));
     TRY_GOTO(mem_calloc(&groups->met, blend->n_groups, sizeof *groups->met, "groups", err));
@@ -50,7 +51,7 @@ void localgroups_free(LocalGroups *groups)
 {
     if (!groups)
         return;
-    free(groups->place);
+    free(groups->position);
     free(groups->members);
     free(groups->met);
     free(groups->parts);
@@ -59,8 +60,8 @@ void localgroups_free(LocalGroups *groups)
 
 static bool is_listed(const LocalGroups *groups, uint32_t segment)
 {
-    uint32_t place = groups->place[segment];
-    return place < groups->n_list && groups->list[place] == segment;
+    uint32_t position = groups->position[segment];
+    return position < groups->n_list && groups->list[position] == segment;
 }
 
 static GroupPart *part_of(const LocalGroups *groups, uint32_t group)
@@ -88,7 +89,7 @@ static void meet(LocalGroups *groups, uint32_t segment)
     }
 }
 
-/* The listed member of a part that is in the fewest groups. */
+/* Returns the listed member of a part that is in the fewest groups. */
 static uint32_t rarest_of(const LocalGroups *groups, const GroupPart *part)
 {
     const IndexLists *members = &groups->blend->members, *holders = &groups->blend->groups;
@@ -104,7 +105,7 @@ static uint32_t rarest_of(const LocalGroups *groups, const GroupPart *part)
     return rarest;
 }
 
-/* Whether what the list has of `part` is all in the other one's group. */
+/* Returns true if all listed segments of `part` are in the group of `other`. */
 static bool is_within(const LocalGroups *groups, const GroupPart *part, const GroupPart *other)
 {
     const IndexLists *members = &groups->blend->members;
@@ -123,8 +124,8 @@ static bool is_within(const LocalGroups *groups, const GroupPart *part, const Gr
     return true;
 }
 
-/* Of equal parts, the first stays. */
-static bool is_held(const LocalGroups *groups, const GroupPart *part)
+/* Returns true if a part is a subset of another part. Of equal parts, the first one is none. */
+static bool is_subset(const LocalGroups *groups, const GroupPart *part)
 {
     const IndexLists *holders = &groups->blend->groups;
     uint32_t rarest = rarest_of(groups, part);
@@ -142,14 +143,14 @@ size_t localgroups_find(LocalGroups *groups, const uint32_t *list, size_t n)
     groups->n_list = n;
     groups->n_parts = 0;
     for (size_t i = 0; i < n; i++)
-        groups->place[list[i]] = (uint32_t)i;
+        groups->position[list[i]] = (uint32_t)i;
     for (size_t i = 0; i < n; i++)
         meet(groups, list[i]);
     for (size_t i = 0; i < groups->n_parts; i++)
-        groups->parts[i].held = is_held(groups, &groups->parts[i]);
+        groups->parts[i].is_subset = is_subset(groups, &groups->parts[i]);
     size_t kept = 0;
     for (size_t i = 0; i < groups->n_parts; i++)
-        if (!groups->parts[i].held)
+        if (!groups->parts[i].is_subset)
             groups->parts[kept++] = groups->parts[i];
     groups->n_parts = kept;
     return kept;
@@ -163,11 +164,11 @@ const uint32_t *localgroups_members(LocalGroups *groups, size_t number, size_t *
     for (uint32_t i = lists->first[group]; i < lists->first[group + 1]; i++) {
         if (!is_listed(groups, lists->items[i]))
             continue;
-        uint32_t place = groups->place[lists->items[i]];
+        uint32_t position = groups->position[lists->items[i]];
         size_t hole = count++;
-        for (; hole > 0 && groups->members[hole - 1] > place; hole--)
+        for (; hole > 0 && groups->members[hole - 1] > position; hole--)
             groups->members[hole] = groups->members[hole - 1];
-        groups->members[hole] = place;
+        groups->members[hole] = position;
     }
     *n = count;
     return groups->members;

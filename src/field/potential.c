@@ -21,21 +21,22 @@ typedef struct TermPosition {
     Vec3 across; /* x less its foot on the axis line, mm */
 } TermPosition;
 
-static TermPosition place_of(const FieldSegment *segment, Vec3 x)
+static TermPosition position_of(const FieldSegment *segment, Vec3 x)
 {
-    TermPosition place = {.k = potential_k(segment->radius_mm)};
-    place.axis = vec3_normalized(vec3_sub(segment->b, segment->a));
+    TermPosition position = {.k = potential_k(segment->radius_mm)};
+    position.axis = vec3_normalized(vec3_sub(segment->b, segment->a));
     Vec3 from_a = vec3_sub(x, segment->a);
-    double along = vec3_dot(from_a, place.axis);
-    place.u = place.k * along;
-    place.v = place.k * vec3_dot(vec3_sub(segment->b, x), place.axis);
-    place.across = vec3_add_scaled(from_a, place.axis, -along);
-    return place;
+    double along = vec3_dot(from_a, position.axis);
+    position.u = position.k * along;
+    position.v = position.k * vec3_dot(vec3_sub(segment->b, x), position.axis);
+    position.across = vec3_add_scaled(from_a, position.axis, -along);
+    return position;
 }
 
-static double radial_factor(const TermPosition *place)
+static double radial_factor(const TermPosition *position)
 {
-    return elementary_exp(-place->k * place->k * vec3_dot(place->across, place->across));
+    return elementary_exp(-position->k * position->k *
+                          vec3_dot(position->across, position->across));
 }
 
 static double axial_factor(double u, double v)
@@ -49,18 +50,19 @@ static double axial_factor(double u, double v)
 
 double potential_term(const FieldSegment *segment, Vec3 x)
 {
-    TermPosition place = place_of(segment, x);
-    return radial_factor(&place) * axial_factor(place.u, place.v);
+    TermPosition position = position_of(segment, x);
+    return radial_factor(&position) * axial_factor(position.u, position.v);
 }
 
 double potential_term_gradient(const FieldSegment *segment, Vec3 x, Vec3 *gradient)
 {
-    TermPosition place = place_of(segment, x);
-    double radial = radial_factor(&place);
-    double term = radial * axial_factor(place.u, place.v);
-    double axial_slope = elementary_exp(-place.u * place.u) - elementary_exp(-place.v * place.v);
-    *gradient = vec3_add_scaled(vec3_scale(place.across, -2 * place.k * place.k * term), place.axis,
-                                place.k * inv_sqrt_pi * radial * axial_slope);
+    TermPosition position = position_of(segment, x);
+    double radial = radial_factor(&position);
+    double term = radial * axial_factor(position.u, position.v);
+    double axial_slope =
+        elementary_exp(-position.u * position.u) - elementary_exp(-position.v * position.v);
+    *gradient = vec3_add_scaled(vec3_scale(position.across, -2 * position.k * position.k * term),
+                                position.axis, position.k * inv_sqrt_pi * radial * axial_slope);
     return term;
 }
 
@@ -69,17 +71,17 @@ static double gap(double x, double low, double high)
     return x < low ? x - low : x > high ? x - high : 0;
 }
 
-/* From the nearest point of the box to x. */
+/* Returns the vector from the nearest point of the box to x. */
 static Vec3 gap_to_box(Vec3 x, const Box *box)
 {
     return vec3(gap(x.x, box->low.x, box->high.x), gap(x.y, box->low.y, box->high.y),
                 gap(x.z, box->low.z, box->high.z));
 }
 
-/* The squared distance of the box from a + s (b - a), s in [0, 1], is convex; its slope by s is
- * piecewise linear and rises, with its bends where the point passes the plane of a face. [s0, s1]
- * is drawn together about the zero of the slope, past each bend, until the slope between them is
- * one straight line. */
+/* The squared distance of the box from the point a + s (b - a), with s in [0, 1], is convex. Its
+ * derivative by s is piecewise linear and rising, with bends where the point passes the plane of a
+ * face. The interval [s0, s1] about the zero of the derivative is narrowed at each bend, until the
+ * derivative in it is one straight line. */
 double segment_box_distance2(const FieldSegment *segment, const Box *box)
 {
     Vec3 a = segment->a, span = vec3_sub(segment->b, a);

@@ -1,7 +1,7 @@
-/* POV-Ray's root finder stops within the accuracy of its cell, measured along the ray. What the
- * cells leave out of the potential moves the surface along its normal, by cell_displacement, so
- * that along the ray it is that over the cosine between both. Depth planes hold single precision.
- */
+/* POV-Ray's root finder stops within the accuracy of its cell, measured along the ray. The terms
+ * that the cells leave out move the surface along its normal by cell_displacement. Along the ray
+ * that is the displacement divided by the cosine between ray and normal. Depths are stored in
+ * single precision. */
 #include "field/field.h"
 
 #include <float.h>
@@ -23,7 +23,7 @@ static Status radii_by_id(const Geometry *geometry, double **out, Err *err)
     return STATUS_OK;
 }
 
-static double tolerance_at(const SurfaceSight *sight, size_t pixel, Vec3 direction,
+static double tolerance_at(const SurfacePlanes *sight, size_t pixel, Vec3 direction,
                            const double *radii, ErfForm erf)
 {
     double depth = (double)sight->depth[pixel];
@@ -39,7 +39,7 @@ static double tolerance_at(const SurfaceSight *sight, size_t pixel, Vec3 directi
 }
 
 Status surface_tolerance(const Geometry *geometry, const Camera *camera, ErfForm erf,
-                         const SurfaceSight *seen, const SurfaceSight *exact, float *allowed,
+                         const SurfacePlanes *seen, const SurfacePlanes *exact, float *allowed,
                          Err *err)
 {
     double *radii = NULL;

@@ -1,5 +1,6 @@
-/* Boxes about the segments, out to where their terms are cut off, find those that are felt at a
- * point. A group is summed once, when its first member is met that is felt. */
+/* A box about each segment reaches to where the segment's term is cut off. The boxes that hold a
+ * point give the segments that count there. A group is summed once: when the first of its members
+ * that counts is found. */
 #include "field/field.h"
 
 #include <stdlib.h>
@@ -53,13 +54,14 @@ void termmean_free(TermMean *mean)
     free(mean);
 }
 
-/* Sums over segments. */
+/* Sums over segments that count at a point. */
 typedef struct Weighed {
     double all, known; /* terms; of segments that have a number */
     double numbers;    /* the latter's times their numbers */
 } Weighed;
 
-/* 0 below the cut-off, so that what is felt is what a box holds. */
+/* Returns the term of a segment, or 0 below the cut-off, so that exactly the segments whose boxes
+ * hold x may count. */
 static double term_of(const TermMean *mean, uint32_t segment, Vec3 x)
 {
     const Geometry *geometry = mean->geometry;
@@ -77,7 +79,7 @@ static void weigh(Weighed *sum, double term, double number)
     sum->numbers += term * number;
 }
 
-/* The sums over a group, none of them if another member that is felt comes before `first`. */
+/* Returns the sums over a group, or zeros if a member before `first` counts at x. */
 static Weighed weigh_group(const TermMean *mean, uint32_t group, uint32_t first,
                            const double *numbers, Vec3 x)
 {
@@ -94,7 +96,8 @@ static Weighed weigh_group(const TermMean *mean, uint32_t group, uint32_t first,
     return sum;
 }
 
-/* The largest of the sums over groups that the segment is the first member of that is felt. */
+/* Raises *best to the largest of the sums over the groups whose first member that counts is this
+ * segment. */
 static void take_groups(const TermMean *mean, uint32_t segment, const double *numbers, Vec3 x,
                         Weighed *best)
 {

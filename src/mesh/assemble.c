@@ -8,7 +8,7 @@
 #include "mesh/assemble.h"
 
 #include "mesh/precision.h"
-#include "mesh/zones/nearpairs.h"
+#include "mesh/regions/nearpairs.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -28,7 +28,7 @@ typedef struct Assembly {
     uint32_t *rim_points;
     size_t n_rim_points;
     ARRAY(double) angles; /* of the rims of one tube */
-    MeshOff *off;
+    MeshDeviation *deviation;
 } Assembly;
 
 static uint32_t add_point(const Assembly *assembly, Vec3 x, Vec3 normal)
@@ -143,8 +143,8 @@ static void measure_rim(const Assembly *assembly, const double *angles, uint32_t
     double widest = 0;
     for (uint32_t i = 0; i < n; i++)
         widest = fmax(widest, turned_angle(angles, n, i + 1) - angles[i]);
-    double off = 1 - elementary_cos(widest / 2) + assembly->junctions->moved;
-    meshoff_add(assembly->off, radius * off, radius);
+    double off = 1 - elementary_cos(widest / 2) + assembly->junctions->max_shift;
+    meshdeviation_add(assembly->deviation, radius * off, radius);
 }
 
 static Status add_strip(Assembly *assembly, uint32_t segment, RimRange a, RimRange b, Err *err)
@@ -245,11 +245,14 @@ static Status reserve(Assembly *assembly, const JunctionMesh *meshes, Err *err)
 }
 
 Status assemble_mesh(const VesselTree *tree, const Junctions *junctions, JunctionMesh *meshes,
-                     const TubeParams *params, VesselMesh *mesh, MeshOff *off, Err *err)
+                     const TubeParams *params, VesselMesh *mesh, MeshDeviation *deviation, Err *err)
 {
     VesselMesh made = {0};
-    Assembly assembly = {
-        .tree = tree, .junctions = junctions, .mesh = &made, .params = params, .off = off};
+    Assembly assembly = {.tree = tree,
+                         .junctions = junctions,
+                         .mesh = &made,
+                         .params = params,
+                         .deviation = deviation};
     Status status;
     TRY_GOTO(reserve(&assembly, meshes, err));
     for (uint32_t i = 0; i < junctions->n_junctions; i++) {

@@ -1,25 +1,31 @@
-/* Joins the surfaces of junction regions, tubes and caps into one mesh. */
+/* Joins the surfaces of junction regions, tubes and flat ends into one mesh.
+ *
+ * The rims of the regions' meshes are where tubes begin and end [junctionmesh.h]. A tube becomes a
+ * strip of triangles between its two rims. A flat end becomes a cap: a regular rim, and a disc of
+ * triangles about its centre. Private to the module mesh. */
 #ifndef CORCAST_MESH_ASSEMBLE_H
 #define CORCAST_MESH_ASSEMBLE_H
 
 #include "mesh/junctionmesh.h"
 
-/* How the tubes and caps are made. */
+/* How tubes and caps are triangulated. */
 typedef struct TubeParams {
-    uint32_t sides;   /* of a cap, and of a rim between the two rims of a tube */
-    double tube_edge; /* maximum length of a tube's triangles along it, in radii; 0: no limit */
-    double grid_mm;   /* coordinates are rounded to integer multiples of it */
+    uint32_t sides;   /* number of points of a cap's rim, and of a rim that divides a tube */
+    double tube_edge; /* maximum length of a tube's triangles along the tube, in radii. A longer
+                       * tube is divided by more rims. 0 sets no limit. */
+    double grid_mm;   /* coordinates are rounded to integer multiples of it [mesh_grid] */
 } TubeParams;
 
-/* Joins the meshes of all regions, and the tubes between them. Every segment that is a tube has
- * triangles then.
+/* Joins the meshes of all regions, and adds the tubes between them. Every segment that is a tube
+ * then has triangles.
  *
- * meshes   per region; released while they are joined.
- * mesh     receives the mesh; owned by the caller.
- * off      is raised to the largest distance of a tube's triangle from its surface.
- * Errors   STATUS_MEMORY. */
+ * meshes     per region, from junctionmesh_make. Each is released once it is copied. After an error
+ *            the caller releases the others.
+ * mesh       receives the mesh; release it with vesselmesh_release.
+ * deviation  is raised to the largest distance of a tube's triangle from its surface.
+ * Errors     STATUS_MEMORY. */
 MUST_CHECK Status assemble_mesh(const VesselTree *tree, const Junctions *junctions,
                                 JunctionMesh *meshes, const TubeParams *params, VesselMesh *mesh,
-                                MeshOff *off, Err *err);
+                                MeshDeviation *deviation, Err *err);
 
 #endif

@@ -12,7 +12,7 @@
 
 #include "mesh/patchcross.h"
 #include "mesh/precision.h"
-#include "mesh/zones/nearpairs.h"
+#include "mesh/regions/nearpairs.h"
 #include <stdlib.h>
 
 #define NONE UINT32_MAX
@@ -98,8 +98,9 @@ static Status follow_edges(const JunctionBuild *build, size_t *n_edges, bool *so
         if (keymap_find(&workspace->edges, (uint64_t)b << 32 | a))
             continue;
         open++;
-        *sound = *sound && patch->points[a].stub != NO_STUB &&
-                 patch->points[a].stub == patch->points[b].stub && workspace->next.items[a] == NONE;
+        *sound = *sound && patch->points[a].rim_stub != NO_STUB &&
+                 patch->points[a].rim_stub == patch->points[b].rim_stub &&
+                 workspace->next.items[a] == NONE;
         workspace->next.items[a] = b;
     }
     *n_edges = (corners + open) / 2;
@@ -124,7 +125,7 @@ static bool add_rim(const JunctionBuild *build, size_t stub_index, uint32_t *n_p
     uint32_t start = NONE, total = 0, n = 0;
     double lowest = HUGE_VAL;
     for (uint32_t i = 0; i < patch->n_points; i++) {
-        if (patch->points[i].stub != stub_index)
+        if (patch->points[i].rim_stub != stub_index)
             continue;
         double angle = angle_of(segment, patch->points[i].x);
         total++;
@@ -159,7 +160,7 @@ static Status prove(const JunctionBuild *build, bool *sound)
     if (!*sound)
         return STATUS_OK;
     for (size_t i = 0; i < patch->n_points; i++)
-        n_on_rims += patch->points[i].stub != NO_STUB;
+        n_on_rims += patch->points[i].rim_stub != NO_STUB;
     TRY(mem_calloc(&mesh->rims, n_stubs, sizeof *mesh->rims, "rims", build->err));
     TRY(mem_calloc(&mesh->rim_points, n_on_rims + 1, sizeof *mesh->rim_points, "rims", build->err));
     mesh->n_rims = n_stubs;
@@ -284,10 +285,10 @@ static Status finish(const JunctionBuild *build, const MeshFineness *fineness, b
     TRY(patch_keep_largest(patch, build->err));
     TRY(find_statuses(build, fineness->cells.ratio));
     TRY(collapse_apply(&workspace->collapser, patch, fineness->sagitta, build->err));
-    build->mesh->off = (MeshOff){0};
+    build->mesh->deviation = (MeshDeviation){0};
     size_t n_points = patch->n_points;
-    TRY(facerefine_apply(&workspace->refiner, &build->surface, fineness->split, &build->mesh->off,
-                         build->err));
+    TRY(facerefine_apply(&workspace->refiner, &build->surface, fineness->split_distance,
+                         &build->mesh->deviation, build->err));
     TRY(prove(build, sound));
     *build->crossing = PATCHCROSS_NONE;
     if (*sound && patch->n_points > n_points)
@@ -308,9 +309,9 @@ static Status attempt(const JunctionBuild *build, const MeshFineness *fineness, 
     TRY(finish(build, fineness, sound));
     if (*sound || *build->crossing == PATCHCROSS_ROUNDING)
         return STATUS_OK;
-    TRY(repair_apply(&workspace->repairer, &workspace->lattice, &build->surface, fineness->farthest,
-                     hole, build->err));
-    return *hole <= fineness->farthest ? finish(build, fineness, sound) : STATUS_OK;
+    TRY(repair_apply(&workspace->repairer, &workspace->lattice, &build->surface,
+                     fineness->max_repair, hole, build->err));
+    return *hole <= fineness->max_repair ? finish(build, fineness, sound) : STATUS_OK;
 }
 
 static bool is_member(const JunctionField *field, uint32_t group, uint32_t term)
@@ -413,20 +414,21 @@ static Status refuse(const JunctionBuild *build, double grid_mm, Err *err)
     const uint32_t *ids = build->tree->ids;
     uint32_t pair[2], first = build->plan->field.terms[0].segment;
     if (*build->crossing == PATCHCROSS_ROUNDING)
-        return reach_refuse(build->tree, first, grid_mm, err);
+        return precision_refuse(build->tree, first, grid_mm, err);
     if (build->workspace->patch.n_triangles == 0)
-        return err_set(err, STATUS_INFEASIBLE,
-                       "segment %u, and what it meets, is so short for its radius that it has no "
-                       "surface",
-                       ids[build->plan->field.terms[0].segment]);
+        return err_set(
+            err, STATUS_INFEASIBLE,
+            "segment %u and the segments that it meets are so short for their radii that "
+            "they have no surface",
+            ids[build->plan->field.terms[0].segment]);
     if (find_gap(build, pair) < 0)
         return err_set(err, STATUS_INFEASIBLE,
-                       "the vessels of segments %u and %u overlap, though they do not meet there, "
-                       "so that their wall is no tube",
+                       "the vessels of segments %u and %u overlap where they are unconnected, so "
+                       "their common surface is not a tube",
                        ids[pair[0]], ids[pair[1]]);
     return err_set(err, STATUS_INFEASIBLE,
-                   "the vessels about segment %u run into each other: they make a loop, or cells "
-                   "as fine as are tried do not show their wall to be without one",
+                   "the vessels near segment %u touch each other: their surface has a loop, or a "
+                   "gap too narrow for the finest cells",
                    ids[build->plan->field.terms[0].segment]);
 }
 
@@ -478,7 +480,7 @@ static Status make_sound(const JunctionBuild *build, MeshFineness *used, bool *s
             *sound ? 0
                    : steps_finer(build, hole, before, used->cells.ratio, MAX_REFINEMENTS - repeats);
         if (steps && is_own_tunnel(build, hole, before))
-            used->farthest = max_closed_tunnel;
+            used->max_repair = max_closed_tunnel;
         before = hole;
         make_finer(used, elementary_pow(refinement_factor, steps));
     }
@@ -493,17 +495,18 @@ static Status come_near(const JunctionBuild *build, MeshFineness *used)
 {
     MeshFineness tried = *used;
     bool sound = true, is_nearest = true;
-    double hole, off = build->mesh->off.ratio;
-    for (int i = 0; i < MAX_ACCURACY_RETRIES && off > used->worst; i++) {
+    double hole, off = build->mesh->deviation.ratio;
+    for (int i = 0; i < MAX_ACCURACY_RETRIES && off > used->rebuild_distance; i++) {
         int repeats = build->mesh->repeats;
-        make_finer(&tried, fmax(min_retry_factor, refinement_factor * used->worst / off));
+        make_finer(&tried,
+                   fmax(min_retry_factor, refinement_factor * used->rebuild_distance / off));
         junctionmesh_release(build->mesh);
         TRY(attempt(build, &tried, &sound, &hole));
         build->mesh->repeats = repeats + 1;
-        is_nearest = sound && build->mesh->off.ratio < off;
+        is_nearest = sound && build->mesh->deviation.ratio < off;
         if (is_nearest) {
             *used = tried;
-            off = build->mesh->off.ratio;
+            off = build->mesh->deviation.ratio;
         } else if (off > max_error) {
             break;
         }
@@ -533,7 +536,7 @@ Status junctionmesh_make(JunctionWorkspace *workspace, const JunctionInput *inpu
     TRY_GOTO(make_sound(&build, &used, &sound));
     if (sound)
         TRY_GOTO(come_near(&build, &used));
-    if (!sound || made.off.ratio > max_error)
+    if (!sound || made.deviation.ratio > max_error)
         TRY_GOTO(refuse(&build, used.grid_mm, err));
     TRY_GOTO(keep_patch(workspace, used.grid_mm, &made, err));
     *mesh = made;

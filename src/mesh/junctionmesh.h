@@ -1,4 +1,15 @@
-/* Builds the finished surface of one junction region. */
+/* Builds the finished surface of one junction region.
+ *
+ * A region holds one or several nodes of the tree [regions/junctions.h]. Its surface is extracted
+ * from a lattice of tetrahedra in an octree, cut at the end planes of the branch stubs, simplified,
+ * and split where it is too far from the exact surface. Then it is proved to be a sphere with one
+ * hole per stub. The boundary loop of a hole is called a rim; a tube begins there. Private to the
+ * module mesh.
+ *
+ *     JunctionWorkspace workspace = {0};
+ *     JunctionInput input = {&tree, &plan, &fineness};
+ *     TRY(junctionmesh_make(&workspace, &input, &mesh, statuses, err));
+ *     junctionworkspace_release(&workspace); */
 #ifndef CORCAST_MESH_JUNCTIONMESH_H
 #define CORCAST_MESH_JUNCTIONMESH_H
 
@@ -7,50 +18,54 @@
 #include "mesh/lattice/latticerepair.h"
 #include "mesh/lattice/planecut.h"
 
-/* The rim of a branch stub: the points rim_points[first .. first + n), by rising angle about the
- * axis that leads from the segment's first end to its second. */
+/* The rim of a branch stub. Its points are JunctionMesh.rim_points[first .. first + n). Their angle
+ * about the axis rises; the axis leads from the segment's first end to its second. */
 typedef struct Rim {
-    uint32_t segment;
-    int end; /* the segment's end that is in the region */
+    uint32_t segment; /* index of the stub's segment in the tree */
+    int end;          /* the segment's end, 0 or 1, that is in the region */
     uint32_t first, n;
 } Rim;
 
 /* A point of a finished surface, in little memory. */
 typedef struct JunctionPoint {
-    float x[3], normal[3]; /* mm, on the grid of the mesh; unit, outward */
-    uint32_t segment;      /* the vessel whose term is largest here */
+    float x[3];       /* mm; multiples of MeshFineness.grid_mm */
+    float normal[3];  /* unit, outward */
+    uint32_t segment; /* the segment with the largest term of the potential at x */
 } JunctionPoint;
 
-/* All arrays are owned. Release it with junctionmesh_release. */
+/* The finished surface. All arrays are owned. Release it with junctionmesh_release. */
 typedef struct JunctionMesh {
     JunctionPoint *points;
     PatchTriangle *triangles;
     size_t n_points, n_triangles;
-    Rim *rims; /* per stub */
+    Rim *rims; /* per stub of the plan */
     size_t n_rims;
-    uint32_t *rim_points;
-    int repeats; /* number of attempts with finer cells */
-    MeshOff off; /* at the middles of triangles and of their longest edges */
+    uint32_t *rim_points;    /* indices of points, for all rims */
+    int repeats;             /* number of attempts with finer cells; 0: the first one succeeded */
+    MeshDeviation deviation; /* at the middles of triangles and of their longest edges */
 } JunctionMesh;
 
+/* Frees the arrays and zeroes *mesh. */
 void junctionmesh_release(JunctionMesh *mesh);
 
-/* The surface of a segment in the mesh. */
+/* Whether a segment's surface is in the mesh. */
 typedef enum SegmentStatus {
-    SEGMENT_MISSING,  /* it has a surface, which is not in the mesh */
+    SEGMENT_MISSING,  /* the segment has a surface, but the mesh lacks it: an error */
     SEGMENT_PRESENT,  /* its surface is in the mesh */
-    SEGMENT_ENCLOSED, /* it has no surface: it is inside other vessels */
+    SEGMENT_ENCLOSED, /* it has no surface, because it is inside other vessels */
     SEGMENT_SLIVER    /* its surface is so narrow that no triangle belongs to it */
 } SegmentStatus;
 
-/* How fine a mesh is. All but grid_mm are in units of the local radius. */
+/* How fine a mesh is. All members but grid_mm are in units of the local radius. */
 typedef struct MeshFineness {
     CellSize cells;
-    double sagitta;  /* maximum distance of an edge from the surface when points are removed */
-    double split;    /* triangles that are farther from the surface are split */
-    double farthest; /* maximum distance from the surface of points that close a gap */
-    double worst; /* regions with a triangle farther from the surface are built with finer cells */
-    double grid_mm; /* coordinates are rounded to integer multiples of it */
+    double sagitta; /* maximum distance of a new edge from the surface when points are removed */
+    double split_distance;   /* triangles that are farther from the surface are split */
+    double max_repair;       /* maximum distance from the surface of lattice points that become
+                              * inside when a tunnel or hollow is closed [latticerepair.h] */
+    double rebuild_distance; /* a region with a triangle farther from the surface is built again
+                              * with finer cells */
+    double grid_mm;          /* coordinates are rounded to integer multiples of it [mesh_grid] */
 } MeshFineness;
 
 /* A triangle and the Morton code of its first point. */
@@ -78,17 +93,18 @@ void junctionworkspace_release(JunctionWorkspace *workspace);
 typedef struct JunctionInput {
     const VesselTree *tree;
     const JunctionPlan *plan;
-    const MeshFineness *fineness;
+    const MeshFineness *fineness; /* of the first attempt */
 } JunctionInput;
 
-/* Builds the surface of a region, and proves that it is a sphere with one hole for each stub. Tries
- * again with finer cells if it is not.
+/* Builds the surface of a region, and proves that it is a sphere with one hole per stub. Tries
+ * again with finer cells if the proof fails.
  *
- * mesh      receives the surface; owned by the caller.
- * statuses  per segment of the tree: the SegmentStatus of the segments that are wholly in the
- * region is set, also on failure. Errors    STATUS_INFEASIBLE with the id of a segment if finer
- * cells do not help, STATUS_INPUT if the region is too far from the origin [precision.h],
- * STATUS_MEMORY. */
+ * mesh      receives the surface; release it with junctionmesh_release.
+ * statuses  per segment of the tree. The SegmentStatus of each segment that is wholly in the region
+ *           is set, also on failure. The statuses of other segments stay.
+ * Errors    STATUS_INFEASIBLE, naming the id of a segment, if finer cells do not help;
+ *           STATUS_INPUT if the tree is too far from the origin [precision.h]; STATUS_MEMORY.
+ * Threads   Several threads may build different regions, each with its own workspace. */
 MUST_CHECK Status junctionmesh_make(JunctionWorkspace *workspace, const JunctionInput *input,
                                     JunctionMesh *mesh, uint8_t *statuses, Err *err);
 

@@ -234,12 +234,12 @@ static Status list_round(const MeshBuild *build, MeshReport *report, Err *err)
 
 static Status refuse_overlap(const MeshBuild *build, Err *err)
 {
-    const NearPair *pair = build->junctions.strangers;
+    const NearPair *pair = build->junctions.unconnected;
     const uint32_t *ids = build->tree->ids;
     return err_set(
         err, STATUS_INPUT,
-        "the vessels of segments %u and %u, which do not belong together, overlap by %.3g "
-        "mm (%zu such pairs); their walls cannot both be kept (`part_overlaps` thins them)",
+        "the vessels of segments %u and %u are unconnected, but overlap by %.3g mm (pairs "
+        "of this kind: %zu), so they have no valid surface; `part_overlaps` thins them",
         ids[pair->segments[0]], ids[pair->segments[1]], -pair->gap_mm,
         build->junctions.n_overlapping);
 }
@@ -271,13 +271,13 @@ static Status make_mesh(MeshBuild *build, VesselMesh *mesh, MeshReport *report, 
         (MeshReport){.tolerance = tolerance_of(params), .junctions = build->junctions.n_junctions};
     for (uint32_t z = 0; z < build->junctions.n_junctions; z++) {
         report->repeated += build->meshes[z].repeats > 0 || build->finer[z] > 0;
-        report->off.mm = fmax(report->off.mm, build->meshes[z].off.mm);
-        report->off.ratio = fmax(report->off.ratio, build->meshes[z].off.ratio);
+        report->deviation.mm = fmax(report->deviation.mm, build->meshes[z].deviation.mm);
+        report->deviation.ratio = fmax(report->deviation.ratio, build->meshes[z].deviation.ratio);
     }
     const TubeParams tubes = {sides_of(cap_part * report->tolerance), params->tube_edge,
                               build->fineness.grid_mm};
-    return assemble_mesh(build->tree, &build->junctions, build->meshes, &tubes, mesh, &report->off,
-                         err);
+    return assemble_mesh(build->tree, &build->junctions, build->meshes, &tubes, mesh,
+                         &report->deviation, err);
 }
 
 /* Has the junctions made finer that triangles which cross lie in, of tubes those at both ends;
@@ -322,7 +322,7 @@ done:
 Status vesselmesh_build(const VesselTree *tree, const MeshParams *params, VesselMesh *mesh,
                         MeshReport *report, Err *err)
 {
-    double grid_mm = mesh_grid(fmax(mesh_reach(tree), params->reach_mm));
+    double grid_mm = mesh_grid(fmax(mesh_max_coordinate(tree), params->max_coordinate_mm));
     MeshBuild build = {.tree = tree,
                        .params = params,
                        .n_workers = workers_of(params),
@@ -338,10 +338,10 @@ Status vesselmesh_build(const VesselTree *tree, const MeshParams *params, Vessel
     TRY_GOTO(reserve_build(&build, err));
     for (int round = 0; again; round++)
         TRY_GOTO(build_once(&build, round, &made, &found, &again, err));
-    found.near = junctions->strangers;
-    found.n_near = junctions->n_strangers;
+    found.near = junctions->unconnected;
+    found.n_near = junctions->n_unconnected;
     found.n_overlapping = junctions->n_overlapping;
-    junctions->strangers = NULL;
+    junctions->unconnected = NULL;
     *mesh = made;
     *report = found;
     made = (VesselMesh){0};

@@ -1,41 +1,56 @@
-/* The public header of the module mesh: the surface of vessels as triangles.
+/* The public header of the module mesh: the surface of vessels as a closed triangle mesh.
  *
- * Segments blend only where they meet. Each node of a tree has a body: the points where the sum of
- * the terms of the segments that blend at the node exceeds FIELD_LEVEL. A segment blends at its two
- * nodes, and at every node that can be reached from them along other segments within BLEND_REACH
- * times the segment's radius. The surface is that of the union of the bodies. A vessel is cut off
- * flat at a node where nothing else meets it. */
+ * The surface is an implicit surface of a potential. Each segment has one term of the potential,
+ * and the terms blend only where segments meet. Each node of a tree has a body: the points where
+ * the sum of the terms of the segments that blend at the node exceeds FIELD_LEVEL. A segment blends
+ * at its two nodes, and at every node that can be reached from them along other segments within
+ * BLEND_REACH times the segment's radius. The surface is that of the union of the bodies. A vessel
+ * is cut off flat at a node where nothing else meets it.
+ *
+ * The tree is cut into junction regions, about the nodes, and straight tubes between the regions
+ * [regions/junctions.h]. Each region gets a mesh of its own from a lattice of tetrahedra
+ * [junctionmesh.h]. A tube is a strip of triangles between two regions, a flat end is a disc
+ * [assemble.h]. The finished triangles are then checked: closed, without crossings, one component
+ * of genus 0 per tree [meshreport.h].
+ *
+ *     MeshParams params = {.tolerance = 0.02};
+ *     TRY(vesselmesh_build(&tree, &params, &mesh, &report, err));
+ *     TRY(meshreport_check(&report, &tree, err));
+ *
+ * The caller then uses `mesh`, and releases both with vesselmesh_release and meshreport_release. */
 #ifndef CORCAST_MESH_MESH_H
 #define CORCAST_MESH_MESH_H
 
 #include "base/base.h"
-#include "mesh/meshreport.h"      // IWYU pragma: export
-#include "mesh/precision.h"       // IWYU pragma: export
-#include "mesh/proof/meshcheck.h" // IWYU pragma: export
-#include "mesh/zones/adjust.h"    // IWYU pragma: export
-#include "mesh/zones/junctions.h" // IWYU pragma: export
-#include "mesh/zones/nearpairs.h" // IWYU pragma: export
+#include "mesh/meshreport.h"        // IWYU pragma: export
+#include "mesh/precision.h"         // IWYU pragma: export
+#include "mesh/proof/meshcheck.h"   // IWYU pragma: export
+#include "mesh/regions/adjust.h"    // IWYU pragma: export
+#include "mesh/regions/junctions.h" // IWYU pragma: export
+#include "mesh/regions/nearpairs.h" // IWYU pragma: export
 #include "scene/scene.h"
 
 /* The expected cost of a mesh, in most cases right within a factor of 2. */
 typedef struct MeshEstimate {
-    double triangles;
-    double bytes;   /* maximum memory in use */
-    double seconds; /* on MeshParams.threads threads of a processor of 2023 */
+    double triangles; /* number of triangles */
+    double bytes;     /* maximum memory in use */
+    double seconds;   /* on MeshParams.threads threads of a processor of 2023 */
 } MeshEstimate;
 
-/* Returns the estimate. O(n). */
+/* Returns the expected cost of the mesh that vesselmesh_build would make. Does not build anything,
+ * and cannot fail. O(n) for n segments. */
 MeshEstimate vesselmesh_estimate(const VesselTree *tree, const MeshParams *params);
 
 /* Triangulates the surface of a tree, and finds the facts about the mesh. The result does not
- * depend on the number of threads.
+ * depend on the number of threads. On error, `mesh` and `report` stay as they were.
  *
  * mesh     receives the triangles, valid or not; release it with vesselmesh_release.
- * report   receives the facts; check them with meshreport_check, and release them with
- *          meshreport_release.
- * Errors   STATUS_INPUT, with a pair of ids, if vessels overlap that do not blend, or if the tree
- *          is too far from the origin; STATUS_INFEASIBLE if a junction region has no valid surface
- *          with the finest cells; STATUS_MEMORY. */
+ * report   receives the facts. Check with meshreport_check whether the mesh is valid. Release the
+ *          report with meshreport_release.
+ * Errors   STATUS_INPUT, with a pair of ids, if vessels overlap that do not blend;
+ *          STATUS_INPUT if the tree is too far from the origin [precision.h];
+ *          STATUS_INFEASIBLE if a junction region has no valid surface with the finest cells;
+ *          STATUS_CANCELLED if MeshParams.progress returned false; STATUS_MEMORY. */
 MUST_CHECK Status vesselmesh_build(const VesselTree *tree, const MeshParams *params,
                                    VesselMesh *mesh, MeshReport *report, Err *err);
 

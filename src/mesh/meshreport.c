@@ -15,7 +15,7 @@ void meshreport_release(MeshReport *report)
     *report = (MeshReport){0};
 }
 
-bool meshreport_is_sound(const MeshReport *report)
+bool meshreport_is_valid(const MeshReport *report)
 {
     return report->open_edges == 0 && report->components == report->expected_components &&
            report->genus == report->expected_genus && report->crossings == 0 &&
@@ -24,18 +24,21 @@ bool meshreport_is_sound(const MeshReport *report)
 
 Status meshreport_check(const MeshReport *report, const VesselTree *tree, Err *err)
 {
-    if (meshreport_is_sound(report))
+    if (meshreport_is_valid(report))
         return STATUS_OK;
     if (report->n_missing)
-        return err_set(err, STATUS_DIFFERS,
-                       "%zu segments have no triangles, segment %u among them; nothing is written",
-                       report->n_missing, tree->ids[report->missing[0]]);
+        return err_set(
+            err, STATUS_DIFFERS,
+            "%zu segments have no triangles, for example segment %u; no file was written",
+            report->n_missing, tree->ids[report->missing[0]]);
     if (report->crossings > 0 && precision_is_short(tree))
-        return reach_refuse(tree, reach_thinnest(tree), mesh_grid(mesh_reach(tree)), err);
-    return err_set(err, STATUS_DIFFERS,
-                   "the surface is not sound: %zu parts for %zu trees, genus %zu, %zu open edges, "
-                   "%zu crossing pairs of triangles, %zu bridges; nothing is written (a smaller "
-                   "`tolerance` may help)",
-                   report->components, report->trees, report->genus, report->open_edges,
-                   report->crossings, report->bridges);
+        return precision_refuse(tree, precision_thinnest_segment(tree),
+                                mesh_grid(mesh_max_coordinate(tree)), err);
+    return err_set(
+        err, STATUS_DIFFERS,
+        "the mesh is not valid: %zu components for %zu trees, genus %zu, %zu open edges, "
+        "%zu crossing pairs of triangles, %zu bridges between trees; no file was written "
+        "(a smaller `tolerance` may help)",
+        report->components, report->trees, report->genus, report->open_edges, report->crossings,
+        report->bridges);
 }

@@ -1,5 +1,8 @@
-/* The parameters of a mesh, and the facts about a finished one. Exported by the public header of
- * the module mesh. */
+/* The parameters of a mesh, and the facts about a finished mesh.
+ *
+ * vesselmesh_build takes MeshParams and fills a MeshReport. meshreport_check turns the report into
+ * a Status, so that a caller writes no mesh that is not valid. Exported by the public header of the
+ * module mesh. */
 #ifndef CORCAST_MESH_MESHREPORT_H
 #define CORCAST_MESH_MESHREPORT_H
 
@@ -9,73 +12,86 @@
 typedef struct MeshParams {
     double tolerance; /* maximum distance of nearly all triangles from the surface, in local radii,
                        * in [0.001, 0.2] */
-    double lod; /* in (0, 1]: the fraction of the triangles of this tolerance that are made, but at
-                 * least about 9 per radius of length; 0 is taken as 1 */
+    double lod;       /* in (0, 1]: the mesh gets about this fraction of the triangles that the
+                       * tolerance would need, but at least about 9 per radius of vessel length.
+                       * 0 is taken as 1. */
     double tube_edge; /* maximum length of a tube's triangles along it, in radii; 0: no limit */
-    int threads;      /* 0: all processors */
-    double reach_mm;  /* 0, or a coordinate of another object that the mesh is to be joined with, so
-                       * that both are on one grid */
-    bool (*progress)(double fraction, void *context); /* false: stop; NULL: none */
-    void *context;
+    int threads;      /* number of threads; 0: one per processor */
+    double max_coordinate_mm; /* largest coordinate, in magnitude, of another mesh that this mesh
+                               * will be joined with, so that both get the same grid; 0: none */
+    bool (*progress)(double fraction, void *context); /* returns false to stop; NULL: none */
+    void *context;                                    /* passed to `progress` */
 } MeshParams;
 
-/* Two segments of different parts of a tree, or of different trees, that are near each other. */
+/* Two segments that do not belong together but are near each other. They are in different parts of
+ * a tree, or in different trees. */
 typedef struct NearPair {
     uint32_t segments[2]; /* rising indices */
-    double gap_mm;        /* between their surfaces; below 0: they overlap */
+    double gap_mm;        /* distance between their surfaces; below 0: they overlap */
 } NearPair;
 
-/* The largest distance of a triangle from the surface. The two maxima may be at different places.
- */
-typedef struct MeshOff {
+/* The largest distance of a triangle from the exact surface. The two maxima may be at different
+ * points. */
+typedef struct MeshDeviation {
     double mm;
     double ratio; /* in local radii */
-} MeshOff;
+} MeshDeviation;
 
-/* Raises *off to a distance found where the local radius is radius_mm. */
-static inline void meshoff_add(MeshOff *off, double mm, double radius_mm)
+/* Raises both maxima of *deviation to a distance of `mm` that was measured where the local radius
+ * is radius_mm. */
+static inline void meshdeviation_add(MeshDeviation *deviation, double mm, double radius_mm)
 {
-    off->mm = mm > off->mm ? mm : off->mm;
-    off->ratio = mm / radius_mm > off->ratio ? mm / radius_mm : off->ratio;
+    deviation->mm = mm > deviation->mm ? mm : deviation->mm;
+    deviation->ratio = mm / radius_mm > deviation->ratio ? mm / radius_mm : deviation->ratio;
 }
 
 /* The facts about a mesh, found on its final points. All arrays are owned. */
 typedef struct MeshReport {
-    size_t trees;                               /* number of trees of the input */
-    size_t components;                          /* number of connected parts of the mesh */
-    size_t genus;                               /* sum over all components */
-    size_t expected_components, expected_genus; /* of a valid mesh: the number of trees, and 0;
-                                                 * another number for a solid for printing */
-    long long euler;                            /* points - edges + triangles */
-    size_t open_edges; /* edges that do not have two triangles, one in each direction */
-    size_t
-        crossings;  /* pairs of triangles that meet elsewhere than in a corner or edge they share */
-    size_t bridges; /* triangles of a segment of another tree than the rest of their component */
-    size_t n_missing;  /* segments with a surface that has no triangle */
-    size_t n_enclosed; /* segments that are inside others, so that they have no surface */
+    size_t trees;               /* number of trees of the input */
+    size_t components;          /* number of connected components of the mesh */
+    size_t genus;               /* sum over all components */
+    size_t expected_components; /* of a valid mesh: the number of trees. A solid for printing sets
+                                 * another number. */
+    size_t expected_genus;      /* of a valid mesh: 0. A solid for printing sets another number. */
+    long long euler;            /* Euler number: points - edges + triangles */
+    size_t open_edges;          /* edges that do not have two triangles, one in each direction */
+    size_t crossings;  /* pairs of triangles with a common point that is not on a corner or edge of
+                        * both */
+    size_t bridges;    /* triangles of a segment of another tree than the rest of their component */
+    size_t n_missing;  /* segments whose surface should be in the mesh, but has no triangle */
+    size_t n_enclosed; /* segments without a surface, because they are inside other vessels */
     size_t n_slivers;  /* segments whose surface is so narrow that no triangle belongs to it */
-    size_t n_round; /* ends that could not be cut off flat, because other vessels are in the way */
-    uint32_t *missing, *enclosed, *slivers, *round; /* the segments of these four counts */
-    NearPair *near; /* pairs with a gap below NEAR_GAP, by rising gap */
-    size_t n_near, n_overlapping;
+    size_t n_round; /* ends that could not be cut off flat, because other vessels are too close */
+    uint32_t *missing, *enclosed, *slivers, *round; /* indices of the segments that the four counts
+                                                     * above count */
+    NearPair *near; /* pairs with a gap below NEAR_GAP that share no junction region, by rising
+                     * gap */
+    size_t n_near;  /* number of pairs in `near` */
+    size_t n_overlapping; /* number of pairs in `near` with a gap below 0 */
     double volume_mm3;
-    double tolerance; /* the triangles were made for this tolerance: larger than
-                       * MeshParams.tolerance if `lod` is below 1 */
-    MeshOff off; /* at the middle of each triangle of a junction region and of its longest edge */
-    size_t junctions; /* number of junction regions */
-    size_t repeated;  /* junction regions that needed finer cells */
+    double tolerance;        /* the tolerance that the triangles were made for. It is larger than
+                              * MeshParams.tolerance if `lod` is below 1. */
+    MeshDeviation deviation; /* measured in junction regions, at the middle of each triangle and of
+                              * its longest edge, and computed for tubes */
+    size_t junctions;        /* number of junction regions */
+    size_t repeated;         /* number of junction regions that needed finer cells */
 } MeshReport;
 
-/* In units of the smaller radius: vessels with a smaller gap are near each other. */
+/* Two vessels are near each other if their gap is smaller than this, in units of the smaller
+ * radius. The reason for the number is not recorded. */
 #define NEAR_GAP 0.4
 
+/* Frees the arrays and zeroes *report. */
 void meshreport_release(MeshReport *report);
 
-/* Returns true if the mesh is valid: closed, without crossings, with the expected topology, and
- * with a surface for every segment. */
-bool meshreport_is_sound(const MeshReport *report);
-/* Returns STATUS_OK for a valid mesh, else STATUS_DIFFERS with a sentence that says what is wrong,
- * or STATUS_INPUT if the tree is too far from the origin. */
+/* Returns true if the mesh is valid: closed, without crossings or bridges, with the expected
+ * components and genus, and with a surface for every segment. */
+bool meshreport_is_valid(const MeshReport *report);
+
+/* Returns STATUS_OK for a valid mesh.
+ *
+ * Errors   STATUS_INPUT if triangles cross because the tree is too far from the origin;
+ *          STATUS_DIFFERS for any other defect, with a sentence that names it. */
 MUST_CHECK Status meshreport_check(const MeshReport *report, const VesselTree *tree, Err *err);
 
 #endif

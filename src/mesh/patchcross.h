@@ -1,4 +1,6 @@
-/* Finds triangles of one region that cross each other, before the region is part of the mesh. */
+/* Finds triangles of one junction region that cross each other, before the region becomes part of
+ * the mesh. Only the neighbourhood of the triangles that were split last is searched, because only
+ * they can have made new crossings. Private to the module mesh. */
 #ifndef CORCAST_MESH_PATCHCROSS_H
 #define CORCAST_MESH_PATCHCROSS_H
 
@@ -6,16 +8,20 @@
 
 typedef enum PatchCrossing {
     PATCHCROSS_NONE,
-    PATCHCROSS_OWN,     /* triangles cross, wherever the patch is */
-    PATCHCROSS_ROUNDING /* they cross only after their points are rounded to the grid of the mesh */
+    PATCHCROSS_OWN,     /* triangles cross, also in precise coordinates; finer cells may help */
+    PATCHCROSS_ROUNDING /* triangles cross only after their points are rounded to the grid of the
+                         * mesh; finer cells make it worse */
 } PatchCrossing;
 
-/* Finds whether triangles near those with a point of index `first_new` or higher cross each other,
- * after the points are rounded to integer multiples of `grid_mm`. If so, finds whether they also
- * cross before.
+/* Tests the triangles near the new points for crossings.
  *
- * Errors   STATUS_MEMORY.
- * Cost     O(triangles), and O(n log n) for n triangles near the new ones. */
+ * patch      stays unchanged; the function rounds copies of its points.
+ * first_new  points with this index or a higher one are new.
+ * grid_mm    points are rounded to integer multiples of it. If triangles cross then, the test is
+ *            repeated on a grid fine enough for coordinates relative to the region.
+ * crossing   receives the result.
+ * Errors     STATUS_MEMORY.
+ * Cost       O(triangles), and O(n log n) for n triangles near the new points. */
 MUST_CHECK Status patchcross_find(const Patch *patch, size_t first_new, double grid_mm,
                                   PatchCrossing *crossing, Err *err);
 

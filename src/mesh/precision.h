@@ -1,20 +1,28 @@
 /* The single precision of a mesh: how far a tree is from the origin, and how coarse that makes the
- * coordinates of its mesh. */
+ * coordinates of its mesh.
+ *
+ * Points are rounded to a grid before a mesh is checked, so that the mesh that is checked is the
+ * mesh that is written as floats. The grid step grows with the distance from the origin. A step
+ * that is not small against the thinnest vessel folds triangles over each other. Exported by the
+ * public header of the module mesh. */
 #ifndef CORCAST_MESH_PRECISION_H
 #define CORCAST_MESH_PRECISION_H
 
 #include "base/base.h"
 #include "scene/scene.h"
 
-/* Returns a distance, mm, that no coordinate of the tree's mesh exceeds in magnitude. */
-double mesh_reach(const VesselTree *tree);
+/* Returns a bound, mm, that the magnitude of no coordinate of the tree's mesh exceeds: the largest
+ * coordinate of a segment's end plus twice the radius. Returns 0 for a tree without segments. */
+double mesh_max_coordinate(const VesselTree *tree);
 
 /* Returns the grid step of a mesh, mm. All coordinates of the mesh are multiples of this step. The
  * step is the spacing of floats at the largest coordinate, so each multiple is exactly a float. The
- * multiples are integers of less than 26 bits. */
-double mesh_grid(double reach_mm);
+ * multiples are integers of less than 26 bits.
+ *
+ * max_coordinate_mm   the largest magnitude of a coordinate, mm. */
+double mesh_grid(double max_coordinate_mm);
 
-/* Returns the multiple of `grid_mm` that is nearest to a coordinate. */
+/* Returns the multiple of `grid_mm` that is nearest to a coordinate, mm. */
 static inline float mesh_rounded(double x_mm, double grid_mm)
 {
     return (float)(round(x_mm / grid_mm) * grid_mm);
@@ -22,23 +30,25 @@ static inline float mesh_rounded(double x_mm, double grid_mm)
 
 /* The smallest radius for which a mesh is attempted, in grid steps. A mesh of a thinner vessel
  * cannot be valid, and the search for a valid mesh would not end. */
-#define REACH_LEAST_STEPS 16
+#define PRECISION_MIN_STEPS 16
 
-/* Refuses a tree whose smallest radius is less than REACH_LEAST_STEPS grid steps.
+/* Refuses a tree whose smallest radius is less than PRECISION_MIN_STEPS grid steps. A tree without
+ * segments passes.
  *
- * reach_mm   0, or a coordinate of another object that the mesh is to be joined with.
- * Errors     STATUS_INPUT. */
-MUST_CHECK Status reach_check(const VesselTree *tree, double reach_mm, Err *err);
+ * max_coordinate_mm   0, or the largest coordinate of another mesh on the same grid.
+ * Errors              STATUS_INPUT. */
+MUST_CHECK Status precision_check(const VesselTree *tree, double max_coordinate_mm, Err *err);
 
-/* Returns STATUS_INPUT with a sentence that says that the tree is too far from the origin. It names
- * the distance, the step, and the segment with its radius. */
-MUST_CHECK Status reach_refuse(const VesselTree *tree, uint32_t segment, double grid_mm, Err *err);
+/* Sets the error "the tree reaches ... mm from the origin" and returns STATUS_INPUT. The sentence
+ * names the distance, the step `grid_mm`, and the segment with its radius. */
+MUST_CHECK Status precision_refuse(const VesselTree *tree, uint32_t segment, double grid_mm,
+                                   Err *err);
 
-/* Returns true if the smallest radius is only a few grid steps. Rounding is then the likely reason
- * for triangles that cross. */
+/* Returns true if the smallest radius is less than 2000 grid steps. Rounding is then the likely
+ * reason for triangles that cross. The tree must have at least one segment. */
 bool precision_is_short(const VesselTree *tree);
 
-/* Returns the segment with the smallest radius. The tree has at least one segment. */
-uint32_t reach_thinnest(const VesselTree *tree);
+/* Returns the index of the segment with the smallest radius. The tree must have at least one. */
+uint32_t precision_thinnest_segment(const VesselTree *tree);
 
 #endif

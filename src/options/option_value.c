@@ -10,22 +10,22 @@
 
 const char *const option_group_names[OPTION_GROUPS] = {
     [GROUP_FILES] = "files",
-    [GROUP_INPUT] = "input",
+    [GROUP_INPUT] = "reading the tree",
     [GROUP_TREE] = "tree",
     [GROUP_BLOOD] = "blood",
-    [GROUP_OPTIMUM] = "optimum",
+    [GROUP_OPTIMUM] = "optimization",
     [GROUP_VESSELS] = "vessels",
     [GROUP_VOXELS] = "voxels",
-    [GROUP_CAMERA] = "camera",
+    [GROUP_CAMERA] = "size and camera",
     [GROUP_LIGHT] = "light",
     [GROUP_COLOR] = "color",
     [GROUP_PAGE] = "legend and scale bar",
     [GROUP_ANIMATION] = "animation",
-    [GROUP_PARTS] = "parts",
-    [GROUP_PRESS] = "press",
+    [GROUP_PARTS] = "splitting the work",
+    [GROUP_PRESS] = "publishing",
     [GROUP_POVRAY] = "POV-Ray",
-    [GROUP_JUDGE] = "judgement",
-    [GROUP_RUN] = "this run",
+    [GROUP_JUDGE] = "comparison",
+    [GROUP_RUN] = "general",
 };
 
 /* ---- reading --------------------------------------------------------------------------------- */

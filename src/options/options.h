@@ -81,7 +81,6 @@ static inline bool size_is_on_paper(const PictureSize *size)
 /* The headings of the help, in the order of the help. Each option is under one of them. */
 typedef enum OptionGroup {
     GROUP_FILES,
-    GROUP_INPUT,
     GROUP_TREE,
     GROUP_BLOOD,
     GROUP_OPTIMUM,
@@ -96,6 +95,7 @@ typedef enum OptionGroup {
     GROUP_PRESS,
     GROUP_POVRAY,
     GROUP_JUDGE,
+    GROUP_INPUT,
     GROUP_RUN,
     OPTION_GROUPS
 } OptionGroup;
@@ -125,7 +125,7 @@ typedef struct Option {
     const char
         *argument; /* placeholder of the value in the help: "T.swc"; NULL: from unit or kind */
     const char *otherwise; /* what applies if the option is not given. NULL: the default value; "":
-                            * nothing; else a phrase for the help: "the tree's" */
+                            * nothing; else a phrase for the help: "from the tree" */
     const char *list;  /* name of the command that lists the accepted names: "looks"; NULL: none */
     ConditionSet when; /* the option has an effect only if all of these conditions hold */
     const char *needs; /* option names separated by blanks. The option has an effect only if one of
@@ -173,7 +173,7 @@ static inline const char *option_unit(const Option *option)
 /* Fills the option --dpi, which sets the resolution of the PictureSize at `path`. */
 #define DPI_OF_SIZE(Type, path)                                                                    \
     .name = "dpi", SETS(NUMBER, Type, path.dpi), GIVEN(Type, path.has_dpi), FROM_TO(1, 1e5),       \
-    .argument = "N", .otherwise = "300 of a size on paper"
+    .argument = "N", .otherwise = "300 for a size on paper"
 
 /* The C type of the member that an option of each kind sets. Used by SETS. */
 #define OPTION_TYPE_FLAG bool

@@ -17,7 +17,7 @@
  * choices              the words that the option takes
  * list                 the command of corcast that lists the names that the option takes
  * default              the value that holds if the option is not given
- * otherwise            what holds instead, in words: "the tree's"
+ * otherwise            what holds instead, in words: "from the tree"
  * needs                names of options of which one must be on
  * excludes             names of options that must be off
  * conditions           sentences that say when the option has an effect: "is for .tif"

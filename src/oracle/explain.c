@@ -79,7 +79,7 @@ static Status examiner_init(Examiner *examiner, const ExplainCase *input, Err *e
     examiner->input = input;
     examiner->view = input->scene->view;
     if (proof_method(input) == PROOF_FIELD)
-        return input->scene->appearance.places
+        return input->scene->appearance.positions
                    ? termmean_new(&input->scene->geometry, &examiner->color_mean, err)
                    : STATUS_OK;
     TRY(create_renderer(examiner, shadow_ray_start_mm, &examiner->ray_renderer, err));
@@ -171,8 +171,8 @@ static const FieldSegment *find_wall(const Examiner *examiner, Ray ray, Vec3 x, 
 
 /* Finds whether a shadow ray from `place` to a light is free: neither the ground nor a root of the
  * field is in its way. Updates `found` if a vessel blocks it. */
-static Status examine_shadow_ray(const Examiner *examiner, Vec3 place, LightWay way, bool *free,
-                                 LightBlockage *found, Err *err)
+static Status examine_shadow_ray(const Examiner *examiner, Vec3 place, LightDirection way,
+                                 bool *free, LightBlockage *found, Err *err)
 {
     Ray ray = {place, way.towards};
     double far = way.distance - shadow_ray_start_mm, t;
@@ -205,8 +205,8 @@ static Status examine_light(const Examiner *examiner, const Light *light, Vec3 p
         return STATUS_OK;
     for (int k = 0; k < n; k++) {
         bool free;
-        TRY(examine_shadow_ray(examiner, place, light_way_to_point(light, k, place), &free, found,
-                               err));
+        TRY(examine_shadow_ray(examiner, place, light_direction_to_point(light, k, place), &free,
+                               found, err));
         reach += free;
     }
     found->visibility = (double)reach / n;
@@ -260,15 +260,16 @@ static VisiblePoint wall_at(const Examiner *examiner, Ray ray, double t)
 {
     const Scene *scene = examiner->input->scene;
     VisiblePoint seen = {.t = t,
-                         .at = {.point = ray_at(ray, t), .direction = ray.direction, .open = 1}};
+                         .at = {.point = ray_at(ray, t), .direction = ray.direction, .ambient = 1}};
     const FieldSegment *wall = find_wall(examiner, ray, seen.at.point, &seen.at.normal);
     seen.id = scene->geometry.ids[wall->segment];
     seen.at.finish = &scene->appearance.finish;
-    seen.at.pigment = examiner->color_mean
-                          ? appearance_blended(&scene->appearance,
-                                               termmean_at(examiner->color_mean,
-                                                           scene->appearance.places, seen.at.point))
-                          : appearance_color(&scene->appearance, wall->segment);
+    seen.at.pigment =
+        examiner->color_mean
+            ? appearance_blended(
+                  &scene->appearance,
+                  termmean_at(examiner->color_mean, scene->appearance.positions, seen.at.point))
+            : appearance_color(&scene->appearance, wall->segment);
     return seen;
 }
 
@@ -285,7 +286,7 @@ static Status look_to(Examiner *examiner, Ray ray, double t, VisiblePoint *seen,
                                 .point = ray_at(ray, t),
                                 .normal = vec3_scale(ground->normal, below ? -1 : 1),
                                 .direction = ray.direction,
-                                .open = 1},
+                                .ambient = 1},
                                0,
                                {0, 0, 0}};
     } else if (t < HUGE_VAL) {

@@ -148,7 +148,7 @@ static Status put_page(const PageParams *params, const PageTexts *from, Text *ou
     const TmplValue values[] = {{"title", text_chars(&title)},
                                 {"generator", params->generator},
                                 {"notices", text_chars(&notices)},
-                                {"told", text_chars(&properties)},
+                                {"properties", text_chars(&properties)},
                                 {"viewer", from->viewer}};
     PageParams given = *params;
     const TmplPart parts[] = {{"data", put_data, &given}};

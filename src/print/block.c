@@ -80,8 +80,8 @@ Status block_add(Solid *solid, const BlockInput *input, Seams *seams, size_t *n_
     TRY_GOTO(ports_find(input->tree, input->ends, input->casing, input->block, &ports, err));
     if (input->block->ports != PORTS_NONE && ports.n == 0)
         TRY_GOTO(err_set(err, STATUS_INFEASIBLE,
-                         "no end of a vessel can be led to a face of the block; a wider margin "
-                         "may help"));
+                         "no port is possible: no vessel end has a clear path to a face of the "
+                         "block; a wider margin may help"));
     TRY_GOTO(solid_surface(solid, input->mesh, input->ends, (SurfaceUse){.turned = true}, err));
     TRY_GOTO(ports_add(input->tree, &ports, solid, err));
     TRY_GOTO(add_faces(solid, input->casing, &ports, err));

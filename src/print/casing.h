@@ -1,26 +1,32 @@
-/* A box or a cylinder with flat faces that vessels leave through: a block that is cast about
- * vessels, or the plate that they stand on. */
+/* A box or a cylinder with holes in its flat faces: the block about vessels, which leave it through
+ * ports, or the base plate, on which support pins stand.
+ *
+ * Faces are numbered: 2 axis is the face at the low coordinate along an axis, 2 axis + 1 the face
+ * at the high coordinate. Private to the module print. */
 #ifndef CORCAST_PRINT_CASING_H
 #define CORCAST_PRINT_CASING_H
 
 #include "print/solid.h"
 
 typedef struct Casing {
-    Box box;       /* mm; of a cylinder, the box about it */
-    bool is_round; /* a cylinder, with two flat faces */
-    int axis;      /* of a cylinder: 0, 1 or 2 */
+    Box box;       /* mm; the box about a cylinder */
+    bool is_round; /* true: a cylinder, with two flat faces; false: a box, with six */
+    int axis;      /* axis of a cylinder: 0, 1 or 2 */
 } Casing;
 
-/* Number of sides of the prism that stands for a cylinder. */
+/* Number of sides of the prism that approximates a cylinder. The reason for the number is not
+ * recorded; ports keep within 0.998 radii, because the prism is inside the cylinder. */
 enum { CASING_SIDES = 96 };
 
-/* Faces have the indices 2 axis (low coordinate) and 2 axis + 1 (high coordinate). */
+/* Number of faces of a box. */
 enum { CASING_FACES = 6 };
 
+/* Returns the axis that a face is perpendicular to. */
 static inline int face_axis(int face)
 {
     return face / 2;
 }
+/* Returns true if a face is at the low coordinate along its axis. */
 static inline bool face_is_low(int face)
 {
     return face % 2 == 0;
@@ -30,7 +36,7 @@ static inline double face_coordinate(const Casing *casing, int face)
 {
     return vec3_component(face_is_low(face) ? casing->box.low : casing->box.high, face_axis(face));
 }
-/* Returns the unit vector out of the casing. */
+/* Returns the unit normal of a face, out of the casing. */
 static inline Vec3 face_normal(int face)
 {
     double out = face_is_low(face) ? -1 : 1;
@@ -38,23 +44,25 @@ static inline Vec3 face_normal(int face)
                 face_axis(face) == 2 ? out : 0);
 }
 
-/* Returns true if vessels may leave through a face. They may not leave through a cylinder's side.
- */
+/* Returns true if the casing has this flat face. A cylinder has only the two across its axis. */
 bool casing_has_face(const Casing *casing, int face);
-/* Returns true if the disc of this radius about a point of a face is inside the face. */
+/* Returns true if the disc of this radius about `at`, a point of a face, is inside the face. */
 bool casing_holds_disc(const Casing *casing, int face, Vec3 at, double radius_mm);
 
-/* A hole in a face. */
+/* A hole in a face, where a port or a pin begins. */
 typedef struct CasingHole {
     int face;
-    bool is_rising; /* the axis of the segment leads out of the casing here */
-    uint32_t
-        *points; /* of the solid, on the face, by rising angle about the segment's axis; borrowed */
-    uint32_t n;
+    bool is_rising;   /* the axis of the segment leads out of the casing here */
+    uint32_t *points; /* indices of the hole's points in the solid, on the face, by rising angle
+                       * about the segment's axis; borrowed */
+    uint32_t n;       /* number of points */
 } CasingHole;
 
-/* Adds the casing's faces to the solid, with the labels MESH_CAP and MESH_FRAME. Errors:
- * STATUS_INFEASIBLE if holes touch, STATUS_MEMORY. */
+/* Adds the casing's faces, with their holes, to the solid. The triangles have the label
+ * MESH_CAP | MESH_FRAME.
+ *
+ * holes    n holes; a hole must be inside its face.
+ * Errors   STATUS_INFEASIBLE if holes touch, STATUS_MEMORY. */
 MUST_CHECK Status casing_add(Solid *solid, const Casing *casing, const CasingHole *holes, size_t n,
                              Err *err);
 

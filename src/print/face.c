@@ -195,7 +195,8 @@ static Status cut_ears(FaceWork *work, Solid *solid, uint32_t label, Err *err)
         left--;
     }
     return left == 2 ? STATUS_OK
-                     : err_set(err, STATUS_INFEASIBLE, "openings of the block touch each other");
+                     : err_set(err, STATUS_INFEASIBLE,
+                               "two openings in a face of the block or the base touch each other");
 }
 
 static void order_holes(FaceWork *work, const FaceLoop *holes, size_t n)
@@ -233,7 +234,8 @@ Status face_fill(Solid *solid, int face, const FaceLoop *loops, size_t n_loops, 
     order_holes(&work, &loops[1], n_loops - 1);
     for (size_t h = 0; h < work.n_holes; h++)
         if (!bridge(&work, h))
-            TRY_GOTO(err_set(err, STATUS_INFEASIBLE, "openings of the block touch each other"));
+            TRY_GOTO(err_set(err, STATUS_INFEASIBLE,
+                             "two openings in a face of the block or the base touch each other"));
     TRY_GOTO(cut_ears(&work, solid, label, err));
 done:
     free(work.corners);

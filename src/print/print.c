@@ -35,7 +35,7 @@ typedef struct PrintMaking {
 void printreport_release(PrintReport *report)
 {
     free(report->closed);
-    free(report->longer);
+    free(report->lengthened);
     free(report->thinned);
     *report = (PrintReport){0};
 }
@@ -88,8 +88,8 @@ static Status take_changes(PrintMaking *making, Err *err)
     const PrintParams *params = &making->params;
     const PrintReport *report = &making->report;
     VesselTree *tree = making->tree;
-    for (size_t i = 0; i < report->n_longer; i++) {
-        uint32_t k = report->longer[i];
+    for (size_t i = 0; i < report->n_lengthened; i++) {
+        uint32_t k = report->lengthened[i];
         tree->segments[k].a = making->outer.segments[k].a;
         tree->segments[k].b = making->outer.segments[k].b;
     }
@@ -101,8 +101,8 @@ static Status take_changes(PrintMaking *making, Err *err)
         if (*radius < 0.05 * before)
             return err_set(
                 err, STATUS_INPUT,
-                "segment %u and one that it does not belong with come so near that their "
-                "walls leave it no lumen; they cannot be parted",
+                "the wall of segment %u is so close to an unconnected vessel that thinning leaves "
+                "it no lumen; use a thinner wall",
                 tree->ids[k]);
     }
     return STATUS_OK;
@@ -115,25 +115,26 @@ static Status prepare(PrintMaking *making, Err *err)
     PrintReport *report = &making->report;
     TRY(take_outer(making, err));
     if (params->part_overlaps)
-        TRY(vesseltree_part(&making->outer, &params->mesh, &report->thinned, &report->n_thinned,
-                            err));
+        TRY(vesseltree_thin_overlaps(&making->outer, &params->mesh, &report->thinned,
+                                     &report->n_thinned, err));
     if (print_is_hollow(params))
-        TRY(vesseltree_free_ends(&making->outer, &params->mesh, &report->longer, &report->n_longer,
-                                 err));
+        TRY(vesseltree_lengthen_ends(&making->outer, &params->mesh, &report->lengthened,
+                                     &report->n_lengthened, err));
     TRY(take_changes(making, err));
     TRY(vesseltree_closest_pair(&making->outer, &params->mesh, &report->closest,
                                 &report->has_closest, err));
-    if (!params->base.is_there)
+    if (!params->base.is_wanted)
         return STATUS_OK;
     TRY(supportpins_add(&making->outer, &params->base, print_has_wall(params), &params->mesh,
                         &making->pins, err));
     report->pins = making->pins.n_pins;
-    report->hanging = making->pins.n_unsupported;
+    report->unsupported = making->pins.n_unsupported;
     if (report->pins == 0)
-        return err_set(err, STATUS_INFEASIBLE,
-                       "no pin can be led from the vessels to a base: all %zu places that need one "
-                       "have other vessels, or open ends, in the way",
-                       report->hanging);
+        return err_set(
+            err, STATUS_INFEASIBLE,
+            "no support pin is possible: at all %zu points that need one, vessels or open "
+            "ends are in the way",
+            report->unsupported);
     return STATUS_OK;
 }
 
@@ -146,14 +147,14 @@ static double rounded(double x, double step)
 static Status lay_grid(PrintMaking *making, Err *err)
 {
     Casing *casing = &making->casing;
-    double reach = mesh_reach(&making->outer), grid;
-    if (making->params.block.is_there)
+    double reach = mesh_max_coordinate(&making->outer), grid;
+    if (making->params.block.is_wanted)
         TRY(block_casing(making->tree, &making->params.block, casing, err));
-    if (making->params.base.is_there)
+    if (making->params.base.is_wanted)
         *casing = supportpins_base_plate(&making->outer, &making->params.base, &making->pins);
     for (int face = 0; face < CASING_FACES; face++)
         reach = fmax(reach, fabs(face_coordinate(casing, face)));
-    making->params.mesh.reach_mm = reach;
+    making->params.mesh.max_coordinate_mm = reach;
     making->solid.grid_mm = grid = mesh_grid(reach);
     Vec3 *ends[2] = {&casing->box.low, &casing->box.high};
     for (int end = 0; end < 2; end++)
@@ -228,7 +229,7 @@ static Status add_vessels(PrintMaking *making, Err *err)
     }
     TRY(solid_surface(&making->solid, &outer->mesh, &outer->ends, (SurfaceUse){0}, err));
     TRY(join_sides(making, err));
-    if (!making->params.base.is_there)
+    if (!making->params.base.is_wanted)
         return STATUS_OK;
     return supportpins_join(&making->solid, &making->casing, &outer->ends, &making->pins,
                             &making->seams, err);
@@ -239,7 +240,7 @@ static Status add_all(PrintMaking *making, Err *err)
     PrintSide *outer = &making->sides[0];
     for (uint32_t i = 0; i < making->outer.n_segments; i++)
         seams_add(&making->seams, i);
-    if (making->params.block.is_there)
+    if (making->params.block.is_wanted)
         return block_add(&making->solid,
                          &(const BlockInput){&making->outer, &outer->mesh, &outer->ends,
                                              &making->params.block, &making->casing},
@@ -306,11 +307,12 @@ static Status prove(PrintMaking *making, MeshReport *report, Err *err)
     if (print_is_hollow(&making->params)) {
         TRY(list_closed(making, err));
         making->report.cavities =
-            seams_lone(&making->seams, print_has_wall(&making->params) ? MESH_LUMEN : 0);
+            seams_count_unjoined(&making->seams, print_has_wall(&making->params) ? MESH_LUMEN : 0);
     }
     if (print_has_wall(&making->params)) {
-        report->off.mm = fmax(report->off.mm, making->sides[1].report.off.mm);
-        report->off.ratio = fmax(report->off.ratio, making->sides[1].report.off.ratio);
+        report->deviation.mm = fmax(report->deviation.mm, making->sides[1].report.deviation.mm);
+        report->deviation.ratio =
+            fmax(report->deviation.ratio, making->sides[1].report.deviation.ratio);
     }
     making->report.rings = making->seams.n_rings;
     TRY(seams_prove(&making->seams, &making->solid.mesh, making->solid.grid_mm,
@@ -326,10 +328,11 @@ static Status add_lids(PrintMaking *making, Err *err)
     const CutEnds *ends = &making->sides[1].ends;
     const PrintReport *report = &making->report;
     if (report->n_closed)
-        return err_set(err, STATUS_INPUT,
-                       "the lumen of segment %u is not open at its end, because another vessel is "
-                       "in the way of its wall",
-                       making->tree->ids[report->closed[0]]);
+        return err_set(
+            err, STATUS_INPUT,
+            "the lumen of segment %u cannot be open at its end, because another vessel is "
+            "too close to its wall",
+            making->tree->ids[report->closed[0]]);
     for (size_t i = 0; i < ends->n; i++) {
         const CutEnd *end = &ends->items[i];
         const FieldSegment *segment = &making->tree->segments[end->segment];

@@ -1,68 +1,79 @@
-/* The public header of the module print: solids for printing, made from the surfaces of vessels.
+/* The public header of the module print: solids for 3D printing, made from the surfaces of vessels.
  *
- * A solid is put together from closed surfaces without holes, each of them valid by
- * meshreport_check. They are opened at flat ends and joined there by rings of triangles. So the
- * solid has as many connected parts as the graph of surfaces and rings, and its genus is rings -
- * surfaces + parts. */
+ * A print is one of these: solid vessels; vessels with a wall about a lumen; a block with the
+ * vessels as cavities; any vessels on a base plate. A solid is put together from closed surfaces
+ * without holes, each of them valid by meshreport_check. The surfaces are opened at flat ends and
+ * joined there by rings of triangles. No boolean operation is needed. So the solid has as many
+ * connected components as the graph of surfaces and rings, and its genus is
+ * rings - surfaces + components. print_build proves that the triangles have this topology.
+ *
+ *     PrintParams params = {.mesh = {.tolerance = 0.02}, .wall_mm = 1};
+ *     TRY(print_build(&tree, &params, &mesh, &report, &print, err));
+ *
+ * The caller then uses `mesh`, and releases all three with vesselmesh_release, meshreport_release
+ * and printreport_release. */
 #ifndef CORCAST_PRINT_PRINT_H
 #define CORCAST_PRINT_PRINT_H
 
 #include "mesh/mesh.h"
 
-/* The vessel ends that are led out of a block. */
+/* Which vessel ends get a port out of a block: none, the first ends of segments alone (inlets), or
+ * all. */
 typedef enum PrintPorts { PORTS_NONE, PORTS_INLET, PORTS_ALL } PrintPorts;
 
-/* A block in which the vessels are hollow. */
+/* A block in which the vessels are cavities. */
 typedef struct PrintBlock {
-    bool is_there;
-    bool is_round;     /* a cylinder along the coordinate axis that the first vessel is nearest to,
-                        * which     vessels leave through its two flat faces; else a box */
-    double size_mm[3]; /* of a box: along x, y, z; of a cylinder: diameter, height; 0: from the
-                          margin */
+    bool is_wanted;
+    bool is_round;     /* true: a cylinder, whose axis is the coordinate axis nearest to the
+                        * direction of the first segment; vessels leave it through its two flat
+                        * faces. false: a box. */
+    double size_mm[3]; /* of a box: along x, y, z. Of a cylinder: diameter, height. 0: as large as
+                        * the vessels and the margin need. */
     double margin_mm;  /* minimum distance of vessels from the block's faces */
     PrintPorts ports;
-    double taper; /* increase of a port's diameter per mm */
+    double taper; /* increase of a port's diameter towards its face, mm per mm, in [0, 1] */
     bool is_luer; /* ports end in the female half of a Luer fitting */
 } PrintBlock;
 
-/* A plate below the vessels, across the z axis, on which they stand by support pins. */
+/* A plate below the vessels, perpendicular to the z axis. Vessels stand on it by support pins. */
 typedef struct PrintBase {
-    bool is_there;
+    bool is_wanted;
     double thickness_mm;
-    double least_radius_mm; /* minimum radius of a pin */
+    double min_pin_radius_mm; /* minimum radius of a pin */
 } PrintBase;
 
 typedef struct PrintParams {
     MeshParams mesh;
-    bool part_overlaps; /* thin walls and vessels that overlap [vesseltree_part] */
+    bool part_overlaps; /* thin unconnected vessels that overlap, with their walls
+                         * [vesseltree_thin_overlaps] */
     /* Thickness of a wall about the vessels, which become its lumen: wall_mm + wall_ratio * radius.
-     * Both 0: solid vessels. */
+     * Both 0: no wall. A wall cannot be combined with a block. */
     double wall_mm, wall_ratio;
-    bool lids; /* of a wall: discs close the openings of the lumen. They use its points, so that
-                * wall and lumen are two solids that share them. */
+    bool lids; /* with a wall: discs close the openings of the lumen. They use the points of the
+                * lumen's rims, so that wall and lumen are two solids that share triangles. */
     PrintBlock block;
-    PrintBase base;
+    PrintBase base; /* cannot be combined with a block */
 } PrintParams;
 
 /* The facts about a print. All arrays are owned. */
 typedef struct PrintReport {
-    size_t rings;      /* number of rings that join surfaces */
-    size_t openings;   /* of lumens: ends of vessels, or ports of a block */
-    size_t pins;       /* number of pins between vessels and the base */
-    size_t hanging;    /* number of places that need a pin, but where no pin is possible */
-    size_t cavities;   /* number of lumens without an opening */
-    NearPair closest;  /* the vessels nearest to each other that do not belong together, with their
-                          walls */
-    bool has_closest;  /* false: there are no such vessels */
-    uint32_t *closed;  /* segments with an end that is not open */
-    uint32_t *longer;  /* segments that were made longer, so that their ends are flat */
-    uint32_t *thinned; /* segments that were made thinner, by part_overlaps */
-    size_t n_closed, n_longer, n_thinned;
+    size_t rings;         /* number of rings that join surfaces */
+    size_t openings;      /* number of openings of lumens: open vessel ends, or ports of a block */
+    size_t pins;          /* number of pins between vessels and the base plate */
+    size_t unsupported;   /* number of overhangs that need a pin, but where no pin is possible */
+    size_t cavities;      /* number of lumens without an opening */
+    NearPair closest;     /* the two unconnected vessels, with their walls, with the smallest gap */
+    bool has_closest;     /* false: no two vessels are unconnected, and `closest` is not set */
+    uint32_t *closed;     /* segments with a free end that is not open; twice, if both ends are */
+    uint32_t *lengthened; /* segments that were lengthened, so that their ends can be cut flat */
+    uint32_t *thinned;    /* segments that were thinned because of part_overlaps */
+    size_t n_closed, n_lengthened, n_thinned;
     double lumen_mm3; /* volume of the vessels */
-    double outer_mm3; /* volume that the outer surface encloses; without a wall or block, that of
-                       * the vessels */
+    double outer_mm3; /* volume inside the outer surface of the walls; without walls, that of the
+                       * vessels */
 } PrintReport;
 
+/* Frees the arrays and zeroes *report. */
 void printreport_release(PrintReport *report);
 
 /* Returns true if the vessels get a wall. */
@@ -71,28 +82,33 @@ static inline bool print_has_wall(const PrintParams *params)
     return params->wall_mm > 0 || params->wall_ratio > 0;
 }
 
-/* Returns true if the print has lumens. */
+/* Returns true if the print has lumens: in walls, or in a block. */
 static inline bool print_is_hollow(const PrintParams *params)
 {
-    return print_has_wall(params) || params->block.is_there;
+    return print_has_wall(params) || params->block.is_wanted;
 }
 
-/* Returns true if several surfaces are joined at flat ends. */
+/* Returns true if several surfaces are joined at flat ends: of walls, a block, or a base plate. */
 static inline bool print_is_joined(const PrintParams *params)
 {
-    return print_is_hollow(params) || params->base.is_there;
+    return print_is_hollow(params) || params->base.is_wanted;
 }
 
-/* Makes the solid of a tree and proves its topology. The result does not depend on the number of
- * threads.
+/* Builds the solid of a tree and proves its topology. The result does not depend on the number of
+ * threads. On error, `mesh`, `report` and `print` stay as they were.
  *
- * tree     its body must be BODY_POTENTIAL if surfaces are joined. Ends may become longer and
- * vessels thinner, as the report states. mesh     receives the triangles. Labels are indices of
- * segments, with MESH_LUMEN inside a wall, and with MESH_CAP where an end is cut off flat; lids
- * have both. report   receives the facts about the solid without lids. Errors   as
- * vesselmesh_build; STATUS_INPUT with a pair of ids if walls meet, or with a segment that would
- * need a lid but is not open; STATUS_INFEASIBLE if no pin or no port is possible; STATUS_DIFFERS if
- * a surface is not valid. */
+ * tree     its body must be BODY_POTENTIAL if print_is_joined. Its ends may be lengthened and its
+ *          vessels thinned, as the report states; the tree may be changed also on error.
+ * mesh     receives the triangles; release it with vesselmesh_release. Labels are indices of
+ *          segments of `tree`, with the flag MESH_LUMEN inside a wall, MESH_CAP where an end is cut
+ *          flat, and MESH_FRAME on pins, plate and block. Lids have MESH_CAP and MESH_LUMEN.
+ * report   receives the facts about the solid without lids; release it with meshreport_release.
+ * print    receives the facts about the print; release it with printreport_release.
+ * Errors   STATUS_INPUT with a pair of ids if walls overlap, with a segment that would need a lid
+ *          but is not open, if the block is too small, or if the tree is too far from the origin;
+ *          STATUS_INFEASIBLE if no pin or no port is possible, or if a junction region has no valid
+ *          surface; STATUS_DIFFERS if a surface or the solid is not valid; STATUS_CANCELLED if
+ *          MeshParams.progress returned false; STATUS_MEMORY. */
 MUST_CHECK Status print_build(VesselTree *tree, const PrintParams *params, VesselMesh *mesh,
                               MeshReport *report, PrintReport *print, Err *err);
 

@@ -13,7 +13,7 @@ void seams_release(Seams *seams)
     free(seams->trees);
     free(seams->root);
     free(seams->rings);
-    free(seams->is_there);
+    free(seams->is_used);
     *seams = (Seams){0};
 }
 
@@ -30,7 +30,7 @@ Status seams_make(const VesselTree *tree, Seams *out, Err *err)
     TRY_GOTO(meshcheck_trees(tree, &seams.trees, &n_trees, err));
     TRY_GOTO(mem_calloc(&seams.root, n, sizeof *seams.root, "trees", err));
     TRY_GOTO(mem_calloc(&seams.rings, n, sizeof *seams.rings, "trees", err));
-    TRY_GOTO(mem_calloc(&seams.is_there, n, sizeof *seams.is_there, "trees", err));
+    TRY_GOTO(mem_calloc(&seams.is_used, n, sizeof *seams.is_used, "trees", err));
     sets_begin(seams.root, n);
     *out = seams;
     return STATUS_OK;
@@ -48,7 +48,7 @@ uint32_t seams_surface(const Seams *seams, uint32_t label)
 
 void seams_add(Seams *seams, uint32_t label)
 {
-    seams->is_there[seams_surface(seams, label)] = true;
+    seams->is_used[seams_surface(seams, label)] = true;
 }
 
 void seams_ring(Seams *seams, uint32_t label, uint32_t other)
@@ -61,12 +61,12 @@ void seams_ring(Seams *seams, uint32_t label, uint32_t other)
     seams->n_rings++;
 }
 
-size_t seams_lone(const Seams *seams, uint32_t kind)
+size_t seams_count_unjoined(const Seams *seams, uint32_t kind)
 {
     size_t n = 0;
     uint32_t first = kind == MESH_LUMEN ? seams->n_nodes : 0;
     for (uint32_t i = first; i < first + seams->n_nodes; i++)
-        n += seams->is_there[i] && seams->root[i] == i && seams->rings[i] == 0;
+        n += seams->is_used[i] && seams->root[i] == i && seams->rings[i] == 0;
     return n;
 }
 
@@ -78,7 +78,7 @@ static void expect(const Seams *seams, long long *euler, MeshReport *report)
     report->expected_components = 0;
     for (uint32_t i = 0; i < surface_count(seams); i++) {
         uint32_t root = sets_find(seams->root, i);
-        if (!seams->is_there[i])
+        if (!seams->is_used[i])
             continue;
         euler[root] += 2;
         sum += 2;
@@ -126,10 +126,11 @@ static Status check_parts(const Seams *seams, const VesselMesh *mesh, MeshReport
     report->bridges = take_found(seams, mesh, part_of, euler);
     for (uint32_t i = 0; i < surface_count(seams); i++)
         if (euler[i] != 0)
-            TRY_GOTO(err_set(err, STATUS_DIFFERS,
-                             "the solid is not sound: a part of it has the Euler number %+lld off "
-                             "that of the surfaces it is made of; nothing is written",
-                             -euler[i] / 2));
+            TRY_GOTO(
+                err_set(err, STATUS_DIFFERS,
+                        "the solid is not valid: the Euler number of a component differs by %+lld "
+                        "from that of the surfaces it was built from; no file was written",
+                        -euler[i] / 2));
 done:
     free(euler);
     free(part_of);

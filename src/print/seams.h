@@ -1,40 +1,51 @@
-/* The topology of a solid, derived from the surfaces that it was put together from, and the proof
- * that the solid has it. */
+/* The expected topology of a solid, and the proof that its triangles have it.
+ *
+ * A solid is put together from closed surfaces without holes, which are joined by rings of
+ * triangles. A Seams is the graph of them: surfaces are nodes, rings are edges. The caller adds
+ * every surface and every ring to the graph while it adds them to the solid. seams_prove then
+ * compares the triangles with the graph. Private to the module print. */
 #ifndef CORCAST_PRINT_SEAMS_H
 #define CORCAST_PRINT_SEAMS_H
 
 #include "mesh/mesh.h"
 
-/* A graph of closed surfaces without holes, and of the rings of triangles that join them. A surface
- * is the outer side or the lumen of a tree, or the casing. All arrays are owned. */
+/* The graph. A surface is the outer side of a tree, the lumen of a tree, or the casing. Surfaces
+ * have indices: the tree's number, n_nodes plus this number, and 2 n_nodes. All arrays are
+ * owned. */
 typedef struct Seams {
-    uint32_t *trees; /* per segment: its tree, an index below n_nodes */
+    uint32_t *trees; /* per segment: the number of its tree, below n_nodes [meshcheck_trees] */
     size_t n_segments;
     uint32_t n_nodes;
-    uint32_t *root;  /* per surface: sets of joined surfaces [base/sets.h] */
-    uint32_t *rings; /* per surface that represents a set: the number of rings in the set */
-    size_t n_rings;
-    bool *is_there; /* per surface: it is part of the solid */
+    uint32_t *root;  /* per surface: disjoint sets of joined surfaces [base/sets.h] */
+    uint32_t *rings; /* per surface that is the root of a set: the number of rings in the set */
+    size_t n_rings;  /* number of all rings */
+    bool *is_used;   /* per surface: it is part of the solid */
 } Seams;
 
-/* Makes a graph without surfaces. Release it with seams_release. Errors: STATUS_MEMORY. */
+/* Makes a graph of no surfaces and no rings, for the trees of `tree`. Release *out with
+ * seams_release. Errors: STATUS_MEMORY. */
 MUST_CHECK Status seams_make(const VesselTree *tree, Seams *out, Err *err);
 void seams_release(Seams *seams);
 
-/* Returns the surface of a triangle with this label. */
+/* Returns the index of the surface that a triangle with this label belongs to. */
 uint32_t seams_surface(const Seams *seams, uint32_t label);
-/* Makes the surface of this label part of the solid. The label of a segment stands for its tree. */
+/* Adds the surface of this label to the graph. The label of any segment of a tree will do. */
 void seams_add(Seams *seams, uint32_t label);
-/* Joins the surfaces of two labels by a ring. */
+/* Adds a ring between the surfaces of two labels. */
 void seams_ring(Seams *seams, uint32_t label, uint32_t other);
 
-/* Returns the number of trees with a surface that no ring joins. `kind` is MESH_LUMEN, or 0 for the
- * outer side. */
-size_t seams_lone(const Seams *seams, uint32_t kind);
+/* Returns the number of trees whose surface is part of the solid, but has no ring. `kind` selects
+ * the surface: MESH_LUMEN the lumen, 0 the outer side. */
+size_t seams_count_unjoined(const Seams *seams, uint32_t kind);
 
-/* Fills the fields of the report that meshcheck_topology and meshcheck_crossings fill, and the
- * expected numbers. Errors: STATUS_DIFFERS if a part of the solid is not connected, or does not
- * have the Euler number 2 (surfaces - rings) of its part of the graph; STATUS_MEMORY. */
+/* Checks the triangles of the solid against the graph.
+ *
+ * report   receives what meshcheck_topology and meshcheck_crossings find, and the expected numbers
+ *          of components and genus. Other fields stay.
+ * grid_mm  all coordinates are integer multiples of it.
+ * threads  number of threads; 0: one per processor.
+ * Errors   STATUS_DIFFERS if a component of the graph does not have the Euler number
+ *          2 (surfaces - rings) in the mesh; STATUS_MEMORY. Call meshreport_check for the rest. */
 MUST_CHECK Status seams_prove(const Seams *seams, const VesselMesh *mesh, double grid_mm,
                               int threads, MeshReport *report, Err *err);
 

@@ -1,34 +1,42 @@
-/* A closed solid that is put together from valid surfaces, whose flat ends are opened, and from
- * triangles that join the rims. */
+/* A closed solid that is put together from valid surfaces.
+ *
+ * The surfaces are meshes of vesselmesh_build. Their flat ends are discs of triangles. A disc is
+ * left out of the solid where the end is opened. The rim of an opened end is then joined to another
+ * rim by a ring of triangles, or to a hole in a flat face. Private to the module print. */
 #ifndef CORCAST_PRINT_SOLID_H
 #define CORCAST_PRINT_SOLID_H
 
 #include "mesh/mesh.h"
 
-/* A flat end of a surface: a disc of `n` consecutive triangles about one point. */
+/* A flat end of a surface: a disc of `n` consecutive triangles of the mesh about one point. The rim
+ * has n points. */
 typedef struct CutEnd {
-    uint32_t segment;
-    int end;        /* of the segment, 0 or 1 */
-    uint32_t first; /* index of the first triangle */
+    uint32_t segment; /* index of the segment */
+    int end;          /* the segment's end, 0 or 1 */
+    uint32_t first;   /* index of the first triangle */
     uint32_t n;
-    bool opened;   /* the disc is left out of the solid */
+    bool opened;   /* set by the caller: solid_surface leaves the disc out */
     uint32_t *rim; /* the rim's points in the solid, by rising angle about the segment's axis; set
                     * by solid_surface */
 } CutEnd;
 
+/* The flat ends of one mesh. Release it with cutends_release. */
 typedef struct CutEnds {
     CutEnd *items; /* owned; by rising segment, then end */
     size_t n;
     uint32_t *rims; /* owned; the items point into it */
 } CutEnds;
 
-/* Lists the flat ends of a mesh of vesselmesh_build. Errors: STATUS_MEMORY. O(triangles). */
+/* Lists the flat ends of a mesh of vesselmesh_build, none of them opened. Release *out with
+ * cutends_release. Errors: STATUS_MEMORY. O(triangles). */
 MUST_CHECK Status cutends_find(const VesselMesh *mesh, CutEnds *out, Err *err);
 void cutends_release(CutEnds *ends);
-/* Returns the flat end of a segment, or NULL if this end is not flat. O(log n). */
+/* Returns the flat end of a segment, or NULL if this end is not flat. It is borrowed from `ends`.
+ * O(log n). */
 CutEnd *cutends_at(const CutEnds *ends, uint32_t segment, int end);
 
-/* Zero it, except grid_mm, before first use; release it with solid_release. */
+/* The solid while it is put together. Zero it before first use and set grid_mm; release it with
+ * solid_release. */
 typedef struct Solid {
     VesselMesh mesh;
     double grid_mm; /* coordinates are integer multiples of it */
@@ -37,29 +45,33 @@ typedef struct Solid {
 
 void solid_release(Solid *solid);
 
-/* Adds a point, rounded to the grid, and sets *index to its index. Errors: STATUS_MEMORY. */
+/* Adds a point, rounded to the grid, with its unit normal, and sets *index to its index. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status solid_point(Solid *solid, Vec3 x, Vec3 normal, uint32_t *index, Err *err);
-/* Adds a triangle, counterclockwise seen from outside. Errors: STATUS_MEMORY. */
+/* Adds a triangle of three points of the solid, counterclockwise seen from outside. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status solid_triangle(Solid *solid, uint32_t a, uint32_t b, uint32_t c, uint32_t label,
                                  Err *err);
 
 /* How a surface is added to a solid. */
 typedef struct SurfaceUse {
-    bool turned;    /* its inside becomes the outside */
-    uint32_t flags; /* set in the labels of its triangles */
+    bool turned;    /* the surface is turned inside out, as the wall of a cavity */
+    uint32_t flags; /* flags that are set in the labels of all its triangles [MESH_LUMEN] */
 } SurfaceUse;
 
-/* Adds a surface without its opened ends, and fills the rims of the ends. Errors: STATUS_MEMORY. */
+/* Adds a surface without the discs of its opened ends, and fills the rims of all ends. The mesh is
+ * copied. Errors: STATUS_MEMORY. */
 MUST_CHECK Status solid_surface(Solid *solid, const VesselMesh *mesh, CutEnds *ends, SurfaceUse use,
                                 Err *err);
-/* Joins two rims of n points by 2 n triangles. Seen from outside, `next` is on the left of the
- * direction along `rim`. Errors: STATUS_MEMORY. */
+/* Joins two rims of n points each by 2 n triangles with this label. Point i of one rim is opposite
+ * point i of the other. Seen from outside, `next` is on the left of the direction along `rim`.
+ * Errors: STATUS_MEMORY. */
 MUST_CHECK Status solid_ring(Solid *solid, const uint32_t *rim, const uint32_t *next, uint32_t n,
                              uint32_t label, Err *err);
 
-/* Points of a solid, in order round a closed loop. */
+/* Indices of points of a solid, in order round a closed loop. */
 typedef struct FaceLoop {
-    const uint32_t *points;
+    const uint32_t *points; /* borrowed */
     uint32_t n;
 } FaceLoop;
 

@@ -75,7 +75,7 @@ static Status find_feet(Standing *standing)
         PinFoot foot;
         if (!is_lowest(standing, node, &foot))
             continue;
-        foot.radius_mm = fmax(pin_part * foot.radius_mm, standing->base->least_radius_mm);
+        foot.radius_mm = fmax(pin_part * foot.radius_mm, standing->base->min_pin_radius_mm);
         TRY(mem_reserve(&standing->feet, &standing->foot_capacity, standing->n_feet + 1,
                         sizeof *standing->feet, "pins", standing->err));
         standing->feet[standing->n_feet++] = foot;
@@ -244,8 +244,8 @@ static Status add_pin(Standing *standing, PinFoot foot, bool open_ends)
 static bool is_spoilt(const Standing *standing, const Junctions *junctions, uint32_t segment)
 {
     for (size_t i = 0; i < junctions->n_overlapping; i++)
-        if (junctions->strangers[i].segments[0] == segment ||
-            junctions->strangers[i].segments[1] == segment)
+        if (junctions->unconnected[i].segments[0] == segment ||
+            junctions->unconnected[i].segments[1] == segment)
             return true;
     return junctions->of_node[standing->tree->nodes[segment][1]] != NO_JUNCTION;
 }

@@ -1,4 +1,9 @@
-/* A base plate for printing, and the support pins between the plate and the vessels. */
+/* A base plate for printing, and the support pins between the plate and the vessels.
+ *
+ * A pin is added to the tree as one more vessel, so that it blends with the vessel that it
+ * supports, and is cut flat at the plate. First supportpins_add extends the tree, then the extended
+ * tree is meshed and added to a solid, then supportpins_join adds the plate. Private to the module
+ * print. */
 #ifndef CORCAST_PRINT_SUPPORTPINS_H
 #define CORCAST_PRINT_SUPPORTPINS_H
 
@@ -28,18 +33,25 @@ void supportpins_release(SupportPins *pins);
  * another vessel, or if the pin could not be cut flat at the plate.
  *
  * tree     must own its arrays. Segments and nodes are added, also before an error.
- * out      is set on success; release it with supportpins_release.
+ * out      receives the pins; release it with supportpins_release.
+ * Errors   STATUS_INPUT if the tree is too far from the origin, STATUS_MEMORY. A tree without a
+ *          possible pin is no error; then n_pins is 0.
  * Cost     O(pins * segments). */
 MUST_CHECK Status supportpins_add(VesselTree *tree, const PrintBase *base, bool open_ends,
                                   const MeshParams *params, SupportPins *out, Err *err);
 
-/* Returns the plate below the pins. */
+/* Returns the plate below the pins. It reaches 2 mm beyond the vessels. Its corners are not rounded
+ * to the grid of the solid yet. */
 Casing supportpins_base_plate(const VesselTree *tree, const PrintBase *base,
                               const SupportPins *pins);
 
-/* Adds the plate to the solid and joins it to the pins. The pins must already be in the solid,
- * their lower ends opened. Errors: STATUS_INFEASIBLE if two pins touch at the plate,
- * STATUS_MEMORY. */
+/* Adds the plate to the solid and joins it to the pins. The pins must already be in the solid, with
+ * their lower ends opened.
+ *
+ * plate    from supportpins_base_plate, rounded to the grid of the solid.
+ * ends     the flat ends of the outer surface.
+ * seams    is extended by the surface of the plate and one ring per pin.
+ * Errors   STATUS_INFEASIBLE if two pins touch at the plate, STATUS_MEMORY. */
 MUST_CHECK Status supportpins_join(Solid *solid, const Casing *plate, const CutEnds *ends,
                                    const SupportPins *pins, Seams *seams, Err *err);
 

@@ -190,7 +190,8 @@ class Report(dict):
 # ---- options -------------------------------------------------------------------------------------
 
 def _number(value):
-    return str(int(value)) if isinstance(value, numbers.Integral) else repr(float(value))
+    whole = isinstance(value, numbers.Integral) or (float(value).is_integer() and abs(value) < 2**53)
+    return str(int(value)) if whole else repr(float(value))
 
 
 def _is_sequence(value):

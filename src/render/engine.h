@@ -1,30 +1,50 @@
-/* A way of drawing pictures. */
+/* An engine: one method of drawing a Drawing [job.h], such as tile by tile or ray by ray. render.c
+ * takes the first engine of its list that supports the drawing, prepares it once per view, and lets
+ * it draw the image band by band:
+ *
+ *     void *prepared = NULL;
+ *     if (engine->supports(&drawing)) {
+ *         TRY(engine->prepare(&drawing, &prepared, err));     once per view
+ *         TRY(engine->rows(&drawing, prepared, frame, err));  once per band
+ *         engine->free(prepared);
+ *     }
+ *
+ * All engines are constants. The caller may use one engine for several drawings at once. */
 #ifndef CORCAST_RENDER_ENGINE_H
 #define CORCAST_RENDER_ENGINE_H
 
 #include "render/job.h"
 
 typedef struct Engine {
-    const char *name; /* that of the method, where there is one */
-    bool makes_codes; /* may make 8-bit codes instead of colors [RenderParams.codes_suffice] */
-    bool covers;      /* leaves out hidden vessels, and draws Drawing.thin over its samples */
-    /* Whether the engine can draw this, and is asked to; band, caster and appearance do not matter.
-     */
-    bool (*can)(const Drawing *drawing);
-    /* Likewise whether it asks for rays: then the drawing is to have a caster. */
+    const char *name;  /* name for statistics and messages, such as "raster" */
+    bool writes_codes; /* can write 8-bit sRGB codes instead of linear float colors
+                        * [RenderParams.codes_suffice] */
+    bool draws_thin;   /* leaves out the vessels of Drawing.hidden, and draws Drawing.thin over its
+                        * samples */
+    /* Returns true if the engine supports the drawing's geometry and view, and the parameters
+     * select it. Does not read band, caster or appearance. */
+    bool (*supports)(const Drawing *drawing);
+    /* Returns true if the engine traces rays for this drawing; Drawing.caster must then not be
+     * NULL. Reads the same fields as `supports`. */
     bool (*needs_rays)(const Drawing *drawing);
-    /* Makes in *prepared (owned) what all bands of a view have in common, whatever the appearance;
-     * NULL: nothing. *prepared is unchanged on failure. STATUS_MEMORY; STATUS_USAGE when the engine
-     * cannot draw this view after all. */
+    /* Prepares a view: builds the data that all bands of the view share. The data do not depend on
+     * the appearance. NULL: the engine needs no preparation.
+     *
+     * prepared  receives the data; release it with `free`. Unchanged on failure.
+     * Errors    STATUS_MEMORY; STATUS_USAGE if the engine cannot draw this view after all. */
     Status (*prepare)(const Drawing *drawing, void **prepared, Err *err);
-    /* Draws the band into planes that are there. STATUS_MEMORY. */
+    /* Draws the drawing's band into the planes that `frame` has. `prepared` is the result of
+     * `prepare` for the same view, or NULL. Errors: STATUS_MEMORY; STATUS_CANCELLED if the progress
+     * callback asks to stop. */
     Status (*rows)(const Drawing *drawing, void *prepared, Frame *frame, Err *err);
-    /* Frees what was prepared; NULL where nothing is. */
+    /* Frees the result of `prepare`; NULL if the engine has no `prepare`. */
     void (*free)(void *prepared);
-    /* Answers shadow queries [render/light/shadowengine.h]; NULL: shadow rays are traced. */
+    /* Answers shadow queries [render/light/shadowengine.h]; NULL: shadow rays are traced
+     * instead. */
     const struct ShadowEngine *shadows;
-    /* Returns the light bins that were prepared for light `light` of the view and for points in the
-     * frame of the camera; NULL: there are none. The function is NULL if `shadows` is. */
+    /* Returns the light bins of light `light` (an index in View.lights) from `prepared`, for points
+     * in the frame of the camera. Borrowed. NULL: none were prepared. The function pointer is NULL
+     * if `shadows` is NULL. */
     struct LightBins *(*light_bins)(const void *prepared, size_t light);
 } Engine;
 

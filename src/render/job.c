@@ -26,7 +26,7 @@ Rgb drawing_color(const Drawing *drawing, uint32_t segment, Vec3 point)
     const Appearance *appearance = drawing->appearance;
     if (!drawing->mean)
         return appearance_color(appearance, segment);
-    return appearance_blended(appearance, termmean_at(drawing->mean, appearance->places, point));
+    return appearance_blended(appearance, termmean_at(drawing->mean, appearance->positions, point));
 }
 
 void renderstats_add(RenderStats *all, const RenderStats *more)

@@ -1,4 +1,9 @@
-/* The parameters of a renderer, and the drawing that it passes to an engine. */
+/* What the engines of the module render share: the parameters of a renderer (RenderParams), its
+ * statistics (RenderStats), and the job that an engine receives (Drawing).
+ *
+ * A sample is one ray through the image. A pixel has one centre sample, and N x N further samples
+ * if it is antialiased. A band is a range of rows that is drawn in one call. The planes of a frame
+ * are color and, per pixel, depth, normal and id. */
 #ifndef CORCAST_RENDER_JOB_H
 #define CORCAST_RENDER_JOB_H
 
@@ -12,8 +17,9 @@ typedef enum RenderMethod {
     RENDER_TRACE,   /* ray by ray in double precision, as POV-Ray does */
     RENDER_RASTER,  /* tile by tile in single precision: the same picture except for rounding */
     RENDER_ZBUFFER, /* points on the surfaces of primitives and a depth buffer, as in the paper */
-    RENDER_FASTEST  /* RENDER_RASTER where it supports the scene, else rays. Within the bounds of
-                     * tier B [verify.h], except for the visibility that samples share */
+    RENDER_FASTEST  /* RENDER_RASTER if it supports the scene, else rays. Differs from RENDER_TRACE
+                     * by no more than tier B [verify.h] allows, except for the visibility that the
+                     * samples of a pixel share */
 } RenderMethod;
 
 /* The instruction set that draws several samples of a tile at once. Pictures differ between
@@ -26,10 +32,10 @@ typedef enum RenderKernels {
     KERNELS_AVX512
 } RenderKernels;
 
-/* The names of RenderKernels, in order; NULL ends the list. */
+/* The names of RenderKernels, in the order of the enum; NULL ends the list. */
 extern const char *const render_kernel_names[];
 
-enum { RENDER_MOST_ANTIALIAS = 9 };
+enum { RENDER_MAX_ANTIALIAS = 9 };
 
 typedef struct RenderParams {
     /* How primitives and blobs are drawn; an isosurface has an engine of its own. For every
@@ -39,78 +45,89 @@ typedef struct RenderParams {
     RenderMethod method;
     RenderKernels kernels;
     int threads;                /* 0: all processors */
-    int antialias;              /* 1: one ray through each pixel's centre. N in
-                                 * 2..RENDER_MOST_ANTIALIAS: that ray and N x N more, with the
-                                 * positions and weights of POV-Ray's +A0.0 +AM1 +RN -J */
-    double antialias_threshold; /* 0: every pixel gets the N x N more rays, as in POV-Ray. In (0,
-                                 * 1]: only pixels that differ from a neighbour by this much in the
-                                 * square root of a channel; POV-Ray has no such mode */
+    int antialias;              /* 1: one sample at each pixel's centre. N in
+                                 * 2..RENDER_MAX_ANTIALIAS: that sample and N x N further samples,
+                                 * with the positions and weights of POV-Ray's +A0.0 +AM1 +RN -J */
+    double antialias_threshold; /* 0: every pixel gets the N x N further samples, as in POV-Ray. In
+                                 * (0, 1]: only pixels that differ from a neighbour by this much in
+                                 * the square root of a channel; POV-Ray has no such mode */
     bool shadows;
-    double shadow_from_mm; /* blockers nearer to a lit point cast no shadow on it; 0: POV-Ray's
-                            * limit, 0.001 mm */
-    int occlusion; /* 0: ambient light is the same everywhere. N: ambient visibility by N rays, or N
-                    * occlusion directions per pixel; POV-Ray has no such mode */
-    /* Vessels narrower than a pixel, and than three sample distances, are drawn by the area that
-     * they cover; POV-Ray has no such mode. False: samples hit or miss these vessels, too. Planes
-     * of geometry have what samples hit in either case. */
+    double shadow_from_mm; /* blockers nearer than this to a shading point cast no shadow on it; 0:
+                            * POV-Ray's limit, 0.001 mm */
+    int occlusion; /* 0: no ambient occlusion. N > 0: ambient visibility from N rays per sample
+                    * (RENDER_TRACE) or N occlusion directions per pixel; POV-Ray has no such
+                    * mode */
+    /* Thin vessels are drawn by the area that they cover in each pixel; POV-Ray has no such mode. A
+     * vessel is thin if it is narrower than a pixel and than three sample distances. False: samples
+     * hit or miss thin vessels, too. The planes of depth, normal and id show what centre samples
+     * hit in either case. */
     bool cover_thin;
-    double least_px; /* minimum drawn width of such vessels, pixels, 0..64; 0 draws true widths */
+    double
+        min_width_px; /* minimum drawn width of thin vessels, pixels, 0..64; 0: their true width */
     const CellParams *povray_cells; /* an isosurface is drawn where POV-Ray's root finder finds it
-                                     * in these cells; NULL: where it is, by proof */
-    bool codes_suffice; /* the frame may have 8-bit codes instead of float colors, if that is
-                         * faster; a transparent view may have its background and no alpha */
-    bool want_color, want_depth, want_normal, want_id; /* geometry planes are of the centre ray */
-    bool (*progress)(double fraction, void *context);  /* called by one thread; false: stop; may be
-                                                        * NULL */
+                                     * in these cells; NULL: the isosurface is drawn at its proven
+                                     * position */
+    bool codes_suffice; /* the frame may receive 8-bit sRGB codes instead of float colors, if codes
+                         * are faster. A transparent view may then receive its background color and
+                         * no alpha */
+    bool want_color, want_depth, want_normal, want_id; /* planes of the frame to draw; depth, normal
+                                                        * and id are those of the centre sample */
+    bool (*progress)(double fraction, void *context);  /* called by one thread at a time with the
+                                                        * finished fraction, 0..1; returns false to
+                                                        * stop. NULL: no progress is reported */
     void *progress_context;
 } RenderParams;
 
-/* What a renderer has done. */
+/* Statistics of a renderer. */
 typedef struct RenderStats {
-    double prepare_s;    /* wall time for search structures and for what views need */
-    double trace_s;      /* wall time for pixels */
-    double cpu_s;        /* time of all threads for both */
+    double prepare_s;    /* wall time for building search structures and preparing views, seconds */
+    double trace_s;      /* wall time for drawing pixels, seconds */
+    double cpu_s;        /* CPU time of all threads for both, seconds */
     size_t rays;         /* number of primary rays */
     const char *engine;  /* the engine that drew the last rows, such as "field" or "raster" */
-    size_t preparations; /* how often an engine was prepared for a view: for another camera, lights,
-                          * ground plane or antialiasing, or for colors after planes */
+    size_t preparations; /* number of times that an engine was prepared for a view: for another
+                          * camera, lights, ground plane or antialiasing, or for colors after
+                          * planes */
 } RenderStats;
 
-/* Adds the statistics of another renderer, whose engine drew last. `preparations` is not added. */
+/* Adds the statistics of another renderer, which drew last: `engine` becomes the engine of `more`.
+ * `preparations` is not added. */
 void renderstats_add(RenderStats *all, const RenderStats *more);
 
-/* The rows [first, first + rows) of a picture. The first `above` and the last `below` of them are
- * drawn only because adaptive antialiasing compares pixels with their neighbours. They get no
- * further samples and are cut off at the end. */
+/* The rows [first, first + rows) of an image, 0 at the top. The first `above` and the last `below`
+ * of these rows are drawn only because adaptive antialiasing compares pixels with their neighbours.
+ * They get no further samples and are removed from the result. */
 typedef struct Band {
     int first, rows;
     int above, below;
 } Band;
 
-/* A band of a picture of one geometry, for an engine. All pointers are borrowed. */
+/* What an engine draws: a band of an image of one geometry. All pointers are borrowed. */
 typedef struct Drawing {
     const Geometry *geometry;
     const View *view;
     const Appearance *appearance;
     const RenderParams *params;
-    struct Caster *caster; /* casts the engine's rays; NULL: the engine casts none */
+    struct Caster *caster; /* traces rays; NULL: the engine traces no rays */
     const TermMean *mean;  /* blends the colors of segments; NULL: colors do not blend */
-    const struct PixelVisibility *visibility; /* shared by the samples of a pixel; NULL: none is */
+    const struct PixelVisibility *visibility; /* visibility that the samples of a pixel share; NULL:
+                                               * no visibility is shared */
     const bool *hidden; /* per primitive, or per segment of a field: not visible to the camera, but
                          * casts shadows; NULL: none is hidden */
     const struct ThinLayer *thin; /* thin vessels that are drawn over each sample; NULL: none */
     Band band;
 } Drawing;
 
-/* Returns the linear color of a segment at a point of its surface. */
+/* Returns the linear color of a segment at a point of its surface. `segment` is a segment index
+ * [scene/geometry.h], `point` is in mm. */
 Rgb drawing_color(const Drawing *drawing, uint32_t segment, Vec3 point);
 
-/* Reports progress of the whole picture by params->progress, unless it is NULL. Errors:
+/* Reports progress of the whole image to params->progress. Does nothing if that is NULL. Errors:
  * STATUS_CANCELLED if the callback asks to stop.
  *
- * height   of the picture, pixels.
- * further  the pass draws the further samples of antialiasing; else the centre samples.
- * part     finished part of this pass over the band, 0..1. */
+ * height   height of the image, pixels.
+ * further  true: the pass draws the further samples of antialiasing; false: the centre samples.
+ * part     finished fraction of this pass over the band, 0..1. */
 MUST_CHECK Status band_progress(const Band *band, const RenderParams *params, int height,
                                 bool further, double part, Err *err);
 

@@ -1,4 +1,5 @@
-/* Stores pixels in the planes of a frame. */
+/* Stores pixels in the planes of a frame: hits (depth, normal, id) and linear colors. A pixel is an
+ * index, row by row. Nothing is allocated, and nothing can fail. */
 #ifndef CORCAST_RENDER_PLANES_H
 #define CORCAST_RENDER_PLANES_H
 
@@ -13,12 +14,12 @@ static inline bool planes_want_geometry(const Frame *frame)
     return frame->depth.values || frame->normal.values || frame->id.ids;
 }
 
-/* Stores the hit of a pixel in those planes of geometry that the frame has.
+/* Stores the hit of a pixel in the depth, normal and id planes that the frame has.
  *
  * pixel    index of the pixel, row by row.
  * depth    along the ray, mm.
  * normal   unit, facing the viewer.
- * id       of the segment. */
+ * id       SWC id of the segment. */
 static inline void planes_store(const Frame *frame, size_t pixel, double depth, Vec3 normal,
                                 uint32_t id)
 {
@@ -33,8 +34,7 @@ static inline void planes_store(const Frame *frame, size_t pixel, double depth, 
         frame->id.ids[pixel] = id;
 }
 
-/* Stores that the rays of `n` pixels from `first` on hit nothing: depth infinity, normal 0, id 0.
- */
+/* Stores a miss for `n` pixels from index `first` on: depth infinity, normal 0, id 0. */
 static inline void planes_store_nothing(const Frame *frame, size_t first, size_t n)
 {
     for (size_t i = 0; i < n && frame->depth.values; i++)
@@ -45,7 +45,7 @@ static inline void planes_store_nothing(const Frame *frame, size_t first, size_t
         memset(frame->id.ids + first, 0, n * sizeof *frame->id.ids);
 }
 
-/* Stores the linear color of a pixel. The frame has a float color plane. */
+/* Stores the linear color of a pixel. The frame must have a float color plane. */
 static inline void planes_store_color(const Frame *frame, size_t pixel, Rgb color)
 {
     frame->color.values[3 * pixel] = color.r;

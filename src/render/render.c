@@ -121,7 +121,7 @@ static void cut_planes(Frame *frame, const Band *band)
 static const Engine *engine_for(const Drawing *drawing)
 {
     size_t i = 0;
-    while (!engines[i]->can(drawing))
+    while (!engines[i]->supports(drawing))
         i++;
     return engines[i];
 }
@@ -153,7 +153,7 @@ static Status prepare_caster(Renderer *renderer, Drawing *drawing, Err *err)
 /* Makes the term mean if the drawing blends colors, and sets drawing->mean. */
 static Status prepare_mean(Renderer *renderer, Drawing *drawing, Err *err)
 {
-    if (!drawing->appearance->places || !model_has(renderer->geometry->model, MODEL_FIELD))
+    if (!drawing->appearance->positions || !model_has(renderer->geometry->model, MODEL_FIELD))
         return STATUS_OK;
     double start_s = clock_seconds();
     if (!renderer->mean)
@@ -385,7 +385,7 @@ static Status find_lights(Renderer *renderer, const Drawing *drawing, Err *err)
         if (view->lights[i].casts_shadows && !(shared && light_is_soft(&view->lights[i])))
             TRY(find_light(renderer, drawing, i, err));
     if (params->occlusion > 0 && shared)
-        TRY(thinvessels_find_open(drawing, &renderer->occluders, &renderer->thin, err));
+        TRY(thinvessels_find_ambient(drawing, &renderer->occluders, &renderer->thin, err));
     renderer->unlit = NULL;
     return STATUS_OK;
 }
@@ -412,7 +412,7 @@ static Status draw(Renderer *renderer, const Drawing *drawing, Frame *frame, Err
     TRY_GOTO(prepare_view(renderer, drawing, err));
     const Engine *engine = renderer->key.engine;
     const double start_s = clock_seconds();
-    const bool codes = params->codes_suffice && params->antialias == 1 && engine->makes_codes;
+    const bool codes = params->codes_suffice && params->antialias == 1 && engine->writes_codes;
     TRY_GOTO(
         make_planes(drawing->view->camera.width, drawing->band.rows, params, codes, frame, err));
     if (!drawing->visibility) {
@@ -597,7 +597,7 @@ static Status find_thin(Renderer *covering, const View *view, Err *err)
     const int pixel = effects_present(&view->effects) ? params->antialias : 1;
     const Camera camera = camera_of_samples(view, params);
     const ThinWidths widths = {pixel * fmin(1, most_samples / params->antialias),
-                               pixel * params->least_px};
+                               pixel * params->min_width_px};
     const double start_s = clock_seconds();
     ViewKey key;
     key_make(&key, NULL, &camera, view, params);
@@ -607,7 +607,7 @@ static Status find_thin(Renderer *covering, const View *view, Err *err)
     thinvessels_release(thin);
     memset(&covering->thin_key, 0, sizeof covering->thin_key);
     TRY(thinvessels_find(covering->geometry, &camera, widths, params->threads, thin, err));
-    thinvessels_place(thin);
+    thinvessels_init_lights(thin);
     covering->unlit = &thin->lights;
     if (params->shadows)
         TRY(offpixel_init(view, &thin->lights, err));
@@ -622,7 +622,7 @@ static bool may_cover(const Renderer *renderer, const View *view)
     const RenderParams *params = &renderer->params;
     const Drawing drawing = {.geometry = renderer->geometry, .view = view, .params = params};
     return params->cover_thin && params->want_color && !effects_have_shape(&view->effects) &&
-           engine_for(&drawing)->covers;
+           engine_for(&drawing)->draws_thin;
 }
 
 /* Sets *colors to the renderer that draws the view's colors. */

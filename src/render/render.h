@@ -1,5 +1,16 @@
-/* The public header of render: draws a geometry in a view and an appearance. Rays are computed in
- * double precision, in POV-Ray 3.7's order of operations [docs/POVRAY.md]; colors are floats. */
+/* The public header of the module render: draws a geometry, in a view and an appearance, into the
+ * planes of a Frame.
+ *
+ * `render` draws a whole Scene in one call. A Renderer is for several pictures of one geometry, and
+ * for pictures that are drawn band by band:
+ *
+ *     Renderer *renderer;
+ *     TRY(renderer_new(&geometry, &params, &renderer, err));
+ *     TRY(renderer_rows(renderer, &view, &appearance, 0, view.camera.height, &frame, err));
+ *     renderer_free(renderer);
+ *
+ * Rays are computed in double precision, in POV-Ray 3.7's order of operations [docs/POVRAY.md].
+ * Colors are linear floats. Lengths are in mm. */
 #ifndef CORCAST_RENDER_RENDER_H
 #define CORCAST_RENDER_RENDER_H
 
@@ -11,37 +22,41 @@
 #include "render/light/shade.h"
 #include "scene/scene.h"
 
-/* Bands begin at multiples of this many rows. */
+/* Bands begin at multiples of this many rows. It equals the height of a tile [tile.h]. */
 enum { RENDER_BAND_STEP = 8 };
 
 /* Draws one geometry in any number of views and appearances. */
 typedef struct Renderer Renderer;
 
-/* Makes a renderer, and builds the search structures that every view needs.
+/* Creates a renderer, and builds the search structures that every view needs.
  *
  * geometry  borrowed until renderer_free.
  * params    copied.
+ * out       receives the renderer; release it with renderer_free. Set on success only.
  * Errors    STATUS_USAGE if this processor cannot run the kernels; STATUS_INFEASIBLE if POV-Ray's
  *           cells of an isosurface cannot be built; STATUS_MEMORY. */
 MUST_CHECK Status renderer_new(const Geometry *geometry, const RenderParams *params, Renderer **out,
                                Err *err);
+/* Frees the renderer. NULL is allowed. */
 void renderer_free(Renderer *renderer);
 
-/* Renders the rows [first, first + rows) of the picture of a view. They have the bytes that they
- * have in the whole picture.
+/* Renders the rows [first, first + rows) of the image of a view. The bytes are those of the same
+ * rows of the whole image.
  *
- * What the view needs of the geometry is prepared with its first rows. It is kept for later calls
- * as long as camera, lights and ground plane stay the same, bit by bit, and antialiasing does, too.
- * A call with another appearance or background costs its pixels only. A transparent view, whose
- * frame has alpha, costs twice as much. Planes of geometry that are wanted beside colors do not
- * change the colors.
+ * The first call for a view prepares the view. The prepared data are reused by later calls as long
+ * as camera, lights and ground plane stay the same, bit by bit, and antialiasing stays the same. A
+ * call with another appearance or background then costs only its pixels. A transparent view, whose
+ * frame has alpha, takes twice the time. Wanting planes of depth, normal or id does not change the
+ * colors.
  *
- * view, appearance  not kept after the call.
+ * view, appearance  not used after the call.
  * first    a multiple of RENDER_BAND_STEP.
- * rows     a multiple of RENDER_BAND_STEP, unless the rows end with the picture.
- * frame    receives the planes of these rows; owned by the caller.
- * Errors   STATUS_MEMORY; STATUS_USAGE if the method cannot draw this view: RENDER_ZBUFFER from
- *          among the vessels, RENDER_RASTER with more than 524,280 pixels per side.
+ * rows     a multiple of RENDER_BAND_STEP, unless the rows end with the image.
+ * frame    receives the planes of these rows; owned by the caller, who releases it even after an
+ *          error.
+ * Errors   STATUS_MEMORY; STATUS_CANCELLED if params->progress asks to stop; STATUS_USAGE if the
+ *          method cannot draw this view: RENDER_ZBUFFER with a camera among the vessels,
+ *          RENDER_RASTER with more than 524,280 pixels per side.
  * Threads  calls with one renderer must not overlap. */
 MUST_CHECK Status renderer_rows(Renderer *renderer, const View *view, const Appearance *appearance,
                                 int first, int rows, Frame *frame, Err *err);
@@ -52,16 +67,16 @@ void renderer_antialias(Renderer *renderer, int antialias);
 /* Returns the statistics of all calls so far, including renderer_new. */
 RenderStats renderer_stats(const Renderer *renderer);
 
-/* Renders the whole picture of a scene. The bytes do not depend on the number of threads.
+/* Renders the whole image of a scene. The bytes do not depend on the number of threads.
  *
  * frame    receives the planes; owned by the caller.
- * stats    NULL is allowed.
+ * stats    receives the statistics; NULL is allowed.
  * Errors   those of renderer_new and renderer_rows. */
 MUST_CHECK Status render(const Scene *scene, const RenderParams *params, Frame *frame,
                          RenderStats *stats, Err *err);
 
-/* Returns the distance from the camera, mm, up to which vessels of this geometry are not visible:
- * POV-Ray's limit. */
+/* Returns the distance from the camera, mm, below which surfaces of this geometry are not visible.
+ * This is POV-Ray's limit. */
 double render_nearest_mm(const Geometry *geometry);
 
 /* Returns the fastest kernels that this processor can run; never KERNELS_FASTEST. */

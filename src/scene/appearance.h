@@ -33,12 +33,12 @@ typedef struct Appearance {
     ColorScale scale;  /* from values to colors; zeroed if `colors` is NULL */
     char *name, *unit; /* of the scale */
     size_t n_values;
-    ScaleOutside outside; /* how many of the drawn segments lie outside of the scale */
-    double *places;       /* per segment index: the value's position on the scale, if colors
+    ScaleOutside outside; /* number of drawn segments whose value is outside the scale */
+    double *positions;    /* per segment index: the value's position on the scale, if colors
                            * blend [stage_blend]; else NULL */
-    ColorRamp *ramp; /* the colors that positions are mapped to, if colors blend; else NULL */
-    char *said;  /* the meaning of the colors in words: "wss 3.70 to 54.1 Pa, of ..."; or NULL */
-    bool fitted; /* the range of the scale was computed from values, and not specified */
+    ColorRamp *ramp;      /* the colors that positions are mapped to, if colors blend; else NULL */
+    char *meaning; /* the meaning of the colors in words: "wss 3.70 to 54.1 Pa, of ..."; or NULL */
+    bool fitted;   /* the range of the scale was computed from values, and not specified */
     /* If colors change with time, `colors`, `values` and `places` hold n_frames frames one after
      * another, of n_segments entries each. */
     double *time; /* per frame: its time, rising; NULL: colors do not change */

@@ -1,15 +1,14 @@
-/* The groups of a tree's potential, and of a part of it. Neighbouring nodes often have the same
- * segments, and what blends at the end of a twig blends where the twig leaves, too, having passed
- * there. A group that is part of another adds nothing to their union, so only those are kept that
- * no other holds. A holder has every member, so it is looked for among the nodes of the member that
- * has the fewest.
- */
+/* Builds the blend groups of a tree and of a part of a tree. Neighbouring nodes often have the same
+ * segments. Segments that blend at the end of a twig also blend where the twig leaves its parent,
+ * because their paths pass that node. A group that is a subset of another group does not change the
+ * union, so only groups that no other group contains are kept. Such a containing group contains
+ * every member, so it is searched among the groups of the member that is in the fewest groups. */
 #include "scene/vesseltree.h"
 
 #include <stdlib.h>
 
-/* Lists, for each item below n_items, the lists that hold the item. */
-static Status turn_over(const IndexLists *lists, size_t n_items, IndexLists *out, Err *err)
+/* Inverts lists: for each item below n_items, lists the lists that hold the item. */
+static Status invert_lists(const IndexLists *lists, size_t n_items, IndexLists *out, Err *err)
 {
     TRY(indexlists_begin(out, n_items, "groups", err));
     for (uint32_t i = 0; i < lists->first[lists->n]; i++)
@@ -39,9 +38,9 @@ static bool is_part(const IndexLists *lists, uint32_t a, uint32_t b)
     return true;
 }
 
-/* Returns true if the list is empty, part of another, or the same as an earlier one; `holders` are
- * the lists that hold each number. */
-static bool is_idle(const IndexLists *lists, const IndexLists *holders, uint32_t self)
+/* Returns true if the list is empty, a subset of another list, or equal to an earlier list.
+ * `holders` are, per number, the lists that hold it. */
+static bool is_redundant(const IndexLists *lists, const IndexLists *holders, uint32_t self)
 {
     uint32_t rarest = 0, fewest = UINT32_MAX;
     for (uint32_t i = lists->first[self]; i < lists->first[self + 1]; i++) {
@@ -60,16 +59,16 @@ static bool is_idle(const IndexLists *lists, const IndexLists *holders, uint32_t
     return false;
 }
 
-/* Keeps the lists that are not idle. */
-static Status keep_busy(const IndexLists *lists, const IndexLists *holders, IndexLists *kept,
-                        Err *err)
+/* Copies the lists that are not redundant. */
+static Status copy_needed(const IndexLists *lists, const IndexLists *holders, IndexLists *kept,
+                          Err *err)
 {
     uint32_t *busy = NULL;
     size_t n = 0;
     Status status;
     TRY_GOTO(mem_calloc(&busy, lists->n, sizeof *busy, "groups", err));
     for (uint32_t i = 0; i < lists->n; i++)
-        if (!is_idle(lists, holders, i))
+        if (!is_redundant(lists, holders, i))
             busy[n++] = i;
     TRY_GOTO(indexlists_begin(kept, n, "groups", err));
     for (size_t i = 0; i < n; i++)
@@ -90,9 +89,9 @@ Status vesseltree_blend(const VesselTree *tree, Blend *out, Err *err)
     Status status;
     TRY_GOTO(vesseltree_incident(tree, &incident, err));
     TRY_GOTO(vesseltree_blending(tree, &incident, &blending, err));
-    TRY_GOTO(turn_over(&blending, tree->n_segments, &nodes, err));
-    TRY_GOTO(keep_busy(&blending, &nodes, &blend.members, err));
-    TRY_GOTO(turn_over(&blend.members, tree->n_segments, &blend.groups, err));
+    TRY_GOTO(invert_lists(&blending, tree->n_segments, &nodes, err));
+    TRY_GOTO(copy_needed(&blending, &nodes, &blend.members, err));
+    TRY_GOTO(invert_lists(&blend.members, tree->n_segments, &blend.groups, err));
     blend.n_groups = blend.members.n;
     *out = blend;
     blend = (Blend){0};
@@ -122,7 +121,7 @@ static bool add_members(const IndexLists *members, uint32_t group, const uint32_
     return true;
 }
 
-/* The groups of some segments, each listed where its first segment is. */
+/* Lists the groups that contain some segments; each group is listed at its first segment. */
 static Status part_members(const Blend *whole, const uint32_t *indices, size_t n, Blend *part,
                            Err *err)
 {
@@ -162,7 +161,7 @@ Status geometry_part(const Geometry *whole, const uint32_t *indices, size_t n, G
     made.n_segments = made.drawn = n;
     if (whole->blend.n_groups) {
         TRY_GOTO(part_members(&whole->blend, indices, n, &made.blend, err));
-        TRY_GOTO(turn_over(&made.blend.members, n, &made.blend.groups, err));
+        TRY_GOTO(invert_lists(&made.blend.members, n, &made.blend.groups, err));
     }
     *part = made;
     return STATUS_OK;

@@ -1,4 +1,4 @@
-/* Sentences name effects as users do. */
+/* The names of effects are the words of their options. */
 #include "scene/effects.h"
 
 void effects_list(const Effects *effects, Text *out)

@@ -1,4 +1,4 @@
-/* Geometry is plain data; what is here are its invariants. */
+/* Checks the invariants of a geometry, and copies parts of it. */
 #include "scene/geometry.h"
 
 #include <stdlib.h>
@@ -99,7 +99,8 @@ static Status check_tube(Vec3 a, Vec3 b, double radius, uint32_t id, Err *err)
     return STATUS_OK;
 }
 
-/* The ends of cylinders have their places and radii. */
+/* Spheres at the ends of cylinders are not checked: they have the cylinders' positions and
+ * radii. */
 Status geometry_check(const Geometry *geometry, Err *err)
 {
     for (size_t i = 0; i < geometry->n_primitives - geometry->n_ends; i++) {

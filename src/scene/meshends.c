@@ -1,14 +1,14 @@
-/* A flat triangle says which segment it is of, and the side to which it faces says at which end of
- * it; of a hollow wall, whether it is of the lumen tells discs from rings. Areas are added up place
- * by place; the places that have one are sorted and numbered, and the triangles are given the
- * numbers of their places. */
+/* The label of a flat triangle identifies its segment. The side to which the triangle faces
+ * identifies the segment's end. For a hollow wall, the lumen flag distinguishes discs from rings.
+ * Areas are summed per disc or ring. Those with an area are sorted and numbered, and their
+ * triangles get the numbers. */
 #include "scene/meshends.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Disc and ring at either end of a segment: places 4 i and 4 i + 1 are the discs where segment i
- * begins and ends, 4 i + 2 and 4 i + 3 the rings. */
+/* Indices of the discs and rings of segment i: 4 i and 4 i + 1 are the discs at its start and end,
+ * 4 i + 2 and 4 i + 3 the rings. */
 enum { PLACES = 4, AT_END = 1, IS_RING = 2 };
 
 typedef struct EndPlace {
@@ -50,7 +50,7 @@ static bool is_end(const VesselMesh *mesh, size_t triangle)
     return mesh_is_cap(mesh, triangle) && wall_of(mesh, triangle) != FRAME;
 }
 
-/* The place of a triangle of an end. */
+/* Returns the index of the disc or ring of a flat triangle. */
 static uint32_t place_of(const MeshEndSearch *search, size_t triangle)
 {
     float normal[3];
@@ -70,7 +70,7 @@ static double triangle_area(const VesselMesh *mesh, size_t triangle)
                                         vec3_sub(mesh_point(mesh, at[2]), a)));
 }
 
-/* Which walls there are, and what they are called. */
+/* Finds which walls the mesh has, and names them. */
 static void find_walls(MeshEndSearch *search, MeshEnds *ends)
 {
     bool found[WALLS] = {false};
@@ -104,7 +104,8 @@ static int compare_keys(const void *a, const void *b)
     return (*one > *other) - (*one < *other);
 }
 
-/* Ends are sorted by whether they are rings, whether blood leaves there, id, and segment. */
+/* Returns the sorting key of an end: discs before rings, inlets before outlets, then id, then
+ * segment. */
 static uint64_t sorting_key(const VesselTree *tree, uint32_t place)
 {
     uint32_t segment = place / PLACES;
@@ -132,7 +133,7 @@ static void name_ends(const VesselTree *tree, MeshEnds *ends)
     }
 }
 
-/* Lists the places that have an area, in their order, and counts them. */
+/* Lists the discs and rings that have an area, sorted, and counts them. */
 static Status sort_places(const MeshEndSearch *search, uint64_t **keys, size_t *n, Err *err)
 {
     size_t count = 0;

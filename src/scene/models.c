@@ -1,4 +1,4 @@
-/* Both tables are made of the one list of rows. */
+/* Both tables are built from MODEL_TABLE. */
 #include "scene/models.h"
 
 #include <stdio.h>

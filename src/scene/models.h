@@ -1,14 +1,15 @@
-/* The table of models: the geometries that vessels can be given. Stages, emitters, renderers and
- * checks act on the properties of a model's row and never ask which model it is. A model that
- * combines known elements is therefore one row and a stage, and a new element touches only what
- * draws it. */
+/* The table of models. A model is a kind of geometry that vessels can have, such as cylinders or an
+ * isosurface. Each row lists the properties of one model. Stages, emitters, renderers and checks
+ * test these properties and never test for a certain model. A model that combines known elements
+ * therefore needs only a row and a stage, and a new element changes only the code that draws it. */
 #ifndef CORCAST_SCENE_MODELS_H
 #define CORCAST_SCENE_MODELS_H
 
 #include "base/base.h"
 
-/* The properties of a model, as bits. The elements say what its geometry is made of; engines and
- * emitters name the elements that they can draw. The other properties say what a model is for. */
+/* The properties of a model, as bits. The elements are the parts that its geometry consists of;
+ * engines and emitters name the elements that they support. The other properties say what a model
+ * is used for. */
 typedef enum ModelProperty {
     MODEL_CYLINDERS = 1 << 0, /* closed cylinders */
     MODEL_BALLS = 1 << 1,     /* balls at nodes */

@@ -16,13 +16,13 @@ void appearance_release(Appearance *appearance)
 {
     free(appearance->colors);
     free(appearance->values);
-    free(appearance->places);
+    free(appearance->positions);
     free(appearance->ramp);
     colormap_release(&appearance->scale.map);
     free(appearance->name);
     free(appearance->unit);
     free(appearance->time);
-    free(appearance->said);
+    free(appearance->meaning);
     *appearance = (Appearance){0};
 }
 
@@ -33,7 +33,7 @@ Appearance appearance_frame(const Appearance *appearance, size_t frame)
         one.colors += frame * one.n_segments;
         one.values += frame * one.n_segments;
         one.n_values = one.n_segments;
-        one.places = one.places ? one.places + frame * one.n_segments : NULL;
+        one.positions = one.positions ? one.positions + frame * one.n_segments : NULL;
     }
     one.n_frames = 0;
     return one;

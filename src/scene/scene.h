@@ -13,7 +13,7 @@
 #include "scene/geometry.h"
 #include "scene/meshends.h"
 #include "scene/models.h"
-#include "scene/sight.h"
+#include "scene/rayvolume.h"
 #include "scene/strokes.h"
 #include "scene/triangles.h"
 #include "scene/vesseltree.h"

@@ -1,4 +1,4 @@
-/* A mesh is plain data; what is here is read off it. */
+/* Copies parts of a mesh, and computes normals of triangles. */
 #include "scene/triangles.h"
 
 #include <stdlib.h>
@@ -21,7 +21,8 @@ static Status reserve(const VesselMesh *mesh, VesselMesh *out, Err *err)
     return mem_calloc(&out->labels, mesh->n_triangles, sizeof *out->labels, "triangles", err);
 }
 
-/* The number of a point of the mesh in *out: number[point] is one more, or 0 where it has none. */
+/* Returns the index in *out of a point of the mesh. number[point] is this index plus 1, or 0 if the
+ * point is not in *out yet. */
 static uint32_t take_point(const VesselMesh *mesh, uint32_t point, uint32_t *number,
                            VesselMesh *out)
 {

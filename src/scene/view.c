@@ -1,10 +1,11 @@
-/* Camera, lights and ground are POV-Ray's, whose arithmetic camera_ray and ground_hit repeat
- * operation by operation, so that rays of both programs are the same to the last bit. */
+/* Camera, lights and ground are those of POV-Ray. camera_ray and ground_hit repeat POV-Ray's
+ * arithmetic operation by operation, so that rays of both programs are the same to the last bit. */
 #include "scene/view.h"
 
 #include "scene/geometry.h"
 
-/* A pixel in parts of the picture's width and height, from its middle, right and up. */
+/* Returns the position of a pixel as a fraction of the picture's width and height, from its middle,
+ * right and up. */
 static Vec3 across(const Camera *camera, double i, double j)
 {
     double x0 = (i + 0.5) / camera->width - 0.5;
@@ -109,19 +110,19 @@ View view_turned(const View *view, Vec3 center, Vec3 axis, double angle)
     return view_moved(&turned, center);
 }
 
-static LightWay way_to(Vec3 location, Vec3 place)
+static LightDirection way_to(Vec3 location, Vec3 place)
 {
     Vec3 to_light = vec3_sub(location, place);
     double distance = vec3_length(to_light);
-    return (LightWay){vec3_scale(to_light, 1 / distance), distance};
+    return (LightDirection){vec3_scale(to_light, 1 / distance), distance};
 }
 
-LightWay light_way(const Light *light, Vec3 place)
+LightDirection light_direction(const Light *light, Vec3 place)
 {
     if (!light->parallel)
         return way_to(light->location, place);
     Vec3 towards = vec3_normalized(vec3_sub(light->location, light->target));
-    return (LightWay){towards, vec3_dot(vec3_sub(light->location, place), towards)};
+    return (LightDirection){towards, vec3_dot(vec3_sub(light->location, place), towards)};
 }
 
 bool light_is_soft(const Light *light)
@@ -155,10 +156,10 @@ Light light_at_point(const Light *light, int k)
     return point;
 }
 
-LightWay light_way_to_point(const Light *light, int k, Vec3 place)
+LightDirection light_direction_to_point(const Light *light, int k, Vec3 place)
 {
     Light point = light_at_point(light, k);
-    return light_way(&point, place);
+    return light_direction(&point, place);
 }
 
 bool ground_hit(const Ground *ground, Ray ray, double near_mm, double far_mm, double *t)

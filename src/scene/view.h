@@ -1,5 +1,6 @@
-/* Camera, lights, ground and effects. Coordinates are right-handed and in mm, colors are linear
- * RGB. */
+/* A View: camera, lights, ground, background and effects. The image has its origin at the upper
+ * left: pixel (i, j) is in column i and row j, and integers are the centres of pixels. World
+ * coordinates are right-handed and in mm, colors are linear RGB. */
 #ifndef CORCAST_SCENE_VIEW_H
 #define CORCAST_SCENE_VIEW_H
 
@@ -70,13 +71,13 @@ typedef struct Light {
 } Light;
 
 /* Direction and distance from a point to a light. */
-typedef struct LightWay {
+typedef struct LightDirection {
     Vec3 towards;    /* unit */
     double distance; /* mm; for a parallel light, to the plane through its `location` */
-} LightWay;
+} LightDirection;
 
 /* Returns direction and distance from `place` to a light. */
-LightWay light_way(const Light *light, Vec3 place);
+LightDirection light_direction(const Light *light, Vec3 place);
 
 /* Returns true if the light casts shadows that are averaged over more than one of its points. */
 bool light_is_soft(const Light *light);
@@ -87,7 +88,7 @@ int light_points(const Light *light);
  * along sides[0]. */
 Light light_at_point(const Light *light, int k);
 /* Returns direction and distance from `place` to point k of a light. */
-LightWay light_way_to_point(const Light *light, int k, Vec3 place);
+LightDirection light_direction_to_point(const Light *light, int k, Vec3 place);
 
 /* A plane under or behind the vessels: the points x with normal . x = offset_mm. It appears in
  * colors only; planes of depth, normals and ids show vessels alone. */

@@ -1,5 +1,5 @@
-/* Orders and the main branch are fields of `derive`; which tree a segment is of is handed down from
- * its root, as parents come before children. */
+/* Orders and the main branch are fields of `derive`. The index of a segment's tree is passed on
+ * from parent to child, which works because parents precede children. */
 #include "derive/derive.h"
 #include "stage/stage.h"
 
@@ -34,7 +34,7 @@ static void add_to_path(Anatomy *anatomy, Vec3 point)
         anatomy->path[anatomy->n_path++] = point;
 }
 
-/* The thickest segment that leaves the first root, which is node 0; 0 when none does. */
+/* Returns the thickest segment that starts at the first root, node 0; 0 if there is none. */
 static size_t first_of_path(const Tree *tree)
 {
     size_t thickest = 0;

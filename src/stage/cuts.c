@@ -1,13 +1,13 @@
-/* The cuts are the fixed point of t_i = max(0, max_j (t_j cos_ij + r_j sin_ij)), which is unique:
- * the right-hand side brings two guesses closer by the largest |cos_ij|. Applied again and again it
- * gets there, but slowly when vessels leave at a small angle. So each round asks which other end
- * pushes each end furthest, solves the linear system in which only that one does, and starts again
- * from there [policy iteration, Howard 1960]; a few rounds do where thousands of plain ones would
- * not. Where rounds do not settle, plain ones finish.
+/* The cuts are the fixed point of t_i = max(0, max_j (t_j cos_ij + r_j sin_ij)). The fixed point is
+ * unique, because the right-hand side brings two guesses closer by the factor max |cos_ij|. Plain
+ * iteration converges, but slowly if vessels leave at a small angle. Policy iteration [Howard 1960]
+ * is used instead: each round finds, for each end, the other end that pushes it furthest, solves
+ * the linear system of these pushes alone, and starts again from the solution. A few rounds replace
+ * thousands of plain iterations. If the rounds do not converge, plain iteration finishes.
  *
- * Where many vessels meet, their ends stand in a binary tree of cones about their axes. A cone from
- * which no end can push as far as one that is known already is left out; the first to be known is
- * the one that pushed furthest in the round before. */
+ * If many vessels meet, their ends are sorted into a binary tree of cones around their axes. A cone
+ * is skipped if none of its ends can push as far as an end that is known already. The first known
+ * end is the one that pushed furthest in the previous round. */
 #include "stage/cuts.h"
 
 #include <stdlib.h>
@@ -17,9 +17,9 @@ enum { SOLVED_ROUNDS = 50, PLAIN_ROUNDS = 500 };
 
 static const double parallel = 1e-6; /* sine */
 static const double tolerance =
-    1e-13; /* of the largest radius or, where that is longer, of the cut */
+    1e-13; /* relative to the largest radius or, if that is longer, to the cut */
 
-/* What pushes an end: t = slope * t[mover] + offset; without a mover t = 0. */
+/* The push on an end: t = slope * t[mover] + offset; t = 0 if there is no mover. */
 typedef struct CutPush {
     ptrdiff_t mover; /* -1: none */
     double slope, offset;
@@ -28,7 +28,7 @@ typedef struct CutPush {
 
 enum { LEAF_SIZE = 8 };
 
-/* Some ends near to each other. The first child of an inner node is the next one. */
+/* A node of the tree: ends with similar axes. The first child of an inner node is the next node. */
 typedef struct CutNode {
     size_t first, n;     /* of the places in `order` */
     size_t second;       /* child; 0 for a leaf */
@@ -66,7 +66,7 @@ static int by_key(const void *a, const void *b)
     return (one > other) - (one < other);
 }
 
-/* Makes the node of the ends `first` to first + n - 1 in `order`, and those below it. */
+/* Builds the node of the ends `first` to first + n - 1 in `order`, and the nodes below it. */
 static size_t build_node(CutWork *work, size_t first, size_t n)
 {
     size_t index = work->n_nodes++;
@@ -94,7 +94,7 @@ static size_t build_node(CutWork *work, size_t first, size_t n)
     return index;
 }
 
-/* Brings the nodes up to date with the cuts; a lone one needs it not. */
+/* Updates the nodes for new cuts. A tree of one node does not need it. */
 static void fit_nodes(CutWork *work)
 {
     for (size_t index = work->n_nodes; index-- > 1;) {
@@ -117,8 +117,8 @@ static void fit_nodes(CutWork *work)
     }
 }
 
-/* No end of a node pushes one along an axis further than this; below 0 when all are parallel to
- * it. */
+/* Returns an upper bound of the push of a node's ends on an end along an axis; negative if all of
+ * them are parallel to the axis. */
 static double furthest_push(const CutNode *node, Vec3 axis)
 {
     double cosine = vec3_dot(axis, node->axis), sine = sine_of(axis, node->axis);
@@ -139,7 +139,8 @@ static double furthest_push(const CutNode *node, Vec3 axis)
            node->radius * (has_90 ? 1 : fmax(sine_from, sine_to)) + rounding;
 }
 
-/* Makes *best the push of end j on end i if it is stronger, or as strong and j comes first. */
+/* Sets *best to the push of end j on end i if this push is stronger, or as strong and j comes
+ * first. */
 static void try_push(CutWork *work, size_t i, size_t j, CutPush *best)
 {
     const VesselEnd *ends = work->ends;
@@ -153,7 +154,7 @@ static void try_push(CutWork *work, size_t i, size_t j, CutPush *best)
         *best = push;
 }
 
-/* Tries those ends of a node that may push end i further than *best. */
+/* Tries the ends of a node that may push end i further than *best. */
 static void try_node(CutWork *work, size_t index, size_t i, CutPush *best)
 {
     const CutNode *node = &work->nodes[index];
@@ -184,7 +185,7 @@ static CutPush strongest_push(CutWork *work, size_t i)
     return best;
 }
 
-/* Finds all pushes and right-hand sides; whether the cuts are the fixed point. */
+/* Finds all pushes and right-hand sides. Returns true if the cuts are the fixed point. */
 static bool find_pushes(size_t n, CutWork *work)
 {
     double largest = 0;
@@ -201,7 +202,8 @@ static bool find_pushes(size_t n, CutWork *work)
     return settled;
 }
 
-/* Follows the movers from `first` around their circle back to it: t = slope t + offset. */
+/* Follows the movers from `first` around their cycle back to `first`, and returns the solution of t
+ * = slope t + offset. */
 static double solve_circle(const CutPush *pushes, size_t first)
 {
     double slope = 1, offset = 0;
@@ -214,8 +216,8 @@ static double solve_circle(const CutPush *pushes, size_t first)
     return offset / (1 - slope);
 }
 
-/* Solves t_i = slope_i t[mover_i] + offset_i for all ends. Movers lead to an end that nothing
- * pushes, to one solved before, or around a circle. */
+/* Solves t_i = slope_i t[mover_i] + offset_i for all ends. Movers lead to an end without a mover,
+ * to an end that is solved already, or around a cycle. */
 static void solve_pushes(size_t n, CutWork *work)
 {
     double *cut = work->cut;

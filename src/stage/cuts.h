@@ -1,5 +1,5 @@
-/* The lengths by which vessels that meet at one place are shortened for their joints. Private to
- * the module stage. */
+/* Computes the lengths by which the ends of vessels that meet at a junction are shortened, to make
+ * space for joints. Private to the module stage. */
 #ifndef CORCAST_STAGE_CUTS_H
 #define CORCAST_STAGE_CUTS_H
 
@@ -7,9 +7,9 @@
 #include "geom/geom.h"
 #include <stdint.h>
 
-/* The end of a vessel at the place. */
+/* An end of a vessel at the junction. */
 typedef struct VesselEnd {
-    Vec3 axis;     /* unit, from the place into the vessel */
+    Vec3 axis;     /* unit, from the junction into the vessel */
     double radius; /* > 0 */
 } VesselEnd;
 

@@ -1,5 +1,6 @@
 /* All numbers of a scale are in one unit, so the values are converted first. The range comes from
- * the values that can be drawn, in all frames: the colors of a film mean the same throughout. */
+ * the values of segments that can be drawn, in all frames: colors then have the same meaning
+ * throughout a film. */
 #include "stage/fieldscale.h"
 
 #include "stage/stage.h"
@@ -60,7 +61,7 @@ void fieldvalues_release(FieldValues *values)
 
 static Status set_classes(const FieldScaleParams *params, ColorScale *scale, Err *err)
 {
-    enum { MOST_CLASSES = 256 }; /* as many as a plane of 8 bits tells apart */
+    enum { MOST_CLASSES = 256 }; /* as many as an 8-bit plane can distinguish */
     const double *at = params->classes;
     if (params->n_classes == 1) {
         if (!(at[0] >= 1 && at[0] <= MOST_CLASSES && at[0] == floor(at[0])))
@@ -177,7 +178,7 @@ static Status say(const FieldScaleParams *params, const FieldValues *range_of,
     put_steps(&appearance->scale, &text);
     appearance->outside = colorscale_outside(&appearance->scale, drawn->drawn, drawn->n_drawn);
     put_outside(&appearance->scale, appearance->outside, &text);
-    Status status = text_take(&text, &appearance->said, err);
+    Status status = text_take(&text, &appearance->meaning, err);
     text_release(&text);
     appearance->fitted = !params->has_ends;
     return status;

@@ -1,56 +1,63 @@
-/* At each place the ends of vessels meet: that of the parent, the trunk, and those of the
- * daughters; where a tree begins with several vessels, the thickest is the trunk. All are cut back
- * (cuts.c), and a ruled surface leads from the rim of the trunk to that of each daughter. Cylinders
- * stay closed, so every joint is a solid between two discs, whose wall neither folds nor has holes
- * as long as each disc lies on one side of the other's plane, which the cuts see to.
+/* At each junction, the end of the parent (the trunk) meets the ends of the daughters. If a tree
+ * starts with several vessels, the thickest one is the trunk. All ends are cut back [cuts.c], and a
+ * ruled surface leads from the rim of the trunk to the rim of each daughter. Cylinders remain
+ * closed, so every joint is a solid between two discs. Its surface neither folds nor has holes as
+ * long as each disc lies on one side of the other disc's plane, which the cuts ensure.
  *
- * The construction breaks down at a place whose cuts do not fit into its vessels, or where a
- * daughter leaves at less than 60 degrees from the trunk's own direction, so that the joint would
- * be pinched to less than half its width. A robust model draws such a place as `rounded` does:
- * cylinders that are not cut, and one sphere. Both ends of a vessel need room on it; places take
- * their turns, those that need the smallest part of a vessel first, so that few are lost. */
+ * The construction fails at a junction whose cuts do not fit into its vessels. It also fails where
+ * a daughter leaves at less than 60 degrees from the trunk's own direction: the joint would be
+ * pinched to less than half its width. JOINTS_ROBUST draws such a junction as `rounded` does: with
+ * uncut cylinders and one sphere. The cuts at both ends of a vessel share its length. Junctions are
+ * decided in ascending order of the largest fraction of a vessel that they need, so that few of
+ * them fail. */
 #include "stage/joints.h"
 
 #include "stage/cuts.h"
 #include <stdlib.h>
 
-static const double sharp_cosine = 0.5;   /* of the angle between trunk and daughter */
-static const double usable_part = 0.999;  /* of a vessel, for the cuts at its ends */
-static const double straight_part = 1e-6; /* cuts below this part of the radius are none */
+static const double sharp_cosine = 0.5;   /* cosine of the angle between trunk and daughter: 60
+                                           * degrees */
+static const double usable_part = 0.999;  /* fraction of a vessel's length that the cuts at its two
+                                           * ends may use */
+static const double straight_part = 1e-6; /* a cut below this fraction of the radius counts as no
+                                           * cut */
 
-/* Comparisons of vessel ends for the cuts of all places: some seconds. */
+/* Maximum number of comparisons of vessel ends for the cuts of all junctions; takes some
+ * seconds. */
 static const uint64_t most_steps = 100000000;
 
-typedef enum PlaceKind {
-    PLACE_OPEN,
-    PLACE_JOINED,
-    PLACE_SHORT,
-    PLACE_SHARP,
-    PLACE_CROWDED
-} PlaceKind;
+typedef enum JunctionKind {
+    JUNCTION_OPEN,
+    JUNCTION_JOINED,
+    JUNCTION_SHORT,
+    JUNCTION_SHARP,
+    JUNCTION_CROWDED
+} JunctionKind;
 
-/* End 2 i is where segment i begins, 2 i + 1 where it ends. */
+/* The ends of vessels: end 2 i is the start of segment i, end 2 i + 1 is its end. */
 typedef struct JointBuilder {
     const Tree *tree;
-    const Places *places;
-    IndexLists ends;  /* by place, rising */
-    double *cut;      /* one an end, mm */
-    PlaceKind *kinds; /* one a node; of those that stand for a place */
-    uint64_t steps;   /* left of most_steps */
+    const Coincidence *coincidence;
+    IndexLists ends;     /* by place, rising */
+    double *cut;         /* one an end, mm */
+    JunctionKind *kinds; /* per node; set for nodes that represent a junction */
+    uint64_t steps;      /* left of most_steps */
 } JointBuilder;
 
 typedef struct CutDemand {
-    double part; /* the largest part of a vessel that a cut at the place takes */
-    size_t place;
+    double part; /* largest fraction of a vessel that a cut at the junction takes */
+    size_t junction;
 } CutDemand;
 
-static size_t place_of(const JointBuilder *builder, size_t end)
+static size_t junction_of(const JointBuilder *builder, size_t end)
 {
     size_t node = end / 2;
-    return (size_t)builder->places->place[end % 2 ? node : (size_t)builder->tree->parent[node]];
+    return (size_t)
+        builder->coincidence->junction[end % 2 ? node : (size_t)builder->tree->parent[node]];
 }
 
-/* The point at an end before it is cut, and the unit axis from there along the vessel. */
+/* Returns the unit axis from an end along the vessel, and sets *at to the point at the end before
+ * it is cut. */
 static Vec3 end_axis(const JointBuilder *builder, size_t end, Vec3 *at)
 {
     const Tree *tree = builder->tree;
@@ -70,23 +77,23 @@ static Status collect_ends(JointBuilder *builder, Err *err)
 {
     const size_t n = builder->tree->n;
     TRY(mem_calloc(&builder->cut, 2 * n, sizeof *builder->cut, "vessel ends", err));
-    TRY(mem_calloc(&builder->kinds, n, sizeof *builder->kinds, "places", err));
+    TRY(mem_calloc(&builder->kinds, n, sizeof *builder->kinds, "coincidence", err));
     TRY(indexlists_begin(&builder->ends, n, "vessel ends", err));
     for (size_t end = 0; end < 2 * n; end++)
-        if (places_draw(builder->places, end / 2))
-            indexlists_count(&builder->ends, place_of(builder, end));
+        if (coincidence_draws(builder->coincidence, end / 2))
+            indexlists_count(&builder->ends, junction_of(builder, end));
     TRY(indexlists_allot(&builder->ends, "vessel ends", err));
     for (uint32_t end = 0; end < 2 * n; end++)
-        if (places_draw(builder->places, end / 2))
-            indexlists_put(&builder->ends, place_of(builder, end), end);
+        if (coincidence_draws(builder->coincidence, end / 2))
+            indexlists_put(&builder->ends, junction_of(builder, end), end);
     return STATUS_OK;
 }
 
-/* The end that all joints of a place begin at. */
-static size_t trunk_of(const JointBuilder *builder, size_t place)
+/* Returns the end at which all joints of a junction start. */
+static size_t trunk_of(const JointBuilder *builder, size_t junction)
 {
-    size_t trunk = builder->ends.items[builder->ends.first[place]];
-    for (size_t k = builder->ends.first[place]; k < builder->ends.first[place + 1]; k++) {
+    size_t trunk = builder->ends.items[builder->ends.first[junction]];
+    for (size_t k = builder->ends.first[junction]; k < builder->ends.first[junction + 1]; k++) {
         size_t end = builder->ends.items[k];
         if (end % 2)
             return end;
@@ -96,28 +103,29 @@ static size_t trunk_of(const JointBuilder *builder, size_t place)
     return trunk;
 }
 
-/* Cuts the ends of a place as its joints ask for, and tells what kind of place that makes it and
- * which part of a vessel it takes. `ends` and `cut` have room for those of any place. */
-static Status cut_place(JointBuilder *builder, size_t place, VesselEnd *ends, double *cut,
-                        double *demand, Err *err)
+/* Computes the cuts of the ends at a junction and sets the junction's kind. Sets *part to the
+ * largest fraction of a vessel that a cut takes. `ends` and `cut` are workspaces for the ends of
+ * any junction. */
+static Status cut_junction(JointBuilder *builder, size_t junction, VesselEnd *ends, double *cut,
+                           double *demand, Err *err)
 {
-    size_t first = builder->ends.first[place], n = indexlists_length(&builder->ends, place);
-    size_t trunk = trunk_of(builder, place);
+    size_t first = builder->ends.first[junction], n = indexlists_length(&builder->ends, junction);
+    size_t trunk = trunk_of(builder, junction);
     Vec3 at, trunk_axis = end_axis(builder, trunk, &at);
     double largest_radius = 0, largest_cut = 0;
-    PlaceKind kind = PLACE_JOINED;
+    JunctionKind kind = JUNCTION_JOINED;
     for (size_t k = 0; k < n; k++) {
         size_t end = builder->ends.items[first + k];
         ends[k] = (VesselEnd){end_axis(builder, end, &at), builder->tree->radius_mm[end / 2]};
         largest_radius = fmax(largest_radius, ends[k].radius);
         if (end != trunk && vec3_dot(ends[k].axis, trunk_axis) > sharp_cosine)
-            kind = PLACE_SHARP;
+            kind = JUNCTION_SHARP;
     }
     *demand = 0;
     if (builder->steps > 0)
         TRY(cuts_compute(ends, n, cut, &builder->steps, err));
     if (builder->steps == 0) {
-        builder->kinds[place] = PLACE_CROWDED;
+        builder->kinds[junction] = JUNCTION_CROWDED;
         return STATUS_OK;
     }
     for (size_t k = 0; k < n; k++) {
@@ -126,8 +134,8 @@ static Status cut_place(JointBuilder *builder, size_t place, VesselEnd *ends, do
         largest_cut = fmax(largest_cut, cut[k]);
         *demand = fmax(*demand, cut[k] / tree_segment_length(builder->tree, end / 2));
     }
-    bool straight = kind == PLACE_JOINED && largest_cut <= straight_part * largest_radius;
-    builder->kinds[place] = straight ? PLACE_OPEN : kind;
+    bool straight = kind == JUNCTION_JOINED && largest_cut <= straight_part * largest_radius;
+    builder->kinds[junction] = straight ? JUNCTION_OPEN : kind;
     return STATUS_OK;
 }
 
@@ -136,14 +144,14 @@ static int by_demand(const void *a, const void *b)
     const CutDemand *first = a, *second = b;
     if (first->part != second->part)
         return first->part < second->part ? -1 : 1;
-    return first->place < second->place ? -1 : 1;
+    return first->junction < second->junction ? -1 : 1;
 }
 
-/* Returns true if the cuts of a place fit beside those already made at the other ends of its
+/* Returns true if the cuts of a junction fit beside the cuts already made at the other ends of its
  * vessels. */
-static bool cuts_fit(const JointBuilder *builder, size_t place, const bool *made)
+static bool cuts_fit(const JointBuilder *builder, size_t junction, const bool *made)
 {
-    for (size_t k = builder->ends.first[place]; k < builder->ends.first[place + 1]; k++) {
+    for (size_t k = builder->ends.first[junction]; k < builder->ends.first[junction + 1]; k++) {
         size_t end = builder->ends.items[k], other = end ^ 1;
         double taken = builder->cut[end] + (made[other] ? builder->cut[other] : 0);
         if (taken > usable_part * tree_segment_length(builder->tree, end / 2))
@@ -152,19 +160,21 @@ static bool cuts_fit(const JointBuilder *builder, size_t place, const bool *made
     return true;
 }
 
-/* Decides the places whose cuts are known, in the order of their demands. */
+/* Decides the junctions whose cuts are known, in ascending order of the fraction of a vessel that
+ * they need. */
 static Status settle_places(JointBuilder *builder, CutDemand *demands, size_t n, Err *err)
 {
     bool *made = NULL; /* one an end */
     TRY(mem_calloc(&made, 2 * builder->tree->n, sizeof *made, "vessel ends", err));
     qsort(demands, n, sizeof *demands, by_demand);
     for (size_t d = 0; d < n; d++) {
-        size_t place = demands[d].place;
-        PlaceKind *kind = &builder->kinds[place];
-        if (*kind != PLACE_OPEN && *kind != PLACE_CROWDED && !cuts_fit(builder, place, made))
-            *kind = PLACE_SHORT;
-        for (size_t k = builder->ends.first[place];
-             *kind == PLACE_JOINED && k < builder->ends.first[place + 1]; k++)
+        size_t junction = demands[d].junction;
+        JunctionKind *kind = &builder->kinds[junction];
+        if (*kind != JUNCTION_OPEN && *kind != JUNCTION_CROWDED &&
+            !cuts_fit(builder, junction, made))
+            *kind = JUNCTION_SHORT;
+        for (size_t k = builder->ends.first[junction];
+             *kind == JUNCTION_JOINED && k < builder->ends.first[junction + 1]; k++)
             made[builder->ends.items[k]] = true;
     }
     free(made);
@@ -178,19 +188,19 @@ static Status cut_places(JointBuilder *builder, Err *err)
     double *cut = NULL;
     CutDemand *demands = NULL;
     Status status = STATUS_OK;
-    for (size_t place = 0; place < n; place++) {
-        size_t count = indexlists_length(&builder->ends, place);
+    for (size_t junction = 0; junction < n; junction++) {
+        size_t count = indexlists_length(&builder->ends, junction);
         most = count > most ? count : most;
     }
     TRY_GOTO(mem_calloc(&ends, most, sizeof *ends, "vessel ends", err));
     TRY_GOTO(mem_calloc(&cut, most, sizeof *cut, "vessel ends", err));
-    TRY_GOTO(mem_calloc(&demands, n, sizeof *demands, "places", err));
-    for (size_t place = 0; place < n; place++) {
-        if (indexlists_length(&builder->ends, place) < 2)
+    TRY_GOTO(mem_calloc(&demands, n, sizeof *demands, "coincidence", err));
+    for (size_t junction = 0; junction < n; junction++) {
+        if (indexlists_length(&builder->ends, junction) < 2)
             continue;
         CutDemand *demand = &demands[n_demands++];
-        demand->place = place;
-        TRY_GOTO(cut_place(builder, place, ends, cut, &demand->part, err));
+        demand->junction = junction;
+        TRY_GOTO(cut_junction(builder, junction, ends, cut, &demand->part, err));
     }
     status = settle_places(builder, demands, n_demands, err);
 done:
@@ -200,19 +210,19 @@ done:
     return status;
 }
 
-static bool is_joined(PlaceKind kind, JointForm form)
+static bool is_joined(JunctionKind kind, JointForm form)
 {
-    return kind == PLACE_JOINED ||
-           (form == JOINTS_PAPER && (kind == PLACE_SHORT || kind == PLACE_SHARP));
+    return kind == JUNCTION_JOINED ||
+           (form == JOINTS_PAPER && (kind == JUNCTION_SHORT || kind == JUNCTION_SHARP));
 }
 
 /* Makes the cuts final: none where there is no joint, and never more than the vessel. */
 static void trim_cuts(JointBuilder *builder, JointForm form)
 {
-    for (size_t place = 0; place < builder->tree->n; place++) {
-        PlaceKind kind = builder->kinds[place];
+    for (size_t junction = 0; junction < builder->tree->n; junction++) {
+        JunctionKind kind = builder->kinds[junction];
         bool joined = is_joined(kind, form);
-        for (size_t k = builder->ends.first[place]; k < builder->ends.first[place + 1]; k++) {
+        for (size_t k = builder->ends.first[junction]; k < builder->ends.first[junction + 1]; k++) {
             size_t end = builder->ends.items[k];
             double length = tree_segment_length(builder->tree, end / 2);
             builder->cut[end] = joined ? fmin(builder->cut[end], length) : 0;
@@ -223,8 +233,8 @@ static void trim_cuts(JointBuilder *builder, JointForm form)
 /* Returns true if no other vessel ends where this one does. */
 static bool end_is_free(const JointBuilder *builder, size_t end)
 {
-    size_t place = place_of(builder, end);
-    return indexlists_length(&builder->ends, place) == 1;
+    size_t junction = junction_of(builder, end);
+    return indexlists_length(&builder->ends, junction) == 1;
 }
 
 static void add_cylinder(const JointBuilder *builder, size_t i, Geometry *geometry)
@@ -260,40 +270,40 @@ static void add_joint(const JointBuilder *builder, size_t trunk, size_t end, Vec
                     .segment = (uint32_t)(end / 2)};
 }
 
-/* The sphere of a place that cannot be joined; of equals, the trunk gives it its size and
- * color. */
-static void add_sphere(const JointBuilder *builder, size_t place, Geometry *geometry)
+/* Adds the sphere of a junction that cannot be joined. Among equally thick vessels, the trunk
+ * determines size and color. */
+static void add_sphere(const JointBuilder *builder, size_t junction, Geometry *geometry)
 {
     const Tree *tree = builder->tree;
-    size_t thickest = trunk_of(builder, place) / 2;
-    for (size_t k = builder->ends.first[place]; k < builder->ends.first[place + 1]; k++) {
+    size_t thickest = trunk_of(builder, junction) / 2;
+    for (size_t k = builder->ends.first[junction]; k < builder->ends.first[junction + 1]; k++) {
         size_t segment = builder->ends.items[k] / 2;
         if (tree->radius_mm[segment] > tree->radius_mm[thickest])
             thickest = segment;
     }
     geometry->primitives[geometry->n_primitives++] =
         (Primitive){.kind = PRIMITIVE_SPHERE,
-                    .a = tree->position[place],
-                    .b = tree->position[place],
+                    .a = tree->position[junction],
+                    .b = tree->position[junction],
                     .radius_mm = tree->radius_mm[thickest],
                     .segment = (uint32_t)thickest};
 }
 
-static void add_place(const JointBuilder *builder, size_t place, JointForm form, Geometry *geometry,
-                      StageReport *report)
+static void add_junction(const JointBuilder *builder, size_t junction, JointForm form,
+                         Geometry *geometry, StageReport *report)
 {
-    PlaceKind kind = builder->kinds[place];
-    report->places_short += kind == PLACE_SHORT;
-    report->places_sharp += kind == PLACE_SHARP;
-    report->places_crowded += kind == PLACE_CROWDED;
-    if (kind == PLACE_OPEN)
+    JunctionKind kind = builder->kinds[junction];
+    report->places_short += kind == JUNCTION_SHORT;
+    report->places_sharp += kind == JUNCTION_SHARP;
+    report->places_crowded += kind == JUNCTION_CROWDED;
+    if (kind == JUNCTION_OPEN)
         return;
     if (!is_joined(kind, form)) {
-        add_sphere(builder, place, geometry);
+        add_sphere(builder, junction, geometry);
         return;
     }
-    size_t trunk = trunk_of(builder, place);
-    for (size_t k = builder->ends.first[place]; k < builder->ends.first[place + 1]; k++) {
+    size_t trunk = trunk_of(builder, junction);
+    for (size_t k = builder->ends.first[junction]; k < builder->ends.first[junction + 1]; k++) {
         if (builder->ends.items[k] == trunk)
             continue;
         add_joint(builder, trunk, builder->ends.items[k], geometry->axes + 2 * report->joints++,
@@ -301,31 +311,31 @@ static void add_place(const JointBuilder *builder, size_t place, JointForm form,
     }
 }
 
-/* Makes room for the axes of all joints. */
+/* Allocates the axes of all joints. */
 static Status reserve_axes(const JointBuilder *builder, JointForm form, Geometry *geometry,
                            Err *err)
 {
     size_t joints = 0;
-    for (size_t place = 0; place < builder->tree->n; place++)
-        if (is_joined(builder->kinds[place], form))
-            joints += indexlists_length(&builder->ends, place) - 1;
+    for (size_t junction = 0; junction < builder->tree->n; junction++)
+        if (is_joined(builder->kinds[junction], form))
+            joints += indexlists_length(&builder->ends, junction) - 1;
     return mem_calloc(&geometry->axes, joints, 2 * sizeof *geometry->axes, "joints", err);
 }
 
-Status joints_add(const Tree *tree, const Places *places, JointForm form, Geometry *geometry,
-                  StageReport *report, Err *err)
+Status joints_add(const Tree *tree, const Coincidence *coincidence, JointForm form,
+                  Geometry *geometry, StageReport *report, Err *err)
 {
-    JointBuilder builder = {.tree = tree, .places = places, .steps = most_steps};
+    JointBuilder builder = {.tree = tree, .coincidence = coincidence, .steps = most_steps};
     Status status;
     TRY_GOTO(collect_ends(&builder, err));
     TRY_GOTO(cut_places(&builder, err));
     TRY_GOTO(reserve_axes(&builder, form, geometry, err));
     trim_cuts(&builder, form);
     for (size_t i = 0; i < tree->n; i++)
-        if (places_draw(places, i))
+        if (coincidence_draws(coincidence, i))
             add_cylinder(&builder, i, geometry);
-    for (size_t place = 0; place < tree->n; place++)
-        add_place(&builder, place, form, geometry, report);
+    for (size_t junction = 0; junction < tree->n; junction++)
+        add_junction(&builder, junction, form, geometry, report);
 done:
     indexlists_release(&builder.ends);
     free(builder.cut);

@@ -3,15 +3,16 @@
 #ifndef CORCAST_STAGE_JOINTS_H
 #define CORCAST_STAGE_JOINTS_H
 
-#include "stage/places.h"
+#include "stage/coincidence.h"
 #include "stage/stage.h"
 
-/* Appends cylinders, joints, and spheres where the construction of joints fails. Counts joints and
- * these places in *report.
+/* Appends the cylinders and joints of a tree, and a sphere at each junction where the construction
+ * of joints fails. Sets the counts of joints and of failed junctions in *report.
  *
- * geometry  its `primitives` has room for two per node.
+ * geometry  its `primitives` has space for two primitives per node.
+ * report    must not be NULL.
  * Errors    STATUS_MEMORY. */
-MUST_CHECK Status joints_add(const Tree *tree, const Places *places, JointForm form,
+MUST_CHECK Status joints_add(const Tree *tree, const Coincidence *coincidence, JointForm form,
                              Geometry *geometry, StageReport *report, Err *err);
 
 #endif

@@ -9,7 +9,7 @@
 
 typedef struct LookReading {
     Look look;
-    char problem[160]; /* what the line should have been */
+    char problem[160]; /* what the line should have contained */
 } LookReading;
 
 typedef enum LookType {
@@ -26,7 +26,7 @@ typedef enum LookType {
 static const struct LookSection {
     const char *name;
     const char *keys; /* for the message about an unknown key */
-    size_t preset;    /* the double that the head of the section sets; 0: none */
+    size_t preset;    /* offset of the double that the heading of the section sets; 0: none */
     double value;
 } sections[] = {
     {"look", "about, a line of at most 160 bytes", 0, 0},
@@ -50,7 +50,7 @@ static const struct LookSection {
 static const struct LookKey {
     const char *section, *name;
     LookType type;
-    size_t at; /* in the Look; of a light, in the LookLight */
+    size_t at; /* offset in the Look; for a light, in the LookLight */
     double low, high;
     const char *allowed; /* for the message about a bad value; NULL: "a number from LOW to HIGH" */
 } keys[] = {
@@ -90,7 +90,7 @@ static const struct LookKey {
     {"xray", "per_mm", IN_EFFECTS(xray_per_mm), 1e-6, 1e6, "a number from 1e-6 to 1e6"},
 };
 
-/* Records what the line should have been, and returns false. */
+/* Records what the line should have contained, and returns false. */
 static bool expected(LookReading *reading, const char *problem)
 {
     snprintf(reading->problem, sizeof reading->problem, "%s", problem);
@@ -157,7 +157,7 @@ static bool read_key(LookReading *reading, const struct LookKey *key, const char
         if (key->type == TYPE_VECTOR)
             look->ground.in_world = strcmp(key->name, "axis") == 0;
     }
-    if (strcmp(key->section, "xray") == 0) /* the two keys exclude each other; the last counts */
+    if (strcmp(key->section, "xray") == 0) /* the two keys exclude each other; the last one wins */
         look->effects.xray_per_diameter = look->effects.xray_per_mm = 0;
     bool allowed = strcmp(key->name, "size") != 0 || light->is_point;
     if (allowed && store(key, text, (of_light ? (char *)light : (char *)look) + key->at))

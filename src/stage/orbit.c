@@ -1,12 +1,12 @@
-/* A camera is moved by moving the parameters that make it, so that what a window shows can be said
- * in the options that draw it again. Turning is about the camera's own axes: what is under the hand
- * follows it, whatever is up. */
+/* A camera is moved by changing the parameters that define it, so that a window can print the
+ * options that draw its picture again. Rotation is about the camera's own axes: the object under
+ * the mouse follows the mouse, in any orientation. */
 #include "stage/subject.h"
 
 static const double least_angle = 0.01, largest_height_mm = 1e7, least_height_mm = 1e-6;
 
 typedef struct OrbitAxes {
-    Vec3 right, up, back; /* unit; back leads from what is looked at to the camera */
+    Vec3 right, up, back; /* unit; `back` points from look_at to the camera */
     double distance;
 } OrbitAxes;
 
@@ -26,13 +26,13 @@ static void set_axes(ViewParams *params, OrbitAxes axes)
     params->up = axes.up;
 }
 
-/* Of a perspective picture: its width, over the distance of what has it. */
+/* Returns the width of a perspective picture at unit distance. */
 static double width_per_distance(const ViewParams *params)
 {
     return 2 * elementary_tan(params->angle_deg * DEGREE / 2);
 }
 
-/* Height of the picture where it is looked at. */
+/* Returns the height in mm that the picture shows at look_at. */
 static double height_mm(const ViewParams *params, double distance)
 {
     if (params->projection == PROJECTION_ORTHOGRAPHIC)

@@ -1,9 +1,8 @@
-/* A cylinder for each segment that is drawn; in `rounded` also one sphere at each place, of the
- * largest radius that meets there.
- *
- * Threads work side by side on chunks of nodes: first each chunk is counted, then filled in where
- * the chunks before it end, so that the order is that of the nodes. A flag of a cylinder's end is
- * set from the node at that end alone. */
+/* Makes a cylinder for each segment that is drawn. The model `rounded` also gets one sphere per
+ * junction, with the largest radius that meets there. Threads work on chunks of nodes in two
+ * passes: first each chunk is counted, then each chunk is filled in behind the chunks before it.
+ * The order of primitives is therefore that of the nodes. A flag of a cylinder's end is set from
+ * the node at that end alone. */
 #include "stage/solids.h"
 
 #include <stdlib.h>
@@ -12,16 +11,17 @@ enum { CHUNK = 1 << 15 };
 
 typedef struct Solids {
     const Tree *tree;
-    const Places *places;
+    const Coincidence *coincidence;
     Geometry *geometry;
     int threads;
     bool implied_ends;
-    int32_t *cylinder; /* by node: the primitive of the segment that ends there, or -1; owned */
-    /* By node: the thickest segment that meets there, if the node stands for its place, or -1; of
-     * equals, the one that ends there. Owned. */
+    int32_t *cylinder; /* per node: primitive of the segment that ends there, or -1; owned */
+    /* Per node: if the node represents a junction, the thickest segment at the junction; otherwise
+     * -1. Among equally thick segments, the segment that ends there. Owned. */
     int32_t *thickest;
     size_t n_chunks;
-    size_t *first[2]; /* by chunk: where its cylinders, or its spheres and ends begin; owned */
+    size_t *first[2]; /* per chunk: index of its first cylinder, and of its first sphere and end;
+                       * owned */
 } Solids;
 
 static size_t chunk_end(const Solids *solids, size_t chunk)
@@ -29,8 +29,8 @@ static size_t chunk_end(const Solids *solids, size_t chunk)
     return (chunk + 1) * CHUNK < solids->tree->n ? (chunk + 1) * CHUNK : solids->tree->n;
 }
 
-/* Makes counts by chunk the numbers at which they begin behind `begin`; returns where the last
- * ends. */
+/* Converts counts per chunk to the index of the chunk's first item, starting at `begin`. Returns
+ * the index behind the last item. */
 static size_t begin_chunks(const Solids *solids, size_t *count, size_t begin)
 {
     for (size_t chunk = 0; chunk < solids->n_chunks; chunk++) {
@@ -47,7 +47,7 @@ static void count_cylinders(size_t chunk, int worker, void *context)
     const Solids *solids = context;
     size_t count = 0;
     for (size_t i = chunk * CHUNK; i < chunk_end(solids, chunk); i++)
-        count += places_draw(solids->places, i);
+        count += coincidence_draws(solids->coincidence, i);
     solids->first[0][chunk] = count;
 }
 
@@ -59,7 +59,7 @@ static void fill_cylinders(size_t chunk, int worker, void *context)
     size_t number = solids->first[0][chunk];
     for (size_t i = chunk * CHUNK; i < chunk_end(solids, chunk); i++) {
         solids->cylinder[i] = -1;
-        if (!places_draw(solids->places, i))
+        if (!coincidence_draws(solids->coincidence, i))
             continue;
         solids->cylinder[i] = (int32_t)number;
         solids->geometry->primitives[number++] = (Primitive){.kind = PRIMITIVE_CYLINDER,
@@ -82,26 +82,27 @@ static void add_cylinders(Solids *solids)
 static Status flag_free_ends(const Solids *solids, Err *err)
 {
     const Tree *tree = solids->tree;
-    const int32_t *place = solids->places->place, *cylinder = solids->cylinder;
-    uint32_t *meeting = NULL; /* by node that stands for a place: the cylinders that end there */
+    const int32_t *junction = solids->coincidence->junction, *cylinder = solids->cylinder;
+    uint32_t *meeting = NULL; /* per node that represents a junction: number of cylinders that end
+                               * there */
     TRY(mem_calloc(&meeting, tree->n, sizeof *meeting, "nodes", err));
     for (size_t i = 0; i < tree->n; i++)
         if (cylinder[i] >= 0) {
-            meeting[place[tree->parent[i]]]++;
-            meeting[place[i]]++;
+            meeting[junction[tree->parent[i]]]++;
+            meeting[junction[i]]++;
         }
     for (size_t i = 0; i < tree->n; i++)
         if (cylinder[i] >= 0) {
             Primitive *one = &solids->geometry->primitives[cylinder[i]];
-            one->free_a = meeting[place[tree->parent[i]]] == 1;
-            one->free_b = meeting[place[i]] == 1;
+            one->free_a = meeting[junction[tree->parent[i]]] == 1;
+            one->free_b = meeting[junction[i]] == 1;
         }
     free(meeting);
     return STATUS_OK;
 }
 
-/* Returns true if segment i, rather than another, has the ball at a node that both meet: the
- * thicker one, of equals the one with the lower id, so that the order of rows does not matter. */
+/* Returns true if segment i, and not `other`, has the ball at a node where both meet: the thicker
+ * segment, or the one with the lower id, so that the order of rows in the file does not matter. */
 static bool is_before(const Tree *tree, size_t i, int32_t other)
 {
     double own = tree->radius_mm[i], its = tree->radius_mm[other];
@@ -111,24 +112,24 @@ static bool is_before(const Tree *tree, size_t i, int32_t other)
 static void find_thickest(const Solids *solids)
 {
     const Tree *tree = solids->tree;
-    const Places *places = solids->places;
+    const Coincidence *coincidence = solids->coincidence;
     int32_t *thickest = solids->thickest;
     for (size_t i = 0; i < tree->n; i++)
-        thickest[i] = places_can_draw(places, i) ? (int32_t)i : -1;
+        thickest[i] = coincidence_can_draw(coincidence, i) ? (int32_t)i : -1;
     for (size_t i = 0; i < tree->n; i++) {
-        if (!places_can_draw(places, i))
+        if (!coincidence_can_draw(coincidence, i))
             continue;
-        int32_t *best = &thickest[places->place[tree->parent[i]]];
+        int32_t *best = &thickest[coincidence->junction[tree->parent[i]]];
         if (*best < 0 || is_before(tree, i, *best))
             *best = (int32_t)i;
     }
     for (size_t i = 0; i < tree->n; i++)
-        if (places->place[i] != (int32_t)i)
+        if (coincidence->junction[i] != (int32_t)i)
             thickest[i] = -1;
 }
 
-/* Returns true if the place of node i is an end of the cylinder of its thickest segment, which
- * becomes round there. */
+/* Returns true if the junction of node i is an end of the cylinder of its thickest segment. Marks
+ * that end as round. */
 static bool round_end(const Solids *solids, size_t i)
 {
     int32_t number = solids->cylinder[solids->thickest[i]];
@@ -176,8 +177,8 @@ static void fill_spheres(size_t chunk, int worker, void *context)
     }
 }
 
-/* The sphere of a place stands for the thickest segment there. Those that are ends of the segment's
- * cylinder come last. */
+/* Adds the spheres of junctions. A sphere has the radius of the thickest segment at the junction.
+ * Spheres that are ends of that segment's cylinder come last. */
 static void add_spheres(Solids *solids)
 {
     Geometry *geometry = solids->geometry;
@@ -191,11 +192,11 @@ static void add_spheres(Solids *solids)
     threads_for(solids->n_chunks, solids->threads, fill_spheres, solids);
 }
 
-Status solids_add(const Tree *tree, const Places *places, const GeometryParams *params,
+Status solids_add(const Tree *tree, const Coincidence *coincidence, const GeometryParams *params,
                   Geometry *geometry, Err *err)
 {
     Solids solids = {.tree = tree,
-                     .places = places,
+                     .coincidence = coincidence,
                      .geometry = geometry,
                      .threads = params->mesh.threads,
                      .implied_ends = params->implied_ends,

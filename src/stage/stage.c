@@ -1,20 +1,20 @@
-/* The shape of a tree is that of its model; its appearance is the look's, but for colors that show
- * a field. Neither knows of the other, so that a picture in other colors shares the shape.
- *
- * No two surfaces of a primitive model coincide, because which of two coincident surfaces is seen
- * is nobody's to say; hence places.c. */
+/* The geometry of a tree depends on its model, and the appearance on the look and on fields. The
+ * two are independent, so that pictures in other colors reuse the geometry. No two surfaces of a
+ * model of primitives coincide, because it would be undefined which of two coincident surfaces is
+ * visible; coincidence.c ensures this. */
 #include "stage/stage.h"
 
+#include "stage/coincidence.h"
 #include "stage/joints.h"
-#include "stage/places.h"
 #include "stage/solids.h"
 #include <stdlib.h>
 
-static Status add_field(const Tree *tree, const Places *places, Geometry *geometry, Err *err)
+static Status add_field(const Tree *tree, const Coincidence *coincidence, Geometry *geometry,
+                        Err *err)
 {
     TRY(mem_calloc(&geometry->segments, tree->n, sizeof *geometry->segments, "segments", err));
     for (size_t i = 0; i < tree->n; i++)
-        if (places_draw(places, i))
+        if (coincidence_draws(coincidence, i))
             geometry->segments[geometry->n_segments++] =
                 (FieldSegment){.a = tree->position[tree->parent[i]],
                                .b = tree->position[i],
@@ -23,7 +23,8 @@ static Status add_field(const Tree *tree, const Places *places, Geometry *geomet
     return STATUS_OK;
 }
 
-/* The field whose segments blend where they meet: that of stage_vessels. */
+/* Adds the field whose segments blend only where they are connected: the vessels of
+ * stage_vessels. */
 static Status add_graph(const Tree *tree, Geometry *geometry, Err *err)
 {
     VesselTree vessels;
@@ -36,14 +37,14 @@ static Status add_graph(const Tree *tree, Geometry *geometry, Err *err)
     return status;
 }
 
-/* Triangulates the wall of the vessels. */
+/* Triangulates the surface of the vessels. */
 static Status wall_vessels(VesselTree *vessels, const GeometryParams *params, VesselMesh *mesh,
                            StageReport *counted, Err *err)
 {
     MeshReport report;
     uint32_t *thinned = NULL;
     if (params->part_overlaps)
-        TRY(vesseltree_part(vessels, &params->mesh, &thinned, &counted->thinned, err));
+        TRY(vesseltree_thin_overlaps(vessels, &params->mesh, &thinned, &counted->thinned, err));
     free(thinned);
     TRY(vesselmesh_build(vessels, &params->mesh, mesh, &report, err));
     Status status = meshreport_check(&report, vessels, err);
@@ -51,7 +52,7 @@ static Status wall_vessels(VesselTree *vessels, const GeometryParams *params, Ve
     return status;
 }
 
-/* The wall of the segments that the geometry has, where they are now. */
+/* Adds the mesh of the geometry's segments, at their present positions. */
 static Status add_mesh(const Tree *tree, const GeometryParams *params, Geometry *geometry,
                        StageReport *counted, Err *err)
 {
@@ -65,19 +66,20 @@ static Status add_mesh(const Tree *tree, const GeometryParams *params, Geometry 
     return status;
 }
 
-static Status add_model(const Tree *tree, const Places *places, const GeometryParams *params,
-                        Geometry *geometry, StageReport *report, Err *err)
+static Status add_model(const Tree *tree, const Coincidence *coincidence,
+                        const GeometryParams *params, Geometry *geometry, StageReport *report,
+                        Err *err)
 {
     if (model_has(geometry->model, MODEL_TRIANGLES))
         return add_graph(tree, geometry, err);
     if (model_has(geometry->model, MODEL_FIELD))
         return params->graph ? add_graph(tree, geometry, err)
-                             : add_field(tree, places, geometry, err);
+                             : add_field(tree, coincidence, geometry, err);
     TRY(mem_calloc(&geometry->primitives, 2 * tree->n, sizeof *geometry->primitives, "primitives",
                    err));
     return model_has(geometry->model, MODEL_JOINTS)
-               ? joints_add(tree, places, params->joints, geometry, report, err)
-               : solids_add(tree, places, params, geometry, err);
+               ? joints_add(tree, coincidence, params->joints, geometry, report, err)
+               : solids_add(tree, coincidence, params, geometry, err);
 }
 
 /* ---- what all models have -------------------------------------------------------------------- */
@@ -91,7 +93,8 @@ static Status copy_ids(const Tree *tree, Geometry *geometry, Err *err)
     return STATUS_OK;
 }
 
-/* Of a field there are no ends; those of cylinders have the balls of these. */
+/* A field has no spheres at ends. The spheres of cylinders are inside the balls that are added
+ * here. */
 static void find_bounds(Geometry *geometry)
 {
     Box box = box_empty();
@@ -110,8 +113,9 @@ static double largest_of(Vec3 v)
     return fmax(fabs(v.x), fmax(fabs(v.y), fabs(v.z)));
 }
 
-/* Moves what lies far from the origin, for its size, next to it, by whole millimetres, so that no
- * digits are lost to the distance. POV-Ray keeps bounding boxes in single precision. */
+/* Moves a geometry that is far from the origin, compared with its size, next to the origin, by
+ * whole millimetres. Otherwise digits are lost: POV-Ray stores bounding boxes in single
+ * precision. */
 static void move_to_origin(Geometry *geometry)
 {
     Vec3 center = box_center(geometry->bounds);
@@ -136,10 +140,10 @@ Status stage_geometry(const Tree *tree, const GeometryParams *params, Geometry *
                       StageReport *report, Err *err)
 {
     Geometry built = {.model = params->model, .open_joints = params->joints == JOINTS_PAPER};
-    Places places = {0};
+    Coincidence coincidence = {0};
     Status status;
-    TRY(places_find(tree, &places, err));
-    StageReport counted = places_count(tree, &places);
+    TRY(coincidence_find(tree, &coincidence, err));
+    StageReport counted = coincidence_count(tree, &coincidence);
     if (counted.drawn == 0)
         TRY_GOTO(err_set(err, STATUS_INPUT,
                          "the tree has nothing to draw: no segment is longer than %g mm and has a "
@@ -147,7 +151,7 @@ Status stage_geometry(const Tree *tree, const GeometryParams *params, Geometry *
                          SHORTEST_MM));
     built.drawn = counted.drawn;
     TRY_GOTO(copy_ids(tree, &built, err));
-    TRY_GOTO(add_model(tree, &places, params, &built, &counted, err));
+    TRY_GOTO(add_model(tree, &coincidence, params, &built, &counted, err));
     TRY_GOTO(geometry_check(&built, err));
     find_bounds(&built);
     move_to_origin(&built);
@@ -158,7 +162,7 @@ Status stage_geometry(const Tree *tree, const GeometryParams *params, Geometry *
     if (report)
         *report = counted;
 done:
-    places_release(&places);
+    coincidence_release(&coincidence);
     geometry_release(&built);
     return status;
 }
@@ -197,11 +201,11 @@ Status stage_blend(Appearance *appearance, Err *err)
 {
     const size_t n = appearance->n_values;
     TRY(mem_calloc(&appearance->ramp, 1, sizeof *appearance->ramp, "colors", err));
-    TRY(mem_calloc(&appearance->places, n, sizeof *appearance->places, "places", err));
+    TRY(mem_calloc(&appearance->positions, n, sizeof *appearance->positions, "coincidence", err));
     colorramp_init(appearance->ramp, &appearance->scale.map);
     for (size_t i = 0; i < n; i++) {
-        appearance->places[i] = colorscale_position(&appearance->scale, appearance->values[i]);
-        appearance->colors[i] = appearance_blended(appearance, appearance->places[i]);
+        appearance->positions[i] = colorscale_position(&appearance->scale, appearance->values[i]);
+        appearance->colors[i] = appearance_blended(appearance, appearance->positions[i]);
     }
     return STATUS_OK;
 }

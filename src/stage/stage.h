@@ -1,4 +1,13 @@
-/* The public header of the module stage: makes the geometry, appearance and view of a tree. */
+/* The public header of the module stage: converts a tree to what can be drawn. Geometry, appearance
+ * and view [scene/scene.h] are made independently:
+ *
+ *     TRY(stage_geometry(&tree, &geometry_params, &scene.geometry, NULL, err));
+ *     TRY(stage_appearance(&look, NULL, NULL, &scene.appearance, err));
+ *     TRY(stage_view(&look, &view_params, &scene.geometry, &scene.view, err));
+ *     scene_release(&scene);
+ *
+ * A Look holds what pictures of different trees share. orbit_... functions move an interactive
+ * camera. */
 #ifndef CORCAST_STAGE_STAGE_H
 #define CORCAST_STAGE_STAGE_H
 
@@ -100,11 +109,11 @@ typedef enum NamedView {
 /* The axis of the tree's coordinates that points up. */
 typedef enum UpAxis { UP_Y, UP_Z } UpAxis;
 
-/* How a model with joints draws a place where vessels are too short, or turn back too sharply, for
- * their joints. */
+/* How a model with joints draws a junction where vessels are too short for their joints, or turn
+ * back too sharply. */
 typedef enum JointForm {
-    JOINTS_ROBUST, /* with a ball, as the model `rounded` does */
-    JOINTS_PAPER   /* with the joints of [N], although they are defective there */
+    JOINTS_ROBUST, /* draws a ball, as the model `rounded` does */
+    JOINTS_PAPER   /* draws the joints of [N], although they are defective there */
 } JointForm;
 
 /* Parameters of stage_geometry. */
@@ -149,11 +158,11 @@ ViewParams view_defaults(void);
 typedef struct StageReport {
     size_t drawn;   /* segments that the geometry represents */
     size_t dropped; /* segments without length or radius, which cannot be drawn */
-    size_t covered; /* those of `drawn` that lie within a twin: another segment between the same two
-                     * points that is at least as thick; they add nothing to any model */
+    size_t covered; /* segments of `drawn` that lie within a twin: another segment between the same
+                     * two points that is at least as thick. They change no model */
     size_t thinned; /* segments that part_overlaps made thinner */
     size_t joints;  /* joints drawn */
-    /* Places where the construction of joints fails: */
+    /* Coincidence where the construction of joints fails: */
     size_t places_short;   /* a vessel is too short for its joints */
     size_t places_sharp;   /* else: a vessel turns back too sharply */
     size_t places_crowded; /* not tried, because too many vessels meet */

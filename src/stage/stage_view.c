@@ -1,8 +1,9 @@
-/* A camera that frames a subject shows the balls about the ends of its vessels, and their shadows,
- * exactly; the distance of an orthographic camera changes nothing but the depths it reports, so it
- * stands one diagonal of what it shows in front of the middle. Ground and lights of the look, which
- * are given in the camera's axes and in sizes of the tree, are placed about the subject: before the
- * camera has its place, so that shadows can be framed. */
+/* A camera that frames a subject shows exactly the balls around the ends of its vessels, and their
+ * shadows. The distance of an orthographic camera changes only the depths that it reports, so the
+ * camera is placed one diagonal of the framed box in front of its middle.
+ *
+ * The look defines ground and lights in the camera's axes and in sizes of the tree. They are placed
+ * around the subject before the camera's position is known, so that shadows can be framed. */
 #include "stage/subject.h"
 
 ViewParams view_defaults(void)
@@ -17,7 +18,7 @@ ViewParams view_defaults(void)
 
 /* ---- the camera ------------------------------------------------------------------------------ */
 
-/* A vector of a world whose y axis is up, in a world whose upright is another. */
+/* Converts a vector from a world whose y axis is up to a world with this up axis. */
 static Vec3 upright(UpAxis up_axis, Vec3 v)
 {
     return up_axis == UP_Z ? vec3(v.x, -v.z, v.y) : v;
@@ -46,7 +47,7 @@ void view_axes(const ViewParams *params, Vec3 *direction, Vec3 *up)
     *direction = vec3_turned(*direction, right, -rise);
 }
 
-/* Where the camera looks, and what is up, if not square to it. */
+/* Sets the direction of the camera and an up vector, which need not be perpendicular to it. */
 static Status camera_direction(const ViewParams *params, Vec3 center, Vec3 *direction, Vec3 *sky,
                                Err *err)
 {
@@ -68,7 +69,7 @@ static Status camera_direction(const ViewParams *params, Vec3 center, Vec3 *dire
     return STATUS_OK;
 }
 
-/* Sets direction, right and up of the camera, right and up of unit length and square to the
+/* Sets direction, right and up of the camera; right and up are unit vectors perpendicular to the
  * direction. */
 static Status aim_camera(const ViewParams *params, Vec3 center, Camera *camera, Err *err)
 {
@@ -78,7 +79,7 @@ static Status aim_camera(const ViewParams *params, Vec3 center, Camera *camera, 
         sky = params->up;
     Vec3 across = vec3_cross(camera->direction, sky);
     if (!(vec3_length(across) > 1e-9 * vec3_length(sky)) && !params->has_up) {
-        sky = upright(params->up_axis, vec3(0, 0, -1)); /* looking along the upright */
+        sky = upright(params->up_axis, vec3(0, 0, -1)); /* the camera looks along the up axis */
         across = vec3_cross(camera->direction, sky);
     }
     if (!(vec3_length(across) > 1e-9 * vec3_length(sky)))
@@ -93,7 +94,8 @@ typedef struct ViewExtent {
     double low_x, high_x, low_y, high_y;
 } ViewExtent;
 
-/* Of a box along an axis of the coordinates, either way; false along another direction. */
+/* Sets the extent of a box along a coordinate axis, in either direction. Returns false for any
+ * other direction. */
 static bool extent_of_box(Box box, Vec3 along, double *low, double *high)
 {
     for (int axis = 0; axis < 3; axis++) {
@@ -108,8 +110,8 @@ static bool extent_of_box(Box box, Vec3 along, double *low, double *high)
     return false;
 }
 
-/* Most cameras look along an axis of the coordinates, where the box of a tree has the very numbers;
- * that of a geometry may hold less than its balls. */
+/* Most cameras look along a coordinate axis. There, the box of a tree has exactly the extent of the
+ * balls; the box of a geometry may be smaller than its balls. */
 static ViewExtent extent_along(const Framed *framed, Vec3 right, Vec3 up)
 {
     ViewExtent extent;
@@ -130,8 +132,9 @@ static ViewExtent extent_along(const Framed *framed, Vec3 right, Vec3 up)
     return extent;
 }
 
-/* The least distance from the middle, against the direction, at which a pinhole whose half-width
- * and half-height at unit distance are tan_x and tan_y sees every ball whole. */
+/* Returns the minimum distance from the middle, against the direction of view, at which a pinhole
+ * camera shows every ball whole. tan_x and tan_y are the half width and the half height of its
+ * picture at unit distance. */
 static double framing_distance(const Framed *framed, const Camera *camera, double tan_x,
                                double tan_y)
 {
@@ -151,9 +154,8 @@ static double framing_distance(const Framed *framed, const Camera *camera, doubl
     return distance;
 }
 
-/* An orthographic camera may stand anywhere before the vessels. It stands at least this far from
- * their middle, as POV-Ray does not see what is nearer to a camera than 0.01 mm [docs/POVRAY.md,
- * sections 4 and 6]. */
+/* Minimum distance of an orthographic camera from the middle of the vessels. POV-Ray does not show
+ * surfaces nearer to a camera than 0.01 mm [docs/POVRAY.md, sections 4 and 6]. */
 static const double least_distance_mm = 0.05;
 
 static void place_orthographic(const ViewParams *params, const Framed *framed, Camera *camera)
@@ -204,7 +206,7 @@ static void place_perspective(const ViewParams *params, const Framed *framed, Ca
 /* ---- ground and lights ------------------------------------------------------------------------
  */
 
-/* A vector of right, up and towards the viewer, in the world. */
+/* Converts a vector from the camera's axes (right, up, towards the viewer) to world coordinates. */
 static Vec3 from_camera(const Camera *camera, Vec3 v)
 {
     Vec3 world = vec3_scale(vec3_normalized(camera->right), v.x);
@@ -212,7 +214,7 @@ static Vec3 from_camera(const Camera *camera, Vec3 v)
     return vec3_add_scaled(world, camera->direction, -v.z);
 }
 
-/* The ground lies just beyond the last ball along its normal, and farther by the gap. */
+/* Places the ground just beyond the last ball along its normal, plus the gap of the look. */
 static Ground place_ground(const LookGround *look, const Camera *camera, const Subject *subject)
 {
     if (!look->present)
@@ -237,8 +239,8 @@ static Ground place_ground(const LookGround *look, const Camera *camera, const S
     return ground;
 }
 
-/* A light in the world. Parallel lights stand ten diagonals away, in front of everything they
- * light. */
+/* Places a light in the world. Parallel lights are ten diagonals away, in front of everything that
+ * they light. */
 static Light place_light(const LookLight *light, const Camera *camera, Box bounds, bool shadows)
 {
     Vec3 right = vec3_normalized(camera->right), up = vec3_normalized(camera->up);
@@ -254,7 +256,8 @@ static Light place_light(const LookLight *light, const Camera *camera, Box bound
         .parallel = !light->is_point,
         .casts_shadows = shadows};
     if (light->size > 0) {
-        /* Square to the way to the tree, one side level in the picture where that can be. */
+        /* The sides of the area light are perpendicular to the direction to the tree; if possible,
+         * one side is horizontal in the picture. */
         Vec3 towards = vec3_normalized(offset), level = vec3_cross(up, towards);
         level = vec3_length(level) > 1e-6 ? vec3_normalized(level) : right;
         placed.samples = light->samples;
@@ -266,8 +269,9 @@ static Light place_light(const LookLight *light, const Camera *camera, Box bound
 
 /* ---- effects --------------------------------------------------------------------------------- */
 
-/* Vessels fade from the nearest axis on to the farthest, in depth along the ray, or over this part
- * of the diagonal of their box where they are less apart: a flat tree face-on does not fade. */
+/* Fading starts at the depth of the nearest vessel axis and ends at the farthest. If these depths
+ * differ by less than this fraction of the diagonal of the vessels' box, fading extends over that
+ * length instead: a flat tree viewed face-on then does not fade. */
 static const double least_fade = 1.0 / 3;
 
 static void place_fade(const Camera *camera, const Subject *subject, Fade *fade)
@@ -309,7 +313,7 @@ static Effects place_effects(const Look *look, const Camera *camera, const Subje
     return effects;
 }
 
-/* Places ground and lights about the subject by the axes of the camera. */
+/* Places ground and lights around the subject, in the axes of the camera. */
 static void place_surroundings(const Look *look, const ViewParams *params, const Subject *subject,
                                View *view)
 {
@@ -336,7 +340,7 @@ Status stage_view(const Look *look, const ViewParams *params, const Geometry *ge
                  .camera = {.projection = params->projection,
                             .width = params->width,
                             .height = params->height}};
-    ViewParams near = *params; /* to the origin, as the geometry is */
+    ViewParams near = *params; /* moved to the origin, like the geometry */
     near.location = vec3_sub(params->location, geometry->origin);
     near.look_at = vec3_sub(params->look_at, geometry->origin);
     TRY(aim_camera(&near, box_center(subject.box), &made.camera, err));

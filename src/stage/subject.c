@@ -1,10 +1,11 @@
-/* Of the tree, its segments that can be drawn have a ball at each end, of their radius: whatever
- * the model, views about it are the same. The shadow of a ball on the ground is an ellipse; it is
- * framed as the ball about the ellipse, so never too small. Of an area light the corners cast the
- * shadows that reach farthest. */
+/* For a tree, each segment that can be drawn has a ball of its radius at each end, in any model, so
+ * that all models have the same view. The shadow of a ball on the ground is an ellipse. It is
+ * framed as the ball around the ellipse, which is never too small. For an area light, the corners
+ * cast the shadows that reach farthest. */
 #include "stage/subject.h"
 
-/* Light that comes lower over the ground than 10 degrees casts shadows too long to be framed. */
+/* Sine of 10 degrees: light at a lower angle above the ground casts shadows that are too long to be
+ * framed. */
 static const double least_slope = 0.17;
 
 Subject subject_of(const ViewParams *params, const Geometry *geometry)
@@ -81,7 +82,7 @@ Framed framed_of(const Subject *subject, const ViewParams *params, const View *v
     return framed;
 }
 
-/* The edges of the domain along x stand for segments. */
+/* The edges of the domain along x serve as segments. */
 static size_t own_segments(const Framed *framed)
 {
     return framed->domain ? 4 : subject_segments(framed->subject);
@@ -100,10 +101,10 @@ static int own_ends(const Framed *framed, size_t number, Ball ends[2])
     return 2;
 }
 
-/* Makes the ball that about its shadow; false when that is too long. */
+/* Replaces the ball by the ball around its shadow. Returns false if the shadow is too long. */
 static bool cast_shadow(const Ground *ground, const Light *light, Ball *ball)
 {
-    Vec3 towards = light_way(light, ball->center).towards;
+    Vec3 towards = light_direction(light, ball->center).towards;
     double slope = vec3_dot(ground->normal, towards);
     if (!(slope > least_slope))
         return false;

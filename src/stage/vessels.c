@@ -1,6 +1,7 @@
-/* A tree as lines with radii; see stage_vessels. Nodes that segments of no length join are one, and
- * what lies within a twin is left out [places.h], so that no two segments coincide. */
-#include "stage/places.h"
+/* Lists a tree's vessels as lines with radii [stage_vessels]. Nodes that segments without length
+ * connect become one node, and segments with a twin are left out [coincidence.h], so that no two
+ * segments coincide. */
+#include "stage/coincidence.h"
 #include "stage/stage.h"
 
 static Status reserve(const Tree *tree, VesselTree *vessels, Err *err)
@@ -10,30 +11,31 @@ static Status reserve(const Tree *tree, VesselTree *vessels, Err *err)
     return mem_calloc(&vessels->nodes, tree->n, sizeof *vessels->nodes, "segments", err);
 }
 
-static void add_segment(const Tree *tree, const Places *places, size_t i, VesselTree *vessels)
+static void add_segment(const Tree *tree, const Coincidence *coincidence, size_t i,
+                        VesselTree *vessels)
 {
     size_t n = vessels->n_segments++;
     vessels->segments[n] = (FieldSegment){.a = tree->position[tree->parent[i]],
                                           .b = tree->position[i],
                                           .radius_mm = tree->radius_mm[i],
                                           .segment = (uint32_t)i};
-    vessels->nodes[n][0] = (uint32_t)places->place[tree->parent[i]];
-    vessels->nodes[n][1] = (uint32_t)places->place[i];
+    vessels->nodes[n][0] = (uint32_t)coincidence->junction[tree->parent[i]];
+    vessels->nodes[n][1] = (uint32_t)coincidence->junction[i];
     vessels->ids[n] = (uint32_t)tree->id[i];
 }
 
 Status stage_vessels(const Tree *tree, VesselTree *vessels, StageReport *report, Err *err)
 {
     VesselTree made = {.n_nodes = tree->n};
-    Places places = {0};
+    Coincidence coincidence = {0};
     StageReport counted;
     Status status;
-    TRY_GOTO(places_find(tree, &places, err));
+    TRY_GOTO(coincidence_find(tree, &coincidence, err));
     TRY_GOTO(reserve(tree, &made, err));
-    counted = places_count(tree, &places);
+    counted = coincidence_count(tree, &coincidence);
     for (size_t i = 0; i < tree->n; i++)
-        if (places_draw(&places, i))
-            add_segment(tree, &places, i, &made);
+        if (coincidence_draws(&coincidence, i))
+            add_segment(tree, &coincidence, i, &made);
     if (made.n_segments == 0)
         TRY_GOTO(
             err_set(err, STATUS_INPUT,
@@ -45,7 +47,7 @@ Status stage_vessels(const Tree *tree, VesselTree *vessels, StageReport *report,
     *vessels = made;
     made = (VesselTree){0};
 done:
-    places_release(&places);
+    coincidence_release(&coincidence);
     vesseltree_release(&made);
     return status;
 }

@@ -9,7 +9,7 @@ static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, MergeOptions, output),
      .argument = "P.tif|T.csv",
-     .help = "the whole picture, .png, .tif (BigTIFF above 4 GB) or .ppm; or the table of a study, "
+     .help = "complete image, .png, .tif (BigTIFF above 4 GB) or .ppm; or the table of a study, "
              ".csv or .jsonl"},
 };
 
@@ -40,7 +40,7 @@ Status merge_run(const MergeOptions *options, Parsed *parsed, Err *err)
 
 const Command command_merge = {
     .name = "merge",
-    .summary = "join the tiles of a picture, or the runs of a study",
+    .summary = "join the strips of an image, or the runs of a study",
     .operands = "DIR|FILE... -o P.tif|T.csv",
     .examples = "  corcast render tree.swc --size 30000x30000 -o poster.tif --tiles 64 --commands "
                 "> plan.txt\n"

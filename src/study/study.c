@@ -16,14 +16,15 @@ static const Option own[] = {
      SETS(FOLDER, StudyOptions, output),
      .argument = "DIR",
      .excludes = "table",
-     .help = "a file for each run, and the tables study.csv and study.jsonl"},
+     .help = "folder for one file per run and the tables study.csv and study.jsonl"},
     {.name = "trees",
      SETS(FLAG, StudyOptions, trees),
      .excludes = "table",
-     .help = "keep the trees, too, as SWC"},
+     .help = "also write the tree of each run, as SWC"},
     {.name = "table",
      SETS(FLAG, StudyOptions, table),
-     .help = "grow nothing: print a CSV of files of info --json, of runs, or of folders of them"},
+     .help = "grow nothing; print one CSV table of the given files or folders, results of `corcast "
+             "info --json` or runs of a study"},
     {.name = "only",
      SETS(WHOLE, StudyOptions, only),
      FROM_TO(1, STUDY_MOST_RUNS),
@@ -31,13 +32,12 @@ static const Option own[] = {
      .argument = "K",
      .otherwise = "",
      .excludes = "table commands",
-     .help = "run K alone, and no tables"},
+     .help = "grow only run K and write no tables; the first run is 1"},
     {.name = "commands",
      SETS(FLAG, StudyOptions, commands),
      .group = GROUP_PARTS,
      .excludes = "table",
-     .help = "grow nothing, but print a command a line, for GNU parallel, Slurm and others, that "
-             "grows a run"},
+     .help = "grow nothing; print one command per run, for GNU parallel, Slurm and others"},
 };
 
 static ConditionSet unmet(const void *set, const Parsed *parsed)
@@ -231,17 +231,18 @@ Status study_run(const StudyOptions *options, Parsed *parsed, Text *lines, Err *
 
 const Command command_study = {
     .name = "study",
-    .summary = "grow and measure trees for all combinations of values",
+    .summary = "grow and measure trees for all combinations of chosen values",
     .operands = "PLAN.ini -o DIR",
-    .examples = "  corcast study plan.ini -o runs\n"
-                "  corcast study plan.ini -o runs --commands > plan.txt; parallel -a plan.txt\n"
-                "  corcast merge runs -o study.csv\n"
-                "  corcast study --table a.json b.json > table.csv\n"
-                "a plan is a section of options of grow, each with its values:\n"
-                "  [grow]\n"
-                "  seed = 1..20\n"
-                "  gamma = 2.5, 3\n"
-                "  terminals = 1000\n",
+    .examples =
+        "  corcast study plan.ini -o runs\n"
+        "  corcast study plan.ini -o runs --commands > plan.txt; parallel -a plan.txt\n"
+        "  corcast merge runs -o study.csv\n"
+        "  corcast study --table a.json b.json > table.csv\n"
+        "\na plan is a file with one section of grow options; each option lists its values:\n"
+        "  [grow]\n"
+        "  seed = 1..20\n"
+        "  gamma = 2.5, 3\n"
+        "  terminals = 1000\n",
     .min_operands = 1,
     .max_operands = MAX_OPERANDS,
     .size = sizeof(StudyOptions),

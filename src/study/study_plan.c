@@ -8,7 +8,10 @@
 #include <string.h>
 
 static const Option rows[] = {
-    {.name = "output", SETS(OUTPUT, StudyGrowth, output), .argument = "T.swc", .help = "the tree"},
+    {.name = "output",
+     SETS(OUTPUT, StudyGrowth, output),
+     .argument = "T.swc",
+     .help = "tree file to write"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(rows);

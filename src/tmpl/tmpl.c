@@ -73,15 +73,15 @@ static Status expand_one(TmplExpansion *self, const char *dollar, int line, cons
     size_t length = dollar[1] == '{' ? name_length(name) : 0;
     if (length == 0 || name[length] != '}')
         return err_set(err, STATUS_INPUT,
-                       "%s:%d: '$' starts neither ${name} nor $$, which stands for one '$'",
-                       self->path, line);
+                       "%s:%d: '$' must begin ${name} or $$, which gives one '$'", self->path,
+                       line);
     bool found;
     TRY(put_named(self, name, length, &found, err));
     *next = name + length + 1;
     if (found)
         return STATUS_OK;
-    return err_set(err, STATUS_INPUT, "%s:%d: ${%.*s} is not a value this template is given",
-                   self->path, line, (int)length, name);
+    return err_set(err, STATUS_INPUT, "%s:%d: no value is given for ${%.*s}", self->path, line,
+                   (int)length, name);
 }
 
 static Status expand_all(TmplExpansion *self, const char *source, Err *err)

@@ -1,4 +1,12 @@
-/* The public header of the module tmpl: strict expansion of text templates. */
+/* The public header of the module tmpl: strict expansion of text templates.
+ *
+ * A template is a text file with names in the form ${name}. Expansion replaces each name by a
+ * value. It is strict: a name without a value, or a value whose name the template lacks, is an
+ * error, so that a template and the program always agree. Markup does the same for HTML and SVG,
+ * and escapes plain text.
+ *
+ *     const TmplValue values[] = {{"title", "A tree"}};
+ *     TRY(tmpl_expand("templates/page/page.html", values, 1, &out, err)); */
 #ifndef CORCAST_TMPL_TMPL_H
 #define CORCAST_TMPL_TMPL_H
 
@@ -11,7 +19,7 @@ typedef struct TmplValue {
     const char *text; /* inserted unchanged: it is not expanded again */
 } TmplValue;
 
-/* A template that was read from a file and can be expanded many times. */
+/* A template that was read from a file. It can be expanded any number of times. */
 typedef struct Tmpl {
     char *path, *source; /* owned */
 } Tmpl;
@@ -30,46 +38,51 @@ void tmpl_release(Tmpl *tmpl);
 MUST_CHECK Status tmpl_apply(const Tmpl *tmpl, const TmplValue *values, size_t n, Text *out,
                              Err *err);
 
-/* The replacement of ${name} by text that is appended while it is made, because it may be too long
- * for memory. */
+/* The replacement of ${name} by text that a function appends, because the text may be too long for
+ * memory. */
 typedef struct TmplPart {
-    const char *name;
+    const char *name; /* borrowed; letters, digits and '_', not starting with a digit */
+    /* Appends the text to `out`. A status other than STATUS_OK ends the expansion. */
     Status (*put)(Text *out, void *context, Err *err);
-    void *context;
+    void *context; /* passed to `put` */
 } TmplPart;
 
-/* As tmpl_apply, with parts beside the values, for a text that may have a stream. If a part fails,
+/* Appends the template to `out`, as tmpl_apply does, with parts beside the values. `out` may write
+ * to a stream. Errors: those of tmpl_apply, and any status that a part returns. If a part fails,
  * `out` has the text before that part. */
 MUST_CHECK Status tmpl_stream(const Tmpl *tmpl, const TmplValue *values, size_t n,
                               const TmplPart *parts, size_t n_parts, Text *out, Err *err);
 
-/* Reads a template and expands it once, as tmpl_apply. */
+/* Reads a template and expands it once. Errors: those of tmpl_load and tmpl_apply. */
 MUST_CHECK Status tmpl_expand(const char *path, const TmplValue *values, size_t n, Text *out,
                               Err *err);
 
 /* ---- pages of markup ------------------------------------------------------------------------- */
 
-/* The values of a template of HTML or SVG: a text for each name. Initialise with {0}. */
+/* The values of a template of HTML or SVG: a text for each name, at most 48. Initialise with {0};
+ * release with markup_release, which markup_put and markup_stream call. */
 typedef struct Markup {
     struct {
         const char *name; /* borrowed */
-        bool markup;      /* inserted unchanged; else escaped */
+        bool markup;      /* true: the text is inserted unchanged; false: it is escaped */
         Text text;
     } parts[48];
     size_t n;
 } Markup;
 
-/* Add an empty value and return its text, which the caller fills with plain text, or with markup.
- * The text is borrowed. */
+/* Adds an empty value for `name`, which is borrowed, and returns its text for the caller to fill
+ * with plain text. The text belongs to `self`. */
 Text *markup_text(Markup *self, const char *name);
+/* Adds an empty value as markup_text does, for the caller to fill with markup. */
 Text *markup_raw(Markup *self, const char *name);
+/* Frees all texts and removes all values. */
 void markup_release(Markup *self);
-/* Appends the expanded template `file` of the folder `templates`. Releases the values, also on
- * failure. Errors as tmpl_apply. */
+/* Appends the expanded template `file` of the folder `templates` to `out`. Releases the values,
+ * also on failure. Errors: those of tmpl_load and tmpl_apply. */
 MUST_CHECK Status markup_put(Markup *self, const char *templates, const char *file, Text *out,
                              Err *err);
-/* As markup_put, with parts beside the values, for a text that may have a stream. On failure `out`
- * is as tmpl_stream leaves it. */
+/* Appends the expanded template as markup_put does, with parts beside the values. `out` may write
+ * to a stream. Errors and the content of `out` after them: those of tmpl_stream. */
 MUST_CHECK Status markup_stream(Markup *self, const char *templates, const char *file,
                                 const TmplPart *parts, size_t n_parts, Text *out, Err *err);
 

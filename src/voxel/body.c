@@ -1,11 +1,14 @@
-/* The parts of cylinders and balls in a box are exact, by the divergence theorem: of a field whose
- * divergence is 1 in the body and 0 elsewhere they are the flow through the box's faces.
+/* The volume of a cylinder or a ball in a box is exact, by the divergence theorem. Take a vector
+ * field whose divergence is 1 in the body and 0 elsewhere. The volume is the flux of the field
+ * through the faces of the box.
  *
- * In the infinite cylinder, take the field that points along the axis and is the height along it,
- * cut off at the two ends: none of it flows through the wall. AxisPoint along the axis the faces
- * are parallelograms in a disc, and the height is linear on each, or constant where it is cut off.
- * Of a ball, take x / 3 within, and x / 3 (r / |x|)^3 beyond, which has no divergence. See disc.h
- * for both integrals. */
+ * For a cylinder, the field points along the axis. Its magnitude is the height along the axis,
+ * clamped to the two ends, inside the infinite cylinder, and 0 outside. So no flux passes the
+ * cylinder's side. Projected along the axis, the faces of the box are parallelograms, which are
+ * intersected with a disc. The height is linear on each face, or constant where it is clamped.
+ *
+ * For a ball about the origin, the field is x / 3 inside, and x / 3 (r / |x|)^3 outside, where its
+ * divergence is 0. disc.h has both integrals. */
 #include "voxel/body.h"
 
 #include "voxel/disc.h"
@@ -21,7 +24,8 @@ Body body_make(Vec3 a, Vec3 b, double radius, uint32_t segment)
     return body;
 }
 
-/* How far a disc across the axis reaches along each coordinate, over its radius. */
+/* Returns the extent of a disc perpendicular to the axis along each coordinate, in units of its
+ * radius. */
 static Vec3 disc_reach(Vec3 axis)
 {
     return vec3(sqrt(fmax(0, 1 - axis.x * axis.x)), sqrt(fmax(0, 1 - axis.y * axis.y)),
@@ -37,7 +41,8 @@ Box body_box(const Body *body)
     return (Box){vec3_sub(box.low, reach), vec3_add(box.high, reach)};
 }
 
-/* How far the cell reaches from its middle along a direction. */
+/* Returns the extent of the cell from its centre along a direction, times the direction's length.
+ */
 static double support(const VoxelCell *cell, Vec3 direction)
 {
     return cell->half.x * fabs(direction.x) + cell->half.y * fabs(direction.y) +
@@ -102,21 +107,23 @@ bool body_holds(const Body *body, const VoxelCell *cell)
 
 /* ---- a cylinder in a box --------------------------------------------------------------------- */
 
-/* A point as the axis sees it: across it, and along it from the point nearest to the cell. */
+/* A point in the coordinates of the cylinder: across the axis, and along it from the point of the
+ * axis that is nearest to the cell's centre. */
 typedef struct AxisPoint {
     DiscPoint at;
     double height;
 } AxisPoint;
 
-/* The height is level + slope_u u + slope_v v in the plane of a face. */
+/* In the plane of a face, the height is level + slope_u u + slope_v v. */
 typedef struct FacePlane {
     double level, slope_u, slope_v;
 } FacePlane;
 
-enum { MOST_CORNERS = 6 }; /* of a face from which two planes cut */
+/* Maximum number of corners of a face that is cut by two parallel planes. */
+enum { MAX_CORNERS = 6 };
 
 typedef struct CellFace {
-    AxisPoint corner[MOST_CORNERS];
+    AxisPoint corner[MAX_CORNERS];
     int n;
 } CellFace;
 
@@ -126,7 +133,7 @@ static AxisPoint between(AxisPoint p, AxisPoint q, double height)
     return (AxisPoint){{p.at.u + t * (q.at.u - p.at.u), p.at.v + t * (q.at.v - p.at.v)}, height};
 }
 
-/* The part of the face on one side of a height: above it if `side` is 1, below if -1. */
+/* Returns the part of the face on one side of a height: above it if `side` is 1, below if -1. */
 static CellFace cut_face(const CellFace *face, double height, int side)
 {
     CellFace out = {.n = 0};
@@ -141,7 +148,8 @@ static CellFace cut_face(const CellFace *face, double height, int side)
     return out;
 }
 
-static double flow(const CellFace *face, double radius, FacePlane plane)
+/* Returns the flux through a face whose height is linear. */
+static double flux(const CellFace *face, double radius, FacePlane plane)
 {
     DiscPart part = {0};
     for (int i = 0; i < face->n; i++)
@@ -149,9 +157,9 @@ static double flow(const CellFace *face, double radius, FacePlane plane)
     return plane.level * part.one + plane.slope_u * part.u + plane.slope_v * part.v;
 }
 
-/* The flow through a face of the height, cut off at low and high. */
-static double cut_flow(const CellFace *face, double radius, FacePlane plane, double low,
-                       double high)
+/* Returns the flux through a face whose height is clamped to [low, high]. */
+static double clamped_flux(const CellFace *face, double radius, FacePlane plane, double low,
+                           double high)
 {
     double least = face->corner[0].height, most = least;
     for (int i = 1; i < face->n; i++) {
@@ -159,44 +167,45 @@ static double cut_flow(const CellFace *face, double radius, FacePlane plane, dou
         most = fmax(most, face->corner[i].height);
     }
     if (low <= least && most <= high)
-        return flow(face, radius, plane);
+        return flux(face, radius, plane);
     CellFace below = cut_face(face, low, -1), above = cut_face(face, high, 1);
     CellFace middle = cut_face(face, low, 1);
     middle = cut_face(&middle, high, -1);
-    return flow(&below, radius, (FacePlane){low, 0, 0}) + flow(&middle, radius, plane) +
-           flow(&above, radius, (FacePlane){high, 0, 0});
+    return flux(&below, radius, (FacePlane){low, 0, 0}) + flux(&middle, radius, plane) +
+           flux(&above, radius, (FacePlane){high, 0, 0});
 }
 
-/* Corners of the faces across an axis towards high coordinates, counterclockwise from outside; bits
- * are the axes. */
+/* Per axis: the corners of the face towards high coordinates, counterclockwise seen from outside.
+ * Bit k of a corner is set if it has the high coordinate along axis k. */
 static const uint8_t face_corners[3][4] = {{1, 3, 7, 5}, {2, 6, 7, 3}, {4, 5, 7, 6}};
 
-/* A face less steep to the axis than this is left out: less than so much of the cell is lost. */
-static const double least_slope = 1e-7;
+/* Minimum cosine between a face's normal and the axis. Other faces are left out, which loses less
+ * than this fraction of the cell. */
+static const double min_cosine = 1e-7;
 
 static double cylinder_volume(const Body *body, const VoxelCell *cell)
 {
     Vec3 from = vec3_sub(cell->center, body->start);
     double along = vec3_dot(from, body->axis), volume = 0;
     Vec3 base = vec3_add_scaled(body->start, body->axis, along);
-    AxisPoint seen[8];
+    AxisPoint corners[8];
     for (int i = 0; i < 8; i++) {
         Vec3 p = vec3_sub(cell_corner(cell, i), base);
-        seen[i] =
+        corners[i] =
             (AxisPoint){{vec3_dot(p, body->u), vec3_dot(p, body->v)}, vec3_dot(p, body->axis)};
     }
     for (int axis = 0; axis < 3; axis++) {
         double rise = vec3_component(body->axis, axis);
         FacePlane plane = {.slope_u = -vec3_component(body->u, axis) / rise,
                            .slope_v = -vec3_component(body->v, axis) / rise};
-        for (int side = -1; side <= 1 && fabs(rise) > least_slope; side += 2) {
+        for (int side = -1; side <= 1 && fabs(rise) > min_cosine; side += 2) {
             double place = vec3_component(vec3_sub(cell->center, base), axis) +
                            side * vec3_component(cell->half, axis);
             CellFace face = {.n = 4};
             plane.level = place / rise;
             for (int i = 0; i < 4; i++)
-                face.corner[i] = seen[face_corners[axis][i] ^ (side < 0 ? 1 << axis : 0)];
-            volume += side * cut_flow(&face, body->radius, plane, -along, body->length - along);
+                face.corner[i] = corners[face_corners[axis][i] ^ (side < 0 ? 1 << axis : 0)];
+            volume += side * clamped_flux(&face, body->radius, plane, -along, body->length - along);
         }
     }
     return volume;
@@ -226,7 +235,7 @@ static double ball_volume(const Body *ball, const VoxelCell *cell)
     return volume;
 }
 
-double body_part(const Body *body, const VoxelCell *cell)
+double body_fraction(const Body *body, const VoxelCell *cell)
 {
     if (!body_meets(body, cell))
         return 0;
@@ -238,7 +247,7 @@ double body_part(const Body *body, const VoxelCell *cell)
 
 /* ---- lines ----------------------------------------------------------------------------------- */
 
-/* Narrows [*low, *high] to where 0 <= from + rise t <= length. */
+/* Narrows the interval [*low, *high] of t to where 0 <= from + rise t <= length. */
 static void clip_heights(double from, double rise, double length, double *low, double *high)
 {
     double inverse = 1 / rise, to_start = -from * inverse, to_end = (length - from) * inverse;

@@ -1,13 +1,16 @@
-/* A label holds a voxel that it fills most of: the first on its axes, from their middles, or else
- * the first next to them. A label that fills most of no voxel is then given one that no label
- * holds, or one whose holder can move to another voxel. These are augmenting paths [Kuhn, Naval
- * Research Logistics Quarterly 2 (1955) 83-97]: a label gets no voxel only if there are more labels
- * than voxels for them. A voxel that is held stays held. */
+/* The assignment of voxels to labels is a bipartite matching. A label is said to hold its voxel.
+ *
+ * First, a label holds a voxel that it fills most of. The voxels that its axes pass are tried
+ * first, from the middle of each axis on, then the voxels next to them. A label that fills most of
+ * no such voxel then takes a voxel that no label holds, or a voxel whose holder can move to another
+ * one. These are augmenting paths [Kuhn, Naval Research Logistics Quarterly 2 (1955) 83-97], so a
+ * label gets no voxel only if there are more labels than voxels for them. A voxel that is held
+ * stays held, possibly by another label. */
 #include "voxel/claims.h"
 
 #include <stdlib.h>
 
-/* The axis of a vessel, and the label that it has. */
+/* The axis of a vessel, as the index of its cylinder, and the vessel's label. */
 typedef struct ClaimAxis {
     uint32_t label, body;
 } ClaimAxis;
@@ -15,8 +18,8 @@ typedef struct ClaimAxis {
 /* A voxel that a label holds. */
 typedef struct Held {
     int64_t voxel;
-    size_t label; /* its first axis */
-    size_t visit; /* the last visit that tried to move the label */
+    size_t label; /* index of the label's first axis in Claimer.axes */
+    size_t visit; /* number of the last search that tried to move the label */
 } Held;
 
 typedef ARRAY(int64_t) VoxelList;
@@ -26,13 +29,14 @@ typedef struct Claimer {
     ClaimAxis *axes; /* by rising label */
     size_t n_axes;
     ARRAY(Held) held;
-    KeyMap by_voxel; /* index in `held` */
-    size_t visit;
+    KeyMap by_voxel; /* voxel -> index in `held` */
+    size_t visit;    /* number of the current search */
     BodyList near;
     VoxelList path;
 } Claimer;
 
-enum { MOST_MOVES = 64 };
+/* Maximum length of an augmenting path, which bounds the depth of the recursion. */
+enum { MAX_MOVES = 64 };
 
 /* ---- voxels along an axis -------------------------------------------------------------------- */
 
@@ -78,8 +82,8 @@ static VoxelCell numbered_cell(const VoxelGrid *grid, int64_t voxel)
     return grid_cell(grid, voxel % grid->n[0], row % grid->n[1], row / grid->n[1]);
 }
 
-/* Lists the voxels about one that the body fills a part of. There is a voxel on every side of it:
- * the grid has a margin. */
+/* Adds the neighbours of a voxel that the body fills a part of. Every voxel that a body meets has
+ * neighbours on all sides, because the grid has a margin. */
 static Status list_about(const VoxelGrid *grid, const Body *body, int64_t voxel, VoxelList *list,
                          Err *err)
 {
@@ -88,14 +92,14 @@ static Status list_about(const VoxelGrid *grid, const Body *body, int64_t voxel,
         const int64_t at[3] = {voxel % grid->n[0] + i % 3 - 1, row % grid->n[1] + i / 3 % 3 - 1,
                                row / grid->n[1] + i / 9 - 1};
         VoxelCell cell = grid_cell(grid, at[0], at[1], at[2]);
-        if (i != 13 && body_meets(body, &cell) && body_part(body, &cell) > 0)
+        if (i != 13 && body_meets(body, &cell) && body_fraction(body, &cell) > 0)
             TRY(push_voxel(grid, at, list, err));
     }
     return STATUS_OK;
 }
 
-/* Lists the voxels that a label may hold for a body: those that its axis passes, from the middle
- * on, and then, if `about`, those about them. */
+/* Lists the voxels that a label may hold for a body: first the voxels that the body's axis passes,
+ * from its middle on; then, if `about` is true, the neighbours of these voxels. */
 static Status list_voxels(Claimer *claimer, const Body *body, bool about, VoxelList *list, Err *err)
 {
     const VoxelGrid *grid = claimer->source->grid;
@@ -110,7 +114,8 @@ static Status list_voxels(Claimer *claimer, const Body *body, bool about, VoxelL
     return STATUS_OK;
 }
 
-/* The label of the segment that fills the most of a voxel, 0 of an empty one. */
+/* Sets *label to the label of the segment that fills most of a voxel, or to 0 if the voxel is
+ * empty. */
 static Status find_owner(Claimer *claimer, int64_t voxel, uint32_t *label, Err *err)
 {
     const RowSource *source = claimer->source;
@@ -182,7 +187,8 @@ static bool has_label_of(const Claimer *claimer, size_t axis, size_t first)
     return axis < claimer->n_axes && claimer->axes[axis].label == claimer->axes[first].label;
 }
 
-/* Has a label, given by its first axis, hold a voxel that it fills the most of, if there is one. */
+/* Lets a label, given by its first axis, hold a voxel that it fills most of. *done receives false
+ * if there is none. */
 static Status hold_own(Claimer *claimer, size_t first, bool about, bool *done, Err *err)
 {
     VoxelList list = {0};
@@ -205,7 +211,8 @@ done:
 
 static Status hold_any(Claimer *claimer, size_t first, int moves, bool *done, Err *err);
 
-/* Has the label hold one of the voxels: one that is free, or one whose holder finds another. */
+/* Lets the label hold one of the listed voxels: a voxel that no label holds, or one whose holder
+ * can move to another voxel. */
 static Status hold_one_of(Claimer *claimer, const VoxelList *list, size_t first, int moves,
                           bool *done, Err *err)
 {
@@ -214,7 +221,7 @@ static Status hold_one_of(Claimer *claimer, const VoxelList *list, size_t first,
         if (*done)
             TRY(hold(claimer, list->items[i], first, err));
     }
-    for (size_t i = 0; i < list->n && !*done && moves < MOST_MOVES; i++) {
+    for (size_t i = 0; i < list->n && !*done && moves < MAX_MOVES; i++) {
         Held *held = find_held(claimer, list->items[i]);
         if (held->visit == claimer->visit)
             continue;
@@ -245,12 +252,13 @@ static Status no_voxel(const Claimer *claimer, const Geometry *geometry, size_t 
     Vec3 step = claimer->source->grid->step;
     const Body *body = axis_body(claimer, axis);
     return err_set(err, STATUS_INFEASIBLE,
-                   "`voxel` %g x %g x %g mm: segment %u, %.3g mm long, has no voxel for its label; "
-                   "others need all that it meets: take smaller voxels",
+                   "`voxel` %g x %g x %g mm: segment %u, %.3g mm long, has no voxel for its label, "
+                   "because other labels need every voxel that it touches; use smaller voxels",
                    step.x, step.y, step.z, (unsigned)geometry->ids[body->segment], body->length);
 }
 
-/* First those that need nothing from others; *taken counts the rest. */
+/* Lets every label hold a voxel: first the labels that fill most of a voxel, then the others, whose
+ * number is added to *taken. */
 static Status hold_all(Claimer *claimer, const Geometry *geometry, size_t *taken, Err *err)
 {
     uint8_t *lack;
@@ -289,7 +297,7 @@ Status claims_make(const RowSource *source, const Geometry *geometry, Claims *ou
     Claims made = {0};
     Status status;
     TRY_GOTO(claimer_init(&claimer, err));
-    TRY_GOTO(hold_all(&claimer, geometry, &made.taken, err));
+    TRY_GOTO(hold_all(&claimer, geometry, &made.n_taken, err));
     TRY_GOTO(mem_calloc(&made.claim, claimer.n_axes, sizeof *made.claim, "labels", err));
     for (; made.n < claimer.held.n; made.n++) {
         const Held *held = &claimer.held.items[made.n];

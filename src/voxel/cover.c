@@ -1,18 +1,23 @@
-/* A cell that one body holds is full, and what one body alone meets has a closed form (body.c). A
- * cell that several meet is cut in eight until it is no wider than the thinnest of them, and then
- * crossed by lines along the axis that lies most across all of them: how long a line is in their
- * union is exact, and the lines stand where the Fibonacci lattice has its points [Sloan, Joe:
- * Lattice Methods for Multiple Integration, 1994], which has no direction of its own. Thin vessels
- * are thus found wherever they pass, and the work grows with the logarithm of their thinness. */
+/* A cell inside one body is full. A cell that only one body meets has an exact fraction (body.c).
+ *
+ * A cell that several bodies meet is split in eight until it is no wider than the thinnest of them.
+ * Then it is crossed by lines along the coordinate axis that is most nearly perpendicular to all of
+ * the bodies. The length of a line in the union of the bodies is exact. The lines pass the points
+ * of a Fibonacci lattice [Sloan, Joe: Lattice Methods for Multiple Integration, 1994], which
+ * prefers no direction. So thin vessels are found wherever they pass, and the work grows with the
+ * logarithm of the ratio of cell to vessel. */
 #include "voxel/cover.h"
 
 #include <stdlib.h>
 
-enum { LINES = 89, LATTICE_STEP = 55, DEEPEST = 7 };
+/* Number of lines, and the step of the lattice: two consecutive Fibonacci numbers. More lines lower
+ * the error [cover.h] and take more time. A cell is split in eight at most MAX_DEPTH times; a
+ * thinner vessel is sampled by lines that may miss it. */
+enum { LINES = 89, LATTICE_STEP = 55, MAX_DEPTH = 7 };
 
 Status cover_reserve(CoverWorkspace *workspace, size_t n_bodies, Err *err)
 {
-    TRY(mem_reserve(&workspace->lists, &workspace->n_lists, (DEEPEST + 1) * n_bodies,
+    TRY(mem_reserve(&workspace->lists, &workspace->n_lists, (MAX_DEPTH + 1) * n_bodies,
                     sizeof *workspace->lists, "vessels in a voxel", err));
     return mem_reserve(&workspace->chords, &workspace->n_chords, n_bodies,
                        sizeof *workspace->chords, "vessels in a voxel", err);
@@ -25,7 +30,7 @@ void cover_release(CoverWorkspace *workspace)
     *workspace = (CoverWorkspace){0};
 }
 
-/* Puts a chord, cut off at both ends of the cell, into its place among those that begin before. */
+/* Inserts a chord into the list, which is ordered by the chords' starts. Returns the new number. */
 static size_t insert_chord(double (*chords)[2], size_t n, double low, double high)
 {
     size_t at = n;
@@ -38,6 +43,7 @@ static size_t insert_chord(double (*chords)[2], size_t n, double low, double hig
     return n + 1;
 }
 
+/* Returns the length of the union of the chords. */
 static double union_length(double (*chords)[2], size_t n)
 {
     double length = 0, end = -INFINITY;
@@ -51,6 +57,7 @@ static double union_length(double (*chords)[2], size_t n)
     return length;
 }
 
+/* Returns the length of the line through `middle` in the union, between -half and half. */
 static double line_in_union(const Body *bodies, const uint32_t *list, size_t n, Vec3 middle,
                             int axis, double half, CoverWorkspace *workspace)
 {
@@ -67,7 +74,7 @@ static double line_in_union(const Body *bodies, const uint32_t *list, size_t n, 
     return union_length(workspace->chords, n_chords);
 }
 
-/* The axis to which the one of the bodies that is most along it is least so. */
+/* Returns the coordinate axis for which the largest cosine with any body's axis is smallest. */
 static int axis_across(const Body *bodies, const uint32_t *list, size_t n)
 {
     Vec3 along = {0};
@@ -116,7 +123,8 @@ static double part_in_eight(const Body *bodies, const uint32_t *list, size_t n,
     return part / 8;
 }
 
-/* `lists` has room for what of the list meets the cell, and for that of its eighths. */
+/* Returns the covered fraction of a cell. `lists` is scratch: it has room for n bodies at this
+ * depth and at each deeper one. */
 static double part_of(const Body *bodies, const uint32_t *list, size_t n, const VoxelCell *cell,
                       int depth, uint32_t *lists, CoverWorkspace *workspace)
 {
@@ -132,15 +140,15 @@ static double part_of(const Body *bodies, const uint32_t *list, size_t n, const 
         thinnest = fmin(thinnest, body->radius);
     }
     if (met <= 1)
-        return met ? body_part(&bodies[lists[0]], cell) : 0;
+        return met ? body_fraction(&bodies[lists[0]], cell) : 0;
     double widest = fmax(cell->half.x, fmax(cell->half.y, cell->half.z));
-    if (widest > thinnest && depth < DEEPEST)
+    if (widest > thinnest && depth < MAX_DEPTH)
         return part_in_eight(bodies, lists, met, cell, depth, lists + met, workspace);
     return part_by_lines(bodies, lists, met, cell, workspace);
 }
 
-double cover_part(const Body *bodies, const uint32_t *list, size_t n, const VoxelCell *cell,
-                  CoverWorkspace *workspace)
+double cover_fraction(const Body *bodies, const uint32_t *list, size_t n, const VoxelCell *cell,
+                      CoverWorkspace *workspace)
 {
     return part_of(bodies, list, n, cell, 0, workspace->lists, workspace);
 }

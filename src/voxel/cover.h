@@ -1,26 +1,35 @@
-/* The fraction of a box that a union of bodies covers. Private to the module voxel. */
+/* The fraction of a voxel that a union of bodies covers.
+ *
+ * A voxel inside one body is full. A voxel that one body touches has an exact fraction [body.h]. A
+ * voxel that several bodies touch is split in eight and then sampled by lines. Private to the
+ * module voxel. */
 #ifndef CORCAST_VOXEL_COVER_H
 #define CORCAST_VOXEL_COVER_H
 
 #include "base/base.h"
 #include "voxel/body.h"
 
-/* Workspace of cover_part. Zero it before first use; release it with cover_release. */
+/* Workspace of cover_fraction, for one thread. Zero it before first use; release it with
+ * cover_release. */
 typedef struct CoverWorkspace {
-    uint32_t *lists;
-    double (*chords)[2];
-    size_t n_lists, n_chords;
+    uint32_t *lists;          /* lists of bodies, one per level of the split */
+    double (*chords)[2];      /* of one line: the intervals inside the bodies */
+    size_t n_lists, n_chords; /* capacities */
 } CoverWorkspace;
 
 /* Makes the workspace large enough for `n_bodies` bodies. Errors: STATUS_MEMORY. */
 MUST_CHECK Status cover_reserve(CoverWorkspace *workspace, size_t n_bodies, Err *err);
 void cover_release(CoverWorkspace *workspace);
 
-/* Returns the fraction of the cell, in [0, 1], that lies in at least one of the n bodies of `list`.
- * The workspace must be reserved for n bodies. If one body meets the cell, the result is that of
- * body_part. Otherwise its error is at most 0.01, and 0.0014 in the root mean square. The order of
- * the list does not matter. */
-double cover_part(const Body *bodies, const uint32_t *list, size_t n, const VoxelCell *cell,
-                  CoverWorkspace *workspace);
+/* Returns the fraction of the cell, in [0, 1], that the union of the n bodies of `list` covers.
+ *
+ * bodies     the bodies that `list` has indices of.
+ * list       n different indices. Their order does not matter.
+ * workspace  must be reserved for n bodies.
+ *
+ * If at most one body meets the cell, the error is that of body_fraction. Else it is at most 0.01,
+ * and 0.0014 in the root mean square. */
+double cover_fraction(const Body *bodies, const uint32_t *list, size_t n, const VoxelCell *cell,
+                      CoverWorkspace *workspace);
 
 #endif

@@ -1,9 +1,11 @@
-/* An edge is cut where it crosses the circle. With the origin, what is within makes a triangle, and
- * what is beyond a sector; both have closed forms. Beyond the circle the shade is r^3 / (d^2 +
- * s^2)^(3/2), s from the origin and d above: along a ray from the origin it integrates to a
- * difference of r^3 / sqrt(d^2 + s^2), and that, over the angle to a straight edge at distance h,
- * to that of r^3 / d asin(d sin a / sqrt(d^2 + h^2)), the angle a being that from the edge's
- * nearest point. */
+/* An edge is split where it crosses the circle. The part inside the circle forms a triangle with
+ * the origin, the part outside a sector. Both integrals have closed forms.
+ *
+ * For a ball, the integrand outside the circle is r^3 / (d^2 + s^2)^(3/2), at the distance s from
+ * the origin and the height d. Along a ray from the origin, it integrates to a difference of
+ * r^3 / sqrt(d^2 + s^2). This, over the angle to a straight edge at distance h, integrates to a
+ * difference of r^3 / d asin(d sin a / sqrt(d^2 + h^2)), where a is the angle from the direction of
+ * the edge's nearest point. */
 #include "voxel/disc.h"
 
 #include "base/base.h"
@@ -21,13 +23,14 @@ static double dot(DiscPoint p, DiscPoint q)
     return p.u * q.u + p.v * q.v;
 }
 
-/* The part of an edge that is within the circle. */
+/* The part of an edge, from p to q, that is inside the circle. */
 typedef struct Within {
-    DiscPoint in, out;
-    bool enters, leaves; /* at `in`, which is not p; at `out`, which is not q */
+    DiscPoint in, out; /* its ends */
+    bool enters;       /* the edge enters the circle at `in`; else `in` is p */
+    bool leaves;       /* the edge leaves the circle at `out`; else `out` is q */
 } Within;
 
-/* False when there is none. */
+/* Finds the part of the edge inside the circle. Returns false if there is none. */
 static bool cut_edge(DiscPoint p, DiscPoint q, double radius2, Within *within)
 {
     DiscPoint d = {q.u - p.u, q.v - p.v};
@@ -50,7 +53,7 @@ static void add_triangle(DiscPart *part, DiscPoint p, DiscPoint q)
     part->v += area * (p.v + q.v) / 3;
 }
 
-/* Between the directions of p and q, which are less than half a turn apart. */
+/* Adds the sector between the directions of p and q, which are less than half a turn apart. */
 static void add_sector(DiscPart *part, DiscPoint p, DiscPoint q, double radius)
 {
     double angle = elementary_atan2(cross(p, q), dot(p, q)), third = radius * radius * radius / 3;
@@ -76,8 +79,9 @@ void discpart_add(DiscPart *part, DiscPoint p, DiscPoint q, double radius)
         add_sector(part, within.out, q, radius);
 }
 
-/* Between the directions of p and q, the sector within the circle and what is beyond it; no circle
- * where the ball does not reach the plane. */
+/* Returns the integral over the triangle of the origin, p and q, whose edge is outside the circle:
+ * the sector inside the circle, and the rest. The circle is empty if the ball does not reach the
+ * plane. */
 static double shade_of_sector(DiscPoint p, DiscPoint q, double radius, double above)
 {
     DiscPoint edge = {q.u - p.u, q.v - p.v};

@@ -1,5 +1,5 @@
-/* Middles of voxels lie at multiples of the step whatever the tree, so that volumes of one tree and
- * of another, or of a part of it, fit together. */
+/* Centres of voxels are at multiples of the step for any tree. So the volumes of two trees, or of a
+ * tree and a part of it, have voxels at the same positions. */
 #include "voxel/grid.h"
 
 #include <stdlib.h>
@@ -14,9 +14,9 @@ Status voxelgrid_make(const Geometry *geometry, Vec3 step, VoxelGrid *out, Err *
         double n = floor((vec3_component(geometry->bounds.high, axis) + origin) / mm + 0.5) -
                    low[axis] + 2;
         if (!(n < INT32_MAX))
-            return err_set(err, STATUS_INFEASIBLE,
-                           "`voxel`: %g mm would make %.3g voxels along an axis; there may be 2^31",
-                           mm, n);
+            return err_set(
+                err, STATUS_INFEASIBLE,
+                "`voxel`: %g mm would make %.3g voxels along an axis; the maximum is 2^31", mm, n);
         grid.n[axis] = (int64_t)n;
         first[axis] = low[axis] * mm - origin;
     }
@@ -76,7 +76,7 @@ uint32_t cell_owner(const Bodies *bodies, const uint32_t *list, size_t n, const 
     uint32_t owner = 0;
     for (size_t i = 0; i < n; i++) {
         const Body *body = &bodies->body[list[i]];
-        double part = n > 1 ? body_part(body, cell) : 0;
+        double part = n > 1 ? body_fraction(body, cell) : 0;
         if (part > most || (part == most && bodies->ids[body->segment] < bodies->ids[owner])) {
             most = part;
             owner = body->segment;

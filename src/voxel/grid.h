@@ -1,4 +1,7 @@
-/* The voxels of a grid, and the bodies that fill them. Private to the module voxel. */
+/* The bodies of a geometry, with a bounding volume hierarchy, and the voxels of a grid.
+ *
+ * A voxel is found by its indices along the three axes [grid_cell], and a coordinate by the index
+ * of the voxel that holds it [grid_index]. Private to the module voxel. */
 #ifndef CORCAST_VOXEL_GRID_H
 #define CORCAST_VOXEL_GRID_H
 
@@ -10,22 +13,23 @@
 typedef struct Bodies {
     Body *body; /* owned */
     size_t n;
-    BoxTree tree;
-    const uint32_t *ids; /* per segment index: SWC id; borrowed from the geometry */
+    BoxTree tree;        /* of the boxes of the bodies */
+    const uint32_t *ids; /* per segment index: its SWC id; borrowed from the geometry */
 } Bodies;
 
-/* Makes the bodies of a geometry. Release *out with bodies_release. Errors: STATUS_MEMORY. */
+/* Makes the bodies of a geometry, which must outlive them. Release *out with bodies_release.
+ * Errors: STATUS_MEMORY. */
 MUST_CHECK Status bodies_make(const Geometry *geometry, Bodies *out, Err *err);
 void bodies_release(Bodies *bodies);
 
-/* Indices of bodies. */
+/* Indices of bodies. Release it with ARRAY_RELEASE. */
 typedef ARRAY(uint32_t) BodyList;
 
-/* Lists the bodies whose boxes meet `box`, by rising index. Replaces what *list held; the caller
- * releases it with ARRAY_RELEASE, also after an error. Errors: STATUS_MEMORY. */
+/* Lists the bodies whose boxes meet `box`, by rising index. Replaces the content of *list, which
+ * the caller releases with ARRAY_RELEASE, also after an error. Errors: STATUS_MEMORY. */
 MUST_CHECK Status bodies_in(const Bodies *bodies, Box box, BodyList *list, Err *err);
 
-/* Returns the box of a voxel. */
+/* Returns the voxel with these indices, which may be outside the grid. */
 static inline VoxelCell grid_cell(const VoxelGrid *grid, int64_t x, int64_t y, int64_t z)
 {
     return (VoxelCell){.center = vec3(grid->first.x + (double)x * grid->step.x,
@@ -34,20 +38,21 @@ static inline VoxelCell grid_cell(const VoxelGrid *grid, int64_t x, int64_t y, i
                        .half = vec3_scale(grid->step, 0.5)};
 }
 
+/* Returns a cell as a box. */
 static inline Box cell_box(const VoxelCell *cell)
 {
     return (Box){vec3_sub(cell->center, cell->half), vec3_add(cell->center, cell->half)};
 }
 
-/* Returns the index of the voxel that holds a coordinate, along an axis. May lie outside the grid.
- */
+/* Returns the index along an axis of the voxel that holds the coordinate x, mm. It may be outside
+ * the grid. */
 static inline int64_t grid_index(const VoxelGrid *grid, int axis, double x)
 {
     double first = vec3_component(grid->first, axis);
     return (int64_t)floor((x - first) / vec3_component(grid->step, axis) + 0.5);
 }
 
-/* Returns the segment index of the body that fills most of the cell, among the n > 0 bodies of
+/* Returns the index of the segment whose body fills most of the cell, among the n > 0 bodies of
  * `list`. On a tie, returns the segment with the lowest SWC id. */
 uint32_t cell_owner(const Bodies *bodies, const uint32_t *list, size_t n, const VoxelCell *cell);
 

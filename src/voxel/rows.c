@@ -26,7 +26,8 @@ static int64_t clamped(double x, int64_t low, int64_t high)
 
 /* ---- spans ----------------------------------------------------------------------------------- */
 
-/* Where the lines along the four edges of the row are all in the body, as indices. */
+/* Finds the voxels of the row that are wholly in the body: where the lines along the four edges of
+ * the row are all in it. */
 static void find_full(const VoxelGrid *grid, const Body *body, const VoxelCell *cell, Span *span)
 {
     double low = -INFINITY, high = INFINITY;
@@ -44,7 +45,8 @@ static void find_full(const VoxelGrid *grid, const Body *body, const VoxelCell *
     span->full_end = clamped(floor(high / grid->step.x), 0, grid->n[0]);
 }
 
-/* False when the body meets nothing of the row, whose first voxel is given. */
+/* Finds the span of a body in a row. `cell` is the row's first voxel. Returns false if the body
+ * does not meet the row. */
 static bool find_span(const VoxelGrid *grid, const Body *body, const VoxelCell *cell, Span *span)
 {
     double low, high, diagonal = elementary_hypot(cell->half.y, cell->half.z);
@@ -130,7 +132,8 @@ typedef struct Row {
     int64_t y, z;
 } Row;
 
-/* A sample for a part of a voxel; of a voxel that an axis passes, at least 1. */
+/* Returns the integer sample of a voxel whose fraction `part` is filled; at least 1 if a vessel
+ * axis passes the voxel. */
 static double rounded(const Row *row, double part, const VoxelCell *cell)
 {
     const BodyList *touching = &row->workspace->touching;
@@ -165,8 +168,8 @@ static void fill_voxel(const Row *row, int64_t x)
     const RowSource *source = row->source;
     RowWorkspace *workspace = row->workspace;
     VoxelCell cell = grid_cell(source->grid, x, row->y, row->z);
-    double part = cover_part(source->bodies->body, workspace->touching.items, workspace->touching.n,
-                             &cell, &workspace->coverage);
+    double part = cover_fraction(source->bodies->body, workspace->touching.items,
+                                 workspace->touching.n, &cell, &workspace->coverage);
     if (part > 0)
         put_value(row, x, part, &cell);
 }
@@ -185,8 +188,8 @@ static void fill_run(const Row *row, int64_t x, int64_t end)
     row->rows->n_nonzero += end - x;
 }
 
-/* Before which voxel a run of those that bodies hold ends that begins at x; x: there is none. Of
- * labels it is one voxel, and *owner the segment of the lowest id that holds it. */
+/* Returns the end of the run of full voxels that begins at x, or x if voxel x is not full. With
+ * labels, a run is one voxel; *owner receives the segment of lowest id that fills it. */
 static int64_t full_end(const Row *row, size_t n_active, int64_t x, uint32_t *owner)
 {
     const RowWorkspace *workspace = row->workspace;
@@ -222,7 +225,7 @@ static size_t drop_ended(RowWorkspace *workspace, size_t n_active, int64_t x)
     return kept;
 }
 
-/* Goes along the spans from number `from` to before `to`, those of one row. */
+/* Computes the voxels of one row. Its spans are those with an index in [from, to). */
 static void sweep(const Row *row, size_t from, size_t to)
 {
     RowWorkspace *workspace = row->workspace;

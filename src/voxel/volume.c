@@ -1,11 +1,11 @@
-/* What a format writes before its samples is a function; all else is in its row. NIfTI and
- * MetaImage say where voxels are in millimetres to the right, to the front and upwards (MetaImage:
- * to the left, to the back and upwards); the tree's axes are taken for the first three.
+/* A format's header is written by a function; everything else is in the format's row. NIfTI gives
+ * the positions of voxels in mm to the right, to the front and upwards, MetaImage to the left, to
+ * the back and upwards. The x, y and z axes of the tree are taken as right, front and up.
  *
- * Parts are deflated apart from each other and end at a byte (Z_FULL_FLUSH), so that one behind the
- * other they are one stream, as pigz makes it: all of a file is one member of gzip, which every
- * reader takes, and its bytes do not depend on who made which part. zlib can end a part so,
- * libdeflate cannot. */
+ * Chunks are compressed independently of each other. Each ends at a whole byte (Z_FULL_FLUSH), so
+ * that consecutive chunks form one stream, as in pigz. The file is one gzip member, which every
+ * reader accepts, and its bytes do not depend on which thread made which chunk. zlib can end a
+ * chunk in this way, libdeflate cannot. */
 #define ZLIB_CONST
 #include "voxel/volume.h"
 
@@ -18,11 +18,11 @@
 /* ---- samples --------------------------------------------------------------------------------- */
 
 typedef struct Sample {
-    const char *name; /* for people */
-    size_t size;
-    double full;
-    short nifti;
-    const char *nrrd, *meta;
+    const char *name;        /* in messages */
+    size_t size;             /* bytes */
+    double full;             /* the sample of a full voxel */
+    short nifti;             /* the type's code in NIfTI */
+    const char *nrrd, *meta; /* its names in NRRD and MetaImage */
 } Sample;
 
 static const Sample samples_of[SAMPLE_TYPES] = {
@@ -52,19 +52,20 @@ static bool is_little_endian(void)
     return first == 1;
 }
 
-/* The middle of the first voxel in the tree's coordinates. */
-static Vec3 first_place(const VoxelGrid *grid)
+/* Returns the centre of the first voxel in the coordinates of the tree. */
+static Vec3 first_center(const VoxelGrid *grid)
 {
     return vec3_add(grid->first, grid->origin);
 }
 
-/* The header in the machine's byte order, which readers tell by its size. Where the voxels are is
- * said twice, as a matrix and, for readers without one, as an offset. */
-static void put_nifti(const VoxelGrid *grid, SampleType type, bool parts, const char *about,
+/* Appends the header in the machine's byte order, which readers recognise by the field sizeof_hdr.
+ * The positions of voxels are stored twice: as a matrix, and as an offset for readers that do not
+ * support the matrix. */
+static void put_nifti(const VoxelGrid *grid, SampleType type, bool is_fraction, const char *about,
                       Text *out)
 {
     static const char no_extension[4] = {0};
-    Vec3 first = first_place(grid);
+    Vec3 first = first_center(grid);
     nifti_1_header header = {.sizeof_hdr = sizeof header, .regular = 'r', .magic = "n+1"};
     header.dim[0] = 3;
     header.pixdim[0] = 1;
@@ -77,8 +78,8 @@ static void put_nifti(const VoxelGrid *grid, SampleType type, bool parts, const 
     header.datatype = samples_of[type].nifti;
     header.bitpix = (short)(8 * samples_of[type].size);
     header.vox_offset = sizeof header + sizeof no_extension;
-    header.scl_slope = parts ? (float)(1 / samples_of[type].full) : 1;
-    header.intent_code = parts ? NIFTI_INTENT_NONE : NIFTI_INTENT_LABEL;
+    header.scl_slope = is_fraction ? (float)(1 / samples_of[type].full) : 1;
+    header.intent_code = is_fraction ? NIFTI_INTENT_NONE : NIFTI_INTENT_LABEL;
     header.xyzt_units = NIFTI_UNITS_MM;
     snprintf(header.descrip, sizeof header.descrip, "%s", about);
     header.qform_code = header.sform_code = NIFTI_XFORM_SCANNER_ANAT;
@@ -92,7 +93,7 @@ static void put_nifti(const VoxelGrid *grid, SampleType type, bool parts, const 
     text_append(out, no_extension, sizeof no_extension);
 }
 
-/* The numbers of a place as the text formats have them. */
+/* The coordinates of a point as text. */
 typedef struct Numbers {
     char x[NUMBER_TEXT_SIZE], y[NUMBER_TEXT_SIZE], z[NUMBER_TEXT_SIZE];
 } Numbers;
@@ -106,10 +107,10 @@ static Numbers numbers_of(Vec3 v)
     return numbers;
 }
 
-static void put_nrrd(const VoxelGrid *grid, SampleType type, bool parts, const char *about,
+static void put_nrrd(const VoxelGrid *grid, SampleType type, bool is_fraction, const char *about,
                      Text *out)
 {
-    Numbers first = numbers_of(first_place(grid)), step = numbers_of(grid->step);
+    Numbers first = numbers_of(first_center(grid)), step = numbers_of(grid->step);
     text_puts(out, "NRRD0005\n# ");
     text_put_line(out, about);
     text_printf(out, "\ntype: %s\ndimension: 3\nspace: right-anterior-superior\n",
@@ -120,17 +121,17 @@ static void put_nrrd(const VoxelGrid *grid, SampleType type, bool parts, const c
     text_puts(out, "space units: \"mm\" \"mm\" \"mm\"\nkinds: domain domain domain\n");
     text_printf(out, "space origin: (%s,%s,%s)\n", first.x, first.y, first.z);
     text_printf(out, "endian: %s\nencoding: gzip\n", is_little_endian() ? "little" : "big");
-    if (parts)
+    if (is_fraction)
         text_printf(out, "old max: %.0f\nold min: 0\n", samples_of[type].full);
     text_puts(out, "\n");
 }
 
-static void put_meta(const VoxelGrid *grid, SampleType type, bool parts, const char *about,
+static void put_meta(const VoxelGrid *grid, SampleType type, bool is_fraction, const char *about,
                      Text *out)
 {
-    Vec3 place = first_place(grid);
-    Numbers first = numbers_of(vec3(-place.x, -place.y, place.z)), step = numbers_of(grid->step);
-    (void)parts;
+    Vec3 center = first_center(grid);
+    Numbers first = numbers_of(vec3(-center.x, -center.y, center.z)), step = numbers_of(grid->step);
+    (void)is_fraction;
     text_puts(out, "ObjectType = Image\nNDims = 3\nComment = ");
     text_put_line(out, about);
     text_printf(out, "\nBinaryData = True\nBinaryDataByteOrderMSB = %s\nCompressedData = False\n",
@@ -143,12 +144,12 @@ static void put_meta(const VoxelGrid *grid, SampleType type, bool parts, const c
     text_printf(out, "ElementType = %s\nElementDataFile = LOCAL\n", samples_of[type].meta);
 }
 
-/* POV-Ray's density file: three sizes, and nothing else. */
-static void put_df3(const VoxelGrid *grid, SampleType type, bool parts, const char *about,
+/* Appends the header of POV-Ray's density file: the three sizes as big-endian 16-bit integers. */
+static void put_df3(const VoxelGrid *grid, SampleType type, bool is_fraction, const char *about,
                     Text *out)
 {
     (void)type;
-    (void)parts;
+    (void)is_fraction;
     (void)about;
     for (int axis = 0; axis < 3; axis++) {
         char size[2] = {(char)(grid->n[axis] >> 8), (char)(grid->n[axis] & 0xff)};
@@ -159,14 +160,14 @@ static void put_df3(const VoxelGrid *grid, SampleType type, bool parts, const ch
 /* ---- formats --------------------------------------------------------------------------------- */
 
 enum {
-    MOST_IN_A_ROW = 1 << 28, /* zlib takes no part of 4 GB */
+    MAX_ROW = 1 << 28, /* voxels; a row is in one chunk, and zlib takes less than 4 GB at a time */
     ANY_SAMPLE = 1 << SAMPLE_8 | 1 << SAMPLE_16 | 1 << SAMPLE_FLOAT | 1 << SAMPLE_32,
     DENSITIES = 1 << SAMPLE_8 | 1 << SAMPLE_16
 };
 
 #define FORMAT(ending, holds, limit, samples, put, ...)                                            \
     {                                                                                              \
-        .suffix = ending, .description = holds, .most = limit, .types = samples,                   \
+        .suffix = ending, .description = holds, .max_side = limit, .types = samples,               \
         .put_header = put, __VA_ARGS__                                                             \
     }
 
@@ -174,8 +175,8 @@ const VolumeFormat volume_formats[] = {
     FORMAT(".nii.gz", "NIfTI-1, deflated", INT16_MAX, ANY_SAMPLE, put_nifti, .deflated = true,
            .header_deflated = true),
     FORMAT(".nii", "NIfTI-1", INT16_MAX, ANY_SAMPLE, put_nifti, .deflated = false),
-    FORMAT(".nrrd", "NRRD, deflated", MOST_IN_A_ROW, ANY_SAMPLE, put_nrrd, .deflated = true),
-    FORMAT(".mha", "MetaImage", MOST_IN_A_ROW, ANY_SAMPLE, put_meta, .deflated = false),
+    FORMAT(".nrrd", "NRRD, deflated", MAX_ROW, ANY_SAMPLE, put_nrrd, .deflated = true),
+    FORMAT(".mha", "MetaImage", MAX_ROW, ANY_SAMPLE, put_meta, .deflated = false),
     FORMAT(".df3", "a density file for POV-Ray", UINT16_MAX, DENSITIES, put_df3, .big_endian = true,
            .is_density = true),
     {0},
@@ -192,17 +193,17 @@ const VolumeFormat *volume_format_find(const char *path)
     return NULL;
 }
 
-Status volume_check(const VolumeFormat *format, const VoxelGrid *grid, SampleType type, bool parts,
-                    Err *err)
+Status volume_check(const VolumeFormat *format, const VoxelGrid *grid, SampleType type,
+                    bool is_fraction, Err *err)
 {
     for (int axis = 0; axis < 3; axis++)
-        if (grid->n[axis] > format->most)
+        if (grid->n[axis] > format->max_side)
             return err_set(
                 err, STATUS_INFEASIBLE,
                 "`voxel`: %lld x %lld x %lld voxels; %s holds at most %lld along an axis",
                 (long long)grid->n[0], (long long)grid->n[1], (long long)grid->n[2], format->suffix,
-                (long long)format->most);
-    if (!parts && format->is_density)
+                (long long)format->max_side);
+    if (!is_fraction && format->is_density)
         return err_set(err, STATUS_USAGE, "%s holds no labels and no centrelines", format->suffix);
     if (!(format->types & 1u << type))
         return err_set(err, STATUS_USAGE, "%s has no samples of %s", format->suffix,
@@ -212,9 +213,9 @@ Status volume_check(const VolumeFormat *format, const VoxelGrid *grid, SampleTyp
 
 /* ---- streams --------------------------------------------------------------------------------- */
 
-/* RFC 1952: no name, no time, of no system. */
+/* The gzip header of RFC 1952, without name and time, of an unknown system. */
 static const uint8_t gzip_header[10] = {0x1f, 0x8b, 8, 0, 0, 0, 0, 0, 0, 255};
-/* An empty last block. */
+/* An empty last block of deflate. */
 static const uint8_t deflate_end[2] = {3, 0};
 
 /* The bytes that precede the samples in the file. */
@@ -224,42 +225,42 @@ typedef struct HeaderBytes {
 } HeaderBytes;
 
 /* Makes the header of a volume in *made, which the caller frees also after an error. */
-static Status make_header(const VolumeStream *stream, const VoxelGrid *grid, bool parts,
+static Status make_header(const VolumeStream *stream, const VoxelGrid *grid, bool is_fraction,
                           const char *about, HeaderBytes *made, Err *err)
 {
     FILE *memory = open_memstream(&made->bytes, &made->size);
     if (!memory)
         return mem_out_of("for", "the header of a volume", err);
     Text header = TEXT_TO(memory);
-    stream->format->put_header(grid, stream->type, parts, about, &header);
+    stream->format->put_header(grid, stream->type, is_fraction, about, &header);
     Status status = text_flush(&header, err);
     text_release(&header);
-    /* Closing tells only by NULL that there was no room for the bytes. */
+    /* When memory runs out, fclose succeeds all the same, but leaves made->bytes NULL. */
     if ((fclose(memory) != 0 || !made->bytes) && status == STATUS_OK)
         status = mem_out_of("for", "the header of a volume", err);
     return status;
 }
 
-Status volume_begin(VolumeStream *stream, const VoxelGrid *grid, bool parts, const char *about,
-                    Err *err)
+Status volume_begin(VolumeStream *stream, const VoxelGrid *grid, bool is_fraction,
+                    const char *about, Err *err)
 {
     const VolumeFormat *format = stream->format;
-    VolumePart part = {0};
+    VolumeChunk chunk = {0};
     HeaderBytes header = {0};
     Status status;
     stream->crc = (uint32_t)crc32(0, NULL, 0);
-    stream->plain = 0;
-    TRY_GOTO(make_header(stream, grid, parts, about, &header, err));
+    stream->n_uncompressed = 0;
+    TRY_GOTO(make_header(stream, grid, is_fraction, about, &header, err));
     if (!format->header_deflated)
         fwrite(header.bytes, 1, header.size, stream->to);
     if (format->deflated)
         fwrite(gzip_header, 1, sizeof gzip_header, stream->to);
     if (format->header_deflated) {
-        TRY_GOTO(volume_pack(stream, (uint8_t *)header.bytes, header.size, &part, err));
-        TRY_GOTO(volume_put(stream, &part, err));
+        TRY_GOTO(volume_pack(stream, (uint8_t *)header.bytes, header.size, &chunk, err));
+        TRY_GOTO(volume_put(stream, &chunk, err));
     }
 done:
-    free(part.bytes);
+    free(chunk.bytes);
     free(header.bytes);
     return status;
 }
@@ -276,7 +277,7 @@ void volume_end(VolumeStream *stream)
         return;
     fwrite(deflate_end, 1, sizeof deflate_end, stream->to);
     put_little(stream->crc, stream->to);
-    put_little((uint32_t)stream->plain, stream->to);
+    put_little((uint32_t)stream->n_uncompressed, stream->to);
 }
 
 static void swap_bytes(uint8_t *samples, size_t n, size_t size)
@@ -289,10 +290,11 @@ static void swap_bytes(uint8_t *samples, size_t n, size_t size)
         }
 }
 
-/* Level 1 takes a sixth of the time of level 6, for files that are 6 % larger. */
+/* Compression level 1 takes a sixth of the time of level 6, and makes files 6 % larger. RAW is
+ * zlib's number for a raw stream with the largest window, MEMORY_LEVEL its default. */
 enum { LEVEL = 1, RAW = -15, MEMORY_LEVEL = 8 };
 
-static Status deflate_part(const uint8_t *samples, size_t n, VolumePart *out, Err *err)
+static Status deflate_chunk(const uint8_t *samples, size_t n, VolumeChunk *out, Err *err)
 {
     z_stream zlib = {0};
     if (deflateInit2(&zlib, LEVEL, Z_DEFLATED, RAW, MEMORY_LEVEL, Z_DEFAULT_STRATEGY) != Z_OK)
@@ -312,27 +314,27 @@ done:
     return status;
 }
 
-Status volume_pack(const VolumeStream *stream, uint8_t *samples, size_t n, VolumePart *out,
+Status volume_pack(const VolumeStream *stream, uint8_t *samples, size_t n, VolumeChunk *out,
                    Err *err)
 {
-    VolumePart part = {.plain = n, .n = n};
+    VolumeChunk chunk = {.n_uncompressed = n, .n = n};
     if (stream->format->big_endian && is_little_endian())
         swap_bytes(samples, n, samples_of[stream->type].size);
     if (stream->format->deflated) {
-        TRY(deflate_part(samples, n, &part, err));
+        TRY(deflate_chunk(samples, n, &chunk, err));
     } else {
-        TRY(mem_calloc(&part.bytes, n, 1, "voxels", err));
-        memcpy(part.bytes, samples, n);
+        TRY(mem_calloc(&chunk.bytes, n, 1, "voxels", err));
+        memcpy(chunk.bytes, samples, n);
     }
-    *out = part;
+    *out = chunk;
     return STATUS_OK;
 }
 
-Status volume_put(VolumeStream *stream, const VolumePart *part, Err *err)
+Status volume_put(VolumeStream *stream, const VolumeChunk *chunk, Err *err)
 {
-    if (fwrite(part->bytes, 1, part->n, stream->to) != part->n)
+    if (fwrite(chunk->bytes, 1, chunk->n, stream->to) != chunk->n)
         return err_set(err, STATUS_IO, "cannot be written: %s", strerror(errno));
-    stream->crc = (uint32_t)crc32_combine(stream->crc, part->crc, (z_off_t)part->plain);
-    stream->plain += part->plain;
+    stream->crc = (uint32_t)crc32_combine(stream->crc, chunk->crc, (z_off_t)chunk->n_uncompressed);
+    stream->n_uncompressed += chunk->n_uncompressed;
     return STATUS_OK;
 }

@@ -1,6 +1,6 @@
-/* A volume is made in chunks of whole rows, which threads fill and pack and one thread then writes
- * in order, some chunks for each thread at a time: memory does not grow with the volume. Where
- * chunks end depends on the volume alone, and so does every byte. */
+/* A volume is made in chunks of whole rows. Threads fill and pack the chunks, then one thread
+ * writes them in order. Only a few chunks per thread exist at a time, so memory does not grow with
+ * the volume. Where chunks end depends on the volume alone, so every byte does, too. */
 #include "voxel/voxel.h"
 
 #include "voxel/claims.h"
@@ -9,11 +9,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Number of voxels per chunk, and of chunks per thread at a time. Larger ones take more memory;
+ * smaller ones compress less and wait more. Changing CHUNK_VOXELS changes the bytes of files. How
+ * the numbers were chosen is not recorded. */
 enum { CHUNK_VOXELS = 1 << 18, CHUNKS_A_THREAD = 4, VOLUMES = 3 };
 
 typedef struct VoxelChunk {
     RowBlock rows;
-    VolumePart parts[VOLUMES];
+    VolumeChunk parts[VOLUMES];
 } VoxelChunk;
 
 typedef struct VoxelWork {
@@ -42,16 +45,17 @@ static int64_t rows_a_chunk(const VoxelGrid *grid)
 
 /* ---- how much work it is --------------------------------------------------------------------- */
 
-/* Measured: seconds for each voxel of a wall, any voxel and each body; and what a sample deflates
- * to, of its own size, in voids and in walls. */
+/* Measured: seconds per partly filled voxel, per voxel, and per body; and the size of a sample
+ * after compression, as a fraction of its size, in empty space and in partly filled voxels. */
 static const double wall_s = 1e-6, voxel_s = 2.2e-9, body_s = 6e-5, deflated_zeros = 1.0 / 220,
                     deflated_wall = 1.1;
-/* Measured, bytes: the program itself, and for each body what the tree, the geometry, the bodies
- * and the boxes over them take while these are built; 346 MB for 820,000 bodies. */
+/* Measured, in bytes: memory of the program itself, and per body of the tree, the geometry, the
+ * bodies and the boxes over them while these are built; 346 MB for 820,000 bodies. */
 static const double own_bytes = 8e6, bytes_a_body = 420;
 
-/* A tube of radius r and length l has 2 pi r l / h^2 voxels in its wall, h their width, and at
- * least those that its axis passes. */
+/* Estimates the number of partly filled voxels. A tube of radius r and length l has about
+ * 2 pi r l / h^2 voxels at its surface, where h is their width, and at least the voxels that its
+ * axis passes. */
 static double wall_voxels(const Geometry *geometry, Vec3 step)
 {
     double h = elementary_cbrt(step.x * step.y * step.z), walls = 0;
@@ -71,24 +75,25 @@ VoxelEstimate voxels_estimate(const Geometry *geometry, const VoxelParams *param
     double voxels = (double)grid->n[0] * (double)grid->n[1] * (double)grid->n[2];
     double chunk = (double)(rows_a_chunk(grid) * grid->n[0]);
     VoxelEstimate estimate = {.voxels = voxels};
-    estimate.walls = fmin(voxels, wall_voxels(geometry, grid->step));
+    estimate.partial_voxels = fmin(voxels, wall_voxels(geometry, grid->step));
     for (int i = 0; i < VOLUMES; i++)
         if (streams[i])
-            estimate.bytes += (double)sample_size(streams[i]->type) *
-                              (streams[i]->format->deflated
-                                   ? voxels * deflated_zeros + estimate.walls * deflated_wall
-                                   : voxels);
+            estimate.bytes +=
+                (double)sample_size(streams[i]->type) *
+                (streams[i]->format->deflated
+                     ? voxels * deflated_zeros + estimate.partial_voxels * deflated_wall
+                     : voxels);
     estimate.memory = own_bytes + (double)geometry->n_primitives * bytes_a_body +
                       threads * CHUNKS_A_THREAD * chunk * 2 * (double)sample_bytes(params);
-    estimate.seconds =
-        (estimate.walls * wall_s + voxels * voxel_s + (double)geometry->n_primitives * body_s) /
-        threads;
+    estimate.seconds = (estimate.partial_voxels * wall_s + voxels * voxel_s +
+                        (double)geometry->n_primitives * body_s) /
+                       threads;
     return estimate;
 }
 
 /* ---- chunks ---------------------------------------------------------------------------------- */
 
-/* Makes a sample that was rounded to 0 the least above it. */
+/* Raises a sample that was rounded to 0 to the smallest value above 0. */
 static void raise_sample(RowBlock *rows, size_t at, SampleType type)
 {
     uint16_t *wide = (uint16_t *)(void *)rows->values;
@@ -102,7 +107,7 @@ static void raise_sample(RowBlock *rows, size_t at, SampleType type)
     rows->n_nonzero++;
 }
 
-/* Gives claimed voxels their labels, and something to be labelled. */
+/* Writes the labels of claimed voxels, and raises their samples above 0. */
 static void put_claims(const VoxelWork *work, RowBlock *rows)
 {
     const VoxelGrid *grid = work->source.grid;
@@ -116,7 +121,7 @@ static void put_claims(const VoxelWork *work, RowBlock *rows)
     }
 }
 
-/* Labels in 16 bits, in place. */
+/* Converts labels to 16 bits, in place. */
 static void narrow(uint32_t *labels, size_t n)
 {
     for (size_t i = 0; i < n; i++) {
@@ -180,7 +185,7 @@ static Status work_on_chunk(size_t index, int worker, void *context, Err *err)
     return make_chunk(work, first, &work->workspaces[worker], &work->chunks[index], err);
 }
 
-/* Writes a chunk and adds up what it is. */
+/* Writes a chunk and adds its sums to the report. */
 static Status put_chunk(const VoxelWork *work, const VoxelChunk *chunk, VoxelReport *report,
                         Err *err)
 {
@@ -253,7 +258,7 @@ Status voxels_write(const Geometry *geometry, const VoxelParams *params, VoxelRe
     TRY_GOTO(prepare(&work, err));
     if (params->label)
         TRY_GOTO(claims_make(&work.source, geometry, &work.claims, err));
-    made.claimed = work.claims.taken;
+    made.n_given_voxels = work.claims.n_taken;
     TRY_GOTO(make_chunks(&work, &made, err));
     for (int i = 0; i < VOLUMES; i++)
         if (work.streams[i])

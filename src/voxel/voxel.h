@@ -1,5 +1,14 @@
-/* The public header of the module voxel: writes vessels as volumes for other programs. A volume
- * holds the filled fraction of each voxel, the vessel that fills most of it, or the centrelines. */
+/* The public header of the module voxel: writes vessels as volumes for other programs.
+ *
+ * A volume holds one of three things per voxel: the fraction that vessels fill, the label of the
+ * vessel that fills most of the voxel, or whether a vessel's axis passes. voxels_write fills up to
+ * three files at a time. The vessels are the union of a geometry's cylinders and balls.
+ *
+ *     TRY(voxelgrid_make(&geometry, vec3(0.1, 0.1, 0.1), &params.grid, err));
+ *     TRY(volume_begin(params.values, &params.grid, true, "vessels", err));
+ *     TRY(voxels_write(&geometry, &params, &report, err));
+ *
+ * voxels_write ends the streams; the caller closes the files. */
 #ifndef CORCAST_VOXEL_VOXEL_H
 #define CORCAST_VOXEL_VOXEL_H
 
@@ -9,50 +18,56 @@
 #include <stdint.h>
 
 /* Makes the grid around a geometry, with one layer of empty voxels on each side. The coordinates of
- * voxel centres, in the tree, are multiples of `step` (mm, each > 0); a tree in a plane thus lies
- * in the middle of a layer. Errors: STATUS_INFEASIBLE if a side would have 2^31 voxels or more. */
+ * voxel centres, in the tree, are multiples of `step`. So a tree in the plane z = 0 is in the
+ * middle of a layer, and volumes of several trees fit together.
+ *
+ * step     sides of a voxel, mm, each above 0.
+ * Errors   STATUS_INFEASIBLE if a side would have 2^31 voxels or more. */
 MUST_CHECK Status voxelgrid_make(const Geometry *geometry, Vec3 step, VoxelGrid *out, Err *err);
 
-/* Estimated work for a volume. */
+/* The expected cost of volumes. */
 typedef struct VoxelEstimate {
-    double voxels;  /* number of voxels */
-    double walls;   /* number of partly filled voxels */
-    double bytes;   /* size of all files */
-    double memory;  /* bytes, of the whole program */
-    double seconds; /* on `threads` threads of a processor of 2023 */
+    double voxels;         /* number of voxels */
+    double partial_voxels; /* number of partly filled voxels */
+    double bytes;          /* size of all files */
+    double memory;         /* bytes, of the whole program */
+    double seconds;        /* on `threads` threads of a processor of 2023 */
 } VoxelEstimate;
 
 typedef struct VoxelParams {
     VoxelGrid grid;
-    const uint32_t *labels;   /* per segment index: its label, > 0; NULL: none */
-    VolumeStream *values;     /* receives the filled fraction of each voxel */
+    const uint32_t *labels;   /* per segment index: its label, above 0; needed if `label` is set */
+    VolumeStream *values;     /* receives the filled fraction of each voxel; never NULL */
     VolumeStream *label;      /* receives the label of the segment that fills most of the voxel, if
                                * the voxel is not 0 in `values`; NULL: not wanted */
     VolumeStream *centreline; /* receives 1 where a vessel axis passes; NULL: not wanted */
-    int threads;              /* 0: all processors */
-    bool (*progress)(double fraction, void *context); /* false: stop; NULL: none */
-    void *context;
+    int threads;              /* number of threads; 0: one per processor */
+    bool (*progress)(double fraction, void *context); /* returns false to stop; NULL: none */
+    void *context;                                    /* passed to `progress` */
 } VoxelParams;
 
 typedef struct VoxelReport {
-    double union_mm3;  /* volume of the vessels, before rounding to steps of the samples */
-    double volume_mm3; /* volume of the written samples */
-    int64_t filled;    /* number of voxels that are not 0 */
-    size_t claimed;    /* number of labels that fill most of no voxel and were given one */
+    double union_mm3;      /* volume of the vessels, before rounding to steps of the samples */
+    double volume_mm3;     /* volume of the written samples */
+    int64_t filled;        /* number of voxels that are not 0 */
+    size_t n_given_voxels; /* number of labels that fill most of no voxel and were given one */
 } VoxelReport;
 
-/* Estimates the work of voxels_write. O(number of segments). */
+/* Returns the expected cost of voxels_write. Does not write anything, and cannot fail. O(number of
+ * primitives). */
 VoxelEstimate voxels_estimate(const Geometry *geometry, const VoxelParams *params);
 
-/* Fills the streams with volumes of the union of cylinders and balls of a geometry.
+/* Writes the samples of all streams, and ends the streams [volume_end]. The caller has begun them
+ * with volume_begin, and closes the files.
  *
- * Samples are rounded. An integer sample of a voxel that a vessel axis passes is at least 1, so
- * that vessels stay connected. Every label has at least one voxel: a label that fills most of no
- * voxel on or next to its axes is given one of the voxels there. The bytes do not depend on
- * `threads`.
+ * Samples are rounded to the nearest step. An integer sample of a voxel that a vessel axis passes
+ * is at least 1, so that vessels stay connected. Every label has at least one voxel: a label that
+ * fills most of no voxel on or next to its axes is given one of the voxels there. The bytes do not
+ * depend on `threads`.
  *
- * Errors  STATUS_INFEASIBLE, naming an id, if there are more labels than voxels for them;
- * STATUS_IO, STATUS_MEMORY. */
+ * report   receives the sums.
+ * Errors   STATUS_INFEASIBLE, naming an id, if there are more labels than voxels for them;
+ *          STATUS_CANCELLED if `progress` returned false; STATUS_IO, STATUS_MEMORY. */
 MUST_CHECK Status voxels_write(const Geometry *geometry, const VoxelParams *params,
                                VoxelReport *report, Err *err);
 

@@ -16,7 +16,7 @@ const LOW = 544; // pixels of the page: a window less high has no room beside th
 const HIT = 4; // pixels of the page that a vessel is at least wide for a pointer
 
 const tree = new Tree();
-const start = tree.told.start;
+const start = tree.properties.start;
 const state = {
   field: null, map: null, log: null, moment: 0, grown: 1, haze: true, shade: true, panels: true,
   hovered: -1, pinned: -1, // numbers of segments, or -1
@@ -184,7 +184,7 @@ function nextField(step) {
 // ---- the address --------------------------------------------------------------------------------
 
 const rounded = (v) => String(Number(v.toFixed(3)));
-const fromOrigin = (place, sign) => place.map((v, c) => v + sign * tree.told.origin[c]);
+const fromOrigin = (place, sign) => place.map((v, c) => v + sign * tree.properties.origin[c]);
 
 // The view as options of `corcast render`, and with these names in the address.
 function viewOptions() {
@@ -259,12 +259,12 @@ function renderCommand() {
   const words = isOrthographic ? viewOptions() : [["projection", "perspective"], ["location", list(view.eye)],
     ["look-at", list(view.pose.target)], ["angle", rounded(view.angleAcross)]];
   words.push(["size", `${canvas.clientWidth}x${canvas.clientHeight}`]);
-  if (tree.told.look.name !== "cast") words.push(["look", tree.told.look.name]);
+  if (tree.properties.look.name !== "cast") words.push(["look", tree.properties.look.name]);
   if (scale) words.push(["color-by", scale.field.name], ["colormap", scale.map.name]);
   if (scale) words.push(["range", scale.range.map((v) => Number(v.toPrecision(6))).join(",")]);
   if (shownMoment()) words.push(["moment", shownMoment() + 1]);
   const options = words.map(([key, value]) => `--${key} ${value}`).join(" ") + (scale && scale.log ? " --log" : "");
-  return `corcast render ${tree.told.name} ${options} -o figure.png`;
+  return `corcast render ${tree.properties.name} ${options} -o figure.png`;
 }
 
 function showHelp() {
@@ -321,7 +321,7 @@ function save() {
   page.toBlob((png) => {
     const link = document.createElement("a");
     link.href = URL.createObjectURL(png);
-    link.download = tree.told.name.replace(/\.[^.]*$/, "") + ".png";
+    link.download = tree.properties.name.replace(/\.[^.]*$/, "") + ".png";
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 1000);
   });

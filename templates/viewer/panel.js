@@ -37,14 +37,14 @@ export function ink() {
 export class Panel {
   constructor(tree) {
     this.tree = tree;
-    const { told, segments, low, high } = tree;
-    find("name").textContent = told.name;
+    const { properties, segments, low, high } = tree;
+    find("name").textContent = properties.name;
     const sides = low.map((l, c) => number(high[c] - l, 3)).join(" × ");
     find("said").textContent = `${segments.length.toLocaleString("en")} segments, ${sides}\u00a0mm`;
     const fields = tree.fields.map(({ name, unit }) => option(name, unit ? `${name} (${unit})` : name));
     find("field").append(option("", "one color"), ...fields);
     find("map").append(...tree.maps.map(({ name }) => option(name, name)));
-    find("made").textContent = `${told.generator}: ${told.command}`;
+    find("made").textContent = `${properties.generator}: ${properties.command}`;
   }
 
   showScale(scale, field) {

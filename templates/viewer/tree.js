@@ -36,7 +36,7 @@ function rangeOf(values, n, segments, log) {
 
 export class Tree {
   constructor() {
-    this.told = JSON.parse(text("told"));
+    this.properties = JSON.parse(text("properties"));
     this.position = block("position", Float32Array);
     this.radius = block("radius", Float32Array);
     this.parent = block("parent", Uint32Array);
@@ -44,12 +44,12 @@ export class Tree {
     this.n = this.radius.length;
     this.findSegments();
     this.measure();
-    this.fields = this.told.fields.map((field, k) => {
+    this.fields = this.properties.fields.map((field, k) => {
       const read = readField(field, k);
       const range = rangeOf(read.values, this.n, this.segments, false);
       return { ...read, range, logRange: rangeOf(read.values, this.n, this.segments, true) };
     }).filter((field) => field.range);
-    this.maps = this.told.maps.map((map, k) => ({ ...map, bytes: block("map-" + k, Uint8Array) }));
+    this.maps = this.properties.maps.map((map, k) => ({ ...map, bytes: block("map-" + k, Uint8Array) }));
   }
 
   // Segments that have a length and a radius, the number of each by its id, and the daughters of each node.

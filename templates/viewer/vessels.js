@@ -67,7 +67,7 @@ function uniforms(look) {
 export class Vessels {
   constructor(tree) {
     this.tree = tree;
-    const look = tree.told.look;
+    const look = tree.properties.look;
     const defines = { LIGHTS: Math.max(1, look.lights.length), ALONG, AROUND, WIDTH };
     this.material = new RawShaderMaterial({
       glslVersion: GLSL3,

@@ -1,6 +1,7 @@
-# Run by Blender, as blender_test.sh has it: `measure FILE...` prints of each file triangles, volume in mm^3, parts and
-# open edges; `draw FILE PICTURE` draws of a GLB or a script 500 x 500 pixels, 100 mm high, seen along -z, y up, the sun behind the
-# camera, transparent where nothing is seen.
+# Runs inside Blender for blender_test.sh. `measure FILE...` prints for each file triangles, volume
+# in mm^3, parts and open edges. `draw FILE PICTURE` draws a GLB or a script with 500 x 500 pixels,
+# 100 mm high, viewed along -z with y up, the sun behind the camera, transparent where nothing is
+# visible.
 import sys
 
 import bpy

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What `export` writes for artists, as Blender reads and draws it.
+# Files that `export` writes for artists, read and drawn by Blender.
 . "$(dirname "$0")/../lib.sh"
 
 # in_blender ARGUMENT ...: blender.py with these.

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The commands of tiles and studies on real engines: a Slurm of one node, which the test configures, starts and
-# ends, and Snakemake with the Snakefile of docs/examples.
+# The commands of tiles and studies on real engines: a Slurm of one node, which the test configures,
+# starts and ends, and Snakemake with the Snakefile of docs/examples.
 . "$(dirname "$0")/../lib.sh"
 
 # write_slurm_conf PORT: a cluster of this machine alone, all of whose files are in this folder.

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What `export` writes for solvers, as gmsh fills it.
+# Files that `export` writes for solvers, filled with tetrahedra by gmsh.
 . "$(dirname "$0")/../lib.sh"
 
 # Gmsh makes a surface of each solid, in their order, keeps its triangles, and takes the names of t.geo.

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Scenes of large trees, which POV-Ray takes long to read. Pictures are of 8 x 6 pixels.
+# Scenes of large trees, which POV-Ray takes long to read. Pictures have 8 x 6 pixels.
 . "$(dirname "$0")/../lib.sh"
 
 # reads MODEL ARGUMENT ...: POV-Ray reads the scene of tree.swc as MODEL, written with these, without a warning.

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What `export` writes for printers, as PrusaSlicer reads it.
+# Files that `export` writes for printers, read by PrusaSlicer.
 . "$(dirname "$0")/../lib.sh"
 
 # prusa_said LABEL: what PrusaSlicer said last, "manifold = yes" say.

@@ -1,29 +1,29 @@
-/* Fails one allocation after another, and holds the program to its promise: a library to be loaded
- * before a program's own, which runs the program's main again and again, each time in a process of
- * its own with one allocation that fails.
+/* Makes allocations of a program fail, one after another, and checks that the program handles
+ * each failure. This library is loaded before the program's own libraries. It runs the
+ * program's main many times, each time in a new process with another failing allocation.
  *
- *   LD_PRELOAD=failing.so [FAILING_STEP=K] [FAILING_LASTING=1] [FAILING_OUTPUTS=many] PROGRAM
- * ARGUMENT...
+ *   LD_PRELOAD=failing.so [FAILING_STEP=K] [FAILING_LASTING=1] [FAILING_OUTPUTS=many] PROGRAM ...
  *
- * The first run is left alone; how many allocations it makes is how many can fail. Then every K-th
- * of them (all by default) is failed, and with FAILING_LASTING all that follow it. Each run has an
- * empty folder
- * ./run as its current one; what the first has left stays in ./undisturbed. The promise is that a
- * run
- * - is never ended by a signal, nor takes a minute;
- * - or ends as the undisturbed one did, with the same bytes on standard output, on standard error
- * and in the same files;
- * - or ends with exit status 3 and one sentence on standard error, and leaves no file; with
- *   FAILING_OUTPUTS=many, for commands that write several, it may leave such as hold the same bytes
- * as those of the undisturbed run. The clock stands still, as seconds are in some outputs. Memory
- * is filled with nonsense when it is taken and when it is given back. Programs that the program
- * runs are left alone.
+ * The first run is undisturbed and counts the allocations. Then every K-th allocation fails
+ * (default: each), and with FAILING_LASTING also all that follow it. The current folder of each
+ * run is an empty folder ./run; the files of the first run stay in ./undisturbed. A run must
+ * never be ended by a signal or take a minute. It must end in one of two ways:
  *
- * FAILING_ONLY=N runs the program once, in this process and folder, with the N-th failed: for a
- * debugger.
+ * - As the undisturbed run: with the same bytes on standard output, on standard error and in
+ *   the same files.
+ * - With exit status 3 and one message on standard error, and without files. With
+ *   FAILING_OUTPUTS=many, for commands that write several files, it may leave files with the
+ *   same bytes as those of the undisturbed run.
  *
- * Prints a line for each broken promise and how many allocations there were; exit status 1 when a
- * promise was broken. */
+ * The clock stands still, because some outputs contain seconds. Memory is filled with arbitrary
+ * bytes when it is allocated and when it is freed. Programs that the program runs are not
+ * disturbed.
+ *
+ * FAILING_ONLY=N runs the program once, in this process and folder, with the N-th allocation
+ * failing, for use in a debugger.
+ *
+ * Prints a line for each violation and the number of allocations; exit status 1 if there is a
+ * violation. */
 #include <errno.h>
 #include <fcntl.h>
 #include <ftw.h>

@@ -1,6 +1,6 @@
-/* Wrong use of the library: each call is an error with a sentence that contains the words beside
- * it, and never a crash. Then the callbacks: one that stops the work, at each operation, and one
- * that takes no bytes. */
+/* Wrong use of the library: each call must return an error whose message contains the words
+ * beside the call, and must never crash. Then the callbacks: a callback that stops the work, in
+ * each operation, and a sink that refuses bytes. */
 #include "corcast.h"
 #include <math.h>
 #include <stdio.h>
@@ -93,6 +93,7 @@ static void wrong_options(void)
     EXPECT(2, "gamma", corcast_options_set(options, "gama", "3", error));
     EXPECT(2, "--gamma", corcast_options_set(options, "gamma", "three", error));
     EXPECT(2, "standard streams", corcast_options_set(options, "from", "-", error));
+    EXPECT(2, "standard streams", corcast_options_set(options, "domain", "mask:-,0.5", error));
     EXPECT(2, "command line alone", corcast_options_set(options, "help", "on", error));
     OK(corcast_options_set(options, "gamma", "2.5", error));
     EXPECT(2, "--gamma", corcast_options_set(options, "gamma", "-1", error));

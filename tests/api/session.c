@@ -1,13 +1,16 @@
-/* One operation of the library as a program, so that its files can be compared with those of the
- * command line, and its allocations can be made to fail:
+/* Runs one operation of the library, so that its files can be compared with those of the
+ * command line, and its allocations can be made to fail.
  *
- *     session grow OUT NAME=VALUE...        refine IN OUT NAME=VALUE...
- *     session export COMMAND IN OUT NAME=VALUE...    (also `bytes`, through a sink into OUT's
- * folder) session render IN OUT.ppm NAME=VALUE...        the pixels of a picture in memory session
- * compare A B NAME=VALUE...     info IN NAME=VALUE...      print the report session convert IN OUT
- * the bytes of IN are read in memory
+ *   session grow OUT NAME=VALUE...                 writes the tree to OUT
+ *   session refine IN OUT NAME=VALUE...
+ *   session export COMMAND IN OUT NAME=VALUE...
+ *   session bytes COMMAND IN OUT NAME=VALUE...     as export, through a sink into OUT's folder
+ *   session render IN OUT.ppm NAME=VALUE...        writes the pixels of a picture in memory
+ *   session compare A B NAME=VALUE...              prints the report
+ *   session info IN NAME=VALUE...                  prints the report
+ *   session convert IN OUT                         reads the bytes of IN in memory
  *
- * Ends with the status of the library, its sentence on standard error. */
+ * Ends with the status of the library, and its error message on standard error. */
 #include "corcast.h"
 #include <stdio.h>
 #include <stdlib.h>

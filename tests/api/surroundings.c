@@ -1,5 +1,6 @@
-/* A program with a locale, signal handlers, a umask and standard streams of its own grows, draws
- * and writes a tree. Afterwards all of them must be as before, and numbers in files have a '.'. */
+/* A program with its own locale, signal handlers, umask and standard streams grows, draws and
+ * writes a tree. Afterwards all of them must be unchanged, and numbers in files must have a
+ * '.'. */
 #include "corcast.h"
 #include <locale.h>
 #include <signal.h>

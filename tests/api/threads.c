@@ -1,5 +1,5 @@
-/* Two threads with handles of their own grow, draw, export and compare at the same time, and share
- * one tree that neither changes. Both must get the bytes that one thread gets alone. */
+/* Two threads with their own handles grow, draw, export and compare at the same time, and share
+ * one tree that neither changes. Both must get the same bytes as one thread alone. */
 #include "corcast.h"
 #include <pthread.h>
 #include <stdio.h>

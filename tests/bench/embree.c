@@ -1,10 +1,11 @@
-/* How long Embree 3 takes for a picture of `rounded`: round linear curves, whose ends are spheres,
- * met by coherent packets of 8 rays, and shaded by corcast's own kernel. For make bench-render.
+/* Times Embree 3 for a picture of the model `rounded`: round linear curves, whose ends are
+ * spheres, intersected by coherent packets of 8 rays and shaded by corcast's own kernel. Used
+ * by make bench-render.
  *
  *   embree TREE.swc SIZE THREADS RUNS LOOK.ini
  *
- * prints the medians over the runs of the wall time and of the processor time of all threads, in
- * ms: curves, hierarchy, rays and colors, up to the frame in memory. */
+ * Prints the medians over the runs of the wall time and of the processor time of all threads,
+ * in ms, for curves, hierarchy, rays and colors, up to the frame in memory. */
 #include "base/base.h"
 #include "image/image.h"
 #include "render/tile/canvas.h"

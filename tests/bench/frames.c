@@ -1,9 +1,11 @@
-/* What the frames of a film cost: a renderer is made for one geometry and draws a first frame, one
- * of other colors and one of another view. For each the medians of wall time in ms, what is
- * prepared apart from pixels, and of the processor time of both. A frame of other colors prepares
- * nothing; the program fails if it does.
+/* Times the frames of a film. A renderer is made for one geometry and draws a first frame, a
+ * frame with other colors and a frame with another view.
  *
- *   frames TREE.swc MODEL SIZE THREADS RUNS LOOK.ini MAP.txt [shadows] */
+ *   frames TREE.swc MODEL SIZE THREADS RUNS LOOK.ini MAP.txt [shadows]
+ *
+ * Prints for each frame the medians, in ms, of the wall time, of the time to prepare data other
+ * than pixels, and of the processor time of both. A frame with other colors must not prepare
+ * anything; the program fails if it does. */
 #include "derive/derive.h"
 #include "render/render.h"
 #include "stage/stage.h"

@@ -1,5 +1,5 @@
-/* How long the triangulation of trees takes, and how far it is off the surface: a row for each tree
- * file that the command line names. Distances are found by the guaranteed search for rays
+/* Times the triangulation of trees and measures its distance from the surface. Prints a row for
+ * each tree file on the command line. The guaranteed search for rays finds the distances
  * [unit/mesh_distance.h]. */
 #include "stage/stage.h"
 #include "treeio/treeio.h"
@@ -42,7 +42,7 @@ static Status measure(const char *path, Err *err)
     getrusage(RUSAGE_SELF, &used);
     printf("%s: %zu segments, %zu triangles, %.2f s, %ld MB, %zu zones (%zu repeated), %s\n", path,
            vessels.n_segments, mesh.n_triangles, end - start, used.ru_maxrss / 1024,
-           report.junctions, report.repeated, meshreport_is_sound(&report) ? "sound" : "NOT SOUND");
+           report.junctions, report.repeated, meshreport_is_valid(&report) ? "sound" : "NOT SOUND");
     TRY(ruler_make(&ruler, &vessels, &mesh, &report));
     random_seed(&random, 1);
     print_distances("mesh to surface", mesh_to_surface(&ruler, &random, SAMPLES));

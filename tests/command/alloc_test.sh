@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# A failed allocation, wherever it is, ends in one sentence and exit status 3, or in the right result: each
-# command is run again and again on small inputs, each time with another allocation that fails
-# (tests/alloc/failing.c says what is expected). `make check` fails every fourth allocation, and fewer where
-# there are many. ALLOC=all, which `make check-all` sets, fails each.
+# A failed memory allocation must end in one error message and exit status 3, or in the correct
+# result. Each command runs many times on small inputs, each time with another allocation that fails
+# (tests/alloc/failing.c states what is expected). `make check` fails every fourth allocation, and
+# fewer in commands with many. ALLOC=all, which `make check-all` sets, fails every one.
 . "$(dirname "$0")/../lib.sh"
 
 FAILING=${FAILING:-$REPO/build/release/tests/failing.so}

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Several pictures of one tree: frames of values that change with time, a turn, growth; and the values in
-# files that color segments.
+# Several pictures of one tree: frames of values that change with time, turns, growth. Also files of
+# values that color segments.
 . "$(dirname "$0")/../lib.sh"
 
 SMALL="--size 60x50 --quiet"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# bifurcation, and the figures of the paper, which are made of such.
+# The command `bifurcation`, and the figures of the paper, which consist of bifurcations.
 . "$(dirname "$0")/../lib.sh"
 
 # nodes FILE: parent, place and radius, rounded.

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# `certify`: bounds of grown, forked and measured trees, whose certificates a checker that shares no code
-# and computes in exact fractions accepts, and refuses when they are changed.
+# `certify`: bounds of grown, forked and measured trees. A checker that shares no code and computes
+# in exact fractions must accept the certificates, and refuse changed ones.
 . "$(dirname "$0")/../lib.sh"
 
 check_certificate() {

@@ -1,5 +1,6 @@
 #!/bin/bash
-# What publishers would refuse: files of our own, and faults that other programs put in.
+# `check-figure`: figures that publishers would refuse. The files come from corcast, and other
+# programs plant faults in them.
 . "$(dirname "$0")/../lib.sh"
 
 # taken PRESET FILE [OPTION...]: the preset has nothing against the file.

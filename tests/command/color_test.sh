@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Which color a value gets, in the native picture and in the scene for POV-Ray: entries of matplotlib's
-# published tables, as 8-bit codes and as linear numbers worked out by hand.
+# The color of a value, in the native picture and in the scene for POV-Ray. Expected are entries of
+# matplotlib's published tables, as 8-bit codes and as linear numbers computed by hand.
 . "$(dirname "$0")/../lib.sh"
 
 MODELS=$(corcast models)

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# compare: metrics of small pictures written by hand, so that the right numbers are known.
+# `compare`: measures of small pictures written by hand, whose correct numbers are known.
 . "$(dirname "$0")/../lib.sh"
 
 # A grey PPM of 5 x 4 with code 100, pixel 7 (counted from 0) replaced by the code given.

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# `export` as curves and beams: Blender's script, USD and a 3MF's lattice. Blender itself runs in tests/all.
+# `export` as curves and beams: Blender's script, USD and the beam lattice of a 3MF. Blender itself
+# runs in tests/all.
 . "$(dirname "$0")/../lib.sh"
 
 # A grown forest of 23 terminals.

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# diagram: the tree unrolled flat, as SVG and as pixels.
+# `diagram`: a tree unrolled flat, as SVG and as pixels.
 . "$(dirname "$0")/../lib.sh"
 
 # count N PATTERN FILE: so many lines of it say the pattern.

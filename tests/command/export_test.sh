@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# `export`: closed meshes, proved and looked at by programs that are not ours.
+# `export`: closed meshes, proved by corcast and checked by independent programs.
 . "$(dirname "$0")/../lib.sh"
 
 # admesh_says FILE LABEL: the number that admesh prints for it.
@@ -258,7 +258,7 @@ test_refuses_colors_where_a_format_has_none() {
 test_refuses_vessels_that_overlap_by_name() {
     run corcast export "$REPO/tests/golden/strangers.swc" -o m.stl --quiet
     expect_status 2
-    expect_sentence 'segments 5 and 6, which do not belong together, overlap by 0\.534 mm'
+    expect_sentence 'segments 5 and 6 are unconnected, but overlap by 0\.534 mm'
     expect_only
 }
 
@@ -267,7 +267,7 @@ test_refuses_vessels_that_leave_one_node_and_overlap_by_name() {
         '5 3 10.5 -0.6 0 0.91 3' '6 3 10.3 0.9 0 0.59 4' '7 3 11.3 -0.1 0 0.47 5' '8 3 11.8 0.6 0 0.46 6' >t.swc
     run corcast export t.swc --tolerance 0.05 -o m.stl --quiet
     expect_status 2
-    expect_sentence 'the vessels of segments [0-9]+ and [0-9]+ overlap, though they do not meet there'
+    expect_sentence 'the vessels of segments [0-9]+ and [0-9]+ overlap where they are unconnected'
     expect_only t.swc
 }
 
@@ -275,7 +275,7 @@ test_refuses_a_vessel_that_is_too_short_to_have_a_surface() {
     printf '%s\n' '1 3 0 0 0 1 -1' '2 3 0.05 0 0 1 1' >t.swc
     run corcast export t.swc -o m.stl --quiet
     expect_status 2
-    expect_sentence 'segment 2, and what it meets, is so short for its radius that it has no surface'
+    expect_sentence 'segment 2 and the segments that it meets are so short for their radii that they have no surface'
     expect_only t.swc
 }
 
@@ -305,7 +305,7 @@ test_a_tree_too_far_from_the_origin_for_its_radii_is_refused_by_its_distance() {
         moved_by 1e6
         run timeout 10 "$CORCAST" export moved.swc --model $model --tolerance 0.1 -o m.stl --quiet
         expect_status 2
-        expect_sentence 'reaches 10000[0-9.]+ mm from the origin, where the single precision of a mesh places points to 0\.062 mm'
+        expect_sentence 'reaches 10000[0-9.]+ mm from the origin, where neighbouring coordinates in single precision are 0\.062 mm apart'
         expect_sentence 'too coarse for the radius of segment [0-9]+, 0\.[0-9]+ mm; move the tree nearer'
     done
     # Two vessels that blend along their length: only roundings of their points cross.

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Figures from recipes: panels, insets, text; and recipes that are printed and run again.
+# `figure`: panels, insets and text from recipes; recipes that are printed and run again.
 . "$(dirname "$0")/../lib.sh"
 
 # A figure of everything, small, in folder/all.ini; its tree is grown by the recipe, and read from a

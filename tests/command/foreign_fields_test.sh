@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Every field of every file that corcast writes for other programs, read back by readers that share no code with corcast
-# and compared with the tree [tests/oracle/foreign_fields.py; the table in docs/TESTING.md]. The tree has no symmetry and
-# lies far from the origin, so that no wrong field has the value of the right one.
+# Every field of every file that corcast writes for other programs. Readers that share no code with
+# corcast read the fields and compare them with the tree [tests/oracle/foreign_fields.py]. The tree
+# has no symmetry and lies far from the origin, so that no wrong field has the value of the right
+# one.
 . "$(dirname "$0")/../lib.sh"
 
 /usr/bin/python3 -c 'import numpy' 2>/dev/null || {

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What golden_test.sh finds when goldens are changed by another hand than golden-update's.
+# golden_test.sh must fail if a golden picture or record is changed without golden-update.
 . "$(dirname "$0")/../lib.sh"
 . "$(dirname "$0")/../golden/golden.sh"
 

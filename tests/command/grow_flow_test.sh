@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# grow with viscosity by diameter and with flows by territory: check_tree derives flows, viscosities and
-# pressures again from the SWC file alone, and territories are counted again here.
+# `grow` with a viscosity that depends on the diameter and flows that depend on territories.
+# check_tree derives flows, viscosities and pressures again from the SWC file alone, and these tests
+# count territories again.
 . "$(dirname "$0")/../lib.sh"
 
 # stated KEY: its value in what check_tree printed.

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# grow with several inlets: trees side by side, checked by a program that shares no code with corcast.
+# `grow` with several inlets: trees side by side, checked by a program that shares no code with
+# corcast.
 . "$(dirname "$0")/../lib.sh"
 
 two=(--inlet 0,50 --inlet 30,-40)

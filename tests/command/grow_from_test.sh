@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# grow --from: growing on from a tree, which stays as it is. check_tree derives the result's radii and
-# pressures again; what stays is held against the file that growth started from.
+# `grow --from`: continues a tree, which must keep its nodes and segments. check_tree derives the
+# radii and pressures of the result again. The kept part is compared with the original file.
 . "$(dirname "$0")/../lib.sh"
 
 # expect_kept OLD NEW: every node of OLD is in NEW with its type and place, its nearest ancestor from OLD is

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# grow --pair: two trees whose terminals are pairs; distances and clearance are measured here again.
+# `grow --pair`: two trees whose terminals form pairs. These tests measure distances and clearance
+# again.
 . "$(dirname "$0")/../lib.sh"
 
 two=(--domain ball:30 --inlet 0,30,0 --inlet 2,-29,0 --q-perf 100 --pair 1.25)

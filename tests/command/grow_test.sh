@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# grow: the same seed gives the same bytes, and the tree keeps what METHODS promises, checked by a
-# program that shares no code with corcast.
+# `grow`: the same seed gives the same bytes, and the tree keeps the promises of docs/METHODS.md,
+# which a program that shares no code with corcast checks.
 . "$(dirname "$0")/../lib.sh"
 
 # A checker that finds nothing is worth nothing.

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# What is made of the options' descriptions: help, manual pages, docs/REFERENCE.md, completions of three shells.
+# Texts generated from the option tables: help, manual pages, docs/REFERENCE.md, and completions of
+# three shells.
 . "$(dirname "$0")/../lib.sh"
 
 # options_of COMMAND: the options that its help names.
@@ -12,11 +13,11 @@ test_help_prints_headings_ranges_and_defaults() {
     expect_stdout '^blood:$'
     expect_stdout '--gamma NUMBER\|MM:NUMBER,\.\.\.$'
     run_ok corcast render --help
-    expect_stdout '^camera:$'
-    expect_stdout '--size WxH +pixels, or on paper, as 89mmx60mm; 89mm is a square \(1000x1000\)$'
+    expect_stdout '^size and camera:$'
+    expect_stdout '--size WxH +image size in pixels \(800x600\) or on paper \(89mmx60mm\); one$'
     [ "$(awk 'length > 92' stdout | grep -vc '^  corcast')" -eq 0 ] || fail "expected no line of options over 92 columns"
     run_ok corcast refine --help
-    tr -s ' \n' ' ' <stdout | grep -q 'geometry, topology, anneal (topology)' || fail "expected the default of refine"
+    tr -s ' \n' ' ' <stdout | grep -q 'with many more moves) \[default: topology\]' || fail "expected the default of refine"
 }
 
 test_every_command_and_option_is_in_the_reference() {
@@ -195,13 +196,13 @@ END
     told corcast ''
     expect_stdout '^info:count, measure and check a tree$'
     told corcast render ''
-    expect_stdout '^--model\[how vessels are drawn\]:NAME:\(cylinders joined .*\)$'
+    expect_stdout '^--model\[vessel geometry.*\]:NAME:\(cylinders joined .*\)$'
     expect_stdout '^--shadows\[.*\]::\\\[on\|off\\\]:\(on off\)$'
     told corcast grow --p
     for option in $(options_of grow); do
         grep -qe "^$option\[" stdout || [ "$option" = --output ] || fail "expected $option, got $(cat stdout)"
     done
-    expect_stdout '^\(-o --output\)-o\[the tree\]:T\.swc:_files$'
+    expect_stdout '^\(-o --output\)-o\[tree file to write\]:T\.swc:_files$'
 }
 
 test_forms_that_are_not_of_one_command_are_refused() {

@@ -1,5 +1,5 @@
 #!/bin/bash
-# Line drawings of render --ink, held against what poppler and libxml2 make of them, and against pictures.
+# Line drawings of `render --ink`, checked with poppler and libxml2 and compared with pictures.
 . "$(dirname "$0")/../lib.sh"
 
 test_a_line_drawing_is_vectors_of_black_alone() {

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# What files that are read may hold: line ends, marks, zero bytes, sizes, and what is said of the rest.
+# Properties of input files: line ends, byte order marks, zero bytes, sizes, and the errors for
+# everything else.
 . "$(dirname "$0")/../lib.sh"
 
 # as_crlf|as_cr|with_mark FILE OUT: the same text, written as others write it.

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# A run that is stopped leaves no file under the final name, no temporary, and the old file as it was.
+# A run that is stopped leaves no file under the final name, no temporary file, and the old file
+# unchanged.
 . "$(dirname "$0")/../lib.sh"
 
 # stop_after SECONDS SIGNAL COMMAND ...: starts the command, signals it, leaves its status in $status.

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Every kernel that this processor can run draws what the others draw.
+# All kernels that this processor supports draw the same picture, within their bounds.
 . "$(dirname "$0")/../lib.sh"
 
 # find_usable: $usable are the kernels that this processor can run, the portable ones first.

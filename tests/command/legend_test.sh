@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Color bars, scale bars and letters on pictures, and pages of PDF and SVG that hold one. Poppler,
-# xmllint and librsvg are the witnesses.
+# Color bars, scale bars and letters on pictures, and PDF and SVG pages with a picture. Checked with
+# poppler, xmllint and librsvg.
 . "$(dirname "$0")/../lib.sh"
 
 grow() {

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# libcorcast: the command line's bytes through the library, wrong use, threads, surroundings, failing
-# allocations, what is installed, and the stored binary interface.
+# libcorcast: gives the same bytes as the command line; wrong use, threads, surroundings, failing
+# allocations, the installed files, and the stored binary interface.
 . "$(dirname "$0")/../lib.sh"
 
 API=$REPO/build/release/tests/api

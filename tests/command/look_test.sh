@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Looks: what they are said to be, and what of them is corcast's own.
+# Looks: their listed descriptions, and the parts of looks that only corcast draws.
 . "$(dirname "$0")/../lib.sh"
 
 # A thick vessel behind a thin one, and one beside both.

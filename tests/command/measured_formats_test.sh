@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Every tree and network of ../shared/data, with the counts that its README gives.
+# Every tree and network of ../shared/data, with the counts in the README of that folder.
 . "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
 
 # expect_values FILE COLUMN FILTER: awk's filter is true of n, low and high of a column's values; the file has

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Trees that nobody grows but that somebody reads: every model of objects draws them, traced and as tiles, or
-# says in a sentence why not. tests/povray holds some of the pictures against POV-Ray's.
+# Unusual trees, as found in files of others. Every model of primitives draws them, ray by ray and
+# in tiles, or reports in one message why not. tests/povray compares some of the pictures with
+# POV-Ray's.
 . "$(dirname "$0")/../lib.sh"
 
 # rows ROW ...: a tree of these SWC rows in tree.swc.

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# scene for OpenSCAD. OpenSCAD itself makes solids of what is written, admesh looks whether they are closed, and volume
-# and outline are held against ours: a third witness of the geometry. Seconds each, as CGAL needs them.
+# `scene` for OpenSCAD. OpenSCAD makes solids from the written files, admesh checks that they are
+# closed, and their volume and outline are compared with corcast's: a third witness of the geometry.
+# Each test takes seconds, because CGAL does.
 . "$(dirname "$0")/../lib.sh"
 
 # A bifurcation in space.

@@ -1,5 +1,5 @@
 #!/bin/bash
-# Pictures for paper: sizes in lengths, resolution, the formats that journals take.
+# Pictures for paper: sizes in lengths, resolution, the formats that journals accept.
 . "$(dirname "$0")/../lib.sh"
 
 # expect_says FILE WORD...: oiiotool says each of FILE.

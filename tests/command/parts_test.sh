@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Pictures in parts: tiles, single pictures of animations, the commands that draw them, what is kept, and
-# what merge makes of them.
+# Pictures in parts: tiles, single pictures of animations, the commands that draw them, reuse of
+# finished parts, and `merge`.
 . "$(dirname "$0")/../lib.sh"
 
 SMALL="--size 103x171 --quiet"

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Pictures of every form that a format's library can give, read beside a second reader, and all that corcast writes.
+# Pictures of every form that the library of a format can write. corcast and a second reader must
+# read the same pixels. Also everything that corcast writes.
 . "$(dirname "$0")/../lib.sh"
 
 PYTHON=/usr/bin/python3 # Debian's, which has tifffile and Pillow

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# `power`: what a tolerance misses of the faults that are planted in a renderer's picture.
+# `power`: which faults planted in a renderer's picture a tolerance misses.
 . "$(dirname "$0")/../lib.sh"
 
 # A picture of 96 x 64 pixels: a disc with a gradient in it, and a highlight.

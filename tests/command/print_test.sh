@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# `export --print`: solids for printers, proved and looked at by programs that are not ours.
+# `export --print`: solids for printers, proved by corcast and checked by independent programs.
 . "$(dirname "$0")/../lib.sh"
 
 # grown TERMINALS: a grown tree, t.swc.
@@ -55,7 +55,7 @@ test_refuses_walls_that_meet_or_parts_them() {
     cp "$REPO/tests/golden/strangers.swc" t.swc
     run corcast export t.swc --print wall=0.31 -o m.stl --quiet
     expect_status 2
-    expect_sentence 'with their walls, the vessels of segments 5 and 6, which do not belong together, overlap by 1\.15'
+    expect_sentence 'with their walls, the vessels of segments 5 and 6 are unconnected, but overlap by 1\.15'
     expect_only t.swc
     run_ok corcast export t.swc --print wall=0.31 --part-overlaps -o m.stl --quiet
     expect_solid m.stl "$(jq .trees m.stl.json)"
@@ -174,7 +174,7 @@ test_refuses_blocks_that_hold_no_vessels() {
     refuses <<'END'
 block=box:20x40x30|the block of 20 x 40 x 30 mm is smaller than the vessels with a margin of 3 mm, 27.97 x 41.16 x 10.77 mm
 block=cylinder:28x41|is smaller than the vessels with a margin of 3 mm
-block=box,margin=0.01,ports=luer|no end of a vessel can be led to a face of the block
+block=box,margin=0.01,ports=luer|no port is possible: no vessel end has a clear path to a face of the block
 block=box,base|a block stands by itself
 block=box,wall=1|in a block vessels are hollow
 ports|ports and margin need a block

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# The same bytes on every processor. glibc chooses its versions of pow, exp, log, sin, cos and others by the processor;
-# these tests hide fused multiply-add from glibc, as on a processor without it.
+# The same bytes on every processor. glibc chooses its versions of pow, exp, log, sin, cos and
+# others by the processor. These tests hide fused multiply-add from glibc, as on a processor without
+# it.
 . "$(dirname "$0")/../lib.sh"
 
 without_fma() {

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What files say of how they were made: the command line in a tree, a scene and a picture makes them again.
+# Provenance: the command line stored in a tree, a scene or a picture makes the same file again.
 . "$(dirname "$0")/../lib.sh"
 
 # command_of FILE: the last command line in a file.

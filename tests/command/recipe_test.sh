@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Recipes: what a flag says can be said in a file.
+# Recipes: every option can be set in a file.
 . "$(dirname "$0")/../lib.sh"
 
 test_a_recipe_says_what_flags_say() {

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Whole-tree optimisation: `grow --refine` and `refine`.
+# Optimisation of the whole tree: `grow --refine` and `refine`.
 . "$(dirname "$0")/../lib.sh"
 
 target() {

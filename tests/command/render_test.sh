@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# render and the image formats, read back by netpbm, which shares no code with corcast.
+# `render` and the image formats. netpbm, which shares no code with corcast, reads the pictures.
 . "$(dirname "$0")/../lib.sh"
 
 MODELS=$(corcast models)

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# What the world does to a run: signals, full disks, closed streams, a POV-Ray that misbehaves, odd names.
+# Disturbances from outside: signals, full disks, closed streams, a POV-Ray that misbehaves, odd
+# file names.
 . "$(dirname "$0")/../lib.sh"
 
 # ---- signals and streams -----------------------------------------------------------------------

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# scene, and povray with programs that stand in for POV-Ray; the real one runs in tests/povray/.
+# `scene`, and `povray` with scripts in place of POV-Ray. tests/povray runs the real program.
 . "$(dirname "$0")/../lib.sh"
 
 MODELS=$(corcast models)

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# `export` for solvers: named parts, and what stands beside them, read by VTK and filled by TetGen.
+# `export` for solvers: named parts and their accompanying files, read by VTK and filled by TetGen.
 . "$(dirname "$0")/../lib.sh"
 
 # A grown tree of 23 terminals.

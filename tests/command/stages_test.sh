@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# grow --stages: one tree in stages; --min-radius, --clearance and --demand, which stages can say, too.
+# `grow --stages`: one tree grown in stages. Also --min-radius, --clearance and --demand, which
+# stages may set.
 . "$(dirname "$0")/../lib.sh"
 
 write_stages() {

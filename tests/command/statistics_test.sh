@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# info --stats: what is said of levels, orders and bifurcations.
+# `info --stats`: levels, orders and bifurcations.
 . "$(dirname "$0")/../lib.sh"
 
 test_stats_add_up() {

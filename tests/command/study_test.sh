@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Studies: plans, runs, what is kept, tables, and what merge makes of runs.
+# Studies: plans, runs, reuse of finished runs, tables, and the merging of runs.
 . "$(dirname "$0")/../lib.sh"
 
 make_plan() {

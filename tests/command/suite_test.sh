@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# compare --reference: a folder of pictures against a folder of references, as a test suite.
+# `compare --reference`: a folder of pictures against a folder of references, as a test suite.
 . "$(dirname "$0")/../lib.sh"
 
 # picture LEVEL: a grey PPM of 5 x 4, pixel 7 (counted from 0) of the level given.

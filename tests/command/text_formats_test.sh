@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Files of other programs in text formats: what is in them, and what comes back from them.
+# Text formats of other programs: the contents that are read, and round trips.
 . "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
 
 test_decks_of_svonedsolver_have_their_segments_and_outlets() {

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# --background: colors by name and code, and none, whose pictures are held over backgrounds against those that have them.
+# --background: colors by name and by code, and none. Transparent pictures composited over a color
+# are compared with pictures drawn on that color.
 . "$(dirname "$0")/../lib.sh"
 
 # rgba FILE.png: a line a pixel.

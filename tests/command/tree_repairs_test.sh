@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Files that are nearly trees: what the program reports of them, and what options repair.
+# Files that are almost trees: what the program reports about them, and what options repair.
 . "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
 
 # vtk_lines POINTS LINES MORE: a legacy VTK file of these points, lines as "2 0 1" each, and arrays.

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# info and convert: what is said of a tree, and which files are trees.
+# `info` and `convert`: what is reported about a tree, and which files are accepted as trees.
 . "$(dirname "$0")/../lib.sh"
 
 # swc: writes standard input to bad.swc.

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The command line itself: help, versions, and what is refused.
+# The command line itself: help, version, and what is refused.
 . "$(dirname "$0")/../lib.sh"
 
 COMMANDS="grow info convert scene povray render view compare verify"
@@ -195,7 +195,7 @@ test_a_slip_is_answered_with_what_may_have_been_meant() {
     means "unknown option '--color_by=flow'; .*; did you mean --color-by\?" render tree.swc --color_by=flow
     means "unknown option '--Antialias'; .*; did you mean --antialias\?" render tree.swc --Antialias 3
     means "unknown option '--zqwx'; see corcast render --help for those there are" render tree.swc --zqwx 3
-    means "unknown command 'bronchus'; corcast --help lists those there are" bronchus
+    means "unknown command 'bronchus'; corcast --help lists all commands" bronchus
     printf 'progjection = perspective\n' >mine.ini
     means "mine\.ini:1: 'progjection' is not an option of render; did you mean projection\?" \
         render tree.swc --recipe mine.ini -o tree.png

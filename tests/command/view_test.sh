@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# view in a window of its own on a display of its own (Xvfb); hands are xdotool's, eyes xwd's and netpbm's.
+# `view` in a window on a virtual display (Xvfb). xdotool simulates input; xwd and netpbm take and
+# read screenshots.
 . "$(dirname "$0")/../lib.sh"
 
 for tool in Xvfb xdotool xwd; do

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# `export` to volumes: how much of each voxel vessels fill, labels, centrelines, read by programs that are not ours.
+# `export` to volumes: the filled fraction of each voxel, labels, centrelines. Independent programs
+# read the volumes.
 . "$(dirname "$0")/../lib.sh"
 
 # python: runs standard input with numpy, nibabel and `volume(name)`: a volume as an array of x, y, z, and the list of

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Networks in VTK's files: those that VTK writes, and those of other programs.
+# Networks in VTK files: files written by VTK, and files of other programs.
 . "$(dirname "$0")/../lib.sh"
 
 PYTHON=/usr/bin/python3 # Debian's, which has VTK

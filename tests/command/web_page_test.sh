@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Pages of trees for browsers: what they hold, and in headless Chromium what they show; see tests/page/tree.js.
+# Web pages of trees: their contents, and what they show in headless Chromium; see
+# tests/page/tree.js.
 . "$(dirname "$0")/../lib.sh"
 
 VIEW="--projection orthographic --turn 0,0 --look-at 1.5,-0.75,0 --height 56"
@@ -56,8 +57,8 @@ test_a_page_of_2000_segments_is_small_complete_and_the_same_each_time() {
     grep -q 'Permission is hereby granted' a.html || fail "expected the licence of three.js"
     grep -q 'Copyright (c) 2021 Fabio Crameri' a.html || fail "expected the licences of the color maps"
     grep -q '<title>tree.swc, an arterial tree</title>' a.html || fail "expected a title"
-    sed -n 's/^<script type="application\/json" id="told">\(.*\)<\/script>$/\1/p' a.html >told.json
-    expect_json told.json '(.start | .field == "flow" and .map == "magma" and .log and (.low - 0.5 | fabs) < 1e-9 and (.high - 500 | fabs) < 1e-9)
+    sed -n 's/^<script type="application\/json" id="properties">\(.*\)<\/script>$/\1/p' a.html >properties.json
+    expect_json properties.json '(.start | .field == "flow" and .map == "magma" and .log and (.low - 0.5 | fabs) < 1e-9 and (.high - 500 | fabs) < 1e-9)
         and .command == "corcast export tree.swc --color-by flow --colormap magma --log -o M.html"
         and ([.fields[].name] | index("wss") and index("radius") and (index("tree") | not))'
 }
@@ -67,9 +68,9 @@ test_names_do_not_end_the_elements_that_hold_them() {
     series >'t<b>.csv'
     run_ok corcast export 't<b>.csv' -o page.html
     grep -q '<b>' page.html && fail "expected names to be escaped"
-    sed -n 's/^<script type="application\/json" id="told">\(.*\)<\/script>$/\1/p' page.html >told.json
-    expect_json told.json '.fields | map(.name) | index("a</script><b>") and index("p")'
-    expect_json told.json '.fields[] | select(.name == "p").times == [0.1, 0.25, 0.7]'
+    sed -n 's/^<script type="application\/json" id="properties">\(.*\)<\/script>$/\1/p' page.html >properties.json
+    expect_json properties.json '.fields | map(.name) | index("a</script><b>") and index("p")'
+    expect_json properties.json '.fields[] | select(.name == "p").times == [0.1, 0.25, 0.7]'
     grep -q 'flow, velocity, pressure, wss, reynolds are left out' stderr || fail "expected what is left out"
 }
 

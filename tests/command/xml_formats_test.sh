@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Networks in XML: files of other programs, and of the libraries that they are written with.
+# Networks in XML: files of other programs, and of the libraries that write such files.
 . "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
 
 test_trees_of_vascusynth_and_opencco_have_their_terminals() {

@@ -1,6 +1,6 @@
-/* How far the blob is from the surface of the potential, at bifurcations and free ends: points of
- * that surface, the way along its normal from there to the blob's, and the angle between both
- * normals. */
+/* Measures how far the blob is from the surface of the potential, at bifurcations and free
+ * ends. For points of that surface it computes the distance along the normal to the blob's
+ * surface, and the angle between both normals. */
 #ifndef CORCAST_TESTS_BLOB_DEVIATION_H
 #define CORCAST_TESTS_BLOB_DEVIATION_H
 

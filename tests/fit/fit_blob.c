@@ -1,10 +1,11 @@
-/* The numbers of blob_shape [src/field/blob.h; docs/METHODS.md section 2.6].
+/* Computes the numbers of blob_shape [src/field/blob.h; docs/METHODS.md section 2.6].
  *
- *   fit_blob                  how far its surface is from the potential's
- *   fit_blob fit [ROUNDS]     searches anew: the least p-norm, p rising from 24 to 96, over all
- * spots of all forks, of distance / DISTANCE and of angle / ANGLE, by the simplex method [Nelder &
- * Mead 1965], from a shape of round numbers; minutes a
- * round */
+ *   fit_blob                  prints how far the blob's surface is from the potential's
+ *   fit_blob fit [ROUNDS]     searches the numbers again; takes minutes per round
+ *
+ * The search minimises the p-norm, with p rising from 24 to 96, of distance / DISTANCE and
+ * angle / ANGLE over all sample points of all bifurcations. It uses the simplex method [Nelder
+ * & Mead 1965] and starts from round numbers. */
 #include "blob_deviation.h"
 
 #include <stdio.h>

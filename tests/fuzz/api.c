@@ -1,8 +1,8 @@
-/* The library, called in any order with any handles. The bytes are a program: each call takes the
- * next byte as its function, and further bytes choose handles, options and values. Handles that
- * were freed are used again, which a build with CORCAST_DEBUG reports as an error. A call that
- * fails must have a sentence, and one that succeeds none. Sizes and counts are kept small, and
- * files are those of this process. */
+/* Fuzzes the library: calls its functions in any order with any handles. The bytes are a
+ * program. Each call takes the next byte as its function, and further bytes select handles,
+ * options and values. Freed handles are used again, which a build with CORCAST_DEBUG reports as
+ * an error. A call that fails must set an error message, and a call that succeeds must set
+ * none. Sizes and counts are limited to small values, and files belong to this process. */
 #include "corcast.h"
 #include "fuzz.h"
 

@@ -1,4 +1,4 @@
-/* A tree in CSV. */
+/* Fuzzes the reader of trees in CSV. */
 #include "forest.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)

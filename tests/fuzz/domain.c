@@ -1,4 +1,4 @@
-/* The text of --domain: what is read says the text that reads back to the same. */
+/* Fuzzes the parser of --domain. The text of a parsed domain must parse to the same domain. */
 #include "fuzz.h"
 
 #include "domain/domain.h"

@@ -1,4 +1,5 @@
-/* What files of any kind say of themselves, and profiles of presses. */
+/* Fuzzes the readers of `check-figure`, which read the properties of files of any kind, and the
+ * reader of ICC profiles. */
 #include "fuzz.h"
 #include "image/image.h"
 

@@ -3,7 +3,8 @@
 #include "cli/commands.h"
 #include "job/figure/figure_plan.h"
 
-/* A recipe that is read is written to one that is read, and says the same. */
+/* Fuzzes the reader of figure recipes. A recipe that is read must be written to a recipe with
+ * the same content. */
 static void check_again(const FigurePlan *plan, const Parsed *figure)
 {
     Text said = TEXT_INIT, again = TEXT_INIT;

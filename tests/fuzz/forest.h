@@ -1,5 +1,5 @@
-/* A tree from a file of these bytes and this name, read as the options say (NULL: nothing). One
- * that is read is written so that it reads back to the same bytes. */
+/* Reads a tree from a file with these bytes and this name, with options (NULL: no options). A
+ * tree that is read is written, and must read back to the same bytes. */
 #ifndef CORCAST_TESTS_FUZZ_FOREST_H
 #define CORCAST_TESTS_FUZZ_FOREST_H
 

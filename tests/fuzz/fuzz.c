@@ -52,7 +52,7 @@ void fuzz_check_refusal(Status status, const Err *err, const char *path)
     assert(strstr(err->text, path));
 }
 
-/* Row by row, what can be read so has the codes of the whole. */
+/* Reads a picture row by row. The codes must equal those of the picture read as a whole. */
 static void read_by_rows(const char *path, const Picture *whole)
 {
     Err err = {{0}};

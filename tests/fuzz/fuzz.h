@@ -1,11 +1,11 @@
-/* What the harnesses share. A harness is one file that defines
+/* Code shared by the fuzzing harnesses. A harness is one file that defines
  *
- *     int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
+ *   int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
  *
- * which hands any bytes to a reader as a file and returns 0. Bytes for several files are parted by
- * the first zero bytes. `make fuzz` links it with libFuzzer, which thinks bytes out; the tests link
- * it with replay.c, which reads those of tests/fuzz/corpus. What must hold is an assert, or a
- * matter for the sanitizers. */
+ * The function passes any bytes to a reader as a file and returns 0. Bytes for several files
+ * are separated by the first zero bytes. `make fuzz` links a harness with libFuzzer, which
+ * generates the bytes. The tests link it with replay.c, which reads the files of
+ * tests/fuzz/corpus. Required properties are asserts; the sanitizers detect everything else. */
 #ifndef CORCAST_TESTS_FUZZ_H
 #define CORCAST_TESTS_FUZZ_H
 

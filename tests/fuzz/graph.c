@@ -1,5 +1,6 @@
-/* A network straight into the builder: a byte for the tolerance, then eight bytes a record, a point
- * or a line. What becomes of each point and line must add up, and the tree be one. */
+/* Fuzzes the builder of networks directly. The input is one byte for the tolerance, then eight
+ * bytes per record, a point or a line. The counts of what became of each point and line must
+ * add up, and the result must be a valid tree. */
 #include "fuzz.h"
 
 #include "tree/tree.h"

@@ -1,4 +1,4 @@
-/* The same bytes as STL and as OBJ. */
+/* Fuzzes the readers of domains in meshes: the same bytes as STL and as OBJ. */
 #include "tissue.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)

@@ -1,6 +1,6 @@
-/* Trees and networks in the formats of other programs: the first line of the bytes is the extension
- * that the file of the rest has. Loops are cut. What is read can be written as CSV, and as what it
- * was, unless that format cannot hold it. */
+/* Fuzzes the readers of trees and networks of other programs. The first line of the bytes is
+ * the extension of the file that contains the rest. Loops are cut. A tree that is read can be
+ * written as CSV and in its own format, unless that format cannot store it. */
 #include "fuzz.h"
 
 #include "treeio/treeio.h"

@@ -1,4 +1,5 @@
-/* Options of every kind: a recipe, then the arguments, each up to a zero byte. */
+/* Fuzzes the parser of options of every kind: a recipe, then the arguments, each up to a zero
+ * byte. */
 #include "options/options.h"
 
 #include "fuzz.h"

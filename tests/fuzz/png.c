@@ -1,5 +1,5 @@
-/* The checksums of the chunks are made right, or nothing behind them would ever be reached; also as
- * a mask. */
+/* Fuzzes the reader of PNG, also as a mask. The harness corrects the checksums of the chunks
+ * first; otherwise the code behind the check of the checksums would never be reached. */
 #include "fuzz.h"
 
 #include "tissue.h"

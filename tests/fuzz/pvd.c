@@ -1,5 +1,5 @@
-/* ParaView's index of moments, and beside it a tree, tree.vtp: the bytes up to the first zero byte.
- */
+/* Fuzzes the reader of ParaView's index of moments. Beside the index is a tree, tree.vtp: the
+ * bytes up to the first zero byte. */
 #include "fuzz.h"
 
 #include "treeio/treeio.h"

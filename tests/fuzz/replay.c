@@ -1,4 +1,5 @@
-/* Gives a harness the files of a folder: replay FOLDER. What is read last is at fault. */
+/* Passes the files of a folder to a harness: replay FOLDER. Prints each name first, so the last
+ * name printed is the file that broke the harness. */
 #include "fuzz.h"
 
 #include <dirent.h>

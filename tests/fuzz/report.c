@@ -1,5 +1,5 @@
-/* A folder of `verify`, and what `make power` leaves: the page, its JSON and that of --power. Run
- * where templates/ is. */
+/* Fuzzes the readers of `report`: a folder of `verify`, which has a page and its JSON, and the
+ * JSON of `make power` for --power. Runs in the folder that contains templates/. */
 #include "fuzz.h"
 
 #include "compare/compare.h"

@@ -1,5 +1,5 @@
-/* The plan of a study, up to the first zero byte, and then JSON that tables are made of. All runs
- * of a plan that is read have options. */
+/* Fuzzes the reader of study plans, up to the first zero byte, and then the reader of the JSON
+ * from which tables are made. All runs of a plan that is read must have options. */
 #include "study/study_plan.h"
 #include "study/study_table.h"
 

@@ -1,4 +1,4 @@
-/* A tree in SWC. */
+/* Fuzzes the reader of trees in SWC. */
 #include "forest.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)

@@ -1,4 +1,5 @@
-/* A domain from a file of these bytes; `unit` follows its name. */
+/* Reads a domain from a file with these bytes; `unit` follows the file's name in the text of
+ * the domain. */
 #ifndef CORCAST_TESTS_FUZZ_TISSUE_H
 #define CORCAST_TESTS_FUZZ_TISSUE_H
 

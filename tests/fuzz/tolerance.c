@@ -1,4 +1,5 @@
-/* The name of a tolerance that is read reads back to itself. */
+/* Fuzzes the reader of tolerances. The name of a tolerance that is read must read back as the
+ * same name. */
 #include "fuzz.h"
 
 #include "compare/compare.h"

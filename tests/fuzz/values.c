@@ -1,5 +1,6 @@
-/* Values of segments: a column's name, "" for all, up to the first zero byte, then a CSV. What is
- * read is a field of the tree, in which roots have no value. */
+/* Fuzzes the reader of values of segments. The input is a column's name ("" for all columns) up
+ * to the first zero byte, then a CSV. The result must be a field of the tree in which roots
+ * have no value. */
 #include "fuzz.h"
 
 #include "derive/derive.h"

@@ -1,4 +1,4 @@
-/* A network in legacy VTK, whose loops are cut. */
+/* Fuzzes the reader of networks in legacy VTK files. Loops are cut. */
 #include "forest.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)

@@ -1,4 +1,4 @@
-/* A network in VTK's XML, whose loops are cut. */
+/* Fuzzes the reader of networks in VTK's XML files. Loops are cut. */
 #include "forest.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)

@@ -1,5 +1,5 @@
-# What golden_test.sh and golden-update share: how a case is drawn and hashed. Source tests/lib.sh
-# first.
+# Code shared by golden_test.sh and golden-update: how a case is drawn and hashed. Source
+# tests/lib.sh first.
 GOLDEN=${GOLDEN:-$REPO/golden}
 CASES=${CASES:-$REPO/tests/golden/cases}
 

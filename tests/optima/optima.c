@@ -1,19 +1,19 @@
-/* The best trees of small point sets, found by going through all topologies, and how often
+/* Finds the best trees of small point sets by enumerating all topologies, and counts how often
  * annealing finds them too.
  *
- * Topologies are built by adding one terminal after the other to every segment there is. Any tree
- * of N terminals with Murray's gamma 3 and one terminal pressure has T >= q^2 M^1.5 / sqrt(N), M
- * the least sum of n^(2/3) l over its segments, n the terminals below, and q the radius unit
- * [METHODS 1.5]. M does not fall when a terminal is added, so a partial topology whose M is too
- * large already is cut off with all that it would become. M is bounded from below by forces in
- * balance along the tree, none stronger than its segment's weight: those of springs that stand in
- * for the weights (Weiszfeld's iteration), scaled down.
+ * The enumeration adds one terminal after the other to every existing segment. A tree of N
+ * terminals with Murray's gamma 3 and one terminal pressure has T >= q^2 M^1.5 / sqrt(N). M is the
+ * minimum sum of n^(2/3) l over the segments, n the number of terminals below a segment, l its
+ * length, and q the radius unit [METHODS 1.5]. M does not fall when a terminal is added. So if M of
+ * a partial topology is too large, the topology and all its completions are discarded. Balanced
+ * forces along the tree, each at most its segment's weight, bound M from below. They are the forces
+ * of springs that replace the weights (Weiszfeld's iteration), scaled down.
  *
- * What that leaves is held against the bound of `certify`, which holds for a partial topology as
- * well: a terminal less needs no more.
+ * The remaining topologies are tested with the bound of `certify`. This bound holds for a partial
+ * topology as well, because removing a terminal does not raise it.
  *
- * Radii are so thin (a flow of 1e-6 ml/min) that rules of length and clearance cost nothing; T of
- * every topology that is left is that of its refined geometry. */
+ * Radii are so thin (a flow of 1e-6 ml/min) that the rules of length and clearance cost nothing. T
+ * of every remaining topology is that of its refined geometry. */
 #include "grow/grow.h"
 
 #include <math.h>
@@ -361,9 +361,8 @@ int main(int argc, char **argv)
         if (points.n >= from && points.n <= to)
             solve(&points, &rows[points.shape[0] == 'b'][points.n]);
     fclose(file);
-    printf("| | N | topologies | sets | left by bounds, mean (most) | annealing has the best | "
-           "left to "
-           "prove, mean (most) |\n|---|---|---|---|---|---|---|\n");
+    printf("| | N | topologies | sets | remaining topologies, mean (max) | "
+           "sets where annealing has the best | open, mean (max) |\n|---|---|---|---|---|---|---|\n");
     for (int shape = 0; shape < 2; shape++)
         for (int n = from; n <= to; n++) {
             const Row *row = &rows[shape][n];

@@ -1,25 +1,27 @@
-/* Checks a grown tree from the text of its SWC file alone: this program shares no code with
+/* Checks a grown tree from the text of its SWC file alone. This program shares no code with
  * corcast.
  *
  *   check_tree TREE.swc
  *
- * Reads the header keys and the rows, derives flows and pressures again in long double, and exits
- * with status 1 and a sentence unless
- * - ids are different, parents come before children, every root has one child, and every other node
- *   two or less;
- * - r_p^gamma = r_l^gamma + r_r^gamma at every bifurcation, to 1e-12 of r_p^gamma, with the one
- *   gamma or, by gamma_by_radius, that at r_p, and the radius stays where there is one child;
- * - every terminal is at p_term, to 1e-9 of p_perf - p_term, when all inlets are at p_perf and the
- *   terminals share q_perf evenly, or as the flow_share lines say (Poiseuille, with the viscosity
- *   constant or by Pries 1994);
- * - every point lies in the domain (disc, ball, rect, box, ellipsoid), to 1e-9 mm; of a shell, and
- * of a polygon or a mask (PGM of 8 bits), whose file is looked for here, every segment, at 1 + 64
- * places and to 1e-6 of its size;
- * - in two dimensions, no two segments share a point other than a common node.
- * Prints what `corcast info --json` should say, the largest deviations, how many segments are
- * shorter than wide, and how many pairs without a common node overlap at their real thickness, as
- * "key value"
- * lines. */
+ * Reads the header keys and the rows, derives flows and pressures again in long double, and
+ * exits with status 1 and an error message unless all of these hold:
+ *
+ * - Ids are different, parents come before children, every root has one child, and every other
+ *   node has at most two.
+ * - r_p^gamma = r_l^gamma + r_r^gamma at every bifurcation, to 1e-12 of r_p^gamma, with the
+ *   header's gamma or, by gamma_by_radius, the gamma at r_p. The radius stays the same at a
+ *   node with one child.
+ * - Every terminal is at p_term, to 1e-9 of p_perf - p_term, if all inlets are at p_perf and
+ *   the terminals share q_perf evenly, or by the flow_share lines (Poiseuille's law, with
+ *   constant viscosity or by Pries 1994).
+ * - Every point lies in the domain (disc, ball, rect, box, ellipsoid), to 1e-9 mm. For a shell,
+ *   and for a polygon or a mask (PGM of 8 bits), whose file is expected in the current folder,
+ *   every segment lies in the domain, at 1 + 64 points and to 1e-6 of its size.
+ * - In two dimensions, no two segments share a point other than a common node.
+ *
+ * Prints the values that `corcast info --json` should have, the largest deviations, the number
+ * of segments that are shorter than wide, and the number of pairs without a common node that
+ * overlap at their real thickness, as "key value" lines. */
 #include <errno.h>
 #include <math.h>
 #include <stdarg.h>

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Scenes as an artist uses them: POV-Ray alone, values set on its command line and by #declare.
+# Scenes as an artist uses them: with POV-Ray alone, and values set on its command line and by
+# #declare.
 . "$(dirname "$0")/../lib.sh"
 
 MODELS=$(corcast models)

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What docs/POVRAY.md says of POV-Ray, asked of POV-Ray itself, on pictures of a few pixels.
+# The statements of docs/POVRAY.md, tested on POV-Ray itself with pictures of a few pixels.
 . "$(dirname "$0")/../lib.sh"
 
 command -v "${CORCAST_POVRAY:-povray}" >/dev/null || {

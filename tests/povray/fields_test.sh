@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Every field of a scene as POV-Ray reads it: where the tree lies, what each segment is, what its colors mean, and the
-# settings. The tree is that of tests/oracle/foreign_fields.py: no symmetry, two roots, ids with gaps, a missing value.
+# Every field of a scene as POV-Ray reads it: the position of the tree, the segments, the meaning of
+# the colors, and the settings. The tree is that of tests/oracle/foreign_fields.py: no symmetry, two
+# roots, ids with gaps, a missing value.
 . "$(dirname "$0")/../lib.sh"
 
 # draw SCENE ARGUMENT...: SCENE.png, and POV-Ray's words in SCENE.log.

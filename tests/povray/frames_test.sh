@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Colors that change with time, and turns: POV-Ray by its own clock draws what corcast draws frame by frame.
+# Colors that change with time, and turns: POV-Ray with its own clock draws the same frames as
+# corcast.
 . "$(dirname "$0")/../lib.sh"
 
 SIZE="--size 40x36"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# The matrix of models, trees, projections, shadows and antialiasing, in small; `make verify-all` runs it whole. Beside the
-# verdict of verify itself, the pictures are decoded by netpbm and compared here, so that an error of our own comparison
-# shows.
+# A small matrix of models, trees, projections, shadows and antialiasing; `make verify-all` runs the
+# whole matrix. Besides the verdict of `verify`, netpbm decodes the pictures and these tests compare
+# them, so that an error of corcast's own comparison is found.
 . "$(dirname "$0")/../lib.sh"
 
 # Slow: each of the models draws each of the trees, with POV-Ray, too.

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# `export T -o M.inc`: POV-Ray draws the mesh where `render` draws the surface that it is a mesh of.
+# `export T -o M.inc`: POV-Ray draws the mesh at the same pixels where `render` draws its surface.
 . "$(dirname "$0")/../lib.sh"
 
 # mesh_scene FILE OBJECT: a scene of mesh.inc, 100 mm high, seen from the front, in FILE.

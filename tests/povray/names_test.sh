@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Names that POV-Ray cannot take on its command line, and folders of such names, with the real POV-Ray.
+# File and folder names that POV-Ray cannot take on its command line, with the real POV-Ray.
 . "$(dirname "$0")/../lib.sh"
 
 ODD=$'José\'s "日本"; a&b\n$(x)-\xff'

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# povray and scene with the real POV-Ray.
+# `povray` and `scene` with the real POV-Ray.
 . "$(dirname "$0")/../lib.sh"
 
 scene() {

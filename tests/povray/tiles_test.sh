@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# verify where POV-Ray draws tiles, each from a scene of what its own rays can meet: the pixels are those of the whole scene.
+# `verify` in tiles: POV-Ray draws each tile from a scene of only the pieces that the tile's rays
+# can meet. The pixels must equal those of the whole scene.
 . "$(dirname "$0")/../lib.sh"
 
 command -v "${CORCAST_POVRAY:-povray}" >/dev/null || {

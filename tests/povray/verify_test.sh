@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# verify with the real POV-Ray, on small pictures; matrix_test.sh has models, projections, shadows and antialiasing.
-# Beside the verdict of verify itself, the 8-bit pictures are decoded by netpbm and counted here, so that an error of our
-# own comparison shows.
+# `verify` with the real POV-Ray, on small pictures. matrix_test.sh covers models, projections,
+# shadows and antialiasing. Besides the verdict of `verify`, netpbm decodes the 8-bit pictures and
+# these tests count differing pixels, so that an error of corcast's own comparison is found.
 . "$(dirname "$0")/../lib.sh"
 
 command -v "${CORCAST_POVRAY:-povray}" >/dev/null || {

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Density files: POV-Ray's light of a medium is the way through vessels.
+# Density files: the light of a POV-Ray medium equals the path length through vessels.
 . "$(dirname "$0")/../lib.sh"
 
 # Each pixel of the picture looks along a row of voxels: its light is the sum of their densities, as this reads them.

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Every command in a code block of the documents, as it stands but for the size of pictures. One that cannot run here
-# says so: its line ends in a comment that begins with "needs".
+# Runs every command in a code block of the documents unchanged, except for the size of pictures. A
+# command that cannot run here ends in a comment that begins with "needs".
 . "$(dirname "$0")/../lib.sh"
 
 # commands DOCUMENT: its code lines that run programs, in their order, the name of an INI block in front of it as

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Tachyon, which nobody here wrote, as witness of scenes that POV-Ray and corcast draw.
+# Tachyon, an independent renderer, as witness of scenes that POV-Ray and corcast draw.
 . "$(dirname "$0")/../lib.sh"
 
 needs_tachyon() {

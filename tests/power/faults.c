@@ -1,5 +1,5 @@
-/* The faults. Each changes what one of the two sides is given or what it has drawn; nothing of
- * corcast itself is changed, and the other side stays as it is. */
+/* The faults to plant. Each fault changes the input or the drawn picture of one of the two
+ * sides. It changes nothing in corcast itself, and the other side stays as it is. */
 #include "subject.h"
 
 #include <math.h>

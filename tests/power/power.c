@@ -1,10 +1,10 @@
-/* How much the judge sees: plants every fault in one side of a comparison and asks each rule; looks
- * for the smallest fault that each finds; and holds clean scenes, drawn in different ways that are
- * all right, against each other.
+/* Measures which faults the rules of `compare` find. Plants every fault in one side of a
+ * comparison and applies each rule, finds the smallest fault that each rule finds, and compares
+ * clean scenes that are drawn in different but equally correct ways.
  *
  *   power TREE.swc LOOK.ini        JSON on standard output
  *
- * The clean side is drawn by corcast, whose identity with POV-Ray `verify` proves. */
+ * corcast draws the clean side. `verify` proves that this picture is identical with POV-Ray's. */
 #include "subject.h"
 
 #include "stage/stage.h"

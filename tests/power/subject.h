@@ -1,4 +1,4 @@
-/* A scene and what corcast draws of it, for faults to be planted in. */
+/* A scene, and corcast's picture of it, in which faults are planted. */
 #ifndef CORCAST_POWER_SUBJECT_H
 #define CORCAST_POWER_SUBJECT_H
 

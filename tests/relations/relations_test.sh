@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Metamorphic relations: pairs of scenes that must give the same picture, mesh, voxels or numbers [relations.py].
+# Metamorphic relations: pairs of scenes that must give the same picture, mesh, voxels or numbers
+# [relations.py].
 . "$(dirname "$0")/../lib.sh"
 
 # holds RELATION...: the relations hold for pairs drawn from the seed 1; PAIRS and SEED set others.

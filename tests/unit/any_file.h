@@ -1,4 +1,4 @@
-/* Files of tests that are read as bytes. */
+/* Reads files of tests as bytes. */
 #ifndef CORCAST_TESTS_ANY_FILE_H
 #define CORCAST_TESTS_ANY_FILE_H
 

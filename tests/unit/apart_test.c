@@ -1,4 +1,5 @@
-/* The distance of the trees of a forest, held against all pairs of segments by another formula. */
+/* The distance between the trees of a forest, compared with all pairs of segments by another
+ * formula. */
 #include "unit.h"
 
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* Bands have the very bytes of the whole picture. */
+/* Bands have exactly the bytes of the whole picture. */
 #include "render/render.h"
 #include "unit.h"
 

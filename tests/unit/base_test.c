@@ -1,3 +1,4 @@
+/* The module base: numbers as text, texts, files, hashes, sorting, random numbers, threads. */
 #include "any_file.h"
 #include "base/base.h"
 #include "scratch.h"

@@ -1,4 +1,4 @@
-/* Slow: walks in small steps along each ray. */
+/* Slow: walks in small steps along each ray. Checks the proofs and the numbers of the blob. */
 /* The blob: its numbers (docs/METHODS.md section 2.6), and its first hits against a walk in small
  * steps over a field written down once more, from POV-Ray's definition. */
 #include "field/field.h"

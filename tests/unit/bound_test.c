@@ -1,4 +1,5 @@
-/* The bound of a tree's target: below all that was tried, reached by what is found. */
+/* The lower bound of a tree's target: every tree tried is above it, and the best tree found
+ * reaches it. */
 #include "grow/bound/bound_newton.h"
 #include "test_grow.h"
 #include "unit.h"

@@ -1,4 +1,4 @@
-/* The tree of boxes against every box by itself. */
+/* The bounding volume hierarchy, compared with a test of every box. */
 #include "geom/geom.h"
 #include "unit.h"
 

@@ -1,5 +1,5 @@
-/* How near and how far rays see, in every kind of geometry: POV-Ray's limits [docs/POVRAY.md,
- * sections 3, 4 and 9]. */
+/* The nearest and farthest hits that rays report, for every kind of geometry: POV-Ray's limits
+ * [docs/POVRAY.md, sections 3, 4 and 9]. */
 #include "render/cast/caster.h"
 #include "unit.h"
 

@@ -1,6 +1,6 @@
-/* What made B of A, of faults planted in a picture of seven shaded balls before a background of one
- * color, drawn by a formula wherever the camera is: the right words for each, and none for faults
- * that no sentence is about, for two at once, and for chance. */
+/* The cause that `compare` names for faults planted in a picture of seven shaded balls on a
+ * background of one color, drawn by a formula for any camera. Each fault must get the right
+ * words. Faults without a name, two faults at once, and chance must get none. */
 #include "compare/compare.h"
 #include "unit.h"
 #include <math.h>

@@ -1,4 +1,4 @@
-/* Slow: holds every cell against brute force. */
+/* Slow: compares every cell of the octree with brute force. */
 #include "field/field.h"
 #include "unit.h"
 

@@ -1,5 +1,5 @@
-/* The colors of a value, against the published tables (matplotlib's; Crameri's as GMT has them, in
- * 8 bits) and the sRGB standard (IEC 61966-2-1), worked out by hand. */
+/* The color of a value, compared with the published tables (matplotlib's; Crameri's as GMT has
+ * them, in 8 bits) and with the sRGB standard (IEC 61966-2-1), computed by hand. */
 #include "image/image.h"
 #include "unit.h"
 #include <math.h>

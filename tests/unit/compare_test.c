@@ -1,3 +1,4 @@
+/* Measures, classes and verdicts of `compare` on small pictures. */
 #include "compare/compare.h"
 #include "unit.h"
 #include <math.h>

@@ -1,4 +1,4 @@
-/* The containers of base, each against a plain way of doing the same. */
+/* The containers of base, each compared with a simple implementation of the same task. */
 #include "base/base.h"
 #include "unit.h"
 

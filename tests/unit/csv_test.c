@@ -1,3 +1,4 @@
+/* Trees in CSV: reading, writing, errors. */
 #include "any_file.h"
 #include "derive/derive.h"
 #include "treeio/treeio.h"

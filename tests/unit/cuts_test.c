@@ -1,3 +1,4 @@
+/* How far vessels are cut back where they meet. */
 #include "stage/cuts.h"
 #include "unit.h"
 

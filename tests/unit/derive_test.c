@@ -1,3 +1,4 @@
+/* Derived fields of trees, compared with values computed by hand. */
 #include "derive/derive.h"
 #include "unit.h"
 

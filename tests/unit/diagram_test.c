@@ -1,3 +1,4 @@
+/* The layout of diagrams of random forests. */
 #include "diagram/diagram.h"
 #include "unit.h"
 

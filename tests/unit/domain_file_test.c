@@ -1,4 +1,4 @@
-/* How domains are read: what the texts and files may look like, and the sentence each bad one gets.
+/* The readers of domains: the accepted texts and files, and the error message for each bad one.
  * Runs in a folder of its own; the NIfTI headers are laid out by hand. */
 #include "domain/domain.h"
 #include "unit.h"

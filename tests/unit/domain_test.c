@@ -1,6 +1,7 @@
-/* What every kind of domain owes: volume, uniform sampling, whole segments inside, inlet, bounds,
- * text. The cells of the sampling tests are cut here by formulas of their own, and segments are
- * held against points all along them. The files are written to a folder of the test's own. */
+/* Properties that every kind of domain must have: volume, uniform sampling, whole segments
+ * inside, inlet, bounds, text. The sampling tests cut their cells by formulas of their own, and
+ * segments are compared with points along them. Files are written to a folder of the test's
+ * own. */
 #include "domain/domain.h"
 #include "unit.h"
 

@@ -1,4 +1,4 @@
-/* Outlines, halos and fading, against what geometry says of them. */
+/* Outlines, halos and fading, compared with geometry. */
 #include "render/effect/effect.h"
 #include "unit.h"
 

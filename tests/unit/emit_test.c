@@ -1,3 +1,4 @@
+/* Writers of scenes, mainly for POV-Ray. */
 #include "emit/emit.h"
 #include "unit.h"
 

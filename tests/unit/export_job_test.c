@@ -1,3 +1,4 @@
+/* The operations `scene` and `export`, called without the command line. */
 #include "cli/commands.h"
 #include "job/export/export.h"
 #include "job/export/scene.h"

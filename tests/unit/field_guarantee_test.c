@@ -1,4 +1,5 @@
-/* Slow: sums the potential by brute force along each ray. */
+/* Slow: sums the potential by brute force along each ray. Checks that hits are first hits,
+ * within the guaranteed error. */
 /* The tile renderer against brute force: every ray's hit must be the exact first hit for a level
  * within EPSILON of e^-2. The brute force adds up every term above e^-32 in long double, straight
  * from the definition, and walks the ray in steps that the slope and a bound of the terms' second
@@ -44,7 +45,7 @@ static void keep_answer(const TracedTile *seen, Answer *answer)
         const TileHits *hits = seen->hits;
         answer->t[sample] = tile_hit_distance(seen, sample);
         answer->segment[sample] = hits->segment[sample];
-        answer->normal[sample] = viewpoint_to_world(
+        answer->normal[sample] = viewpoint_world_direction(
             &answer->eye, vec3((double)hits->normal[0][sample], (double)hits->normal[1][sample],
                                (double)hits->normal[2][sample]));
     }

@@ -1,5 +1,5 @@
-/* Segments for the tests of the potential: trees, joints, chains and worse, and the potential
- * itself once more, straight from its definition in long double. */
+/* Segments for the tests of the potential: trees, joints, chains and degenerate cases. Also the
+ * potential itself, computed from its definition in long double. */
 #ifndef CORCAST_TESTS_FIELD_SCENES_H
 #define CORCAST_TESTS_FIELD_SCENES_H
 

@@ -1,4 +1,5 @@
-/* Slow: sums the potential by brute force along each ray. */
+/* Slow: sums the potential by brute force along each ray. Checks shadows of isosurfaces and
+ * blobs. */
 /* Shadows of the potential by views of lights against brute force, in long double, of rays from
  * what a camera sees to a light. With C the level, such a ray must be dark if, once the potential
  * has fallen below 0.998 C - e, it reaches C + e, and lit if from there on it does not reach C - e,
@@ -74,9 +75,9 @@ static uint64_t facing(const Sight *sight, const Viewpoint *eye, const Light *li
     uint64_t bits = 0;
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
         Vec3 at = {sight->places.x[sample], sight->places.y[sample], sight->places.z[sample]};
-        Vec3 towards = light_way(light, viewpoint_point(eye, at)).towards;
+        Vec3 towards = light_direction(light, viewpoint_world_point(eye, at)).towards;
         if (sight->seen >> sample & 1 &&
-            vec3_dot(viewpoint_to_frame(eye, towards), sight->normal[sample]) > 1e-6)
+            vec3_dot(viewpoint_frame_direction(eye, towards), sight->normal[sample]) > 1e-6)
             bits |= (uint64_t)1 << sample;
     }
     return bits;
@@ -91,7 +92,7 @@ static void ask(const Geometry *geometry, const Light *light, const Viewpoint *e
     const LightBinsParams of = {.engine = &field_shadows, .drawing = &drawing, .frame = *eye};
     LightBins *bins;
     ShadowQueue *queue;
-    assert_true(field_shadows.can(geometry, &view, light));
+    assert_true(field_shadows.supports(geometry, &view, light));
     assert_int_equal(lightbins_new(&of, light, 1, &bins, NULL), STATUS_OK);
     RenderKernels kernels = (RenderKernels)(KERNELS_PORTABLE + kind);
     assert_int_equal(shadowqueue_new(bins, kernels, NULL, &queue, NULL), STATUS_OK);
@@ -165,8 +166,8 @@ static void judge_all(const Trial *trial, const Viewpoint *eye, const Sight *sig
     for (; wanted; wanted &= wanted - 1) {
         int sample = __builtin_ctzll(wanted);
         Vec3 at = {sight->places.x[sample], sight->places.y[sample], sight->places.z[sample]};
-        Vec3 point = viewpoint_point(eye, at);
-        Ray ray = {point, light_way(&trial->light, point).towards};
+        Vec3 point = viewpoint_world_point(eye, at);
+        Ray ray = {point, light_direction(&trial->light, point).towards};
         Verdict verdict =
             judge(trial->geometry, ray, trial->from_mm, trial->radius, trial->members, trial->near);
         bool dark = sight->shadowed[sample];

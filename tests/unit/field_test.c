@@ -1,4 +1,4 @@
-/* Slow: holds the potential against brute force. */
+/* Slow: compares the potential with brute force. */
 #include "unit.h"
 
 #include <stdint.h>

@@ -1,5 +1,5 @@
-/* Brute force along a ray of the potential, for tests of proofs; or of a blob, whose field is
- * multiplied by FIELD_LEVEL, so that it has the potential's level. */
+/* Brute force along a ray of the potential, for tests of proofs. For a blob, the field is
+ * multiplied by FIELD_LEVEL, so that it has the same level as the potential. */
 #ifndef CORCAST_TESTS_FIELD_WALK_H
 #define CORCAST_TESTS_FIELD_WALK_H
 

@@ -1,5 +1,5 @@
-/* Pictures of the potential: the same whatever the threads, the same as ray by ray in double
- * precision whatever the kernel, and right for scenes that are wrong. */
+/* Pictures of the potential: the same for any number of threads, the same as ray by ray in
+ * double precision for any kernel, and correct errors for invalid scenes. */
 #include "render/render.h"
 #include "unit.h"
 

@@ -1,3 +1,4 @@
+/* Color scales of fields: ranges, logarithms, values that cannot be drawn. */
 #include "stage/stage.h"
 #include "unit.h"
 
@@ -78,7 +79,7 @@ static void ranges(const FieldScaleParams *params, double low, double high, cons
     Appearance appearance = color(params, rising, 1, false, NULL);
     assert_true(fabs(appearance.scale.range[0] - low) < 1e-12 * fabs(high));
     assert_true(fabs(appearance.scale.range[1] - high) < 1e-12 * fabs(high));
-    assert_string_equal(appearance.said, said);
+    assert_string_equal(appearance.meaning, said);
     appearance_release(&appearance);
 }
 

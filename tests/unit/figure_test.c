@@ -1,4 +1,5 @@
-/* Pages: round numbers, legends, letters, and pixels that do not depend on the part drawn. */
+/* Pages: round numbers, legends, letters, and pixels that do not depend on the part that is
+ * drawn. */
 #include "figure/figure.h"
 #include "unit.h"
 

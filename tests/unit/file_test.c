@@ -1,3 +1,4 @@
+/* Files: complete or not written at all, permissions, links. */
 #include "any_file.h"
 #include "base/base.h"
 #include "cli/interrupt.h"

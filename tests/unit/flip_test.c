@@ -1,5 +1,5 @@
-/* The pairs and the values of NVIDIA's FLIP 1.6 come with the shared data; without it those tests
- * are skipped. */
+/* FLIP. The pairs and the values of NVIDIA's FLIP 1.6 are in the shared data; without it these
+ * tests are skipped. */
 #include "compare/compare.h"
 #include "compare/measures/perception.h"
 #include "unit.h"

@@ -1,6 +1,6 @@
-/* The meaning of foreign files: one small file for each rule of a format, and the tree that the
- * format's documentation or the program that writes it says it is. Expected rows are worked out by
- * hand. */
+/* The meaning of files of other programs: one small file for each rule of a format, and the
+ * tree that the format's documentation, or the program that writes it, defines. Expected rows
+ * are computed by hand. */
 #include "scratch.h"
 #include "treeio/treeio.h"
 #include "unit.h"

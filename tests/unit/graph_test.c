@@ -1,3 +1,4 @@
+/* How points and lines become a tree: merging, cutting, roots, directions. */
 #include "tree/tree.h"
 #include "unit.h"
 

@@ -1,4 +1,5 @@
-/* Growth in domains that are not convex: every segment stays in the tissue, not only its ends. */
+/* Growth in domains that are not convex: every whole segment stays in the tissue, not only its
+ * ends. */
 #include "grow/grow.h"
 #include "unit.h"
 

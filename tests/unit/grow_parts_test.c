@@ -1,5 +1,5 @@
-/* Parts of growth that whole trees show only dimly: the best place on a straight segment, quotas of
- * trees, sizes of territories. */
+/* Parts of growth that are hard to test in whole trees: the best position on a straight
+ * segment, quotas of trees, sizes of territories. */
 #include "grow/cco/fermat.h"
 #include "grow/forest.h"
 #include "grow/territory.h"

@@ -1,4 +1,4 @@
-/* Grown trees, held to their promises [tree_promises.h]. */
+/* Grown trees keep their promises [tree_promises.h]. */
 #include "grow/grow.h"
 #include "unit.h"
 

@@ -1,3 +1,4 @@
+/* Hits of rays with spheres, cylinders and boxes. */
 #include "geom/geom.h"
 #include "unit.h"
 

@@ -1,5 +1,5 @@
-/* Files made by other programs, tests/data/images, most of 7 x 5 pixels, and every format after
- * damage. */
+/* Pictures made by other programs, tests/data/images, most of 7 x 5 pixels, and damaged files
+ * of every format. */
 #include "any_file.h"
 #include "image/image.h"
 #include "unit.h"

@@ -1,3 +1,4 @@
+/* Reading pictures row by row. */
 #include "image/image.h"
 #include "unit.h"
 

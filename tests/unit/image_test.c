@@ -1,3 +1,4 @@
+/* Pictures, planes and their files: codes, gammas, errors. */
 #include "any_file.h"
 #include "image/image.h"
 #include "unit.h"

@@ -1,3 +1,4 @@
+/* Writing pictures row by row. */
 #include "any_file.h"
 #include "image/image.h"
 #include "image/png_fast.h"

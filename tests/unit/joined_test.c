@@ -1,3 +1,4 @@
+/* The model `joined`: cuts, joints, and the nodes that have none. */
 #include "stage/stage.h"
 #include "unit.h"
 

@@ -1,3 +1,4 @@
+/* Hits of rays with joints, compared with brute force. */
 #include "geom/geom.h"
 #include "unit.h"
 

@@ -1,4 +1,4 @@
-/* The looks of templates/looks: what their light does to vessels of all directions. */
+/* The looks of templates/looks: the light on vessels of all directions. */
 #include "stage/stage.h"
 #include "unit.h"
 

@@ -1,5 +1,6 @@
-/* How far a mesh and the surface that it stands for are apart, both ways, in local radii: rays of
- * the guaranteed search find the surface, the nearest triangle is looked for among all. */
+/* Measures the distance between a mesh and the surface that it represents, both ways, in local
+ * radii. Rays of the guaranteed search find the surface; the nearest triangle is found among
+ * all triangles. */
 #ifndef CORCAST_TESTS_MESH_DISTANCE_H
 #define CORCAST_TESTS_MESH_DISTANCE_H
 

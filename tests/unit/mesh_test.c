@@ -1,9 +1,10 @@
-/* The triangulation of vessels, stage by stage and whole; distances by the guaranteed search. */
+/* The triangulation of vessels, stage by stage and as a whole. The guaranteed search gives the
+ * distances. */
 #include "base/random.h"
 #include "mesh/lattice/octree.h"
 #include "mesh/proof/boxpairs.h"
 #include "mesh/proof/meshcheck.h"
-#include "mesh/zones/nearpairs.h"
+#include "mesh/regions/nearpairs.h"
 #include "stage/stage.h"
 #include "treeio/treeio.h"
 #include "unit.h"
@@ -66,7 +67,7 @@ static void release(Made *made)
 
 static void expect_sound(const Made *made, size_t trees)
 {
-    assert_true(meshreport_is_sound(&made->report));
+    assert_true(meshreport_is_valid(&made->report));
     assert_int_equal(made->report.components, trees);
     assert_int_equal(made->report.euler, 2 * trees);
 }
@@ -87,9 +88,9 @@ static void expect_near(const VesselTree *tree, const Made *made, double mean, d
             fail_msg("%s: mean %g, worst %g, %zu of %zu beyond 0.02",
                      way ? "surface to mesh" : "mesh to surface", found.mean, found.worst,
                      found.beyond, found.n);
-        if (found.worst > (way ? 1.5 : 1.05) * made->report.off.ratio + 1e-4)
+        if (found.worst > (way ? 1.5 : 1.05) * made->report.deviation.ratio + 1e-4)
             fail_msg("%s: worst %g, reported %g", way ? "surface to mesh" : "mesh to surface",
-                     found.worst, made->report.off.ratio);
+                     found.worst, made->report.deviation.ratio);
     }
     ruler_release(&ruler);
 }
@@ -159,7 +160,7 @@ static void a_tree_far_from_the_origin_is_as_near_its_surface(void **state)
     make(&sketch.tree, &made);
     expect_sound(&made, 1);
     expect_near(&sketch.tree, &made, 0.003, 0.03);
-    assert_true(made.report.off.ratio < 0.03);
+    assert_true(made.report.deviation.ratio < 0.03);
     release(&made);
 }
 
@@ -184,7 +185,7 @@ static void triangles_that_are_too_far_off_are_split(void **state)
         expect_sound(&made, 1);
         assert_int_equal(made.report.repeated, 0);
         expect_near(&sketch.tree, &made, 0.003, 0.025);
-        assert_true(made.report.off.ratio < 0.0225);
+        assert_true(made.report.deviation.ratio < 0.0225);
         release(&made);
     }
 }
@@ -237,13 +238,13 @@ static void a_zone_of_too_many_cells_is_refused(void **state)
     JunctionPlan plan;
     Octree tree = {0};
     Err err;
-    CellSize size = {.ratio = 0.5, .bending = 0.2, .most = 2385};
+    CellSize size = {.ratio = 0.5, .bending = 0.2, .max_cells = 2385};
     sketch_trunk(&sketch);
     cut(&sketch.tree, &junctions);
     assert_int_equal(junctionplan_make(&sketch.tree, &junctions, 0, &plan, NULL), STATUS_OK);
     assert_int_equal(octree_build(&tree, &plan, &size, &err), STATUS_INFEASIBLE);
-    assert_non_null(strstr(err.text, "its surface needs more than 2385 cells"));
-    size.most = 100000;
+    assert_non_null(strstr(err.text, "their surface needs more than 2385 cells"));
+    size.max_cells = 100000;
     assert_int_equal(octree_build(&tree, &plan, &size, NULL), STATUS_OK);
     octree_release(&tree);
     junctionplan_release(&plan);
@@ -432,7 +433,7 @@ static void no_triangle_lies_far_above_the_bottom_of_a_narrow_groove(void **stat
     sketch_to(&sketch, fork, vec3(-4.537, -1.422, 2.795), 0.1557);
     make(&sketch.tree, &made);
     expect_sound(&made, 1);
-    assert_true(made.report.off.ratio < 0.045);
+    assert_true(made.report.deviation.ratio < 0.045);
     release(&made);
 }
 
@@ -469,7 +470,7 @@ static double outside_round(const VesselTree *tree, Vec3 x)
 static void zones_in_which_triangles_cross_are_made_again(void **state)
 {
     (void)state;
-    const MeshParams params = {.tolerance = 0.02, .threads = 1, .reach_mm = 14745.6};
+    const MeshParams params = {.tolerance = 0.02, .threads = 1, .max_coordinate_mm = 14745.6};
     Sketch sketch;
     Made made;
     sketch_begin(&sketch, vec3(0, 0, 0));

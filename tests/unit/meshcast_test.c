@@ -1,4 +1,4 @@
-/* Rays and triangles: which is met first, where, and the normal that is seen there. */
+/* Rays and triangles: the first triangle that is hit, the position, and the visible normal. */
 #include "unit.h"
 
 #include "base/base.h"
@@ -36,7 +36,7 @@ static void a_normal_is_between_those_of_the_corners(void **state)
     RayHit hit;
     assert_true(testsearch_first(&cast, ray_through_parts(), 1e-4, INFINITY, &hit));
     assert_int_equal(hit.index, 7);
-    assert_true(fabs(hit.t - 3.885) <= 1e-6 && hit.leaves);
+    assert_true(fabs(hit.t - 3.885) <= 1e-6 && hit.from_inside);
     Vec3 expected = vec3_normalized(
         vec3(-0.6 * parts.x + 0.28 * parts.z, -0.6 * parts.y + 0.96 * parts.z, -0.4));
     assert_true(vec3_distance(hit.normal, expected) < 1e-6);

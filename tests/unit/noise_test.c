@@ -1,4 +1,4 @@
-/* The test of noisy pictures: how often it is wrong, and what it finds. */
+/* The test for noisy pictures: its rate of false alarms, and the differences that it finds. */
 #include "compare/compare.h"
 #include "unit.h"
 #include <math.h>

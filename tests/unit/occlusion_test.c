@@ -1,4 +1,4 @@
-/* How much of the sky is seen, against what geometry says. */
+/* Ambient visibility, compared with geometry. */
 #include "render/light/rayocclusion.h"
 #include "unit.h"
 

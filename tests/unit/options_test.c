@@ -1,4 +1,4 @@
-/* Options set by name say what the command line says, in the same sentences. */
+/* Options set by name have the effect of the command line, with the same error messages. */
 #include "cli/commands.h"
 #include "unit.h"
 #include <stdio.h>

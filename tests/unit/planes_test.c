@@ -1,4 +1,4 @@
-/* The planes of geometry that are drawn beside a picture do not change its colors. */
+/* Planes of geometry that are drawn beside a picture do not change its colors. */
 #include "render/render.h"
 #include "unit.h"
 

@@ -1,5 +1,5 @@
-/* What the potential does to vessels, in numbers (docs/METHODS.md), and what --potential graph
- * changes about it. */
+/* The effects of the potential on vessels, in numbers (docs/METHODS.md, section 2.4), and the
+ * differences with --potential graph. */
 #include "render/render.h"
 #include "stage/stage.h"
 #include "unit.h"

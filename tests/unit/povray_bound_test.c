@@ -1,5 +1,5 @@
-/* Which boxes POV-Ray looks into along a ray. That it does is asked of POV-Ray itself by
- * tests/povray/behaviour_test.sh. */
+/* The boxes that POV-Ray tests along a ray. tests/povray/behaviour_test.sh confirms this on
+ * POV-Ray itself. */
 #include "render/cast/povray_bound.h"
 #include "unit.h"
 

@@ -1,3 +1,4 @@
+/* corcast's repetition of POV-Ray's search for isosurfaces. */
 #include "render/render.h"
 #include "unit.h"
 

@@ -1,5 +1,5 @@
-/* When a POV-Ray is ended that has its picture. This program stands for POV-Ray when it is called
- * as such. */
+/* When corcast ends a POV-Ray that has finished its picture. This program stands in for POV-Ray
+ * when it is called under that name. */
 #include "oracle/povray.h"
 
 #include "unit.h"

@@ -1,4 +1,4 @@
-/* Faults that are planted in pictures, and three programs of which one may stand alone. */
+/* Faults planted in pictures, and three programs of which one may stand alone. */
 #include "compare/compare.h"
 #include "unit.h"
 #include <math.h>

@@ -1,3 +1,4 @@
+/* Progress messages on standard error. */
 #include "cli/screen.h"
 #include "unit.h"
 

@@ -1,6 +1,6 @@
-/* Pictures drawn tile by tile in single precision: those that single rays give in double
- * precision but for rounding, whatever the kernel, the same whatever the threads, and right
- * where single precision is not. */
+/* Pictures drawn tile by tile in single precision. They equal the pictures of single rays in
+ * double precision except for rounding, for any kernel and any number of threads, also where
+ * single precision is not sufficient. */
 #include "render/render.h"
 #include "unit.h"
 
@@ -634,7 +634,7 @@ static void boxes_hold_the_axes_of_vessels(void **state)
                 const Primitive *primitive = &staged.scene.geometry.primitives[i];
                 Vec3 span = vec3_sub(primitive->b, primitive->a);
                 Vec3 at = vec3_add_scaled(primitive->a, span, step / 8.0);
-                at = viewpoint_place(&view.eye, at);
+                at = viewpoint_frame_point(&view.eye, at);
                 double depth = view.eye.perspective ? at.z : 1;
                 double x = ((at.x / depth - view.left) / view.step_x + 0.5) / TILE_SIDE;
                 double y = ((at.y / depth - view.top) / view.step_y + 0.5) / TILE_SIDE;
@@ -690,9 +690,9 @@ static void of_many_thin_capsules_those_that_no_sample_sees_are_left_out(void **
         found += misses;
     }
     assert_true(missed > 5000 && found > 0.98 * missed);
-    view.stray = 0.5;
+    view.max_offset = 0.5;
     assert_false(rasterreach_misses(&view, vec3(1.05, -1.05, 0), vec3(0, 0, 1), 0.01));
-    view.stray = 0;
+    view.max_offset = 0;
     assert_true(rasterreach_misses(&view, vec3(1.05, -1.05, 0), vec3(0, 0, 1), 0.01));
 }
 

@@ -1,3 +1,4 @@
+/* The operation `render`, called without the command line. */
 #include "cli/commands.h"
 #include "job/picture/render.h"
 #include "options/templates.h"

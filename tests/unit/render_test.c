@@ -1,3 +1,4 @@
+/* Rendering of single rays and pixels: cameras, shading, antialiasing, shadows. */
 #include "render/render.h"
 #include "unit.h"
 

@@ -1,3 +1,4 @@
+/* Report pages: writing and merging. */
 #include "any_file.h"
 #include "compare/compare.h"
 #include "compare/report/check.h"

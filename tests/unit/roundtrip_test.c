@@ -1,5 +1,5 @@
-/* Every format of trees that is written, with every kind of tree: a file is read again, and holds
- * all that tree_format_losses does not name. */
+/* Every format of trees that corcast writes, with every kind of tree. A file that is read again
+ * has all data that tree_format_losses does not name. */
 #include "scratch.h"
 #include "treeio/treeio.h"
 #include "unit.h"

@@ -1,3 +1,4 @@
+/* Cameras, lights and grounds; parts and ends of meshes; the list of models. */
 #include "scene/scene.h"
 #include "unit.h"
 
@@ -110,10 +111,10 @@ static void the_way_to_a_light_is_straight(void **state)
 {
     (void)state;
     const Light point = {.location = {3, 4, 12}};
-    LightWay way = light_way(&point, vec3(0, 0, 0));
+    LightDirection way = light_direction(&point, vec3(0, 0, 0));
     assert_true(fabs(way.distance - 13) < 1e-14 && fabs(way.towards.y - 4.0 / 13) < 1e-15);
     const Light parallel = {.location = {3, 4, 12}, .target = {3, 4, 2}, .parallel = true};
-    way = light_way(&parallel, vec3(77, -5, 2.5));
+    way = light_direction(&parallel, vec3(77, -5, 2.5));
     assert_true(way.towards.z == 1 && way.distance == 9.5);
 }
 
@@ -128,7 +129,7 @@ static void the_points_of_an_area_light_span_its_sides(void **state)
         double x, y;
     } cases[] = {{0, -1.5, -3}, {3, 1.5, -3}, {5, -0.5, -1}, {15, 1.5, 3}};
     for (int i = 0; i < 4; i++) {
-        LightWay way = light_way_to_point(&area, cases[i].k, vec3(0, 0, 0));
+        LightDirection way = light_direction_to_point(&area, cases[i].k, vec3(0, 0, 0));
         Vec3 at = vec3_scale(way.towards, way.distance);
         assert_true(vec3_distance(at, vec3(cases[i].x, cases[i].y, 5)) < 1e-14);
     }

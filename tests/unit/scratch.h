@@ -1,5 +1,5 @@
-/* A folder for the files of a test program: `folder`, from before the first test to after the last.
- * The program's group fails if a test leaves a file in it. */
+/* A folder for the files of a test program. `folder` exists from before the first test until
+ * after the last. The program's group fails if a test leaves a file in the folder. */
 #ifndef CORCAST_TESTS_SCRATCH_H
 #define CORCAST_TESTS_SCRATCH_H
 

@@ -1,7 +1,8 @@
+/* How a tree and a look become geometry, appearance and view. */
 #include "stage/stage.h"
 #include "unit.h"
 
-#include "stage/places.h"
+#include "stage/coincidence.h"
 
 #include <stdint.h>
 #include <stdlib.h>
@@ -1041,7 +1042,7 @@ static void the_thickest_of_the_sisters_that_end_together_is_drawn(void **state)
     (void)state;
     enum { N = 900, CLUSTERS = 70 };
     Tree tree;
-    Places places;
+    Coincidence coincidence;
     Random random;
     random_seed(&random, 2385);
     assert_int_equal(tree_init(&tree, N, NULL), STATUS_OK);
@@ -1060,18 +1061,18 @@ static void the_thickest_of_the_sisters_that_end_together_is_drawn(void **state)
         else
             cover[i] = sister;
     }
-    assert_int_equal(places_find(&tree, &places, NULL), STATUS_OK);
+    assert_int_equal(coincidence_find(&tree, &coincidence, NULL), STATUS_OK);
     int covered = 0;
     for (int32_t i = 0; i < N; i++) {
         int32_t place = i;
         while (cover[place] >= 0)
             place = cover[place];
         covered += cover[i] >= 0;
-        assert_int_equal(places.place[i], place);
-        assert_int_equal(places.cover[i] >= 0, cover[i] >= 0);
+        assert_int_equal(coincidence.junction[i], place);
+        assert_int_equal(coincidence.twin[i] >= 0, cover[i] >= 0);
     }
     assert_true(covered > 100 && covered < N - 2 * CLUSTERS);
-    places_release(&places);
+    coincidence_release(&coincidence);
     tree_release(&tree);
 }
 

@@ -1,3 +1,4 @@
+/* Statistics of trees: vessels, orders, elements, ratios, bifurcations. */
 #include "derive/derive.h"
 #include "unit.h"
 

@@ -1,4 +1,4 @@
-/* The operation `study` for a caller that is not the command line. */
+/* The operation `study`, called without the command line. */
 #include "study/study.h"
 
 #include "unit.h"

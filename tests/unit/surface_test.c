@@ -1,3 +1,4 @@
+/* The implicit surface: value, gradient and first hits. */
 #include "field/field.h"
 #include "unit.h"
 
@@ -163,7 +164,7 @@ static void the_tolerance_grows_as_the_surface_turns_from_the_ray(void **state)
     const float square[] = {0, 0, 1, 0, 0, 1, 0, 0, 1}, askew[] = {0, 0, 1, 0, 0.8f, 0.6f, 0, 0, 1};
     const float depth[] = {41.5f, 41.5f, INFINITY};
     const uint32_t ids[] = {7, 3, 0};
-    const SurfaceSight seen = {depth, square, ids}, exact = {depth, askew, ids};
+    const SurfacePlanes seen = {depth, square, ids}, exact = {depth, askew, ids};
     float allowed[3];
     assert_int_equal(surface_tolerance(&geometry, &camera, ERF_EXACT, &seen, &exact, allowed, NULL),
                      STATUS_OK);
@@ -175,7 +176,7 @@ static void the_tolerance_grows_as_the_surface_turns_from_the_ray(void **state)
     assert_true(allowed[2] == 0);
 
     const float grazing[] = {0, 0, 1, 0, 0.999f, 0.0447f, 0, 0, 1};
-    const SurfaceSight past = {depth, grazing, ids};
+    const SurfacePlanes past = {depth, grazing, ids};
     assert_int_equal(surface_tolerance(&geometry, &camera, ERF_EXACT, &past, &seen, allowed, NULL),
                      STATUS_OK);
     assert_true(isinf(allowed[1]) && isfinite(allowed[0]));

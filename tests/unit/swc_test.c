@@ -1,3 +1,4 @@
+/* Trees in SWC: reading, writing, errors. */
 #include "any_file.h"
 #include "treeio/treeio.h"
 #include "unit.h"

@@ -1,4 +1,4 @@
-/* Trees that are grown for a test. */
+/* Grows trees for tests. */
 #ifndef CORCAST_TESTS_TEST_GROW_H
 #define CORCAST_TESTS_TEST_GROW_H
 

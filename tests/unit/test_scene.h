@@ -1,4 +1,4 @@
-/* What test scenes share: ids, and lights and finish with no number at its default. */
+/* Parts shared by test scenes: ids, and lights and a finish with no number at its default. */
 #ifndef CORCAST_TESTS_TEST_SCENE_H
 #define CORCAST_TESTS_TEST_SCENE_H
 

@@ -1,4 +1,4 @@
-/* Rays in one search structure with one workspace. */
+/* Casts rays in one search structure with one workspace. */
 #ifndef TEST_SEARCH_H
 #define TEST_SEARCH_H
 

@@ -1,4 +1,4 @@
-/* A tree as all three things that a picture is of, in the look's one color. */
+/* Stages a tree as geometry, appearance and view, in the one color of the look. */
 #ifndef CORCAST_TESTS_TEST_STAGE_H
 #define CORCAST_TESTS_TEST_STAGE_H
 

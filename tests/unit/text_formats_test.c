@@ -1,5 +1,5 @@
-/* Networks in text formats, each a few lines long; files of other programs are read in
- * tests/command/text_formats_test.sh. */
+/* Networks in text formats, each a few lines long. tests/command/text_formats_test.sh reads
+ * files of other programs. */
 #include "tree_files.h"
 
 #include <libdeflate.h>

@@ -1,4 +1,4 @@
-/* Vessels thinner than a pixel cover their own area of it. */
+/* Vessels thinner than a pixel cover their exact area. */
 #include "render/render.h"
 #include "render/thin/thinvessels.h"
 #include "unit.h"
@@ -44,14 +44,14 @@ static Primitive vessel(Vec3 a, Vec3 b, double radius_mm, uint32_t segment)
                        .segment = segment, .free_a = true, .free_b = true};
 }
 
-static Frame drawn(Scene *scene, bool cover, double least_px, int antialias, int threads)
+static Frame drawn(Scene *scene, bool cover, double min_width_px, int antialias, int threads)
 {
     Frame frame;
     const RenderParams params = {.method = RENDER_FASTEST,
                                  .threads = threads,
                                  .antialias = antialias,
                                  .cover_thin = cover,
-                                 .least_px = least_px,
+                                 .min_width_px = min_width_px,
                                  .want_color = true};
     assert_int_equal(render(scene, &params, &frame, NULL, &err), STATUS_OK);
     return frame;
@@ -66,11 +66,11 @@ static double ink(const Frame *frame)
     return sum;
 }
 
-static double ink_of(Primitive *primitives, size_t n, double least_px)
+static double ink_of(Primitive *primitives, size_t n, double min_width_px)
 {
     Scene scene;
     look_at_paper(&scene, primitives, n, SIDE);
-    Frame frame = drawn(&scene, true, least_px, 1, 1);
+    Frame frame = drawn(&scene, true, min_width_px, 1, 1);
     double sum = ink(&frame);
     frame_release(&frame);
     return sum;

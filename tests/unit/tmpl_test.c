@@ -1,3 +1,4 @@
+/* Expansion of templates, and their errors. */
 #include "tmpl/tmpl.h"
 #include "unit.h"
 #include <stdint.h>
@@ -56,7 +57,7 @@ static void names_the_line_of_a_name_without_a_value(void **state)
     (void)state;
     const TmplValue values[] = {{"seed", "7"}};
     refuses("one\n${seed}\n  ${sed}\n", values, 1,
-            "build/tmpl_test.txt:3: ${sed} is not a value this template is given");
+            "build/tmpl_test.txt:3: no value is given for ${sed}");
 }
 
 static void names_a_value_the_template_never_uses(void **state)
@@ -72,8 +73,7 @@ static void refuses_a_dollar_that_starts_nothing(void **state)
     static const char *const sources[] = {"\n$", "\n$5", "\n${}", "\n${a", "\n${9a}", "\n${a b}"};
     for (size_t i = 0; i < sizeof sources / sizeof *sources; i++)
         refuses(sources[i], NULL, 0,
-                "build/tmpl_test.txt:2: '$' starts neither ${name} nor $$, which stands for one "
-                "'$'");
+                "build/tmpl_test.txt:2: '$' must begin ${name} or $$, which gives one '$'");
 }
 
 static Status put_count(Text *out, void *context, Err *err)

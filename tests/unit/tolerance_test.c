@@ -1,4 +1,4 @@
-/* Tiers, the ledger of segments, float colors, and tolerances as files. */
+/* Tiers, the ledger of segments, float colors, and files of tolerances. */
 #include "compare/compare.h"
 #include "compare/pixels.h"
 #include "compare/rules/judge.h"

@@ -1,4 +1,4 @@
-/* What tests of tree formats share: files of a few lines in a folder of their own. */
+/* Files of a few lines in a folder of their own, for tests of tree formats. */
 #ifndef CORCAST_TESTS_TREE_FILES_H
 #define CORCAST_TESTS_TREE_FILES_H
 

@@ -1,5 +1,5 @@
-/* Operations on trees without a command line: what they make in memory is what their commands
- * write, and what they have to say goes to the caller. */
+/* Operations on trees without a command line: their results in memory equal the files of their
+ * commands, and their messages go to the caller. */
 #include "job/tree/certify.h"
 #include "job/tree/info.h"
 #include "job/tree/makers.h"

@@ -1,5 +1,5 @@
-/* What every grown or refined tree promises, held against coordinates and radii alone: nothing here
- * uses growth's own bookkeeping. */
+/* The promises of every grown or refined tree, checked from coordinates and radii alone.
+ * Nothing here uses the data structures of growth. */
 #ifndef CORCAST_TESTS_TREE_PROMISES_H
 #define CORCAST_TESTS_TREE_PROMISES_H
 

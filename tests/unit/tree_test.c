@@ -1,3 +1,4 @@
+/* Trees in memory: the builder, checks, pruning, metadata. */
 #include "tree/tree.h"
 #include "unit.h"
 

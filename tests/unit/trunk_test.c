@@ -1,4 +1,4 @@
-/* Growth on a trunk whose radii stay: held to Poiseuille's law by a walk of its own. */
+/* Growth on a trunk with fixed radii, checked against Poiseuille's law by a separate traversal. */
 #include "grow/grow.h"
 #include "unit.h"
 

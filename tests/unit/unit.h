@@ -1,4 +1,4 @@
-/* What every unit test needs: cmocka, the headers that cmocka.h wants before it, and must. */
+/* Included by every unit test: cmocka, the headers that cmocka.h requires before it, and must. */
 #ifndef CORCAST_TESTS_UNIT_H
 #define CORCAST_TESTS_UNIT_H
 

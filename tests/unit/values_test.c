@@ -1,3 +1,4 @@
+/* Values of segments in files of their own. */
 #include "derive/derive.h"
 #include "treeio/treeio.h"
 #include "unit.h"

@@ -1,3 +1,4 @@
+/* The viscosity law of Pries, compared with the published formula in decimal arithmetic. */
 #include "tree/tree.h"
 #include "unit.h"
 

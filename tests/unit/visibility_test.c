@@ -1,4 +1,5 @@
-/* Slow: holds occlusion against a thousand rays a place, in trees of 20,000 segments. */
+/* Slow: compares ambient visibility with a thousand rays per shading point, in trees of 20,000
+ * segments. */
 #include "render/render.h"
 #include "unit.h"
 

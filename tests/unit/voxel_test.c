@@ -1,3 +1,4 @@
+/* The filled fraction of voxels, labels, and grids. */
 #include "unit.h"
 #include "voxel/cover.h"
 #include "voxel/grid.h"
@@ -44,7 +45,7 @@ static double part_of_eighths(const Body *body, const VoxelCell *whole, int dept
     Vec3 half = vec3_scale(whole->half, 0.5);
     double part = 0;
     if (depth == 0)
-        return body_part(body, whole);
+        return body_fraction(body, whole);
     for (int i = 0; i < 8; i++) {
         Vec3 move = {i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y, i & 4 ? half.z : -half.z};
         VoxelCell eighth = {vec3_add(whole->center, move), half};
@@ -87,7 +88,7 @@ static void part_of_a_body_is_exactly_that_of_the_eighths_of_the_cell(void **sta
     int partly = 0;
     for (int i = 0; i < 4000; i++) {
         Body body = random_body(&random);
-        double part = body_part(&body, &cell), eighths = part_of_eighths(&body, &cell, 2);
+        double part = body_fraction(&body, &cell), eighths = part_of_eighths(&body, &cell, 2);
         double *off = &worst[body_is_ball(&body)];
         *off = fmax(*off, fabs(part - eighths));
         partly += part > 0.01 && part < 0.99;
@@ -105,7 +106,7 @@ static void part_of_a_body_is_that_of_points_in_it(void **state)
     double worst = 0;
     for (int i = 0; i < 60; i++) {
         Body body = random_body(&random);
-        worst = fmax(worst, fabs(body_part(&body, &cell) - part_by_points(&body, 1, 40)));
+        worst = fmax(worst, fabs(body_fraction(&body, &cell) - part_by_points(&body, 1, 40)));
     }
     assert_true(worst < 0.008);
 }
@@ -115,7 +116,7 @@ static void thin_vessel_in_a_cell_has_its_volume(void **state)
     (void)state;
     for (double radius = 1e-2; radius > 1e-5; radius /= 7) {
         Body tube = body_make(vec3(0.2, -0.3, 0.3), vec3(0.41, 0.13, 0.61), radius, 1);
-        double volume = body_part(&tube, &cell) * cell_volume(&cell);
+        double volume = body_fraction(&tube, &cell) * cell_volume(&cell);
         assert_true(fabs(volume / (acos(-1) * radius * radius * tube.length) - 1) < 1e-6);
     }
 }
@@ -139,7 +140,7 @@ static void part_of_a_union_is_that_of_points_in_it(void **state)
             bodies[k] = body_make(node, vec3_add_scaled(node, point(&random, 1), 4 * radius),
                                   radius * number(&random, 0.6, 1), k);
         double off =
-            cover_part(bodies, list, BODIES, &cell, &room) - part_by_points(bodies, BODIES, 40);
+            cover_fraction(bodies, list, BODIES, &cell, &room) - part_by_points(bodies, BODIES, 40);
         worst = fmax(worst, fabs(off));
         sum2 += off * off;
     }
@@ -155,7 +156,7 @@ static double union_of_eighths(const Body *bodies, const uint32_t *list, size_t 
     Vec3 half = vec3_scale(whole->half, 0.5);
     double part = 0;
     if (depth == 0)
-        return cover_part(bodies, list, n, whole, room);
+        return cover_fraction(bodies, list, n, whole, room);
     for (int i = 0; i < 8; i++) {
         Vec3 move = {i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y, i & 4 ? half.z : -half.z};
         VoxelCell eighth = {vec3_add(whole->center, move), half};
@@ -197,7 +198,7 @@ static void the_part_of_one_voxel_is_off_by_no_more_than_is_said(void **state)
         for (uint32_t k = 0; k < 3; k++)
             bodies[k] = body_make(node, vec3_add_scaled(node, direction(&random), 4 * radius),
                                   k ? radius * number(&random, 0.3, 1) : radius, k);
-        double off = cover_part(bodies, list, BODIES, &cube, &room) -
+        double off = cover_fraction(bodies, list, BODIES, &cube, &room) -
                      union_of_eighths(bodies, list, BODIES, &cube, 2, &room);
         worst = fmax(worst, fabs(off));
         sum2 += off * off;
@@ -219,7 +220,7 @@ static void thin_vessels_that_meet_in_a_cell_have_their_volume(void **state)
                           body_make(node, vec3(0.41, 0.13, 0.61), radius, 0),
                           body_make(node, node, radius, 0)};
         double length = bodies[0].length + bodies[1].length;
-        double volume = cover_part(bodies, list, 3, &cell, &room) * cell_volume(&cell);
+        double volume = cover_fraction(bodies, list, 3, &cell, &room) * cell_volume(&cell);
         assert_true(fabs(volume / (acos(-1) * radius * radius * length) - 1) < 2 * radius);
     }
     cover_release(&room);
@@ -247,7 +248,7 @@ static void thin_vessels_in_a_large_cell_are_found_at_every_depth(void **state)
             bodies[k] = body_make(node, vec3_add_scaled(node, way, 0.2), radius, k);
             tubes += acos(-1) * radius * radius * bodies[k].length;
         }
-        double part = cover_part(bodies, list, BODIES, &cell, &room) * cell_volume(&cell);
+        double part = cover_fraction(bodies, list, BODIES, &cell, &room) * cell_volume(&cell);
         /* Three tubes overlap about their node by no more than four balls. */
         double overlap = 4 * 4.0 / 3 * acos(-1) * radius * radius * radius;
         if (part > 1.01 * tubes + overlap || part < 0.99 * tubes - overlap)

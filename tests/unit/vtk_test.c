@@ -1,5 +1,5 @@
-/* Networks in VTK's two kinds of files, each a few bytes long. VTK's own files, and files of other
- * programs, are read in tests/command/vtk_test.sh. */
+/* Networks in VTK's two kinds of files, each a few bytes long. tests/command/vtk_test.sh reads
+ * VTK's own files and files of other programs. */
 #include "scratch.h"
 #include "treeio/treeio.h"
 #include "unit.h"

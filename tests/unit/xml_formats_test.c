@@ -1,5 +1,5 @@
-/* Networks in XML, each a few lines long; files of other programs are read in
- * tests/command/xml_formats_test.sh. */
+/* Networks in XML, each a few lines long. tests/command/xml_formats_test.sh reads files of
+ * other programs. */
 #include "tree_files.h"
 
 #include <math.h>

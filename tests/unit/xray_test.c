@@ -1,4 +1,4 @@
-/* The length of vessel along rays, against places taken one by one, and against volumes. */
+/* The length of vessel along rays, compared with samples along the ray and with volumes. */
 #include "render/xray/xray.h"
 #include "unit.h"
 

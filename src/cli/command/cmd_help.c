@@ -28,9 +28,9 @@ static const Option own[] = {
      SETS(CHOICE, HelpOptions, form),
      .choices = forms,
      .argument = "FORM",
-     .help = "text to read, a page for man, the reference of all commands in Markdown, completion "
-             "for a shell, the names of the commands, or all that is known of commands and "
-             "options as JSON, for programs"},
+     .help = "format of the help: text, man (a manual page), markdown (the reference of all "
+             "commands), bash, zsh or fish (a completion script), names (names of the commands), "
+             "json (all commands and options, for programs)"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);
@@ -93,7 +93,7 @@ Status run_help(void *options, Parsed *parsed, Err *err)
 
 const Command command_help = {
     .name = "help",
-    .summary = "tell what commands there are, and the options of one",
+    .summary = "show all commands, or the options of one command",
     .operands = "[COMMAND]",
     .examples = "  corcast help grow\n"
                 "  corcast help grow --as man | man -l -\n"

@@ -110,7 +110,8 @@ static const Option models_own[] = {
     {.name = "of",
      SETS(CHOICE, ModelsOptions, of),
      .choices = model_kinds,
-     .help = "models made of nothing else"},
+     .help = "list only some models: anything (all models), primitives (only models made of "
+             "cylinders, spheres and joints), field (only models made of a potential field)"},
 };
 
 static const OptionTable models_table = OPTION_TABLE(models_own);
@@ -142,18 +143,28 @@ Status run_list(void *options, Parsed *parsed, Err *err)
 }
 
 const Command command_models = {.name = "models",
-                                .summary = "the values of --model",
+                                .summary = "list the vessel geometries, the values of --model",
                                 .operands = "",
                                 .size = sizeof(ModelsOptions),
                                 .tables = {{&models_table, 0}}};
 const Command command_fields = {
-    .name = "fields", .summary = "the values of --color-by, with their units", .operands = ""};
-const Command command_looks = {.name = "looks", .summary = "the values of --look", .operands = ""};
-const Command command_presets = {
-    .name = "presets", .summary = "the values of --preset", .operands = ""};
+    .name = "fields",
+    .summary = "list the quantities that --color-by can show, with their units",
+    .operands = ""};
+const Command command_looks = {
+    .name = "looks",
+    .summary = "list the looks (colors, finish and lights), the values of --look",
+    .operands = ""};
+const Command command_presets = {.name = "presets",
+                                 .summary = "list the publishers' formats, the values of --preset",
+                                 .operands = ""};
 const Command command_domains = {
-    .name = "domains", .summary = "the shapes of --domain", .operands = ""};
-const Command command_formats = {
-    .name = "formats", .summary = "the formats of tree files", .operands = ""};
+    .name = "domains", .summary = "list the tissue shapes, the values of --domain", .operands = ""};
+const Command command_formats = {.name = "formats",
+                                 .summary =
+                                     "list the file formats of trees, the values of --input-format",
+                                 .operands = ""};
 const Command command_morphometries = {
-    .name = "morphometries", .summary = "the values of --morphometry", .operands = ""};
+    .name = "morphometries",
+    .summary = "list the published data sets, the values of --morphometry",
+    .operands = ""};

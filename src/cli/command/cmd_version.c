@@ -96,6 +96,6 @@ Status run_version(void *options, Parsed *parsed, Err *err)
 
 const Command command_version = {
     .name = "version",
-    .summary = "tell versions: of corcast, compiler, libraries, POV-Ray, OpenSCAD",
+    .summary = "print the versions of corcast, its compiler and libraries, POV-Ray and OpenSCAD",
     .operands = "",
 };

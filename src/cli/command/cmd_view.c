@@ -426,14 +426,14 @@ static const Option own[] = {
     {.name = "save",
      SETS(OUTPUT, ViewOptions, recipe),
      .aside = true,
-     .help = "the recipe that key w writes"},
+     .help = "recipe file that the key w writes"},
     {.name = "turntable",
      SETS(WHOLE, ViewOptions, turn),
      FROM_TO(1, 100000),
      .group = GROUP_RUN,
      .aside = true,
      .otherwise = "",
-     .help = "turn once around in N pictures of every pixel, say how many a second, and quit"},
+     .help = "draw N full-quality images of one turn, print the images per second, and quit"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);
@@ -468,18 +468,18 @@ Status run_view(void *options, Parsed *parsed, Err *err)
 
 const Command command_view = {
     .name = "view",
-    .summary = "look at a tree in a window",
+    .summary = "show a tree in an interactive window",
     .operands = "T.swc",
     .examples = "  corcast view tree.swc\n"
                 "  corcast view tree.swc --model isosurface --color-by pressure --shadows on\n"
-                "in the window:\n"
-                "  drag turns, drag with the right button or shift moves, the wheel zooms\n"
-                "  1 ... 6    cylinders, joined, rounded, isosurface, blob, mesh\n"
-                "  c          the next field that colors the vessels, or none\n"
-                "  p s a      projection, shadows, ambient occlusion\n"
-                "  r          back to where the camera was\n"
-                "  o          print the options that draw this picture\n"
-                "  w          write them as a recipe, for --recipe\n"
+                "\nin the window:\n"
+                "  drag to rotate; drag with the right button or shift to move; scroll to zoom\n"
+                "  1 ... 6    vessel geometry: cylinders, joined, rounded, isosurface, blob, mesh\n"
+                "  c          color by the next field, or by none\n"
+                "  p s a      switch projection, shadows, ambient occlusion\n"
+                "  r          reset the camera\n"
+                "  o          print the options that reproduce this view\n"
+                "  w          write these options as a recipe, for --recipe\n"
                 "  q, Escape  quit\n",
     .min_operands = 1,
     .max_operands = 1,

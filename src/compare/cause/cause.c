@@ -68,9 +68,21 @@ static void add_turned(const Picture *a, const Picture *b, const Turn *turn, int
     }
 }
 
+/* Returns true if pixel (x, y) has another color than pixel (0, 0), which usually shows the
+ * background. */
+static bool is_foreground(const Picture *picture, int x, int y)
+{
+    for (int c = 0; c < picture->channels; c++)
+        if (code_at(picture, x, y, c) != code_at(picture, 0, 0, c))
+            return true;
+    return false;
+}
+
+/* Returns true if the turn leaves at most 2 % of the differences, in all pixels and in those of the
+ * foreground. A large background of one color can hide that the foreground still differs. */
 static bool is_turned(const Picture *a, const Picture *b, const Samples *samples, const Turn *turn)
 {
-    double few[2] = {0}, all[2] = {0};
+    double few[2] = {0}, all[2] = {0}, foreground[2] = {0};
     if (a->channels == 1 && turn->from[0] != 0)
         return false;
     for (int i = 0; i < samples->n; i++)
@@ -78,9 +90,12 @@ static bool is_turned(const Picture *a, const Picture *b, const Samples *samples
     if (!leaves(few[0], few[1], 0.05))
         return false;
     for (int y = 0; y < a->height; y++)
-        for (int x = 0; x < a->width; x++)
+        for (int x = 0; x < a->width; x++) {
             add_turned(a, b, turn, x, y, all);
-    return leaves(all[0], all[1], 0.02);
+            if (is_foreground(b, x, y))
+                add_turned(a, b, turn, x, y, foreground);
+        }
+    return leaves(all[0], all[1], 0.02) && foreground[1] <= 0.02 * foreground[0];
 }
 
 static void find_turn(const Picture *a, const Picture *b, const Samples *samples, Sentence *out)

@@ -482,6 +482,26 @@ static bool is_moved_everywhere(const Patches *patches, double dx, double dy)
     return is_everywhere(patches, &expected);
 }
 
+/* Returns true if a part of the picture was not moved, however few pixels of it show something:
+ * more than 0.5 % of the pixels that a displacement by (dx, dy) changes clearly are equal in A and
+ * B. A change is clear when A differs by 48 codes, summed over the channels, over one step:
+ * rounding hides smaller changes where the displacement is a tenth of a pixel. */
+static bool has_unmoved_part(const Patches *patches, double dx, double dy)
+{
+    const Picture *a = patches->a, *b = patches->b;
+    const double unit = fmin(fmax(fabs(dx), fabs(dy)), 1);
+    const int u = (int)lround(dx / unit), v = (int)lround(dy / unit),
+              clear = a->bits == 8 ? 48 : 48 * 257;
+    size_t moved = 0, equal = 0;
+    for (int y = 0; y < a->height; y++)
+        for (int x = 0; x < a->width; x++)
+            if (pixels_apart(a, x, y, a, x - u, y - v) >= clear) {
+                moved++;
+                equal += pixels_apart(a, x, y, b, x, y) == 0;
+            }
+    return (double)equal > 0.005 * (double)moved;
+}
+
 /* A blur leaves slopes as they are, and edges not. */
 static bool is_blurred_everywhere(const Patches *patches)
 {
@@ -529,6 +549,7 @@ static bool is_all(Patches *patches, const Warp *what)
                keeps_flat_parts(patches, 0, 0, (int)ceil(3 * what->sigma) + 1);
     return is_one_displacement(patches) && keeps_tones(patches, what) &&
            is_moved_everywhere(patches, what->dx, what->dy) &&
+           !has_unmoved_part(patches, what->dx, what->dy) &&
            keeps_flat_parts(patches, (int)lround(what->dx), (int)lround(what->dy), 2);
 }
 

@@ -14,55 +14,60 @@ static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, ExportOptions, output),
      .argument = "M.stl",
-     .help = "the mesh, curves, a volume as V.nii.gz, or P.html, a page to turn the tree in; its "
-             "extension chooses the format"},
+     .help = "output file; its extension selects the format: a mesh (M.stl), curves, a volume of "
+             "voxels (V.nii.gz) or an interactive web page (P.html)"},
     {.name = "model",
      SETS(CHOICE, ExportOptions, meshing.body),
      .choices = vessel_body_names,
      .group = GROUP_VESSELS,
      .when = WHEN(MESH) | OF_SURFACE,
-     .help = "the wall: vessels that blend where they meet, or cylinders and balls"},
+     .help = "surface of the vessels: isosurface (blends vessels smoothly where they meet), "
+             "rounded (cylinders with spheres at their ends)"},
     {.name = "tolerance",
      SETS(NUMBER, ExportOptions, meshing.tolerance),
      .group = GROUP_VESSELS,
      .range = &tolerance_range,
      .when = WHEN(MESH) | OF_SURFACE,
-     .help = "how far triangles may be off the surface, over the local radius"},
+     .help = "maximum distance of the triangles from the exact surface, as a fraction of the local "
+             "radius"},
     {.name = "lod",
      SETS(NUMBER, ExportOptions, meshing.lod),
      .group = GROUP_VESSELS,
      FROM_TO(RANGE_ABOVE_0, 1),
      .when = WHEN(MESH) | OF_SURFACE,
-     .help = "level of detail: make about this part of the triangles, farther off the surface"},
+     .help = "level of detail: keep about this fraction of the triangles; smaller values move them "
+             "farther from the exact surface"},
     {.name = "tube-edge",
      SETS(NUMBER, ExportOptions, meshing.tube_edge),
      .group = GROUP_VESSELS,
      FROM_TO(0.05, 1e6),
      .otherwise = "as long as the tube",
      .when = WHEN(MESH) | OF_SURFACE,
-     .help = "how long triangles of straight tubes are along them, over the radius; for solvers"},
+     .help = "maximum length of a triangle along a straight tube, in units of the radius; set it "
+             "for flow solvers"},
     {.name = "prune-radius",
      SETS(NUMBER, ExportOptions, prune_radius_mm),
      .group = GROUP_VESSELS,
      .range = &prune_range,
      .unit = "mm",
      .otherwise = "",
-     .help = "drop segments thinner than this"},
+     .help = "drop segments whose radius is below MM"},
     {.name = "part-overlaps",
      SETS(FLAG, ExportOptions, meshing.part_overlaps),
      .group = GROUP_VESSELS,
      .when = WHEN(MESH) | OF_SURFACE,
-     .help = "thin vessels that overlap others that they do not belong with"},
+     .help = "shrink unconnected vessels that overlap until they no longer touch"},
     {.name = "parts",
      SETS(FLAG, ExportOptions, parts),
      .group = GROUP_VESSELS,
      .when = OF_SURFACE,
-     .help = "of an STL: the wall and each end as a named solid, as text; a VTP has them always"},
+     .help = "STL only: write the wall and each vessel end as a named solid, as text; a VTP file "
+             "always has them"},
     {.name = "lattice",
      SETS(FLAG, ExportOptions, lattice),
      .group = GROUP_VESSELS,
      .when = OF_SURFACE,
-     .help = "of a 3MF: a beam for each segment, exactly, and no mesh but a preview"},
+     .help = "3MF only: write one exact beam per segment, and a mesh as a preview only"},
     {.name = "wall",
      SETS(NUMBER, ExportOptions, wall_mm),
      .group = GROUP_VESSELS,
@@ -70,21 +75,26 @@ static const Option own[] = {
      .unit = "mm",
      .otherwise = "",
      .when = WHEN(NAMED_PARTS) | OF_SURFACE,
-     .help = "of named parts: a second surface so far about the vessels, which are its lumen"},
+     .help = "thickness of the wall: add a second, outer surface at this distance from the vessel "
+             "surface; files with named parts only (VTP, or STL with --parts)"},
     {.name = "print",
      SETS(TEXT, ExportOptions, print),
      .argument = "KEY=VALUE,...",
      .group = GROUP_VESSELS,
      .otherwise = "",
      .when = WHEN(MESH) | OF_SURFACE,
-     .help = "make it fit for a printer: scale=N, min-diameter=MM, thin=clamp|prune, nozzle=MM, "
-             "wall=MM or as 0.2r, base, block=box|cylinder, margin=MM, ports, bed=AxBxC"},
+     .help = "prepare the model for a 3D printer: scale=N (enlargement), min-diameter=MM (thinnest "
+             "vessel), thin=clamp|prune (thicken or drop thinner vessels), nozzle=MM, wall=MM or "
+             "wall=0.2r (wall thickness, absolute or in units of the radius), base (plate and "
+             "support pins), block=box|cylinder (channels in a block), margin=MM (of the block), "
+             "ports (openings in the block), bed=AxBxC (printer's bed, mm)"},
     {.name = "look",
      SETS(LOOKUP, ExportOptions, meshing.look),
      .group = GROUP_COLOR,
      .list = "looks",
      .when = WHEN(COLORS),
-     .help = "color and finish: a file of templates/looks, or a path"},
+     .help = "color and finish of the surface: the name of a look, or the path of a file of your "
+             "own (with a '/')"},
 };
 
 static void set_defaults(void *options)
@@ -275,7 +285,7 @@ static const OptionTable own_table = {OPTION_ROWS(own), .settle = settle, .unmet
 
 const Command command_export = {
     .name = "export",
-    .summary = "write the vessels as a mesh, curves, voxels, or a page to turn them in",
+    .summary = "write the vessels as a mesh, curves, voxels or an interactive web page",
     .operands = "T.swc -o M.stl",
     .examples = "  corcast export tree.swc -o tree.stl\n"
                 "  corcast export tree.swc --color-by strahler -o tree.glb\n"

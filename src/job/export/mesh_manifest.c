@@ -19,29 +19,32 @@ void mesh_say_print(const MeshResult *made, const Talk *talk)
         talk_note(talk, "%zu thin segment%s pruned", made->of.pruned,
                   made->of.pruned == 1 ? " is" : "s are");
     if (changes->below_two)
-        talk_note(talk, "%zu segment%s thinner than two widths of the nozzle", changes->below_two,
+        talk_note(talk, "%zu segment%s thinner than twice the nozzle", changes->below_two,
                   changes->below_two == 1 ? " is" : "s are");
     if (report->has_closest)
-        talk_note(talk,
-                  "vessels that do not belong together are %.3g mm apart at the least, "
-                  "segments %u and %u",
-                  report->closest.gap_mm, ids[report->closest.segments[0]],
-                  ids[report->closest.segments[1]]);
+        talk_note(
+            talk,
+            "the smallest gap between unconnected vessels is %.3g mm, between segments %u and "
+            "%u",
+            report->closest.gap_mm, ids[report->closest.segments[0]],
+            ids[report->closest.segments[1]]);
     if (report->cavities)
-        talk_note(talk, "%zu trees are closed cavities, which cannot drain", report->cavities);
-    if (report->n_longer)
-        talk_note(talk, "%zu ends are lengthened, so that they can be cut off flat",
-                  report->n_longer);
-    if (settings->params.base.is_there)
-        talk_note(talk,
-                  "%zu pins hold it on the base; %zu places hang free, as vessels or open "
-                  "ends are in the way",
-                  report->pins, report->hanging);
-    if (settings->params.block.is_there)
-        talk_note(talk, "the block has %zu ports; %zu ends are closed in it", report->openings,
+        talk_note(talk, "%zu lumens have no opening, so resin or powder cannot drain",
+                  report->cavities);
+    if (report->n_lengthened)
+        talk_note(talk, "%zu ends are lengthened to make room for a flat cut",
+                  report->n_lengthened);
+    if (settings->params.base.is_wanted)
+        talk_note(
+            talk,
+            "%zu support pins stand on the base; %zu overhangs could not be supported, because "
+            "vessels or open ends are in the way",
+            report->pins, report->unsupported);
+    if (settings->params.block.is_wanted)
+        talk_note(talk, "the block has %zu ports; %zu vessel ends have none", report->openings,
                   report->n_closed);
     if (print_has_wall(&settings->params))
-        talk_note(talk, "the wall has %zu openings; %zu ends are closed", report->openings,
+        talk_note(talk, "the wall has %zu openings; %zu vessel ends are closed", report->openings,
                   report->n_closed);
     talk_note(talk, "the print measures %.4g x %.4g x %.4g mm", size[0], size[1], size[2]);
 }
@@ -92,12 +95,12 @@ static json_t *print_json(const MeshResult *made)
         {"nozzle_mm", json_number(settings->nozzle_mm)},
         {"segments_below_two_nozzles", json_count(changes->below_two)},
         {"thinnest_diameter_mm", json_number(changes->thinnest_mm)},
-        {"segments_lengthened", segment_ids(vessels, report->longer, report->n_longer)},
+        {"segments_lengthened", segment_ids(vessels, report->lengthened, report->n_lengthened)},
         {"openings", json_count(report->openings)},
         {"closed_ends", segment_ids(vessels, report->closed, report->n_closed)},
         {"lumen_mm3", json_number(report->lumen_mm3)},
         {"pins", json_count(report->pins)},
-        {"hanging", json_count(report->hanging)},
+        {"hanging", json_count(report->unsupported)},
         {"closed_cavities", json_count(report->cavities)},
         {"rings", json_count(report->rings)},
         {"least_gap_mm", report->has_closest ? json_number(report->closest.gap_mm) : json_null()},
@@ -156,8 +159,8 @@ json_t *mesh_manifest(const MeshResult *made)
         {"points", json_count(mesh->n_points)},
         {"volume_mm3", json_number(report->volume_mm3)},
         {"tolerance", json_number(report->tolerance)},
-        {"max_distance_mm", json_number(report->off.mm)},
-        {"max_distance_over_radius", json_number(report->off.ratio)},
+        {"max_distance_mm", json_number(report->deviation.mm)},
+        {"max_distance_over_radius", json_number(report->deviation.ratio)},
     };
     json_t *all = json_with_members(json_object(), members, sizeof members / sizeof *members);
     return made->print ? json_with(all, "print", print_json(made)) : all;

@@ -81,9 +81,11 @@ static Status build_mesh(void *job, Progress *progress, Err *err)
     if (made->print)
         return print_vessels(work, err);
     if (work->part_overlaps)
-        TRY(vesseltree_part(vessels, &work->params, &made->thinned.at, &made->thinned.n, err));
+        TRY(vesseltree_thin_overlaps(vessels, &work->params, &made->thinned.at, &made->thinned.n,
+                                     err));
     if (made->emitter->has_parts && vessels->body == BODY_POTENTIAL)
-        TRY(vesseltree_free_ends(vessels, &work->params, &made->longer.at, &made->longer.n, err));
+        TRY(vesseltree_lengthen_ends(vessels, &work->params, &made->longer.at, &made->longer.n,
+                                     err));
     return vesselmesh_build(vessels, &work->params, &made->mesh, &made->report, err);
 }
 
@@ -92,22 +94,25 @@ static void say_result(const MeshResult *made, const Talk *talk)
     const MeshReport *report = &made->report;
     const size_t n_thinned = made->thinned.n, n_longer = made->longer.n;
     if (n_thinned)
-        talk_warn(talk,
-                  "%zu segment%s thinned, because of an overlap with others that do not belong "
-                  "there, or blend with such",
-                  n_thinned, n_thinned == 1 ? " is" : "s are");
+        talk_warn(
+            talk,
+            "%zu segment%s thinned, so that unconnected vessels no longer overlap; this includes "
+            "segments that blend with them",
+            n_thinned, n_thinned == 1 ? " is" : "s are");
     if (n_longer)
-        talk_warn(talk, "%zu end%s lengthened to be cut off flat", n_longer,
+        talk_warn(talk, "%zu end%s lengthened to make room for a flat cut", n_longer,
                   n_longer == 1 ? " is" : "s are");
     if (report->n_enclosed)
-        talk_warn(talk, "%zu segments lie wholly within others and have no wall",
+        talk_warn(talk, "%zu segments are inside other vessels and have no surface",
                   report->n_enclosed);
     if (report->n_round)
-        talk_note(talk, "%zu ends are round, because other vessels are in the way of a flat one",
-                  report->n_round);
+        talk_note(talk,
+                  "%zu end%s could not be cut flat because other vessels are too close; %s rounded",
+                  report->n_round, report->n_round == 1 ? "" : "s",
+                  report->n_round == 1 ? "it is" : "they are");
     if (report->n_near)
-        talk_note(talk, "%zu pairs of vessels that do not belong together come near",
-                  report->n_near);
+        talk_note(talk, "%zu pair%s of unconnected vessels almost touch", report->n_near,
+                  report->n_near == 1 ? "" : "s");
     talk_note(talk, "%zu triangles, %.6g mm^3", made->mesh.n_triangles, report->volume_mm3);
     if (made->print && !made->print->params.lids)
         mesh_say_print(made, talk);

@@ -75,8 +75,8 @@ static bool read_block(const PrintKey *key, const char *value, PrintSettings *ou
     PrintBlock *block = &out->params.block;
     size_t length = strcspn(value, ":");
     block->is_round = length == 8 && !strncmp(value, "cylinder", length);
-    block->is_there = block->is_round || (length == 3 && !strncmp(value, "box", length));
-    return block->is_there &&
+    block->is_wanted = block->is_round || (length == 3 && !strncmp(value, "box", length));
+    return block->is_wanted &&
            (!value[length] ||
             read_lengths(&value[length + 1], block->is_round ? 2 : 3, block->size_mm));
 }
@@ -100,7 +100,7 @@ static bool read_base(const PrintKey *key, const char *value, PrintSettings *out
 {
     (void)key;
     PrintBase *base = &out->params.base;
-    base->is_there = true;
+    base->is_wanted = true;
     return !*value || is_length(value, &base->thickness_mm);
 }
 
@@ -176,12 +176,12 @@ static const double plain_margin_mm = 3, luer_margin_mm = 15, plain_taper = 0.06
 static Status settle_block(PrintParams *params, Err *err)
 {
     PrintBlock *block = &params->block;
-    if (!block->is_there && (block->ports != PORTS_NONE || block->margin_mm > 0))
+    if (!block->is_wanted && (block->ports != PORTS_NONE || block->margin_mm > 0))
         return err_set(err, STATUS_USAGE, "`print`: ports and margin need a block");
-    if (block->is_there && print_has_wall(params))
+    if (block->is_wanted && print_has_wall(params))
         return err_set(err, STATUS_USAGE,
                        "`print`: in a block vessels are hollow, and have no wall of their own");
-    if (block->is_there && params->base.is_there)
+    if (block->is_wanted && params->base.is_wanted)
         return err_set(err, STATUS_USAGE, "`print`: a block stands by itself, and takes no base");
     if (block->margin_mm == 0)
         block->margin_mm = block->is_luer ? luer_margin_mm : plain_margin_mm;
@@ -203,7 +203,7 @@ Status printing_parse(const char *text, PrintSettings *out, Err *err)
     }
     free(items);
     TRY(status);
-    made.params.base.least_radius_mm = fmax(made.min_diameter_mm, made.nozzle_mm) / 2;
+    made.params.base.min_pin_radius_mm = fmax(made.min_diameter_mm, made.nozzle_mm) / 2;
     TRY(settle_block(&made.params, err));
     if (made.prunes && made.min_diameter_mm == 0)
         return err_set(err, STATUS_USAGE, "`print`: thin=prune needs min-diameter");

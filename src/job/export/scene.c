@@ -18,26 +18,26 @@ static const Option own[] = {
      SETS(OUTPUT, SceneOptions, output),
      .is_told = true,
      .argument = "S.pov|S.scad|S.tachyon",
-     .help =
-         "a scene for POV-Ray, its geometry in S.inc beside it, a model for OpenSCAD or a scene "
-         "for Tachyon"},
+     .help = "scene for POV-Ray (S.pov, with the geometry in S.inc beside it), model for OpenSCAD "
+             "(S.scad) or scene for Tachyon (S.tachyon)"},
     {.name = "ids",
      SETS(SWITCH, SceneOptions, ids),
      .group = GROUP_POVRAY,
      .when = WHEN(FIELD_IDS) | WHEN(POVRAY),
-     .help = "isosurface, blob: with what POV-Ray needs for the id plane"},
+     .help = "isosurface and blob only: add the data that POV-Ray needs to render the id plane"},
     {.name = "ini",
      SETS(SWITCH, SceneOptions, ini),
      .group = GROUP_POVRAY,
      .when = WHEN(POVRAY),
-     .help = "size, antialiasing and animations in S.ini, too: povray S.ini draws the picture"},
+     .help = "also write S.ini with size, antialiasing and animations, so that `povray S.ini` "
+             "renders the image"},
     {.name = "scad",
      SETS(CHOICE, SceneOptions, scad),
      .choices = scad_forms,
      .group = GROUP_VESSELS,
      .when = WHEN(OPENSCAD),
-     .help = "S.scad: modules that answer to the customizer, or one closed surface; auto: by the "
-             "number of vessels"},
+     .help = "OpenSCAD only: parametric (modules with sliders in the customizer), polyhedron (one "
+             "closed surface), auto (parametric for few vessels, polyhedron for many)"},
 };
 
 static void set_defaults(void *options)

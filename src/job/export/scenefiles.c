@@ -99,8 +99,8 @@ static void put_description(const Emitter *emitter, const EmitParams *params, co
         text_put_line(out, file_name(tree_path));
         text_puts(out, emitter->of_lines ? ", its vessels" : ", its surface");
     }
-    if (appearance && appearance->said)
-        text_printf(out, ", colored by %s", appearance->said);
+    if (appearance && appearance->meaning)
+        text_printf(out, ", colored by %s", appearance->meaning);
 }
 
 static const char *name_of(const FileSlot *file)

@@ -28,24 +28,27 @@ static const Option volume_options[] = {
      SETS(NUMBERS, VolumeOptions, voxel),
      .group = GROUP_VOXELS,
      .argument = "MM",
-     .otherwise = "a 256th of the longest side",
-     .help = "their size, mm; of different sides X,Y,Z"},
+     .otherwise = "1/256 of the longest side",
+     .help = "voxel size; one length, or three lengths X,Y,Z"},
     {.name = "depth",
      SETS(CHOICE, VolumeOptions, depth),
      .choices = depths,
      .group = GROUP_VOXELS,
-     .help = "bits that say how much of a voxel is filled, or a float"},
+     .help = "type of the samples, which state the filled fraction of each voxel: 8 or 16 (bits, "
+             "unsigned integer), float (32-bit floating point)"},
     {.name = "labels",
      SETS(CHOICE, VolumeOptions, labels),
      .choices = label_kinds,
      .group = GROUP_VOXELS,
-     .help = "a second volume, V.labels, of what fills the most of each voxel: the id of the "
-             "segment, its order, or the number of its tree"},
+     .help = "second volume V.labels, with a label of the segment that fills most of each voxel: "
+             "none (no second volume), segment (its id), strahler (its Strahler order), tree (the "
+             "number of its tree)"},
     {.name = "centreline",
      SETS(OUTPUT, VolumeOptions, centreline),
      .argument = "C.nii.gz",
      .group = GROUP_VOXELS,
-     .help = "another volume, 1 where the axis of a segment passes"},
+     .help = "write a second volume that is 1 in each voxel that a segment axis passes through, "
+             "else 0"},
 };
 
 const OptionTable volume_table = OPTION_TABLE(volume_options);
@@ -224,12 +227,13 @@ static void say_result(const Volumes *made, const Talk *talk)
     double more = 100 * (report->volume_mm3 / report->union_mm3 - 1);
     if (fabs(more) > 0.1)
         talk_warn(talk,
-                  "rounded to %s bits, voxels hold %.3g %% %s than the vessels; take a --depth of "
-                  "more",
+                  "rounded to %s bits, voxels hold %.3g %% %s than the vessels; use a larger "
+                  "--depth",
                   depths[made->options->depth], fabs(more), more > 0 ? "more" : "less");
-    if (report->claimed)
-        talk_warn(talk, "%zu labels fill the most of no voxel, and each has one that it meets",
-                  report->claimed);
+    if (report->n_given_voxels)
+        talk_warn(talk, "%zu label%s no voxel; each was given a voxel that it touches",
+                  report->n_given_voxels,
+                  report->n_given_voxels == 1 ? " dominates" : "s dominate");
     talk_note(talk, "%lld voxels hold vessels, %.6g mm^3", (long long)report->filled,
               report->volume_mm3);
 }
@@ -257,7 +261,7 @@ static json_t *manifest(const Volumes *made, const char *command)
         {"segments", json_count(made->geometry.drawn)},
         {"segments_within_others", json_count(made->within)},
         {"labels", json_text(label_kinds[made->options->labels])},
-        {"labels_given_a_voxel", json_count(report->claimed)},
+        {"labels_given_a_voxel", json_count(report->n_given_voxels)},
         {"filled_voxels", json_integer(report->filled)},
         {"volume_mm3", json_number(report->volume_mm3)},
         {"union_mm3", json_number(report->union_mm3)},

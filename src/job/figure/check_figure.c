@@ -13,12 +13,16 @@ static const Option own[] = {
     {.name = "preset",
      SETS(LOOKUP, CheckFigureOptions, preset),
      .list = "presets",
-     .help = "the publisher: a file of templates/presets, or a path"},
+     .help = "publisher's format to check against: the name of a preset, or the path of a file of "
+             "your own (with a '/')"},
     {.name = "kind",
      SETS(CHOICE, CheckFigureOptions, kind),
      .choices = content_kinds,
-     .help = "shades, shades with lines or letters in their pixels, or lines alone"},
-    {.name = "json", SETS(FLAG, CheckFigureOptions, json), .help = "on standard output"},
+     .help = "content of the figure, which sets the required resolution: halftone (shaded images), "
+             "combination (shaded images with lines or text in their pixels), line (lines only)"},
+    {.name = "json",
+     SETS(FLAG, CheckFigureOptions, json),
+     .help = "print the result as JSON on standard output"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);
@@ -259,7 +263,7 @@ void figurefindings_release(FigureFindings *findings)
 
 const Command command_check_figure = {
     .name = "check-figure",
-    .summary = "say what a publisher would refuse in a figure",
+    .summary = "check a figure file against a publisher's requirements",
     .operands = "FILE --preset NAME",
     .examples = "  corcast check-figure figure1.tif --preset plos\n"
                 "  corcast check-figure figure1.pdf --preset nature --kind combination\n",

@@ -142,7 +142,7 @@ static Status part_appearance(const Appearance *whole, const Tree *tree, const T
     made.colors = NULL;
     made.values = NULL;
     made.time = NULL;
-    made.name = made.unit = made.said = NULL;
+    made.name = made.unit = made.meaning = NULL;
     made.n_values = 0;
     made.scale = (ColorScale){0};
     if (whole->colors) {

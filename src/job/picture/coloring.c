@@ -18,8 +18,8 @@ static const Option rows[] = {
      .argument = "FIELD",
      .list = "fields",
      .when = WHEN(COLORS) | WHEN(VESSELS),
-     .help = "a field of the tree, such as radius, flow or wss, a column of its file, or "
-             "FILE.csv:COLUMN"},
+     .help = "color vessels by a field: radius, flow, wss (wall shear stress) and others, a column "
+             "of the tree file, or FILE.csv:COLUMN"},
     {.name = "moment",
      SETS(WHOLE, Coloring, frame),
      FROM_TO(1, 1000000),
@@ -28,67 +28,71 @@ static const Option rows[] = {
      .otherwise = "",
      .when = WHEN(ONE_MOMENT),
      .needs = "color-by",
-     .help = "of values that change with time: the K-th moment alone"},
+     .help = "show only time step K of values that change with time; the first is 1"},
     {.name = "colormap",
      SETS(LOOKUP, Coloring, colormap),
      .group = GROUP_COLOR,
      .list = "colormaps",
      .needs = "color-by",
-     .help = "a file of templates/colormaps, or a path"},
+     .help = "color map: its name, or the path of a file of your own (with a '/')"},
     {.name = "unit",
      SETS(TEXT, Coloring, unit),
      .group = GROUP_COLOR,
      .argument = "UNIT",
-     .otherwise = "the field's",
+     .otherwise = "the field's unit",
      .needs = "color-by",
-     .help = "of the field, its range and classes: Pa, kPa, mmHg, dyn/cm2, cm/s, ml/s, ..."},
+     .help = "unit of the field, and of --range and --classes: Pa, kPa, mmHg, dyn/cm2, cm/s, ml/s, "
+             "..."},
     {.name = "range",
      SETS(RANGE, Coloring, range),
      GIVEN(Coloring, has_range),
      .group = GROUP_COLOR,
-     .otherwise = "the field's",
+     .otherwise = "minimum and maximum of the field",
      .when = WHEN(NO_BOUNDS),
      .needs = "color-by",
-     .help = "values at the ends of the color map; 2%,98%: that many of the field's are smaller"},
+     .help = "values at the two ends of the color map, or percentiles of the field (2%,98%)"},
     {.name = "range-of",
      SETS(CHOICE, Coloring, range_of),
      .choices = ranges_of,
      .group = GROUP_COLOR,
      .when = WHEN(WHOLE_RANGE) | WHEN(FITTED_RANGE),
      .needs = "color-by",
-     .help = "whose values the range is of: of the segments drawn, or of those pruned, too"},
+     .help = "segments that the percentiles and the default range are computed from: drawn (only "
+             "segments that are drawn), tree (all segments, also pruned ones)"},
     {.name = "log",
      SETS(FLAG, Coloring, log),
      .group = GROUP_COLOR,
      .when = WHEN(NO_BOUNDS),
      .needs = "color-by",
-     .help = "logarithmic colors"},
+     .help = "use a logarithmic color scale"},
     {.name = "classes",
      SETS(NUMBERS, Coloring, classes),
      .group = GROUP_COLOR,
      .argument = "N|A,B,...",
      .when = WHEN(STEPS),
      .needs = "color-by",
-     .help = "N equal steps of the range, each of one color, or steps between bounds; 1: colors "
-             "run on"},
+     .help = "divide the range into N classes of one color each, or at the bounds A,B,...; 1 draws "
+             "continuous colors"},
     {.name = "under",
      SETS(COLOR, Coloring, under),
      GIVEN(Coloring, has_under),
      .group = GROUP_COLOR,
      .argument = "COLOR",
-     .otherwise = "the map's first",
+     .otherwise = "the map's first color",
      .when = WHEN(STEPS),
      .needs = "color-by",
-     .help = "of values below the range, or all bounds: a name, #RRGGBB or R,G,B from 0 to 1"},
+     .help = "color of values below the range or the first class bound: a CSS name, #RRGGBB, or "
+             "R,G,B each 0..1"},
     {.name = "over",
      SETS(COLOR, Coloring, over),
      GIVEN(Coloring, has_over),
      .group = GROUP_COLOR,
      .argument = "COLOR",
-     .otherwise = "the map's last",
+     .otherwise = "the map's last color",
      .when = WHEN(STEPS),
      .needs = "color-by",
-     .help = "of values above it"},
+     .help = "color of values above the range or the last class bound: a CSS name, #RRGGBB, or "
+             "R,G,B each 0..1"},
     {.name = "no-data",
      SETS(COLOR, Coloring, none),
      GIVEN(Coloring, has_none),
@@ -97,7 +101,7 @@ static const Option rows[] = {
      .otherwise = "gray",
      .when = WHEN(STEPS),
      .needs = "color-by",
-     .help = "of segments without a value, or without its logarithm"},
+     .help = "color of segments without a value or, with --log, with a value of 0 or less"},
 };
 
 static bool has_bounds(const Coloring *coloring)
@@ -244,9 +248,9 @@ Status coloring_appearance(const Coloring *coloring, const ColoredTree *tree, co
 void coloring_say(const Appearance *appearance, const Talk *talk)
 {
     const double most_decades = 3; /* a linear scale shows hardly anything of the lowest */
-    if (!appearance->said)
+    if (!appearance->meaning)
         return;
-    talk_note(talk, "%s", appearance->said);
+    talk_note(talk, "%s", appearance->meaning);
     const double decades = fieldscale_decades(appearance);
     if (decades > most_decades)
         talk_note(talk, "the field %s spans %.1f decades, which --log shows evenly",
@@ -256,7 +260,7 @@ void coloring_say(const Appearance *appearance, const Talk *talk)
 json_t *coloring_json(const Appearance *appearance)
 {
     const ColorScale *scale = &appearance->scale;
-    if (!appearance->said)
+    if (!appearance->meaning)
         return json_null();
     json_t *bounds = json_array();
     for (int i = 0; i < scale->n_bounds; i++)
@@ -269,7 +273,7 @@ json_t *coloring_json(const Appearance *appearance)
         {"log", json_boolean(scale->log)},
         {"classes", json_integer(colorscale_steps(scale))},
         {"bounds", bounds},
-        {"said", json_text(appearance->said)},
+        {"said", json_text(appearance->meaning)},
     };
     return json_with_members(json_object(), members, sizeof members / sizeof *members);
 }

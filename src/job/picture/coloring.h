@@ -60,9 +60,9 @@ typedef struct ColoredTree {
 
 /* What a look's vessels are to be colored by, in *appearance (owned; appearance_release): without
  * --color-by the look's one color; else the values of a field of the tree on a scale of the map,
- * with appearance->said. The scale goes from the least to the greatest finite value, in all frames,
- * of the segments that can be drawn, unless --range gives its ends. STATUS_USAGE when templates/
- * lacks the map, there is no such frame, the field has no such unit, the range cannot be
+ * with appearance->meaning. The scale goes from the least to the greatest finite value, in all
+ * frames, of the segments that can be drawn, unless --range gives its ends. STATUS_USAGE when
+ * templates/ lacks the map, there is no such frame, the field has no such unit, the range cannot be
  * logarithmic, or classes do not ascend or are missing for a separate map; else as derive_series;
  * STATUS_INPUT, naming the path, when the field has no value to show, and naming the map's file
  * otherwise. */

@@ -11,10 +11,10 @@ static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, ColormapsOptions, output),
      .argument = "P.png",
-     .help = "a picture of the maps, a strip each, in the order of the list"},
+     .help = "image with one strip per color map, in the order of the list"},
     {.name = "cite",
      SETS(FLAG, ColormapsOptions, cite),
-     .help = "with what to cite and the licence of each, instead of what it is for"},
+     .help = "list the citation and the license of each map instead of its description"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);
@@ -153,10 +153,11 @@ void colormaps_release(ColormapsResult *result)
     plane_release(&result->strips);
 }
 
-const Command command_colormaps = {.name = "colormaps",
-                                   .summary = "the values of --colormap, as a list and a picture",
-                                   .operands = "[-o P.png]",
-                                   .examples = "  corcast colormaps --cite\n"
-                                               "  corcast colormaps -o maps.png\n",
-                                   .size = sizeof(ColormapsOptions),
-                                   .tables = {{&own_table, 0}}};
+const Command command_colormaps = {
+    .name = "colormaps",
+    .summary = "list the color maps, the values of --colormap, or draw them",
+    .operands = "[-o P.png]",
+    .examples = "  corcast colormaps --cite\n"
+                "  corcast colormaps -o maps.png\n",
+    .size = sizeof(ColormapsOptions),
+    .tables = {{&own_table, 0}}};

@@ -28,13 +28,14 @@ static const Option own[] = {
      .argument = "N",
      .otherwise = "",
      .when = WHEN(KEEPS_DPI),
-     .help = "pixels an inch on paper, kept in a .png, .tif or .jpg"},
+     .help = "resolution in pixels per inch, to store in a .png, .tif or .jpg"},
     {.name = "background",
      SETS(COLOR, ConvertOptions, background),
      GIVEN(ConvertOptions, has_background),
      .group = GROUP_PRESS,
-     .otherwise = "none",
-     .help = "what a transparent picture is laid on"},
+     .otherwise = "none: keep the transparency",
+     .help =
+         "color to composite a transparent image over: a CSS name, #RRGGBB, or R,G,B each 0..1"},
 };
 
 static void set_defaults(void *options)
@@ -217,7 +218,7 @@ static const OptionTable own_table = {OPTION_ROWS(own), .unmet = unmet};
 
 const Command command_convert = {
     .name = "convert",
-    .summary = "convert trees and images",
+    .summary = "convert a tree or an image to another file format",
     .operands = "IN OUT",
     .examples = "  corcast convert measured.swc tidy.swc\n"
                 "  corcast convert tree.swc tree.csv\n"

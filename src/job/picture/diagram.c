@@ -19,13 +19,13 @@ static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, DiagramOptions, output),
      .argument = "D.svg",
-     .help = "the diagram: .svg, true to size, or .png, .tif, .jpg, .ppm"},
+     .help = "diagram: .svg, true to size, or .png, .tif, .jpg or .ppm"},
     {.name = "gap",
      SETS(NUMBER, DiagramOptions, gap_mm),
      FROM_TO(0, 1e7),
      .group = GROUP_VESSELS,
      .unit = "mm",
-     .otherwise = "by the height that suits the width",
+     .otherwise = "chosen so that the height suits the width",
      .help = "space between two branches"},
     {.name = "prune-radius",
      SETS(NUMBER, DiagramOptions, prune_radius_mm),
@@ -33,30 +33,33 @@ static const Option own[] = {
      .range = &prune_range,
      .unit = "mm",
      .otherwise = "",
-     .help = "drop segments thinner than this"},
+     .help = "drop segments whose radius is below MM"},
     {.name = "size",
      SETS(SIZE, DiagramOptions, size),
      FROM_TO(1, IMAGE_MAX_SIDE),
      .group = GROUP_CAMERA,
      .when = WHEN(PIXELS),
-     .help = "pixels, or on paper, as 89mmx60mm; 89mm is a square"},
+     .help = "image size in pixels (800x600) or on paper (89mmx60mm); one length gives a square "
+             "(89mm)"},
     {DPI_OF_SIZE(DiagramOptions, size), .group = GROUP_CAMERA,
      .when = WHEN(PIXELS) | WHEN(ON_PAPER_OR_KEPT),
-     .help = "pixels an inch on paper, which .png, .tif and .jpg keep"},
+     .help = "resolution in pixels per inch; stored in .png, .tif and .jpg"},
     {.name = "margin",
      SETS(NUMBER, DiagramOptions, margin),
      FROM_TO(0, 0.45),
      .group = GROUP_CAMERA,
-     .help = "free part on each side"},
+     .argument = "FRACTION",
+     .help = "empty border on each side, as a fraction of the image size"},
     {.name = "look",
      SETS(LOOKUP, DiagramOptions, look),
      .group = GROUP_COLOR,
      .list = "looks",
-     .help = "color of what no field colors: a file of templates/looks, or a path"},
+     .help = "color of vessels that no field colors: the name of a look, or the path of a file of "
+             "your own (with a '/')"},
     {.name = "background",
      SETS(COLOR, DiagramOptions, background),
      .group = GROUP_LIGHT,
-     .help = "sRGB, each from 0 to 1"},
+     .help = "background color: a CSS name, #RRGGBB, or R,G,B each 0..1"},
 };
 
 /* Returns true if the diagram is a page: for an .svg, and in memory, where there is no file. */
@@ -173,7 +176,7 @@ static Status write_pixels(const DiagramOptions *options, const MadeDiagram *mad
                              .picture = true,
                              .dpi = options->size.dpi,
                              .provenance = command,
-                             .colors = made->appearance.said};
+                             .colors = made->appearance.meaning};
     return frames_write(&made->pixels, &form, err);
 }
 
@@ -216,7 +219,7 @@ done:
 
 const Command command_diagram = {
     .name = "diagram",
-    .summary = "draw a tree unrolled flat, lengths and diameters true",
+    .summary = "draw a tree unrolled flat, with true lengths and diameters",
     .operands = "T.swc -o D.svg",
     .examples = "  corcast diagram tree.swc --color-by wss -o wss.svg\n"
                 "  corcast diagram tree.swc --color-by pressure --size 2400x1800 -o pressure.png\n",

@@ -175,7 +175,7 @@ Status rendering_describe(Rendering *r, Err *err)
 {
     TRY(command_line_text(r->parsed, &r->provenance, err));
     r->form.provenance = r->provenance;
-    r->form.colors = r->scene.appearance.said;
+    r->form.colors = r->scene.appearance.meaning;
     if (r->has_sheet)
         TRY(fill_sheet(r, err));
     return picture_say(&r->scene, &r->report, r->parsed->common.talk, err);
@@ -202,7 +202,7 @@ json_t *rendering_json(const Rendering *r)
         };
         report = json_with_members(report, of_joints, sizeof of_joints / sizeof *of_joints);
     }
-    if (scene->appearance.said)
+    if (scene->appearance.meaning)
         report = json_with(report, "color", coloring_json(&scene->appearance));
     return report;
 }
@@ -345,7 +345,7 @@ Status render_run(void *options, Parsed *parsed, Err *err)
 
 const Command command_render = {
     .name = "render",
-    .summary = "render a tree with the native renderer",
+    .summary = "render a tree to an image",
     .operands = "T.swc -o P.png",
     .examples = "  corcast render tree.swc -o tree.png\n"
                 "  corcast render tree.swc --model isosurface --shadows on -o tree.ppm\n"

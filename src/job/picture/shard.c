@@ -22,7 +22,8 @@ static const Option rows[] = {
      .argument = "I/N",
      .aside = true,
      .when = WHEN(STILL) | WHEN(SURFACES),
-     .help = "rows only: part I of N, from the top; corcast merge joins them"},
+     .help = "draw only horizontal strip I of N, counted from the top; `corcast merge` joins the "
+             "strips"},
     {.name = "tiles",
      SETS(WHOLE, ShardOptions, tiles),
      FROM_TO(1, MOST_TILES),
@@ -32,7 +33,8 @@ static const Option rows[] = {
      .when = WHEN(STILL) | WHEN(SURFACES),
      .needs = "commands",
      .excludes = "tile",
-     .help = "with --commands: a command for each of N tiles, P.tile-1.png to P.tile-N.png"},
+     .help =
+         "with --commands: print one command for each of N strips, P.tile-1.png to P.tile-N.png"},
     {.name = "only",
      SETS(WHOLE, ShardOptions, only),
      FROM_TO(1, 1000000),
@@ -41,19 +43,19 @@ static const Option rows[] = {
      .aside = true,
      .otherwise = "",
      .when = WHEN(ANIMATED),
-     .help = "picture K of an animation alone"},
+     .help = "draw only image K of an animation; the first is 1"},
     {.name = "commands",
      SETS(FLAG, ShardOptions, commands),
      .group = GROUP_PARTS,
      .aside = true,
      .when = WHEN(HAS_PARTS),
-     .help = "draw nothing, but print a command a line, for GNU parallel, Slurm and others, that "
-             "draws a tile or a picture of an animation"},
+     .help = "draw nothing; print one command per strip or per image of an animation, for GNU "
+             "parallel, Slurm and others"},
     {.name = "resume",
      SETS(FLAG, ShardOptions, resume),
      .group = GROUP_PARTS,
      .aside = true,
-     .help = "keep files that are there and were made from the same"},
+     .help = "keep existing files that were made from the same tree and options"},
 };
 
 const OptionTable shard_table = OPTION_TABLE(rows);

@@ -21,44 +21,46 @@ static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, BifurcationOptions, output),
      .argument = "T.swc",
-     .help = "the tree"},
+     .help = "tree file to write"},
     {.name = "radii",
      SETS(NUMBERS, BifurcationOptions, radii),
      .group = GROUP_TREE,
      .argument = "R,R,R",
-     .help = "of parent, left and right daughter, mm; of the parent alone: the others by Murray's "
-             "law"},
+     .help = "radii of parent, left and right daughter, mm; one value sets the parent's, and "
+             "Murray's law the others"},
     {.name = "lengths",
      SETS(NUMBERS, BifurcationOptions, lengths),
      .group = GROUP_TREE,
      .argument = "L,L,L",
-     .help = "likewise, mm; one: of all three"},
+     .help = "lengths of parent, left and right daughter, mm; one value sets all three"},
     {.name = "angles",
      SETS(NUMBERS, BifurcationOptions, angles),
      GIVEN(BifurcationOptions, has_angles),
      .group = GROUP_TREE,
      .argument = "A,B",
-     .otherwise = "of least target",
-     .help = "between the parent's continuation and the left and the right daughter, degrees"},
+     .otherwise = "angles of minimum target",
+     .help = "angles of the left and right daughter to the parent's direction, degrees"},
     {.name = "ratio",
      SETS(NUMBER, BifurcationOptions, ratio),
      GIVEN(BifurcationOptions, has_ratio),
      FROM_TO(1e-3, 1e3),
      .group = GROUP_TREE,
      .when = WHEN(LONE_RADIUS),
-     .help = "of the right daughter's radius to the left one's, where --radii gives the parent's"},
+     .help = "radius of the right daughter divided by the left daughter's, if --radii gives only "
+             "the parent's"},
     {.name = "gamma",
      SETS(NUMBER, BifurcationOptions, gamma),
      FROM_TO(0.1, 10),
      .group = GROUP_TREE,
      .when = WHEN(LONE_RADIUS),
-     .help = "Murray exponent"},
+     .help = "Murray exponent: parent radius^gamma = sum of daughter radii^gamma"},
     {.name = "lambda",
      SETS(NUMBER, BifurcationOptions, lambda),
      FROM_TO(0, 10),
      .group = GROUP_TREE,
      .when = WHEN(FREE_ANGLES),
-     .help = "of the target that the angles make least: the sum of length * radius^lambda"},
+     .help = "exponent of the target, the cost that the default angles minimize: sum of length * "
+             "radius^lambda"},
 };
 
 static ConditionSet unmet(const void *set, const Parsed *parsed)
@@ -186,7 +188,7 @@ Status bifurcation_make(void *options, Parsed *parsed, MadeTree *made, Err *err)
 
 const Command command_bifurcation = {
     .name = "bifurcation",
-    .summary = "make an isolated bifurcation",
+    .summary = "make a single bifurcation with chosen radii, lengths and angles",
     .operands = "-o T.swc",
     .examples =
         "  corcast bifurcation --radii 3 --ratio 0.8 --lengths 12,15,15 -o murray.swc\n"

@@ -6,7 +6,7 @@
 #include <string.h>
 #include <strings.h>
 
-static const char of_tree[] = "the tree's";
+static const char of_tree[] = "from the tree";
 
 #define SAYS(KEY) SETS_KEY(BloodOptions, said.number[META_##KEY], said.known, KEY)
 
@@ -23,13 +23,14 @@ static const Option rows[] = {
      .argument = "equal|murray|FILE.csv",
      .otherwise = of_tree,
      .when = WHEN(USES_FLOW),
-     .help = "how flow parts: the same for all terminals, as radius^gamma, or by id and flow"},
+     .help = "how flow is divided among the terminals: equal (the same for all), murray (in "
+             "proportion to radius^gamma), or a CSV file with the columns id and flow"},
     {.name = "gamma",
      SAYS(GAMMA),
      .group = GROUP_BLOOD,
-     .otherwise = "the tree's, or 3",
+     .otherwise = "from the tree, or 3",
      .when = WHEN(USES_FLOW) | WHEN(MURRAY),
-     .help = "exponent of the radius, for murray"},
+     .help = "exponent of the radius for --terminal-flow murray"},
     {.name = "p-perf",
      SAYS(P_PERF),
      .group = GROUP_BLOOD,
@@ -41,7 +42,7 @@ static const Option rows[] = {
      .group = GROUP_BLOOD,
      .otherwise = of_tree,
      .when = WHEN(USES_BLOOD) | WHEN(CONSTANT_VISCOSITY),
-     .help = "of the blood"},
+     .help = "viscosity of the blood"},
     {.name = "viscosity-law",
      SETS(CHOICE, BloodOptions, law),
      GIVEN(BloodOptions, said.known[META_VISCOSITY_LAW]),
@@ -49,20 +50,21 @@ static const Option rows[] = {
      .group = GROUP_BLOOD,
      .otherwise = of_tree,
      .when = WHEN(USES_BLOOD),
-     .help = "the same in all vessels, or by their diameter"},
+     .help = "viscosity model: constant (the same in all vessels), pries (depends on the vessel "
+             "diameter)"},
     {.name = "hematocrit",
      SAYS(HEMATOCRIT),
      .group = GROUP_BLOOD,
      .argument = "H",
      .otherwise = of_tree,
      .when = WHEN(USES_BLOOD) | WHEN(PRIES),
-     .help = "of the blood, for pries"},
+     .help = "hematocrit of the blood, a fraction, for --viscosity-law pries"},
     {.name = "plasma-viscosity",
      SAYS(PLASMA_VISCOSITY),
      .group = GROUP_BLOOD,
      .otherwise = of_tree,
      .when = WHEN(USES_BLOOD) | WHEN(PRIES),
-     .help = "of the plasma, for pries"},
+     .help = "viscosity of the plasma, for --viscosity-law pries"},
 };
 
 static ConditionSet unmet(const void *set, const Parsed *parsed)

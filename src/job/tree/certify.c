@@ -20,44 +20,49 @@ typedef struct CertifyOptions {
     BloodOptions blood; /* only law, flow of the terminals and gamma are set */
 } CertifyOptions;
 
-static const char of_tree[] = "the tree's";
+static const char of_tree[] = "from the tree";
 
 static const Option rows[] = {
-    {.name = "json", SETS(FLAG, CertifyOptions, json), .help = "as JSON"},
+    {.name = "json",
+     SETS(FLAG, CertifyOptions, json),
+     .help = "print the result as JSON on standard output"},
     {.name = "certificate",
      SETS(OUTPUT, CertifyOptions, certificate),
      .argument = "FILE",
      .otherwise = "",
-     .help = "the proof, for a checker that shares no code with corcast"},
+     .help =
+         "write the proof to FILE, for an independent checker that shares no code with corcast"},
     {.name = "parts",
      SETS(FLAG, CertifyOptions, parts),
      .group = GROUP_OPTIMUM,
-     .help = "also refine the tree's geometry, to tell what the search left from what rules cost"},
+     .help = "also refine the geometry of the tree, to show how much of the gap is due to the "
+             "search and how much to the rules on length and clearance"},
     {.name = "lambda",
      SETS(NUMBER, CertifyOptions, lambda),
      GIVEN(CertifyOptions, has_lambda),
      .range = &BOUND_LAMBDA_RANGE,
      .group = GROUP_OPTIMUM,
      .otherwise = of_tree,
-     .help = "exponent of the target"},
+     .help = "exponent of the target, the cost of the tree: sum of length * radius^lambda"},
     {.name = "terminal-flow",
      SETS(TEXT, CertifyOptions, blood.terminal_flow),
      .group = GROUP_BLOOD,
      .argument = "equal|murray|FILE.csv",
      .otherwise = of_tree,
-     .help = "how flow parts: the same for all terminals, as radius^gamma, or by id and flow"},
+     .help = "how flow is divided among the terminals: equal (the same for all), murray (in "
+             "proportion to radius^gamma), or a CSV file with the columns id and flow"},
     {.name = "gamma",
      SETS_KEY(CertifyOptions, blood.said.number[META_GAMMA], blood.said.known, GAMMA),
      .group = GROUP_BLOOD,
-     .otherwise = "the tree's, or 3",
-     .help = "exponent of the radius, for murray"},
+     .otherwise = "from the tree, or 3",
+     .help = "exponent of the radius for --terminal-flow murray"},
     {.name = "viscosity-law",
      SETS(CHOICE, CertifyOptions, blood.law),
      GIVEN(CertifyOptions, blood.said.known[META_VISCOSITY_LAW]),
      .choices = viscosity_law_names,
      .group = GROUP_BLOOD,
      .otherwise = of_tree,
-     .help = "a bound is proved for constant alone"},
+     .help = "viscosity model; a bound can be proved for constant only"},
 };
 
 static const OptionTable table = OPTION_TABLE(rows);
@@ -220,7 +225,7 @@ Status bound_json(const Tree *tree, const TreeMeta *said, json_t **out, Err *err
 
 const Command command_certify = {
     .name = "certify",
-    .summary = "prove how low the target of a tree can get",
+    .summary = "prove how low the target (cost) of a tree can get",
     .operands = "T.swc [--certificate FILE] [--json]",
     .examples = "  corcast certify tree.swc\n"
                 "  corcast certify tree.swc --parts\n"

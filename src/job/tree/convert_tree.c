@@ -15,14 +15,15 @@ static const Option rows[] = {
      .group = GROUP_FILES,
      .argument = "FILE[:COLUMN]",
      .when = WHEN(TREE),
-     .help = "values of the tree's segments by id, from a CSV or a folder of svOneDSolver"},
+     .help = "add values per segment, matched by segment id, from a CSV file or a folder of "
+             "results of svOneDSolver"},
     {.name = "fields",
      SETS(TEXT, TreeConversion, fields),
      .group = GROUP_FILES,
      .argument = "all|NAME,...",
      .list = "fields",
      .when = WHEN(TREE),
-     .help = "what follows from the tree, and is to be in its file as columns"},
+     .help = "computed fields to add to the tree file as columns: all, or a list of names"},
 };
 
 const OptionTable treeconversion_table = OPTION_TABLE(rows);

@@ -17,19 +17,26 @@ typedef struct GrowOptions {
 } GrowOptions;
 
 static const Option own[] = {
-    {.name = "output", SETS(OUTPUT, GrowOptions, output), .argument = "T.swc", .help = "the tree"},
-    {.name = "json", SETS(OUTPUT, GrowOptions, json), .help = "what was done, as JSON"},
+    {.name = "output",
+     SETS(OUTPUT, GrowOptions, output),
+     .argument = "T.swc",
+     .help = "tree file to write"},
+    {.name = "json",
+     SETS(OUTPUT, GrowOptions, json),
+     .help = "write a summary of the run as JSON to FILE"},
     {.name = "bound",
      SETS(FLAG, GrowOptions, bound),
      .group = GROUP_OPTIMUM,
      .needs = "json",
-     .help = "--json also says how low the target of this topology can get, as certify proves"},
+     .help = "also prove a lower bound on the target, as `corcast certify` does, and add it to the "
+             "file of --json"},
     {.name = "stages",
      SETS(INPUT, GrowOptions, stages),
      .group = GROUP_TREE,
      .argument = "FILE.ini",
      .otherwise = "",
-     .help = "grow in stages: sections of options, each on the tree of the one before"},
+     .help = "grow in stages: each section of the file has options of its own and continues the "
+             "tree of the section before"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);
@@ -171,7 +178,7 @@ done:
 
 const Command command_grow = {
     .name = "grow",
-    .summary = "grow an arterial tree by constrained constructive optimization",
+    .summary = "grow an arterial tree (constrained constructive optimization)",
     .operands = "-o T.swc",
     .examples = "  corcast grow --terminals 4000 --seed 7 -o tree.swc\n"
                 "  corcast grow --domain ball:30 --gamma 2.55 --lambda 1 -o tree.swc\n"

@@ -14,24 +14,27 @@ typedef struct InfoOptions {
 } InfoOptions;
 
 static const Option own[] = {
-    {.name = "json", SETS(FLAG, InfoOptions, json), .help = "as JSON"},
+    {.name = "json",
+     SETS(FLAG, InfoOptions, json),
+     .help = "print the result as JSON on standard output"},
     {.name = "stats",
      SETS(FLAG, InfoOptions, stats),
-     .help = "radius and length by level and order, branching ratios"},
+     .help = "also print radius and length by level and by Strahler order, and branching ratios"},
     {.name = "bound",
      SETS(FLAG, InfoOptions, bound),
      .group = GROUP_OPTIMUM,
      .needs = "json",
-     .help = "with --json, how low the target of this topology can get, as certify proves"},
+     .help = "with --json: also prove a lower bound on the target, as `corcast certify` does"},
     {.name = "morphometry",
      SETS(LOOKUP, InfoOptions, morphometry),
      .list = "morphometries",
-     .help = "a published table to stand beside: a file of templates/morphometry, or a path"},
+     .help = "compare the tree with a published data set: its name, or the path of a file of your "
+             "own (with a '/')"},
     {.name = "lambda",
      SETS_KEY(InfoOptions, blood.said.number[META_LAMBDA], blood.said.known, LAMBDA),
      .group = GROUP_OPTIMUM,
-     .otherwise = "the tree's",
-     .help = "exponent of the target"},
+     .otherwise = "from the tree",
+     .help = "exponent of the target, the cost of the tree: sum of length * radius^lambda"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);

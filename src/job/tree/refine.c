@@ -18,24 +18,25 @@ static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, RefineOptions, output),
      .argument = "R.swc",
-     .help = "the refined tree"},
+     .help = "refined tree file to write"},
     {.name = "json",
      SETS(OUTPUT, RefineOptions, json),
      .otherwise = "",
-     .help = "what was done, and how low the target of this topology can get, as JSON"},
+     .help =
+         "write a summary of the run, with a proved lower bound on the target, as JSON to FILE"},
     {.name = "domain",
      SETS(TEXT, RefineOptions, domain),
      .group = GROUP_TREE,
      .argument = "SHAPE",
-     .otherwise = "the tree's",
-     .help = "tissue to stay in; a tree without one may go anywhere"},
+     .otherwise = "from the tree",
+     .help = "tissue shape that vessels must stay in; without one, vessels may go anywhere"},
     {.name = "clearance",
      SETS(NUMBER, RefineOptions, clearance_mm),
      GIVEN(RefineOptions, has_clearance),
      .meta = &meta_rows[META_CLEARANCE],
      .group = GROUP_TREE,
-     .otherwise = "the tree's",
-     .help = "least distance of the walls of vessels of different trees, kept and proved"},
+     .otherwise = "from the tree",
+     .help = "minimum distance between the walls of vessels of different trees, kept and checked"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);
@@ -130,7 +131,7 @@ done:
 
 const Command command_refine = {
     .name = "refine",
-    .summary = "lower the target of a grown or measured tree",
+    .summary = "lower the target (cost) of a grown or measured tree",
     .operands = "T.swc -o R.swc",
     .examples = "  corcast refine tree.swc --refine topology -o better.swc\n"
                 "  corcast refine tree.swc --refine anneal --refine-seconds 30 -o best.swc\n",

@@ -17,20 +17,22 @@ static const Option rows[] = {
      .choices = levels,
      .group = GROUP_OPTIMUM,
      .argument = "LEVEL",
-     .help = "whole-tree optimisation"},
+     .help = "optimization of the whole tree: none, geometry (moves bifurcations), topology (also "
+             "reconnects branches), anneal (as topology, with many more moves)"},
     {.name = "refine-seconds",
      SETS(NUMBER, Refining, seconds),
      FROM_TO(0, 1e6),
      .group = GROUP_OPTIMUM,
      .unit = "s",
      .needs = "refine",
-     .help = "at most this long, and results then depend on the machine; 0: as the moves allow"},
+     .help = "maximum time, s; the result then depends on the speed of the machine; 0 sets no time "
+             "limit"},
     {.name = "refine-moves",
      SETS(COUNT, Refining, moves),
      FROM_TO(0, 1e12),
      .group = GROUP_OPTIMUM,
      .needs = "refine",
-     .help = "moves tried at most; 0: enough for the tree"},
+     .help = "maximum number of moves to try; 0 chooses enough for the tree"},
 };
 
 const OptionTable refining_table = OPTION_TABLE(rows);

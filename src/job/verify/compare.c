@@ -309,7 +309,7 @@ json_t *comparison_json(const Comparison *comparison)
 
 const Command command_compare = {
     .name = "compare",
-    .summary = "compare two images or planes",
+    .summary = "compare two images or planes, or two folders of images",
     .operands = "A B",
     .examples =
         "  corcast compare reference.png mine.png\n"
@@ -320,13 +320,13 @@ const Command command_compare = {
         "  corcast compare --reference references drawn --tier B --junit junit.xml\n"
         "  corcast compare --reference references drawn --accept a.png --reason 'new lamp'\n"
         "\ntiers of agreement:\n"
-        "  A        identity: on all but 2 pixels in a million the same colors, ids and depths;\n"
-        "           fewer than 500,000 pixels: on all, except for one pixel by one 8-bit level\n"
-        "  B        what a renderer in single precision keeps: a few pixels at edges, no bias,\n"
-        "           no segment missing, moved or of another color\n"
-        "  surface  what iteration towards a surface keeps: 99.5 % of colors within 2 levels,\n"
-        "           99 % of depths within 0.01 mm, nothing missing\n"
-        "  none     everything is measured, nothing is judged but numbers that are none\n",
+        "  A        identical: colors, ids and depths differ in at most 2 pixels per million;\n"
+        "           images of fewer than 500,000 pixels: in at most one pixel, by one 8-bit level\n"
+        "  B        equal up to single-precision arithmetic: a few pixels at edges may differ;\n"
+        "           there is no bias, and no segment is missing, moved or of another color\n"
+        "  surface  equal up to the iterative search for a surface: 99.5 % of the colors within\n"
+        "           2 levels, 99 % of the depths within 0.01 mm, nothing missing\n"
+        "  none     everything is measured; only values that are not numbers (NaN) fail\n",
     .min_operands = 1,
     .max_operands = 2,
     .size = sizeof(CompareOptions),

@@ -31,37 +31,39 @@ static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, PovrayOptions, output),
      .argument = "P.png",
-     .help = "the picture"},
+     .help = "image to write"},
     {.name = "size",
      SETS(SIZE, PovrayOptions, size),
      GIVEN(PovrayOptions, has_size),
      FROM_TO(1, IMAGE_MAX_SIDE),
      .group = GROUP_CAMERA,
-     .otherwise = "what the scene says",
-     .help = "pixels, or on paper, as 89mmx60mm; 89mm is a square"},
+     .otherwise = "from the scene",
+     .help = "image size in pixels (800x600) or on paper (89mmx60mm); one length gives a square "
+             "(89mm)"},
     {DPI_OF_SIZE(PovrayOptions, size), .group = GROUP_CAMERA, .when = WHEN(ON_PAPER),
-     .help = "pixels an inch of a size on paper"},
+     .help = "resolution in pixels per inch, for a size on paper"},
     {.name = "antialias",
      SETS(WHOLE, PovrayOptions, antialias),
      .range = &antialias_range,
      .group = GROUP_LIGHT,
      .when = WHEN(COLOR_PLANE),
-     .help = "N x N samples a pixel"},
+     .help = "draw N x N samples per pixel; 1 turns antialiasing off"},
     {.name = "bits",
      SETS(WHOLE, PovrayOptions, bits),
      .range = &bits_range,
      .argument = "8|16",
      .when = WHEN(COLOR_PLANE),
-     .help = "of the colors: 8, sRGB, or 16, linear"},
+     .help = "bits per channel: 8 (sRGB) or 16 (linear)"},
     {.name = "alpha",
      SETS(FLAG, PovrayOptions, alpha),
      .group = GROUP_LIGHT,
      .when = WHEN(COLOR_PLANE),
-     .help = "transparent where the scene's background is: of a scene of --background none"},
+     .help = "keep the scene's background transparent; the scene must have been written with "
+             "--background none"},
     {.name = "plane",
      SETS(CHOICE, PovrayOptions, plane),
      .choices = planes,
-     .help = "what a scene of ours shows"},
+     .help = "plane to render; all except color need a scene written by corcast"},
 };
 
 static ConditionSet unmet(const void *set, const Parsed *parsed)
@@ -117,15 +119,17 @@ const Command command_povray = {
     .name = "povray",
     .summary = "run POV-Ray on a scene",
     .operands = "S.pov -o P.png",
-    .examples = "  corcast povray tree.pov -o tree.png\n"
-                "  corcast povray tree.pov --size 4000x4000 --antialias 3 -o large.png\n"
-                "  corcast povray tree.pov --plane depth -o depth.png\n"
-                "environment, here and for verify:\n"
-                "  CORCAST_POVRAY           the program, or a script that stands for it (povray)\n"
-                "  CORCAST_POVRAY_PATIENCE  seconds without a word after which it is ended (600; "
-                "0: never)\n"
-                "  CORCAST_TACHYON          likewise the witness of verify, with the same patience "
-                "(tachyon)\n",
+    .examples =
+        "  corcast povray tree.pov -o tree.png\n"
+        "  corcast povray tree.pov --size 4000x4000 --antialias 3 -o large.png\n"
+        "  corcast povray tree.pov --plane depth -o depth.png\n"
+        "\nenvironment variables, also for verify:\n"
+        "  CORCAST_POVRAY           POV-Ray program, or a script that replaces it (default: "
+        "povray)\n"
+        "  CORCAST_POVRAY_PATIENCE  stop POV-Ray after this many seconds without "
+        "output; 0: never\n                           (default: 600)\n"
+        "  CORCAST_TACHYON          Tachyon program for verify --witness tachyon, stopped after "
+        "the same\n                           time (default: tachyon)\n",
     .min_operands = 1,
     .max_operands = 1,
     .needs_output = true,

@@ -13,25 +13,29 @@ static const Option own[] = {
     {.name = "render",
      SETS(TEXT, PowerOptions, render),
      .argument = "COMMAND",
-     .help = "draws a picture into the file {}; run twice by the shell"},
+     .help = "shell command that renders an image into the file {}; it is run twice"},
     {.name = "verdict",
      SETS(TEXT, PowerOptions, verdict),
      .group = GROUP_JUDGE,
      .argument = "COMMAND",
      .otherwise = "",
-     .help = "a tolerance of another program: exit status 0 where the PNGs {a} and {b} agree"},
+     .help = "shell command of another comparison program, to be measured too; it must return exit "
+             "status 0 if the PNG files {a} and {b} agree"},
     {.name = "extension",
      SETS(TEXT, PowerOptions, extension),
      .argument = "EXT",
-     .help = "of the file {}: png, exr, tif, ppm and others that compare reads"},
+     .help = "extension of the file {}: png, exr, tif, ppm or another format that `corcast "
+             "compare` reads"},
     {.name = "background",
      SETS(COLOR, PowerOptions, background),
-     .help = "what transparent pictures are laid on"},
+     .help = "color to composite transparent images over: a CSS name, #RRGGBB, or R,G,B each 0..1"},
     {.name = "output",
      SETS(FOLDER, PowerOptions, folder),
      .argument = "DIR",
-     .help = "a folder for the pictures whose fault is missed"},
-    {.name = "json", SETS(FLAG, PowerOptions, json), .help = "as JSON, every fault and rule"},
+     .help = "folder for the images whose fault was not detected"},
+    {.name = "json",
+     SETS(FLAG, PowerOptions, json),
+     .help = "print the result as JSON on standard output, with every fault and rule"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);
@@ -262,16 +266,20 @@ done:
 
 const Command command_power = {
     .name = "power",
-    .summary = "what a tolerance would miss in a renderer's pictures",
+    .summary = "measure which faults in a renderer's images a tolerance fails to detect",
     .operands = "--render COMMAND",
     .examples =
         "  corcast power --render 'povray scene.pov +O{} -D +W320 +H240' --levels 2 --ppm 100\n"
         "  corcast power --render 'blender -b s.blend -o //{}' --verdict 'idiff -fail 0.016 "
         "-failpercent 1 {a} {b}'\n"
         "  corcast power --render 'cp picture.png {}' --pixelmatch 0.1 -o missed\n"
-        "\nFaults of 22 kinds, each of several sizes, are planted in the picture; the table says "
-        "from\nwhich size on the tolerance finds each, beside tolerances that others publish. Exit "
-        "status 1\nwhen the tolerance calls two drawings of the same scene different.\n",
+        "\nThe command plants faults of 22 kinds, each in several sizes, in the image. For each "
+        "kind the "
+        "table\nstates the smallest size that your tolerance detects, beside published tolerances "
+        "of "
+        "other\nprograms. The exit status is 1 if your tolerance rejects a second rendering of the "
+        "same "
+        "scene.\n",
     .max_operands = 0,
     .size = sizeof(PowerOptions),
     .set_defaults = set_defaults,

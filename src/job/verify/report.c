@@ -23,11 +23,11 @@ static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, ReportOptions, page),
      .argument = "PAGE.html",
-     .help = "the page"},
+     .help = "web page to write"},
     {.name = "power",
      SETS(INPUT, ReportOptions, power),
      .argument = "FILE.json",
-     .help = "what `make power` measured, to be shown below the cases"},
+     .help = "results of `make power`, to be shown below the cases"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);
@@ -47,7 +47,7 @@ Status report_run(const ReportOptions *options, Parsed *parsed, bool *agree, Err
 
 const Command command_report = {
     .name = "report",
-    .summary = "one page about several verifications and comparisons",
+    .summary = "write one web page about several verifications and comparisons",
     .operands = "DIR... -o PAGE.html",
     .examples = "  corcast verify a.swc -o out/a; corcast verify b.swc -o out/b\n"
                 "  corcast compare mine.png theirs.png --report out/c\n"

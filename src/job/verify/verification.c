@@ -82,7 +82,7 @@ static Status write_frame(const Verification *v, const Frame *frame, const char 
                              .picture = true,
                              .dpi = v->options->picture.size.dpi,
                              .provenance = v->commands[0],
-                             .colors = v->scene.appearance.said};
+                             .colors = v->scene.appearance.meaning};
     Status status = frames_write(frame, &form, err);
     free(path);
     return status;
@@ -176,8 +176,8 @@ static Status texts_init(const Verification *v, SceneTexts *texts, Err *err)
 {
     *texts = (SceneTexts){.description = TEXT_INIT};
     picture_description(&v->scene.geometry, v->tree, &texts->description);
-    if (v->scene.appearance.said)
-        text_printf(&texts->description, ", colored by %s", v->scene.appearance.said);
+    if (v->scene.appearance.meaning)
+        text_printf(&texts->description, ", colored by %s", v->scene.appearance.meaning);
     TRY(text_check(&texts->description, err));
     return templates_folder(&texts->templates, err);
 }
@@ -351,8 +351,8 @@ static Tolerance exact_tolerance(const IdPlane *ids)
 static Status check_surface(Verification *v, Err *err)
 {
     const Frame *seen = &v->native.frame, *exact = &v->exact;
-    const SurfaceSight sight = {seen->depth.values, seen->normal.values, seen->id.ids};
-    const SurfaceSight exact_sight = {exact->depth.values, exact->normal.values, exact->id.ids};
+    const SurfacePlanes sight = {seen->depth.values, seen->normal.values, seen->id.ids};
+    const SurfacePlanes exact_sight = {exact->depth.values, exact->normal.values, exact->id.ids};
     const ErfForm erf = picture_cells(&v->options->picture).erf;
     Plane allowed = {0};
     Status status;

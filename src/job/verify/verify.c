@@ -23,25 +23,27 @@ static const Option own[] = {
      .range = &bits_range,
      .group = GROUP_JUDGE,
      .argument = "8|16",
-     .help = "of the colors compared: 8, sRGB, or 16, linear"},
+     .help = "bits per channel of the images that are compared: 8 (sRGB) or 16 (linear)"},
     {.name = "kernels",
      SETS(CHOICE, VerifyOptions, kernels),
      .choices = render_kernel_names,
      .group = GROUP_RUN,
-     .help = "instructions that the exact isosurface is drawn with, for tests"},
+     .help = "for tests: instruction set that the exact isosurface is drawn with"},
     {.name = "witness",
      SETS(CHOICE, VerifyOptions, witness),
      .choices = witnesses,
      .group = GROUP_JUDGE,
-     .help = "a third program that draws the scene: what is seen where and how far away must be "
-             "the same in all three"},
+     .help = "also render the scene with a third program; all three must agree on what is visible "
+             "where, and at what depth: none, tachyon"},
     {.name = "tiles",
      SETS(WHOLE, VerifyOptions, tiles),
      FROM_TO(1, 10000),
      .group = GROUP_RUN,
-     .help = "POV-Ray draws the picture in so many parts at least, each from a scene of what its "
-             "rays can meet; in more where it can hold no more"},
-    {.name = "json", SETS(FLAG, VerifyOptions, json), .help = "the report on standard output"},
+     .help = "minimum number of parts that POV-Ray renders the image in, each from a scene with "
+             "only the vessels its rays can hit; more are used if a part does not fit in memory"},
+    {.name = "json",
+     SETS(FLAG, VerifyOptions, json),
+     .help = "print the report as JSON on standard output"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);
@@ -156,7 +158,7 @@ done:
 
 const Command command_verify = {
     .name = "verify",
-    .summary = "prove that POV-Ray and the native renderer agree",
+    .summary = "check that POV-Ray and the native renderer draw the same image",
     .operands = "T.swc -o DIR",
     .examples = "  corcast verify tree.swc -o check\n"
                 "  corcast verify tree.swc --model isosurface --size 400x400 -o check\n",

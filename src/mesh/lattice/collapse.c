@@ -142,8 +142,8 @@ static bool may_collapse(const CollapseWork *work, uint32_t point, const Ring *r
 {
     const PatchPoint *points = work->patch->points;
     int shared = shared_triangles(ring, target);
-    bool on_rim = points[point].stub != NO_STUB;
-    if (on_rim && (shared != 1 || points[target].stub != points[point].stub))
+    bool on_rim = points[point].rim_stub != NO_STUB;
+    if (on_rim && (shared != 1 || points[target].rim_stub != points[point].rim_stub))
         return false;
     for (int i = 0; i < ring->n; i++)
         if (ring->to[i] != target && !edge_is_near(work, target, ring->to[i]))
@@ -208,7 +208,7 @@ static bool try_point(const CollapseWork *work, uint32_t point)
     int n = 0;
     for (; n < ring.n; n++)
         insert_neighbor(work, point, ring.to[n], list, n);
-    bool on_rim = work->patch->points[point].stub != NO_STUB;
+    bool on_rim = work->patch->points[point].rim_stub != NO_STUB;
     for (int i = 0; i < ring.n && on_rim; i++)
         if (shared_triangles(&ring, ring.from[i]) == 1)
             insert_neighbor(work, point, ring.from[i], list, n++);

@@ -1,4 +1,5 @@
-/* Removes points where the surface is nearly flat, most of all along vessels. */
+/* Removes points of a patch where the surface is nearly flat, most of all along vessels. Each edge
+ * collapse merges a point into a neighbour. Private to the module mesh. */
 #ifndef CORCAST_MESH_LATTICE_COLLAPSE_H
 #define CORCAST_MESH_LATTICE_COLLAPSE_H
 
@@ -8,7 +9,7 @@
 typedef struct Collapser {
     ARRAY(uint32_t) next;  /* per corner: the next corner at the same point */
     ARRAY(uint32_t) first; /* per point: its first corner */
-    ARRAY(uint32_t) stamp; /* per point */
+    ARRAY(uint32_t) stamp; /* per point: marks neighbours while a collapse is tested */
     ARRAY(bool) settled; /* per point: nothing near it has changed since it could not be removed */
 } Collapser;
 
@@ -16,7 +17,7 @@ void collapser_release(Collapser *collapser);
 
 /* Merges points into neighbours as long as the surface stays within `sagitta` local radii of each
  * new edge. All points stay on the surface, and rim points stay on their rim. The topology of the
- * patch does not change. Errors: STATUS_MEMORY. */
+ * patch does not change. Then compacts the patch [patch_compact]. Errors: STATUS_MEMORY. */
 MUST_CHECK Status collapse_apply(Collapser *collapser, Patch *patch, double sagitta, Err *err);
 
 #endif

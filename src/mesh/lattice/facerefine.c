@@ -34,7 +34,7 @@ typedef struct FaceRefining {
     const JunctionField *field;
     const Octree *tree;
     Patch *patch;
-    MeshOff *off;
+    MeshDeviation *deviation;
     double split, limit; /* in local radii; in the last round the limit is infinite */
     Err *err;
 } FaceRefining;
@@ -54,7 +54,8 @@ static bool is_inside(const FaceRefining *refining, Vec3 x, bool otherwise)
     if (!cell || cell->state == CELL_OUTSIDE)
         return false;
     if (cell->state == CELL_ACTIVE)
-        return localfield_value(refining->field, &tree->kept, &cell->part, x).phi >= FIELD_LEVEL;
+        return localfield_value(refining->field, &tree->leaf_fields, &cell->local, x).phi >=
+               FIELD_LEVEL;
     return cell->state == CELL_INSIDE || otherwise;
 }
 
@@ -87,11 +88,12 @@ static double measure_at(const FaceRefining *refining, Vec3 x, Vec3 normal, doub
     const Octree *tree = refining->tree;
     const OctreeCell *cell = octree_leaf(tree, x);
     Vec3 gradient;
-    if (!cell || cell->state == CELL_BEHIND)
+    if (!cell || cell->state == CELL_BEYOND_PLANE)
         return 0;
     if (cell->state != CELL_ACTIVE)
         return search_wall(refining, x, cell->state == CELL_INSIDE, normal, radius_mm);
-    FieldValue value = localfield_gradient(refining->field, &tree->kept, &cell->part, x, &gradient);
+    FieldValue value =
+        localfield_gradient(refining->field, &tree->leaf_fields, &cell->local, x, &gradient);
     double slope = vec3_length(gradient), off = fabs(value.phi - FIELD_LEVEL) / slope;
     if (off <= near * radius_mm && slope * radius_mm >= steep)
         return off;
@@ -149,8 +151,8 @@ static bool find_point(const FaceRefining *refining, uint32_t a, uint32_t b, Pat
         const OctreeCell *cell = octree_leaf(refining->tree, x);
         if (!cell || cell->state != CELL_ACTIVE || vec3_distance(x, middle) > most)
             return false;
-        FieldValue value =
-            localfield_gradient(refining->field, &refining->tree->kept, &cell->part, x, &gradient);
+        FieldValue value = localfield_gradient(refining->field, &refining->tree->leaf_fields,
+                                               &cell->local, x, &gradient);
         double steepness = vec3_length(gradient);
         if (fabs(value.phi - FIELD_LEVEL) <= precisely * FIELD_LEVEL) {
             *point = patch_surface_point(refining->field, x, &value, gradient);
@@ -170,7 +172,7 @@ static Status mark_edge(const FaceRefining *refining, uint32_t a, uint32_t b, bo
     const PatchPoint *points = refining->patch->points;
     uint32_t *place;
     PatchPoint point;
-    bool is_new, on_rim = points[a].stub != NO_STUB && points[a].stub == points[b].stub;
+    bool is_new, on_rim = points[a].rim_stub != NO_STUB && points[a].rim_stub == points[b].rim_stub;
     *marked = false;
     if (on_rim)
         return STATUS_OK;
@@ -231,7 +233,7 @@ static Status look_at(const FaceRefining *refining, size_t number)
         TRY(mark_edge(refining, triangle.at[longest], triangle.at[(longest + 1) % 3], &marked));
     *state = marked ? TRIANGLE_FAR : TRIANGLE_SETTLED;
     if (!marked)
-        meshoff_add(refining->off, off, radius);
+        meshdeviation_add(refining->deviation, off, radius);
     return STATUS_OK;
 }
 
@@ -315,11 +317,11 @@ static Status refine_once(const FaceRefining *refining, bool *changed)
 }
 
 Status facerefine_apply(Refiner *refiner, const JunctionSurface *surface, double limit,
-                        MeshOff *off, Err *err)
+                        MeshDeviation *deviation, Err *err)
 {
     Patch *patch = surface->patch;
     FaceRefining refining = {
-        refiner, &surface->plan->field, surface->tree, patch, off, limit, limit, err};
+        refiner, &surface->plan->field, surface->tree, patch, deviation, limit, limit, err};
     size_t n_points = patch->n_points;
     bool changed = true;
     TRY(ARRAY_RESERVE(&refiner->states, patch->n_triangles, "triangles of a junction", err));

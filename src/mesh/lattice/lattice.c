@@ -55,7 +55,8 @@ static bool move_point(const LatticeCutter *cutter, const LocalField *part, Vec3
                        double least_height, LatticePoint *point)
 {
     Vec3 moved = vec3_add(point->x, by);
-    FieldValue value = localfield_value(&cutter->plan->field, &cutter->tree->kept, part, moved);
+    FieldValue value =
+        localfield_value(&cutter->plan->field, &cutter->tree->leaf_fields, part, moved);
     double height = field_height(value.phi);
     if (!(fabs(height) >= least_height))
         return false;
@@ -69,8 +70,8 @@ static void clear_wall(const LatticeCutter *cutter, const LocalField *part, doub
                        LatticePoint *point)
 {
     Vec3 gradient;
-    FieldValue value =
-        localfield_gradient(&cutter->plan->field, &cutter->tree->kept, part, point->x, &gradient);
+    FieldValue value = localfield_gradient(&cutter->plan->field, &cutter->tree->leaf_fields, part,
+                                           point->x, &gradient);
     double steepness = vec3_length(gradient), least = clearance * side;
     double inside = (value.phi - FIELD_LEVEL) / steepness; /* mm, about */
     if (!(fabs(inside) < least))
@@ -124,7 +125,7 @@ static Status add_point(LatticeCutter *cutter, const OctreeCell *from, Vec3 x, u
     bool is_near = from && from->state == CELL_ACTIVE;
     FieldValue value;
     if (is_near)
-        value = localfield_value(&cutter->plan->field, &cutter->tree->kept, &from->part, x);
+        value = localfield_value(&cutter->plan->field, &cutter->tree->leaf_fields, &from->local, x);
     else {
         const LocalField *part;
         TRY(part_away(cutter, x, &part));
@@ -132,7 +133,7 @@ static Status add_point(LatticeCutter *cutter, const OctreeCell *from, Vec3 x, u
     }
     LatticePoint point = {x, field_height(value.phi), NO_CROSSING, false};
     if (is_near && fabs(point.height) < nearly)
-        clear_wall(cutter, &from->part, octree_side(cutter->tree, from->level), &point);
+        clear_wall(cutter, &from->local, octree_side(cutter->tree, from->level), &point);
     *number = (uint32_t)lattice->n_points;
     lattice->points[lattice->n_points++] = point;
     return STATUS_OK;
@@ -183,7 +184,8 @@ static PatchPoint find_crossing(const LatticeCutter *cutter, const LocalField *p
     double low = 0, high = 1, t = inside->height / (inside->height - outside->height);
     for (int i = 0;; i++) {
         Vec3 x = vec3_add_scaled(inside->x, way, t);
-        FieldValue value = localfield_gradient(field, &cutter->tree->kept, part, x, &gradient);
+        FieldValue value =
+            localfield_gradient(field, &cutter->tree->leaf_fields, part, x, &gradient);
         double step = step_to_wall(value.phi) / vec3_dot(gradient, way);
         *(value.phi > FIELD_LEVEL ? &low : &high) = t;
         t += step;
@@ -202,11 +204,11 @@ static Status find_middle(LatticeCutter *cutter, const OctreeCell *from, const L
                           const LatticePoint *outside, PatchPoint *point)
 {
     const JunctionField *field = &cutter->plan->field;
-    const LocalField *part = from ? &from->part : NULL;
+    const LocalField *part = from ? &from->local : NULL;
     Vec3 x = vec3_scale(vec3_add(inside->x, outside->x), 0.5), gradient;
     if (!from)
         TRY(part_away(cutter, x, &part));
-    const LocalFieldPool *pool = from ? &cutter->tree->kept : &cutter->away->stack;
+    const LocalFieldPool *pool = from ? &cutter->tree->leaf_fields : &cutter->away->stack;
     FieldValue value = localfield_gradient(field, pool, part, x, &gradient);
     *point = patch_surface_point(field, x, &value, gradient);
     return STATUS_OK;
@@ -228,7 +230,7 @@ static Status crossing_of(LatticeCutter *cutter, const OctreeCell *from, uint32_
     if (points[a].is_repaired || !from)
         TRY(find_middle(cutter, from, &points[a], &points[b], &point));
     else
-        point = find_crossing(cutter, &from->part, &points[a], &points[b]);
+        point = find_crossing(cutter, &from->local, &points[a], &points[b]);
     TRY(patch_add_point(cutter->patch, point, number, cutter->err));
     lattice->crossings.items[*number] = (LatticeCrossing){b, points[a].first};
     points[a].first = *number;
@@ -323,7 +325,7 @@ static Status cut_about_edge(LatticeCutter *cutter, const uint32_t around[4], in
     const OctreeCell *cells = cutter->tree->cells, *active = NULL;
     bool is_behind = false;
     for (int i = 0; i < 4; i++) {
-        is_behind = is_behind || cells[around[i]].state == CELL_BEHIND;
+        is_behind = is_behind || cells[around[i]].state == CELL_BEYOND_PLANE;
         if (cells[around[i]].state == CELL_ACTIVE)
             active = &cells[around[i]];
     }

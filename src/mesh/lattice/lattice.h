@@ -1,23 +1,34 @@
-/* Extracts the surface of a junction region from the tetrahedra of an octree. */
+/* Extracts the surface of a junction region from a lattice of tetrahedra in an octree.
+ *
+ * The tetrahedra have the corners and centres of the octree's cells as their corners. The field is
+ * evaluated there. A tetrahedron with corners inside and outside the surface gives one or two
+ * triangles. Private to the module mesh.
+ *
+ * lattice_make extracts the surface near active cells alone. lattice_list and lattice_cut serve
+ * latticerepair.h: they list all tetrahedra, and extract the surface again after heights of lattice
+ * points were changed. */
 #ifndef CORCAST_MESH_LATTICE_LATTICE_H
 #define CORCAST_MESH_LATTICE_LATTICE_H
 
 #include "mesh/lattice/patch.h"
 
-/* A point where the field is known. */
+/* A corner of tetrahedra, where the field is known. */
 typedef struct LatticePoint {
     Vec3 x;
-    double height;  /* field_height at x; below 0: inside */
-    uint32_t first; /* of a point inside: a crossing on an edge that begins here, or NO_CROSSING */
-    bool is_repaired; /* counts as inside although the field says outside [latticerepair.h] */
+    double height;    /* field_height at x; below 0: inside */
+    uint32_t first;   /* of a point inside: index of the first crossing on an edge that begins
+                       * here, or NO_CROSSING */
+    bool is_repaired; /* the point counts as inside although it is outside by its field
+                       * [latticerepair.h] */
 } LatticePoint;
 
 #define NO_CROSSING UINT32_MAX
 
-/* The place where an edge crosses the surface: the point of the patch with the same index. */
+/* The crossing of an edge and the surface. The point of the patch with the same index is there. */
 typedef struct LatticeCrossing {
-    uint32_t outside; /* the lattice point where the edge ends */
-    uint32_t next;    /* a crossing on another edge that begins at the same point, or NO_CROSSING */
+    uint32_t outside; /* index of the lattice point at the edge's outer end */
+    uint32_t next;    /* the next crossing on an edge that begins at the same lattice point, or
+                       * NO_CROSSING */
 } LatticeCrossing;
 
 /* Indices of four lattice points. */
@@ -39,17 +50,20 @@ typedef struct Lattice {
 
 void lattice_release(Lattice *lattice);
 
-/* Replaces the patch by the region's surface. It is open only behind the planes of stubs. Errors:
- * STATUS_INFEASIBLE [localfield_refuse], STATUS_MEMORY. */
+/* Replaces the patch of `surface` by the region's surface, which octree_build has enclosed in
+ * surface->tree. The surface is open only beyond the planes of stubs. Errors: STATUS_INFEASIBLE
+ * [localfield_refuse], STATUS_MEMORY. */
 MUST_CHECK Status lattice_make(Lattice *lattice, const JunctionSurface *surface, Err *err);
 
-/* Appends all tetrahedra of the octree to the list. Adds the lattice points that lattice_make did
- * not need. Errors: as lattice_make. */
+/* Appends all tetrahedra of the octree to the list. The caller releases the list with
+ * ARRAY_RELEASE, also after an error. Adds the lattice points that lattice_make did not need.
+ * Errors: STATUS_INFEASIBLE, STATUS_MEMORY, as lattice_make. */
 MUST_CHECK Status lattice_list(Lattice *lattice, const JunctionSurface *surface,
                                TetrahedronList *list, Err *err);
 
-/* Replaces the patch by the surface that the current heights of the points after lattice_list give,
- * also away from where the field has a surface. Errors: as lattice_make. */
+/* Replaces the patch by the surface that separates the lattice points by the current sign of their
+ * heights, in all tetrahedra of the octree. Call lattice_list first. Errors: STATUS_INFEASIBLE,
+ * STATUS_MEMORY, as lattice_make. */
 MUST_CHECK Status lattice_cut(Lattice *lattice, const JunctionSurface *surface, Err *err);
 
 #endif

@@ -37,7 +37,7 @@ typedef struct OctreeBuilder {
 void octree_release(Octree *tree)
 {
     free(tree->cells);
-    localfieldpool_release(&tree->kept);
+    localfieldpool_release(&tree->leaf_fields);
     localfieldpool_release(&tree->stack);
     *tree = (Octree){0};
 }
@@ -134,7 +134,7 @@ static Status settle(OctreeBuilder *builder, uint32_t number, const LocalField *
     else if (bounds->lower > (1 + surely) * FIELD_LEVEL)
         state = CELL_INSIDE;
     else if (is_behind(builder, bounds, center, ball))
-        state = CELL_BEHIND;
+        state = CELL_BEYOND_PLANE;
     tree->cells[number].state = (uint8_t)state;
     if (state == CELL_ACTIVE && side <= builder->size->ratio * bounds->min_radius_mm &&
         own.local.n_terms > MAX_LOCAL_TERMS)
@@ -143,7 +143,8 @@ static Status settle(OctreeBuilder *builder, uint32_t number, const LocalField *
         must_split(builder, &own.local, bounds, center, side))
         TRY(split(builder, number, &own.local, err));
     else if (state == CELL_ACTIVE)
-        TRY(localfield_copy(stack, &own.local, &tree->kept, &tree->cells[number].part, err));
+        TRY(localfield_copy(stack, &own.local, &tree->leaf_fields, &tree->cells[number].local,
+                            err));
     stack->n_terms = n_terms;
     stack->n_groups = n_groups;
     return STATUS_OK;
@@ -152,17 +153,17 @@ static Status settle(OctreeBuilder *builder, uint32_t number, const LocalField *
 static Status refuse(const OctreeBuilder *builder, Err *err)
 {
     return err_set(err, STATUS_INFEASIBLE,
-                   "a chain of junctions, of %u segments, has no free interval to be cut at, and "
-                   "its surface needs more than %zu cells, 4 GB of memory; a larger `tolerance` "
+                   "%u segments are too close together to be divided into smaller regions; "
+                   "their surface needs more than %zu cells, 4 GB of memory; a larger `tolerance` "
                    "needs fewer",
-                   builder->plan->field.n_terms, builder->size->most);
+                   builder->plan->field.n_terms, builder->size->max_cells);
 }
 
 /* Gives a cell children. Those of an active cell are settled; others have the state of the cell. */
 static Status split(OctreeBuilder *builder, uint32_t number, const LocalField *part, Err *err)
 {
     Octree *tree = builder->tree;
-    if (tree->n_cells + 8 > builder->size->most)
+    if (tree->n_cells + 8 > builder->size->max_cells)
         return refuse(builder, err);
     TRY(mem_reserve(&tree->cells, &tree->capacity, tree->n_cells + 8, sizeof *tree->cells,
                     "cells of a junction", err));
@@ -212,8 +213,8 @@ static Status split_leaf(OctreeBuilder *builder, uint32_t number, Err *err)
     Octree *tree = builder->tree;
     LocalField part = {0};
     if (tree->cells[number].state == CELL_ACTIVE) {
-        const LocalField kept = tree->cells[number].part;
-        TRY(localfield_copy(&tree->kept, &kept, &tree->stack, &part, err));
+        const LocalField kept = tree->cells[number].local;
+        TRY(localfield_copy(&tree->leaf_fields, &kept, &tree->stack, &part, err));
     }
     TRY(split(builder, number, &part, err));
     tree->stack.n_terms = tree->stack.n_groups = 0;
@@ -303,7 +304,8 @@ Status octree_build(Octree *tree, const JunctionPlan *plan, const CellSize *size
 {
     OctreeBuilder builder = {tree, plan, size};
     tree->n_cells = 0;
-    tree->kept.n_terms = tree->kept.n_groups = tree->stack.n_terms = tree->stack.n_groups = 0;
+    tree->leaf_fields.n_terms = tree->leaf_fields.n_groups = tree->stack.n_terms =
+        tree->stack.n_groups = 0;
     place_root(tree, plan, size->ratio);
     TRY(mem_reserve(&tree->cells, &tree->capacity, 1, sizeof *tree->cells, "cells of a junction",
                     err));

@@ -22,8 +22,8 @@ PatchPoint patch_surface_point(const JunctionField *field, Vec3 x, const FieldVa
                         .normal = vec3_scale(gradient, -1 / vec3_length(gradient)),
                         .radius_mm = term->radius_mm,
                         .segment = term->segment,
-                        .tube = term->stub,
-                        .stub = NO_STUB};
+                        .vessel_stub = term->stub,
+                        .rim_stub = NO_STUB};
 }
 
 Status patch_add_point(Patch *patch, PatchPoint point, uint32_t *index, Err *err)

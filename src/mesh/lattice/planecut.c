@@ -37,9 +37,9 @@ void planecutter_release(PlaneCutter *cutter)
  * tube of a stub. */
 static double along_tube(const PlaneCut *cut, const PatchPoint *point)
 {
-    if (point->tube == NO_STUB)
+    if (point->vessel_stub == NO_STUB)
         return -HUGE_VAL;
-    const BranchStub *stub = &cut->stubs[point->tube];
+    const BranchStub *stub = &cut->stubs[point->vessel_stub];
     Vec3 from = vec3_sub(point->x, stub->at);
     double along = vec3_dot(from, stub->outward), reach = tube_reach * stub->radius_mm;
     double from2 = vec3_dot(from, from), across2 = from2 - along * along;
@@ -90,8 +90,9 @@ static Status shift_planes(const PlaneCut *cut, double ratio)
     for (size_t i = 0; i < cut->patch->n_points; i++) {
         const PatchPoint *point = &cut->patch->points[i];
         double along = along_tube(cut, point);
-        if (point->tube != NO_STUB && fabs(along) < room_of(&cut->stubs[point->tube], ratio))
-            offsets[n++] = (PlaneOffset){point->tube, along};
+        if (point->vessel_stub != NO_STUB &&
+            fabs(along) < room_of(&cut->stubs[point->vessel_stub], ratio))
+            offsets[n++] = (PlaneOffset){point->vessel_stub, along};
     }
     qsort(offsets, n, sizeof *offsets, compare_offsets);
     for (size_t from = 0, to = 0; from < n; from = to) {
@@ -107,7 +108,7 @@ static void mark_beyond(const PlaneCut *cut)
     for (size_t i = 0; i < cut->patch->n_points; i++) {
         const PatchPoint *point = &cut->patch->points[i];
         bool is_beyond = along_tube(cut, point) > 0;
-        cut->cutter->stub_beyond.items[i] = is_beyond ? point->tube : NO_STUB;
+        cut->cutter->stub_beyond.items[i] = is_beyond ? point->vessel_stub : NO_STUB;
     }
 }
 
@@ -121,8 +122,8 @@ static void move_to_surface(const PlaneCut *cut, const BranchStub *stub, Vec3 aw
         return;
     for (int i = 0; i < SURFACE_STEPS; i++) {
         Vec3 gradient;
-        FieldValue value =
-            localfield_gradient(cut->field, &cut->tree->kept, &cell->part, point->x, &gradient);
+        FieldValue value = localfield_gradient(cut->field, &cut->tree->leaf_fields, &cell->local,
+                                               point->x, &gradient);
         double slope = vec3_dot(gradient, away), most = 0.1 * stub->radius_mm;
         double by = (FIELD_LEVEL - value.phi) / slope;
         if (!(slope < 0) || !(fabs(by) < most))
@@ -148,8 +149,8 @@ static PatchPoint cut_edge(const PlaneCut *cut, uint32_t before, uint32_t beyond
                         .normal = normal,
                         .radius_mm = stub->radius_mm,
                         .segment = stub->segment,
-                        .tube = index,
-                        .stub = index};
+                        .vessel_stub = index,
+                        .rim_stub = index};
     if (stub->is_close) {
         point.x = vec3_add(stub->at, across);
         move_to_surface(cut, stub, normal, &point);

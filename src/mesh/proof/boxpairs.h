@@ -1,4 +1,7 @@
-/* Finds all pairs among many items whose boxes meet. */
+/* Finds all pairs of items whose bounding boxes meet, among many items.
+ *
+ * The caller supplies a function that returns the box of an item, and a function that is called for
+ * each pair. Used to find near segments and crossing triangles. */
 #ifndef CORCAST_MESH_PROOF_BOXPAIRS_H
 #define CORCAST_MESH_PROOF_BOXPAIRS_H
 
@@ -6,6 +9,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/* A box with sides parallel to the axes, in single precision, mm. */
 typedef struct FloatBox {
     float low[3], high[3];
 } FloatBox;
@@ -17,13 +21,17 @@ static inline bool floatbox_meets(const FloatBox *a, const FloatBox *b)
            b->low[1] <= a->high[1] && a->low[2] <= b->high[2] && b->low[2] <= a->high[2];
 }
 
+/* What is searched. */
 typedef struct BoxPairs {
-    uint32_t count; /* number of items; it is faster if neighbours in order are near in space */
-    FloatBox (*box)(uint32_t item, const void *context); /* returns an item's box */
-    /* Called once for each pair, in any order, with a < b; by several threads at once. */
+    uint32_t count; /* number of items. The search is faster if items with near indices are near in
+                     * space. */
+    /* Returns the box of an item. Several threads call it at the same time. */
+    FloatBox (*box)(uint32_t item, const void *context);
+    /* Receives each pair once, with a < b, in no certain order. Several threads call it at the same
+     * time, each with its own index `worker`, from 0. */
     void (*found)(uint32_t a, uint32_t b, int worker, void *context);
-    void *context; /* of both functions */
-    int threads;   /* 0: all processors */
+    void *context; /* passed to both functions */
+    int threads;   /* number of threads; 0: one per processor */
 } BoxPairs;
 
 /* Calls `found` for each pair of items whose boxes meet. Uses 7 bytes per item. Errors:

@@ -1,32 +1,41 @@
-/* Facts about finished triangles: connected parts, genus, open edges, volume, crossings. */
+/* Checks finished triangles: connected components, genus, open edges, volume, crossings. The
+ * functions fill parts of a MeshReport; meshreport_check judges them. Exported by the public header
+ * of the module mesh. */
 #ifndef CORCAST_MESH_PROOF_MESHCHECK_H
 #define CORCAST_MESH_PROOF_MESHCHECK_H
 
 #include "mesh/meshreport.h"
 #include <stdatomic.h>
 
-/* Returns the volume that the triangles enclose, mm^3. */
+/* Returns the volume that the triangles enclose, mm^3. It is negative if the mesh is inside out,
+ * and has no meaning if the mesh is not closed. */
 double vesselmesh_volume(const VesselMesh *mesh);
 
 /* Finds the tree of each segment.
  *
- * trees    receives, per segment, the lowest node of its tree (owned by the caller).
+ * trees    receives, per segment, the lowest index of a node of its tree; free it with free().
  * n_trees  receives the number of trees.
  * Errors   STATUS_MEMORY. */
 MUST_CHECK Status meshcheck_trees(const VesselTree *tree, uint32_t **trees, size_t *n_trees,
                                   Err *err);
 
-/* Fills components, genus, euler, open_edges, volume_mm3 and bridges of the report. trees[i] is the
- * tree of segment i. Errors: STATUS_MEMORY. O(triangles). */
+/* Fills components, genus, euler, open_edges, volume_mm3 and bridges of the report.
+ *
+ * trees    per segment: a number of its tree, as from meshcheck_trees.
+ * Errors   STATUS_MEMORY.
+ * Cost     O(triangles). */
 MUST_CHECK Status meshcheck_topology(const VesselMesh *mesh, const uint32_t *trees,
                                      MeshReport *report, Err *err);
 
-/* Counts the pairs of triangles that have a point in common beyond a corner or an edge that they
- * share. The result is exact.
+/* Counts the pairs of triangles that cross: they have a common point that is not on a corner or an
+ * edge that they share. The result is exact, and does not depend on the number of threads.
  *
- * grid_mm  all coordinates are integer multiples of it, below 2^25 times it.
- * crossed  per triangle: set to true if it is in such a pair; NULL: not wanted.
- * Errors   STATUS_MEMORY. */
+ * grid_mm    all coordinates are integer multiples of it, below 2^25 times it in magnitude.
+ * threads    number of threads; 0: one per processor.
+ * crossed    per triangle, false before: set to true if the triangle is in such a pair. NULL: not
+ *            wanted.
+ * crossings  receives the number of pairs.
+ * Errors     STATUS_MEMORY. */
 MUST_CHECK Status meshcheck_crossings(const VesselMesh *mesh, double grid_mm, int threads,
                                       atomic_bool *crossed, size_t *crossings, Err *err);
 

@@ -30,14 +30,15 @@ typedef struct BlobSpan {
     uint32_t number;
 } BlobSpan;
 
-/* How a ray runs by a segment. */
+/* A ray relative to a segment. */
 typedef struct BlobCourse {
     double along;        /* cosine of the angle between ray and axis */
     double across2;      /* squared sine of it */
     double t[2];         /* nearest to either end */
     double distance2[2]; /* from it, there */
     double slope[2];     /* half the change of distance2 as the end moves along the axis, 1/mm */
-    double gate[2];      /* where the ray passes the planes across the axis at the ends */
+    double gate[2];      /* parameters at which the ray crosses the planes perpendicular to the axis
+                          * at the ends */
     double t_axis, axis_distance2; /* nearest to the axis line */
 } BlobCourse;
 
@@ -102,7 +103,8 @@ static BlobCourse course_of(const FieldSegment *segment, Ray ray)
     Vec3 axis = vec3_normalized(vec3_sub(end[1], end[0])), d = ray.direction;
     course.along = vec3_dot(d, axis);
     Vec3 across = vec3_add_scaled(axis, d, -course.along);
-    Vec3 aside = vec3_add_scaled(d, axis, -course.along); /* as long, and square to the axis */
+    Vec3 aside = vec3_add_scaled(d, axis, -course.along); /* as long, and perpendicular to the
+                                                           * axis */
     course.across2 = vec3_dot(aside, aside);
     for (int e = 0; e < 2; e++) {
         course.t[e] = vec3_dot(vec3_sub(end[e], ray.origin), d);
@@ -160,7 +162,8 @@ static BlobParts parts_of(const BlobCourse *course, double distance_along)
     return parts;
 }
 
-/* How far along its axis the segment is passed, from 0 to 1, by a ray square to it. */
+/* Returns the position along the axis, 0..1, at which a ray perpendicular to the axis passes the
+ * segment. */
 static double place_along(const FieldSegment *segment, Ray ray)
 {
     Vec3 span = vec3_sub(segment->b, segment->a);
@@ -181,7 +184,7 @@ static BlobPiece *put_tube(BlobPiece *end, const BlobCourse *course, const BlobP
         double t = course->t[e], distance2 = course->distance2[e];
         end = put_piece(end, t, distance2, 1, radius2, half, parts->low[outside],
                         parts->high[outside]);
-        /* What is not outside of this end: between the ends or beyond the other. */
+        /* The part that is not outside this end: between the ends or beyond the other end. */
         double low = fmin(parts->low[1], parts->low[2 - outside]);
         double high = fmax(parts->high[1], parts->high[2 - outside]);
         end = put_piece(end, t, distance2, 1, radius2, -half, low, high);
@@ -215,7 +218,7 @@ static BlobPiece *put_segment(BlobPiece *end, const FieldSegment *segment, Ray r
     return end;
 }
 
-/* Where the ray may feel the segment: while it is within its reach. */
+/* Finds the interval in which the segment's field can be nonzero on the ray: within its reach. */
 static bool find_span(const FieldSegment *segment, Ray ray, double reach, double t_max,
                       BlobSpan *span)
 {
@@ -238,7 +241,7 @@ static bool find_span(const FieldSegment *segment, Ray ray, double reach, double
     return span->t0 < span->t1 && span->t0 < t_max;
 }
 
-/* By rising t0, and number where those are equal [Shell; gaps of Ciura 2001]. */
+/* Sorts spans by ascending t0, then by index [Shell; gaps of Ciura 2001]. */
 static void sort_spans(BlobSpan *spans, size_t n)
 {
     static const size_t gaps[] = {701, 301, 132, 57, 23, 10, 4, 1};
@@ -282,8 +285,8 @@ typedef struct BlobWalk {
     size_t n_active;
 } BlobWalk;
 
-/* Takes up the pieces that begin at `t` or before, drops those that end there: where the next one
- * begins or ends, infinity after the last. */
+/* Adds the pieces that start at `t` or before, and removes the pieces that end there. Returns the
+ * next start or end of a piece; infinity after the last. */
 static double walk_to(BlobWalk *walk, double t)
 {
     double until = INFINITY;
@@ -301,7 +304,7 @@ static double walk_to(BlobWalk *walk, double t)
     return walk->next < walk->n ? fmin(until, walk->order[walk->next].t0) : until;
 }
 
-/* The first root in (t_min, t_max) of the pieces, sorted by `order`. */
+/* Finds the first root in (t_min, t_max) of the pieces, sorted by `order`. */
 static bool first_root(BlobScratch *scratch, size_t n, double t_min, double t_max, double *t)
 {
     BlobWalk walk = {scratch->pieces, scratch->order, n, 0, scratch->active, 0};
@@ -339,11 +342,11 @@ typedef struct BlobQuery {
     BlobScratch *scratch;
     RayPart part;
     size_t n;          /* spans */
-    size_t first, end; /* of the group that is hit: its spans */
+    size_t first, end; /* spans of the group that is hit */
     double t;          /* of the hit */
 } BlobQuery;
 
-/* Adds the span of a segment, if the ray may feel it. */
+/* Adds the span of a segment, if its field can be nonzero on the ray. */
 static void add_span(BlobQuery *query, uint32_t number)
 {
     BlobSpan *span = &query->scratch->spans[query->n];
@@ -352,7 +355,7 @@ static void add_span(BlobQuery *query, uint32_t number)
                           blob_reach(&blob_shape), query->part.t_max, span);
 }
 
-/* The first hit among the segments of the group. */
+/* Finds the first hit among the segments of the group. */
 static bool group_root(BlobQuery *query)
 {
     BlobScratch *scratch = query->scratch;
@@ -367,7 +370,7 @@ static bool group_root(BlobQuery *query)
     return n > 0 && first_root(scratch, n, query->part.t_min, query->part.t_max, &query->t);
 }
 
-/* The first hit among the segments whose spans there are. */
+/* Finds the first hit among the segments that have spans. */
 static bool find_hit(BlobQuery *query)
 {
     const BlobSpan *spans = query->scratch->spans;

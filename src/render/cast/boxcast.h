@@ -1,6 +1,14 @@
-/* Searches a bounding volume hierarchy for the items that a ray hits. Primitives, triangles and
- * cells share this code. The functions are inline, so that the compiler can inline the callback
- * that computes the crossings. */
+/* Searches a bounding volume hierarchy (BVH) for the items that a ray hits. An item is a primitive,
+ * a triangle or one of POV-Ray's cells. The search walks the leaves whose boxes the ray meets and
+ * calls an ItemCrossings function for each item of a leaf. The functions are inline, so that the
+ * compiler can inline that callback. They allocate nothing and cannot fail.
+ *
+ *     Hit hit;
+ *     uint32_t triangle;
+ *     if (boxcast_first(&boxes, &part, part.t_min, triangle_crossings, index, &hit, &triangle))
+ *         ... hit.t is the distance to the nearest triangle, mm
+ *
+ * "t" is the distance along the ray, mm. Both functions search t_min <= t < t_max of a RayPart. */
 #ifndef CORCAST_RENDER_BOXCAST_H
 #define CORCAST_RENDER_BOXCAST_H
 
@@ -8,14 +16,23 @@
 
 enum { ITEM_CROSSINGS = 4 }; /* maximum number of crossings of one item */
 
-/* Finds the crossings of a ray with item `item` in any order and returns their number. Sets only
- * those parts of hits[] that the caller needs. *rank decides between items that are hit at equal t:
- * the lower rank wins, then the lower index. */
+/* Finds the crossings of a ray with item `item`, in any order, and returns their number.
+ *
+ * items  the pointer that the caller passed to the search.
+ * item   index of the item in BoxTree.items.
+ * ray    the whole ray; crossings outside [t_min, t_max) may be returned.
+ * hits   receives the crossings; only the fields that the caller of the search reads are set.
+ * rank   0 on entry. Among items that are hit at equal t, the item with the lowest rank wins, then
+ *        the item with the lowest index. */
 typedef int ItemCrossings(const void *items, uint32_t item, Ray ray, Hit hits[ITEM_CROSSINGS],
                           double *rank);
 
-/* Finds the nearest crossing with t_min <= t < t_max, and its item. Returns false if there is none.
- * Leaves out boxes that the ray does not meet at t = `boxes_from` or later. */
+/* Finds the nearest crossing of a ray with any item of the tree.
+ *
+ * boxes_from  mm, at most part->t_min: boxes that the ray leaves before t = boxes_from are skipped.
+ * items       passed to `crossings`.
+ * hit, index  receive the crossing and the index of its item; undefined if there is none.
+ * Returns     false if no crossing has t_min <= t < t_max. */
 static inline bool boxcast_first(const BoxTree *tree, const RayPart *part, double boxes_from,
                                  ItemCrossings *crossings, const void *items, Hit *hit,
                                  uint32_t *index)
@@ -23,6 +40,7 @@ static inline bool boxcast_first(const BoxTree *tree, const RayPart *part, doubl
     BoxWalk walk;
     double lowest = 0;
     bool found = false;
+    *index = 0;
     hit->t = part->t_max;
     boxwalk_start(&walk, tree, part->ray.origin, part->ray.direction, boxes_from, true);
     for (const BoxNode *leaf; (leaf = boxwalk_leaf(&walk, hit->t));)
@@ -46,7 +64,8 @@ static inline bool boxcast_first(const BoxTree *tree, const RayPart *part, doubl
     return found;
 }
 
-/* Returns true if any item has a crossing with t_min < t < t_max. */
+/* Returns true if any item has a crossing with t_min <= t < t_max. The parameters are those of
+ * boxcast_first. */
 static inline bool boxcast_any(const BoxTree *tree, const RayPart *part, double boxes_from,
                                ItemCrossings *crossings, const void *items)
 {
@@ -55,10 +74,10 @@ static inline bool boxcast_any(const BoxTree *tree, const RayPart *part, double 
     for (const BoxNode *leaf; (leaf = boxwalk_leaf(&walk, part->t_max));)
         for (uint32_t i = leaf->first; i < leaf->first + leaf->n_items; i++) {
             Hit hits[ITEM_CROSSINGS];
-            double rank;
+            double rank = 0;
             const int n = crossings(items, tree->items[i], part->ray, hits, &rank);
             for (int k = 0; k < n; k++)
-                if (hits[k].t > part->t_min && hits[k].t < part->t_max)
+                if (hits[k].t >= part->t_min && hits[k].t < part->t_max)
                     return true;
         }
     return false;

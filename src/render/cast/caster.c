@@ -1,5 +1,5 @@
-/* What the five searches [raysearch.h] have in common: POV-Ray's limits of what is too near to be
- * visible or to cast a shadow, and normals that face the viewer. */
+/* The common part of the five searches [raysearch.h]: POV-Ray's limits below which a hit is not
+ * visible and a blocker casts no shadow, and normals that face the viewer. */
 #include "render/cast/caster.h"
 
 #include <stdlib.h>
@@ -10,9 +10,9 @@ static const double shadow_slack_mm = 1e-3;
 
 struct Caster {
     Geometry geometry;    /* shallow copy, with the primitives that the original implies */
-    Primitive *with_ends; /* those primitives, if there are any; owned */
+    Primitive *with_ends; /* all primitives, if the original implies some; NULL otherwise; owned */
     const RaySearch *search;
-    RayIndex index; /* of the copy */
+    RayIndex index; /* index of the copy */
     void **workspaces;
     int workers;
     double shadow_from_mm;
@@ -91,7 +91,7 @@ bool caster_first(Caster *caster, int worker, Ray ray, Surfel *surfel)
                        .normal = inwards ? vec3_scale(hit.normal, -1) : hit.normal,
                        .segment = geometry->n_primitives ? geometry->primitives[hit.index].segment
                                                          : geometry->segments[hit.index].segment,
-                       .leaves = caster->index.planes ? hit.leaves : inwards,
+                       .from_inside = caster->index.planes ? hit.from_inside : inwards,
                        .cell = hit.cell};
     return true;
 }

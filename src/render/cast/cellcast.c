@@ -1,19 +1,20 @@
-/* POV-Ray's IsoSurface object (shape/isosurf.cpp of 3.7.0.10), open and with max_trace 1, in its
- * own order of operations. On the part [t0, t1] of the ray in the box:
+/* cell_search: repeats POV-Ray's IsoSurface object (shape/isosurf.cpp of 3.7.0.10), open and with
+ * max_trace 1, in POV-Ray's order of operations. On the part [t0, t1] of the ray in the box, the
+ * root finder is
  *
- *   R(a, b):  if b - a < accuracy:                           a hit at b if f(b) < 0
- *             else if f(a) + f(b) < max_gradient (b - a):     R(a, m), then R(m, b), m the middle
+ *     R(a, b):  if b - a < accuracy:                           a hit at b if f(b) < 0
+ *               else if f(a) + f(b) < max_gradient (b - a):     R(a, m), then R(m, b), m the middle
  *
- * with f's sign turned when it is negative at t0, so that a ray from within finds its way out. A
- * ray that starts within an accuracy of the box and has |f| < 4 max_gradient accuracy there starts
- * on the surface: it is moved on by five accuracies, and f's sign is turned if it is negative
- * there. So a shadow ray, which starts up to an accuracy inside, sees its own surface again where
- * it runs nearly along it.
+ * If f is negative at t0, its sign is inverted, so that a ray from inside finds the point where it
+ * leaves. A ray that starts within one accuracy of the box and has |f| < 4 max_gradient accuracy
+ * there starts on the surface. Its start is then moved forward by five accuracies, and f's sign is
+ * inverted if f is negative there. As a result, a shadow ray, which starts up to one accuracy
+ * inside, hits its own surface again if it runs nearly along the surface.
  *
- * POV-Ray also remembers the last cell that a ray missed, and takes a near ray for a miss of the
- * same cell if the least f it saw exceeds max_gradient times the distance of the two. Scenes of
- * ours do not let it: the last cell missed is always Cell_Guard of templates/povray/isosurface.inc.
- */
+ * POV-Ray also remembers the last cell that a ray missed. It takes a near ray for a miss of the
+ * same cell if the minimum f on the first ray exceeds max_gradient times the distance of the two
+ * rays. This cannot happen in corcast's scenes: the last cell missed is always Cell_Guard of
+ * templates/povray/isosurface.inc. */
 #include "render/cast/boxcast.h"
 #include "render/cast/povray_bound.h"
 
@@ -25,8 +26,8 @@ static const double flat = 1e-10, close_by = 1e-6, behind = 1e-6, endless = 2e10
 
 /* ---- one cell -------------------------------------------------------------------------------- */
 
-/* One axis of POV-Ray's box test. Beyond the first axis, `slack` keeps an end of the interval where
- * it is unless the new one is nearer by more. */
+/* One axis of POV-Ray's box test. From the second axis on, `slack` is not 0: an end of the interval
+ * changes only if the new end is nearer by more than `slack`. */
 static bool cut_axis(double from, double along, double low, double high, double slack, double *t0,
                      double *t1)
 {
@@ -73,7 +74,7 @@ typedef struct CellSample {
     double t, f;
 } CellSample;
 
-/* R of above; `rise` is max_gradient times the width. */
+/* The function R above. `rise` is max_gradient times the width. */
 static bool find_root(const CellSearch *search, CellSample a, CellSample b, double rise,
                       double width, double *t)
 {
@@ -91,13 +92,14 @@ static bool find_root(const CellSearch *search, CellSample a, CellSample b, doub
            find_root(search, middle, b, rise, width, t);
 }
 
-/* The cells, and the ray that is tested against their bounds. */
+/* The cells, and the rounded ray that is tested against their bounds. */
 typedef struct CellQuery {
     const CellTree *cells;
     BoundRay rounded;
 } CellQuery;
 
-/* Sets hits[0].t, and *rank to the order in which POV-Ray looks into the cell. */
+/* ItemCrossings of cells. Sets hits[0].t, and *rank to the order in which POV-Ray intersects the
+ * cells. */
 static int cell_crossings(const void *items, uint32_t index, Ray ray, Hit hits[ITEM_CROSSINGS],
                           double *rank)
 {
@@ -146,9 +148,9 @@ static Status build(RayIndex *index, const CellParams *params, Err *err)
     return rayindex_build_boxes(index, index->cells.n_cells, cell_box, err);
 }
 
-/* Where two cells are hit at one point, the hit is that of the cell that POV-Ray looks into first.
- * Where both boxes begin at one point, which their shifts [field/celltree.c] avoid, it is that of
- * the lower index. */
+/* If two cells are hit at the same t, the hit belongs to the cell that POV-Ray intersects first. If
+ * both boxes begin at the same t, the cell with the lower index wins; the shifts of the cells
+ * [field/celltree.c] avoid this case. */
 static bool first_cell(const RayIndex *index, void *workspace, const RayPart *part, RayHit *hit)
 {
     (void)workspace;
@@ -172,4 +174,4 @@ static bool any_cell(const RayIndex *index, void *workspace, const RayPart *part
 }
 
 const RaySearch cell_search = {
-    .nearest_mm = NEAREST_SEEN_MM, .build = build, .first = first_cell, .any = any_cell};
+    .nearest_mm = NEAREST_VISIBLE_MM, .build = build, .first = first_cell, .any = any_cell};

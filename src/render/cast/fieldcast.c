@@ -26,15 +26,15 @@
 
 #include <float.h>
 
-/* Phi within this part of the level has reached it. */
+/* Phi counts as equal to the level within this difference. */
 static const double touch = 1e-12 * FIELD_LEVEL;
 
-/* From here on erf(x) = 1 and exp(-x^2) = 0 to the last bit of a sum near the level. */
+/* For x of at least this, erf(x) = 1 and exp(-x^2) = 0 to the last bit of a sum near the level. */
 static const double saturated = 6;
 
 static const double inv_sqrt_pi = 0.56418958354775628695;
 
-/* The first place from t on within a window; infinite when there is none. */
+/* Returns the first parameter from t on within a window; infinite if there is none. */
 static double next_window(const FieldScratch *scratch, double t)
 {
     double next = HUGE_VAL;
@@ -50,7 +50,7 @@ static double next_window(const FieldScratch *scratch, double t)
 typedef struct RaySample {
     double phi, slope;
     double convex, concave; /* bounds of phi'' and -phi'' until `next` */
-    double next;            /* where the next term's stretch begins */
+    double next;            /* start of the next term's interval */
 } RaySample;
 
 static void add_term(const RayTerm *term, double t, RaySample *sample)
@@ -84,9 +84,9 @@ static RaySample sample_at(const FieldScratch *scratch, double t)
     return sample;
 }
 
-/* What separates a sample from the level, seen from outside (side 1) or from inside (side -1). */
+/* The difference between a sample and the level, from outside (side 1) or from inside (side -1). */
 typedef struct Approach {
-    double lack, slope;     /* lack falls by slope a mm; both refer to side * Phi */
+    double lack, slope;     /* `lack` decreases by `slope` per mm; both refer to side * Phi */
     double convex, concave; /* of side * Phi */
 } Approach;
 
@@ -97,7 +97,7 @@ static Approach approach_of(const RaySample *sample, double side)
                       side > 0 ? sample->concave : sample->convex};
 }
 
-/* The one crossing in [low, high]; the lack is `at.lack` > 0 at `low`. */
+/* Returns the only crossing in [low, high]. The lack at `low` is `at.lack` > 0. */
 static double close_bracket(const FieldScratch *scratch, double low, double high, double side,
                             Approach at)
 {
@@ -121,8 +121,8 @@ static double close_bracket(const FieldScratch *scratch, double low, double high
     return t;
 }
 
-/* The first crossing of the level from t on, from outside inwards (side 1) or out of the vessel
- * (side -1). Infinite when there is none up to t_max. */
+/* Returns the first crossing of the level from t on: into a vessel (side 1) or out of it (side -1).
+ * Infinite if there is none up to t_max. */
 static double march(const FieldScratch *scratch, double t, double t_max, double side)
 {
     for (;;) {
@@ -162,8 +162,8 @@ static bool is_inside(const RaySample *sample)
     return sample->phi > FIELD_LEVEL + touch;
 }
 
-/* Whether a ray that starts on a surface is inside only because that place is not exact: hits are
- * within 10^-3 r, so that Phi is within 0.4 % of the level, and the ray is on its way out. */
+/* Returns true if a ray that starts on a surface is inside only because its start is not exact:
+ * hits are within 10^-3 r, so Phi is within 0.4 % of the level, and the ray leaves the vessel. */
 static bool is_skin(const FieldQuery *query, const RaySample *sample)
 {
     return query->off_surface && sample->phi < 1.01 * FIELD_LEVEL && sample->slope < 0;
@@ -185,7 +185,7 @@ static double first_crossing(const FieldQuery *query)
     return march(scratch, t, query->part.t_max, 1);
 }
 
-/* Sets the answer to the place t of the group. */
+/* Sets the result to the point of the group at t. */
 static void describe_hit(FieldQuery *query, double t)
 {
     const FieldScratch *scratch = query->scratch;
@@ -210,7 +210,7 @@ static void describe_hit(FieldQuery *query, double t)
                                    steepness > 0 ? -1 / steepness : -1);
 }
 
-/* The first hit of the sum of the terms chosen. */
+/* Finds the first hit of the sum of the selected terms. */
 static bool hit_of_sum(FieldQuery *query)
 {
     while (rayterms_next_group(query->scratch)) {
@@ -225,7 +225,7 @@ static bool hit_of_sum(FieldQuery *query)
     return false;
 }
 
-/* Chooses the terms of one of the groups that the scratch has found. */
+/* Selects the terms of one of the scratch's groups. */
 static void choose_group(const FieldQuery *query, size_t number)
 {
     size_t n;
@@ -233,9 +233,9 @@ static void choose_group(const FieldQuery *query, size_t number)
     rayterms_choose(query->scratch, members, n);
 }
 
-/* If the ray is at t_min inside the body of the terms chosen, moves t_min to where it leaves,
- * infinite if that is beyond t_max, describes that place and returns true. *deep tells whether it
- * was more than skin there, and is left alone if not. */
+/* If the ray at t_min is inside the body of the selected terms, moves t_min to the point where it
+ * leaves (infinite if beyond t_max), describes this point and returns true. Sets *deep to true if
+ * the ray was inside by more than is_skin allows; does not change it otherwise. */
 static bool leave_body(FieldQuery *query, bool *deep)
 {
     const FieldScratch *scratch = query->scratch;
@@ -257,7 +257,7 @@ static bool leave_body(FieldQuery *query, bool *deep)
     return false;
 }
 
-/* Whether a ray may be inside a vessel at t_min. */
+/* Returns true if a ray may be inside a vessel at t_min. */
 static bool starts_in_term(const FieldQuery *query)
 {
     const FieldScratch *scratch = query->scratch;
@@ -267,8 +267,8 @@ static bool starts_in_term(const FieldQuery *query)
     return false;
 }
 
-/* Moves t_min out of the union of the bodies of the groups. True if it was inside, and not just for
- * being on the surface. */
+/* Moves t_min out of the union of the groups' bodies. Returns true if the ray was inside, and not
+ * only because it starts on the surface. */
 static bool leave_union(FieldQuery *query, size_t n_groups)
 {
     bool deep = false, moved = starts_in_term(query);
@@ -282,7 +282,7 @@ static bool leave_union(FieldQuery *query, size_t n_groups)
     return deep;
 }
 
-/* The first hit of the union of the bodies of the groups. */
+/* Finds the first hit of the union of the groups' bodies. */
 static bool hit_of_union(FieldQuery *query)
 {
     FieldScratch *scratch = query->scratch;
@@ -302,7 +302,7 @@ static bool hit_of_union(FieldQuery *query)
     return hit;
 }
 
-/* The first hit of the terms that the scratch holds. */
+/* Finds the first hit of the terms in the scratch. */
 static bool first_hit(FieldQuery *query)
 {
     if (query->scratch->groups)
@@ -351,7 +351,7 @@ static Status build(RayIndex *index, const CellParams *cells, Err *err)
     return fieldindex_build(index->geometry, &index->field, err);
 }
 
-const RaySearch field_search = {.nearest_mm = NEAREST_SEEN_MM,
+const RaySearch field_search = {.nearest_mm = NEAREST_VISIBLE_MM,
                                 .build = build,
                                 .workspace_new = fieldscratch_new,
                                 .workspace_free = fieldscratch_free,

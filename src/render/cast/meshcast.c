@@ -1,9 +1,11 @@
-/* A tree of boxes [boxtree.h] and triangles, each met as POV-Ray 3.7 meets those of a mesh2
- * (shape/mesh.cpp of 3.7.0.10): in the plane of the triangle, whose normal and distance are kept in
- * single precision, and within its three edges as they are seen along the axis that the normal
- * leans to most. The normal that is seen is interpolated between those of the corners, in
- * POV-Ray's order of the corners and in single precision where POV-Ray has it, so that pictures are
- * the same: a highlight of size 40 makes 40 roundings of one. */
+/* triangle_search: a bounding volume hierarchy of triangles. Repeats POV-Ray 3.7's intersection
+ * with the triangles of a mesh2 (shape/mesh.cpp of 3.7.0.10): the ray meets the plane of the
+ * triangle, whose normal and distance are in single precision. The hit must lie within the three
+ * edges, projected along the largest component of the normal.
+ *
+ * The shading normal is interpolated between the normals of the corners, in POV-Ray's order of the
+ * corners and in single precision where POV-Ray uses it. Pictures would differ otherwise: a
+ * highlight of size 40 enlarges one rounding error 40 times. */
 #include "render/cast/boxcast.h"
 
 #include <stdlib.h>
@@ -21,7 +23,7 @@ static Vec3 vec3_of(const float values[3])
     return vec3((double)values[0], (double)values[1], (double)values[2]);
 }
 
-/* The axis that a vector runs along most, as POV-Ray chooses among equals. */
+/* Returns the axis of a vector's largest component; among equal components, POV-Ray's choice. */
 static int main_axis(Vec3 v)
 {
     double x = fabs(v.x), y = fabs(v.y), z = fabs(v.z);
@@ -71,8 +73,8 @@ static Status build(RayIndex *index, const CellParams *cells, Err *err)
     return rayindex_build_boxes(index, mesh->n_triangles, triangle_box, err);
 }
 
-/* Twice the area of the triangle that the point (x, y) and the edge from a to b make, seen along
- * the third of the axes. */
+/* Returns twice the signed area of the triangle between the point (x, y) and the edge from a to b,
+ * projected to the plane of the two axes. */
 static double side_of(Vec3 a, Vec3 b, int along_x, int along_y, double x, double y)
 {
     double ax = vec3_component(a, along_x), ay = vec3_component(a, along_y);
@@ -80,11 +82,11 @@ static double side_of(Vec3 a, Vec3 b, int along_x, int along_y, double x, double
     return (bx - x) * (by - ay) - (by - y) * (bx - ax);
 }
 
-/* Whether a place in the triangle's plane lies within its edges, on one of them included. */
-static bool holds(const Vec3 at[3], Vec3 normal, Vec3 place)
+/* Returns true if a point of the triangle's plane lies within the triangle, edges included. */
+static bool holds(const Vec3 at[3], Vec3 normal, Vec3 point)
 {
     int axis = main_axis(normal), along_x = axis == 0, along_y = axis == 2 ? 1 : 2;
-    double px = vec3_component(place, along_x), py = vec3_component(place, along_y);
+    double px = vec3_component(point, along_x), py = vec3_component(point, along_y);
     double a = side_of(at[0], at[1], along_x, along_y, px, py);
     double b = side_of(at[1], at[2], along_x, along_y, px, py);
     double c = side_of(at[2], at[0], along_x, along_y, px, py);
@@ -107,14 +109,14 @@ static inline int triangle_crossings(const void *items, uint32_t triangle, Ray r
     return holds(at, normal, ray_at(ray, hits->t));
 }
 
-/* As it is kept in single precision. */
+/* Rounds a vector to single precision. */
 static Vec3 single(Vec3 v)
 {
     return vec3((double)(float)v.x, (double)(float)v.y, (double)(float)v.z);
 }
 
-/* Whether POV-Ray exchanges the first two corners, so that all triangles go round the same way as
- * they are seen along the axis. */
+/* Returns true if POV-Ray exchanges the first two corners, so that all triangles have the same
+ * winding when viewed along the axis. */
 static bool is_turned(const Vec3 at[3], Vec3 normal)
 {
     int axis = main_axis(normal), along_x = axis == 0, along_y = axis == 2 ? 1 : 2;
@@ -123,9 +125,10 @@ static bool is_turned(const Vec3 at[3], Vec3 normal)
            vec3_component(back, along_y) * vec3_component(edge, along_x);
 }
 
-/* The normal at a place of the triangle: u goes from 0 at the first corner to 1 at the opposite
- * edge, v along that edge, which is measured along the axis that it runs along most. */
-static Vec3 smooth_normal(const VesselMesh *mesh, size_t triangle, Vec3 plane_normal, Vec3 place)
+/* Returns the interpolated normal at a point of the triangle. u goes from 0 at the first corner to
+ * 1 at the opposite edge. v goes along that edge; it is measured along the axis of the edge's
+ * largest component. */
+static Vec3 smooth_normal(const VesselMesh *mesh, size_t triangle, Vec3 plane_normal, Vec3 point)
 {
     Vec3 at[3], normal[3];
     find_corners(mesh, triangle, at);
@@ -141,7 +144,7 @@ static Vec3 smooth_normal(const VesselMesh *mesh, size_t triangle, Vec3 plane_no
     Vec3 edge = vec3_normalized(vec3_sub(at[1], at[2])), from = vec3_sub(at[0], at[2]);
     Vec3 across = single(vec3_normalized(vec3_sub(vec3_scale(edge, vec3_dot(from, edge)), from)));
     Vec3 perp = single(vec3_scale(across, -1 / vec3_dot(from, across)));
-    Vec3 in = vec3_sub(place, at[0]), opposite = vec3_sub(at[2], at[1]);
+    Vec3 in = vec3_sub(point, at[0]), opposite = vec3_sub(at[2], at[1]);
     double u = vec3_dot(in, perp);
     if (u < epsilon)
         return vec3_normalized(normal[0]);
@@ -152,11 +155,11 @@ static Vec3 smooth_normal(const VesselMesh *mesh, size_t triangle, Vec3 plane_no
     return vec3_normalized(vec3_add_scaled(normal[0], ahead, u));
 }
 
-static Vec3 normal_at(const VesselMesh *mesh, size_t triangle, Vec3 plane_normal, Vec3 place)
+static Vec3 normal_at(const VesselMesh *mesh, size_t triangle, Vec3 plane_normal, Vec3 point)
 {
     float flat[3];
     if (!mesh_is_cap(mesh, triangle))
-        return smooth_normal(mesh, triangle, plane_normal, place);
+        return smooth_normal(mesh, triangle, plane_normal, point);
     mesh_flat_normal(mesh, triangle, flat);
     return vec3_normalized(vec3_of(flat));
 }
@@ -172,7 +175,7 @@ static bool first_triangle(const RayIndex *index, void *workspace, const RayPart
         return false;
     const Vec3 plane_normal = vec3_of(index->planes[triangle].normal);
     hit->t = nearest.t;
-    hit->leaves = vec3_dot(plane_normal, part->ray.direction) < 0;
+    hit->from_inside = vec3_dot(plane_normal, part->ray.direction) < 0;
     hit->normal = normal_at(mesh, triangle, plane_normal, ray_at(part->ray, nearest.t));
     hit->index = mesh_segment(mesh, triangle);
     return true;
@@ -185,4 +188,4 @@ static bool any_triangle(const RayIndex *index, void *workspace, const RayPart *
 }
 
 const RaySearch triangle_search = {
-    .nearest_mm = NEAREST_SEEN_MM, .build = build, .first = first_triangle, .any = any_triangle};
+    .nearest_mm = NEAREST_VISIBLE_MM, .build = build, .first = first_triangle, .any = any_triangle};

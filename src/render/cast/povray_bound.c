@@ -1,14 +1,15 @@
-/* An object is looked into if both its leaf in the hierarchy of boxes (Check_And_Enqueue of
- * bounding/bbox.cpp of 3.7.0.10) and the object itself (Intersect_BBox_Dir of scene/objects.cpp)
- * find that the ray meets its box. Both compute in single precision, in different orders. The boxes
- * above the leaf hold it, and are not asked here: they differ from tile to tile. */
+/* POV-Ray intersects a ray with an object if two tests find that the ray meets the object's box:
+ * the test of its leaf in the hierarchy of boxes (Check_And_Enqueue of bounding/bbox.cpp of
+ * 3.7.0.10), and the test of the object itself (Intersect_BBox_Dir of scene/objects.cpp). Both
+ * compute in single precision, in different orders. The boxes above the leaf contain the leaf's box
+ * and are not tested here: they differ from tile to tile. */
 #include "render/cast/povray_bound.h"
 
 /* What POV-Ray calls EPSILON, BOUND_HUGE and MIN_ISECT_DEPTH. */
 static const double ahead = 1e-10, endless = 2e10;
 static const float nearest = 1e-4F;
 
-/* A bounding box: its least corner and its size. */
+/* A bounding box: its lower corner and its size. */
 typedef struct PovrayBox {
     float low[3], size[3];
 } PovrayBox;
@@ -48,9 +49,9 @@ static bool meets_leaf(const BoundRay *ray, const PovrayBox *bound, double *firs
     return *first <= last && last >= ahead;
 }
 
-/* The object's test. A start in the plane of a side that the ray is parallel to gives 0 times
- * infinity, no number: every comparison with it is false, so that from x it stays and fails the
- * last one, and from y or z is passed over. */
+/* The test of the object. If the ray is parallel to a side and its origin lies in the plane of that
+ * side, 0 times infinity gives NaN, and every comparison with it is false. A NaN from x therefore
+ * remains and fails the last comparison. A NaN from y or z is skipped. */
 static bool meets_object(const BoundRay *ray, const PovrayBox *bound)
 {
     float near[3], far[3];

@@ -1,5 +1,5 @@
-/* Primitives in a hierarchy of boxes. What the crossings of a primitive need besides the primitive
- * is computed once [primitive_frame]. */
+/* primitive_search: a bounding volume hierarchy of primitives. Data that depend on the primitive
+ * alone are computed once [primitive_frame]. */
 #include "render/cast/boxcast.h"
 
 static Box primitive_box(const RayIndex *index, size_t i)
@@ -48,5 +48,7 @@ static bool any_primitive(const RayIndex *index, void *workspace, const RayPart 
     return boxcast_any(&index->boxes, part, part->t_min, primitive_crossings, index);
 }
 
-const RaySearch primitive_search = {
-    .nearest_mm = NEAREST_SEEN_MM, .build = build, .first = first_primitive, .any = any_primitive};
+const RaySearch primitive_search = {.nearest_mm = NEAREST_VISIBLE_MM,
+                                    .build = build,
+                                    .first = first_primitive,
+                                    .any = any_primitive};

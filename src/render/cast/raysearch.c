@@ -1,5 +1,5 @@
-/* The rows of the table are in the order in which they apply: a blob is a field, too, and an
- * isosurface is searched by proof unless cells are wanted. */
+/* The order of the rows matters: a blob is a field, too, and must come first. An isosurface is
+ * searched by proof unless cells are wanted. */
 #include "render/cast/raysearch.h"
 
 #include <stdlib.h>

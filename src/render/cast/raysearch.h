@@ -1,4 +1,12 @@
-/* How rays search the five kinds of geometry: one row for each. */
+/* Searches the five kinds of geometry with rays. Each kind is one constant RaySearch: a table of
+ * functions that build a search structure (RayIndex) and search it. caster.h hides the choice and
+ * is what engines use.
+ *
+ *     const RaySearch *search = raysearch_for(geometry, false);
+ *     RayIndex index = {.geometry = geometry};
+ *     TRY(search->build(&index, NULL, err));
+ *     bool hit = search->first(&index, workspace, &(RayPart){ray, 1e-4, INFINITY}, &result);
+ *     rayindex_release(&index); */
 #ifndef CORCAST_RENDER_RAYSEARCH_H
 #define CORCAST_RENDER_RAYSEARCH_H
 
@@ -8,36 +16,36 @@
 #include "scene/scene.h"
 
 /* POV-Ray's limit [docs/POVRAY.md section 3]: crossings nearer than this are not visible. */
-#define NEAREST_SEEN_MM 1e-4
+#define NEAREST_VISIBLE_MM 1e-4
 /* Crossings of a blob nearer than this are not visible and cast no shadow. */
 #define BLOB_NEAREST_MM 1e-2
 
-/* The part of a ray that is searched. */
+/* The part of a ray that is searched: t_min <= t < t_max, unless a search states otherwise. */
 typedef struct RayPart {
     Ray ray;
     double t_min, t_max; /* mm along the ray; t_max may be infinite */
 } RayPart;
 
-/* Where a ray first meets a surface. */
+/* The first hit of a ray. */
 typedef struct RayHit {
-    double t;       /* mm along the ray */
-    Vec3 normal;    /* unit, outward; of cells on either side */
-    uint32_t index; /* index of the primitive; for other geometry, of the field segment */
-    bool leaves;    /* triangles only: the ray comes from inside the vessel */
-    uint32_t cell;  /* cells only: index of the cell */
+    double t;         /* mm along the ray */
+    Vec3 normal;      /* unit, outward; cells: to either side */
+    uint32_t index;   /* index of the primitive; other geometry: index of the field segment */
+    bool from_inside; /* triangles only: the ray comes from inside the vessel */
+    uint32_t cell;    /* cells only: index of the cell */
 } RayHit;
 
-/* What rays search. Immutable once built, and shared by threads. A search uses only its own search
- * structures, which are owned; the others stay empty. */
+/* The search structures of one geometry. Immutable once built, and shared by threads. A search uses
+ * only its own structures, which are owned; the others stay empty. */
 typedef struct RayIndex {
     const Geometry *geometry;     /* borrowed */
-    BoxTree boxes;                /* of primitives, triangles, cells, or segments of a blob */
+    BoxTree boxes;                /* boxes of primitives, triangles, cells, or segments of a blob */
     PrimitiveFrame *frames;       /* per primitive */
     struct TrianglePlane *planes; /* per triangle */
-    CellTree cells;               /* of POV-Ray */
-    FieldIndex *field;            /* of the potential */
-    /* field_search and blob_search without a search structure: indices of the `n` segments that are
-     * searched one by one. Borrowed. */
+    CellTree cells;               /* POV-Ray's cells */
+    FieldIndex *field;            /* tubes of the potential */
+    /* For field_search and blob_search without a search structure: the indices of `n` segments that
+     * are searched one by one. Borrowed. */
     const uint32_t *list;
     size_t n;
 } RayIndex;
@@ -55,46 +63,49 @@ typedef struct RaySearch {
      *          cells. The caller releases the index even after an error.
      * Cost     O(n log n). */
     Status (*build)(RayIndex *index, const CellParams *cells, Err *err);
-    /* Allocates the workspace for rays among `n` field segments of the geometry. Memory that no ray
-     * needs is never touched. NULL: this search needs no workspace, and is given NULL.
-     * Errors   STATUS_MEMORY. */
+    /* Allocates the workspace of one thread, for rays among `n` field segments of the geometry.
+     * Memory that no ray needs is never touched. NULL: this search needs no workspace; pass NULL to
+     * `first` and `any`. Errors: STATUS_MEMORY. */
     Status (*workspace_new)(const Geometry *geometry, size_t n, void **workspace, Err *err);
     void (*workspace_free)(void *workspace); /* accepts NULL */
-    /* Finds the first crossing with t between t_min and t_max. Returns false, *hit undefined, if
-     * there is none. */
+    /* Finds the first crossing in the part of the ray. Returns false, *hit undefined, if there is
+     * none. */
     bool (*first)(const RayIndex *index, void *workspace, const RayPart *part, RayHit *hit);
-    /* Returns true if there is a crossing with t between t_min and t_max. The ray may start on the
+    /* Returns true if there is a crossing in the part of the ray. The ray may start on the
      * surface. */
     bool (*any)(const RayIndex *index, void *workspace, const RayPart *part);
 } RaySearch;
 
-/* primitive_search  primitives. Of equally near crossings, the primitive with the lowest index.
- * triangle_search   the mesh. The normal is interpolated between the corners, except on caps. Of
- *                   equally near triangles, the first.
- * cell_search       an isosurface where POV-Ray 3.7 finds it [docs/POVRAY.md section 5]: its own
- *                   interval isosurface, repeated operation by operation, so that its pictures can
- *                   be compared to the last code. The normal is a forward difference. A cell has
- *                   one hit per ray, as in POV-Ray.
- * field_search      an isosurface by proof and not by sampling.
- *                   Where segments blend in groups, the union of the groups' bodies is met. Of the
- *                   group that is met, the segment with the largest term there, the lowest of equal
- *                   ones. Terms below RAY_TERM_CUTOFF are left out: the surface of a single vessel
- *                   is off by at most 1.9e-9 radii, and a ray that grazes the level by less may go
- *                   either way. `first` with a ray that starts inside a vessel returns the wall
- *                   that it leaves through. `any` accepts a start up to 1e-3 radii off the surface:
- *                   the wall that a ray leaves outwards, but starts just within, does not count.
- * blob_search       a blob: the field of field/blob.h, solved piece by piece. The first t in
- *                   (t_min, t_max), t_min >= 0, at which the field passes 1, in either direction;
- *                   of the segments, the one with the largest term there. */
+/* primitive_search  primitives. Among equally near crossings, the primitive with the lowest index
+ *                   wins.
+ * triangle_search   the mesh. The normal is interpolated between the corners, except on caps. Among
+ *                   equally near triangles, the triangle with the lowest index wins.
+ * cell_search       an isosurface where POV-Ray 3.7 finds it [docs/POVRAY.md section 5]: repeats
+ *                   POV-Ray's interval search operation by operation, so that pictures can be
+ *                   compared to the last code. The normal is a forward difference. A cell has one
+ *                   hit per ray, as in POV-Ray.
+ * field_search      an isosurface at its proven position, without sampling. If segments blend in
+ *                   groups, the surface is that of the union of the groups' bodies. RayHit.index is
+ *                   the segment with the largest term in the group that is hit, or the lowest index
+ *                   among equal terms. Terms below RAY_TERM_CUTOFF are left out: the surface of a
+ *                   single vessel is off by at most 1.9e-9 radii, and a ray that grazes the level
+ *                   by less may hit or miss. `first` with a ray that starts inside a vessel returns
+ *                   the point where the ray leaves the vessel. `any` accepts a start up to 1e-3
+ *                   radii off the surface: if the ray starts just inside and leaves outwards, that
+ *                   crossing does not count.
+ * blob_search       a blob: the field of field/blob.h, solved piece by piece. The hit is the first
+ *                   t in (t_min, t_max), t_min >= 0, at which the field passes 1 in either
+ *                   direction. RayHit.index is the segment with the largest term there. */
 extern const RaySearch primitive_search, triangle_search, cell_search, field_search, blob_search;
 
 /* Returns the search for a geometry. `cells` selects cell_search for an isosurface. */
 const RaySearch *raysearch_for(const Geometry *geometry, bool cells);
 
-/* Builds the hierarchy index->boxes over n >= 1 items, whose boxes `box_of` returns.
- * Errors   STATUS_MEMORY. */
+/* Builds the bounding volume hierarchy index->boxes over n >= 1 items. `box_of` returns the box of
+ * an item. Errors: STATUS_MEMORY. */
 MUST_CHECK Status rayindex_build_boxes(RayIndex *index, size_t n,
                                        Box (*box_of)(const RayIndex *index, size_t item), Err *err);
+/* Frees the search structures and zeroes *index. */
 void rayindex_release(RayIndex *index);
 
 #endif

@@ -1,7 +1,7 @@
-/* A term is kept relative to t_mid, where the ray is nearest to the segment, so that nothing is
- * lost to a distant camera or a long segment. The support of a term is taken to be a cylinder about
- * its capsule; both are convex, so a term counts on one interval. Terms are ordered by a heap: a
- * ray that hits its first group never orders the rest. */
+/* A term is stored relative to t_mid, where the ray is nearest to the segment, so that a distant
+ * camera or a long segment costs no digits. The support of a term is taken to be a cylinder around
+ * its capsule. Both are convex, so a term counts on one interval. A heap orders the terms: a ray
+ * that hits its first group never sorts the rest. */
 #include "render/cast/rayterms.h"
 
 #include <float.h>
@@ -41,7 +41,7 @@ void fieldscratch_free(void *workspace)
     free(scratch);
 }
 
-/* Where w^2 <= w2_max and u is at most `beyond` outside [0, h]. */
+/* Finds the interval where w^2 <= w2_max and u is at most `beyond` outside [0, h]. */
 static bool stretch(const RayTerm *term, double w2_max, double beyond, double *t0, double *t1)
 {
     if (w2_max < 0)
@@ -65,8 +65,8 @@ static bool stretch(const RayTerm *term, double w2_max, double beyond, double *t
     return low <= high;
 }
 
-/* The parameter at which the ray is nearest to the segment, as far as that is well defined: it only
- * serves to keep numbers small. */
+/* Returns the parameter at which the ray is nearest to the segment. If it is not well defined, any
+ * value near the segment will do: it only keeps numbers small. */
 static double nearest_parameter(const FieldTube *tube, Ray ray, double cosine)
 {
     Vec3 to_a = vec3_sub(tube->a, ray.origin);
@@ -109,7 +109,7 @@ static void bound_curvature(RayTerm *term)
     term->concave = term->radial * (2 * term->peak * w1 * w1 + both + 0.9680 * u1 * u1);
 }
 
-/* Whether the ray meets the box in [t0, t1]. Where the ray runs within the plane of a face the
+/* Returns true if the ray meets the box in [t0, t1]. If the ray lies in the plane of a face, the
  * product is NaN, every comparison with it is false, and the box counts as met. */
 static bool meets_node(const FieldNode *node, const double origin[3], const double inverse[3],
                        double t0, double t1)
@@ -136,7 +136,7 @@ void rayterms_add(FieldScratch *scratch, const FieldTube *tube, const RayPart *p
         scratch->n_terms++;
 }
 
-/* Puts term `i` at place `at` of the heap, which is not ordered yet. */
+/* Stores term `i` at index `at` of the heap, which is not ordered yet. */
 static void put_term(FieldScratch *scratch, size_t at, uint32_t i)
 {
     const RayTerm *term = &scratch->terms[i];

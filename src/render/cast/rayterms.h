@@ -1,5 +1,12 @@
-/* The terms of the potential along one ray, and the groups in which their stretches overlap;
- * fieldcast.c says why. */
+/* The terms of the potential along one ray, and the groups of terms whose intervals overlap.
+ * fieldcast.c explains the method. A search collects the terms near the ray, takes one group after
+ * another along the ray, and looks for the level within the windows of the group's terms:
+ *
+ *     rayterms_find(field, scratch, &part);
+ *     rayterms_choose_all(scratch);
+ *     while (rayterms_next_group(scratch))
+ *         if (rayterms_find_windows(scratch))
+ *             ... */
 #ifndef CORCAST_RENDER_RAYTERMS_H
 #define CORCAST_RENDER_RAYTERMS_H
 
@@ -7,12 +14,12 @@
 #include "field/field.h"
 #include "render/cast/raysearch.h"
 
-/* The term of one tube along a ray: at t_mid + x it is radial exp(-w^2) (erf(u) + erf(h - u)) / 2
- * with w = w0 + w1 x and u = u0 + u1 x. */
+/* The term of one tube along a ray. At t = t_mid + x it has the value radial exp(-w^2) (erf(u) +
+ * erf(h - u)) / 2, with w = w0 + w1 x and u = u0 + u1 x. */
 typedef struct RayTerm {
     double t0, t1;           /* the term may exceed the cut-off only in [t0, t1] */
-    double window0, window1; /* in a hit of its group, the term may be the largest only in here;
-                              * window0 > window1: nowhere */
+    double window0, window1; /* the term can be the largest of its group at a hit only in this
+                              * interval of t; window0 > window1: nowhere */
     double t_mid;
     double w0, w1, u0, u1, h;
     double e2, radial; /* e^2, exp(-e^2) */
@@ -21,18 +28,20 @@ typedef struct RayTerm {
     uint32_t segment;       /* index of the segment */
 } RayTerm;
 
-/* The workspace of one thread. All arrays are owned, and have room for all segments that a ray may
- * pass. */
+/* The workspace of one thread. All arrays are owned. Their capacity is the number of segments that
+ * a ray can pass. */
 typedef struct FieldScratch {
     RayTerm *terms;
-    Heap heap;       /* indices of the terms that are in no group yet, by t0, then segment */
-    RayTerm **group; /* by t0 */
+    Heap heap;       /* heap of the indices of terms that are in no group yet, by t0, then
+                      * segment */
+    RayTerm **group; /* the present group, by t0 */
     size_t n_terms, n_group;
-    uint32_t *near;      /* segments of the terms */
-    LocalGroups *groups; /* of the terms; NULL where all segments blend */
+    uint32_t *near;      /* per term: its segment */
+    LocalGroups *groups; /* blend groups of the terms; NULL if all segments blend */
 } FieldScratch;
 
-/* The workspace functions of field_search. */
+/* The workspace functions of field_search [RaySearch.workspace_new]. The caller frees *out with
+ * fieldscratch_free, which accepts NULL. Errors: STATUS_MEMORY. */
 MUST_CHECK Status fieldscratch_new(const Geometry *geometry, size_t n, void **out, Err *err);
 void fieldscratch_free(void *workspace);
 
@@ -43,8 +52,8 @@ void rayterms_add(FieldScratch *scratch, const FieldTube *tube, const RayPart *p
 /* Empties the scratch and adds the terms of all tubes of the index. part->t_max must be finite. */
 void rayterms_find(const FieldIndex *index, FieldScratch *scratch, const RayPart *part);
 
-/* Chooses the terms that groups are made of: all terms, or the `n` terms whose indices are listed.
- */
+/* Selects the terms from which rayterms_next_group forms groups: all terms, or the `n` terms whose
+ * indices are listed. */
 void rayterms_choose_all(FieldScratch *scratch);
 void rayterms_choose(FieldScratch *scratch, const uint32_t *numbers, size_t n);
 
@@ -52,9 +61,9 @@ void rayterms_choose(FieldScratch *scratch, const uint32_t *numbers, size_t n);
  * [t0, t1] overlap. Returns false if no term is left. */
 bool rayterms_next_group(FieldScratch *scratch);
 
-/* Sets the windows of the group's terms. Outside all windows the group's potential is below the
- * level. Also sets `radial` and the bounds of the curvature, unless all windows are empty: then
- * returns false. */
+/* Sets the windows of the terms of the present group. Outside all windows the group's potential is
+ * below the level. Returns false if all windows are empty. Otherwise also sets `radial` and the
+ * bounds of the curvature, and returns true. */
 bool rayterms_find_windows(FieldScratch *scratch);
 
 #endif

@@ -21,7 +21,8 @@ typedef struct EffectEdges {
     const EffectSamples *samples;
     float *line, *gap; /* of each sample, how far they reach from it, in samples; 0: no edge */
     float *radius_mm;  /* of its vessel */
-    float *cover;      /* of each worker two rows: what lines and gaps cover of a sample */
+    float *cover;      /* per worker two rows: the fraction of each sample that lines cover, and
+                        * that gaps cover */
     int reach;
 } EffectEdges;
 
@@ -79,7 +80,7 @@ static double cosine_of(const float *a, const float *b)
     return (double)a[0] * (double)b[0] + (double)a[1] * (double)b[1] + (double)a[2] * (double)b[2];
 }
 
-/* Whether the vessel of sample `at` ends between it and its neighbour. */
+/* Returns true if there is an edge between sample `at` and its neighbour. */
 static bool ends_before(const EffectSamples *samples, size_t at, size_t beside, double radius_mm,
                         double deeper)
 {

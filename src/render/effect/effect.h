@@ -1,4 +1,6 @@
-/* Fading, outlines and halos, drawn over the samples of a shaded picture. */
+/* Fading, outlines and halos [scene/effects.h], drawn over the samples of a shaded image. The image
+ * is rendered at `side` x `side` samples per pixel. effects_draw changes the colors of the samples,
+ * and effects_reduce averages them to pixels. */
 #ifndef CORCAST_RENDER_EFFECT_H
 #define CORCAST_RENDER_EFFECT_H
 
@@ -33,7 +35,7 @@ int effects_reach(const Effects *effects, int side);
 /* The band of samples that effects are drawn on. All pointers are borrowed. */
 typedef struct EffectSamples {
     const Effects *effects;
-    const Camera *camera; /* of the samples: its pixels are samples */
+    const Camera *camera; /* camera whose pixels are the samples */
     const RadiusTable *radii;
     Rgb paper; /* background */
     int side;  /* samples per pixel width */
@@ -48,7 +50,8 @@ typedef struct EffectSamples {
 MUST_CHECK Status effects_draw(const EffectSamples *samples, Err *err);
 
 /* Averages the colors of side x side samples to pixels. Leaves out the rows above and below the
- * band. Writes the pixels to the rows of `color` from `row` on. */
+ * band. Writes the pixels to the rows of `color` from row `row` on; `color` has three channels and
+ * is as wide as the image. */
 void effects_reduce(const EffectSamples *samples, Plane *color, int row);
 
 #endif

@@ -1,21 +1,29 @@
-/* The first hits of a tile of the potential or of a blob, in one version for each kind of
- * processor. */
+/* The kernels of implicit models (potential and blob), in one version for each instruction set. A
+ * FieldKernel finds the first hits of a tile of the image. A ShadowKernel answers the shadow
+ * queries of a tile of a light view. Kernels allocate nothing and cannot fail. */
 #ifndef CORCAST_RENDER_FIELDKERNELS_H
 #define CORCAST_RENDER_FIELDKERNELS_H
 
 #include "render/field/fieldterms.h"
 #include "render/light/shadowengine.h"
 
-/* Finds the first hits of a tile that has terms: sets all of *hits. `work` has room for those terms
- * [TILE_WORK_BYTES each] and holds nothing from one call to the next. Reads x and y of all
- * TILE_SAMPLES samples, those outside the picture included. */
+/* Finds the first hit of each sample of a tile.
+ *
+ * tile   has at least one term. x and y of all TILE_SAMPLES samples are read, also those of samples
+ *        outside the image.
+ * work   holds at least tile->n_terms terms [TILE_WORK_BYTES each]. Nothing in it is reused between
+ *        calls.
+ * hits   receives the hits; all fields are set. */
 typedef void FieldKernel(const FieldTile *tile, TileWork *work, TileHits *hits);
 
-/* Answers the shadow queries of points in a tile of a light view whose lines of sight lead to the
- * light: sets points->state. Does not read the tile's x and y. points->x and y are as those of a
- * FieldTile. Blockers matter from depth points->z on. Behind the last point are POINT_PADDING
- * copies of it. A point within 0.2 % of the level is taken to be on a surface that it leaves, as in
- * field_search.any. */
+/* Answers the shadow queries of points in a tile of a light view: sets points->state. A point is
+ * dark if a blocker lies at depth points->z or deeper on the line of sight from the point to the
+ * light. A point where the field is within 0.2 % of the level counts as a point of a surface that
+ * the line leaves, as in field_search.any.
+ *
+ * tile     lines of sight lead to the light. x and y of the tile are not read.
+ * points   x and y are positions as in a FieldTile. Behind the last point are POINT_PADDING copies
+ *          of the last point. */
 typedef void ShadowKernel(const FieldTile *tile, TileWork *work, ShadowPoints *points);
 
 FieldKernel trace_portable, trace_blob_portable;
@@ -30,10 +38,12 @@ typedef struct FieldKernels {
     ShadowKernel *shadow;
 } FieldKernels;
 
-/* Of the potential and of the blob, as tilekernels. */
+/* The kernels of the potential and of the blob, one entry per instruction set, in the order of
+ * tilekernels [tilekernels.h]. */
 extern const FieldKernels potentialkernels[KINDS_OF_KERNELS], blobkernels[KINDS_OF_KERNELS];
 
-/* Those of that kind for the geometry's model. */
+/* Returns the kernels of an instruction set for the geometry's model. The processor must be able to
+ * run them. */
 const FieldKernels *fieldkernels_for(const Geometry *geometry, RenderKernels kernels);
 
 #endif

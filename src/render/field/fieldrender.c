@@ -42,7 +42,7 @@ static bool is_field_listed(const void *bins, int column, int worker)
 static Status trace_field(void *bins, int worker, int shift, BatchTile *tile, Err *err)
 {
     (void)shift; /* none */
-    return fieldtiles_trace(bins, worker, &tile->seen, &tile->hits, err);
+    return fieldtiles_trace(bins, worker, &tile->traced, &tile->hits, err);
 }
 
 static const TileEngine field_tiles = {.fine_grid = true,
@@ -74,9 +74,9 @@ static Status prepare_field(const Drawing *drawing, void **prepared, Err *err)
 }
 
 const Engine field_engine = {.name = "field",
-                             .makes_codes = true,
-                             .covers = true,
-                             .can = can_draw_field,
+                             .writes_codes = true,
+                             .draws_thin = true,
+                             .supports = can_draw_field,
                              .needs_rays = field_needs_rays,
                              .prepare = prepare_field,
                              .rows = tilerender_rows,

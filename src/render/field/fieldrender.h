@@ -1,12 +1,13 @@
-/* Pictures of the potential, tile by tile. */
+/* The engine that draws implicit models (potential and blob), tile by tile. */
 #ifndef CORCAST_RENDER_FIELDRENDER_H
 #define CORCAST_RENDER_FIELDRENDER_H
 
 #include "render/engine.h"
 
-/* Draws implicit models where they are, by proof, but for blobs by RENDER_TRACE; rays are asked for
- * soft shadows and for lights that no view sees all from, and for the colors of all samples where
- * raycolor_is_needed(). */
+/* Supports the potential, unless POV-Ray's cells are specified, and the blob, unless the method is
+ * RENDER_TRACE. Surfaces are drawn at their proven positions. Traces rays only for soft shadows,
+ * for lights that lightview_sees_all rejects, and for the colors of all samples if
+ * raycolor_is_needed() returns true. */
 extern const Engine field_engine;
 
 #endif

@@ -18,11 +18,12 @@ typedef struct FieldLists {
     TileSpan *columns; /* a workspace for each worker while lists are made */
 } FieldLists;
 
-/* What one thread answers queries with. */
+/* The workspace in which one thread answers queries. */
 typedef struct FieldTester {
     const LightBins *light;
     const FieldLists *lists;
-    const bool *hidden; /* per segment: the camera does not see it; NULL: it sees all. Borrowed. */
+    const bool *hidden; /* per segment: true if it is hidden from the camera; NULL: none is hidden.
+                         * Borrowed. */
     ShadowKernel *kernel;
     ShadowPoints near;               /* points at hidden segments */
     uint8_t is_near[POINT_CAPACITY]; /* per point of a tile */
@@ -33,13 +34,13 @@ typedef struct FieldTester {
 
 static bool can_look(const Geometry *geometry, const View *view, const Light *light)
 {
-    LightWay way = light_way(light, box_center(geometry->bounds));
+    LightDirection way = light_direction(light, box_center(geometry->bounds));
     return lightview_sees_all(geometry, view, light) && way.distance > lightview_radius(geometry);
 }
 
 static Status list_segments_of_row(size_t row, int worker, void *context, Err *err)
 {
-    (void)err; /* list_segments says what memory is for */
+    (void)err; /* list_segments reports the error */
     FieldLists *lists = context;
     return vessellists_row(&lists->vessels, row,
                            lists->columns + (size_t)worker * lists->vessels.longest,
@@ -198,8 +199,8 @@ static Status decide(FieldTester *tester, const FieldTile *tile, ShadowPoints *p
 {
     const Viewpoint *eye = &tester->light->view.eye;
     Vec3 place = reflected(&tester->lists->vessels, point_at(tile, points, i));
-    Vec3 towards = viewpoint_to_world(eye, eye->perspective ? place : vec3(0, 0, 1));
-    Ray ray = {viewpoint_point(eye, place), vec3_normalized(vec3_scale(towards, -1))};
+    Vec3 towards = viewpoint_world_direction(eye, eye->perspective ? place : vec3(0, 0, 1));
+    Ray ray = {viewpoint_world_point(eye, place), vec3_normalized(vec3_scale(towards, -1))};
     TRY(fieldspace_reserve_rays(&tester->space, tile->n_terms, err));
     bool dark = fieldspace_is_shadowed(&tester->space, tile->n_terms, ray);
     points->state[i] = dark ? SHADOW_DARK : SHADOW_LIT;
@@ -350,7 +351,7 @@ static Status test_by_terms(const LightBins *light, void *workspace, const TileQ
     return decide_points(tester, &tile, points, err);
 }
 
-const ShadowEngine field_shadows = {.can = can_look,
+const ShadowEngine field_shadows = {.supports = can_look,
                                     .tiles = tiles_for_segments,
                                     .slack = slack_of_field,
                                     .bin = bin_segments,

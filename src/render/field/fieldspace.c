@@ -1,4 +1,4 @@
-/* Workspaces only grow, so that memory is asked for a few times a picture. */
+/* Workspaces only grow, so that memory is allocated only a few times per image. */
 #include "render/field/fieldspace.h"
 
 #include <stdlib.h>

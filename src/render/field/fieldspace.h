@@ -1,37 +1,42 @@
-/* What one thread needs for the terms of a tile of the potential, whosever view it is of. */
+/* The workspace of one thread for the terms of one tile, in the view of a camera or of a light.
+ * Capacities only grow. */
 #ifndef CORCAST_RENDER_FIELDSPACE_H
 #define CORCAST_RENDER_FIELDSPACE_H
 
 #include "render/cast/raysearch.h"
 #include "render/field/fieldterms.h"
 
-/* Grows with the longest list of a tile. Made by fieldspace_init. */
+/* A workspace. Create it with fieldspace_init, and before each tile reserve space for the tile's
+ * terms. */
 typedef struct FieldSpace {
     const Geometry *geometry; /* borrowed */
-    TileTerm *terms;          /* owned, as all that follows */
+    TileTerm *terms;          /* owned, like all following pointers */
     size_t terms_capacity;
-    uint32_t *candidates; /* segments of the terms */
+    uint32_t *candidates; /* per term: its segment */
     size_t candidates_capacity;
     TileWork work;
-    LocalGroups *groups;     /* NULL where all segments blend */
-    const RaySearch *search; /* for single rays among the candidates */
-    void *scratch;           /* its workspace; NULL before fieldspace_reserve_rays */
+    LocalGroups *groups;     /* NULL if all segments blend */
+    const RaySearch *search; /* searches single rays among the candidates */
+    void *scratch;           /* workspace of `search`; NULL before fieldspace_reserve_rays */
     size_t scratch_capacity;
 } FieldSpace;
 
-/* *space is the caller's even when this fails. STATUS_MEMORY. */
+/* Initialises an empty workspace. Release it with fieldspace_release, even after an error. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status fieldspace_init(const Geometry *geometry, FieldSpace *space, Err *err);
 void fieldspace_release(FieldSpace *space);
 
-/* Makes room for the terms of tiles of up to n segments. STATUS_MEMORY. */
+/* Reserves space for the terms of tiles with up to n segments. Errors: STATUS_MEMORY. */
 MUST_CHECK Status fieldspace_reserve(FieldSpace *space, size_t n, Err *err);
-/* Makes room to cast single rays among n segments. STATUS_MEMORY. */
+/* Reserves space to search single rays among n segments. Errors: STATUS_MEMORY. */
 MUST_CHECK Status fieldspace_reserve_rays(FieldSpace *space, size_t n, Err *err);
 
-/* Finds the first hit of a ray among the first n candidates, at t_min or later [raysearch.h]. There
- * must be room for n. */
+/* Finds the first hit of a ray among the first n candidates, at t_min (mm) or farther
+ * [raysearch.h]. Returns false, *hit undefined, if there is none. Call fieldspace_reserve_rays for
+ * n segments before. */
 bool fieldspace_first_hit(FieldSpace *space, size_t n, Ray ray, double t_min, RayHit *hit);
-/* Returns true if a ray that starts on the surface meets any of the first n candidates. */
+/* Returns true if a ray that starts on the surface hits any of the first n candidates. Call
+ * fieldspace_reserve_rays for n segments before. */
 bool fieldspace_is_shadowed(FieldSpace *space, size_t n, Ray ray);
 
 #endif

@@ -1,12 +1,12 @@
-/* A term is set out about the tile's middle ray, so that single precision is left with small
- * numbers however large the scene is. */
+/* A term is expressed relative to the tile's middle ray, so that numbers in single precision stay
+ * small for any size of the scene. */
 #include "render/field/fieldterms.h"
 
 #include <stdlib.h>
 
-/* The depths at which a ray of the tile may be within reach of the segment: those of the part of
- * the axis, from along - half to along + half, that is near enough to the middle ray, widened by
- * the reach. */
+/* Returns the depths at which a ray of the tile may be within reach of the segment. The part of the
+ * axis from along - half to along + half is near enough to the middle ray. The result is the range
+ * of depths of this part, widened by the reach. */
 static Interval depths_of(const FrameSegment *segment, double along, double half)
 {
     double first = max_of(along - half, 0), last = min_of(along + half, segment->length);
@@ -16,13 +16,15 @@ static Interval depths_of(const FrameSegment *segment, double along, double half
                       max_of(z_first, z_last) + segment->reach};
 }
 
-/* How a segment lies to the middle ray of a tile. */
+/* The position of a segment relative to the middle ray of a tile. */
 typedef struct Encounter {
-    double line;           /* mm from a to where the lines are nearest; the middle when parallel */
-    double along;          /* likewise on the segment */
-    double sine, per_sine; /* of their angle; 0 when parallel */
-    double z;              /* of the ray, nearest to there */
-    Vec3 o, cross;         /* of the term */
+    double line;           /* distance in mm from a, along the axis, to the point nearest to the
+                            * ray; half the length if axis and ray are parallel */
+    double along;          /* `line`, limited to the segment */
+    double sine, per_sine; /* sine of the angle between axis and ray, and 1 / sine; 0 if parallel */
+    double z;              /* depth of the point of the ray that is nearest to the point at
+                            * `along` */
+    Vec3 o, cross;         /* as in TileTerm */
 } Encounter;
 
 static double clamp_to(const FrameSegment *segment, double along)
@@ -68,7 +70,8 @@ static Encounter meet_in_perspective(const FrameSegment *segment, double x, doub
     return met;
 }
 
-/* False when the segment is out of reach, or of a tile of places behind them all. */
+/* Makes the term of a segment. Returns false if the segment is out of reach of the tile, or, for a
+ * tile of points, if the segment is in front of all points. */
 static bool make_term(const FieldTile *tile, const FrameSegment *segment, uint32_t number,
                       TileTerm *term)
 {
@@ -114,7 +117,7 @@ static int compare_terms(const void *a, const void *b)
     return one->segment < other->segment ? -1 : 1;
 }
 
-/* By rising `on`. Most lists are short. */
+/* Sorts terms by ascending `on`. Most lists are short, for which insertion is fastest. */
 static void sort_terms(TileTerm *terms, size_t n)
 {
     if (n > 64) {
@@ -132,8 +135,8 @@ static void sort_terms(TileTerm *terms, size_t n)
     }
 }
 
-/* Whether the term lies square to an orthographic view in the same plane as the first, to 1e-7 of
- * its own unit of length. */
+/* Returns true if the term's axis is perpendicular to the lines of an orthographic view and lies in
+ * the same plane as the first term's axis, to 1e-7 of the term's unit of length 1 / k. */
 static bool is_in_plane(const TileTerm *first, const TileTerm *term)
 {
     return fabsf(term->cosine) < 1e-8f &&
@@ -144,7 +147,7 @@ void fieldterms_fetch(const FrameSegment *segments, const uint32_t *list, size_t
 {
     for (size_t i = 0; i < n; i++) {
         const FrameSegment *segment = &segments[list[i]];
-        __builtin_prefetch(segment); /* it may lie across three lines of the cache */
+        __builtin_prefetch(segment); /* a segment may extend over three cache lines */
         __builtin_prefetch(&segment->axis);
         __builtin_prefetch(&segment->reach);
     }

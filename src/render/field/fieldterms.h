@@ -1,5 +1,7 @@
-/* Prepares the segments of an implicit scene for the kernels of kernel_trace.h. A segment is first
- * moved to the camera's frame. It then becomes a term of each tile that it may touch. */
+/* Prepares the segments of an implicit model for the kernels of kernel_trace.h. A segment is first
+ * moved to the frame of the view [FrameSegment]. For each tile that it may touch, it then becomes a
+ * term [TileTerm]: the segment relative to the middle ray of the tile, in single precision. A
+ * FieldTile holds the terms of a tile and its sample positions. */
 #ifndef CORCAST_RENDER_FIELDTERMS_H
 #define CORCAST_RENDER_FIELDTERMS_H
 
@@ -53,8 +55,8 @@ typedef struct FieldTile {
 /* Makes one term for each of the n listed segments that is within reach of the tile's rays. Sets
  * `terms`, `n_terms` and `plane` of the tile; the caller has set its other fields.
  *
- * terms   has room for n terms, to which the tile then points.
- * kept    has room for n indices; it receives the segments of the terms, in the order of the list.
+ * terms   has space for n terms; tile->terms becomes this array.
+ * kept    has space for n indices; receives, per term, its segment, in the order of `list`.
  */
 void fieldterms_make(const FrameSegment *segments, const uint32_t *list, size_t n, FieldTile *tile,
                      TileTerm *terms, uint32_t *kept);
@@ -71,7 +73,7 @@ typedef struct TileWork {
     size_t capacity;
 } TileWork;
 
-/* Makes room for `n` terms, and does not keep their content. Errors: STATUS_MEMORY. */
+/* Reserves space for `n` terms. The old content is lost. Errors: STATUS_MEMORY. */
 MUST_CHECK Status tilework_reserve(TileWork *work, size_t n, Err *err);
 void tilework_release(TileWork *work);
 

@@ -1,6 +1,6 @@
-/* A row of tiles is the unit of work: the lists of its tiles are made, and each tile's terms are
- * set out and traced by the kernel. What the kernel leaves undecided is cast ray by ray in double
- * precision among the terms of the tile. */
+/* A row of tiles is the unit of work. The lists of its tiles are made, and the kernel traces each
+ * tile's terms. Samples that the kernel cannot decide are cast as single rays in double precision
+ * among the terms of the tile. */
 #include "render/field/fieldtiles.h"
 
 #include "render/field/fieldspace.h"
@@ -10,7 +10,7 @@ typedef struct FieldWorker {
     TileSpan *columns; /* per segment of a row: the tiles that it touches */
     IndexLists lists;  /* per tile of the row: its segments */
     FieldSpace space;
-    FieldTile row; /* what all tiles of the row share */
+    FieldTile row; /* fields that all tiles of the row share */
 } FieldWorker;
 
 /* The samples of a column or a row of tiles, in the plane of the view. */
@@ -130,8 +130,8 @@ static Status decide_sample(const FieldTiles *tiles, FieldSpace *space, const Fi
     if (!fieldspace_first_hit(space, tile->n_terms, ray, tile->z_min, &hit))
         return STATUS_OK;
     bool within = vec3_dot(hit.normal, ray.direction) > 0;
-    Vec3 normal =
-        viewpoint_to_frame(&tiles->lists.eye, within ? vec3_scale(hit.normal, -1) : hit.normal);
+    Vec3 normal = viewpoint_frame_direction(&tiles->lists.eye,
+                                            within ? vec3_scale(hit.normal, -1) : hit.normal);
     hits->any_hit = true;
     hits->state[sample] = TILE_HIT;
     hits->z[sample] = hit.t * vec3_dot(ray.direction, tiles->lists.eye.axes[2]);
@@ -144,33 +144,33 @@ static Status decide_sample(const FieldTiles *tiles, FieldSpace *space, const Fi
 
 /* Decides the samples inside the grid that the kernel left undecided. */
 static Status decide_rest(const FieldTiles *tiles, FieldSpace *space, const FieldTile *tile,
-                          const TracedTile *seen, TileHits *hits, Err *err)
+                          const TracedTile *traced, TileHits *hits, Err *err)
 {
     const SampleGrid *grid = &tiles->params.grid;
     for (int sample = 0; hits->any_unsure && sample < TILE_SAMPLES; sample++) {
         int i = tile_sample_x(sample), j = tile_sample_y(sample);
-        if (hits->state[sample] != TILE_UNSURE || i >= seen->n_columns || j >= seen->n_rows)
+        if (hits->state[sample] != TILE_UNSURE || i >= traced->n_columns || j >= traced->n_rows)
             continue;
-        Ray ray = camera_ray(tiles->params.camera, samplegrid_at(grid, seen->column + i),
-                             samplegrid_at(grid, seen->row + j));
+        Ray ray = camera_ray(tiles->params.camera, samplegrid_at(grid, traced->column + i),
+                             samplegrid_at(grid, traced->row + j));
         TRY(decide_sample(tiles, space, tile, ray, sample, hits, err));
     }
     return STATUS_OK;
 }
 
-Status fieldtiles_trace(FieldTiles *tiles, int worker, TracedTile *seen, TileHits *hits, Err *err)
+Status fieldtiles_trace(FieldTiles *tiles, int worker, TracedTile *traced, TileHits *hits, Err *err)
 {
     FieldWorker *own = &tiles->workers[worker];
     FieldSpace *space = &own->space;
     FieldTile tile = own->row;
-    const int column = seen->column / TILE_SIDE;
-    const TileAxis *x = &tiles->x[column], *y = &tiles->y[seen->row / TILE_SIDE];
+    const int column = traced->column / TILE_SIDE;
+    const TileAxis *x = &tiles->x[column], *y = &tiles->y[traced->row / TILE_SIDE];
     const uint32_t *list = &own->lists.first[column];
-    seen->x = tile.x = x->samples;
-    seen->y = y->samples;
-    seen->middle_x = tile.middle_x = x->middle;
-    seen->middle_y = y->middle;
-    seen->hits = NULL;
+    traced->x = tile.x = x->samples;
+    traced->y = y->samples;
+    traced->middle_x = tile.middle_x = x->middle;
+    traced->middle_y = y->middle;
+    traced->hits = NULL;
     if (list[0] == list[1])
         return STATUS_OK;
     tile.half_size = (float)sqrt(x->half * x->half + y->half * y->half);
@@ -179,7 +179,7 @@ Status fieldtiles_trace(FieldTiles *tiles, int worker, TracedTile *seen, TileHit
     if (tile.n_terms == 0)
         return STATUS_OK;
     tiles->trace(&tile, &space->work, hits);
-    TRY(decide_rest(tiles, space, &tile, seen, hits, err));
-    seen->hits = hits->any_hit ? hits : NULL;
+    TRY(decide_rest(tiles, space, &tile, traced, hits, err));
+    traced->hits = hits->any_hit ? hits : NULL;
     return STATUS_OK;
 }

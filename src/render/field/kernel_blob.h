@@ -36,20 +36,22 @@
 #define IN_UNITS2(length) (2 * (length) * (length))
 #define PER_UNITS2(curvature) (0.5f * LEVEL * (curvature))
 
-/* Where the squared slope is so many times curvature times lack, a crossing lies ahead. */
+/* A crossing is certain to lie ahead if the squared slope exceeds SURE times curvature times lack
+ * of potential. */
 #define SURE 2.6f
 
 _Static_assert(BLOB_TUBES == 2 && BLOB_BEADS == 2, "the sums below name them one by one");
 static const BlobShape blob_numbers = BLOB_SHAPE;
 
-/* The part of the margin that `n` terms have without the rounding of places. A component is off by
- * at most 10 * 2^-24 of its strength, times the level. */
+/* Returns the margin of `n` terms, without the rounding of positions. A component is off by at most
+ * 10 * 2^-24 of its strength, times the level. */
 LANE_FN float fixed_margin(size_t n)
 {
     return 1e-6f + 2e-6f * (float)n;
 }
 
-/* How much the term may be off where its place is off by 1 mm; MARGIN_PLACE allows for a factor. */
+/* Returns the maximum error of the term per mm of error of its position, up to a factor that
+ * MARGIN_PLACE includes. */
 LANE_FN Lanes steepness(const PacketTerm *term)
 {
     Lanes inside = 1.0f - (term->e2 + term->past) / term->term->reach2;
@@ -72,7 +74,7 @@ LANE_FN Lanes curved_within(float curved, float width, Lanes distance2)
     return lanes_fma(distance2, lanes_set(-most / (float)IN_UNITS2(width)), lanes_set(most));
 }
 
-/* Sets what bounds the term's bends, and how much it may be off. */
+/* Sets the bound of the term's second derivative, and its maximum error. */
 LANE_FN void bound_bend(PacketTerm *term)
 {
     Lanes d2 = term->e2 + term->past;
@@ -86,7 +88,7 @@ LANE_FN void bound_bend(PacketTerm *term)
     term->steep = steepness(term);
 }
 
-/* Sets what a sample of the term needs. */
+/* Sets the fields that a sample of the term needs. */
 LANE_FN void bend_term(PacketTerm *term, bool perspective)
 {
     (void)perspective;
@@ -94,7 +96,7 @@ LANE_FN void bend_term(PacketTerm *term, bool perspective)
     term->bent = true;
 }
 
-/* Sets what only packets need that may hit something. */
+/* Sets the fields that only packets need that may hit something. */
 LANE_FN void complete_term(PacketTerm *term, bool perspective)
 {
     bend_term(term, perspective);
@@ -102,8 +104,8 @@ LANE_FN void complete_term(PacketTerm *term, bool perspective)
     place_ends(term);
 }
 
-/* Components added up at a place: their values, and half their derivatives, with the opposite sign,
- * by the square of the distance from the axis and by the place along it. */
+/* The sum of components at a point: their values, and minus half of their derivatives, by the
+ * squared distance from the axis and by the position along the axis. */
 typedef struct BlobSum {
     Lanes value, across, along;
 } BlobSum;
@@ -135,8 +137,8 @@ FOLDED_FN void add_beads(const BlobBead *bead, Lanes distance2, Lanes x, BlobSum
     sum->along = lanes_fma(both, lanes_set((float)(-2 * strength * per * offset)), sum->along);
 }
 
-/* What stands at an end, at x inwards from it and at the squared distance rho2 from the axis; its
- * derivative `along` runs inwards, too. */
+/* Returns the sum of the components at an end, at the position x inwards from the end and at the
+ * squared distance rho2 from the axis. Its derivative `along` points inwards, too. */
 LANE_FN BlobSum sum_end(Lanes rho2, Lanes x)
 {
     BlobSum sum = {lanes_set(0), lanes_set(0), lanes_set(0)};
@@ -149,7 +151,7 @@ LANE_FN BlobSum sum_end(Lanes rho2, Lanes x)
     return sum;
 }
 
-/* The term where its ray is at w, u and v. */
+/* Returns the value of the term at the point (w, u, v) of its ray. */
 FOLDED_FN BlobSum blob_sum_at(const PacketTerm *term, Lanes w, Lanes u, Lanes v)
 {
     const Lanes zero = lanes_set(0);
@@ -176,20 +178,20 @@ FOLDED_FN BlobSum blob_sum_at(const PacketTerm *term, Lanes w, Lanes u, Lanes v)
     return sum;
 }
 
-/* The term at dz, where its ray is at w. */
+/* Returns the value of the term at dz, where its ray is at w. */
 FOLDED_FN BlobSum blob_sum(const PacketTerm *term, Lanes dz, Lanes w)
 {
     return blob_sum_at(term, w, lanes_fma(term->u1, dz, term->u0),
                        lanes_fma(-term->u1, dz, term->v0));
 }
 
-/* The slope along the ray of a sum. */
+/* Returns the derivative of a sum along the ray. */
 LANE_FN Lanes slope_of(const PacketTerm *term, Lanes w, const BlobSum *sum)
 {
     return -2.0f * lanes_fma(sum->across, w * term->w1, sum->along * term->u1);
 }
 
-/* The term at w, u and v; only its ray is set. */
+/* Returns the value of the term at w, u and v. Only the fields of its ray need to be set. */
 FOLDED_FN TermSample sample_once(const PacketTerm *term, Lanes w, Lanes u, Lanes v)
 {
     BlobSum sum = blob_sum_at(term, w, u, v);
@@ -214,9 +216,9 @@ LANE_FN void add_gradient(const PacketTerm *term, const Packet *packet, Lanes z,
     name_largest(term->term, at.value, sum);
 }
 
-/* The lanes on which a term is above the level somewhere beyond z, whatever the other of `n` terms
- * are: far from its ends it is at least 1.35 times the level where the ray is nearest to the axis,
- * and 40 others take away less than 0.34. */
+/* Returns the lanes on which a term exceeds the level somewhere beyond z, for any values of the
+ * other `n` - 1 terms: far from its ends, the term is at least 1.35 times the level where the ray
+ * is nearest to the axis, and 40 other terms subtract less than 0.34. */
 LANE_FN LaneMask term_hides(const PacketTerm *term, Lanes z, size_t n)
 {
     const float reach2 = term->term->reach2;
@@ -229,7 +231,7 @@ LANE_FN LaneMask term_hides(const PacketTerm *term, Lanes z, size_t n)
     return near & (inside > 0.0f) & (square(inside) >= reach2) & (dz + term->z > z);
 }
 
-/* No more than this is a term anywhere from w on, where the end that it leaves is at `leaves`. */
+/* Returns an upper bound of a term from w on. The end that the ray leaves is at `leaves`. */
 LANE_FN Lanes most_beyond(Lanes e2, Lanes w, Lanes leaves)
 {
     const float half = 0.5f * ENVELOPE, inwards = INWARDS / (float)sqrt(2) * ENVELOPE;

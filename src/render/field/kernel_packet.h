@@ -1,50 +1,58 @@
-/* The terms of a tile on the rays of a packet: how their segments lie to the rays, which is the
- * same whatever the terms are. What these are worth is in kernel_potential.h and kernel_blob.h, of
- * which a source has one.
+/* The terms of a tile along the rays of a packet, which is a block of LANES neighbouring rays. This
+ * file computes the position of each segment relative to the rays, which does not depend on the
+ * kind of term. The values of terms are in kernel_potential.h and kernel_blob.h; a source includes
+ * one of them.
  *
- * In units of 1 / k, and with E the distance of ray and axis line, a point of a ray is at w and u
- * in the plane that is parallel to both, u along the axis from the segment's first end on; u + v is
- * the length of the segment, w, u and v are affine in z. So the segment lies in that plane at w =
- * 0, 0 <= u <= u + v, and the ray is a straight line there. d is the distance of ray and segment, s
- * and a are sine and cosine of the ray to the axis, and h = 1/2 when that line passes the segment's
- * axis beyond an end, else 1. */
+ * Lengths are in units of 1 / k. E is the distance between the ray and the axis line. In the plane
+ * that is parallel to both, a point of the ray has the coordinates w (across the axis) and u (along
+ * the axis, from the segment's first end). u + v is the length of the segment. w, u and v are
+ * affine in z. The segment thus lies at w = 0, 0 <= u <= u + v, and the ray is a straight line in
+ * this plane. d is the distance between ray and segment, s and a are sine and cosine of the angle
+ * between ray and axis, and h = 1/2 if the ray passes the axis beyond an end of the segment, else
+ * 1. */
 #ifndef CORCAST_RENDER_KERNEL_PACKET_H
 #define CORCAST_RENDER_KERNEL_PACKET_H
 
 #include "render/field/kernel_trace_common.h"
 
-/* A function of which only what its caller makes use of is to be computed. */
+/* Marks functions that are always inlined, so that results that a caller does not use are not
+ * computed. */
 #define FOLDED_FN LANE_FN __attribute__((always_inline))
 
-/* A term on the rays of a packet, in powers of dz = z - z of the term. From `half_gauss` on, those
- * of a sample are set once one is to be taken, all once it is known that the packet may hit
- * something. */
+/* A term along the rays of a packet, in powers of dz = z - z of the term. The fields from
+ * `half_gauss` on are set in two steps: the fields that a sample needs when the first sample is
+ * taken, and all fields when the packet may hit something. */
 typedef struct PacketTerm {
     Lanes w0, w1, u0, u1, v0; /* w = w0 + w1 dz, u = u0 + u1 dz, v = v0 - u1 dz */
-    Lanes peak;               /* B, no less than the term is on the ray; 0 out of reach */
+    Lanes peak;               /* B, an upper bound of the term on the ray; 0: out of reach */
     Lanes gauss;              /* exp(-d^2) */
-    Lanes e2, end_y2[2];      /* E^2, and the squared distances of ray and ends, less E^2 */
+    Lanes e2, end_y2[2];      /* E^2, and the squared distances between the ray and the ends, minus
+                               * E^2 */
     Lanes past;               /* d^2 - E^2 */
     Lanes share, cosine;      /* h / s, and a */
     Lanes inverse_speed2;     /* 1 / (w1^2 + u1^2) */
     Lanes half_gauss;         /* exp(-E^2) / 2 */
-    Lanes curvature, spare;   /* M, and no less than -ln B - E^2 */
+    Lanes curvature, spare;   /* M, an upper bound of the second derivative; and an upper bound of
+                               * -ln B - E^2 */
     Lanes steep;              /* steepness() of it */
     Lanes end_z[2];           /* dz nearest to the ends */
-    Lanes window[2];          /* z between which it may be as large as its share of the level */
+    Lanes window[2];          /* range of z in which the term can be as large as its share of the
+                               * level */
     Lanes reach[2];           /* z between which it may exceed the cut-off */
     const TileTerm *term;
-    float z;       /* of the term, relative to the group's */
-    float felt[2]; /* z between which it may exceed the cut-off, relative to the group's */
-    bool bent;     /* whether half_gauss, curvature, steep and `flat` are set */
-    bool flat;     /* u and v are the same all along, and their factor is in half_gauss */
+    float z;       /* z of the term, relative to the z of the group */
+    float felt[2]; /* range of z in which the term can exceed the cut-off, relative to the z of the
+                    * group */
+    bool bent;     /* half_gauss, curvature, steep and `flat` are set */
+    bool flat;     /* u and v are constant along the ray, and their factor is included in
+                    * half_gauss */
 } PacketTerm;
 
-/* LANES terms of an orthographic view's tile, one a lane: their segments in the plane across the
- * view, in units of 1 / k. */
+/* LANES terms of a tile of an orthographic view, one per lane: their segments projected to the
+ * plane across the view, in units of 1 / k. */
 typedef struct Outlines {
     Lanes o[2], cross[2]; /* as those of TileTerm */
-    Lanes first, last;    /* distances of the ends from where the middle ray passes */
+    Lanes first, last;    /* distances of the two ends from the point where the middle ray passes */
     Lanes reach, k;
 } Outlines;
 
@@ -56,10 +64,11 @@ typedef struct Packet {
     const FieldTile *tile;
     Lanes x, y;            /* of the samples */
     float middle[2], half; /* of a circle about them */
-    Outlines *outlines;    /* of the tile's terms; orthographic */
-    PacketTerm *terms;     /* those of the tile's that matter, in their order */
-    PacketTerm **sum;      /* those of them that are added up */
-    uint32_t *segments;    /* of the terms, where groups are looked for */
+    Outlines *outlines;    /* outlines of the tile's terms; orthographic views only */
+    PacketTerm *terms;     /* terms of the tile that can affect the packet, in the order of the
+                            * tile */
+    PacketTerm **sum;      /* terms that are summed */
+    uint32_t *segments;    /* per term: its segment; used to find blend groups */
     size_t n, n_sum;
 } Packet;
 
@@ -82,7 +91,7 @@ LANE_FN void outline_terms(const FieldTile *tile, Outlines *outlines)
     }
 }
 
-/* Shares out the memory from `terms` on, and sets the outlines. */
+/* Divides the memory from `terms` on among the arrays, and sets the outlines. */
 LANE_FN void share_memory(Packet *packet)
 {
     const FieldTile *tile = packet->tile;
@@ -93,7 +102,8 @@ LANE_FN void share_memory(Packet *packet)
         outline_terms(tile, packet->outlines);
 }
 
-/* Of the LANES terms from `first` on, as bits, those that may be within reach of a packet. */
+/* Returns as bits the terms, among the LANES terms from `first` on, that may be within reach of a
+ * packet. */
 LANE_FN uint32_t terms_near(const Packet *packet, size_t first)
 {
     const FieldTile *tile = packet->tile;
@@ -116,7 +126,7 @@ LANE_FN Lanes inverse(Lanes a)
     return 1.0f / lanes_select(lanes_abs(a) > 1e-20f, a, lanes_set(1e-20f));
 }
 
-/* A stretch of dz; empty (low > high) when there is none. */
+/* An interval of dz; empty if low > high. */
 typedef struct Stretch {
     Lanes low, high;
 } Stretch;
@@ -133,7 +143,8 @@ LANE_FN Inverses inverses_of(const PacketTerm *term, bool perspective)
     return (Inverses){lanes_set(term->term->per_w), lanes_set(term->term->per_u)};
 }
 
-/* Where |w| is at most sqrt(width2), and the place no farther than `beyond` outside of the ends. */
+/* Returns the interval in which |w| is at most sqrt(width2) and the point is at most `beyond`
+ * outside the ends. */
 LANE_FN Stretch stretch_within(const PacketTerm *term, const Inverses *per, Lanes width2,
                                Lanes width, Lanes beyond)
 {
@@ -145,15 +156,17 @@ LANE_FN Stretch stretch_within(const PacketTerm *term, const Inverses *per, Lane
                      lanes_select(seen, to, lanes_set(-1e30f))};
 }
 
-/* A stretch that holds all within sqrt(distance2) of the segment, less E^2. */
+/* Returns an interval that contains all points whose squared distance from the segment is at most
+ * distance2 + E^2. */
 LANE_FN Stretch stretch_near(const PacketTerm *term, const Inverses *per, Lanes distance2)
 {
     Lanes distance = lanes_sqrt(lanes_max(distance2, lanes_set(0)));
     return stretch_within(term, per, distance2, distance, distance);
 }
 
-/* The stretch within sqrt(beside2) of the axis beside the segment or sqrt(beyond2) of an end, both
- * less E^2. */
+/* Returns an interval that contains the points beside the segment whose squared distance from the
+ * axis is at most beside2 + E^2, and the points whose squared distance from an end is at most
+ * beyond2 + E^2. */
 LANE_FN Stretch stretch_about(const PacketTerm *term, const Inverses *per, Lanes beside2,
                               Lanes beyond2)
 {
@@ -170,7 +183,7 @@ LANE_FN Stretch stretch_about(const PacketTerm *term, const Inverses *per, Lanes
     return stretch;
 }
 
-/* Place and direction, at dz = 0, of the rays as the term sees them. */
+/* Position and direction of the rays at dz = 0, relative to the term. */
 typedef struct TermRays {
     Lanes o[3], d[3];
 } TermRays;
@@ -190,8 +203,8 @@ FOLDED_FN TermRays rays_of(const Packet *packet, const TileTerm *term)
     return rays;
 }
 
-/* The linear part of an orthographic packet's term, 1 / s and a; false, some of it not set, when
- * all rays pass the axis beyond reach. */
+/* Computes the linear coefficients of a term in an orthographic view, 1 / s and a. Returns false,
+ * some of them not set, if all rays pass the axis beyond its reach. */
 FOLDED_FN bool place_parallel(const Packet *packet, const TileTerm *term, PacketTerm *out)
 {
     const float k = term->k, s = term->sine, a = term->cosine, *cross = term->cross;
@@ -216,8 +229,9 @@ LANE_FN Lanes dot(const Lanes a[3], const float b[3])
     return lanes_fma(a[0], lanes_set(b[0]), lanes_fma(a[1], lanes_set(b[1]), a[2] * b[2]));
 }
 
-/* Likewise in perspective, where they are not. The directions' common part of cross products comes
- * from the tile, in double, so that rays nearly along the axis lose nothing. */
+/* Computes the linear coefficients of a term in perspective, where rays are not parallel. The part
+ * of cross products that all directions share comes from the tile, in double precision, so that
+ * rays that are nearly parallel to the axis lose no digits. */
 FOLDED_FN void place_bundle(const Packet *packet, const TileTerm *term, PacketTerm *out)
 {
     const float k = term->k, *axis = term->axis;
@@ -246,7 +260,7 @@ FOLDED_FN void place_bundle(const Packet *packet, const TileTerm *term, PacketTe
     out->inverse_speed2 = 1.0f / (length2 * (k * k));
 }
 
-/* Sets where the ray is nearest to the ends. */
+/* Sets the points of the ray that are nearest to the ends. */
 LANE_FN void place_ends(PacketTerm *term)
 {
     Lanes across = term->w0 * term->w1;
@@ -254,18 +268,18 @@ LANE_FN void place_ends(PacketTerm *term)
     term->end_z[1] = lanes_fma(term->v0, term->u1, -across) * term->inverse_speed2;
 }
 
-/* A term at a place of the rays. */
+/* The value of a term at one point of each ray. */
 typedef struct TermSample {
     Lanes value, slope;
 } TermSample;
 
-/* Terms added up at a place of the rays. */
+/* The sum of terms at one point of each ray. */
 typedef struct PacketSample {
     Lanes phi, slope;
-    Lanes curvature; /* M of the terms within reach, and they are all until next */
+    Lanes curvature; /* sum of the bounds M of the terms within reach; valid until `next` */
     Lanes next;
-    Lanes steep; /* how much phi may be off where places are off by 1 mm */
-    float depth; /* mm from the first to the last place within reach of a term, at most */
+    Lanes steep; /* maximum error of phi per mm of error of the position */
+    float depth; /* maximum length in mm from the first to the last point within reach of a term */
     size_t n;    /* terms */
 } PacketSample;
 
@@ -286,8 +300,8 @@ LANE_FN void add_sample(const TermSample *one, LaneMask here, const PacketTerm *
     sum->n++;
 }
 
-/* Adds a gradient at dz of the term: `across` times the vector from the axis' line to there, and
- * `along` times the axis. */
+/* Adds the gradient of a term at dz: `across` times the vector from the axis line to the point,
+ * plus `along` times the axis. */
 LANE_FN void add_direction(const PacketTerm *term, const Packet *packet, Lanes dz, Lanes across,
                            Lanes along, Gradient *sum)
 {
@@ -301,14 +315,14 @@ LANE_FN void add_direction(const PacketTerm *term, const Packet *packet, Lanes d
     sum->z += lanes_fma(across, rays.o[2], along * axis[2]);
 }
 
-/* A term at a point, and no more than it is anywhere from there on. */
+/* The value of a term at a point, and an upper bound of the term from there on. */
 typedef struct TermThere {
     TermSample at;
     Lanes most;
 } TermThere;
 
-/* exp(-x^2) of x the least distance of the segment from w on, or less, where the end that the ray
- * leaves is at `leaves`. */
+/* Returns an upper bound of exp(-x^2), where x is the minimum distance between the segment and the
+ * ray from w on. The end that the ray leaves is at `leaves`. */
 LANE_FN Lanes gauss_beyond(Lanes e2, Lanes w, Lanes leaves)
 {
     Lanes away = lanes_max(w, lanes_set(0)), past = lanes_min(leaves, lanes_set(0));

@@ -13,22 +13,24 @@
 
 #include "render/field/kernel_packet.h"
 
-/* Where the squared slope is so many times curvature times lack, a crossing lies ahead. */
+/* A crossing is certain to lie ahead if the squared slope exceeds SURE times curvature times lack
+ * of potential. */
 #define SURE 4.6f
 
-/* The part of the margin that `n` terms have without the rounding of places. */
+/* Returns the margin of `n` terms, without the rounding of positions. */
 LANE_FN float fixed_margin(size_t n)
 {
     return MARGIN_DROPPED + MARGIN_TERM * (float)n;
 }
 
-/* How much the term may be off where its place is off by 1 mm; MARGIN_PLACE allows for a factor. */
+/* Returns the maximum error of the term per mm of error of its position, up to a factor that
+ * MARGIN_PLACE includes. */
 LANE_FN Lanes steepness(const PacketTerm *term)
 {
     return term->peak * term->term->k;
 }
 
-/* Sets what bounds the term, which is passed beyond an end where `beyond`. */
+/* Sets the upper bound of the term. Rays in `beyond` pass the axis beyond an end. */
 LANE_FN void bound_term(PacketTerm *term, LaneMask beyond)
 {
     term->share *= lanes_select(beyond, lanes_set(0.5f), lanes_set(1));
@@ -36,7 +38,7 @@ LANE_FN void bound_term(PacketTerm *term, LaneMask beyond)
     term->peak = term->gauss * lanes_min(term->share, lanes_set(1));
 }
 
-/* Sets what bounds the term's bends, and how much it may be off. */
+/* Sets the bound of the term's second derivative, and its maximum error. */
 LANE_FN void bound_bend(PacketTerm *term)
 {
     const Lanes tiny = lanes_set(1e-20f);
@@ -46,7 +48,7 @@ LANE_FN void bound_bend(PacketTerm *term)
     term->steep = steepness(term);
 }
 
-/* Sets what a sample of the term needs. */
+/* Sets the fields that a sample of the term needs. */
 LANE_FN void bend_term(PacketTerm *term, bool perspective)
 {
     bound_bend(term);
@@ -62,7 +64,7 @@ LANE_FN void bend_term(PacketTerm *term, bool perspective)
     }
 }
 
-/* Sets what only packets need that may hit something. */
+/* Sets the fields that only packets need that may hit something. */
 LANE_FN void complete_term(PacketTerm *term, bool perspective)
 {
     bend_term(term, perspective);
@@ -84,7 +86,7 @@ FOLDED_FN TermSample sample_term(const PacketTerm *term, Lanes z)
     return (TermSample){gauss * ends, gauss * change};
 }
 
-/* The term at w, u and v; only its ray is set. */
+/* Returns the value of the term at w, u and v. Only the fields of its ray need to be set. */
 LANE_FN TermSample sample_once(const PacketTerm *term, Lanes w, Lanes u, Lanes v)
 {
     Lanes half_gauss = lanes_exp_minus(lanes_fma(w, w, term->e2)) * 0.5f, ends, ends_slope;
@@ -115,7 +117,8 @@ LANE_FN void add_gradient(const PacketTerm *term, const Packet *packet, Lanes z,
     name_largest(term->term, value, sum);
 }
 
-/* The lanes on which a term alone is above the level somewhere beyond z, and so with any others. */
+/* Returns the lanes on which this term alone exceeds the level somewhere beyond z. Terms are
+ * positive, so the sum with any other terms exceeds the level, too. */
 LANE_FN LaneMask term_hides(const PacketTerm *term, Lanes z, size_t n)
 {
     (void)n;
@@ -127,8 +130,8 @@ LANE_FN LaneMask term_hides(const PacketTerm *term, Lanes z, size_t n)
     return near & (lanes_min(u, v) >= 1.5f) & (dz + term->z > z);
 }
 
-/* No more than this is a term anywhere from w on, where the end that it leaves is at `leaves`: its
- * axial factor is at most (1 + erf x) / 2 from there on, which its tangent at 0 bounds. */
+/* Returns an upper bound of a term from w on. The end that the ray leaves is at `leaves`. The axial
+ * factor is at most (1 + erf x) / 2 from there on, which is bounded by its tangent at 0. */
 LANE_FN Lanes most_beyond(Lanes e2, Lanes w, Lanes leaves)
 {
     Lanes ends = lanes_fma(lanes_max(leaves, lanes_set(0)), lanes_set(0.5641896f), lanes_set(0.5f));

@@ -1,29 +1,33 @@
-/* Whether something stands between places and a light, several places at once: included after
- * kernel_trace.h by each source that compiles it for its lanes, and told by SHADOW_KERNEL how to
- * call it.
+/* Tests whether anything is between points and a light, several points at once. Each source that
+ * compiles this file for its lanes includes it after kernel_trace.h and defines SHADOW_KERNEL, the
+ * name of the kernel.
  *
- * Lines of sight lead from the places to the light, which is at the end of z. On most nothing is in
- * the way, and that is proven at once:
+ * Lines of sight lead from the points to the light, which is at the end of z. Most lines are free,
+ * and this is proven by two fast tests:
  *
- * - Start. Phi, its slope and the bound M of its curvature at the place give the stretch on which
- *   Phi stays below the level, as a step of kernel_trace.h's march does.
- * - Beyond. A term is a Gaussian convolved with a segment, and log-concave along a line. Where it
- *   recedes from the segment's line it is at most exp(-E^2 - w^2) from there on, at x before the
- *   end that it leaves at most (1 + erf x) / 2 of that, beyond it at most exp(-E^2 - w^2 - x^2) /
- *   2, once it falls at most what it is there, and elsewhere at most B. A place is lit if at the
- *   end of the stretch these sum up to less than the level.
- * - Dark. A term that is passed at E^2 <= 1.9, both its ends 1.5 / k or more away, is 1.06 times
- *   the level there alone.
+ * -  Start. Phi, its slope and the bound M of its curvature at the point give the interval on which
+ *    Phi stays below the level, as for a step of the march of kernel_trace.h.
+ * -  Beyond. A term is a Gaussian convolved with a segment, and log-concave along a line. Where it
+ *    recedes from the segment's line, it is at most exp(-E^2 - w^2) from there on. At the distance
+ *    x before the end that the line leaves, it is at most (1 + erf x) / 2 of that; at x beyond that
+ *    end, at most exp(-E^2 - w^2 - x^2) / 2. Once it falls, it is at most its present value.
+ *    Elsewhere it is at most B. A point is lit if the sum of these bounds at the end of the
+ *    interval is less than the level.
  *
- * These tests set out a term only to know what it is at the places, and keep little of it. Terms
- * that are out of reach of a whole packet are left out before that, several at once.
+ * A third fast test proves that a point is dark: a term that is passed at E^2 <= 1.9, with both
+ * ends at least 1.5 / k away, is alone 1.06 times the level there.
  *
- * What is left is looked at in full packets. That Phi is above the level somewhere on the way is
- * proof enough, where is not asked: one place is tried, where the term passed nearest is. Then rays
- * are marched, each step of which may end in a proof of either kind.
+ * These tests evaluate a term at the points only, and store little of it. Terms that are out of
+ * reach of a whole packet are left out before, several at once.
  *
- * - Rim. Places are on the surface as well as it was found: until Phi has fallen below RIM of the
- *   level on leaving it, the level is SKIN times that. */
+ * The remaining points are tested in full packets. A point is dark if Phi exceeds the level
+ * anywhere on the line; the position does not matter. One position is tried first: where the
+ * nearest term is passed. Then rays are marched, and each step may end with a proof that the point
+ * is lit or dark.
+ *
+ * -  Rim. Points are on the surface only as exactly as it was found. Until Phi has fallen below RIM
+ *    of the level when the line leaves the surface, the level is replaced by SKIN times the
+ *    level. */
 #ifndef SHADOW_KERNEL
 #error "define SHADOW_KERNEL, the name of the function"
 #endif
@@ -32,14 +36,15 @@
 #define SKIN 1.002f
 #define SURELY_BELOW (0.999f * LEVEL)
 
-/* What is kept of a term to tell whether it matters beyond the places. */
+/* The part of a term that decides whether it matters beyond the points. */
 typedef struct Blocker {
-    Lanes w, w1;      /* at the place, and its change with z, >= 0 */
-    Lanes leaves, u1; /* the distance, at the place, from the end that is left, and how it falls */
+    Lanes w, w1;      /* w at the point, and its derivative by z, >= 0 */
+    Lanes leaves, u1; /* distance at the point from the end that the ray leaves, and its
+                       * derivative */
     Lanes e2, peak;
 } Blocker;
 
-/* Places, LANES of them, and the terms on the ways from there to the light. */
+/* LANES points, and the terms along the rays from the points to the light. */
 typedef struct Departures {
     Packet packet;
     Blocker *blockers; /* in the memory of the packet's terms */
@@ -49,40 +54,40 @@ typedef struct Departures {
     float from, to; /* the least and the largest of these */
 } Departures;
 
-/* Of the LANES terms from `first` on, as bits, those that may be within reach of a packet and are
- * not all behind its places. */
-LANE_FN uint32_t terms_ahead(const Departures *way, size_t first)
+/* Returns as bits the terms, among the LANES terms from `first` on, that may be within reach of a
+ * packet and are not all behind its points. */
+LANE_FN uint32_t terms_ahead(const Departures *rays, size_t first)
 {
-    const FieldTile *tile = way->packet.tile;
+    const FieldTile *tile = rays->packet.tile;
     uint32_t ahead = 0;
-    for (uint32_t left = terms_near(&way->packet, first); left; left &= left - 1) {
+    for (uint32_t left = terms_near(&rays->packet, first); left; left &= left - 1) {
         int lane = __builtin_ctz(left);
-        bool is_ahead = tile->terms[first + (size_t)lane].off >= way->base + (double)way->from;
+        bool is_ahead = tile->terms[first + (size_t)lane].off >= rays->base + (double)rays->from;
         ahead |= (uint32_t)is_ahead << lane;
     }
     return ahead;
 }
 
-FOLDED_FN void set_depths(const Departures *way, PacketTerm *term)
+FOLDED_FN void set_depths(const Departures *rays, PacketTerm *term)
 {
-    term->z = (float)(term->term->z_near - way->base);
-    term->felt[0] = (float)(term->term->on - way->base);
-    term->felt[1] = (float)(term->term->off - way->base);
+    term->z = (float)(term->term->z_near - rays->base);
+    term->felt[0] = (float)(term->term->on - rays->base);
+    term->felt[1] = (float)(term->term->off - rays->base);
 }
 
-/* Keeps the term as a blocker, and adds what it is at the places to *at. */
-FOLDED_FN void pass_term(Departures *way, PacketTerm *term, LaneMask open, PacketSample *at,
+/* Stores the term as a blocker, and adds its value at the points to *at. */
+FOLDED_FN void pass_term(Departures *rays, PacketTerm *term, LaneMask open, PacketSample *at,
                          float *extent)
 {
-    Lanes dz = way->z - term->z, w = lanes_fma(term->w1, dz, term->w0);
+    Lanes dz = rays->z - term->z, w = lanes_fma(term->w1, dz, term->w0);
     Lanes u = lanes_fma(term->u1, dz, term->u0), v = lanes_fma(-term->u1, dz, term->v0);
-    way->blockers[way->n_blockers++] = (Blocker){.w = w,
-                                                 .w1 = term->w1,
-                                                 .leaves = lanes_select(term->u1 > 0.0f, v, u),
-                                                 .u1 = lanes_abs(term->u1),
-                                                 .e2 = term->e2,
-                                                 .peak = term->peak};
-    if (term->felt[0] > way->to) {
+    rays->blockers[rays->n_blockers++] = (Blocker){.w = w,
+                                                   .w1 = term->w1,
+                                                   .leaves = lanes_select(term->u1 > 0.0f, v, u),
+                                                   .u1 = lanes_abs(term->u1),
+                                                   .e2 = term->e2,
+                                                   .peak = term->peak};
+    if (term->felt[0] > rays->to) {
         at->next = lanes_min(at->next, lanes_set(term->felt[0]));
         return;
     }
@@ -95,38 +100,38 @@ FOLDED_FN void pass_term(Departures *way, PacketTerm *term, LaneMask open, Packe
     *extent = far > *extent ? far : *extent;
 }
 
-/* Looks at the terms beyond the places: sets the blockers, Phi at the places and the margin for it,
- * and returns the lanes on which one term alone hides the light; all of the former only if some are
- * left. */
-LANE_FN LaneMask depart(Departures *way, LaneMask open, PacketSample *at, Lanes *margin)
+/* Evaluates the terms beyond the points: sets the blockers, Phi at the points and its margin.
+ * Returns the lanes on which one term alone hides the light. If this is true on all open lanes, the
+ * other results may not be set. */
+LANE_FN LaneMask depart(Departures *rays, LaneMask open, PacketSample *at, Lanes *margin)
 {
-    const FieldTile *tile = way->packet.tile;
+    const FieldTile *tile = rays->packet.tile;
     LaneMask hidden = {0};
     float extent = 0, width = tile->half_size;
-    way->n_blockers = 0;
+    rays->n_blockers = 0;
     *at = nothing_sampled();
     *margin = lanes_set(0);
     for (size_t i = 0; i < tile->n_terms; i += LANES)
-        for (uint32_t near = terms_ahead(way, i); near; near &= near - 1) {
+        for (uint32_t near = terms_ahead(rays, i); near; near &= near - 1) {
             PacketTerm term;
-            if (!place_term(&way->packet, &tile->terms[i + (size_t)__builtin_ctz(near)], &term))
+            if (!place_term(&rays->packet, &tile->terms[i + (size_t)__builtin_ctz(near)], &term))
                 continue;
-            set_depths(way, &term);
-            hidden |= term_hides(&term, way->z, tile->n_terms);
+            set_depths(rays, &term);
+            hidden |= term_hides(&term, rays->z, tile->n_terms);
             if (!lanes_any(open & ~hidden))
                 return hidden;
-            pass_term(way, &term, open, at, &extent);
+            pass_term(rays, &term, open, at, &extent);
         }
     if (tile->perspective)
-        width *= (float)fabs(way->base);
-    *margin = at->steep * ((extent + width + way->to - way->from) * MARGIN_PLACE) +
-              fixed_margin(way->n_blockers);
+        width *= (float)fabs(rays->base);
+    *margin = at->steep * ((extent + width + rays->to - rays->from) * MARGIN_PLACE) +
+              fixed_margin(rays->n_blockers);
     return hidden;
 }
 
-/* Of the open lanes, those that are proven lit by what is at the places and beyond the first
- * stretch. */
-LANE_FN LaneMask lit_at_once(const Departures *way, LaneMask open, const PacketSample *at,
+/* Returns the open lanes that are proven lit, by the potential at the points and by the bounds
+ * beyond the first interval. */
+LANE_FN LaneMask lit_at_once(const Departures *rays, LaneMask open, const PacketSample *at,
                              Lanes margin)
 {
     LaneMask leaving = at->phi > RIM * LEVEL;
@@ -140,10 +145,10 @@ LANE_FN LaneMask lit_at_once(const Departures *way, LaneMask open, const PacketS
         lanes_sqrt(lanes_fma(slope, slope, 2.0f * curvature * lanes_max(safe, lanes_set(0))));
     Lanes step =
         lanes_select(slope > 0.0f, 2.0f * safe / (slope + root), (root - slope) / curvature);
-    step = lanes_min(step, at->next - way->z);
-    Lanes sum = lanes_set(fixed_margin(way->n_blockers));
-    for (size_t i = 0; i < way->n_blockers; i++) {
-        const Blocker *term = &way->blockers[i];
+    step = lanes_min(step, at->next - rays->z);
+    Lanes sum = lanes_set(fixed_margin(rays->n_blockers));
+    for (size_t i = 0; i < rays->n_blockers; i++) {
+        const Blocker *term = &rays->blockers[i];
         Lanes beyond = most_beyond(term->e2, lanes_fma(term->w1, step, term->w),
                                    lanes_fma(term->u1, -step, term->leaves));
         sum += lanes_min(beyond, term->peak);
@@ -151,7 +156,7 @@ LANE_FN LaneMask lit_at_once(const Departures *way, LaneMask open, const PacketS
     return open & (sum < SURELY_BELOW);
 }
 
-/* As sample_at, and the most that Phi is from z on. */
+/* Does the same as sample_at, and also returns an upper bound of Phi from z on. */
 LANE_FN PacketSample sample_departing(const Group *group, Lanes z, LaneMask live, Lanes *beyond)
 {
     PacketSample sample = nothing_sampled();
@@ -169,8 +174,8 @@ LANE_FN PacketSample sample_departing(const Group *group, Lanes z, LaneMask live
     return sample;
 }
 
-/* Marches the live lanes on from z, until they are proven dark, or undecided; `leaving` are those
- * that start where they left the surface. */
+/* Marches the live lanes on from z, until they are proven dark or lit, or are undecided. `leaving`
+ * are the lanes that start where they left the surface. */
 LANE_FN void march_to_light(const Group *group, LaneMask live, LaneMask leaving, Lanes z,
                             LaneMask *dark, LaneMask *unsure)
 {
@@ -201,8 +206,8 @@ LANE_FN void march_to_light(const Group *group, LaneMask live, LaneMask leaving,
     }
 }
 
-/* Of the live lanes at z, those that are above the level in the middle of the window, beyond z, of
- * the term that may be the largest there. */
+/* Returns the live lanes whose potential exceeds the level at one tested point: the middle of the
+ * window, beyond z, of the term that can be the largest there. */
 LANE_FN LaneMask lanes_hidden(const Group *group, LaneMask live, Lanes z)
 {
     Lanes largest = lanes_set(0), middle = lanes_set(1e30f);
@@ -218,7 +223,7 @@ LANE_FN LaneMask lanes_hidden(const Group *group, LaneMask live, Lanes z)
     return live & (at.phi - margin >= SKIN * LEVEL) & (margin <= CLOSE_ENOUGH);
 }
 
-/* Sorts the terms chosen by rising `on`. */
+/* Sorts the selected terms by ascending `on`. */
 LANE_FN void sort_sum(const Packet *packet)
 {
     for (size_t i = 1; i < packet->n_sum; i++) {
@@ -230,22 +235,21 @@ LANE_FN void sort_sum(const Packet *packet)
     }
 }
 
-/* Looks for the light through the sum of the terms chosen. */
-LANE_FN void look_through_sum(const Departures *way, LaneMask *open, LaneMask *dark,
-                              LaneMask *unsure)
+/* Tests whether the sum of the selected terms hides the light. */
+LANE_FN void test_sum(const Departures *rays, LaneMask *open, LaneMask *dark, LaneMask *unsure)
 {
-    const Packet *packet = &way->packet;
-    const double nearest = way->base + (double)way->from;
+    const Packet *packet = &rays->packet;
+    const double nearest = rays->base + (double)rays->from;
     sort_sum(packet);
     for (size_t i = 0; i < packet->n_sum && lanes_any(*open);) {
         Group group;
         i = next_group(packet, i, nearest, &group);
-        group.width += way->to - way->from;
-        group.extent += way->to - way->from;
+        group.width += rays->to - rays->from;
+        group.extent += rays->to - rays->from;
         LaneMask live = *open, stuck = {0};
         if (!group_window(&group, &live))
             continue;
-        Lanes from = way->z + (float)(way->base - group.base);
+        Lanes from = rays->z + (float)(rays->base - group.base);
         Lanes start = next_window(&group, lanes_set(-1e30f));
         live &= next_window(&group, from) < 1e30f;
         LaneMask hidden = lanes_hidden(&group, live, from);
@@ -257,135 +261,135 @@ LANE_FN void look_through_sum(const Departures *way, LaneMask *open, LaneMask *d
     }
 }
 
-/* Likewise through the sums of the groups that blend, one after the other. */
-LANE_FN void look_through_union(Departures *way, LaneMask *open, LaneMask *dark, LaneMask *unsure)
+/* Tests whether the sum of any blend group hides the light, one group after another. */
+LANE_FN void test_union(Departures *rays, LaneMask *open, LaneMask *dark, LaneMask *unsure)
 {
-    size_t n_groups = find_groups(&way->packet);
+    size_t n_groups = find_groups(&rays->packet);
     for (size_t group = 0; group < n_groups; group++) {
-        sum_group(&way->packet, group);
-        look_through_sum(way, open, dark, unsure);
+        sum_group(&rays->packet, group);
+        test_sum(rays, open, dark, unsure);
     }
 }
 
-/* Some of a tile's places, and their numbers there. */
-typedef struct ShadowPlaces {
+/* Some of a tile's points, and their indices in the tile. */
+typedef struct PendingPoints {
     float x[LANES], y[LANES];
     double z[LANES];
     uint16_t numbers[LANES];
     int n;
-} ShadowPlaces;
+} PendingPoints;
 
-/* Sets the circle about the places. */
-LANE_FN void enclose(Departures *way)
+/* Sets the circle that contains the points. */
+LANE_FN void enclose(Departures *rays)
 {
-    const Lanes sides[2] = {way->packet.x, way->packet.y};
+    const Lanes sides[2] = {rays->packet.x, rays->packet.y};
     float half2 = 0;
     for (int c = 0; c < 2; c++) {
         float low = lanes_least(sides[c]), high = lanes_largest(sides[c]);
-        way->packet.middle[c] = 0.5f * (low + high);
+        rays->packet.middle[c] = 0.5f * (low + high);
         half2 += (high - low) * (high - low);
     }
-    way->packet.half = 0.501f * sqrtf(half2);
+    rays->packet.half = 0.501f * sqrtf(half2);
 }
 
-/* Takes LANES places, the first n of which count. Returns the lanes of those. */
-LANE_FN LaneMask load_places(const float *x, const float *y, const double *z, int n,
-                             Departures *way)
+/* Loads LANES points, of which the first n are valid. Returns the mask of the valid lanes. */
+LANE_FN LaneMask load_points(const float *x, const float *y, const double *z, int n,
+                             Departures *rays)
 {
     LaneMask open;
     for (int lane = 0; lane < LANES; lane++)
         open[lane] = lane;
-    way->base = z[0];
-    way->packet.x = lanes_load(x);
-    way->packet.y = lanes_load(y);
-    way->z = lanes_of_doubles(z, -way->base);
-    way->from = lanes_least(way->z);
-    way->to = lanes_largest(way->z);
-    enclose(way);
+    rays->base = z[0];
+    rays->packet.x = lanes_load(x);
+    rays->packet.y = lanes_load(y);
+    rays->z = lanes_of_doubles(z, -rays->base);
+    rays->from = lanes_least(rays->z);
+    rays->to = lanes_largest(rays->z);
+    enclose(rays);
     return open < n;
 }
 
-/* Decides what is decided fast of the places from `first` on, and returns the lanes that are left.
- */
-LANE_FN LaneMask decide_at_once(ShadowPoints *places, int first, Departures *way)
+/* Decides the points from `first` on that the fast proofs can decide. Returns the lanes that are
+ * left. */
+LANE_FN LaneMask decide_at_once(ShadowPoints *points, int first, Departures *rays)
 {
-    LaneMask open = load_places(&places->x[first], &places->y[first], &places->z[first],
-                                places->n - first, way);
+    LaneMask open = load_points(&points->x[first], &points->y[first], &points->z[first],
+                                points->n - first, rays);
     PacketSample at;
     Lanes margin;
-    LaneMask dark = open & depart(way, open, &at, &margin);
+    LaneMask dark = open & depart(rays, open, &at, &margin);
     for (uint32_t left = lanes_bits(dark); left; left &= left - 1)
-        places->state[first + __builtin_ctz(left)] = SHADOW_DARK;
+        points->state[first + __builtin_ctz(left)] = SHADOW_DARK;
     open &= ~dark;
     if (lanes_any(open))
-        open &= ~lit_at_once(way, open, &at, margin);
+        open &= ~lit_at_once(rays, open, &at, margin);
     return open;
 }
 
-LANE_FN void set_states(ShadowPoints *places, const uint16_t *numbers, LaneMask which,
+LANE_FN void set_states(ShadowPoints *points, const uint16_t *numbers, LaneMask which,
                         ShadowState state)
 {
     for (uint32_t left = lanes_bits(which); left; left &= left - 1)
-        places->state[numbers[__builtin_ctz(left)]] = (uint8_t)state;
+        points->state[numbers[__builtin_ctz(left)]] = (uint8_t)state;
 }
 
-/* Sets the terms beyond the places. */
-LANE_FN void place_terms(Departures *way)
+/* Computes the terms beyond the points. */
+LANE_FN void place_terms(Departures *rays)
 {
-    const FieldTile *tile = way->packet.tile;
-    way->packet.n = 0;
+    const FieldTile *tile = rays->packet.tile;
+    rays->packet.n = 0;
     for (size_t i = 0; i < tile->n_terms; i += LANES)
-        for (uint32_t near = terms_ahead(way, i); near; near &= near - 1)
-            add_to_packet(&way->packet, &tile->terms[i + (size_t)__builtin_ctz(near)]);
+        for (uint32_t near = terms_ahead(rays, i); near; near &= near - 1)
+            add_to_packet(&rays->packet, &tile->terms[i + (size_t)__builtin_ctz(near)]);
 }
 
-/* Decides the places that have been put off, and forgets them. */
-LANE_FN void decide_by_march(ShadowPoints *places, ShadowPlaces *later, Departures *way)
+/* Decides the points that were postponed, and empties their list. */
+LANE_FN void decide_by_march(ShadowPoints *points, PendingPoints *later, Departures *rays)
 {
     for (int lane = later->n; lane < LANES; lane++) {
         later->x[lane] = later->x[later->n - 1];
         later->y[lane] = later->y[later->n - 1];
         later->z[lane] = later->z[later->n - 1];
     }
-    LaneMask open = load_places(later->x, later->y, later->z, later->n, way), dark = {0},
+    LaneMask open = load_points(later->x, later->y, later->z, later->n, rays), dark = {0},
              unsure = {0};
-    place_terms(way);
-    if (way->packet.tile->groups) {
-        look_through_union(way, &open, &dark, &unsure);
+    place_terms(rays);
+    if (rays->packet.tile->groups) {
+        test_union(rays, &open, &dark, &unsure);
     } else {
-        way->packet.n_sum = way->packet.n;
-        for (size_t i = 0; i < way->packet.n; i++)
-            way->packet.sum[i] = &way->packet.terms[i];
-        look_through_sum(way, &open, &dark, &unsure);
+        rays->packet.n_sum = rays->packet.n;
+        for (size_t i = 0; i < rays->packet.n; i++)
+            rays->packet.sum[i] = &rays->packet.terms[i];
+        test_sum(rays, &open, &dark, &unsure);
     }
-    set_states(places, later->numbers, unsure, SHADOW_UNSURE);
-    set_states(places, later->numbers, dark, SHADOW_DARK);
+    set_states(points, later->numbers, unsure, SHADOW_UNSURE);
+    set_states(points, later->numbers, dark, SHADOW_DARK);
     later->n = 0;
 }
 
-LANE_FN void put_off(const ShadowPoints *places, int number, ShadowPlaces *later)
+LANE_FN void postpone(const ShadowPoints *points, int number, PendingPoints *later)
 {
     int n = later->n++;
-    later->x[n] = places->x[number];
-    later->y[n] = places->y[number];
-    later->z[n] = places->z[number];
+    later->x[n] = points->x[number];
+    later->y[n] = points->y[number];
+    later->z[n] = points->z[number];
     later->numbers[n] = (uint16_t)number;
 }
 
-LANE_TARGET void SHADOW_KERNEL(const FieldTile *tile, TileWork *work, ShadowPoints *places)
+LANE_TARGET void SHADOW_KERNEL(const FieldTile *tile, TileWork *work, ShadowPoints *points)
 {
-    ShadowPlaces later = {.n = 0};
+    PendingPoints later = {.n = 0};
     assert(tile->n_terms <= work->capacity);
-    Departures way = {.packet = {.tile = tile, .terms = work->memory}, .blockers = work->memory};
-    share_memory(&way.packet);
-    __builtin_memset(places->state, SHADOW_LIT, (size_t)places->n);
-    for (int first = 0; first < places->n; first += LANES)
-        for (uint32_t open = lanes_bits(decide_at_once(places, first, &way)); open;
+    Departures rays = {.packet = {.tile = tile, .terms = work->memory}, .blockers = work->memory};
+    share_memory(&rays.packet);
+    __builtin_memset(points->state, SHADOW_LIT, (size_t)points->n);
+    for (int first = 0; first < points->n; first += LANES)
+        for (uint32_t open = lanes_bits(decide_at_once(points, first, &rays)); open;
              open &= open - 1) {
-            put_off(places, first + __builtin_ctz(open), &later);
+            postpone(points, first + __builtin_ctz(open), &later);
             if (later.n == LANES)
-                decide_by_march(places, &later, &way);
+                decide_by_march(points, &later, &rays);
         }
     if (later.n)
-        decide_by_march(places, &later, &way);
+        decide_by_march(points, &later, &rays);
 }

@@ -1,24 +1,25 @@
-/* The first hits of a tile, several rays at once: included by each source that compiles it for its
- * lanes, and told by FIELD_KERNEL how to call it. Terms are the potential's where PLANE_KERNEL is
- * defined, the name of the function for tiles in a plane, else the blob's.
+/* Finds the first hits of a tile, several rays at once. Each source that compiles this file for its
+ * lanes includes it and defines FIELD_KERNEL, the name of the kernel. If PLANE_KERNEL is defined,
+ * the name of the function for tiles in a plane, the terms are those of the potential; otherwise
+ * those of the blob.
  *
- * What fieldcast.c proves for one ray in double precision is proven here in single, for a packet of
- * neighbouring rays; lanes whose proof would need more than that are handed back as TILE_UNSURE.
+ * fieldcast.c proves the first hit of one ray in double precision. This file makes the same proof
+ * in single precision, for a packet of neighbouring rays. Lanes whose proof needs more precision
+ * are returned as TILE_UNSURE. B is an upper bound of a term on the ray, and M an upper bound of
+ * its second derivative [kernel_packet.h, and the headers that it names]. T is the level.
  *
- * With B no less than a term is on the ray, and M than the second derivative of it
- * [kernel_packet.h, and the headers that it names]:
- *
- * - Windows. Of the terms of a group, those whose B is next to nothing, R all together, leave T - R
- *   of T to the others: Phi >= T needs one of these of at least its share (T - R) B / S, S the sum
- *   of their B.
- *   Where that can be is a stretch of the ray within a distance of the segment, found from what a
- *   term is at most by its distance. The march goes through these stretches and leaps what lies
- *   between them. For a lone straight vessel the first begins at its surface.
- * - Reach. Likewise a term exceeds the cut-off on a stretch of each ray, and does not count outside
- *   it: no step goes past the beginning of one, and only terms within reach bend the potential.
- * - Steps and acceptance as in fieldcast.c, with a margin about T for what single precision, erf
- *   and the terms left out amount to: nothing is stepped over that could reach T - margin, and a
- *   hit is one that rises through T + margin. */
+ * -  Windows. Among the terms of a group, those with a negligible B, R all together, leave T - R of
+ *    T to the others. Phi >= T requires that one of these reaches at least its share (T - R) B / S,
+ *    where S is the sum of their B. The intervals of the ray where this is possible are within a
+ *    distance of the segment that follows from the bound of a term by distance. The march goes
+ *    through these intervals and skips the gaps between them. For a single straight vessel, the
+ *    first interval begins at its surface.
+ * -  Reach. A term exceeds the cut-off on one interval of each ray, and does not count outside this
+ *    interval. No step passes the beginning of such an interval, and only terms within reach
+ *    contribute to the curvature of the potential.
+ * -  Steps and acceptance are those of fieldcast.c, with a margin about T for the errors of single
+ *    precision, of erf and of the terms left out. No step passes a point that could reach T -
+ *    margin, and a hit is a point where the potential rises through T + margin. */
 #ifndef FIELD_KERNEL
 #error "define FIELD_KERNEL, the name of the function"
 #endif
@@ -31,11 +32,12 @@
 #endif
 #include <assert.h>
 
-/* Lack of potential at which a hit that is very certain is closed by Newton's method. */
+/* Lack of potential below which a very certain hit is completed by Newton's method. */
 #define NEAR_ENOUGH (2e-2f * LEVEL)
 #define MOST_STEPS 128
 
-/* Sets a term; false, some of it not set, when it is below the cut-off on every ray. */
+/* Sets a term. Returns false, some fields not set, if the term is below the cut-off on every
+ * ray. */
 FOLDED_FN bool place_term(const Packet *packet, const TileTerm *tile_term, PacketTerm *term)
 {
     if (packet->tile->perspective)
@@ -68,25 +70,27 @@ typedef struct Group {
     PacketTerm **terms;
     size_t n;
     double base;
-    float extent; /* mm, of places: z, how far they are from a term's, and `width` */
-    float width;  /* mm that places are off the middle ray */
+    float extent; /* mm: bounds the size of positions, and so their rounding error: the range of z,
+                   * the distance from a term's z, and `width` */
+    float width;  /* maximum distance of the rays from the middle ray, mm */
 } Group;
 
-/* The margin of a sample at z: the farther from the base, the more are places rounded. */
+/* Returns the margin of a sample at z. Positions are rounded more the farther they are from the
+ * base. */
 LANE_FN Lanes margin_at(const Group *group, const PacketSample *sample, Lanes z)
 {
     return lanes_fma(sample->steep * MARGIN_PLACE, lanes_abs(z) + (sample->depth + group->width),
                      lanes_set(fixed_margin(sample->n)));
 }
 
-/* Whether the term is above the cut-off on some of the rays. */
+/* Returns true if the term exceeds the cut-off on some of the rays. */
 LANE_FN bool matters(const PacketTerm *term, LaneMask rays)
 {
     return lanes_any(rays & (term->peak > (float)TILE_TERM_CUTOFF));
 }
 
-/* Where the term is within reach, of the lanes `live`, which are at z; what of the others begins
- * beyond z may lower *next. */
+/* Returns the live lanes on which the term is within reach at z. Lowers *next to the next z at
+ * which the term comes within reach of the other lanes. */
 LANE_FN LaneMask lanes_reached(const PacketTerm *term, Lanes z, LaneMask live, Lanes *next)
 {
     *next = lanes_min_where(z < term->reach[0], *next, term->reach[0]);
@@ -107,7 +111,8 @@ FOLDED_FN PacketSample sample_at(const Group *group, Lanes z, LaneMask live)
     return sample;
 }
 
-/* The place from z on, or beyond all, where the group's potential may reach LEVEL - margin. */
+/* Returns the first z, from the given z on, at which the group's potential may reach LEVEL -
+ * margin; beyond all terms if there is none. */
 LANE_FN Lanes next_window(const Group *group, Lanes z)
 {
     Lanes next = lanes_set(1e30f);
@@ -118,8 +123,8 @@ LANE_FN Lanes next_window(const Group *group, Lanes z)
     return lanes_max(next, z);
 }
 
-/* Sets what the march needs of a term that is at most exp(excess) times its share where it
- * `counts`. */
+/* Sets the window of a term: where it can have its share of the level. The term is at most
+ * exp(excess) times its share where it `counts`. */
 LANE_FN void place_windows(PacketTerm *term, bool perspective, Lanes excess, LaneMask counts)
 {
     const Lanes none = lanes_set(1e30f);
@@ -133,8 +138,8 @@ LANE_FN void place_windows(PacketTerm *term, bool perspective, Lanes excess, Lan
     term->reach[1] = reach.high + term->z;
 }
 
-/* Sets the windows and the reaches of the terms; false when there is no ray on which the potential
- * may reach LEVEL - margin. */
+/* Sets the windows and reaches of the terms. Returns false if the potential cannot reach LEVEL -
+ * margin on any ray. */
 LANE_FN bool group_window(Group *group, LaneMask *live)
 {
     const bool perspective = group->packet->tile->perspective;
@@ -169,8 +174,8 @@ LANE_FN bool group_window(Group *group, LaneMask *live)
     return true;
 }
 
-/* Marches the live rays on from z. Those that hit are in *hit, with their place in *z; those that
- * are not decided in *unsure. */
+/* Marches the live rays on from z. Sets *hit to the rays that hit, *z to the hits, and *unsure to
+ * the rays that are undecided. */
 LANE_FN void march(const Group *group, LaneMask live, Lanes *z, LaneMask *hit, LaneMask *unsure)
 {
     for (int steps = 0; lanes_any(live); steps++) {
@@ -204,7 +209,8 @@ LANE_FN void march(const Group *group, LaneMask live, Lanes *z, LaneMask *hit, L
     }
 }
 
-/* The potential and its gradient at the points z of the rays, and the index of the largest term. */
+/* Computes the potential and its gradient at the points z of the rays, and the index of the largest
+ * term. */
 LANE_FN Gradient gradient_at(const Group *group, Lanes z, LaneMask rays, Lanes *phi)
 {
     Gradient sum = {.largest = lanes_set(-1)};
@@ -233,8 +239,8 @@ LANE_FN void describe_hits(const Group *group, int first, LaneMask hit, Lanes z,
     store_hits(tile, first, hit, group->base, z, normal, at.segment, hits);
 }
 
-/* Makes the terms from `first` on that overlap a group, and returns the number of the next. What is
- * nearer than `nearest` does not matter. */
+/* Forms a group of the overlapping terms from `first` on. Returns the index of the first term of
+ * the next group. Ignores everything nearer than `nearest`. */
 LANE_FN size_t next_group(const Packet *packet, size_t first, double nearest, Group *group)
 {
     PacketTerm **terms = packet->sum;
@@ -263,7 +269,7 @@ LANE_FN size_t next_group(const Packet *packet, size_t first, double nearest, Gr
     return last;
 }
 
-/* Traces the sum of the terms chosen. */
+/* Traces the sum of the selected terms. */
 LANE_FN void trace_sum(const Packet *packet, int first, TileHits *hits)
 {
     LaneMask open = (LaneMask){0} - 1;
@@ -287,7 +293,7 @@ LANE_FN void trace_sum(const Packet *packet, int first, TileHits *hits)
     }
 }
 
-/* Finds the groups of the packet's terms that blend, whose number it returns. */
+/* Finds the blend groups of the packet's terms. Returns their number. */
 LANE_FN size_t find_groups(Packet *packet)
 {
     for (size_t i = 0; i < packet->n; i++)
@@ -295,7 +301,7 @@ LANE_FN size_t find_groups(Packet *packet)
     return localgroups_find(packet->tile->groups, packet->segments, packet->n);
 }
 
-/* Makes the terms of one of the groups found those that are added up. */
+/* Selects the terms of one blend group for the sum. */
 LANE_FN void sum_group(Packet *packet, size_t group)
 {
     const uint32_t *members = localgroups_members(packet->tile->groups, group, &packet->n_sum);
@@ -313,7 +319,7 @@ LANE_FN void trace_union(Packet *packet, int first, TileHits *hits)
     }
 }
 
-/* Sets the circle about the samples from `first` on, which are a block of rows and columns. */
+/* Sets the circle that contains the samples from `first` on, which form a rectangular block. */
 LANE_FN void enclose_block(Packet *packet, int first)
 {
     const float *sides[2] = {&packet->tile->x[first], &packet->tile->y[first]};

@@ -1,5 +1,5 @@
-/* What the kernels of kernel_trace.h and kernel_trace_flat.h share: constants of the proof, the
- * factor of a segment's ends, and how hits are stored. */
+/* The common part of the kernels of kernel_trace.h and kernel_trace_flat.h: constants of the proof,
+ * the axial factor of a term, and the storing of hits. */
 #ifndef CORCAST_RENDER_KERNEL_TRACE_COMMON_H
 #define CORCAST_RENDER_KERNEL_TRACE_COMMON_H
 
@@ -8,15 +8,15 @@
 #include "scene/scene.h"
 
 #define LEVEL ((float)FIELD_LEVEL)
-/* No more than this may the margin be, and the lack of potential at which a hit that is just
- * certain is closed by Newton's method. */
+/* Maximum margin; also the lack of potential below which a barely certain hit is completed by
+ * Newton's method. */
 #define CLOSE_ENOUGH (1e-3f * LEVEL)
-/* The margin: a part for terms left out, one for each term's arithmetic, and one for the rounding
- * of places, in units of the last place of the packet's extent. */
+/* The margin has three parts: one for the terms left out, one for the arithmetic of each term, and
+ * one for the rounding of positions, in units in the last place of the packet's extent. */
 #define MARGIN_DROPPED 2e-5f
 #define MARGIN_TERM 6e-7f
 #define MARGIN_PLACE 1.2e-7f
-/* From here on erf is 1 and its derivative 0, to 2e-8. */
+/* For larger arguments, erf is 1 and its derivative 0, to 2e-8. */
 #define SATURATED 4.0f
 
 LANE_FN Lanes square(Lanes a)
@@ -33,7 +33,7 @@ LANE_FN void axial_factors(Lanes u, Lanes v, Lanes *ends, Lanes *ends_slope)
     *ends_slope = gauss_u - gauss_v;
 }
 
-/* What the picture needs of a hit. */
+/* The data of a hit that the image needs. */
 typedef struct Gradient {
     Lanes x, y, z;
     Lanes largest; /* term */
@@ -48,7 +48,7 @@ LANE_FN void name_largest(const TileTerm *term, Lanes value, Gradient *sum)
     sum->segment = (larger & segment) | (~larger & sum->segment);
 }
 
-/* The gradient's opposite, of length 1. */
+/* Computes the unit vector opposite to the gradient. */
 LANE_FN void outward_normal(const Gradient *at, Lanes normal[3])
 {
     Lanes outward = -1.0f / lanes_sqrt(square(at->x) + square(at->y) + square(at->z));
@@ -78,7 +78,7 @@ LANE_FN void store_depths(LaneMask hit, double base, Lanes z, double *depths)
     }
 }
 
-/* Makes hits of those lanes that are no other state, four at a time. */
+/* Sets the state of the lanes to TILE_HIT, unless they have another state; four at a time. */
 LANE_FN void store_states(LaneMask hit, uint8_t *states)
 {
     static const uint8_t sets[16][4] = {{0, 0, 0, 0}, {1, 0, 0, 0}, {0, 1, 0, 0}, {1, 1, 0, 0},
@@ -118,7 +118,8 @@ LANE_FN void store_hits(const FieldTile *tile, int first, LaneMask hit, double b
     __builtin_memcpy(&hits->segment[first], &segment, sizeof segment);
 }
 
-/* Leaves rays of the packet that begins at sample `first` to double precision. */
+/* Marks rays of the packet that starts at sample `first` as TILE_UNSURE; they are decided in double
+ * precision. */
 LANE_FN void give_up(int first, LaneMask unsure, TileHits *hits)
 {
     for (int lane = 0; lane < LANES; lane++)

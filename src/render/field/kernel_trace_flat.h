@@ -15,7 +15,7 @@
  * start between surface and plane, and those within the margin of the level, are handed back. */
 #include "render/field/kernel_potential.h"
 
-/* What the last step may leave ln Phi off by; 1e-6 more are for rounding. */
+/* Maximum error of ln Phi after the last step; rounding adds 1e-6. */
 #define PLANE_CLOSE 3e-6f
 #define PLANE_STEPS 32
 
@@ -42,11 +42,12 @@ typedef struct PlanePacket {
     PlaneTerm *terms;
     size_t n;
     int first;                    /* sample */
-    LaneMask hit, unsure, solved; /* whether its potential exceeds the level, may, and q is found */
+    LaneMask hit, unsure, solved; /* lanes whose potential exceeds the level, may exceed it, and
+                                   * whose q is found */
     float low, range;             /* of p */
     Lanes q;
-    Lanes step;               /* of q, the last, which the terms have not taken */
-    Lanes sum, sum_p, sum_p2; /* of A exp(-k^2 q) times powers of p */
+    Lanes step;               /* last step of q, which is not applied to the terms */
+    Lanes sum, sum_p, sum_p2; /* sums of A exp(-k^2 q) times powers of p */
 } PlanePacket;
 
 enum {
@@ -110,8 +111,8 @@ LANE_FN uint32_t find_touched(const FieldTile *tile, uint32_t *touched)
     return hopeful;
 }
 
-/* Leaves rays that start beyond their hits at -height to double precision, too, and returns the
- * other hits. */
+/* Marks rays that start beyond their hits at -height for double precision, and returns the other
+ * hits. */
 LANE_FN LaneMask hits_in_front(const FlatTile *plane, int first, LaneMask hit, LaneMask unsure,
                                Lanes height)
 {
@@ -168,7 +169,7 @@ LANE_FN void add_value(PlanePacket *packet, Lanes value, float p)
     packet->sum_p2 = lanes_fma(value * p, lanes_set(p), packet->sum_p2);
 }
 
-/* Sets the terms of the packet, their sums in the plane, and which rays hit. */
+/* Sets the terms of the packet, their sums in the plane, and the mask of rays that hit. */
 LANE_FN void sum_up_plane(PlanePacket *packet)
 {
     const FlatTile *plane = packet->plane;
@@ -228,7 +229,7 @@ LANE_FN void plane_step(PlanePacket *packet)
         (change <= 1.0f) & (change * square(step) * variance <= PLANE_CLOSE * square(sum));
 }
 
-/* Takes the steps that are left after the first. */
+/* Takes the remaining steps after the first. */
 LANE_FN void solve_plane(PlanePacket *packet)
 {
     for (int steps = 0; lanes_any(~packet->solved) && steps < PLANE_STEPS; steps++) {
@@ -294,8 +295,8 @@ LANE_FN bool begin_packet(const FlatTile *plane, int number, const uint32_t *tou
     return lanes_any(packet->hit | packet->unsure);
 }
 
-/* What a packet needs is a long chain of operations, each waiting for the one before: so every
- * stage is done for all packets before the next begins. */
+/* The work for one packet is a long chain of dependent operations. Each stage is therefore done for
+ * all packets before the next stage begins. */
 LANE_TARGET static __attribute__((noinline)) void PLANE_KERNEL(const FieldTile *tile, void *memory,
                                                                TileHits *hits)
 {

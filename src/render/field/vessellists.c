@@ -1,8 +1,8 @@
 /* Segments are moved to the camera's frame once, in double precision, and sorted into the rows of
- * tiles that their support touches (a capsule: the segment, widened by its reach). Of a row every
- * segment is clipped to the slab of space that the row's rays fill, which gives the columns that it
- * touches there, and with them the list of every tile. Lists hold their segments by rising index,
- * whatever the number of threads. */
+ * tiles that their support touches. The support is a capsule: the segment, widened by its reach. In
+ * a row, each segment is clipped to the slab of space that the row's rays fill. This gives the
+ * columns that the segment touches there, and with them the list of every tile. Segments ascend in
+ * each list, for any number of threads. */
 #include "render/field/vessellists.h"
 
 #include "field/field.h"
@@ -27,7 +27,8 @@ static Status list_spans(const TileSpan *spans, const uint32_t *items, size_t n,
 
 /* ---- rows ------------------------------------------------------------------------------------ */
 
-/* 1: all in front of the camera, or orthographic; -1: all behind; 0: beside it. */
+/* Returns 1 if the support is in front of the camera or the view is orthographic, -1 if it is
+ * behind the camera, 0 if it is beside the camera. */
 static int side_of_camera(const VesselLists *lists, const FrameSegment *segment)
 {
     if (!lists->eye.perspective)
@@ -40,20 +41,20 @@ static TileSpan rows_of(const VesselLists *lists, const FrameSegment *segment)
 {
     int side = side_of_camera(lists, segment);
     if (side < 0)
-        return NOWHERE;
+        return NO_TILES;
     Interval range = {-HUGE_VAL, HUGE_VAL};
     if (side > 0)
-        range = capsule_shadow(lists->eye.perspective, segment->a.y, segment->a.z, segment->b.y,
+        range = capsule_extent(lists->eye.perspective, segment->a.y, segment->a.z, segment->b.y,
                                segment->b.z, segment->reach);
-    TileSpan rows =
-        tiles_within(samples_within(range, lists->y[0], lists->per_y), lists->stray, lists->n_rows);
-    return tiles_common(rows, lists->listed_rows);
+    TileSpan rows = tilespan_of_samples(interval_in_samples(range, lists->y[0], lists->per_y),
+                                        lists->max_offset, lists->n_rows);
+    return tilespan_intersection(rows, lists->listed_rows);
 }
 
 enum { CHUNK = 2048 };
 
-/* How far from the segment its term counts, mm; 0: nowhere. The peak of the potential's, erf(x), is
- * at most 1 and 2 x / sqrt(pi). */
+/* Returns the distance from the segment within which its term counts, mm; 0: nowhere. The peak of a
+ * term of the potential, erf(x), is at most 1 and at most 2 x / sqrt(pi). */
 static double reach_of(const Geometry *geometry, const FieldSegment *segment)
 {
     if (model_has(geometry->model, MODEL_BLOB))
@@ -78,20 +79,21 @@ static void prepare_chunk(size_t chunk, int worker, void *context)
         const FieldSegment *segment = &job->geometry->segments[i];
         Vec3 span = vec3_sub(segment->b, segment->a);
         FrameSegment *out = &lists->segments[i];
-        *out = (FrameSegment){.a = viewpoint_place(&lists->eye, segment->a),
-                              .b = viewpoint_place(&lists->eye, segment->b),
+        *out = (FrameSegment){.a = viewpoint_frame_point(&lists->eye, segment->a),
+                              .b = viewpoint_frame_point(&lists->eye, segment->b),
                               .length = vec3_length(span),
                               .k = potential_k(segment->radius_mm)};
-        out->axis = vec3_scale(viewpoint_to_frame(&lists->eye, span), 1 / out->length);
+        out->axis = vec3_scale(viewpoint_frame_direction(&lists->eye, span), 1 / out->length);
         out->sine = sqrt(out->axis.x * out->axis.x + out->axis.y * out->axis.y);
         out->per_sine = out->sine > 0 ? 1 / out->sine : 0;
         out->reach = reach_of(job->geometry, segment);
         const bool hidden = lists->hidden && lists->hidden[i];
-        lists->segment_rows[i] = out->reach > 0 && !hidden ? rows_of(lists, out) : NOWHERE;
+        lists->segment_rows[i] = out->reach > 0 && !hidden ? rows_of(lists, out) : NO_TILES;
     }
 }
 
-/* Sorts the segments into rows, once all about the view but the places of its samples is set. */
+/* Sorts the segments into rows. All other fields of the lists, including the sample positions, must
+ * be set. */
 static Status fill_lists(const Geometry *geometry, int threads, VesselLists *lists, Err *err)
 {
     size_t n = lists->n_segments = geometry->n_segments;
@@ -149,7 +151,7 @@ Status vessellists_of_light(const Geometry *geometry, const LightView *view, int
     }
     lists->listed_columns = view->columns;
     lists->listed_rows = view->rows;
-    lists->stray = 0.5 + SLACK_PIXELS;
+    lists->max_offset = 0.5 + SLACK_PIXELS;
     lists->per_x = 1 / view->step_x;
     lists->per_y = 1 / view->step_y;
     return fill_lists(geometry, threads, lists, err);
@@ -172,8 +174,8 @@ static double above(const VesselLists *lists, Vec3 p, double y)
     return lists->eye.perspective ? (p.y - y * p.z) / sqrt(1 + y * y) : p.y - y;
 }
 
-/* The tiles of a row, whose rays are between y_low and y_high, that the support of the segment may
- * touch: those of the part of the segment that is within reach of the slab. */
+/* Returns the tiles of a row that the segment's support may touch: the tiles of the part of the
+ * segment within reach of the slab between y_low and y_high. */
 static TileSpan columns_of(const VesselLists *lists, const FrameSegment *segment, double y_low,
                            double y_high)
 {
@@ -187,15 +189,15 @@ static TileSpan columns_of(const VesselLists *lists, const FrameSegment *segment
         clip_part(heights[plane][0] + segment->reach, heights[plane][1] + segment->reach, &from,
                   &to);
     if (from > to)
-        return NOWHERE;
+        return NO_TILES;
     Vec3 span = vec3_sub(segment->b, segment->a);
     Vec3 first = vec3_add_scaled(segment->a, span, from);
     Vec3 last = vec3_add_scaled(segment->a, span, to);
     Interval range =
-        capsule_shadow(lists->eye.perspective, first.x, first.z, last.x, last.z, segment->reach);
-    TileSpan columns = tiles_within(samples_within(range, lists->x[0], lists->per_x), lists->stray,
-                                    lists->n_columns);
-    return tiles_common(columns, lists->listed_columns);
+        capsule_extent(lists->eye.perspective, first.x, first.z, last.x, last.z, segment->reach);
+    TileSpan columns = tilespan_of_samples(interval_in_samples(range, lists->x[0], lists->per_x),
+                                           lists->max_offset, lists->n_columns);
+    return tilespan_intersection(columns, lists->listed_columns);
 }
 
 Status vessellists_row(const VesselLists *lists, size_t row, TileSpan *columns, IndexLists *tiles,
@@ -205,7 +207,7 @@ Status vessellists_row(const VesselLists *lists, size_t row, TileSpan *columns, 
     size_t n = indexlists_length(&lists->rows, (size_t)row);
     int first = (int)row * TILE_SIDE, last = first + TILE_SIDE - 1;
     last = last < lists->n_rows ? last : lists->n_rows - 1;
-    double more = lists->stray / lists->per_y;
+    double more = lists->max_offset / lists->per_y;
     for (size_t i = 0; i < n; i++)
         columns[i] = columns_of(lists, &lists->segments[segments[i]], lists->y[last] + more,
                                 lists->y[first] - more);

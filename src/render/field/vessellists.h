@@ -11,11 +11,11 @@
  * is made. All arrays except `hidden` are owned. */
 typedef struct VesselLists {
     Viewpoint eye;
-    const bool *hidden;    /* per segment: it is left out; NULL: none is. Borrowed. */
+    const bool *hidden;    /* per segment: true if it is left out; NULL: none is. Borrowed. */
     int n_columns, n_rows; /* samples */
     double *x, *y;         /* positions of the columns and rows in the camera's plane */
     double per_x, per_y;   /* samples per unit of x and y; per_y is below 0 */
-    double stray;          /* largest distance of a sample from the grid, in samples */
+    double max_offset;     /* largest distance of a sample from the grid, in samples */
     int tile_columns, tile_rows;
     TileSpan listed_columns, listed_rows; /* the tiles that get lists */
     FrameSegment *segments;
@@ -26,12 +26,13 @@ typedef struct VesselLists {
 } VesselLists;
 
 /* Moves the segments to the frame of the camera and sorts them into the rows of tiles of the grid.
- * The caller zeroes *lists first, except `hidden`, and releases it, also after an error. Errors:
- * STATUS_MEMORY. */
+ * The caller sets *lists to zero first, except `hidden`. The caller releases *lists with
+ * vessellists_release, even after an error. Errors: STATUS_MEMORY. */
 MUST_CHECK Status vessellists_make(const Geometry *geometry, const Camera *camera,
                                    const SampleGrid *grid, int threads, VesselLists *lists,
                                    Err *err);
-/* Does the same as vessellists_make for the tiles of a light's view. */
+/* Sorts the segments into the rows of tiles of a light view. Ownership and errors are those of
+ * vessellists_make. */
 MUST_CHECK Status vessellists_of_light(const Geometry *geometry, const LightView *view, int threads,
                                        VesselLists *lists, Err *err);
 void vessellists_release(VesselLists *lists);

@@ -47,7 +47,7 @@ typedef struct InkPen {
     InkPieces *pieces; /* receives the lines */
 } InkPen;
 
-/* A place on paper; `per_mm` is how many mm of paper a mm across the view takes there. */
+/* A position on paper; `per_mm` is the scale at this point: mm on paper per mm across the view. */
 typedef struct OnPaper {
     double at[2], per_mm;
 } OnPaper;
@@ -56,12 +56,12 @@ typedef struct OnPaper {
 
 static OnPaper on_paper(const InkDrawing *ink, Vec3 point)
 {
-    const CameraPoint seen = camera_point(ink->camera, point);
-    return (OnPaper){{seen.x * ink->mm_per_pixel, seen.y * ink->mm_per_pixel},
-                     seen.per_mm * ink->mm_per_pixel};
+    const CameraPoint projected = camera_point(ink->camera, point);
+    return (OnPaper){{projected.x * ink->mm_per_pixel, projected.y * ink->mm_per_pixel},
+                     projected.per_mm * ink->mm_per_pixel};
 }
 
-static bool is_seen(const InkPen *pen, Vec3 point)
+static bool is_visible(const InkPen *pen, Vec3 point)
 {
     static const Ground none;
     double distance;
@@ -80,15 +80,18 @@ typedef struct InkCurve {
     Vec3 from, along, u, v;
     double begin, span;      /* of an arc, in turns */
     const JointFrame *joint; /* of an outline: borrowed */
-    double angle[2], way[2]; /* likewise: about where it begins and ends, and on which ellipses */
-    Vec3 aside;              /* of a line: from it to where the ray to the viewer begins */
-    double shift[2];         /* of a line: where it is drawn, from where it is seen, mm of paper */
-    double shrink;           /* of a circle: how much smaller it is drawn, in radii */
-    double length_mm;        /* on paper */
+    double angle[2],
+        fraction[2];  /* likewise: about where it begins and ends, and on which ellipses */
+    Vec3 aside;       /* of a line: from it to where the ray to the viewer begins */
+    double shift[2];  /* lines: offset from the projected to the drawn position, mm of
+                       * paper */
+    double shrink;    /* of a circle: how much smaller it is drawn, in radii */
+    double length_mm; /* on paper */
     double width_mm;
 } InkCurve;
 
-/* Where a point of the curve is looked at, and, times 1 - `inwards` of its radius, drawn. */
+/* Returns a point of the curve with its radius scaled by `radii`. It is the point that is tested
+ * for visibility, and, scaled by 1 - `inwards`, the point that is drawn. */
 static Vec3 circle_point(const InkCurve *curve, double t, double radii)
 {
     double angle = FULL_TURN * (curve->begin + t * curve->span);
@@ -97,35 +100,35 @@ static Vec3 circle_point(const InkCurve *curve, double t, double radii)
     return vec3_add_scaled(curve->from, out, radii);
 }
 
-/* A place of a joint's outline and the normal there. */
+/* Returns a point of a joint's outline, and the normal there. */
 static Vec3 ruled_point(const InkDrawing *ink, const InkCurve *curve, double t, Vec3 *normal)
 {
-    double way = curve->way[0] + t * (curve->way[1] - curve->way[0]);
+    double fraction = curve->fraction[0] + t * (curve->fraction[1] - curve->fraction[0]);
     double angle = curve->angle[0] + t * (curve->angle[1] - curve->angle[0]);
-    angle = joint_outline_near(ink->camera, curve->joint, angle, way);
-    *normal = joint_normal(curve->joint, angle, way);
-    return joint_point(curve->joint, elementary_cos(angle), elementary_sin(angle), way);
+    angle = joint_outline_near(ink->camera, curve->joint, angle, fraction);
+    *normal = joint_normal(curve->joint, angle, fraction);
+    return joint_point(curve->joint, elementary_cos(angle), elementary_sin(angle), fraction);
 }
 
-static bool curve_is_seen(const InkPen *pen, const InkCurve *curve, double t)
+static bool curve_is_visible(const InkPen *pen, const InkCurve *curve, double t)
 {
-    Vec3 place, normal;
+    Vec3 point, normal;
     if (curve->kind == CURVE_ARC)
-        place = circle_point(curve, t, 1 + BESIDE);
+        point = circle_point(curve, t, 1 + BESIDE);
     else if (curve->kind == CURVE_LINE)
-        place = vec3_add(vec3_add_scaled(curve->from, curve->along, t), curve->aside);
+        point = vec3_add(vec3_add_scaled(curve->from, curve->along, t), curve->aside);
     else
-        place = vec3_add_scaled(ruled_point(pen->ink, curve, t, &normal), normal,
+        point = vec3_add_scaled(ruled_point(pen->ink, curve, t, &normal), normal,
                                 BESIDE * curve->joint->radius);
-    return is_seen(pen, place);
+    return is_visible(pen, point);
 }
 
 /* Half a line within the outline. */
 static Status add_ruled(const InkPen *pen, const InkCurve *curve, double t, Err *err)
 {
     Vec3 normal, point = ruled_point(pen->ink, curve, t, &normal);
-    OnPaper place = on_paper(pen->ink, point);
-    double inwards = pen->ink->line_mm / 2 / place.per_mm;
+    OnPaper on = on_paper(pen->ink, point);
+    double inwards = pen->ink->line_mm / 2 / on.per_mm;
     return inkpieces_add(pen->pieces,
                          on_paper(pen->ink, vec3_add_scaled(point, normal, -inwards)).at, err);
 }
@@ -137,10 +140,10 @@ static Status add_point(const InkPen *pen, const InkCurve *curve, double t, Err 
     if (curve->kind == CURVE_ARC)
         return inkpieces_add(pen->pieces,
                              on_paper(pen->ink, circle_point(curve, t, 1 - curve->shrink)).at, err);
-    OnPaper place = on_paper(pen->ink, vec3_add_scaled(curve->from, curve->along, t));
-    place.at[0] += curve->shift[0];
-    place.at[1] += curve->shift[1];
-    return inkpieces_add(pen->pieces, place.at, err);
+    OnPaper point = on_paper(pen->ink, vec3_add_scaled(curve->from, curve->along, t));
+    point.at[0] += curve->shift[0];
+    point.at[1] += curve->shift[1];
+    return inkpieces_add(pen->pieces, point.at, err);
 }
 
 /* Draws the curve from t to end; a circle as a polygon. */
@@ -156,13 +159,14 @@ static Status add_piece(const InkPen *pen, const InkCurve *curve, double t, doub
     return add_point(pen, curve, end, err);
 }
 
-/* The place between a parameter where the curve is seen or not, as `seen` says, and one where it is
- * not so. */
-static double change(const InkPen *pen, const InkCurve *curve, double same, double other, bool seen)
+/* Returns the parameter at which the visibility of the curve changes, between `same`, where it is
+ * `visible`, and `other`, where it is not. */
+static double visibility_change(const InkPen *pen, const InkCurve *curve, double same, double other,
+                                bool visible)
 {
     for (int k = 0; k < HALVINGS; k++) {
         double middle = (same + other) / 2;
-        if (curve_is_seen(pen, curve, middle) == seen)
+        if (curve_is_visible(pen, curve, middle) == visible)
             same = middle;
         else
             other = middle;
@@ -170,24 +174,24 @@ static double change(const InkPen *pen, const InkCurve *curve, double same, doub
     return (same + other) / 2;
 }
 
-/* Draws the parts of a curve that are seen. */
+/* Draws the visible parts of a curve. */
 static Status draw_curve(const InkPen *pen, const InkCurve *curve, Err *err)
 {
     double wanted = ceil(2 * curve->length_mm / pen->ink->line_mm);
     int steps = (int)fmin(fmax(wanted, LEAST_STEPS * (curve->kind == CURVE_ARC ? 4 : 1)), 1e6);
-    bool seen = curve_is_seen(pen, curve, 0);
+    bool visible = curve_is_visible(pen, curve, 0);
     double begin = 0;
     for (int k = 1; k <= steps; k++) {
         double t = (double)k / steps;
-        if (curve_is_seen(pen, curve, t) == seen)
+        if (curve_is_visible(pen, curve, t) == visible)
             continue;
-        double at = change(pen, curve, (double)(k - 1) / steps, t, seen);
-        if (seen)
+        double at = visibility_change(pen, curve, (double)(k - 1) / steps, t, visible);
+        if (visible)
             TRY(add_piece(pen, curve, begin, at, err));
         begin = at;
-        seen = !seen;
+        visible = !visible;
     }
-    return seen ? add_piece(pen, curve, begin, 1, err) : STATUS_OK;
+    return visible ? add_piece(pen, curve, begin, 1, err) : STATUS_OK;
 }
 
 /* ---- vessels ---------------------------------------------------------------------------------
@@ -238,8 +242,8 @@ static Status draw_side(const InkPen *pen, const Primitive *vessel, Vec3 normal,
     return draw_curve(pen, &side, err);
 }
 
-/* The unit normals, at most two, where a cylinder's wall is seen edge-on; none where the viewer
- * looks along the axis. */
+/* Finds the unit normals, at most two, at which a cylinder's surface is viewed edge-on; none if the
+ * viewer looks along the axis. */
 static int edge_normals(const Camera *camera, const Primitive *vessel, Vec3 normals[2])
 {
     double distance;
@@ -269,7 +273,7 @@ static int order_points(const void *a, const void *b)
     return order ? order : number_order(p->z, q->z);
 }
 
-/* Whether a cylinder's end is neither in a ball nor a joint's. */
+/* Returns true if a cylinder's end is neither inside a ball nor at a joint. */
 static bool ends_in_disc(const InkDrawing *ink, Vec3 end)
 {
     return !model_has(ink->geometry->model, MODEL_ROUND_ENDS) &&
@@ -310,12 +314,12 @@ static Status draw_cylinder(const InkPen *pen, const Primitive *vessel, Err *err
 }
 
 /* The outline between two ellipses: from each angle of the first to the nearest of the second. */
-static Status draw_rulings(const InkPen *pen, const JointFrame *joint, const double way[2],
+static Status draw_rulings(const InkPen *pen, const JointFrame *joint, const double fraction[2],
                            double length_mm, Err *err)
 {
     double from[JOINT_OUTLINES], to[JOINT_OUTLINES];
-    int n = joint_outline(pen->ink->camera, joint, way[0], from),
-        m = joint_outline(pen->ink->camera, joint, way[1], to);
+    int n = joint_outline(pen->ink->camera, joint, fraction[0], from),
+        m = joint_outline(pen->ink->camera, joint, fraction[1], to);
     for (int i = 0; i < n; i++) {
         double turn = 1; /* at most, in radians */
         for (int k = 0; k < m; k++) {
@@ -325,7 +329,7 @@ static Status draw_rulings(const InkPen *pen, const JointFrame *joint, const dou
         const InkCurve outline = {.kind = CURVE_RULED,
                                   .joint = joint,
                                   .angle = {from[i], from[i] + turn},
-                                  .way = {way[0], way[1]},
+                                  .fraction = {fraction[0], fraction[1]},
                                   .length_mm = length_mm,
                                   .width_mm = pen->ink->line_mm};
         if (turn < 1)

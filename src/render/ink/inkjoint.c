@@ -1,7 +1,7 @@
-/* The angle between a joint's wall and the way to the viewer changes its sign where the joint's
- * outline crosses one of its ellipses: signs at 48 angles find where, Newton's iteration the angle.
- * There are two such places on an ellipse that is seen from the side, and up to four where the wall
- * is bent inwards. */
+/* Where the outline crosses an ellipse of the joint, the cosine between the joint's normal and the
+ * direction to the viewer changes its sign. The signs at 48 angles bracket the crossings, and
+ * Newton's iteration refines them. An ellipse that is viewed from the side has two crossings, and
+ * up to four if the surface is bent inwards. */
 #include "render/ink/inkjoint.h"
 
 #include <math.h>
@@ -19,11 +19,11 @@ Vec3 towards_viewer(const Camera *camera, Vec3 point, double *distance)
     return vec3_scale(camera->direction, -1);
 }
 
-Vec3 joint_normal(const JointFrame *joint, double angle, double way)
+Vec3 joint_normal(const JointFrame *joint, double angle, double fraction)
 {
     const double c = elementary_cos(angle), s = elementary_sin(angle);
-    Vec3 across = vec3_add_scaled(joint->across, joint->across_change, way);
-    double radius = joint->radius + way * joint->radius_change;
+    Vec3 across = vec3_add_scaled(joint->across, joint->across_change, fraction);
+    double radius = joint->radius + fraction * joint->radius_change;
     Vec3 turn = vec3_add_scaled(vec3_scale(across, -s), joint->side, radius * c);
     Vec3 ruling = vec3_add_scaled(joint->span, joint->across_change, c);
     Vec3 normal = vec3_cross(turn, vec3_add_scaled(ruling, joint->side, joint->radius_change * s));
@@ -31,38 +31,42 @@ Vec3 joint_normal(const JointFrame *joint, double angle, double way)
     return vec3_normalized(vec3_scale(normal, vec3_dot(normal, out) < 0 ? -1 : 1));
 }
 
-/* The cosine between a joint's normal and the way to the viewer: 0 on its outline. */
-static double joint_slant(const Camera *camera, const JointFrame *joint, double angle, double way)
+/* Returns the cosine between a joint's normal and the direction to the viewer. It is 0 on the
+ * outline. */
+static double joint_slant(const Camera *camera, const JointFrame *joint, double angle,
+                          double fraction)
 {
     double distance;
-    Vec3 point = joint_point(joint, elementary_cos(angle), elementary_sin(angle), way);
-    return vec3_dot(joint_normal(joint, angle, way), towards_viewer(camera, point, &distance));
+    Vec3 point = joint_point(joint, elementary_cos(angle), elementary_sin(angle), fraction);
+    return vec3_dot(joint_normal(joint, angle, fraction), towards_viewer(camera, point, &distance));
 }
 
-double joint_outline_near(const Camera *camera, const JointFrame *joint, double angle, double way)
+double joint_outline_near(const Camera *camera, const JointFrame *joint, double angle,
+                          double fraction)
 {
     const double step = 1e-5;
     for (int k = 0; k < NEWTON; k++) {
-        double slant = joint_slant(camera, joint, angle, way);
-        double slope = (joint_slant(camera, joint, angle + step, way) - slant) / step;
+        double slant = joint_slant(camera, joint, angle, fraction);
+        double slope = (joint_slant(camera, joint, angle + step, fraction) - slant) / step;
         if (fabs(slope) > 1e-6)
             angle -= fmin(fmax(slant / slope, -0.1), 0.1);
     }
     return angle;
 }
 
-int joint_outline(const Camera *camera, const JointFrame *joint, double way,
+int joint_outline(const Camera *camera, const JointFrame *joint, double fraction,
                   double angles[JOINT_OUTLINES])
 {
     int n = 0;
-    const double first = 0.0357; /* apart from the plane of the axes, which is often seen edge-on */
-    double before = joint_slant(camera, joint, first, way);
+    const double first = 0.0357; /* radians: avoids the plane of the axes, which is often viewed
+                                  * edge-on */
+    double before = joint_slant(camera, joint, first, fraction);
     for (int k = 1; k <= SAMPLES && n < JOINT_OUTLINES; k++) {
         double angle = first + FULL_TURN * k / SAMPLES;
-        double slant = joint_slant(camera, joint, angle, way);
+        double slant = joint_slant(camera, joint, angle, fraction);
         if ((slant > 0) != (before > 0))
             angles[n++] = joint_outline_near(
-                camera, joint, angle - FULL_TURN / SAMPLES * slant / (slant - before), way);
+                camera, joint, angle - FULL_TURN / SAMPLES * slant / (slant - before), fraction);
         before = slant;
     }
     return n;

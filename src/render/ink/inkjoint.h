@@ -1,26 +1,32 @@
-/* Finds the outline of a joint as a camera sees it. */
+/* Finds the outline of a joint in the view of a camera. A joint is a surface of straight rulings
+ * between two circles [geom/joint.h]. A cut through the joint is an ellipse; `fraction` 0 selects
+ * the first circle, 1 the second circle, and values between select the ellipses between. The
+ * outline crosses each ellipse where the surface normal is perpendicular to the line of sight. All
+ * functions are pure. */
 #ifndef CORCAST_RENDER_INKJOINT_H
 #define CORCAST_RENDER_INKJOINT_H
 
 #include "scene/scene.h"
 
-/* Returns the unit direction from a point to the viewer, and sets *distance to the viewer's
- * distance, mm: for an orthographic camera, that of its plane. */
+/* Returns the unit direction from a point to the viewer, and sets *distance to the distance in mm.
+ * For an orthographic camera, this is the distance to the camera's plane. */
 Vec3 towards_viewer(const Camera *camera, Vec3 point, double *distance);
 
 /* Returns the outward unit normal of a joint.
  *
- * angle    on the ellipse, radians.
- * way      selects the ellipse: 0 is the joint's first circle, 1 its second. */
-Vec3 joint_normal(const JointFrame *joint, double angle, double way);
+ * angle      position on the ellipse, radians.
+ * fraction   of the ellipse, 0..1. */
+Vec3 joint_normal(const JointFrame *joint, double angle, double fraction);
 
 enum { JOINT_OUTLINES = 8 };
-/* Finds the angles, ascending, at which the outline crosses one of the joint's ellipses. Returns
- * their number. */
-int joint_outline(const Camera *camera, const JointFrame *joint, double way,
+/* Finds the angles, ascending, in radians, at which the outline crosses the ellipse `fraction`.
+ * Returns their number. */
+int joint_outline(const Camera *camera, const JointFrame *joint, double fraction,
                   double angles[JOINT_OUTLINES]);
-/* Returns the angle at which the outline crosses the ellipse `way`, starting from a guess. */
-double joint_outline_near(const Camera *camera, const JointFrame *joint, double angle, double way);
+/* Returns the angle in radians at which the outline crosses the ellipse `fraction`, found by
+ * iteration from the guess `angle`. */
+double joint_outline_near(const Camera *camera, const JointFrame *joint, double angle,
+                          double fraction);
 
 /* Returns true if the edge between a joint and the cylinder at its end (0 or 1) is part of the
  * outline at `angle`: one of the two surfaces that meet there faces the viewer, the other does not.

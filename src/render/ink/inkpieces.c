@@ -1,5 +1,6 @@
-/* Ends are sorted by the square of a grid that they lie in; two of one square and width are mates.
- * Ends near a grid line may miss each other: then a stroke is two, which looks the same. */
+/* Ends are sorted into the squares of a grid. Two ends of equal width in one square are joined.
+ * Ends on two sides of a grid line may not be joined; the stroke is then drawn as two, which looks
+ * the same. */
 #include "render/ink/inkpieces.h"
 
 #include <math.h>
@@ -38,8 +39,9 @@ static Status add_points(InkPieces *pieces, const Strokes *from, size_t piece, b
     return STATUS_OK;
 }
 
-/* Where a line from `a` to `b` enters and leaves the paper, as parts of its way; false when it lies
- * beside it [Liang, Barsky, ACM Trans. Graph. 3 (1984) 1-22]. */
+/* Clips a line from `a` to `b` to the paper: sets the fractions of the line at which it enters and
+ * leaves. Returns false if the line misses the paper [Liang, Barsky, ACM Trans. Graph. 3 (1984)
+ * 1-22]. */
 static bool crosses_paper(const double a[2], const double b[2], const double paper[2],
                           double part[2])
 {

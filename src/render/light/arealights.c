@@ -55,17 +55,17 @@ static bool is_facing(const AreaJob *job, const ShadingPoint *point, Vec3 positi
     return (along > 0) & (along * along >= least * vec3_dot(towards, towards));
 }
 
-/* ShadowPoser.place: points that face away from the light do not query. */
-static uint64_t place_points(const void *context, size_t first, size_t n, HitPoints *places)
+/* ShadowPoser.locate: points that face away from the light do not query. */
+static uint64_t locate_points(const void *context, size_t first, size_t n, HitPoints *points)
 {
     const AreaJob *job = context;
     uint64_t wanted = 0;
     for (size_t i = 0; i < n; i++) {
         const ShadingPoint *point = &job->visibility->points[first + i];
         Vec3 at = off_surface(job, point);
-        places->x[i] = at.x;
-        places->y[i] = at.y;
-        places->z[i] = at.z;
+        points->x[i] = at.x;
+        points->y[i] = at.y;
+        points->z[i] = at.z;
         wanted |= (uint64_t)is_facing(job, point, vec3_add(job->visibility->origin, at)) << i;
     }
     return wanted;
@@ -108,7 +108,7 @@ static Status query_views(AreaJob *job, const OffPixelViews *views, Err *err)
 {
     const Drawing *drawing = job->drawing;
     Status status;
-    job->pass = (ShadowPass){.poser = {place_points, store_visible, job}};
+    job->pass = (ShadowPass){.poser = {locate_points, store_visible, job}};
     TRY_GOTO(
         shadowpass_init(drawing, views->bins, views->n_views, drawing->hidden, &job->pass, err));
     TRY_GOTO(threads_try(job->points->n_runs, drawing->params->threads, query_run, job, err));
@@ -156,7 +156,7 @@ static Status count_visible(AreaJob *job, Err *err)
 {
     const Drawing *drawing = job->drawing;
     const VisibilitySources *sources = job->sources;
-    if (!sources->engine || !shadowengine_can(sources->engine, drawing, light_of(job))) {
+    if (!sources->engine || !shadowengine_supports(sources->engine, drawing, light_of(job))) {
         threads_for(job->points->n_runs, drawing->params->threads, trace_run, job);
         if (sources->off_pixel)
             offpixel_trace(drawing, (size_t)job->light_index, sources->off_pixel);

@@ -42,14 +42,14 @@ LANE_FN Lanes along_axis(const float axis[3], const float point[3][OCCLUDER_BLOC
  * high. The strip runs along (ux, uy) and reaches `wide` mm to either side. In a row at y, mm from
  * the middle, the strip lies within `reach` of x = lean y. */
 LANE_FN void set_strip(Lanes ux, Lanes uy, Lanes wide, float row, int strip, int i,
-                       ProjectedBlock *seen)
+                       ProjectedBlock *projected)
 {
     /* A strip along the rows bounds nothing: the other strip does. */
     LaneMask lies = lanes_abs(uy) < 1e-3f;
     Lanes lean = lanes_select(lies, lanes_set(0), ux / uy);
     Lanes reach = wide / lanes_abs(uy) + lanes_abs(lean) * (0.5f * row);
-    lanes_store(&seen->lean[strip][i], lean);
-    lanes_store(&seen->reach[strip][i], lanes_select(lies, lanes_set(HUGE_VALF), reach));
+    lanes_store(&projected->lean[strip][i], lean);
+    lanes_store(&projected->reach[strip][i], lanes_select(lies, lanes_set(HUGE_VALF), reach));
 }
 
 /* Projects LANES capsules of a block. Returns as bits those that may block a cone: their bounds,
@@ -57,7 +57,7 @@ LANE_FN void set_strip(Lanes ux, Lanes uy, Lanes wide, float row, int strip, int
 LANE_FN uint32_t project_lanes(const OcclusionDirection *direction, const CapsuleBlock *block,
                                int i, float reach, ConeScratch *scratch)
 {
-    ProjectedBlock *seen = &scratch->seen;
+    ProjectedBlock *projected = &scratch->projected;
     Lanes radius = lanes_load(&block->radius[i]);
     Lanes ax = along_axis(direction->axes[0], block->a, i);
     Lanes ay = along_axis(direction->axes[1], block->a, i);
@@ -80,20 +80,20 @@ LANE_FN uint32_t project_lanes(const OcclusionDirection *direction, const Capsul
                     (y - reach_y < scratch->high[1]);
     if (!lanes_any(over))
         return 0;
-    lanes_store(&seen->x[i], x);
-    lanes_store(&seen->y[i], y);
-    lanes_store(&seen->z[i], 0.5f * (az + bz));
-    lanes_store(&seen->ux[i], ux);
-    lanes_store(&seen->uy[i], uy);
-    lanes_store(&seen->half[i], half);
-    lanes_store(&seen->slope[i], lanes_select(stands, lanes_set(0), (bz - az) / length));
-    lanes_store(&seen->radius[i], radius);
-    lanes_store(&seen->round[i], lanes_select(stands, quarter_turn * radius, lanes_set(0)));
-    lanes_store(&seen->low[i], y - reach_y);
-    lanes_store(&seen->high[i], y + reach_y);
-    lanes_store(&seen->reach_x[i], reach_x);
-    set_strip(ux, uy, far, 1 / scratch->per_row, 0, i, seen);
-    set_strip(-uy, ux, along, 1 / scratch->per_row, 1, i, seen);
+    lanes_store(&projected->x[i], x);
+    lanes_store(&projected->y[i], y);
+    lanes_store(&projected->z[i], 0.5f * (az + bz));
+    lanes_store(&projected->ux[i], ux);
+    lanes_store(&projected->uy[i], uy);
+    lanes_store(&projected->half[i], half);
+    lanes_store(&projected->slope[i], lanes_select(stands, lanes_set(0), (bz - az) / length));
+    lanes_store(&projected->radius[i], radius);
+    lanes_store(&projected->round[i], lanes_select(stands, quarter_turn * radius, lanes_set(0)));
+    lanes_store(&projected->low[i], y - reach_y);
+    lanes_store(&projected->high[i], y + reach_y);
+    lanes_store(&projected->reach_x[i], reach_x);
+    set_strip(ux, uy, far, 1 / scratch->per_row, 0, i, projected);
+    set_strip(-uy, ux, along, 1 / scratch->per_row, 1, i, projected);
     return lanes_bits(over);
 }
 
@@ -269,28 +269,30 @@ LANE_FN void cover_cones(const Cover *cover, ConeGroup *sorted, uint32_t first, 
 }
 
 /* Blocks what a capsule covers of all cones. */
-LANE_FN void cover_rows(const ProjectedBlock *seen, int i, float wide, ConeScratch *scratch)
+LANE_FN void cover_rows(const ProjectedBlock *projected, int i, float wide, ConeScratch *scratch)
 {
-    const Cover cover = {.x = seen->x[i],
-                         .y = seen->y[i],
-                         .z = seen->z[i],
-                         .ux = seen->ux[i],
-                         .uy = seen->uy[i],
-                         .half = seen->half[i],
-                         .slope = seen->slope[i],
-                         .radius = seen->radius[i],
-                         .round = seen->round[i],
+    const Cover cover = {.x = projected->x[i],
+                         .y = projected->y[i],
+                         .z = projected->z[i],
+                         .ux = projected->ux[i],
+                         .uy = projected->uy[i],
+                         .half = projected->half[i],
+                         .slope = projected->slope[i],
+                         .radius = projected->radius[i],
+                         .round = projected->round[i],
                          .wide = wide};
     const float side = 1 / scratch->per_row, from_x = cover.x - scratch->low[0];
-    const int first = cell_along(seen->low[i], scratch->low[1], scratch->per_row, scratch->rows);
-    const int last = cell_along(seen->high[i], scratch->low[1], scratch->per_row, scratch->rows);
+    const int first =
+        cell_along(projected->low[i], scratch->low[1], scratch->per_row, scratch->rows);
+    const int last =
+        cell_along(projected->high[i], scratch->low[1], scratch->per_row, scratch->rows);
     for (int row = first; row <= last; row++) {
         float y = ((float)row + 0.5f) * side + (scratch->low[1] - cover.y);
-        float low = -seen->reach_x[i], high = seen->reach_x[i];
+        float low = -projected->reach_x[i], high = projected->reach_x[i];
         for (int strip = 0; strip < 2; strip++) {
-            float middle = seen->lean[strip][i] * y;
-            low = larger_of(low, middle - seen->reach[strip][i]);
-            high = smaller_of(high, middle + seen->reach[strip][i]);
+            float middle = projected->lean[strip][i] * y;
+            low = larger_of(low, middle - projected->reach[strip][i]);
+            high = smaller_of(high, middle + projected->reach[strip][i]);
         }
         const uint32_t *ends = &scratch->ends[row * (scratch->columns + 1)];
         int left = cell_along(low, -from_x, scratch->per_column, scratch->columns);
@@ -314,7 +316,7 @@ LANE_TARGET static void OCCLUSION_KERNEL(trace)(const OccluderSet *occluders,
             for (uint32_t left = project_lanes(direction, &occluders->capsules[block], i,
                                                occluders->wide + occluders->slack, scratch);
                  left; left &= left - 1)
-                cover_rows(&scratch->seen, i + __builtin_ctz(left), occluders->wide, scratch);
+                cover_rows(&scratch->projected, i + __builtin_ctz(left), occluders->wide, scratch);
     for (uint32_t i = 0; i < points->n; i++) {
         const ConeGroup *sorted = &scratch->sorted[scratch->at[i] / OCCLUDER_BLOCK];
         const uint32_t lane = scratch->at[i] % OCCLUDER_BLOCK;

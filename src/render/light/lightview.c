@@ -1,11 +1,11 @@
-/* The view is the smallest rectangle about the corners of the geometry's box, widened a little for
- * rounding. Where places are asked about that lie in part of it, only the lists of the tiles in
- * that part are made. The tiles are the same whatever the part: so are the answers, to the last
- * bit. */
+/* The view's grid is the smallest rectangle that contains the projected corners of the geometry's
+ * box, widened by 1e-4 for rounding. If all queried points lie in a part of the grid, lists are
+ * made for the tiles of this part only. The grid does not depend on the part, so the results are
+ * the same to the last bit. */
 #include "render/light/lightview.h"
 
-/* A point light must be as far from the middle of the scene, in radii of the scene: it sees less
- * than 60 degrees to each side then. */
+/* Minimum distance of a point light from the middle of the scene, in radii of the scene. At this
+ * distance, the light view spans less than 60 degrees to each side. */
 static const double least_radii = 1.16;
 
 double lightview_radius(const Geometry *geometry)
@@ -13,10 +13,10 @@ double lightview_radius(const Geometry *geometry)
     return vec3_distance(box_center(geometry->bounds), geometry->bounds.high);
 }
 
-/* Whether light and geometry are on one side of the ground. */
+/* Returns true if light and geometry are on the same side of the ground, or there is no ground. */
 static bool is_before_ground(const Ground *ground, const Light *light, Vec3 center)
 {
-    Vec3 towards = light_way(light, center).towards;
+    Vec3 towards = light_direction(light, center).towards;
     double above = vec3_dot(ground->normal, center) - ground->offset_mm;
     double to_light = light->parallel
                           ? vec3_dot(ground->normal, towards)
@@ -49,12 +49,13 @@ static Viewpoint eye_of(const Geometry *geometry, const Light *light)
     return eye;
 }
 
-/* What a box of the world covers of the view's plane; infinite where part of it may be behind. */
+/* Returns the bounds of a world box in the view's plane; infinite if part of the box may be behind
+ * the viewpoint. */
 static Box seen_box(const Viewpoint *eye, const Box *world)
 {
     Box box = box_empty();
     for (int i = 0; i < 8; i++) {
-        Vec3 at = viewpoint_place(eye, corner(world, i));
+        Vec3 at = viewpoint_frame_point(eye, corner(world, i));
         if (eye->perspective && at.z <= 0)
             return (Box){vec3(-HUGE_VAL, -HUGE_VAL, -HUGE_VAL), vec3(HUGE_VAL, HUGE_VAL, HUGE_VAL)};
         if (eye->perspective)
@@ -64,8 +65,8 @@ static Box seen_box(const Viewpoint *eye, const Box *world)
     return box;
 }
 
-/* Of `tiles` tiles those from one place to another, both in tiles, and one more to either side for
- * rounding. Places beside the tiles are those of the nearest. */
+/* Returns the tiles between two positions, both in tiles, and one more tile to either side for
+ * rounding. A position outside the grid counts as the nearest tile. */
 static TileSpan tiles_between(double from, double to, int tiles)
 {
     return (TileSpan){(int)max_of(min_of(from - 1, tiles - 1), 0),
@@ -105,8 +106,8 @@ LightProjection lightview_projection(const LightView *view, const Viewpoint *cam
                            .rows = view->tiles,
                            .slack = slack,
                            .z_middle = view->z_middle,
-                           .offset = viewpoint_place(&view->eye, camera->location)};
+                           .offset = viewpoint_frame_point(&view->eye, camera->location)};
     for (int i = 0; i < 3; i++)
-        aim.axes[i] = viewpoint_to_frame(camera, view->eye.axes[i]);
+        aim.axes[i] = viewpoint_frame_direction(camera, view->eye.axes[i]);
     return aim;
 }

@@ -1,5 +1,9 @@
-/* Light views: the scene in the frame of a light, as a camera at the light would see it. Parallel
- * light has a parallel view along its direction. The light of a point has a perspective view. */
+/* Light views: the scene in the frame of a light, as a camera at the light would show it. Parallel
+ * light has a parallel view along its direction. A point light has a perspective view.
+ *
+ * A light view is a square grid of tiles. To find whether a point is in shadow, the point is
+ * projected to its tile (lightview_projection), and only the vessels in this tile are tested. All
+ * functions are pure. Lengths are in mm. */
 #ifndef CORCAST_RENDER_LIGHTVIEW_H
 #define CORCAST_RENDER_LIGHTVIEW_H
 
@@ -7,30 +11,32 @@
 #include "render/tile/tilekernels.h"
 #include "render/tile/viewpoint.h"
 
-/* A square grid of tiles in the plane of the view, just wide enough for the geometry. */
+/* A square grid of tiles in the plane of the view. It is the smallest that holds the geometry. */
 typedef struct LightView {
     Viewpoint eye;                    /* looks along the light */
-    int tiles;                        /* along a side of the grid */
+    int tiles;                        /* tiles along a side of the grid */
     double left, top, step_x, step_y; /* position of the first sample, and steps from sample to
                                        * sample, in the plane of the view; step_y < 0 */
     double z_middle;                  /* depth of the geometry's middle, mm */
     TileSpan columns, rows;           /* tiles in which querying points may lie */
 } LightView;
 
-/* Returns the radius of a ball about the middle of the geometry's bounds that contains them, mm. */
+/* Returns the radius in mm of the ball about the middle of the geometry's bounds that contains the
+ * bounds. */
 double lightview_radius(const Geometry *geometry);
 
 /* Returns true if one view of the light shows all of the geometry. The light must be parallel or
- * far enough away, and light and geometry must be on the same side of the view's ground. */
+ * far enough away (1.16 times lightview_radius), and light and geometry must be on the same side of
+ * the view's ground, if it has one. */
 bool lightview_sees_all(const Geometry *geometry, const View *view, const Light *light);
 
 /* Returns the view of a light for which lightview_sees_all is true.
  *
- * tiles   along a side of the grid.
+ * tiles   number of tiles along a side of the grid, >= 1.
  * points  bounds of the querying points, world coordinates; NULL: points may be anywhere. */
 LightView lightview_of(const Geometry *geometry, const Light *light, int tiles, const Box *points);
 
-/* Returns how points in the frame of `camera` map to the view. Blockers nearer to a point than
+/* Returns the projection from the frame of `camera` to the view. Blockers nearer to a point than
  * `slack` mm cast no shadow on it. */
 LightProjection lightview_projection(const LightView *view, const Viewpoint *camera, double slack);
 

@@ -31,8 +31,8 @@ typedef struct ProjectedBlock {
     float half[OCCLUDER_BLOCK];                                    /* half the projected length */
     float slope[OCCLUDER_BLOCK]; /* growth of z along the projected axis */
     float radius[OCCLUDER_BLOCK];
-    float round[OCCLUDER_BLOCK]; /* what the round ends add to `half` for cones wider than the
-                                  * radius */
+    float round[OCCLUDER_BLOCK]; /* length that the round ends add to `half` for cones wider than
+                                  * the radius */
     /* The cones that a capsule touches begin in a rectangle about it, turned like it. The rectangle
      * lies in [low, high] in y and within reach_x of the middle in x. It is the intersection of two
      * strips, one along the axis and one across it. In a row of the grid at y, mm from the middle,
@@ -47,13 +47,13 @@ typedef struct ConeGroup {
     float x[OCCLUDER_BLOCK], y[OCCLUDER_BLOCK], z[OCCLUDER_BLOCK]; /* where each begins */
     float widening[OCCLUDER_BLOCK]; /* growth of half the width with z: negative if the cone points
                                      * against the direction; 0: the cone fills up its group */
-    float free[OCCLUDER_BLOCK];     /* part of the cone that is not blocked so far */
+    float free[OCCLUDER_BLOCK];     /* fraction of the cone that is not blocked so far, 0..1 */
 } ConeGroup;
 
 /* The workspace of one thread. Cones are sorted into the cells of a grid across the direction. Each
  * row of the grid begins with a new group. All arrays are owned. */
 typedef struct ConeScratch {
-    ProjectedBlock seen;        /* the present block of capsules */
+    ProjectedBlock projected;   /* present block of capsules */
     ConeGroup *listed, *sorted; /* by shading point, and by cell */
     uint32_t *at;   /* per listed cone: its cell, then its index among the sorted cones */
     uint32_t *ends; /* row by row: where the row begins, and the end of each of its cells */
@@ -73,8 +73,8 @@ void occlusionpoints_release(OcclusionPoints *points);
 MUST_CHECK Status conescratch_new(size_t n, ConeScratch *scratch, Err *err);
 void conescratch_release(ConeScratch *scratch);
 
-/* The answer for a cone: its free part times CONE_CLEAR, plus CONE_BACKWARD if the cone points
- * against the direction. */
+/* The result for a cone in one byte: its free fraction times CONE_CLEAR, plus CONE_BACKWARD if the
+ * cone points against the direction. */
 enum { CONE_CLEAR = 127, CONE_BACKWARD = 128 };
 /* The answers for one point are padded to a multiple of this. */
 enum { ANSWER_STEP = 16 };
@@ -110,7 +110,7 @@ extern const OcclusionKernels occlusionkernels_portable;
 #ifdef __x86_64__
 extern const OcclusionKernels occlusionkernels_avx2, occlusionkernels_avx512;
 #endif
-/* Per kind of processor, as tilekernels. */
+/* One entry per instruction set, in the order of tilekernels [tilekernels.h]. */
 extern const OcclusionKernels *const occlusionkernels[KINDS_OF_KERNELS];
 
 #endif

@@ -41,17 +41,17 @@ static size_t run_end(const OffPixelPoints *points, size_t run)
     return (run + 1) * RUN < points->n ? (run + 1) * RUN : points->n;
 }
 
-/* ShadowPoser.place: all points query. */
-static uint64_t place_points(const void *context, size_t first, size_t n, HitPoints *places)
+/* ShadowPoser.locate: all points query. */
+static uint64_t locate_points(const void *context, size_t first, size_t n, HitPoints *frame_points)
 {
     const OffPixelJob *job = context;
     const OffPixelPoints *points = job->points;
     const Light *light = &job->drawing->view->lights[job->light];
     for (size_t i = 0; i < n; i++) {
-        Vec3 at = viewpoint_place(job->frame, points->at(points->context, light, first + i));
-        places->x[i] = at.x;
-        places->y[i] = at.y;
-        places->z[i] = at.z;
+        Vec3 at = viewpoint_frame_point(job->frame, points->at(points->context, light, first + i));
+        frame_points->x[i] = at.x;
+        frame_points->y[i] = at.y;
+        frame_points->z[i] = at.z;
     }
     return UINT64_MAX >> (TILE_SAMPLES - n);
 }
@@ -74,7 +74,7 @@ Status offpixel_query(const Drawing *drawing, const OffPixelViews *views, size_t
 {
     OffPixelJob job = {.drawing = drawing, .points = points, .frame = views->frame, .light = light};
     Status status;
-    job.pass.poser = (ShadowPoser){place_points, add_visible, &job};
+    job.pass.poser = (ShadowPoser){locate_points, add_visible, &job};
     TRY_GOTO(shadowpass_init(drawing, views->bins, views->n_views, NULL, &job.pass, err));
     TRY_GOTO(threads_try(run_count(points), drawing->params->threads, query_run, &job, err));
 done:

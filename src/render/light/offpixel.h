@@ -12,8 +12,9 @@ typedef struct OffPixelPoints {
      * Called by several threads. */
     Vec3 (*at)(const void *context, const Light *light, size_t index);
     const void *context;                  /* passed to `at`; borrowed */
-    uint16_t *n_visible[VIEW_MAX_LIGHTS]; /* per point: how many points of the light are visible so
-                                           * far; NULL: the light casts no shadows. Owned. */
+    uint16_t *n_visible[VIEW_MAX_LIGHTS]; /* per point: number of points of the light that are
+                                           * visible so far; NULL: the light casts no shadows.
+                                           * Owned. */
 } OffPixelPoints;
 
 /* Allocates `n_visible` for the lights of a view, all 0. Release the points with offpixel_release,
@@ -21,16 +22,15 @@ typedef struct OffPixelPoints {
 MUST_CHECK Status offpixel_init(const View *view, OffPixelPoints *points, Err *err);
 void offpixel_release(OffPixelPoints *points);
 
-/* Queries light views of a light, or of some of the points of an area light, for all shading
- * points. Adds to n_visible[light] of each point the number of views from which it is lit.
- *
- * bins     n_views light bins, made for points in `frame`.
- * Errors   STATUS_MEMORY. */
+/* The light views of a light, or of some points of an area light. */
 typedef struct OffPixelViews {
-    LightBins *const *bins;
+    LightBins *const *bins; /* n_views light bins, made for points in `frame` */
     int n_views;
     const Viewpoint *frame;
 } OffPixelViews;
+
+/* Queries the light views for all shading points. Adds to n_visible[light] of each point the number
+ * of views from which the point is lit. Errors: STATUS_MEMORY. */
 MUST_CHECK Status offpixel_query(const Drawing *drawing, const OffPixelViews *views, size_t light,
                                  OffPixelPoints *points, Err *err);
 

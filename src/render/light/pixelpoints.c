@@ -86,7 +86,7 @@ static inline double ground_distance(const RayRow *rays, int column)
     double length = direction_length(rays, column);
     double along = rays->along + column * rays->along_step;
     double t = -(rays->above + column * rays->above_step) * length / along;
-    bool hit = fabs(along) >= 1e-10 * length && t > NEAREST_SEEN_MM && t <= SCENE_FARTHEST_MM;
+    bool hit = fabs(along) >= 1e-10 * length && t > NEAREST_VISIBLE_MM && t <= SCENE_FARTHEST_MM;
     return hit ? t : HUGE_VAL;
 }
 

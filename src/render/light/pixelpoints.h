@@ -8,7 +8,7 @@
 /* Columns and rows of a block of pixels. */
 enum { PIXEL_BLOCK = VISIBILITY_BLOCK };
 
-/* The pixels of a block, in the band: columns [first_column, end_column), rows likewise. */
+/* A block of pixels of the band: columns [first_column, end_column), rows [first_row, end_row). */
 typedef struct PixelBlock {
     int first_column, end_column, first_row, end_row;
 } PixelBlock;
@@ -47,16 +47,18 @@ typedef struct PointRun {
  * number of visible points of a light. */
 enum { GROUND_FLAG = 1 << 15, VISIBLE_COUNT = GROUND_FLAG - 1 };
 
-/* What a band knows of its shading points beside PixelVisibility.points. All arrays are owned.
+/* The shading points of a band, in addition to PixelVisibility.points. All arrays are owned.
  *
  * Points are sorted by scanline block, then by sample set [shadowpass.h], then by pixel block. If
- * no area lights query, all points belong to set 0, so that neighbouring pixels are consecutive. */
+ * no area light is queried, all points belong to set 0, so that neighbouring pixels are
+ * consecutive. */
 typedef struct PixelPoints {
-    bool has_sets; /* area lights query; if false, pixel_of_point and n_visible are NULL */
+    bool has_sets; /* area lights are queried; if false, pixel_of_point and n_visible are NULL */
     size_t n;      /* number of points */
     PointRun *runs;
     size_t n_runs;
-    Box bounds;               /* of the points, relative to PixelVisibility.origin; if has_sets */
+    Box bounds;               /* bounds of the points, relative to PixelVisibility.origin; set if
+                               * has_sets */
     uint32_t *pixel_of_point; /* per point: its pixel */
     uint16_t *n_visible;      /* per pixel: GROUND_FLAG if it shows the ground, else 0. The counts
                                * are 0. */

@@ -1,6 +1,6 @@
-/* Ground, occlusion, shadows and shading of one ray, whichever engine has found what it meets, so
- * that every model is lit alike. The ground is tested here and not by the casters: it belongs to
- * the view, and no plane but that of colors shows it. */
+/* Computes ground, occlusion, shadows and shading of one ray. It does not depend on the engine that
+ * found the hit, so that every model is lit in the same manner. The ground is intersected here and
+ * not by the casters, because it belongs to the view and appears in the color plane only. */
 #include "render/light/raycolor.h"
 
 #include "render/light/rayocclusion.h"
@@ -22,17 +22,17 @@ static bool shadowed(void *context, Vec3 point, Vec3 towards, double distance)
 
 /* What the sample (i, j) shares with its pixel. */
 static void add_shared(const Drawing *drawing, double i, double j, double t, bool on_ground,
-                       float parts[VIEW_MAX_LIGHTS], ShadingInput *at)
+                       float light_visibility[VIEW_MAX_LIGHTS], ShadingInput *at)
 {
     const PixelVisibility *visibility = drawing->visibility;
     ShadingPoint seen =
         pixelvisibility_point(visibility, on_ground ? SURFACE_GROUND : SURFACE_VESSEL, at->point,
                               at->normal, pixelvisibility_pixel_mm(&drawing->view->camera, t));
     uint32_t pixel = pixelvisibility_pixel(visibility, i, j, &seen);
-    at->open = (double)pixelvisibility_ambient(visibility, pixel);
+    at->ambient = (double)pixelvisibility_ambient(visibility, pixel);
     for (size_t k = 0; k < drawing->view->n_lights; k++)
-        parts[k] = pixelvisibility_light(visibility, k, pixel);
-    at->parts = parts;
+        light_visibility[k] = pixelvisibility_light(visibility, k, pixel);
+    at->light_visibility = light_visibility;
 }
 
 bool raycolor_is_needed(const View *view, const RenderParams *params)
@@ -45,8 +45,8 @@ static Rgb pigment_of(const Drawing *drawing, const Surfel *surfel, Vec3 point)
     const Appearance *appearance = drawing->appearance;
     if (!drawing->mean)
         return appearance_color(appearance, surfel->segment);
-    return appearance_blended(
-        appearance, caster_mean(drawing->caster, drawing->mean, surfel, appearance->places, point));
+    return appearance_blended(appearance, caster_mean(drawing->caster, drawing->mean, surfel,
+                                                      appearance->positions, point));
 }
 
 Rgb ray_color(const Drawing *drawing, int worker, Ray ray, double i, double j, const Surfel *surfel)
@@ -56,10 +56,10 @@ Rgb ray_color(const Drawing *drawing, int worker, Ray ray, double i, double j, c
     const RenderParams *params = drawing->params;
     const Ground *ground = &view->ground;
     double t = surfel ? surfel->t : HUGE_VAL;
-    bool on_ground = ground_hit(ground, ray, NEAREST_SEEN_MM, t, &t);
+    bool on_ground = ground_hit(ground, ray, NEAREST_VISIBLE_MM, t, &t);
     if (!on_ground && !surfel)
         return view->background;
-    float parts[VIEW_MAX_LIGHTS];
+    float light_visibility[VIEW_MAX_LIGHTS];
     ShadowContext context = {drawing->caster, ground, worker};
     Vec3 point = ray_at(ray, t);
     ShadingInput at = {.finish = on_ground ? &ground->finish : &appearance->finish,
@@ -67,13 +67,13 @@ Rgb ray_color(const Drawing *drawing, int worker, Ray ray, double i, double j, c
                        .point = point,
                        .normal = on_ground ? ground->normal : surfel->normal,
                        .direction = ray.direction,
-                       .open = 1};
+                       .ambient = 1};
     if (vec3_dot(at.normal, ray.direction) > 0)
         at.normal = vec3_scale(at.normal, -1);
     if (drawing->visibility)
-        add_shared(drawing, i, j, t, on_ground, parts, &at);
+        add_shared(drawing, i, j, t, on_ground, light_visibility, &at);
     else if (params->occlusion > 0)
-        at.open = rayocclusion_ambient(drawing->caster, worker, ground, at.point, at.normal,
-                                       params->occlusion, rayocclusion_turn(i, j));
+        at.ambient = rayocclusion_ambient(drawing->caster, worker, ground, at.point, at.normal,
+                                          params->occlusion, rayocclusion_turn(i, j));
     return shade(view, &at, params->shadows ? shadowed : NULL, &context);
 }

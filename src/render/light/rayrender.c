@@ -118,4 +118,5 @@ static bool always(const Drawing *drawing)
     return true;
 }
 
-const Engine ray_engine = {.name = "trace", .can = always, .needs_rays = always, .rows = draw_rows};
+const Engine ray_engine = {
+    .name = "trace", .supports = always, .needs_rays = always, .rows = draw_rows};

@@ -1,6 +1,6 @@
-/* Adaptive antialiasing compares pixels as an eye would, by square roots of linear channels: about
- * equal steps of them look about equal. POV-Ray compares other numbers, so that no picture with a
- * threshold is compared with its. */
+/* Adaptive antialiasing compares pixels by square roots of linear channels, because equal steps of
+ * a square root look about equal to the eye. POV-Ray compares other numbers, so no picture with a
+ * threshold is compared with POV-Ray's. */
 #include "render/light/resample.h"
 
 #include <assert.h>
@@ -52,7 +52,7 @@ void resample_mask(const Plane *color, int above, int below, float threshold, in
 
 Resampling resampling_for(int antialias)
 {
-    assert(antialias <= RENDER_MOST_ANTIALIAS);
+    assert(antialias <= RENDER_MAX_ANTIALIAS);
     Resampling more = {.side = antialias > 1 ? antialias : 0};
     if (more.side > 0)
         camera_sample_offsets(more.side, more.offsets);

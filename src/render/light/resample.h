@@ -18,8 +18,8 @@ void resample_mask(const Plane *color, int above, int below, float threshold, in
 
 /* The further samples of the pixels in a band: N x N per pixel, beside the centre sample. */
 typedef struct Resampling {
-    int side;                              /* N; 0: no further samples */
-    double offsets[RENDER_MOST_ANTIALIAS]; /* camera_sample_offsets(side) */
+    int side;                             /* N; 0: no further samples */
+    double offsets[RENDER_MAX_ANTIALIAS]; /* camera_sample_offsets(side) */
     uint8_t *mask; /* per pixel: 1 if it gets further samples; NULL: all pixels do; owned */
 } Resampling;
 

@@ -58,30 +58,30 @@ static Rgb lit_by(Rgb light, const Finish *finish, Rgb pigment, Vec3 normal, Vec
     return color;
 }
 
-/* The part of a light's points that reach the place, from 0 to 1. */
-static double visible_part(const Light *light, Vec3 place, ShadowTest *shadow, void *context)
+/* Returns the fraction, 0..1, of a light's points that are visible from a shading point. */
+static double visible_part(const Light *light, Vec3 point, ShadowTest *shadow, void *context)
 {
     int n = light_points(light), reach = 0;
     if (!shadow || !light->casts_shadows)
         return 1;
     for (int k = 0; k < n; k++) {
-        LightWay way = light_way_to_point(light, k, place);
-        reach += !shadow(context, place, way.towards, way.distance);
+        LightDirection to_light = light_direction_to_point(light, k, point);
+        reach += !shadow(context, point, to_light.towards, to_light.distance);
     }
     return (double)reach / n;
 }
 
 Rgb shade(const View *view, const ShadingInput *at, ShadowTest *shadow, void *context)
 {
-    Rgb color = rgb_scale(at->pigment, (double)at->finish->ambient * at->open);
+    Rgb color = rgb_scale(at->pigment, (double)at->finish->ambient * at->ambient);
     for (size_t i = 0; i < view->n_lights; i++) {
         const Light *light = &view->lights[i];
-        Vec3 towards = light_way(light, at->point).towards;
+        Vec3 towards = light_direction(light, at->point).towards;
         double cosine = vec3_dot(at->normal, towards);
         if (cosine < MIN_LIT_COSINE)
             continue;
-        double part = at->parts && at->parts[i] >= 0
-                          ? (double)at->parts[i]
+        double part = at->light_visibility && at->light_visibility[i] >= 0
+                          ? (double)at->light_visibility[i]
                           : visible_part(light, at->point, shadow, context);
         if (part > 0)
             color = rgb_add(color, lit_by(rgb_scale(light->color, part), at->finish, at->pigment,

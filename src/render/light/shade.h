@@ -18,18 +18,20 @@ typedef struct ShadingInput {
     const Finish *finish;
     Rgb pigment;
     Vec3 point;
-    Vec3 normal;        /* unit, facing the viewer */
-    Vec3 direction;     /* unit, of the camera ray that hits the point */
-    double open;        /* ambient visibility, in [0, 1] */
-    const float *parts; /* visibility of each light, in [0, 1]; negative, or NULL: not known */
+    Vec3 normal;    /* unit, facing the viewer */
+    Vec3 direction; /* unit, of the camera ray that hits the point */
+    double ambient; /* ambient visibility, in [0, 1] */
+    const float
+        *light_visibility; /* per light of the view: its visibility, in [0, 1], or a negative number
+                            * if it is not known; NULL: not known for any light */
 } ShadingInput;
 
 /* Returns the linear color of a point: the ambient light, and the diffuse and specular light of
  * each light of the view that the surface faces.
  *
- * A light whose visibility is known [ShadingInput.parts] is multiplied by it. A light that casts
- * shadows and whose visibility is not known is multiplied by the fraction of its points for which
- * `shadow` returns false. `shadow` may be NULL: no object casts a shadow. */
+ * A light whose visibility is known [ShadingInput.light_visibility] is multiplied by it. A light
+ * that casts shadows and whose visibility is not known is multiplied by the fraction of its points
+ * for which `shadow` returns false. `shadow` may be NULL: no object casts a shadow. */
 Rgb shade(const View *view, const ShadingInput *at, ShadowTest *shadow, void *context);
 
 #endif

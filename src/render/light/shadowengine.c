@@ -10,20 +10,20 @@
  * thread: twice what the cache of one processor holds. */
 enum { MIN_SHARED_VESSELS = 1 << 17 };
 
-bool shadowengine_can(const ShadowEngine *engine, const Drawing *drawing, const Light *light)
+bool shadowengine_supports(const ShadowEngine *engine, const Drawing *drawing, const Light *light)
 {
-    bool can = true;
+    bool supports = true;
     for (int k = 0; k < light_points(light); k++) {
         const Light point = light_at_point(light, k);
-        can = can && engine->can(drawing->geometry, drawing->view, &point);
+        supports = supports && engine->supports(drawing->geometry, drawing->view, &point);
     }
-    return can;
+    return supports;
 }
 
 bool shadowengine_serves(const ShadowEngine *engine, const Drawing *drawing, const Light *light)
 {
     return light->casts_shadows && light->samples <= 1 && drawing->params->method != RENDER_TRACE &&
-           engine->can(drawing->geometry, drawing->view, light);
+           engine->supports(drawing->geometry, drawing->view, light);
 }
 
 bool shadowengine_needs_rays(const ShadowEngine *engine, const Drawing *drawing)
@@ -33,7 +33,7 @@ bool shadowengine_needs_rays(const ShadowEngine *engine, const Drawing *drawing)
     bool rays = params->occlusion > 0 && traces;
     for (size_t i = 0; i < drawing->view->n_lights && params->shadows; i++) {
         const Light *light = &drawing->view->lights[i];
-        rays |= light->casts_shadows && (traces || !shadowengine_can(engine, drawing, light));
+        rays |= light->casts_shadows && (traces || !shadowengine_supports(engine, drawing, light));
     }
     return rays;
 }

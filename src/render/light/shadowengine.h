@@ -1,8 +1,8 @@
-/* How an engine answers shadow queries: "is anything between this point and the light?"
+/* How an engine answers shadow queries: "Is anything between this point and the light?"
  *
- * The engine sorts the geometry into the tiles of a light view, once per light. It then answers the
- * queries of many points that lie in one tile together. ShadowQueue [shadowqueue.h] sorts queries
- * into tiles and calls the engine. */
+ * The engine sorts the geometry into the tiles of a light view, once per light [LightBins]. It then
+ * answers the queries of many points that lie in one tile together. ShadowQueue [shadowqueue.h]
+ * sorts queries into tiles and calls the engine. */
 #ifndef CORCAST_RENDER_SHADOWENGINE_H
 #define CORCAST_RENDER_SHADOWENGINE_H
 
@@ -18,7 +18,7 @@ enum { POINT_PADDING = 15, POINT_CAPACITY = SHADOW_MAX_POINTS + POINT_PADDING };
 /* Blockers nearer than this to a point cast no shadow on it [docs/POVRAY.md section 3]. */
 #define SHADOW_NEAREST_MM 1e-3
 
-/* The item of a point whose surface is not known. */
+/* Value of ShadowPoints.item for a point whose surface is not known. */
 #define NO_ITEM UINT32_MAX
 
 typedef enum ShadowState {
@@ -31,11 +31,13 @@ typedef enum ShadowState {
 typedef struct ShadowPoints {
     int n;
     float x[POINT_CAPACITY],
-        y[POINT_CAPACITY];          /* in the plane of the view, from the tile's middle */
-    double z[POINT_CAPACITY];       /* depth before which a blocker must be, less z_middle */
+        y[POINT_CAPACITY];    /* in the plane of the view, relative to the tile's middle */
+    double z[POINT_CAPACITY]; /* depth limit, minus z_middle: only blockers nearer to the light
+                                 count */
     uint32_t query[POINT_CAPACITY]; /* the queue's index of the query */
-    uint32_t item[POINT_CAPACITY];  /* what the point lies on, as the engine reports it in its hits,
-                                     * or NO_ITEM; an engine may use it to exclude self-shadowing */
+    uint32_t item[POINT_CAPACITY];  /* item of the engine on whose surface the point lies, as the
+                                     * engine reports it in its hits, or NO_ITEM; an engine may use
+                                     * it to exclude self-shadowing */
     uint8_t state[POINT_CAPACITY];  /* ShadowState: the answer */
 } ShadowPoints;
 
@@ -55,17 +57,17 @@ typedef struct LightBins {
     const struct ShadowEngine *engine;
     const Geometry *geometry; /* borrowed */
     LightView view;
-    LightProjection aim; /* from the frame of the querying points to the light view */
-    void *lists;         /* the engine's; owned */
+    LightProjection aim; /* projection from the frame of the querying points to the light view */
+    void *lists;         /* the engine's lists of the tiles; owned */
 } LightBins;
 
 typedef struct ShadowEngine {
     /* Returns true if the engine supports light views of this light, which is a point or
      * parallel. */
-    bool (*can)(const Geometry *geometry, const View *view, const Light *light);
+    bool (*supports)(const Geometry *geometry, const View *view, const Light *light);
     /* Returns the number of tiles along a side of a light view. */
     int (*tiles)(const Drawing *drawing);
-    /* Returns how near to a point blockers cast no shadow on it, mm. */
+    /* Returns the distance from a point, mm, below which blockers cast no shadow on it. */
     double (*slack)(const Drawing *drawing);
     /* Sorts the drawing's geometry into the tiles of bins->view, by drawing->params->threads
      * threads, and sets bins->lists. Errors: STATUS_MEMORY. */
@@ -83,7 +85,7 @@ typedef struct ShadowEngine {
 } ShadowEngine;
 
 /* Returns true if the engine supports light views from all points of a light. */
-bool shadowengine_can(const ShadowEngine *engine, const Drawing *drawing, const Light *light);
+bool shadowengine_supports(const ShadowEngine *engine, const Drawing *drawing, const Light *light);
 
 /* Returns true if hard shadows of a light come from a light view. False for a light that casts no
  * shadows, for an area light, for RENDER_TRACE and for a light that the engine does not support. */
@@ -93,11 +95,11 @@ bool shadowengine_serves(const ShadowEngine *engine, const Drawing *drawing, con
  * does: the drawing must have a caster then. */
 bool shadowengine_needs_rays(const ShadowEngine *engine, const Drawing *drawing);
 
-/* Where light bins are made from, and for. All is borrowed. */
+/* The parameters of lightbins_new. All pointers are borrowed. */
 typedef struct LightBinsParams {
     const ShadowEngine *engine;
     const Drawing *drawing;
-    Viewpoint frame; /* of the points that query: the camera's frame, or any other */
+    Viewpoint frame; /* frame of the querying points: the camera's, or any other */
     const Box *box;  /* bounds of the points, world coordinates; NULL: they may be anywhere */
 } LightBinsParams;
 

@@ -39,7 +39,7 @@ Status shadowpass_run(const ShadowPass *pass, size_t begin, size_t end, int work
     for (size_t i = 0; i < n; i += TILE_SAMPLES) {
         HitPoints points = {.x = {0}};
         size_t count = n - i < TILE_SAMPLES ? n - i : TILE_SAMPLES;
-        uint64_t bits = poser->place(poser->context, begin + i, count, &points);
+        uint64_t bits = poser->locate(poser->context, begin + i, count, &points);
         for (int k = 0; k < pass->n_views; k++)
             shadowqueue_add(queues[k], &points, NULL, bits, (uint32_t)i);
         wanted[i / TILE_SAMPLES] = bits;
@@ -64,7 +64,7 @@ int shadowrays_count(const Drawing *drawing, int worker, const Light *light, int
     for (int k = 0; k < light_points(light); k++) {
         if (!sampleset_has(set, light, k))
             continue;
-        LightWay way = light_way_to_point(light, k, point);
+        LightDirection way = light_direction_to_point(light, k, point);
         n += !caster_shadow(drawing->caster, worker, &drawing->view->ground, point, way.towards,
                             way.distance);
     }

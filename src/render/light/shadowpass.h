@@ -1,25 +1,25 @@
-/* How many points of a light are visible from shading points: by queries to several light views at
- * once, or by shadow rays. */
+/* Counts how many points of a light are visible from each shading point: by queries to several
+ * light views at once, or by shadow rays. The caller describes its points by a ShadowPoser. */
 #ifndef CORCAST_RENDER_SHADOWPASS_H
 #define CORCAST_RENDER_SHADOWPASS_H
 
 #include "render/light/shadowqueue.h"
 
-/* The most points that one call of shadowpass_run takes. */
+/* Maximum number of points of one call of shadowpass_run. */
 enum { SHADOW_RUN = 8192 };
 
-/* The points that query, and where the answers go. */
+/* The points that query, and the receiver of the results. */
 typedef struct ShadowPoser {
     /* Sets points[k] to point first + k for k < n <= TILE_SAMPLES, in the frame for which the light
      * bins were made. Returns as bits the points that query; the others count as dark. */
-    uint64_t (*place)(const void *context, size_t first, size_t n, HitPoints *points);
-    /* Receives from how many of the light views point `index` is lit. Calls for different points
-     * may come from different threads. */
+    uint64_t (*locate)(const void *context, size_t first, size_t n, HitPoints *points);
+    /* Receives the number of light views from which point `index` is lit. Calls for different
+     * points may come from different threads. */
     void (*store)(const void *context, size_t index, int n_lit);
     const void *context; /* passed to both; borrowed */
 } ShadowPoser;
 
-/* Light views, and a queue to each of them for each worker. */
+/* The light views, and one shadow queue per light view and worker. */
 typedef struct ShadowPass {
     ShadowPoser poser;
     int n_views;
@@ -35,8 +35,9 @@ MUST_CHECK Status shadowpass_init(const Drawing *drawing, LightBins *const *bins
                                   const bool *hidden, ShadowPass *pass, Err *err);
 void shadowpass_release(ShadowPass *pass, const Drawing *drawing);
 
-/* Finds for the points [begin, end), at most SHADOW_RUN, from how many views they are lit. Rounding
- * in kernels depends on which points are in one call. Errors: STATUS_MEMORY. */
+/* Counts for each of the points [begin, end), at most SHADOW_RUN, the light views from which the
+ * point is lit, and passes the counts to poser.store. Rounding in kernels depends on which points
+ * are in one call. Errors: STATUS_MEMORY. */
 MUST_CHECK Status shadowpass_run(const ShadowPass *pass, size_t begin, size_t end, int worker,
                                  Err *err);
 

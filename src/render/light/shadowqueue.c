@@ -1,7 +1,7 @@
-/* Neighbours in the image mostly are neighbours in the light view. So the points of one call lie in
- * few tiles of the light view. Each tile of the light view has a chain of runs: a run holds the
- * points of one call that lie in that tile. Points of a run are consecutive in memory. Nothing else
- * of the image's tile is stored, so that a batch stays in the cache. */
+/* Neighbours in the image usually are neighbours in the light view, so the points of one call lie
+ * in few tiles of the light view. Each tile of the light view has a chain of runs. A run holds the
+ * points of one call that lie in that tile; they are consecutive in memory. Nothing else of the
+ * image's tile is stored, so that a batch fits into the cache. */
 #include "render/light/shadowqueue.h"
 
 #include <stdlib.h>

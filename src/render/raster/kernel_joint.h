@@ -1,21 +1,22 @@
-/* Where lines of sight enter a ruled joint, several at once: a part of kernel_raster.h.
+/* Finds where lines of sight enter a ruled joint, several lines at once. A part of kernel_raster.h.
  *
- * Joints are walls of solids, so only a ruling that faces the view can be seen: one at which g
- * [rastertile.h] falls as q grows. Multiplied by (1 + u^2)^2, u = tan(q / 2) in [-1, 1], g is a
- * quartic on each half of the circle: the front, q in [-90, 90] degrees, and the back, q less
- * half a turn in there. In Bernstein form a quartic has as many roots as its coefficients change
- * sign, or fewer by an even number [geom/joint.c]. Most lines show one fall in front, counted
- * quarter by quarter, and one rise at the back; or no change at all, and miss. For the others,
- * next to the outline, pieces are halved until falls and rises part. Newton's method, kept
- * inside its bracket, finds the ruling, and a hit counts if it lies on its line to 1e-4 of the
- * joint's size. What is still open then is decided in double precision. */
+ * A joint is the surface of a solid, so only a ruling that faces the view is visible: a root at
+ * which g [rastertile.h] falls as q grows. Multiplied by (1 + u^2)^2, with u = tan(q / 2) in [-1,
+ * 1], g is a quartic on each half of the circle: the front half, q in [-90, 90] degrees, and the
+ * back half, where q is reduced by half a turn. A quartic in Bernstein form has as many roots as
+ * its coefficients change sign, or fewer by an even number [geom/joint.c]. Most lines have one fall
+ * in front, counted quarter by quarter, and one rise at the back; or no sign change, and miss the
+ * joint. For the other lines, next to the outline, intervals are halved until falls and rises are
+ * separated. Newton's method, limited to the interval, finds the ruling. A hit counts if it lies on
+ * its line to 1e-4 of the joint's size. Lines that are still undecided then are decided in double
+ * precision. */
 #ifndef CORCAST_RENDER_KERNEL_JOINT_H
 #define CORCAST_RENDER_KERNEL_JOINT_H
 
 #include "render/raster/kernel_round.h"
 
-/* How far a crossing may lie off a joint's ends, over its length, and off its line, over its
- * size. */
+/* Tolerances: distance of a crossing beyond a joint's ends, relative to the joint's length, and
+ * from its line, relative to the joint's size. */
 static const float off_joint_end = 1e-5f, off_joint_line = 1e-4f;
 enum { RULING_STEPS = 12, MOST_HALVINGS = 5, MOST_PIECES = MOST_HALVINGS + 2 };
 
@@ -51,7 +52,7 @@ RASTER_FN Ruling ruling_of(const NearItem *near, const RasterJoint *joint, const
                      ruling_part(near, sight, joint->by[4], NULL)}};
 }
 
-/* -1 where a and b differ in sign. */
+/* Returns a mask of the lanes where a and b differ in sign. */
 RASTER_FN LaneMask changes(Lanes a, Lanes b)
 {
     return (a < 0.0f) ^ (b < 0.0f);
@@ -62,7 +63,8 @@ typedef struct Bernstein {
     Lanes b[5];
 } Bernstein;
 
-/* (1 + u^2)^2 g / 2 on a half of the circle: 1 the front, -1 the back, half a turn on. */
+/* Returns (1 + u^2)^2 g / 2 on one half of the circle; `half` is 1 for the front, -1 for the
+ * back. */
 RASTER_FN Bernstein half_circle(const Ruling *g, float half)
 {
     const Lanes *k = g->k;
@@ -71,14 +73,14 @@ RASTER_FN Bernstein half_circle(const Ruling *g, float half)
         {first + first, k1 - k[4], (k[0] + k[3] + k[3]) * (2.0f / 3), k1 + k[4], last + last}};
 }
 
-/* How often the coefficients change sign, times -1. */
+/* Returns the number of sign changes of the coefficients, times -1. */
 RASTER_FN LaneMask changes_of(const Bernstein *piece)
 {
     const Lanes *b = piece->b;
     return changes(b[0], b[1]) + changes(b[1], b[2]) + changes(b[2], b[3]) + changes(b[3], b[4]);
 }
 
-/* Splits a quartic at the middle: it becomes its first half, *second the other. */
+/* Splits a quartic at the middle: *piece becomes its first half, *second its second half. */
 RASTER_FN void halve(Bernstein *piece, Bernstein *second)
 {
     Lanes *b = piece->b;
@@ -97,9 +99,9 @@ RASTER_FN void halve(Bernstein *piece, Bernstein *second)
     b[4] = middle;
 }
 
-/* Where rulings that face the view are: u in [low, high] of a half. */
+/* Intervals of u that contain a ruling that faces the view. */
 typedef struct Falls {
-    LaneMask there[2]; /* the second only if the first */
+    LaneMask there[2]; /* a second interval exists only if the first does */
     Lanes low[2], high[2], half[2];
     LaneMask unsure; /* may have others */
 } Falls;
@@ -123,7 +125,7 @@ typedef struct QuarticPiece {
     float low, size;
 } QuarticPiece;
 
-/* Parts the falls in one half of the circle. */
+/* Separates the falls in one half of the circle. */
 LANE_TARGET static void part_falls(const Ruling *g, LaneMask among, float half, Falls *falls)
 {
     QuarticPiece pieces[MOST_PIECES];
@@ -153,8 +155,8 @@ LANE_TARGET static void part_falls(const Ruling *g, LaneMask among, float half, 
     }
 }
 
-/* Lines whose g falls once at most: where R cos(q + .) + S cos(2 q + .) has R^2 > 20 S^2, its
- * derivative is 0 twice only. */
+/* Returns the lines whose g falls at most once: if R cos(q + .) + S cos(2 q + .) has R^2 > 20 S^2,
+ * its derivative has only two zeros. */
 RASTER_FN LaneMask falls_once(const Ruling *g)
 {
     const Lanes *k = g->k;
@@ -185,8 +187,8 @@ RASTER_FN void find_falls(const Ruling *g, LaneMask among, Falls *falls)
     }
 }
 
-/* Fall number i as tan(q / 2), by Newton's method inside its bracket, from where it
- * would be if k1 and k4 were 0, as they are where a plane of symmetry is looked at face-on. */
+/* Returns fall i as tan(q / 2), by Newton's method limited to its interval. The start is the exact
+ * solution for k1 = k4 = 0, which holds if a plane of symmetry is viewed face-on. */
 RASTER_FN Lanes fall_at(const Ruling *g, const Falls *falls, int i)
 {
     const Lanes *k = g->k, one = lanes_set(1);
@@ -194,7 +196,7 @@ RASTER_FN Lanes fall_at(const Ruling *g, const Falls *falls, int i)
     Lanes k1 = k[1] * half, k2 = k[2] * half;
     Lanes p0 = k[0] + k1 + k[3], p1 = 2.0f * (k2 + k[4]), p2 = 2.0f * (k[0] - k[3]);
     Lanes p3 = 2.0f * (k2 - k[4]), p4 = k[0] - k1 + k[3];
-    /* k0 + k2 sin q + k3 cos^2 q falls where. */
+    /* The fall of k0 + k2 sin q + k3 cos^2 q. */
     Lanes one_part = k[0] + k[3];
     Lanes root = lanes_sqrt(lanes_max(lanes_fma(k2, k2, 4.0f * k[3] * one_part), lanes_set(0)));
     Lanes sine = lanes_max(lanes_min(2.0f * one_part / (root - k2), one), -one);
@@ -224,7 +226,7 @@ RASTER_FN Lanes fall_at(const Ruling *g, const Falls *falls, int i)
     return lanes_select(half < 0.0f, -1.0f / away, u);
 }
 
-/* A joint's ruling beside lines of sight. */
+/* A ruling of a joint, per line of sight. */
 typedef struct Line3 {
     Lanes start[3], run[3];
 } Line3;
@@ -243,7 +245,8 @@ RASTER_FN Line3 ruling_line(const RasterJoint *joint, Lanes cosine, Lanes sine)
     return line;
 }
 
-/* How far along the ruling, in its length, the lines pass it. */
+/* Returns the position along the ruling, relative to its length, at which the lines pass the
+ * ruling. */
 RASTER_FN Lanes ruling_place(const NearItem *near, const SightLines *sight, const Line3 *line,
                              Lanes off[2], Lanes run[2])
 {
@@ -261,8 +264,8 @@ RASTER_FN Lanes ruling_place(const NearItem *near, const SightLines *sight, cons
     return -along / lanes_fma(run[0], run[0], run[1] * run[1]);
 }
 
-/* Where the lines `among` enter the joint; *unsure is set where that takes double precision. Of the
- * lines `known` one entry is known, and only others count. */
+/* Finds where the lines `among` enter the joint. Sets *unsure for lines that need double precision.
+ * For the lines `known` one entry is known, and only other entries count. */
 RASTER_FN LaneMask joint_entry(const NearItem *near, const RasterJoint *joint,
                                const SightLines *sight, LaneMask among, LaneMask known, Lanes *z,
                                Lanes *ruling, LaneMask *unsure)
@@ -284,9 +287,9 @@ RASTER_FN LaneMask joint_entry(const NearItem *near, const RasterJoint *joint,
         Lanes depth = lanes_fma(place, line.run[2], line.start[2]);
         float most = off_joint_line * near->item->radius;
         LaneMask sound = lanes_fma(x, x, y * y) <= most * most;
-        /* A line that starts farther from the ruling than that is long misses it all the same:
-         * so do nearly all where the two rims touch, at a ruling of no length, which is a root
-         * for every line. */
+        /* A line whose distance from the start of the ruling exceeds the ruling's length misses the
+         * ruling. This rejects nearly all lines where the two rims touch: the ruling there has no
+         * length and is a root for every line. */
         Lanes off2 = lanes_fma(off[0], off[0], off[1] * off[1]);
         Lanes run2 = lanes_fma(run[0], run[0], run[1] * run[1]);
         *unsure |= falls.there[i] & ~sound &

@@ -1,6 +1,6 @@
-/* What a light sees of the places that a tile of the picture sees, several at once: included by
- * each source that compiles it for its lanes. Loops over samples have no branches, for compilers to
- * make vectors of. */
+/* The kernel RasterKernels.cover: tests several shadow queries of a tile of a light view at once.
+ * Each source that compiles it for its lanes includes this file. Loops over samples have no
+ * branches, so that compilers can vectorise them. */
 #ifndef RASTER_KERNEL
 #error "define RASTER_KERNEL(name), the name of a function"
 #endif
@@ -12,16 +12,16 @@
 /* ---- aiming ---------------------------------------------------------------------------------- */
 
 LANE_TARGET static void RASTER_KERNEL(locate)(const RasterTile *tile, const RasterHits *hits,
-                                              HitPoints *places)
+                                              HitPoints *points)
 {
     const RasterGrid *grid = tile->grid;
     double middle_x = tile->x, middle_y = tile->y, z_middle = tile->z_middle;
     bool perspective = tile->perspective;
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
         double z = z_middle + (double)hits->z[sample], scale = perspective ? z : 1;
-        places->x[sample] = (middle_x + (double)grid->x[sample]) * scale;
-        places->y[sample] = (middle_y + (double)grid->y[sample]) * scale;
-        places->z[sample] = z;
+        points->x[sample] = (middle_x + (double)grid->x[sample]) * scale;
+        points->y[sample] = (middle_y + (double)grid->y[sample]) * scale;
+        points->z[sample] = z;
     }
 }
 
@@ -30,15 +30,15 @@ LANE_TARGET static void RASTER_KERNEL(locate)(const RasterTile *tile, const Rast
 /* See may_enter_joint. */
 static const float most_per_sine = 50;
 
-/* LANES queries as floats about the tile's middle. */
+/* LANES queries as floats, relative to the tile's middle. */
 typedef struct QueryBlock {
     Lanes x, y, z;
     LaneMask item;
     float deepest;
-    uint32_t box; /* compared with those of items [RasterBox] */
+    uint32_t box; /* packed box of the queries, compared with the boxes of items [RasterBox] */
 } QueryBlock;
 
-/* As item_covers() of one query, in double precision. */
+/* item_covers() for one query, in double precision. */
 LANE_TARGET static bool decide_query(const NearItem *near, const RasterTile *tile,
                                      const ShadowPoints *points, int query)
 {
@@ -47,8 +47,8 @@ LANE_TARGET static bool decide_query(const NearItem *near, const RasterTile *til
     return z - tile->z_middle < (double)(float)points->z[query];
 }
 
-/* Lines that may enter the item before depths z from its middle, by its capsule and without a root.
- * Joints may be hit 1e-4 of their radius beside the line. */
+/* Returns the lines that may enter the item before the depths z, measured from its middle. Tests
+ * the capsule, without a square root. Joints may be hit 1e-4 of their radius beside the line. */
 RASTER_FN LaneMask may_enter(const NearItem *near, const SightLines *sight, Lanes z)
 {
     const RasterItem *item = near->item;
@@ -75,7 +75,8 @@ RASTER_FN LaneMask may_enter(const NearItem *near, const SightLines *sight, Lane
     return (beyond * beyond < left * size2) & ((behind > 0.0f) | (behind * behind < left));
 }
 
-/* Narrows the depths between which lines may be in a joint to those between its ends. */
+/* Limits the depths between which lines may be inside a joint to the depths between the planes of
+ * the joint's ends. */
 RASTER_FN void clip_to_ends(const RasterHull *hull, const NearItem *near, const SightLines *sight,
                             Lanes *from, Lanes *to)
 {
@@ -96,10 +97,10 @@ RASTER_FN void clip_to_ends(const RasterHull *hull, const NearItem *near, const 
     }
 }
 
-/* Lines that between two depths may be in the cone about a joint. At t before or behind where a
- * line is nearest to the axis, it is, if (1 - taper^2) distance^2 - (middle - s taper)^2 = a t^2 +
- * 2 b t + c
- * <= 0; a line that runs more steeply than the cone, a <= 0, may be. */
+/* Returns the lines that may be inside the cone around a joint between two depths. At the distance
+ * t before or behind the point of the line nearest to the axis, the line is inside if (1 - taper^2)
+ * distance^2 - (middle - s taper)^2 = a t^2 + 2 b t + c <= 0. A line that is steeper than the cone
+ * (a <= 0) may be inside. */
 RASTER_FN LaneMask in_cone(const RasterHull *hull, const CylinderPassage *passage, Lanes from,
                            Lanes to)
 {
@@ -113,9 +114,10 @@ RASTER_FN LaneMask in_cone(const RasterHull *hull, const CylinderPassage *passag
     return (from < to) & ((a < least) | (lanes_fma(t, lanes_fma(t, a, b + b), c) <= 0.0f));
 }
 
-/* Lines that may enter a joint before depths z from its middle. Where it is looked at along its
- * axis, the capsule has no walls to tell that by. Its hits may lie off_joint_line beside a line,
- * and so before the wall of the capsule by the root of twice that at most, in radii. */
+/* Returns the lines that may enter a joint before the depths z, measured from its middle. If the
+ * joint is viewed along its axis, the sides of the capsule cannot decide. Hits may be
+ * off_joint_line beside a line, and so in front of the capsule's surface by at most the square root
+ * of twice that, in radii. */
 RASTER_FN LaneMask may_enter_joint(const RasterTile *tile, const NearItem *near,
                                    const SightLines *sight, Lanes z)
 {
@@ -130,7 +132,7 @@ RASTER_FN LaneMask may_enter_joint(const RasterTile *tile, const NearItem *near,
     return in_cone(hull, &passage, from, to);
 }
 
-/* Whether the item is seen before the queries' depths. */
+/* Returns the queries before whose depths a line enters the item. */
 RASTER_FN LaneMask item_covers(const NearItem *near, const RasterTile *tile,
                                const ShadowPoints *points, int first, const QueryBlock *block,
                                LaneMask among)
@@ -191,8 +193,9 @@ RASTER_FN QueryBlock load_queries(const RasterTile *tile, const ShadowPoints *po
     return block;
 }
 
-/* Of LANES items from `first` of the list on, as bits, those that may be before a query. Reads
- * LANES boxes and depths, of which those behind the end of the list are masked away. */
+/* Returns as bits the items, among LANES items from index `first` of the list on, that may be in
+ * front of a query. Reads LANES boxes and depths; those behind the end of the list are masked
+ * out. */
 RASTER_FN uint32_t items_before(const RasterTile *tile, size_t first, const QueryBlock *block)
 {
     LaneWords boxes;
@@ -227,7 +230,7 @@ RASTER_FN void cover_block(const RasterTile *tile, ShadowPoints *points, int fir
 LANE_TARGET static void RASTER_KERNEL(cover)(const RasterTile *tile, ShadowPoints *points)
 {
     __builtin_memset(points->state, 1, (size_t)points->n);
-    /* The last block is filled up with queries that are like the first and not asked for. */
+    /* The last block is filled with copies of the first query; their results are not used. */
     for (int i = points->n; i % LANES; i++) {
         points->x[i] = points->x[0];
         points->y[i] = points->y[0];

@@ -1,9 +1,11 @@
-/* The first primitive at each sample of a tile, several samples at once: included by each source
- * that compiles it for its lanes, RASTER_KERNEL(name) making the names of its functions.
+/* The kernel RasterKernels.trace: finds the first primitive at each sample of a tile, several
+ * samples at once. Each source that compiles it for its lanes includes this file and defines
+ * RASTER_KERNEL(name), which makes the names of its functions.
  *
- * For every item of the tile's list the blocks of LANES samples that its capsule may touch are
- * found all at once, and the item is met with those. A sample keeps the nearest item and its
- * normal or, of a joint, the ruling; normals of joints are left to the end. */
+ * For every item of the tile's list, the blocks of LANES samples that its capsule may touch are
+ * found all at once, and the samples of these blocks are intersected with the item. A sample keeps
+ * the nearest item and its normal, or the ruling of a joint. Normals of joints are computed at the
+ * end. */
 #ifndef RASTER_KERNEL
 #error "define RASTER_KERNEL(name), the name of a function"
 #endif
@@ -12,8 +14,8 @@
 #include "render/raster/rasterbins.h"
 #include "render/raster/rasterkernels.h"
 
-/* What an item may touch is found for groups of 8 samples or 4, whichever makes the most of lanes.
- */
+/* The blocks that an item may touch are found for groups of 8 samples or of 4, whichever uses more
+ * lanes. */
 enum {
     BLOCKS = TILE_SAMPLES / LANES,
     PART = LANES == 8 ? 8 : 4,
@@ -27,7 +29,7 @@ typedef struct RasterState {
     const RasterTile *tile;
     RasterHits *hits;
     TileHits *surface;
-    float farthest[PARTS]; /* depth behind which a part needs nothing */
+    float farthest[PARTS]; /* depth beyond which a part needs no item */
 } RasterState;
 
 RASTER_FN void set_farthest(RasterState *state, int block, float depth)
@@ -36,7 +38,7 @@ RASTER_FN void set_farthest(RasterState *state, int block, float depth)
         state->farthest[block * PARTS_OF_BLOCK + part] = depth;
 }
 
-/* Keeps what is nearer, and returns where that is. */
+/* Keeps the nearer hit per sample, and returns the samples where the new item is nearer. */
 RASTER_FN LaneMask keep_nearer(RasterState *state, const NearItem *near, uint32_t number, int block,
                                LaneMask met, Lanes z)
 {
@@ -125,8 +127,8 @@ RASTER_FN void meet_block(RasterState *state, const NearItem *near, int block)
     }
 }
 
-/* The parts of the tile that the item's capsule may touch and that do not all see something
- * nearer, as bits. */
+/* Returns as bits the parts of the tile that the item's capsule may touch. Leaves out parts in
+ * which all samples hit something nearer. */
 RASTER_FN unsigned touched_parts(const RasterState *state, const NearItem *near)
 {
     const RasterGrid *grid = state->tile->grid;
@@ -154,7 +156,7 @@ RASTER_FN unsigned touched_parts(const RasterState *state, const NearItem *near)
     return bits;
 }
 
-/* So many items ahead their memory is fetched. */
+/* Number of items by which prefetching is ahead. */
 enum { ITEMS_AHEAD = 8 };
 
 RASTER_FN void trace_items(RasterState *state, bool perspective)
@@ -212,7 +214,8 @@ LANE_TARGET static void resolve_decided(const RasterTile *tile, uint32_t number,
     surface->normal[2][sample] = (float)normal.z;
 }
 
-/* The normals of the samples `of` a block, which see the joint, and its primitive's number. */
+/* Sets the normals of those samples of a block that hit the joint, and the index of its
+ * primitive. */
 RASTER_FN void resolve_joint(const RasterTile *tile, RasterHits *hits, uint32_t number, int block,
                              LaneMask of, bool perspective, TileHits *surface)
 {

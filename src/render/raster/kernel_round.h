@@ -1,6 +1,6 @@
-/* Where lines of sight enter spheres and cylinders, several at once: a part of kernel_raster.h. A
- * line passes an item's middle, at the middle's depth, in (X, Y) = (x, y) depth - middle, which
- * is taken in double precision for the tile and stays small. */
+/* Finds where lines of sight enter spheres and cylinders, several lines at once. A part of
+ * kernel_raster.h. At the depth of an item's middle, a line passes at (X, Y) = (x, y) depth -
+ * middle from it. This offset is computed in double precision for the tile, and stays small. */
 #ifndef CORCAST_RENDER_KERNEL_ROUND_H
 #define CORCAST_RENDER_KERNEL_ROUND_H
 
@@ -9,7 +9,8 @@
 
 #define RASTER_FN LANE_FN __attribute__((always_inline))
 
-/* Below this squared sine a wall is looked at along its axis. */
+/* Below this squared sine of the angle between axis and line, a cylinder counts as viewed along its
+ * axis. */
 static const float steep_sine2 = 4e-4f;
 
 RASTER_FN LaneMask load_items(const uint32_t *items)
@@ -24,32 +25,33 @@ RASTER_FN void store_items(uint32_t *items, LaneMask lanes)
     __builtin_memcpy(items, &lanes, sizeof lanes);
 }
 
-/* Lines of sight beside an item. */
+/* Lines of sight relative to an item. */
 typedef struct SightLines {
-    Lanes x, y;   /* where they pass its middle's depth, from the middle */
-    Lanes dx, dy; /* directions (dx, dy, 1); only in perspective */
+    Lanes x, y;   /* position at the depth of the item's middle, relative to the middle */
+    Lanes dx, dy; /* directions (dx, dy, 1); set in perspective only */
 } SightLines;
 
-/* An item as one tile sees it. */
+/* An item relative to one tile. */
 typedef struct NearItem {
     const RasterItem *item;
     bool perspective;
     uint32_t kind;
     uint32_t number;
-    float x, y;   /* where the tile's middle passes it, from its middle */
-    float depth;  /* of its middle, along the view; 1 when parallel */
-    float dx, dy; /* direction of the tile's middle */
-    float z;      /* of its middle, less z_middle */
+    float x, y;   /* position of the tile's middle line at the depth of the item's middle, relative
+                   * to that middle */
+    float depth;  /* depth of the item's middle along the view; 1 in a parallel view */
+    float dx, dy; /* direction of the tile's middle line */
+    float z;      /* depth of the item's middle, minus z_middle */
     float z_near; /* nothing of it is nearer */
     float along_x, along_y, reach_along,
-        reach_across; /* its capsule's outline at the middle's depth */
+        reach_across; /* outline of its capsule at the depth of its middle */
     float axis[3];
-    float per_sine; /* depth on the tile's middle line per distance from the axis */
+    float per_sine; /* depth along the tile's middle line per distance from the axis */
 } NearItem;
 
-/* The outline of the capsule in the plane of its middle's depth, looked at along the tile's
- * middle; wider in perspective, where what is nearer or farther than the middle is seen at
- * another scale. */
+/* Sets the outline of the capsule in the plane at the depth of its middle, viewed along the tile's
+ * middle line. The outline is wider in perspective, because nearer and farther parts of the item
+ * appear at another scale. */
 RASTER_FN void outline(const RasterTile *tile, NearItem *near)
 {
     const RasterItem *item = near->item;
@@ -122,7 +124,7 @@ RASTER_FN SightLines sight_of(const NearItem *near, Lanes x, Lanes y)
     return sight;
 }
 
-/* Whether lines of sight may touch the item's capsule. */
+/* Returns the lines of sight that may touch the item's capsule. */
 RASTER_FN LaneMask within_outline(const NearItem *near, const SightLines *sight)
 {
     Lanes x = lanes_set(near->along_x), y = lanes_set(near->along_y);
@@ -133,7 +135,7 @@ RASTER_FN LaneMask within_outline(const NearItem *near, const SightLines *sight)
 
 /* ---- spheres and cylinders ------------------------------------------------------------------- */
 
-/* Where the lines enter the sphere, as depth from its middle. */
+/* Finds the depths, relative to its middle, at which the lines enter the sphere. */
 RASTER_FN LaneMask sphere_entry(const NearItem *near, const SightLines *sight, Lanes *z)
 {
     float radius2 = near->item->radius * near->item->radius;
@@ -142,7 +144,8 @@ RASTER_FN LaneMask sphere_entry(const NearItem *near, const SightLines *sight, L
         *z = -lanes_sqrt(lanes_max(left, lanes_set(0)));
         return left > 0.0f;
     }
-    /* About the line's nearest point: n = D x (X, Y, 0), |n|^2 / |D|^2 the squared distance. */
+    /* Relative to the line's point nearest to the middle: n = D x (X, Y, 0); |n|^2 / |D|^2 is the
+     * squared distance. */
     Lanes size2 = lanes_fma(sight->dx, sight->dx, lanes_fma(sight->dy, sight->dy, lanes_set(1)));
     Lanes nz = lanes_fma(sight->dx, sight->y, -(sight->dy * sight->x));
     Lanes n2 = lanes_fma(nz, nz, lanes_fma(sight->x, sight->x, sight->y * sight->y));
@@ -152,23 +155,24 @@ RASTER_FN LaneMask sphere_entry(const NearItem *near, const SightLines *sight, L
     return left > 0.0f;
 }
 
-/* How lines of sight run through an endless cylinder. */
+/* Lines of sight relative to an infinite cylinder. */
 typedef struct CylinderPassage {
     LaneMask met;
-    Lanes middle; /* depth where they are nearest to the axis, from that of the cylinder's middle */
-    Lanes half;   /* of what is inside, in depth */
-    Lanes along;  /* at that place, along the axis from its middle */
+    Lanes middle; /* depth at which they are nearest to the axis, relative to the cylinder's
+                   * middle */
+    Lanes half;   /* half the length of the part inside, in depth */
+    Lanes along;  /* position of the nearest point along the axis, relative to its middle */
     Lanes rate;   /* of that with depth */
-    Lanes off2;   /* their distance there, squared; t of depth farther it has grown by sine2 t^2 */
+    Lanes off2;   /* squared distance there; it grows by sine2 t^2 at the depth t farther */
     Lanes sine2;
 } CylinderPassage;
 
-/* How lines that are not parallel pass an axis u: n = D x u, P the place where they pass its
- * middle's depth. */
+/* Lines that are not parallel to an axis u: n = D x u; P is the point of the line at the depth of
+ * the axis's middle. */
 typedef struct Crossing {
     Lanes sine2; /* |n|^2 */
-    Lanes off;   /* n . P: the distance of the two, times |n| */
-    Lanes turn;  /* the depth of their nearest points, times -|n|^2 */
+    Lanes off;   /* n . P: the distance between line and axis, times |n| */
+    Lanes turn;  /* depth of their nearest points, times -|n|^2 */
     Lanes rate;  /* D . u */
 } Crossing;
 
@@ -220,15 +224,16 @@ RASTER_FN CylinderPassage pass_cylinder(const NearItem *near, const SightLines *
     return passage;
 }
 
-/* How lines of sight enter a cylinder. */
+/* Entries of lines of sight into a cylinder. */
 typedef struct CylinderEntry {
     LaneMask on_disc;
     Lanes rate;  /* as in CylinderPassage */
-    Lanes along; /* of the point of the axis that the surface is about, but that of a disc */
+    Lanes along; /* position along the axis of the center of the surface's normal; not used for a
+                  * disc */
 } CylinderEntry;
 
-/* Of lines that come to the endless cylinder off its ends, `along` its axis, those that may enter a
- * round end. */
+/* Returns the lines that may enter a round end, among lines that enter the infinite cylinder beyond
+ * its ends, at the position `along` its axis. */
 RASTER_FN LaneMask before_ball(const NearItem *near, Lanes along, LaneMask outside)
 {
     LaneMask low = along < 0.0f;
@@ -237,7 +242,7 @@ RASTER_FN LaneMask before_ball(const NearItem *near, Lanes along, LaneMask outsi
     return outside & ~(flat_low | flat_high);
 }
 
-/* Where the lines enter the ball of the cylinder's radius that is so far along its axis. */
+/* Finds where the lines enter the ball of the cylinder's radius at a position along its axis. */
 RASTER_FN LaneMask ball_entry(const NearItem *near, const SightLines *sight, Lanes along, Lanes *z)
 {
     Lanes depth = along * near->axis[2];
@@ -253,14 +258,14 @@ RASTER_FN LaneMask ball_entry(const NearItem *near, const SightLines *sight, Lan
     return met;
 }
 
-/* Where the lines enter the cylinder. */
+/* Finds where the lines enter the cylinder. */
 RASTER_FN LaneMask cylinder_entry(const NearItem *near, const SightLines *sight, Lanes *z,
                                   CylinderEntry *entry)
 {
     const RasterItem *item = near->item;
     float half = item->half;
     CylinderPassage passage = pass_cylinder(near, sight);
-    /* Counted from the end that a line comes to first, lengths grow with depth. */
+    /* Measured from the end that a line reaches first, lengths grow with depth. */
     Lanes along = passage.along, rate = passage.rate, grows = lanes_set(1);
     if (near->perspective) {
         grows = lanes_select(rate < 0.0f, -grows, grows);
@@ -289,7 +294,7 @@ RASTER_FN LaneMask cylinder_entry(const NearItem *near, const SightLines *sight,
     return entry->on_disc | met;
 }
 
-/* The normals where the lines enter the sphere at depths z. */
+/* Computes the normals where the lines enter the sphere at depths z. */
 RASTER_FN void sphere_normal(const NearItem *near, const SightLines *sight, Lanes z,
                              Lanes normal[3])
 {
@@ -299,7 +304,7 @@ RASTER_FN void sphere_normal(const NearItem *near, const SightLines *sight, Lane
     normal[2] = z * per;
 }
 
-/* The normals where the lines enter the cylinder at depths z. */
+/* Computes the normals where the lines enter the cylinder at depths z. */
 RASTER_FN void cylinder_normal(const NearItem *near, const SightLines *sight, Lanes z,
                                const CylinderEntry *entry, Lanes normal[3])
 {

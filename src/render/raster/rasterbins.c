@@ -1,18 +1,18 @@
-/* Items are counted into the rows of tiles that they may touch; chunks of items have counters of
- * their own, so that threads fill the rows without waiting and in the order of the items, each
- * with the columns that it may touch there. The list of a row's tiles is made when the row is
- * drawn.
+/* Items are sorted into the rows of tiles that they may touch. Chunks of items have counters of
+ * their own, so that threads fill the rows without waiting and in the order of the items. Each
+ * entry of a row also has the columns that the item may touch there. The list of a row's tiles is
+ * made when the row is drawn.
  *
- * But in a light's view, items that touch no tile are left out: each chunk has room for all of its
- * own, and packs those that are left at the beginning. What lies behind them is never touched, and
- * so costs no memory. */
+ * In a light view, items that touch no tile are left out. Each chunk has space for all its items
+ * and stores the remaining items at the beginning. The memory behind them is never touched and so
+ * costs nothing. */
 #include "render/raster/rasterbins.h"
 
 #include "render/cast/caster.h"
 #include <stdlib.h>
 
-/* Fewer primitives than LEAST_CHUNK are in the cache of one processor, from where others would
- * fetch them more slowly than it takes to work on them. */
+/* Up to LEAST_CHUNK primitives fit into the cache of one processor. Other threads would fetch them
+ * more slowly than this thread processes them. */
 enum { LEAST_CHUNK = 1 << 16, MOST_CHUNKS = 64 };
 enum { CACHE_LINE = sizeof(RasterItem) };
 _Static_assert(CACHE_LINE == 64, "an item fills a line");
@@ -22,9 +22,10 @@ _Static_assert(CACHE_LINE == 64, "an item fills a line");
 typedef struct Build {
     RasterBins *bins;
     RasterSlab *slabs;      /* one a row */
-    size_t *counts;         /* chunk by chunk, of each row; then where the chunk's items go */
-    size_t *ends;           /* of each chunk: behind the last of its items */
-    uint32_t *joints;       /* chunk by chunk: their number; then that of the first */
+    size_t *counts;         /* per chunk and row: number of items; then the index of the chunk's
+                             * first entry */
+    size_t *ends;           /* per chunk: index behind its last item */
+    uint32_t *joints;       /* per chunk: number of joints; then the index of the first */
     size_t chunk, n_chunks; /* items in a chunk; chunks */
 } Build;
 
@@ -83,7 +84,7 @@ static void make_chunk(size_t chunk, int worker, void *context)
         rasteritem_make(bins->geometry, &bins->view, (uint32_t)i, item,
                         bins->joints ? &bins->joints[joint] : NULL,
                         bins->hulls ? &bins->hulls[joint] : NULL);
-        item->joint = joint & (MOST_ITEMS - 1);
+        item->joint = joint & (MAX_ITEMS - 1);
         joint += is_joint(bins, i);
         if (!bins->view.light)
             item->primitive = (uint32_t)i;
@@ -94,7 +95,7 @@ static void make_chunk(size_t chunk, int worker, void *context)
     build->ends[chunk] = to;
 }
 
-/* Puts an item into its rows, at the next of their places. */
+/* Appends an item to its rows. `places` holds the next free entry of each row. */
 static void fill_item(const Build *build, size_t *places, size_t number)
 {
     RasterBins *bins = build->bins;
@@ -152,7 +153,7 @@ bool rasterbins_are_small(const Geometry *geometry)
     return rasterbins_items(geometry) / LEAST_CHUNK < 2;
 }
 
-/* As many for each thread as for the others. */
+/* Returns the number of chunks: a multiple of the number of threads. */
 static size_t chunks_for(const Geometry *geometry, size_t threads)
 {
     size_t chunks = rasterbins_items(geometry) / LEAST_CHUNK;
@@ -166,14 +167,14 @@ static size_t chunks_for(const Geometry *geometry, size_t threads)
 bool rasterbins_take(const Geometry *geometry, int width, int height)
 {
     const int most = UINT16_MAX * TILE_SIDE;
-    return rasterbins_items(geometry) <= MOST_ITEMS && width <= most && height <= most;
+    return rasterbins_items(geometry) <= MAX_ITEMS && width <= most && height <= most;
 }
 
 static Status make_bins(RasterBins *bins, int threads, Err *err)
 {
     size_t n = rasterbins_items(bins->geometry),
            chunks = chunks_for(bins->geometry, (size_t)threads);
-    if (n > MOST_ITEMS)
+    if (n > MAX_ITEMS)
         return err_set(err, STATUS_MEMORY, "too many primitives for `method` raster");
     if (bins->tile_columns > UINT16_MAX || bins->tile_rows > UINT16_MAX)
         return err_set(err, STATUS_USAGE,
@@ -318,10 +319,10 @@ double raster_decide(const RasterBins *bins, uint32_t number, double x, double y
     if (primitive->round_b)
         n += hit_sphere(ray, primitive->b, primitive->radius_mm, &hits[n]);
     for (int i = 0; i < n; i++)
-        if (hits[i].t >= NEAREST_SEEN_MM && hits[i].t < nearest) {
+        if (hits[i].t >= NEAREST_VISIBLE_MM && hits[i].t < nearest) {
             nearest = hits[i].t;
             if (normal)
-                *normal = viewpoint_to_frame(&bins->view.eye, hits[i].normal);
+                *normal = viewpoint_frame_direction(&bins->view.eye, hits[i].normal);
         }
     return nearest * vec3_dot(ray.direction, bins->view.eye.axes[2]);
 }

@@ -1,10 +1,19 @@
-/* Primitives in the frame of a view, sorted into the rows of tiles that they may touch. */
+/* The primitives of a geometry, projected to a view and sorted into the rows of tiles that they may
+ * touch. A row is sorted into tiles only when it is drawn:
+ *
+ *     RasterBins *bins;
+ *     TRY(rasterbins_new(geometry, &view, threads, &bins, err));
+ *     TRY(rasterbins_list(bins, row, &tiles, err));       per row of tiles
+ *     RasterTile tile = rasterbins_tile(bins, column, row, list, n, &grid);
+ *     rasterbins_free(bins);
+ *
+ * Functions that take a const RasterBins can be called by several threads. */
 #ifndef CORCAST_RENDER_RASTERBINS_H
 #define CORCAST_RENDER_RASTERBINS_H
 
 #include "render/raster/rasteritem.h"
 
-/* Primitives, sorted into the rows of tiles of a view. Constant once built. */
+/* Immutable once built. */
 typedef struct RasterBins {
     const Geometry *geometry; /* borrowed */
     RasterView view;
@@ -26,7 +35,7 @@ static inline size_t rasterbins_items(const Geometry *geometry)
     return geometry->n_primitives - geometry->n_ends;
 }
 
-/* Returns true if rasterbins_new supports this geometry and size of picture. */
+/* Returns true if rasterbins_new supports a geometry and an image of this size in pixels. */
 bool rasterbins_take(const Geometry *geometry, int width, int height);
 /* Returns true if the geometry is so small that rasterbins_new uses one thread. */
 bool rasterbins_are_small(const Geometry *geometry);

@@ -1,14 +1,16 @@
-/* A primitive becomes an item: its middle in double precision, all else in single precision
- * about that middle, so that single precision is left with numbers as small as the primitive.
+/* A primitive becomes an item: its middle in double precision, everything else in single precision
+ * relative to that middle. Single precision then has to hold only numbers as small as the
+ * primitive.
  *
- * What single precision cannot hold to a thousandth of a pixel, or the kernels do not solve, is
- * an item of the kind RASTER_EXACT: what is near the eye or about it, longer than 16384 pixels,
- * or looked at along its axis, and joints that need not be the wall of a solid. */
+ * An item is RASTER_EXACT if single precision cannot draw it to a thousandth of a pixel, or if the
+ * kernels do not solve it: items that are near the viewer or around the viewer, longer than 16384
+ * pixels, or viewed along their axis, and joints that may not be the surface of a solid. */
 #include "render/raster/rasteritem.h"
 
-static const double most_pixels = 16384; /* 2^-24 of it are a thousandth of a pixel */
+static const double most_pixels = 16384; /* pixels; 2^-24 of it is a thousandth of a pixel */
 static const double least_sine =
-    0.02; /* of the angle at which a wall is looked at along its axis */
+    0.02; /* sine of the smallest angle between axis and line of sight at which a cylinder is drawn
+           * in single precision; reason for the value not recorded */
 
 static void store_floats(float to[3], Vec3 v)
 {
@@ -17,8 +19,9 @@ static void store_floats(float to[3], Vec3 v)
     to[2] = (float)v.z;
 }
 
-/* Turns the angle p of a joint by that of the ruling that faces `sight`, a direction in the
- * frame, most: where the first harmonic of sight . (S_p x S_l) at l = 1/2 is least. */
+/* Rotates the parameter p of a joint so that p = 0 is the ruling that faces `sight`, a direction in
+ * the frame, most: the ruling where the first harmonic of sight . (S_p x S_l) at l = 1/2 is
+ * minimal. */
 static void face_sight(JointFrame *joint, Vec3 sight, Vec3 out[6])
 {
     Vec3 a = joint->across, b = vec3_scale(joint->side, joint->radius);
@@ -43,12 +46,13 @@ RasterJoint rasterjoint_make(const RasterView *view, const Primitive *primitive,
     RasterJoint made;
     JointFrame joint = primitive_joint(primitive);
     Vec3 from_eye = vec3_sub(joint.base, view->eye.location), part[6];
-    joint.base = vec3_sub(viewpoint_to_frame(&view->eye, from_eye), middle);
-    joint.span = viewpoint_to_frame(&view->eye, joint.span);
-    /* The frame is left-handed; turning the other way round keeps S_p x S_l outward in it. */
-    joint.side = vec3_scale(viewpoint_to_frame(&view->eye, joint.side), -1);
-    joint.across = viewpoint_to_frame(&view->eye, joint.across);
-    joint.across_change = viewpoint_to_frame(&view->eye, joint.across_change);
+    joint.base = vec3_sub(viewpoint_frame_direction(&view->eye, from_eye), middle);
+    joint.span = viewpoint_frame_direction(&view->eye, joint.span);
+    /* The frame is left-handed. Reversing the direction of rotation keeps S_p x S_l pointing
+     * outward. */
+    joint.side = vec3_scale(viewpoint_frame_direction(&view->eye, joint.side), -1);
+    joint.across = viewpoint_frame_direction(&view->eye, joint.across);
+    joint.across_change = viewpoint_frame_direction(&view->eye, joint.across_change);
     face_sight(&joint, view->eye.perspective ? middle : vec3(0, 0, 1), part);
     Vec3 base = part[0], span = part[1], a = part[2], b = part[3], da = part[4], db = part[5];
     store_floats(made.base, base);
@@ -71,16 +75,17 @@ static void store_plane(float to[4], Vec3 inward, Vec3 center, double radius)
     to[3] = (float)(1e-3 * radius - vec3_dot(inward, center));
 }
 
-/* `turn`: 1 if the item's axis leads from a to b, or -1. */
+/* Returns the hull of a joint. `turn` is 1 if the item's axis leads from a to b, else -1. */
 static RasterHull make_hull(const RasterView *view, const Primitive *primitive, Vec3 span,
                             double length, double turn)
 {
     RasterHull hull;
     double a = primitive->radius_mm, b = primitive->radius_b_mm;
     bool tapers = fabs(a - b) < length;
-    store_plane(hull.plane[0], viewpoint_to_frame(&view->eye, primitive->axes[0]),
+    store_plane(hull.plane[0], viewpoint_frame_direction(&view->eye, primitive->axes[0]),
                 vec3_scale(span, -0.5), a);
-    store_plane(hull.plane[1], vec3_scale(viewpoint_to_frame(&view->eye, primitive->axes[1]), -1),
+    store_plane(hull.plane[1],
+                vec3_scale(viewpoint_frame_direction(&view->eye, primitive->axes[1]), -1),
                 vec3_scale(span, 0.5), b);
     hull.middle = (float)((tapers ? (a + b) / 2 : max_of(a, b)) * 1.0005);
     hull.taper = (float)(tapers ? turn * (a - b) / length : 0);
@@ -134,11 +139,11 @@ void rasteritem_make(const Geometry *geometry, const RasterView *view, uint32_t 
 {
     const Primitive *primitive = &geometry->primitives[number];
     Vec3 middle = vec3_scale(vec3_add(primitive->a, primitive->b), 0.5);
-    middle = viewpoint_place(&view->eye, middle);
-    Vec3 span = viewpoint_to_frame(&view->eye, vec3_sub(primitive->b, primitive->a));
+    middle = viewpoint_frame_point(&view->eye, middle);
+    Vec3 span = viewpoint_frame_direction(&view->eye, vec3_sub(primitive->b, primitive->a));
     double radius = max_of(primitive->radius_mm, primitive_radius_b(primitive));
     if ((view->hidden && view->hidden[number]) || rasterreach_misses(view, middle, span, radius)) {
-        item->rows = item->columns = rastertiles_of(NOWHERE);
+        item->rows = item->columns = rastertiles_of(NO_TILES);
         return;
     }
     const ItemAxis axis = axis_of(span);

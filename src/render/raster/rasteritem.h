@@ -1,59 +1,78 @@
-/* One primitive as a view sees it: what it is there, and in which tiles. */
+/* Computes the items of a view: for one primitive, its projection [RasterItem] and the tiles that
+ * it may touch. rasterbins.c calls these functions for all primitives of a geometry. All functions
+ * are pure and can run in parallel. */
 #ifndef CORCAST_RENDER_RASTERITEM_H
 #define CORCAST_RENDER_RASTERITEM_H
 
 #include "render/raster/rasterview.h"
 
-/* Sets the item of primitive `number`, except RasterItem.joint and RasterItem.primitive. Sets only
- * `rows` and `columns` of an item that touches no tile. If the item is a RASTER_JOINT, sets *hull
- * in the view of a light and *joint in any other view; the other one may be NULL. */
+/* Sets the item of the primitive with index `number`, except RasterItem.joint and
+ * RasterItem.primitive.
+ *
+ * item          if the primitive touches no tile, or is hidden, only `rows` and `columns` are set,
+ *               to no tiles.
+ * joint, hull   if the item is a RASTER_JOINT, receives *hull in a light view and *joint in any
+ *               other view. The pointer that is not used may be NULL. */
 void rasteritem_make(const Geometry *geometry, const RasterView *view, uint32_t number,
                      RasterItem *item, RasterJoint *joint, RasterHull *hull);
 
-/* Returns the joint of a primitive in the frame of the view, relative to `middle`, the middle of
- * its item. */
+/* Returns the joint of a PRIMITIVE_JOINT in the frame of the view. Coordinates are relative to
+ * `middle`, the middle of the joint's item in that frame. */
 RasterJoint rasterjoint_make(const RasterView *view, const Primitive *primitive, Vec3 middle);
 
 /* A box in a tile, packed into 32 bits so that one subtraction tells whether two boxes overlap.
  * Units are 1/128 of the tile's side, x from the left and y from the top.
  *
- *   bits   31  30 ... 24     23  22 ... 16     15  14 ... 8      7   6 ... 0
- *   item   1   127 - y_min   1   y_max         1   127 - x_min   1   x_max
- *   query  0   127 - y_max   0   y_min         0   127 - x_max   0   x_min
+ *     bits   31  30 ... 24     23  22 ... 16     15  14 ... 8      7   6 ... 0
+ *     item   1   127 - y_min   1   y_max         1   127 - x_min   1   x_max
+ *     query  0   127 - y_max   0   y_min         0   127 - x_max   0   x_min
  *
- * In `item - query` the guard, the top bit of a byte, survives if and only if the item's number in
- * that byte is at least the query's; the boxes overlap if and only if all four guards survive. */
+ * The top bit of each byte is a guard. In `item - query`, the guard of a byte stays set if and only
+ * if the item's number in that byte is at least the query's number. The boxes overlap if and only
+ * if all four guards stay set. */
 #define RASTERBOX_GUARDS 0x80808080u
 #define RASTERBOX_HIGH_X 0x7fu
 #define RASTERBOX_LOW_X 0x7f00u
 enum { RASTERBOX_PARTS = 128 };
 
-/* Where an item may be in the tiles of a row that it touches. */
+/* Bounds of an item within one row of tiles. */
 typedef struct RasterBox {
-    uint32_t box; /* an item's: x_min is that in the first of those tiles, x_max that in the last */
-    float near;   /* no part of the item has a smaller depth, mm, less z_middle */
+    uint32_t box; /* packed box of kind `item`; x_min is a position in the first tile of the row
+                   * that the item touches, x_max a position in the last */
+    float near;   /* minimum depth of the item, mm, minus RasterView.z_middle */
 } RasterBox;
 
-/* The slab of space that the lines of sight of a row of tiles fill, between two planes: y = y[0]
- * and y[1] in a parallel view, y = y[0] z and y[1] z in perspective. */
+/* The part of space that the lines of sight of one row of tiles fill. It is bounded by two planes:
+ * y = y[0] and y = y[1] in a parallel view, y = y[0] z and y = y[1] z in perspective. */
 typedef struct RasterSlab {
-    double y[2];          /* of the lowest and of the highest line */
+    double y[2];          /* y of the lowest and of the highest line of sight, in the view's
+                           * plane */
     double per_length[2]; /* 1 / the length of the planes' normals (0, 1, -y) */
 } RasterSlab;
 
+/* Returns the slab of row `row` of tiles. */
 RasterSlab rasterslab_of(const RasterView *view, size_t row);
 
-/* Whether a parallel view has no sample within a capsule's box, or, where it has few and all lie at
- * the middles of pixels, within the capsule; in perspective, whether none of its tiles has one in a
- * ball about the capsule. */
+/* Returns true only if no sample of the view can hit a capsule. May return false for a capsule that
+ * no sample hits.
+ *
+ * A parallel view tests the samples in the capsule's bounding rectangle. If there are only a few
+ * and each is at the centre of its pixel, it tests these samples against the capsule itself. A
+ * perspective view tests its tiles against a ball around the capsule.
+ *
+ * middle   of the capsule's axis, in the frame of the view, mm.
+ * span     from one end of the axis to the other, mm. */
 bool rasterreach_misses(const RasterView *view, Vec3 middle, Vec3 span, double radius);
-/* Sets the rows and columns of tiles that an item may touch, none if it is behind the viewer, and
- * in the view of a light its box. */
+/* Sets `rows` and `columns`, the tiles that the item may touch; none if the item is behind the
+ * viewer. In a light view also sets `box`. All other fields of the item are input. */
 void rasterreach_set(const RasterView *view, RasterItem *item);
-/* RasterBox.near of an item. */
+/* Returns RasterBox.near of an item. */
 float rasterreach_near(const RasterView *view, const RasterItem *item);
-/* The tiles of one of the item's rows that it may touch, and in the view of a light *box, the
- * item's box in that row. */
+/* Returns the tiles in row `row` that the item may touch.
+ *
+ * row   one of the item's rows.
+ * slab  rasterslab_of(view, row).
+ * box   receives RasterBox.box of the item in this row; has a meaning in a light view only. */
 TileSpan rasterreach_in_row(const RasterView *view, const RasterItem *item, int row,
                             const RasterSlab *slab, uint32_t *box);
 

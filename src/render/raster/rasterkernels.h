@@ -1,6 +1,10 @@
-/* What is done to a tile of primitives several samples at once, in one version for each kind of
- * processor. Kernels read and write whole blocks of as many samples as a processor has lanes, 16 at
- * most: of arrays of TILE_SAMPLES nothing else is touched, what reaches farther says so. */
+/* The kernels that process several samples of a tile of primitives at once, in one version for each
+ * instruction set. The raster engine calls `trace` for a tile and then, if a sample hits an item,
+ * `resolve` and, for shadow queries, `locate`. raster_shadows calls `cover`.
+ *
+ * Kernels read and write whole blocks of as many samples as the processor has lanes, at most 16.
+ * Arrays of TILE_SAMPLES elements are not exceeded; where a kernel reads or writes farther, its
+ * contract says so. Nothing is allocated, and nothing can fail. */
 #ifndef CORCAST_RENDER_RASTERKERNELS_H
 #define CORCAST_RENDER_RASTERKERNELS_H
 
@@ -8,23 +12,30 @@
 #include "render/raster/rastertile.h"
 
 typedef struct RasterKernels {
-    /* Finds the first item at each sample, in *hits, and where that is a sphere or a cylinder the
-     * normal, in surface->normal; nothing else of *surface is set. Bit i of what is returned is set
-     * if sample i sees an item. Reads tile->list[0 .. n), and of the bins what raster_decide
-     * does. */
+    /* Finds the first item at each sample. Returns a mask: bit i is set if sample i hits an item.
+     * Reads tile->list[0 .. n), and those parts of the bins that raster_decide reads.
+     *
+     * hits     receives the items and their depths.
+     * surface  receives the normals of spheres and cylinders; nothing else of *surface is set. */
     uint64_t (*trace)(const RasterTile *tile, RasterHits *hits, TileHits *surface);
-    /* Completes *surface after `trace` with the same tile and hits: state, z, the primitive's
-     * number (as `segment`), and the normals of joints and of what was decided in double precision;
-     * leaves any_hit and any_unsure alone. Of joints, completes *hits. */
+    /* Completes the result of `trace`, for the same tile and hits.
+     *
+     * hits     of joints, completes the item.
+     * surface  receives state, z, the index of the primitive (in `segment`), and the normals of
+     *          joints and of samples that were decided in double precision. any_hit and any_unsure
+     *          are not changed. */
     void (*resolve)(const RasterTile *tile, RasterHits *hits, TileHits *surface);
-    /* The places that the hits are at. */
-    void (*locate)(const RasterTile *tile, const RasterHits *hits, HitPoints *places);
-    /* Answers the queries of points in one tile of a light view: sets points->state. Overwrites
-     * what follows the last point, up to a multiple of the lanes. If points->item is a sphere or a
-     * cylinder whose hit was found in single precision, it is not tested as a blocker of its point:
-     * rounding would let it shadow itself. tile->list holds, behind its n items, their n boxes
-     * [RasterBox], and `nears` their depths. Of both, up to 15 words past the end are read and
-     * ignored. */
+    /* Sets the points that the samples hit, in the frame of the view, mm. */
+    void (*locate)(const RasterTile *tile, const RasterHits *hits, HitPoints *points);
+    /* Answers the shadow queries of the points in one tile of a light view: sets points->state.
+     *
+     * If points->item is a sphere or a cylinder whose hit was found in single precision, this item
+     * is not tested as a blocker of its point: rounding would let it shadow itself.
+     *
+     * tile     tile->list holds n items and, behind them, their n boxes [RasterBox.box];
+     *          tile->nears holds their n depths. Of both, up to 15 words past the end are read and
+     *          ignored.
+     * points   elements past the last point are overwritten, up to a multiple of the lanes. */
     void (*cover)(const RasterTile *tile, ShadowPoints *points);
 } RasterKernels;
 
@@ -32,7 +43,7 @@ extern const RasterKernels rasterkernels_portable;
 #ifdef __x86_64__
 extern const RasterKernels rasterkernels_avx2, rasterkernels_avx512;
 #endif
-/* As tilekernels. */
+/* One entry per instruction set, in the order of tilekernels [tilekernels.h]. */
 extern const RasterKernels *const rasterkernels[KINDS_OF_KERNELS];
 
 #endif

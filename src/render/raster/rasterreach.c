@@ -1,9 +1,10 @@
-/* Where one sample a pixel is taken, at its middle, a third of the vessels of a tree of a million,
- * short and thin, is seen by none: these are left out first, by their distances from the few
- * samples about them.
+/* With one sample at the centre of each pixel, no sample hits a third of the vessels of a tree of a
+ * million, because they are short and thin. These vessels are found first and left out, by their
+ * distances from the few samples near them.
  *
- * A capsule about an item is seen within a range of rows. Of each row, what is within reach of its
- * slab is seen within a range of columns; in few tiles, the whole of it serves all rows. */
+ * An item covers a range of rows of tiles. In each row, the part of its capsule near the row's slab
+ * covers a range of columns. If the item touches few tiles, the range of the whole item is used in
+ * all rows. */
 #include "render/raster/rasteritem.h"
 
 static const Interval everywhere = {-HUGE_VAL, HUGE_VAL}, nothing = {HUGE_VAL, -HUGE_VAL};
@@ -23,14 +24,15 @@ RasterSlab rasterslab_of(const RasterView *view, size_t row)
 {
     int first = (int)row * TILE_SIDE, last = first + TILE_SIDE - 1;
     RasterSlab slab;
-    slab.y[0] = view->top + (last + view->stray + SLACK_PIXELS) * view->step_y;
-    slab.y[1] = view->top + (first - view->stray - SLACK_PIXELS) * view->step_y;
+    slab.y[0] = view->top + (last + view->max_offset + SLACK_PIXELS) * view->step_y;
+    slab.y[1] = view->top + (first - view->max_offset - SLACK_PIXELS) * view->step_y;
     for (int i = 0; i < 2; i++)
         slab.per_length[i] = 1 / sqrt(1 + slab.y[i] * slab.y[i]);
     return slab;
 }
 
-/* What the part of the capsule within reach of the slab covers of a row. */
+/* Returns the extent across a row of the part of the capsule that is within its radius of the
+ * slab. */
 static Interval parallel_range(const RasterItem *item, const RasterSlab *slab)
 {
     double radius = (double)item->radius, ex = (double)item->ex, ey = (double)item->ey;
@@ -61,24 +63,25 @@ static Interval perspective_range(const RasterItem *item, const RasterSlab *slab
     if (from > to)
         return nothing;
     Vec3 first = vec3_add_scaled(a, span, from), last = vec3_add_scaled(a, span, to);
-    return capsule_shadow(true, first.x, first.z, last.x, last.z, radius);
+    return capsule_extent(true, first.x, first.z, last.x, last.z, radius);
 }
 
 static TileSpan columns_of(const RasterView *view, Interval across)
 {
-    return tiles_common(tiles_within(across, view->stray, view->columns), view->listed_columns);
+    return tilespan_intersection(tilespan_of_samples(across, view->max_offset, view->columns),
+                                 view->listed_columns);
 }
 
 /* ---- boxes ----------------------------------------------------------------------------------- */
 
-/* Where in a tile a pixel is, in parts of its side. */
+/* Returns the position of a pixel in a tile, in units of RASTERBOX_PARTS per side. */
 static uint32_t part_of(double pixel, int tile)
 {
     double part = (pixel - tile * TILE_SIDE + 0.5) * (RASTERBOX_PARTS / TILE_SIDE);
     return (uint32_t)(int)min_of(max_of(part, 0), RASTERBOX_PARTS - 1);
 }
 
-/* From where in the first tile to where in the last. */
+/* Packs two bounds: the low bound as a position in the first tile, the high bound in the last. */
 static uint32_t parts_of(Interval pixels, TileSpan tiles)
 {
     return part_of(pixels.high, tiles.last) |
@@ -87,7 +90,7 @@ static uint32_t parts_of(Interval pixels, TileSpan tiles)
 
 /* ---- items ----------------------------------------------------------------------------------- */
 
-/* The pixels that the whole of it covers, across the picture or down it. */
+/* Returns the pixels that the whole item covers, across the image or down the image. */
 static inline Interval whole_pixels(const RasterView *view, const RasterItem *item, bool across)
 {
     double half = (double)item->half, radius = (double)item->radius;
@@ -98,10 +101,10 @@ static inline Interval whole_pixels(const RasterView *view, const RasterItem *it
         if (item_is_close(item))
             return everywhere;
         Vec3 a = item_point(item, -half), b = item_point(item, half);
-        range = capsule_shadow(true, across ? a.x : a.y, a.z, across ? b.x : b.y, b.z, radius);
+        range = capsule_extent(true, across ? a.x : a.y, a.z, across ? b.x : b.y, b.z, radius);
     }
-    return across ? samples_within(range, view->left, view->per_x)
-                  : samples_within(range, view->top, view->per_y);
+    return across ? interval_in_samples(range, view->left, view->per_x)
+                  : interval_in_samples(range, view->top, view->per_y);
 }
 
 static bool is_behind(const RasterItem *item)
@@ -109,23 +112,25 @@ static bool is_behind(const RasterItem *item)
     return item->z + item_depth(item) < 0;
 }
 
-/* Samples along one axis of the picture; none if first > last. */
+/* A range of samples along one axis of the image; empty if first > last. */
 typedef struct SampleSpan {
     int first, last;
 } SampleSpan;
 
-/* Those of `count`, `per` in a unit from `first` on, that what reaches `reach` to either side of
- * `middle` does not leave out. */
+/* Returns the samples within `reach` of `middle`. There are `count` samples, `per` per unit, the
+ * first at `first`. */
 static inline SampleSpan samples_about(double middle, double reach, double first, double per,
-                                       double stray, int count)
+                                       double max_offset, int count)
 {
-    Interval range = samples_within((Interval){middle - reach, middle + reach}, first, per);
-    double low = max_of(range.low - stray, 0), high = min_of(range.high + stray, count - 1);
+    Interval range = interval_in_samples((Interval){middle - reach, middle + reach}, first, per);
+    double low = max_of(range.low - max_offset, 0),
+           high = min_of(range.high + max_offset, count - 1);
     int from = low < count ? (int)low : count;
     return (SampleSpan){from + (from < low), high < 0 ? -1 : (int)high};
 }
 
-/* Whether a point, (dx, dy) from the middle of a segment, is within `reach` of it. */
+/* Returns true if a point is within the distance sqrt(reach2) of a segment. (dx, dy) leads from the
+ * middle of the segment to the point. */
 static inline bool is_within(double dx, double dy, Vec3 span, double length2, double reach2)
 {
     double along = dx * span.x + dy * span.y, across = dx * span.y - dy * span.x;
@@ -135,8 +140,8 @@ static inline bool is_within(double dx, double dy, Vec3 span, double length2, do
     return x * x + y * y <= reach2;
 }
 
-/* Whether all these samples, at the middles of their pixels, are farther from a capsule's axis than
- * its radius. */
+/* Returns true if all these samples, at the centres of their pixels, are farther from a capsule's
+ * axis than its radius. */
 static bool samples_are_beside(const RasterView *view, SampleSpan columns, SampleSpan rows,
                                Vec3 middle, Vec3 span, double radius)
 {
@@ -150,8 +155,9 @@ static bool samples_are_beside(const RasterView *view, SampleSpan columns, Sampl
     return true;
 }
 
-/* Whether a ball is beyond the lines of sight at one end of some tiles, in the plane of z and the
- * axis whose coordinate is `at`; `pixel`: of the first one beyond. */
+/* Returns true if a ball is beyond the lines of sight at one edge of a range of tiles. Works in the
+ * plane of z and of one axis; `at` is the ball's coordinate on that axis, and `pixel` is the first
+ * pixel beyond the edge. */
 static inline bool is_beyond(double at, double z, double radius, double pixel, double first,
                              double step, bool above)
 {
@@ -159,7 +165,7 @@ static inline bool is_beyond(double at, double z, double radius, double pixel, d
     return (above ? off : -off) > radius * (1 + fabs(line));
 }
 
-/* Whether it is beside all tiles of a perspective view. */
+/* Returns true if a ball is outside all tiles of a perspective view. */
 static bool is_beside(const RasterView *view, Vec3 middle, double radius)
 {
     const TileSpan *columns = &view->listed_columns, *rows = &view->listed_rows;
@@ -173,30 +179,31 @@ static bool is_beside(const RasterView *view, Vec3 middle, double radius)
 
 bool rasterreach_misses(const RasterView *view, Vec3 middle, Vec3 span, double radius)
 {
-    enum { FEW = 4 }; /* more are seldom all missed */
+    enum { FEW = 4 }; /* capsules near more samples are seldom missed by all of them */
     if (view->eye.perspective)
         return is_beside(view, middle, radius + vec3_length(span) / 2);
     SampleSpan columns = samples_about(middle.x, fabs(span.x) / 2 + radius, view->left, view->per_x,
-                                       view->stray, view->columns);
+                                       view->max_offset, view->columns);
     SampleSpan rows = samples_about(middle.y, fabs(span.y) / 2 + radius, view->top, view->per_y,
-                                    view->stray, view->rows);
+                                    view->max_offset, view->rows);
     int wide = columns.last - columns.first + 1, high = rows.last - rows.first + 1;
     if (wide <= 0 || high <= 0)
         return true;
-    return view->many && wide <= FEW && high <= FEW && wide * high <= FEW && view->stray == 0 &&
-           2 * radius < view->step_x &&
+    return view->many && wide <= FEW && high <= FEW && wide * high <= FEW &&
+           view->max_offset == 0 && 2 * radius < view->step_x &&
            samples_are_beside(view, columns, rows, middle, span, radius);
 }
 
 void rasterreach_set(const RasterView *view, RasterItem *item)
 {
-    TileSpan rows = NOWHERE, columns = NOWHERE;
+    TileSpan rows = NO_TILES, columns = NO_TILES;
     if (!is_behind(item)) {
         Interval across = whole_pixels(view, item, true), down = whole_pixels(view, item, false);
-        rows = tiles_common(tiles_within(down, view->stray, view->rows), view->listed_rows);
+        rows = tilespan_intersection(tilespan_of_samples(down, view->max_offset, view->rows),
+                                     view->listed_rows);
         columns = columns_of(view, across);
         if (columns.first > columns.last)
-            rows = NOWHERE;
+            rows = NO_TILES;
         if (view->light)
             item->box = RASTERBOX_GUARDS | parts_of(across, columns) | parts_of(down, rows) << 16;
     }
@@ -223,8 +230,8 @@ TileSpan rasterreach_in_row(const RasterView *view, const RasterItem *item, int 
     Interval range =
         view->eye.perspective ? perspective_range(item, slab) : parallel_range(item, slab);
     if (range.low > range.high)
-        return NOWHERE;
-    range = samples_within(range, view->left, view->per_x);
+        return NO_TILES;
+    range = interval_in_samples(range, view->left, view->per_x);
     columns = columns_of(view, range);
     if (view->light)
         *box = (*box & ~(RASTERBOX_HIGH_X | RASTERBOX_LOW_X)) | parts_of(range, columns);

@@ -1,5 +1,5 @@
-/* The tile engine of primitives. Shifted samples of antialiasing use the lists of the tiles of the
- * pixels, whose bins hold what any of the samples may see. */
+/* The tile engine of primitives. Shifted passes of antialiasing use the lists of the tiles of the
+ * centre samples. The bins therefore hold every item that any sample of a pixel may hit. */
 #include "render/raster/rasterrender.h"
 
 #include "render/light/resample.h"
@@ -52,7 +52,7 @@ static Status make_grids(const RenderParams *params, const RasterView *view, Ras
 
 static Status bin_raster(const Drawing *drawing, const SampleGrid *grid, void **bins, Err *err)
 {
-    (void)grid; /* of the pixels */
+    (void)grid; /* the grid of the centre samples: shifted passes use its tiles */
     Status status;
     const RenderParams *params = drawing->params;
     RasterView view =
@@ -84,17 +84,17 @@ static bool is_raster_listed(const void *bins, int column, int worker)
     return indexlists_length(&scene->rows[worker], (size_t)column) > 0;
 }
 
-/* Sets the tile of an image and its list. */
+/* Sets the position of a tile of the image and its list of items. */
 static void place_tile(const RasterScene *scene, int worker, BatchTile *tile)
 {
     RasterOwn *own = tile->own;
     const IndexLists *lists = &scene->rows[worker];
-    const int column = tile->seen.column / TILE_SIDE, row = tile->seen.row / TILE_SIDE;
+    const int column = tile->traced.column / TILE_SIDE, row = tile->traced.row / TILE_SIDE;
     const uint32_t first = lists->first[column];
     own->tile = rasterbins_tile(scene->bins, column, row, lists->items + first,
                                 lists->first[column + 1] - first, &scene->center);
-    tile->seen.middle_x = own->tile.x;
-    tile->seen.middle_y = own->tile.y;
+    tile->traced.middle_x = own->tile.x;
+    tile->traced.middle_y = own->tile.y;
     tile->depth_base = own->tile.z_middle;
 }
 
@@ -106,14 +106,14 @@ static Status trace_raster(void *bins, int worker, int shift, BatchTile *tile, E
     place_tile(scene, worker, tile);
     if (shift >= 0)
         own->tile.grid = &scene->shifted[shift];
-    tile->seen.x = own->tile.grid->x;
-    tile->seen.y = own->tile.grid->y;
-    tile->seen.hits = NULL;
+    tile->traced.x = own->tile.grid->x;
+    tile->traced.y = own->tile.grid->y;
+    tile->traced.hits = NULL;
     tile->items = own->hits.item;
     if (!scene->kernels->trace(&own->tile, &own->hits, &tile->hits))
         return STATUS_OK;
     scene->kernels->resolve(&own->tile, &own->hits, &tile->hits);
-    tile->seen.hits = &tile->hits;
+    tile->traced.hits = &tile->hits;
     return STATUS_OK;
 }
 
@@ -150,9 +150,9 @@ static Status prepare_raster(const Drawing *drawing, void **prepared, Err *err)
 }
 
 const Engine raster_engine = {.name = "raster",
-                              .makes_codes = true,
-                              .covers = true,
-                              .can = can_draw_raster,
+                              .writes_codes = true,
+                              .draws_thin = true,
+                              .supports = can_draw_raster,
                               .needs_rays = raster_needs_rays,
                               .prepare = prepare_raster,
                               .rows = tilerender_rows,

@@ -1,8 +1,10 @@
-/* The first primitive that a light sees on the way to a point shadows the point, unless it is what
- * the point lies on. So the kernels that find first hits also answer shadow queries: at points
- * instead of on a grid. The lists of a light view hold, beside the primitives, their boxes and
- * depths. Several boxes are compared with the points at once, so that few primitives are left to be
- * tested. Memory is prefetched for those, and for the list of the next tile. */
+/* A point is in shadow if the first primitive between the light and the point is not the primitive
+ * on which the point lies. The kernels that find first hits therefore also answer shadow queries,
+ * at arbitrary points instead of on a grid.
+ *
+ * The lists of a light view hold the primitives, their boxes and their depths. Several boxes are
+ * compared with the points at once, so that few primitives remain to be tested. Memory is
+ * prefetched for these primitives and for the list of the next tile. */
 #include "render/raster/rastershadow.h"
 
 #include "render/raster/rasterbins.h"
@@ -49,7 +51,7 @@ static RasterView view_of(const LightView *light)
                         .rows = light->tiles * TILE_SIDE,
                         .listed_columns = light->columns,
                         .listed_rows = light->rows,
-                        .stray = 0.5,
+                        .max_offset = 0.5,
                         .step_x = light->step_x,
                         .step_y = light->step_y,
                         .left = light->left,
@@ -65,7 +67,7 @@ static Status take_words(RowStore *store, size_t n, uint32_t **out)
 
 static Status list_boxes_of_row(size_t row, int worker, void *context, Err *err)
 {
-    (void)err; /* list_boxes says what memory is for */
+    (void)err; /* list_boxes reports the error */
     RasterLists *lists = context;
     RowStore *store = &lists->stores[worker];
     const RasterBins *bins = lists->bins;
@@ -105,7 +107,7 @@ static Status list_boxes(RasterLists *lists, Err *err)
     return STATUS_OK;
 }
 
-/* Aims for sixteen primitives per tile. */
+/* Aims for sixteen primitives per tile. A primitive counts in each tile that it touches. */
 static int tiles_for_primitives(const Drawing *drawing)
 {
     double side = sqrt((double)rasterbins_items(drawing->geometry)) / 3;
@@ -180,7 +182,7 @@ static Status test_by_cover(const LightBins *light, void *workspace, const TileQ
     return STATUS_OK;
 }
 
-const ShadowEngine raster_shadows = {.can = lightview_sees_all,
+const ShadowEngine raster_shadows = {.supports = lightview_sees_all,
                                      .tiles = tiles_for_primitives,
                                      .slack = slack_of_rounding,
                                      .bin = bin_primitives,

@@ -1,5 +1,5 @@
-/* Depths in single precision are relative to the middle of what is seen, and places in a tile to
- * the middle of the tile, so that both stay small. */
+/* In single precision, depths are relative to the middle of the geometry, and positions in a tile
+ * to the middle of the tile, so that both stay small. */
 #include "render/raster/rasterview.h"
 
 RasterView rasterview_of_camera(const Camera *camera, Box bounds, int antialias)
@@ -14,7 +14,7 @@ RasterView rasterview_of_camera(const Camera *camera, Box bounds, int antialias)
                         .step_y = -height / camera->height,
                         .columns = camera->width,
                         .rows = camera->height,
-                        .stray = antialias > 1 ? 0.5 : 0,
+                        .max_offset = antialias > 1 ? 0.5 : 0,
                         .z_middle = (near + far) / 2};
 }
 

@@ -1,4 +1,5 @@
-/* How the camera, or a light, looks at primitives: from where, and on which grid of pixels. */
+/* The view of a camera or of a light on primitives: its viewpoint, and the grid of pixels on which
+ * it is sampled. Tiles are numbered row by row from the upper left. All functions are pure. */
 #ifndef CORCAST_RENDER_RASTERVIEW_H
 #define CORCAST_RENDER_RASTERVIEW_H
 
@@ -7,31 +8,38 @@
 #include "render/tile/viewpoint.h"
 #include "scene/scene.h"
 
-/* Parallel lines of sight through a plane, or lines through one point, on a grid of pixels. */
+/* A viewpoint with a grid of pixels. Lines of sight are parallel, or pass through one point
+ * (perspective). */
 typedef struct RasterView {
     Viewpoint eye;
-    /* In the view's plane: mm in a parallel view, mm per mm of depth in perspective. */
-    double left, top;      /* the middle of the first pixel */
+    /* Positions in the view's plane: mm in a parallel view, mm per mm of depth in perspective. */
+    double left, top;      /* centre of the upper left pixel */
     double step_x, step_y; /* from one pixel to the next to the right (> 0) and below (< 0) */
     double per_x, per_y;   /* 1 / step, set by rasterbins_new */
-    int columns, rows;     /* pixels */
-    TileSpan listed_columns, listed_rows; /* of tiles: those whose lists are not left empty. All of
-                                           * a camera's, set by rasterbins_new; of a light's those
-                                           * that places lie in, set before */
-    double stray;    /* how far samples lie off the middles of their pixels, in pixels */
-    double z_middle; /* depths in single precision are relative to it, mm */
-    bool many; /* primitives, set by rasterbins_new: those that no sample sees are looked for */
-    const bool *hidden; /* per primitive: not seen; NULL: none is hidden. Borrowed. */
-    bool light;         /* of a light: its bins have boxes, and hulls instead of joints */
+    int columns, rows;     /* size of the grid, pixels */
+    TileSpan listed_columns, listed_rows; /* tiles that get lists. In a camera's view all tiles, set
+                                           * by rasterbins_new. In a light view the tiles in which
+                                           * querying points lie, set by the caller */
+    double max_offset; /* maximum distance of a sample from the centre of its pixel along x or y, in
+                        * pixels */
+    double z_middle;   /* depths in single precision are relative to this depth, mm */
+    bool many; /* true: the geometry is so large that it pays to find primitives that no sample can
+                * hit. Set by rasterbins_new */
+    const bool *hidden; /* per primitive: true if it is not drawn; NULL: none is hidden.
+                         * Borrowed. */
+    bool light;         /* this is a light view: its bins have boxes, and hulls instead of joints */
 } RasterView;
 
-/* That of a camera, for what is in `bounds`; `antialias` as in RenderParams. */
+/* Returns the view of a camera on the geometry in `bounds`. `antialias` is
+ * RenderParams.antialias. */
 RasterView rasterview_of_camera(const Camera *camera, Box bounds, int antialias);
 
-/* The line of sight at a point of the view's plane, its direction a unit vector. */
+/* Returns the line of sight at a point of the view's plane, in world coordinates. Its direction is
+ * a unit vector. */
 Ray rasterview_ray(const RasterView *view, double x, double y);
 
-/* Where the samples of a tile are if each lies (x, y) pixels off the middle of its pixel. */
+/* Returns the sample positions of a tile if each sample is (x, y) pixels from the centre of its
+ * pixel. */
 RasterGrid rastergrid_make(const RasterView *view, double x, double y);
 
 #endif

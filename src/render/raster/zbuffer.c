@@ -1,11 +1,10 @@
-/* Every surface is covered with points a quarter of a pixel apart in both of its directions, at
- * the scale of the pixel where the primitive is nearest to the camera. Each point of the surface
- * has one of them within half the diagonal of a cell, 0.177 pixels, and a projection brings them
- * no farther apart. So a point that falls within that distance of a pixel's middle is kept if it
- * is the nearest to the camera there, others are not looked at: where a surface covers the
- * middle of a pixel the pixel has a point of it, and outlines are right to 0.177 pixels.
- *
- * A row of tiles is the unit of work, with a depth buffer of its own. */
+/* Every surface is covered with points a quarter of a pixel apart in both directions, at the scale
+ * of the pixel where the primitive is nearest to the camera. Each point of the surface is within
+ * half the diagonal of a cell, 0.177 pixels, of a sampled point, and projection does not increase
+ * this distance. Only sampled points within 0.177 pixels of a pixel's centre are used, and the
+ * nearest to the camera is kept. Where a surface covers the centre of a pixel, the pixel therefore
+ * has a point of it, and outlines are right to 0.177 pixels. A row of tiles is the unit of work,
+ * with its own depth buffer. */
 #include "render/raster/zbuffer.h"
 
 #include "render/light/raycolor.h"
@@ -166,8 +165,8 @@ static void draw_primitive(const ZBuffers *buffers, const RasterItem *item, ZBru
         pixel *= item_nearest(item) / (1 + view->left * view->left + view->top * view->top);
     brush->apart = pixel * pixels_apart;
     brush->primitive = item->primitive;
-    Vec3 a = viewpoint_place(&view->eye, primitive->a);
-    Vec3 b = viewpoint_place(&view->eye, primitive->b);
+    Vec3 a = viewpoint_frame_point(&view->eye, primitive->a);
+    Vec3 b = viewpoint_frame_point(&view->eye, primitive->b);
     if (primitive->kind == PRIMITIVE_CYLINDER) {
         draw_cylinder(brush, a, b, primitive->radius_mm);
         if (primitive->round_a)
@@ -179,10 +178,10 @@ static void draw_primitive(const ZBuffers *buffers, const RasterItem *item, ZBru
     } else {
         JointFrame joint = primitive_joint(primitive);
         joint.base = a;
-        joint.span = viewpoint_to_frame(&view->eye, joint.span);
-        joint.side = viewpoint_to_frame(&view->eye, joint.side);
-        joint.across = viewpoint_to_frame(&view->eye, joint.across);
-        joint.across_change = viewpoint_to_frame(&view->eye, joint.across_change);
+        joint.span = viewpoint_frame_direction(&view->eye, joint.span);
+        joint.side = viewpoint_frame_direction(&view->eye, joint.side);
+        joint.across = viewpoint_frame_direction(&view->eye, joint.across);
+        joint.across_change = viewpoint_frame_direction(&view->eye, joint.across_change);
         draw_joint(brush, &joint);
     }
 }
@@ -198,7 +197,7 @@ static void finish_pixel(const ZBuffers *buffers, const ZPoint *point, int i, in
     Surfel surfel;
     planes_store_nothing(buffers->frame, pixel, 1);
     if (seen) {
-        Vec3 normal = viewpoint_to_world(&view->eye, point->normal);
+        Vec3 normal = viewpoint_world_direction(&view->eye, point->normal);
         bool away = vec3_dot(normal, ray.direction) > 0;
         surfel = (Surfel){.t = point->z / vec3_dot(ray.direction, view->eye.axes[2]),
                           .normal = away ? vec3_scale(normal, -1) : normal,
@@ -293,7 +292,7 @@ static bool zbuffer_needs_rays(const Drawing *drawing)
 }
 
 const Engine zbuffer_engine = {.name = "zbuffer",
-                               .can = can_draw_zbuffer,
+                               .supports = can_draw_zbuffer,
                                .needs_rays = zbuffer_needs_rays,
                                .prepare = prepare_zbuffer,
                                .rows = draw_zbuffer,

@@ -1,12 +1,12 @@
-/* Pictures of primitives by sampled surfaces and a depth buffer, as the paper draws them [N,
- * section 3]. */
+/* The engine that draws primitives by sampling their surfaces into a depth buffer, as the paper
+ * does [N, section 3]. */
 #ifndef CORCAST_RENDER_ZBUFFER_H
 #define CORCAST_RENDER_ZBUFFER_H
 
 #include "render/engine.h"
 
-/* Draws what RENDER_ZBUFFER asks for: one sample a pixel, without shadows. Cannot prepare a view
- * from among the vessels. */
+/* Used for RENDER_ZBUFFER. Takes one sample per pixel and draws no shadows. `prepare` returns
+ * STATUS_USAGE for a camera among the vessels. */
 extern const Engine zbuffer_engine;
 
 #endif

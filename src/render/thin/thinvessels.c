@@ -20,8 +20,8 @@
 
 enum { SHADED = 5, ROWS = 8 };
 static const double piece_px = 1.5;
-/* Height of shading points above the wall, in radii: less than a sample can tell, more than
- * rounding. */
+/* Height of shading points above the vessel's surface, in radii: less than a sample can resolve,
+ * more than rounding. */
 static const double lift = 0.25;
 
 /* ---- which are thin -------------------------------------------------------------------------- */
@@ -51,7 +51,7 @@ static ThinVessel vessel_at(const Geometry *geometry, size_t i)
     return (ThinVessel){s->a, s->b, s->radius_mm, s->radius_mm, s->segment, true};
 }
 
-/* The part of a vessel between two places, 0..1 from its first end. */
+/* Returns the part of a vessel between two positions, 0..1 from its first end. */
 static ThinVessel vessel_part(const ThinVessel *vessel, double from, double to)
 {
     Vec3 span = vec3_sub(vessel->b, vessel->a);
@@ -99,12 +99,12 @@ static void clip_above(double a, double b, double *from, double *to)
         *to = fmin(*to, a / (a - b));
 }
 
-/* Cuts [*from, *to] of a vessel down to what lies in front of an orthographic camera. */
+/* Clips the range [*from, *to] of a vessel to the part in front of an orthographic camera. */
 static void clip_at_camera(const ThinVessel *vessel, const Camera *camera, double *from, double *to)
 {
     if (camera->projection == PROJECTION_ORTHOGRAPHIC)
-        clip_above(camera_point(camera, vessel->a).depth_mm - NEAREST_SEEN_MM,
-                   camera_point(camera, vessel->b).depth_mm - NEAREST_SEEN_MM, from, to);
+        clip_above(camera_point(camera, vessel->a).depth_mm - NEAREST_VISIBLE_MM,
+                   camera_point(camera, vessel->b).depth_mm - NEAREST_VISIBLE_MM, from, to);
 }
 
 static double depth_along_view(const Camera *camera, Vec3 point)
@@ -125,7 +125,7 @@ static bool make_strip(const ThinSearch *search, uint32_t number, ThinStrip *str
     const ThinVessel vessel = vessel_part(&whole, near, far);
     const CameraPoint a = camera_point(camera, vessel.a), b = camera_point(camera, vessel.b);
     const double width =
-        fmax(vessel.radius_a * a.per_mm + vessel.radius_b * b.per_mm, search->widths.least_px);
+        fmax(vessel.radius_a * a.per_mm + vessel.radius_b * b.per_mm, search->widths.min_width_px);
     const double margin = width + 1; /* so that clipped ends are in no cell */
     const double z[2] = {depth_along_view(camera, vessel.a) - vessel.radius_a,
                          depth_along_view(camera, vessel.b) - vessel.radius_b};
@@ -167,7 +167,7 @@ static Status search_chunk(size_t chunk, int worker, void *context, Err *err)
         const ThinVessel vessel = vessel_at(search->thin->whole, i);
         ThinStrip strip;
         is_thin[i] = widest(&vessel, search->camera) <
-                     fmax(search->widths.below_px, search->widths.least_px);
+                     fmax(search->widths.below_px, search->widths.min_width_px);
         if (is_thin[i] && vessel.has_length && make_strip(search, (uint32_t)i, &strip))
             TRY(ARRAY_PUSH(&search->found[chunk], "thin vessels", err, strip));
     }
@@ -276,7 +276,7 @@ void thinvessels_release(ThinVessels *thin)
     thinlayer_release(&thin->layer);
     offpixel_release(&thin->lights);
     free(thin->piece_strips);
-    free(thin->open);
+    free(thin->ambient);
     *thin = (ThinVessels){0};
 }
 
@@ -347,12 +347,12 @@ static Vec3 above_wall(const ThinWall *wall, Vec3 normal)
 static Vec3 lit_point(const void *context, const Light *light, size_t piece)
 {
     const ThinWall wall = wall_of(context, piece);
-    Vec3 towards = light_way(light, wall.middle).towards;
+    Vec3 towards = light_direction(light, wall.middle).towards;
     Vec3 across = vec3_add_scaled(towards, wall.axis, -vec3_dot(towards, wall.axis));
     return above_wall(&wall, vec3_length(across) > 1e-6 ? vec3_normalized(across) : wall.front);
 }
 
-void thinvessels_place(ThinVessels *thin)
+void thinvessels_init_lights(ThinVessels *thin)
 {
     offpixel_release(&thin->lights);
     thin->lights = (OffPixelPoints){.n = thin->layer.n_pieces, .at = lit_point, .context = thin};
@@ -400,8 +400,8 @@ static Status make_picture(const Drawing *drawing, const ThinVessels *thin, cons
     return STATUS_OK;
 }
 
-Status thinvessels_find_open(const Drawing *drawing, const OccluderSet *beams, ThinVessels *thin,
-                             Err *err)
+Status thinvessels_find_ambient(const Drawing *drawing, const OccluderSet *occluders,
+                                ThinVessels *thin, Err *err)
 {
     PixelVisibility *light = NULL;
     uint32_t *columns = NULL;
@@ -411,13 +411,14 @@ Status thinvessels_find_open(const Drawing *drawing, const OccluderSet *beams, T
     TRY_GOTO(place_pieces(thin, &columns, &width, err));
     light->width = (int)width;
     light->rows = light->samples_per_side = 1;
-    light->origin = beams->origin;
+    light->origin = occluders->origin;
     TRY_GOTO(make_picture(drawing, thin, columns, light, err));
-    TRY_GOTO(occlusion_compute(drawing, beams, light, err));
-    free(thin->open);
-    TRY_GOTO(mem_calloc(&thin->open, thin->layer.n_pieces, sizeof *thin->open, "occlusion", err));
+    TRY_GOTO(occlusion_compute(drawing, occluders, light, err));
+    free(thin->ambient);
+    TRY_GOTO(
+        mem_calloc(&thin->ambient, thin->layer.n_pieces, sizeof *thin->ambient, "occlusion", err));
     for (size_t piece = 0; piece < thin->layer.n_pieces; piece++)
-        thin->open[piece] = light->ambient[columns[piece]];
+        thin->ambient[piece] = light->ambient[columns[piece]];
 done:
     pixelvisibility_free(light);
     free(columns);
@@ -426,23 +427,23 @@ done:
 
 /* ---- colors --------------------------------------------------------------------------------- */
 
-/* Sets the visibility of each light at a piece; below 0 of lights that cast no shadows. */
-static void find_parts(const ThinVessels *thin, const View *view, size_t piece,
-                       float parts[VIEW_MAX_LIGHTS])
+/* Sets the visibility of each light at a piece, 0..1; -1 for a light that casts no shadows. */
+static void find_light_visibility(const ThinVessels *thin, const View *view, size_t piece,
+                                  float light_visibility[VIEW_MAX_LIGHTS])
 {
     for (size_t i = 0; i < view->n_lights; i++)
-        parts[i] = thin->lights.n_visible[i] ? (float)thin->lights.n_visible[i][piece] /
-                                                   (float)light_points(&view->lights[i])
-                                             : -1;
+        light_visibility[i] = thin->lights.n_visible[i] ? (float)thin->lights.n_visible[i][piece] /
+                                                              (float)light_points(&view->lights[i])
+                                                        : -1;
 }
 
-/* The mean color of the visible half of a piece's wall. */
+/* Returns the mean color of the visible half of a piece's surface. */
 static Rgb wall_color(const Drawing *drawing, const ThinVessels *thin, const ThinWall *wall,
                       size_t piece)
 {
-    float parts[VIEW_MAX_LIGHTS];
+    float light_visibility[VIEW_MAX_LIGHTS];
     Rgb sum = {0};
-    find_parts(thin, drawing->view, piece, parts);
+    find_light_visibility(thin, drawing->view, piece, light_visibility);
     for (int k = 0; k < SHADED; k++) {
         double across = (2 * k + 1.0) / SHADED - 1;
         Vec3 normal =
@@ -452,8 +453,8 @@ static Rgb wall_color(const Drawing *drawing, const ThinVessels *thin, const Thi
                                  .point = vec3_add_scaled(wall->middle, normal, wall->radius),
                                  .normal = normal,
                                  .direction = wall->direction,
-                                 .open = thin->open ? (double)thin->open[piece] : 1,
-                                 .parts = parts};
+                                 .ambient = thin->ambient ? (double)thin->ambient[piece] : 1,
+                                 .light_visibility = light_visibility};
         Rgb one = shade(drawing->view, &at, NULL, NULL);
         sum = (Rgb){sum.r + one.r / SHADED, sum.g + one.g / SHADED, sum.b + one.b / SHADED};
     }
@@ -478,7 +479,7 @@ typedef struct ThinJob {
     ThinCells *cells; /* per worker; owned */
 } ThinJob;
 
-/* Whether the strip may touch the rows of a band. */
+/* Returns true if the strip may touch the rows of a band. */
 static bool touches_band(const ThinStrip *strip, const Band *band)
 {
     float top = (float)(band->first - TILE_SIDE) - strip->width;

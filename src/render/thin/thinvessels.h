@@ -1,5 +1,12 @@
-/* Draws thin vessels: those that are narrower than the spacing of samples. A thin vessel
- * contributes to a pixel in proportion to the area that it covers [render/tile/thincells.h]. */
+/* Draws thin vessels: vessels that are narrower than the spacing of samples, so that samples would
+ * miss them. A thin vessel is projected to a strip [thincells.h] and cut into pieces of one color
+ * each. It contributes to a pixel in proportion to the area that it covers.
+ *
+ *     TRY(thinvessels_find(&geometry, &camera, widths, threads, &thin, err));
+ *     TRY(thinvessels_find_ambient(&drawing, &occluders, &thin, err));     if occlusion is on
+ *     thinvessels_color(&drawing, &thin);
+ *     TRY(thinvessels_draw(&drawing, &thin, &frame, err));
+ *     thinvessels_release(&thin); */
 #ifndef CORCAST_RENDER_THINVESSELS_H
 #define CORCAST_RENDER_THINVESSELS_H
 
@@ -13,16 +20,18 @@
 typedef struct ThinVessels {
     const Geometry *whole;  /* borrowed */
     Camera camera;          /* a copy of the caller's camera */
-    ThinLayer layer;        /* has no colors before thinvessels_color */
+    ThinLayer layer;        /* the strips; `colors` are set by thinvessels_color */
     uint32_t *piece_strips; /* per piece: index of its strip; owned */
-    OffPixelPoints lights;  /* shading points of the pieces; no lights before offpixel_init */
-    float *open;            /* per piece: ambient visibility, 0 to 1; owned. NULL: all are 1. */
+    OffPixelPoints lights;  /* shading points of the pieces; set by thinvessels_init_lights, then by
+                             * offpixel_init */
+    float *ambient;         /* per piece: ambient visibility, 0 to 1; owned. NULL: all are 1. */
 } ThinVessels;
 
 /* Widths on the picture, pixels. */
 typedef struct ThinWidths {
-    double below_px; /* narrower vessels are thin */
-    double least_px; /* so are these, and are drawn this wide; 0: at their true widths */
+    double below_px;     /* vessels narrower than this are thin */
+    double min_width_px; /* vessels narrower than this are thin, too, and are drawn this wide; 0:
+                          * drawn at their true widths */
 } ThinWidths;
 
 /* Finds the vessels that are narrower than one of the two widths in this view. Triangles are never
@@ -36,20 +45,22 @@ MUST_CHECK Status thinvessels_find(const Geometry *whole, const Camera *camera, 
                                    int threads, ThinVessels *thin, Err *err);
 void thinvessels_release(ThinVessels *thin);
 
-/* Finds the ambient visibility of the pieces, by `drawing->params->occlusion` occlusion directions.
- * Errors   STATUS_MEMORY. */
-MUST_CHECK Status thinvessels_find_open(const Drawing *drawing, const OccluderSet *beams,
-                                        ThinVessels *thin, Err *err);
+/* Sets thin->ambient: the ambient visibility of each piece, from `drawing->params->occlusion`
+ * occlusion directions. `occluders` block ambient light. Errors: STATUS_MEMORY. */
+MUST_CHECK Status thinvessels_find_ambient(const Drawing *drawing, const OccluderSet *occluders,
+                                           ThinVessels *thin, Err *err);
 
 /* Sets the colors of pieces whose strips may touch the drawing's band. Uses thin->lights and
- * thin->open as they are now. */
+ * thin->ambient as they are now. */
 void thinvessels_color(const Drawing *drawing, const ThinVessels *thin);
 
-/* Points thin->lights to the shading points of the pieces; it has no lights yet. */
-void thinvessels_place(ThinVessels *thin);
+/* Sets thin->lights to the shading points of the pieces. Call offpixel_init afterwards to add the
+ * lights. */
+void thinvessels_init_lights(ThinVessels *thin);
 
-/* Draws the vessels over the colors of a frame that has depths along the rays. The frame has the
- * drawing's band, one sample per pixel. Errors: STATUS_MEMORY. */
+/* Draws the vessels over the colors of a frame. The frame must have a depth plane, with depths
+ * along the rays, and the rows of the drawing's band, one sample per pixel. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status thinvessels_draw(const Drawing *drawing, const ThinVessels *thin, Frame *frame,
                                    Err *err);
 

@@ -1,7 +1,6 @@
-/* Tiles come row by row, and in a row from left to right, and only those that may see something:
- * what lies between them is filled row of pixels by row of pixels, so that a pixel is written once.
- * A worker that fails draws nothing any more, and its error is returned when all others are done.
- */
+/* Tiles come row by row, and from left to right in a row. Only tiles that may have hits are drawn;
+ * the pixels between them are filled row by row, so that a pixel is written once. If a worker
+ * fails, it draws nothing more, and its error is returned when all others are done. */
 #include "render/tile/canvas.h"
 
 #include "render/cast/caster.h"
@@ -16,10 +15,10 @@ TileLook tilelook_of(const View *view, const Finish *finish, const Viewpoint *ey
     TileLook look = {.finish = *finish, .n_lights = view->n_lights};
     for (size_t i = 0; i < view->n_lights; i++) {
         const Light *light = &view->lights[i];
-        Vec3 v =
-            light->parallel
-                ? viewpoint_to_frame(eye, vec3_normalized(vec3_sub(light->location, light->target)))
-                : viewpoint_place(eye, light->location);
+        Vec3 v = light->parallel
+                     ? viewpoint_frame_direction(
+                           eye, vec3_normalized(vec3_sub(light->location, light->target)))
+                     : viewpoint_frame_point(eye, light->location);
         look.lights[i] = (TileLight){.towards = {(float)v.x, (float)v.y, (float)v.z},
                                      .color = {light->color.r, light->color.g, light->color.b},
                                      .parallel = light->parallel};
@@ -27,8 +26,8 @@ TileLook tilelook_of(const View *view, const Finish *finish, const Viewpoint *ey
     return look;
 }
 
-/* Whether shading needs the places of points, not their normals alone. */
-static bool needs_places(const View *view)
+/* Returns true if shading needs the positions of points, and not only their normals. */
+static bool needs_points(const View *view)
 {
     bool needs = view->camera.projection == PROJECTION_PERSPECTIVE;
     for (size_t i = 0; i < view->n_lights; i++)
@@ -36,7 +35,7 @@ static bool needs_places(const View *view)
     return needs;
 }
 
-/* A surface of one color, seen along the view. */
+/* Initialises a surface of one color whose camera rays are all parallel to the view. */
 static void begin_surface(Rgb color, TileSurface *surface)
 {
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
@@ -47,19 +46,19 @@ static void begin_surface(Rgb color, TileSurface *surface)
     }
 }
 
-/* Lets the worker's surfaces have what samples share. */
+/* Connects the worker's surfaces to its arrays of shared visibility. */
 static void share_surfaces(const PixelVisibility *visibility, CanvasWorker *own)
 {
     TileSurface *surfaces[] = {&own->surface, &own->ground};
     for (int i = 0; visibility && i < 2; i++) {
-        surfaces[i]->open = own->open;
-        surfaces[i]->parts = (const float(*)[TILE_SAMPLES])own->parts;
+        surfaces[i]->ambient = own->ambient;
+        surfaces[i]->light_visibility = (const float(*)[TILE_SAMPLES])own->light_visibility;
         for (int light = 0; light < VIEW_MAX_LIGHTS; light++)
             surfaces[i]->is_shared[light] = visibility->lights[light] != NULL;
     }
 }
 
-/* Fills a row with the mean of so many samples of the background, summed in float. */
+/* Fills a row with the mean of `samples` samples of the background, summed in float. */
 static void fill_row(const Canvas *canvas, int samples, float *row)
 {
     const Rgb color = canvas->drawing->view->background;
@@ -103,7 +102,7 @@ Status canvas_init(const Drawing *drawing, Frame *frame, const Viewpoint *eye, C
                  .more = resampling_for(frame->color.values ? params->antialias : 1),
                  .look = tilelook_of(drawing->view, &appearance->finish, eye),
                  .ground_look = tilelook_of(drawing->view, &drawing->view->ground.finish, eye),
-                 .needs_places = needs_places(drawing->view) || drawing->mean ||
+                 .needs_points = needs_points(drawing->view) || drawing->mean ||
                                  drawing->visibility || drawing->view->ground.present,
                  .wants_color = frame->color.values || frame->codes.codes8,
                  .wants_geometry = planes_want_geometry(frame)};
@@ -161,15 +160,15 @@ static Vec3 load_vec3(const float values[3][TILE_SAMPLES], int sample)
     return vec3((double)values[0][sample], (double)values[1][sample], (double)values[2][sample]);
 }
 
-static void set_pigments(const Canvas *canvas, const TracedTile *seen, TileSurface *surface)
+static void set_pigments(const Canvas *canvas, const TracedTile *traced, TileSurface *surface)
 {
-    const TileHits *hits = seen->hits;
+    const TileHits *hits = traced->hits;
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
-        if (hits->state[sample] != TILE_HIT || seen->ground >> sample & 1)
+        if (hits->state[sample] != TILE_HIT || traced->ground >> sample & 1)
             continue;
         Vec3 point = {0, 0, 0};
         if (canvas->drawing->mean)
-            point = viewpoint_point(&canvas->eye, tile_hit_point(seen, sample));
+            point = viewpoint_world_point(&canvas->eye, tile_hit_point(traced, sample));
         Rgb pigment = drawing_color(canvas->drawing, segment_of(canvas, hits, sample), point);
         surface->pigment[0][sample] = pigment.r;
         surface->pigment[1][sample] = pigment.g;
@@ -177,43 +176,45 @@ static void set_pigments(const Canvas *canvas, const TracedTile *seen, TileSurfa
     }
 }
 
-/* Points, and in perspective the directions towards them; parallel lines of sight never change. */
-static void set_places(const TracedTile *seen, TileSurface *surface)
+/* Sets the points of a surface and, in perspective, the directions of their camera rays. Parallel
+ * lines of sight never change. */
+static void set_places(const TracedTile *traced, TileSurface *surface)
 {
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
-        if (seen->hits->state[sample] != TILE_HIT)
+        if (traced->hits->state[sample] != TILE_HIT)
             continue;
-        Vec3 through = tile_line(seen, sample);
-        store_vec3(surface->point, sample, tile_hit_point(seen, sample));
-        if (seen->perspective)
+        Vec3 through = tile_line(traced, sample);
+        store_vec3(surface->point, sample, tile_hit_point(traced, sample));
+        if (traced->perspective)
             store_vec3(surface->direction, sample, vec3_normalized(through));
     }
 }
 
 /* The pixel that a sample shares the light of. `per` are pixels across and down per unit of the
  * view's plane. */
-static uint32_t shared_pixel(const Canvas *canvas, const TracedTile *seen, int sample,
+static uint32_t shared_pixel(const Canvas *canvas, const TracedTile *traced, int sample,
                              const double per[2])
 {
     const PixelVisibility *visibility = canvas->drawing->visibility;
     const Camera *camera = &canvas->drawing->view->camera;
-    Vec3 line = tile_line(seen, sample), normal = load_vec3(seen->hits->normal, sample);
-    double away = seen->perspective ? vec3_dot(normal, line) : normal.z;
+    Vec3 line = tile_line(traced, sample), normal = load_vec3(traced->hits->normal, sample);
+    double away = traced->perspective ? vec3_dot(normal, line) : normal.z;
     ShadingPoint place = pixelvisibility_point(
-        visibility, seen->ground >> sample & 1 ? SURFACE_GROUND : SURFACE_VESSEL,
-        viewpoint_point(&canvas->eye, tile_hit_point(seen, sample)),
-        viewpoint_to_world(&canvas->eye, away > 0 ? vec3_scale(normal, -1) : normal),
-        pixelvisibility_pixel_mm(camera, seen->hits->z[sample]));
+        visibility, traced->ground >> sample & 1 ? SURFACE_GROUND : SURFACE_VESSEL,
+        viewpoint_world_point(&canvas->eye, tile_hit_point(traced, sample)),
+        viewpoint_world_direction(&canvas->eye, away > 0 ? vec3_scale(normal, -1) : normal),
+        pixelvisibility_pixel_mm(camera, traced->hits->z[sample]));
     return pixelvisibility_pixel(visibility, line.x * per[0] + (camera->width - 1) / 2.0,
                                  (camera->height - 1) / 2.0 - line.y * per[1], &place);
 }
 
-/* Asks memory for what the pixels of a tile to come share: of each of its rows that is little. */
-static void fetch_shared(const Canvas *canvas, const TracedTile *seen)
+/* Prefetches the shared visibility of a later tile's pixels: a small part of each of its rows. */
+static void fetch_shared(const Canvas *canvas, const TracedTile *traced)
 {
     const PixelVisibility *visibility = canvas->drawing->visibility;
-    const int column = seen->column + 2 * TILE_SIDE;
-    for (int row = seen->row; column < visibility->width && row < seen->row + seen->n_rows; row++) {
+    const int column = traced->column + 2 * TILE_SIDE;
+    for (int row = traced->row; column < visibility->width && row < traced->row + traced->n_rows;
+         row++) {
         size_t pixel =
             (size_t)(row - visibility->first_row) * (size_t)visibility->width + (size_t)column;
         __builtin_prefetch(&visibility->point_index[pixel]);
@@ -227,7 +228,7 @@ static void fetch_shared(const Canvas *canvas, const TracedTile *seen)
 
 /* The parts of light that samples share with their pixels, whose centres they are where there is
  * one a pixel. */
-static void set_shared(const Canvas *canvas, const TracedTile *seen, CanvasWorker *own)
+static void set_shared(const Canvas *canvas, const TracedTile *traced, CanvasWorker *own)
 {
     const PixelVisibility *visibility = canvas->drawing->visibility;
     const Camera *camera = &canvas->drawing->view->camera;
@@ -235,95 +236,95 @@ static void set_shared(const Canvas *canvas, const TracedTile *seen, CanvasWorke
                            camera->height / vec3_length(camera->up)};
     bool centers = canvas->more.side == 0 && visibility->samples_per_side == 1;
     if (centers)
-        fetch_shared(canvas, seen);
+        fetch_shared(canvas, traced);
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
-        if (seen->hits->state[sample] != TILE_HIT)
+        if (traced->hits->state[sample] != TILE_HIT)
             continue;
         uint32_t pixel = NO_HIT;
         if (centers)
-            pixel = pixelvisibility_at(visibility, seen->column + tile_sample_x(sample),
-                                       seen->row + tile_sample_y(sample));
+            pixel = pixelvisibility_at(visibility, traced->column + tile_sample_x(sample),
+                                       traced->row + tile_sample_y(sample));
         if (pixel == NO_HIT)
-            pixel = shared_pixel(canvas, seen, sample, per);
-        own->open[sample] = pixelvisibility_ambient(visibility, pixel);
+            pixel = shared_pixel(canvas, traced, sample, per);
+        own->ambient[sample] = pixelvisibility_ambient(visibility, pixel);
         for (size_t i = 0; i < canvas->look.n_lights; i++)
             if (visibility->lights[i])
-                own->parts[i][sample] = pixelvisibility_light(visibility, i, pixel);
+                own->light_visibility[i][sample] = pixelvisibility_light(visibility, i, pixel);
     }
 }
 
-void canvas_trace_ground(const Canvas *canvas, TracedTile *seen, TileHits *hits)
+void canvas_trace_ground(const Canvas *canvas, TracedTile *traced, TileHits *hits)
 {
     const Ground *ground = &canvas->drawing->view->ground;
-    Vec3 n = viewpoint_to_frame(&canvas->eye, ground->normal);
+    Vec3 n = viewpoint_frame_direction(&canvas->eye, ground->normal);
     double offset = ground->offset_mm - vec3_dot(ground->normal, canvas->eye.location);
-    if (!seen->hits)
+    if (!traced->hits)
         memset(hits->state, TILE_MISS, sizeof hits->state);
-    seen->ground = 0;
+    traced->ground = 0;
     for (int sample = 0; ground->present && sample < TILE_SAMPLES; sample++) {
-        Vec3 line = tile_line(seen, sample);
+        Vec3 line = tile_line(traced, sample);
         double across = n.x * line.x + n.y * line.y;
-        double z = seen->perspective ? offset / (across + n.z) : (offset - across) / n.z;
+        double z = traced->perspective ? offset / (across + n.z) : (offset - across) / n.z;
         bool before = hits->state[sample] == TILE_HIT && hits->z[sample] <= z;
-        if (!(z >= NEAREST_SEEN_MM) || !isfinite(z) || before)
+        if (!(z >= NEAREST_VISIBLE_MM) || !isfinite(z) || before)
             continue;
-        double away = seen->perspective ? across + n.z : n.z;
+        double away = traced->perspective ? across + n.z : n.z;
         store_vec3(hits->normal, sample, away > 0 ? vec3_scale(n, -1) : n);
         hits->z[sample] = z;
         hits->state[sample] = TILE_HIT;
-        seen->ground |= (uint64_t)1 << sample;
+        traced->ground |= (uint64_t)1 << sample;
     }
-    if (seen->ground)
-        seen->hits = hits;
+    if (traced->ground)
+        traced->hits = hits;
 }
 
-/* Gives the samples that see the ground its colors. */
-static void shade_ground(const Canvas *canvas, const TracedTile *seen,
+/* Shades the samples that hit the ground. */
+static void shade_ground(const Canvas *canvas, const TracedTile *traced,
                          const uint8_t (*shadowed)[TILE_SAMPLES], CanvasWorker *own)
 {
     float color[3][TILE_SAMPLES];
-    own->ground.hits = seen->hits;
+    own->ground.hits = traced->hits;
     own->ground.shadowed = shadowed;
-    if (canvas->needs_places)
-        set_places(seen, &own->ground);
+    if (canvas->needs_points)
+        set_places(traced, &own->ground);
     canvas->kernels->shade(&canvas->ground_look, &own->ground, color);
-    for (uint64_t left = seen->ground; left; left &= left - 1)
+    for (uint64_t left = traced->ground; left; left &= left - 1)
         for (int c = 0, sample = __builtin_ctzll(left); c < 3; c++)
             own->color[c][sample] = color[c][sample];
 }
 
-float (*canvas_shade(const Canvas *canvas, int worker, const TracedTile *seen,
+float (*canvas_shade(const Canvas *canvas, int worker, const TracedTile *traced,
                      const uint8_t (*shadowed)[TILE_SAMPLES]))[TILE_SAMPLES]
 {
     CanvasWorker *own = &canvas->each[worker];
-    own->surface.hits = seen->hits;
+    own->surface.hits = traced->hits;
     own->surface.shadowed = shadowed;
     if (canvas->drawing->appearance->colors)
-        set_pigments(canvas, seen, &own->surface);
-    if (canvas->needs_places)
-        set_places(seen, &own->surface);
+        set_pigments(canvas, traced, &own->surface);
+    if (canvas->needs_points)
+        set_places(traced, &own->surface);
     if (canvas->drawing->visibility)
-        set_shared(canvas, seen, own);
+        set_shared(canvas, traced, own);
     canvas->kernels->shade(&canvas->look, &own->surface, own->color);
-    if (seen->ground)
-        shade_ground(canvas, seen, shadowed, own);
+    if (traced->ground)
+        shade_ground(canvas, traced, shadowed, own);
     if (canvas->frame->color.values)
-        canvas->kernels->clear(seen->hits->state, canvas->background, own->color);
+        canvas->kernels->clear(traced->hits->state, canvas->background, own->color);
     return own->color;
 }
 
 /* Draws the thin vessels of a cell over a sample. */
-static void cover_sample(const TracedTile *seen, ThinCells *cells, int column, int row, int sample,
-                         float color[3][TILE_SAMPLES])
+static void cover_sample(const TracedTile *traced, ThinCells *cells, int column, int row,
+                         int sample, float color[3][TILE_SAMPLES])
 {
-    const bool hit = seen->hits && seen->hits->state[sample] == TILE_HIT;
+    const bool hit = traced->hits && traced->hits->state[sample] == TILE_HIT;
     float over[3] = {color[0][sample], color[1][sample], color[2][sample]};
-    thincells_over(cells, column, row, hit ? (float)seen->hits->z[sample] : HUGE_VALF, over);
+    thincells_over(cells, column, row, hit ? (float)traced->hits->z[sample] : HUGE_VALF, over);
     for (int c = 0; c < 3; c++)
         color[c][sample] = over[c];
 }
 
-float (*canvas_cover(const Canvas *canvas, int worker, const TracedTile *seen, ThinCells *cells,
+float (*canvas_cover(const Canvas *canvas, int worker, const TracedTile *traced, ThinCells *cells,
                      int x, int y, float (*color)[TILE_SAMPLES]))[TILE_SAMPLES]
 {
     CanvasWorker *own = &canvas->each[worker];
@@ -336,7 +337,7 @@ float (*canvas_cover(const Canvas *canvas, int worker, const TracedTile *seen, T
     for (int j = 0; j < TILE_SIDE; j++)
         for (int i = 0; i < TILE_SIDE; i++)
             if (!thincells_are_empty(cells, i * step + x, j * step + y))
-                cover_sample(seen, cells, i * step + x, j * step + y, tile_sample_at(i, j),
+                cover_sample(traced, cells, i * step + x, j * step + y, tile_sample_at(i, j),
                              own->color);
     return own->color;
 }
@@ -359,37 +360,37 @@ void canvas_store(const Canvas *canvas, int columns, int rows, float color[3][TI
                n * sizeof *pixels);
 }
 
-static void store_codes(const Canvas *canvas, const TracedTile *seen, float color[3][TILE_SAMPLES],
-                        uint8_t *pixels, size_t stride)
+static void store_codes(const Canvas *canvas, const TracedTile *traced,
+                        float color[3][TILE_SAMPLES], uint8_t *pixels, size_t stride)
 {
-    const uint8_t *state = canvas->wholly_colored ? NULL : seen->hits->state;
+    const uint8_t *state = canvas->wholly_colored ? NULL : traced->hits->state;
     uint8_t whole[TILE_SIDE][3 * TILE_SIDE];
-    bool is_whole = seen->n_columns == TILE_SIDE && seen->n_rows == TILE_SIDE;
+    bool is_whole = traced->n_columns == TILE_SIDE && traced->n_rows == TILE_SIDE;
     canvas->kernels->encode(&canvas->codes, color, state, canvas->background_codes,
                             is_whole ? pixels : whole[0], is_whole ? stride : sizeof whole[0]);
-    for (int row = 0; row < seen->n_rows && !is_whole; row++)
-        memcpy(pixels + (size_t)row * stride, whole[row], 3 * (size_t)seen->n_columns);
+    for (int row = 0; row < traced->n_rows && !is_whole; row++)
+        memcpy(pixels + (size_t)row * stride, whole[row], 3 * (size_t)traced->n_columns);
 }
 
-/* Stores what is seen of geometry in a tile. */
-static void store_geometry(const Canvas *canvas, const TracedTile *seen)
+/* Stores the geometry planes of a tile. */
+static void store_geometry(const Canvas *canvas, const TracedTile *traced)
 {
-    const TileHits *hits = seen->hits;
-    for (int j = 0; j < seen->n_rows; j++) {
-        size_t first = canvas_pixel(canvas, seen->column, seen->row + j);
-        planes_store_nothing(canvas->frame, first, (size_t)seen->n_columns);
-        for (int i = 0; i < seen->n_columns && hits; i++) {
+    const TileHits *hits = traced->hits;
+    for (int j = 0; j < traced->n_rows; j++) {
+        size_t first = canvas_pixel(canvas, traced->column, traced->row + j);
+        planes_store_nothing(canvas->frame, first, (size_t)traced->n_columns);
+        for (int i = 0; i < traced->n_columns && hits; i++) {
             int sample = tile_sample_at(i, j);
-            if (hits->state[sample] != TILE_HIT || seen->ground >> sample & 1)
+            if (hits->state[sample] != TILE_HIT || traced->ground >> sample & 1)
                 continue;
-            Vec3 normal = viewpoint_to_world(&canvas->eye, load_vec3(hits->normal, sample));
-            planes_store(canvas->frame, first + (size_t)i, tile_hit_distance(seen, sample), normal,
-                         canvas->drawing->geometry->ids[segment_of(canvas, hits, sample)]);
+            Vec3 normal = viewpoint_world_direction(&canvas->eye, load_vec3(hits->normal, sample));
+            planes_store(canvas->frame, first + (size_t)i, tile_hit_distance(traced, sample),
+                         normal, canvas->drawing->geometry->ids[segment_of(canvas, hits, sample)]);
         }
     }
 }
 
-/* Pixels, not of one tile alone, where nothing is seen. */
+/* A rectangle of pixels, which may cover several tiles, without hits. */
 static void store_nothing(const Canvas *canvas, const TracedTile *empty, const float *background)
 {
     const Frame *frame = canvas->frame;
@@ -425,27 +426,27 @@ static void blank_rows(const Canvas *canvas, CanvasWorker *own, int row)
     }
 }
 
-void canvas_draw(const Canvas *canvas, int worker, const TracedTile *seen,
+void canvas_draw(const Canvas *canvas, int worker, const TracedTile *traced,
                  float color[3][TILE_SAMPLES])
 {
     Frame *frame = canvas->frame;
     CanvasWorker *own = &canvas->each[worker];
     size_t width = 3 * (size_t)canvas->drawing->view->camera.width;
-    size_t first = 3 * canvas_pixel(canvas, seen->column, seen->row);
-    blank_rows(canvas, own, seen->row);
-    store_blank(canvas, own, seen->column, seen->row);
-    own->column = seen->column + seen->n_columns;
-    if (!seen->hits && !color) {
-        store_nothing(canvas, seen, canvas->background);
+    size_t first = 3 * canvas_pixel(canvas, traced->column, traced->row);
+    blank_rows(canvas, own, traced->row);
+    store_blank(canvas, own, traced->column, traced->row);
+    own->column = traced->column + traced->n_columns;
+    if (!traced->hits && !color) {
+        store_nothing(canvas, traced, canvas->background);
         return;
     }
     if (frame->color.values)
-        canvas_store(canvas, seen->n_columns, seen->n_rows, color, frame->color.values + first,
+        canvas_store(canvas, traced->n_columns, traced->n_rows, color, frame->color.values + first,
                      width);
     if (frame->codes.codes8)
-        store_codes(canvas, seen, color, frame->codes.codes8 + first, width);
+        store_codes(canvas, traced, color, frame->codes.codes8 + first, width);
     if (canvas->wants_geometry)
-        store_geometry(canvas, seen);
+        store_geometry(canvas, traced);
 }
 
 /* ---- passes ---------------------------------------------------------------------------------- */

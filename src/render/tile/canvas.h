@@ -1,5 +1,9 @@
-/* A band of a picture that is drawn tile by tile: shading, encoding and storing of tiles, the
- * passes of antialiasing, and the threads. Any engine may trace the tiles. */
+/* Draws a band of an image tile by tile: shades, encodes and stores tiles, runs the passes of
+ * antialiasing, and distributes rows of tiles to threads. The engine only traces the tiles:
+ *
+ *     TRY(canvas_init(&drawing, frame, &eye, &canvas, err));
+ *     TRY(canvas_pass(&canvas, false, 1, draw_rows, context, err));  calls draw_rows per row of
+ * tiles, which calls canvas_shade and canvas_draw per tile canvas_release(&canvas); */
 #ifndef CORCAST_RENDER_CANVAS_H
 #define CORCAST_RENDER_CANVAS_H
 
@@ -9,34 +13,35 @@
 #include "render/tile/tilekernels.h"
 #include "render/tile/viewpoint.h"
 
-/* A finish, and the lights of a view in the frame of a viewpoint. */
+/* Returns a finish, and the lights of a view in the frame of a viewpoint. */
 TileLook tilelook_of(const View *view, const Finish *finish, const Viewpoint *eye);
 
 /* The scratch memory of one thread. */
 typedef struct CanvasWorker {
-    TileSurface surface, ground; /* of vessels and of the ground */
-    float open[TILE_SAMPLES];    /* of both, what samples share: */
-    float parts[VIEW_MAX_LIGHTS][TILE_SAMPLES];
-    float color[3][TILE_SAMPLES]; /* of the tile at hand */
-    int row, column;              /* the first tile that is not drawn yet, in pixels */
+    TileSurface surface, ground; /* hits of vessels, and hits of the ground */
+    float ambient[TILE_SAMPLES]; /* ambient visibility of the samples of both surfaces */
+    float light_visibility[VIEW_MAX_LIGHTS][TILE_SAMPLES];
+    float color[3][TILE_SAMPLES]; /* colors of the present tile */
+    int row, column;              /* upper left pixel of the first tile that is not drawn yet */
 } CanvasWorker;
 
-/* A canvas. It is constant while rows are drawn, except its workers, one per thread. */
+/* The state of one band. It is constant while rows are drawn, except its workers, one per
+ * thread. */
 typedef struct Canvas {
     const Drawing *drawing; /* borrowed */
     Frame *frame;           /* borrowed */
     Viewpoint eye;
     const TileKernels *kernels;
-    bool needs_places; /* shading reads TileHits.z, because light, visibility or colors depend on
-                        * the position of the hit */
+    bool needs_points; /* shading reads TileHits.z: lights, visibility or colors depend on the
+                        * position of the hit */
     bool wants_color, wants_geometry;
-    bool wholly_colored; /* the engine also sets the colors of samples without a hit; false at
-                          * first */
+    bool wholly_colored; /* the engine also sets the colors of samples without a hit; initially
+                          * false */
     TileLook look, ground_look;
     Resampling more;   /* owned, like all members below */
-    SrgbCodes codes;   /* if the frame has codes */
-    float *background; /* a row of the picture */
-    float *blank;      /* colors of pixels in tiles that are not drawn: a row of the picture */
+    SrgbCodes codes;   /* set if the frame stores codes */
+    float *background; /* background of one row of the image */
+    float *blank;      /* colors of one row of the image for pixels in tiles that are not drawn */
     uint8_t *background_codes;
     CanvasWorker *each;
     int workers;
@@ -48,17 +53,17 @@ MUST_CHECK Status canvas_init(const Drawing *drawing, Frame *frame, const Viewpo
                               Canvas *canvas, Err *err);
 void canvas_release(Canvas *canvas);
 
-/* Makes pixels of tiles that are not drawn the mean of the background's samples, from now on. The
+/* From now on, pixels of tiles that are not drawn get the mean of the background's samples. This
  * mean may differ from the background in the last digit. */
 void canvas_blank_is_mean(Canvas *canvas);
 
 /* Draws `rows` rows of tiles; `first` is the index of the first row from the top of the picture. */
 typedef Status CanvasRows(void *context, int first, int rows, int worker, Err *err);
 
-/* Draws all rows of tiles in the band: calls `draw` for `at_once` rows at a time, in parallel, each
+/* Draws all rows of tiles in the band. Calls `draw` for `at_once` rows at a time, in parallel, each
  * call with its own worker, and reports progress. In the pass of the centre samples (`further` is
  * false), tiles that were not passed to canvas_draw become blank. Errors: the first error of
- * `draw`. */
+ * `draw`; STATUS_CANCELLED if the progress callback asks to stop. */
 MUST_CHECK Status canvas_pass(Canvas *canvas, bool further, int at_once, CanvasRows *draw,
                               void *context, Err *err);
 
@@ -75,8 +80,9 @@ static inline size_t canvas_pixel(const Canvas *canvas, int column, int row)
 }
 
 /* Traces the ground plane. Adds hits of the ground to *hits where no vessel is nearer, and sets
- * seen->hits and seen->ground. If seen->hits is not NULL, *hits already has the hits of vessels. */
-void canvas_trace_ground(const Canvas *canvas, TracedTile *seen, TileHits *hits);
+ * traced->hits and traced->ground. If traced->hits is not NULL, *hits already has the hits of
+ * vessels. */
+void canvas_trace_ground(const Canvas *canvas, TracedTile *traced, TileHits *hits);
 
 /* Shades the samples of a tile that has hits. Samples without a hit get the background, unless the
  * frame stores codes.
@@ -85,7 +91,7 @@ void canvas_trace_ground(const Canvas *canvas, TracedTile *seen, TileHits *hits)
  * sample is in shadow.
  *
  * Returns the colors, in the memory of the worker; they are valid until its next call. */
-float (*canvas_shade(const Canvas *canvas, int worker, const TracedTile *seen,
+float (*canvas_shade(const Canvas *canvas, int worker, const TracedTile *traced,
                      const uint8_t (*shadowed)[TILE_SAMPLES]))[TILE_SAMPLES];
 
 /* Draws thin vessels over the colors of a tile, whose hits must have depths.
@@ -96,12 +102,12 @@ float (*canvas_shade(const Canvas *canvas, int worker, const TracedTile *seen,
  *
  * Returns the colors in the memory of the worker, or `color` if no thin vessel touches the tile.
  */
-float (*canvas_cover(const Canvas *canvas, int worker, const TracedTile *seen, ThinCells *cells,
+float (*canvas_cover(const Canvas *canvas, int worker, const TracedTile *traced, ThinCells *cells,
                      int x, int y, float (*color)[TILE_SAMPLES]))[TILE_SAMPLES];
 
 /* Stores a tile of centre samples in the planes of the frame. Tiles must come row by row, from left
  * to right. `color` NULL: all samples have the background's color. */
-void canvas_draw(const Canvas *canvas, int worker, const TracedTile *seen,
+void canvas_draw(const Canvas *canvas, int worker, const TracedTile *traced,
                  float color[3][TILE_SAMPLES]);
 
 /* Copies the first `columns` and `rows` of a tile's colors to rows of pixels; `stride` is the

@@ -1,4 +1,11 @@
-/* What of a picture's plane, or of its tiles, something may be seen in. */
+/* Intervals of a view's plane, and the ranges of samples and tiles that they cover. Engines use
+ * them to find the tiles that a vessel may touch:
+ *
+ *     Interval x = capsule_extent(perspective, a.x, a.z, b.x, b.z, radius);
+ *     TileSpan columns = tilespan_of_samples(interval_in_samples(x, left, per_x), 0, n_columns);
+ *
+ * The view's plane is the plane z = 1 of a perspective view, in mm per mm of depth, or the plane z
+ * = 0 of a parallel view, in mm [tile.h]. All functions are pure. */
 #ifndef CORCAST_RENDER_INTERVAL_H
 #define CORCAST_RENDER_INTERVAL_H
 
@@ -6,26 +13,27 @@
 #include <math.h>
 #include <stdbool.h>
 
-/* Empty if low > high. */
+/* A range of numbers; empty if low > high. */
 typedef struct Interval {
     double low, high;
 } Interval;
 
-/* Rows or columns of tiles; none if first > last. */
+/* A range of rows or of columns of tiles, both ends included; empty if first > last. */
 typedef struct TileSpan {
     int first, last;
 } TileSpan;
 
-static const TileSpan NOWHERE = {1, 0};
+static const TileSpan NO_TILES = {1, 0};
 
-/* The tiles of both. */
-static inline TileSpan tiles_common(TileSpan a, TileSpan b)
+/* Returns the tiles that are in both ranges. */
+static inline TileSpan tilespan_intersection(TileSpan a, TileSpan b)
 {
     TileSpan both = {a.first > b.first ? a.first : b.first, a.last < b.last ? a.last : b.last};
-    return both.first <= both.last ? both : NOWHERE;
+    return both.first <= both.last ? both : NO_TILES;
 }
 
-/* Covers rounding where pixels and tiles are told apart, in pixels. */
+/* Tolerance for rounding when positions are assigned to samples and tiles, in samples. Reason for
+ * the value not recorded; it must exceed the rounding error of a position in samples. */
 #define SLACK_PIXELS 1e-3
 
 static inline double min_of(double a, double b)
@@ -43,47 +51,53 @@ static inline Interval interval_union(Interval a, Interval b)
     return (Interval){min_of(a.low, b.low), max_of(a.high, b.high)};
 }
 
-/* What a ball at coordinate c in one direction of a perspective view's plane, and at depth z >
- * radius, covers there. */
-static inline Interval ball_shadow(double c, double z, double radius)
+/* Returns the extent of a ball in the plane of a perspective view, along one axis. The ball's
+ * center has the coordinate `c` (mm) along this axis and the depth z > radius (mm). */
+static inline Interval ball_extent(double c, double z, double radius)
 {
     double half = radius * sqrt(max_of(c * c + z * z - radius * radius, 0));
     double per = 1 / ((z - radius) * (z + radius));
     return (Interval){(c * z - half) * per, (c * z + half) * per};
 }
 
-/* What a capsule covers there, or in a view of parallel lines, whose ends are at c0 and c1; in
- * perspective at depths z0, z1 > radius. */
-static inline Interval capsule_shadow(bool perspective, double c0, double z0, double c1, double z1,
+/* Returns the extent of a capsule in the view's plane, along one axis. The ends of the capsule's
+ * axis have the coordinates c0 and c1 along this axis, mm. In perspective, their depths are z0 and
+ * z1, both greater than `radius`; a parallel view ignores z0 and z1. */
+static inline Interval capsule_extent(bool perspective, double c0, double z0, double c1, double z1,
                                       double radius)
 {
     if (!perspective)
         return (Interval){min_of(c0, c1) - radius, max_of(c0, c1) + radius};
-    return interval_union(ball_shadow(c0, z0, radius), ball_shadow(c1, z1, radius));
+    return interval_union(ball_extent(c0, z0, radius), ball_extent(c1, z1, radius));
 }
 
-/* An interval of a view's plane in samples, the middle of one a whole number; sample 0 is at
- * `first`, and `per` samples follow in a unit, below 0 where they run against it. */
-static inline Interval samples_within(Interval range, double first, double per)
+/* Converts an interval of the view's plane to sample indices, widened by SLACK_PIXELS. Integers are
+ * the centres of samples.
+ *
+ * first    position of sample 0.
+ * per      samples per unit; negative if samples run against the axis. */
+static inline Interval interval_in_samples(Interval range, double first, double per)
 {
     double from = (range.low - first) * per, to = (range.high - first) * per;
     return (Interval){min_of(from, to) - SLACK_PIXELS, max_of(from, to) + SLACK_PIXELS};
 }
 
-/* The tiles that those of `count` samples lie in which are, up to `stray` off their middles, within
- * an interval of samples. */
-static inline TileSpan tiles_within(Interval samples, double stray, int count)
+/* Returns the tiles of the samples within an interval of sample indices. Samples have the indices 0
+ * .. count - 1, and each may be up to `max_offset` samples from its grid position. */
+static inline TileSpan tilespan_of_samples(Interval samples, double max_offset, int count)
 {
-    double low = max_of(samples.low - stray, 0), high = min_of(samples.high + stray, count - 1);
+    double low = max_of(samples.low - max_offset, 0),
+           high = min_of(samples.high + max_offset, count - 1);
     if (!(low <= high))
-        return NOWHERE;
+        return NO_TILES;
     int first = (int)low, last = (int)high;
     first += first < low; /* rounds up */
-    return first <= last ? (TileSpan){first / TILE_SIDE, last / TILE_SIDE} : NOWHERE;
+    return first <= last ? (TileSpan){first / TILE_SIDE, last / TILE_SIDE} : NO_TILES;
 }
 
-/* The part [*from, *to] of the way where something that is at_a at its beginning and at_b at its
- * end is not below 0. */
+/* Clips the parameter range [*from, *to] of a line to the part where a linear function is not
+ * negative. The function has the value at_a at parameter 0 and at_b at parameter 1. If it is
+ * negative at both, *from becomes infinite and the range is empty. */
 static inline void clip_part(double at_a, double at_b, double *from, double *to)
 {
     if (at_a < 0)

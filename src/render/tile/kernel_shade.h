@@ -1,12 +1,14 @@
-/* shade.c's model for the samples of a tile, their pixels, and the codes of the colors, several at
- * once and in single precision: included by each source that compiles it for its lanes,
- * LANES_NAME(name) making the names of its functions. */
+/* The kernels of TileKernels: the shading model of shade.c for the samples of a tile, storing their
+ * pixels, and encoding their colors. They process several samples at once, in single precision.
+ * Each source that compiles them for its lanes includes this file. LANES_NAME(name) makes the names
+ * of its functions. */
 #include "render/tile/lanes.h"
 #include "render/tile/tilekernels.h"
 #include <endian.h>
 
-/* x^y of x in (0, 1], y >= 0: by squaring where y is a small whole number, as it mostly is. What is
- * below 1e-15 need not be right, and so never comes near the slow arithmetic of tiny numbers. */
+/* Returns x^y for x in (0, 1] and y >= 0. Uses repeated squaring if y is a small integer, which is
+ * the usual case. Results below 1e-15 may be wrong; this avoids slow arithmetic with subnormal
+ * numbers. */
 LANE_FN Lanes lanes_power(Lanes x, float y)
 {
     const Lanes least = lanes_set(1e-15f);
@@ -43,9 +45,9 @@ LANE_FN Lanes phong(const Shading *shading, const Lanes towards[3])
     for (int c = 0; c < 3; c++)
         mirrored[c] = lanes_fma(shading->normal[c], twice, shading->direction[c]);
     Lanes cosine = inner(mirrored, towards);
-    LaneMask seen = cosine > 0.0f;
+    LaneMask traced = cosine > 0.0f;
     Lanes power = lanes_power(cosine, finish->phong_size) * finish->phong;
-    return lanes_select(seen, power, lanes_set(0));
+    return lanes_select(traced, power, lanes_set(0));
 }
 
 LANE_FN Lanes specular(const Shading *shading, const Lanes towards[3])
@@ -93,8 +95,8 @@ LANE_FN void add_light(Shading *shading, size_t number)
     if (finish->specular > 0)
         highlight += specular(shading, towards);
     Lanes part = lanes_set(1);
-    if (shading->surface->parts && shading->surface->is_shared[number])
-        part = lanes_load(&shading->surface->parts[number][shading->first]);
+    if (shading->surface->light_visibility && shading->surface->is_shared[number])
+        part = lanes_load(&shading->surface->light_visibility[number][shading->first]);
     for (int c = 0; c < 3; c++) {
         Lanes pigment = lanes_load(&shading->surface->pigment[c][shading->first]);
         Lanes sum = lanes_fma(pigment, diffuse, highlight) * (part * light->color[c]);
@@ -113,8 +115,8 @@ LANE_TARGET static void LANES_NAME(shade)(const TileLook *look, const TileSurfac
         shading.surface = surface;
         shading.first = first;
         Lanes ambient = lanes_set(look->finish.ambient);
-        if (surface->open)
-            ambient *= lanes_load(&surface->open[first]);
+        if (surface->ambient)
+            ambient *= lanes_load(&surface->ambient[first]);
         for (int c = 0; c < 3; c++) {
             shading.normal[c] = lanes_load(&surface->hits->normal[c][first]);
             shading.direction[c] = lanes_load(&surface->direction[c][first]);
@@ -162,8 +164,8 @@ LANE_TARGET static void LANES_NAME(encode)(const SrgbCodes *codes, float color[3
                          srgb_lanes(codes, &color[1][first]) << 8 |
                          srgb_lanes(codes, &color[2][first]) << 16;
         if (state) {
-            LaneMask seen = lanes_of_bytes(&state[first]);
-            pixel = (pixel & seen) | (other & ~seen);
+            LaneMask traced = lanes_of_bytes(&state[first]);
+            pixel = (pixel & traced) | (other & ~traced);
         }
         __builtin_memcpy(&pixels[first], &pixel, sizeof pixel);
     }
@@ -219,17 +221,18 @@ LANE_TARGET static void LANES_NAME(clear)(const uint8_t *state, const float back
                                           float color[3][TILE_SAMPLES])
 {
     for (int first = 0; first < TILE_SAMPLES; first += LANES) {
-        LaneMask seen = lanes_of_bytes(&state[first]);
+        LaneMask traced = lanes_of_bytes(&state[first]);
         for (int c = 0; c < 3; c++)
-            lanes_store(&color[c][first],
-                        lanes_select(seen, lanes_load(&color[c][first]), lanes_set(background[c])));
+            lanes_store(&color[c][first], lanes_select(traced, lanes_load(&color[c][first]),
+                                                       lanes_set(background[c])));
     }
 }
 
 /* ---- lights ---------------------------------------------------------------------------------- */
 
-/* `near`: the light is not parallel; `slanted`: the camera's view is not. */
-LANE_FN uint64_t face_samples(const TracedTile *seen, const HitPoints *places,
+/* Returns the mask of TileKernels.face. `near`: the light is not parallel; `slanted`: the camera's
+ * view is not parallel. */
+LANE_FN uint64_t face_samples(const TracedTile *traced, const HitPoints *points,
                               const float normal[3][TILE_SAMPLES], const TileLight *light,
                               bool near, bool slanted)
 {
@@ -239,13 +242,13 @@ LANE_FN uint64_t face_samples(const TracedTile *seen, const HitPoints *places,
         Lanes nz = lanes_load(&normal[2][first]), away = nz, x = lanes_set(light->towards[0]);
         Lanes y = lanes_set(light->towards[1]), z = lanes_set(light->towards[2]);
         if (near) {
-            x -= lanes_of_doubles(&places->x[first], 0);
-            y -= lanes_of_doubles(&places->y[first], 0);
-            z -= lanes_of_doubles(&places->z[first], 0);
+            x -= lanes_of_doubles(&points->x[first], 0);
+            y -= lanes_of_doubles(&points->y[first], 0);
+            z -= lanes_of_doubles(&points->z[first], 0);
         }
         if (slanted)
-            away += nx * (lanes_load(&seen->x[first]) + (float)seen->middle_x) +
-                    ny * (lanes_load(&seen->y[first]) + (float)seen->middle_y);
+            away += nx * (lanes_load(&traced->x[first]) + (float)traced->middle_x) +
+                    ny * (lanes_load(&traced->y[first]) + (float)traced->middle_y);
         Lanes along = nx * x + ny * y + nz * z;
         LaneMask faces = lanes_select(away > 0.0f, -along, along) > 0.0f;
         facing |= (uint64_t)lanes_bits(faces) << first;
@@ -253,30 +256,30 @@ LANE_FN uint64_t face_samples(const TracedTile *seen, const HitPoints *places,
     return facing;
 }
 
-LANE_TARGET static uint64_t LANES_NAME(face)(const TracedTile *seen, const HitPoints *places,
+LANE_TARGET static uint64_t LANES_NAME(face)(const TracedTile *traced, const HitPoints *points,
                                              const float normal[3][TILE_SAMPLES],
                                              const TileLight *light)
 {
-    if (light->parallel && !seen->perspective)
-        return face_samples(seen, places, normal, light, false, false);
-    return face_samples(seen, places, normal, light, !light->parallel, seen->perspective);
+    if (light->parallel && !traced->perspective)
+        return face_samples(traced, points, normal, light, false, false);
+    return face_samples(traced, points, normal, light, !light->parallel, traced->perspective);
 }
 
-/* The tile, of `count`, that a place in tiles lies in. */
+/* Returns the tile, in [0, count), that contains a position in tiles. */
 LANE_FN int32_t tile_at(double place, double count)
 {
     place = place > 0 ? place : 0;
     return (int32_t)(place < count ? place : count - 1);
 }
 
-LANE_TARGET static void LANES_NAME(aim)(const LightProjection *aim, const HitPoints *places,
+LANE_TARGET static void LANES_NAME(aim)(const LightProjection *aim, const HitPoints *points,
                                         ProjectedPoints *restrict aimed)
 {
     const LightProjection a = *aim;
     const double width = 1 / a.per_x, height = 1 / a.per_y;
     double seen_x[TILE_SAMPLES], seen_y[TILE_SAMPLES]; /* in the view's plane */
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
-        double px = places->x[sample], py = places->y[sample], pz = places->z[sample];
+        double px = points->x[sample], py = points->y[sample], pz = points->z[sample];
         double x = px * a.axes[0].x + py * a.axes[0].y + pz * a.axes[0].z + a.offset.x;
         double y = px * a.axes[1].x + py * a.axes[1].y + pz * a.axes[1].z + a.offset.y;
         double z = px * a.axes[2].x + py * a.axes[2].y + pz * a.axes[2].z + a.offset.z;

@@ -1,11 +1,15 @@
-/* Several floats at once. The Makefile compiles each *kernels.c of the renderer three times: with
- * LANES_AVX512 defined there are 16 lanes, with LANES_AVX2 there are 8, both with fused
- * multiply-adds; they must run only where kernels_usable() counts them. Otherwise (LANES_PORTABLE)
- * there are 4 lanes of plain IEEE arithmetic, which every processor has. Only correctly rounded
- * operations are used, no approximate reciprocals, so that within one of the three the results are
- * the same everywhere. LANES_NAME(name) is the name of what is compiled three times.
+/* SIMD arithmetic: vectors of several floats (`Lanes`), and functions on them that have one name
+ * for all instruction sets. The kernels of the renderer are written with them once.
  *
- * Masks hold -1 where true and 0 where false. */
+ * The Makefile compiles each *kernels.c three times. LANES_AVX512 gives 16 lanes, LANES_AVX2 gives
+ * 8; both use fused multiply-adds and must run only where kernels_usable() counts them. Otherwise
+ * (LANES_PORTABLE) there are 4 lanes of plain IEEE arithmetic, which every processor has.
+ * LANES_NAME(name) gives each of the three compiled versions its own name.
+ *
+ * Only correctly rounded operations are used, and no approximate reciprocals. Results of one
+ * version are therefore the same on every processor.
+ *
+ * Lanes of a LaneMask are -1 (true) or 0 (false). */
 #ifndef CORCAST_RENDER_LANES_H
 #define CORCAST_RENDER_LANES_H
 
@@ -58,7 +62,7 @@ LANE_FN void lanes_store(float *values, Lanes lanes)
 
 #if LANES > 4
 
-/* a b + c */
+/* Returns a b + c. */
 LANE_FN Lanes lanes_fma(Lanes a, Lanes b, Lanes c)
 {
     return (Lanes)WIDE(fmadd_ps)((WideFloats)a, (WideFloats)b, (WideFloats)c);
@@ -83,7 +87,7 @@ LANE_FN Lanes lanes_max(Lanes a, Lanes b)
 
 #if defined LANES_AVX512
 
-/* Bit i: lane i. */
+/* Returns the mask as bits: bit i is set if lane i is true. */
 LANE_FN uint32_t lanes_bits(LaneMask mask)
 {
     return _mm512_movepi32_mask((__m512i)mask);
@@ -99,19 +103,20 @@ LANE_FN Lanes lanes_select(LaneMask mask, Lanes a, Lanes b)
     return (Lanes)_mm512_mask_blend_ps((__mmask16)lanes_bits(mask), (__m512)b, (__m512)a);
 }
 
-/* The smallest lane. */
+/* Returns the minimum of all lanes. */
 LANE_FN float lanes_least(Lanes a)
 {
     return _mm512_reduce_min_ps((__m512)a);
 }
 
-/* table[index] */
+/* Returns table[index] for each lane. */
 LANE_FN LaneMask lanes_gather(const uint32_t *table, LaneMask index)
 {
     return (LaneMask)_mm512_i32gather_epi32((__m512i)index, table, 4);
 }
 
-/* Bytes as numbers; of the general form compilers make one move a byte. */
+/* Converts bytes to integers, one per lane. Compilers turn the portable form of this function into
+ * one move per byte. */
 LANE_FN LaneMask lanes_load_bytes(const uint8_t *bytes)
 {
     return (LaneMask)_mm512_cvtepu8_epi32(_mm_loadu_si128((const __m128i *)bytes));
@@ -124,7 +129,7 @@ LANE_FN Lanes lanes_select(LaneMask mask, Lanes a, Lanes b)
     return (Lanes)_mm256_blendv_ps((__m256)b, (__m256)a, (__m256)mask);
 }
 
-/* The smallest lane. */
+/* Returns the minimum of all lanes. */
 LANE_FN float lanes_least(Lanes a)
 {
     __m128 low = _mm256_castps256_ps128((__m256)a), high = _mm256_extractf128_ps((__m256)a, 1);
@@ -133,7 +138,7 @@ LANE_FN float lanes_least(Lanes a)
     return _mm_cvtss_f32(_mm_min_ss(least, _mm_shuffle_ps(least, least, 1)));
 }
 
-/* table[index] */
+/* Returns table[index] for each lane. */
 LANE_FN LaneMask lanes_gather(const uint32_t *table, LaneMask index)
 {
     return (LaneMask)_mm256_i32gather_epi32((const int *)table, (__m256i)index, 4);
@@ -144,7 +149,7 @@ LANE_FN LaneMask lanes_load_bytes(const uint8_t *bytes)
     return (LaneMask)_mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)bytes));
 }
 
-/* Bit i: lane i. */
+/* Returns the mask as bits: bit i is set if lane i is true. */
 LANE_FN uint32_t lanes_bits(LaneMask mask)
 {
     return (uint32_t)_mm256_movemask_ps((__m256)mask);
@@ -216,7 +221,7 @@ LANE_FN bool lanes_any(LaneMask mask)
 
 #endif
 
-/* The sums, in double precision, of `values` and a number. */
+/* Adds `more` to LANES doubles, in double precision, and rounds the sums to float. */
 LANE_FN Lanes lanes_of_doubles(const double *values, double more)
 {
     enum { HALF = LANES / 2 };
@@ -233,7 +238,7 @@ LANE_FN Lanes lanes_of_doubles(const double *values, double more)
     return lanes;
 }
 
-/* Stores the sums, in double precision, of a number and each lane. */
+/* Adds `more` to each lane, in double precision, and stores the sums. */
 LANE_FN void lanes_to_doubles(double *to, Lanes lanes, double more)
 {
     enum { HALF = LANES / 2 };
@@ -249,20 +254,20 @@ LANE_FN void lanes_to_doubles(double *to, Lanes lanes, double more)
 
 typedef uint8_t LaneBytes __attribute__((vector_size(LANES)));
 
-/* Bytes that are 1 where true and 0 where false. */
+/* Stores a mask as bytes: 1 for true, 0 for false. */
 LANE_FN void lanes_to_bytes(uint8_t *bytes, LaneMask mask)
 {
     LaneBytes lanes = __builtin_convertvector(mask & 1, LaneBytes);
     __builtin_memcpy(bytes, &lanes, sizeof lanes);
 }
 
-/* Which bytes are not 0. */
+/* Returns a mask of the bytes that are not 0. */
 LANE_FN LaneMask lanes_of_bytes(const uint8_t *bytes)
 {
     return lanes_load_bytes(bytes) != 0;
 }
 
-/* a + b where the mask is true, elsewhere a. */
+/* Returns a + b in lanes where the mask is true, and a in the others. */
 LANE_FN Lanes lanes_add_where(LaneMask mask, Lanes a, Lanes b)
 {
 #if defined LANES_AVX512
@@ -273,7 +278,7 @@ LANE_FN Lanes lanes_add_where(LaneMask mask, Lanes a, Lanes b)
 #endif
 }
 
-/* The lesser of a and b where the mask is true, elsewhere a. */
+/* Returns the minimum of a and b in lanes where the mask is true, and a in the others. */
 LANE_FN Lanes lanes_min_where(LaneMask mask, Lanes a, Lanes b)
 {
 #if defined LANES_AVX512
@@ -294,10 +299,10 @@ LANE_FN float lanes_largest(Lanes a)
     return -lanes_least(-a);
 }
 
-/* exp(-x) of x >= 0, 0 from 24 on, so that products of a few are never subnormal, which is slow:
- * 2^n times 2^f, f in [-1/2, 1/2], by a polynomial of relative error 7.5e-8 (Remez), with rounding
- * at most 2.5e-7 (1 + x). Adding 1.5 * 2^23 rounds to a whole number and leaves it in the low bits.
- */
+/* Returns exp(-x) for x >= 0. Returns 0 for x >= 24, so that products of a few results are never
+ * subnormal; subnormal numbers are slow. Computed as 2^n 2^f with f in [-1/2, 1/2]; 2^f is a
+ * polynomial with a relative error of 7.5e-8 (Remez). With rounding, the relative error is at most
+ * 2.5e-7 (1 + x). Adding 1.5 * 2^23 rounds to an integer and leaves it in the low bits. */
 LANE_FN Lanes lanes_exp_minus(Lanes x)
 {
     const Lanes magic = lanes_set(12582912.0f), per_ln2 = lanes_set(-1.44269504f);
@@ -315,8 +320,9 @@ LANE_FN Lanes lanes_exp_minus(Lanes x)
 #endif
 }
 
-/* ln x of normal x > 0, to 1e-7 (1 + |ln x|), and relatively so near 1: x = 2^n m, m in [sqrt 1/2,
- * sqrt 2), ln m = 2 artanh((m - 1) / (m + 1)). */
+/* Returns ln x for normal x > 0, with an error below 1e-7 (1 + |ln x|). Near 1, the relative error
+ * is as small. Computed with x = 2^n m, m in [sqrt 1/2, sqrt 2), and ln m = 2 artanh((m - 1) / (m +
+ * 1)). */
 LANE_FN Lanes lanes_log(Lanes x)
 {
     LaneMask bits = (LaneMask)x - 0x3f3504f3;
@@ -330,7 +336,8 @@ LANE_FN Lanes lanes_log(Lanes x)
     return lanes_fma(n, lanes_set(0.693147181f), ln_m);
 }
 
-/* erf x to 3e-7, with `gauss` = exp(-x^2) [Abramowitz & Stegun 7.1.26, |error| <= 1.5e-7]. */
+/* Returns erf x with an error below 3e-7, where `gauss` must be exp(-x^2). Source: Abramowitz &
+ * Stegun 7.1.26, |error| <= 1.5e-7. */
 LANE_FN Lanes lanes_erf(Lanes x, Lanes gauss)
 {
     Lanes t = 1.0f / lanes_fma(lanes_abs(x), lanes_set(0.3275911f), lanes_set(1.0f));

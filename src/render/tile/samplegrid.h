@@ -5,9 +5,10 @@
 #include "render/job.h"
 
 typedef struct SampleGrid {
-    int side;                              /* samples per pixel in each direction, 1 or more */
-    double offsets[RENDER_MOST_ANTIALIAS]; /* of a pixel's samples from its centre, pixels */
-    int n_columns, n_rows;                 /* samples of the image */
+    int side;                             /* samples per pixel in each direction, 1 or more */
+    double offsets[RENDER_MAX_ANTIALIAS]; /* offsets of a pixel's samples from its centre, in
+                                           * pixels, the same in both directions */
+    int n_columns, n_rows;                /* number of samples across and down the image */
 } SampleGrid;
 
 /* Returns the position of a column or row of samples, in pixels as camera_ray() takes it. */

@@ -50,7 +50,7 @@ static bool clip(float start, float inverse_step, float low, float high, float *
     return *from <= *to;
 }
 
-/* The tiles, at most n, that lie between two places. */
+/* Returns the tiles, among n, between two positions. */
 static TileSpan tiles_between(float low, float high, int n)
 {
     int first = (int)floorf(low / TILE_SIDE), last = (int)floorf(high / TILE_SIDE);
@@ -121,8 +121,8 @@ double thinstrip_part(const ThinLayer *layer, const ThinStrip *strip, double s)
     return (double)strip->part[0] + s * (double)(strip->part[1] - strip->part[0]);
 }
 
-/* A strip while it is drawn into a block. Lengths are in cells, places from the block's first cell.
- */
+/* A strip while it is drawn into a block. Lengths are in cells, positions relative to the block's
+ * first cell. */
 typedef struct Brush {
     const ThinLayer *layer;
     const ThinStrip *strip;
@@ -189,7 +189,7 @@ static float area_at_end(const Brush *brush, float x, float y)
     return least(1, sum * 2 * brush->half_width / (float)lines);
 }
 
-/* Adds what a strip covers of a cell. */
+/* Adds the area of a cell that a strip covers. */
 static void cover(Brush *brush, int column, int row)
 {
     const ThinStrip *strip = brush->strip;

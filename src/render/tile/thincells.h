@@ -16,8 +16,7 @@ typedef struct ThinStrip {
     float width;      /* drawn width, pixels */
     uint32_t vessel;  /* index of the primitive, or of the segment of a field */
     uint32_t run;     /* equal for vessels that follow one another end to end */
-    uint32_t first_piece,
-        n_pieces; /* pieces of equal length on the picture, each with one color */
+    uint32_t first_piece, n_pieces; /* pieces of equal length on the picture, each with one color */
 } ThinStrip;
 
 /* The thin vessels of a view. */

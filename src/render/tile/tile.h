@@ -1,9 +1,9 @@
-/* A tile of a picture: 8 x 8 samples, their lines of sight, and the hits of these lines.
+/* A tile of an image: 8 x 8 samples, their lines of sight, and the hits of these lines.
  *
  * Lengths are in mm, in the frame of a viewpoint [viewpoint.h]: x right, y up, z along the view,
  * the origin at its location. The line of sight of the sample (x, y) of the view's plane consists
- * of the points (x, y, z) when lines are parallel and (x z, y z, z) in perspective: z is the
- * parameter of both. */
+ * of the points (x, y, z) in a parallel view, and of the points (x z, y z, z) in perspective. In
+ * both, z is the parameter. */
 #ifndef CORCAST_RENDER_TILE_H
 #define CORCAST_RENDER_TILE_H
 
@@ -37,14 +37,14 @@ typedef enum TileState {
     TILE_UNSURE    /* too close to decide within rounding, or the line starts inside a vessel */
 } TileState;
 
-/* The hits of the samples. Of a sample that is not TILE_HIT, only `state` is defined. */
+/* The hits of the samples. For a sample that is not TILE_HIT, only `state` is defined. */
 typedef struct TileHits {
     double z[TILE_SAMPLES];
     float normal[3][TILE_SAMPLES];  /* unit; either side of the surface until geometry is stored */
-    uint32_t segment[TILE_SAMPLES]; /* index of the scene's segment or primitive */
+    uint32_t segment[TILE_SAMPLES]; /* index of the geometry's field segment or primitive */
     uint8_t state[TILE_SAMPLES];    /* TileState */
-    bool any_hit, any_unsure; /* implicit scenes: a state is TILE_HIT; a state is, or was before it
-                               * was decided, TILE_UNSURE */
+    bool any_hit, any_unsure; /* implicit models only. any_hit: a sample is TILE_HIT. any_unsure: a
+                               * sample is TILE_UNSURE, or was before it was decided */
 } TileHits;
 
 /* A tile whose lines of sight have been traced. */
@@ -52,14 +52,15 @@ typedef struct TracedTile {
     int column, row;       /* position of its first sample in the picture's grid of samples */
     int n_columns, n_rows; /* number of its columns and rows inside that grid */
     bool perspective;
-    const float *x, *y; /* positions of samples in the view's plane, from the tile's middle */
+    const float *x, *y; /* positions of samples in the view's plane, relative to the tile's
+                         * middle */
     double middle_x, middle_y;
     const TileHits *hits; /* borrowed; NULL: no sample of the tile hits anything */
     uint64_t ground;      /* bit i: the hit of sample i is on the ground [canvas_trace_ground] */
 } TracedTile;
 
-/* Returns the number of columns (or rows) of a tile in a picture that has `left` > 0 of them left.
- */
+/* Returns the number of columns (or rows) of a tile in an image of which `left` > 0 columns (rows)
+ * remain. */
 static inline int tile_extent(int left)
 {
     return left < TILE_SIDE ? left : TILE_SIDE;
@@ -67,27 +68,27 @@ static inline int tile_extent(int left)
 
 /* Returns the position of a sample in the view's plane, with z = 1. In perspective this is the
  * point of its line of sight at depth 1. */
-static inline Vec3 tile_line(const TracedTile *seen, int sample)
+static inline Vec3 tile_line(const TracedTile *traced, int sample)
 {
-    return vec3(seen->middle_x + (double)seen->x[sample], seen->middle_y + (double)seen->y[sample],
-                1);
+    return vec3(traced->middle_x + (double)traced->x[sample],
+                traced->middle_y + (double)traced->y[sample], 1);
 }
 
 /* Returns the point where the line of sight of a TILE_HIT meets the surface, in the view's frame.
  */
-static inline Vec3 tile_hit_point(const TracedTile *seen, int sample)
+static inline Vec3 tile_hit_point(const TracedTile *traced, int sample)
 {
-    Vec3 line = tile_line(seen, sample);
-    double z = seen->hits->z[sample], scale = seen->perspective ? z : 1;
+    Vec3 line = tile_line(traced, sample);
+    double z = traced->hits->z[sample], scale = traced->perspective ? z : 1;
     return vec3(line.x * scale, line.y * scale, z);
 }
 
 /* Returns the distance along the line of sight to the hit of a sample, mm. */
-static inline double tile_hit_distance(const TracedTile *seen, int sample)
+static inline double tile_hit_distance(const TracedTile *traced, int sample)
 {
-    Vec3 line = tile_line(seen, sample);
-    double z = seen->hits->z[sample];
-    return seen->perspective ? z * sqrt(1 + line.x * line.x + line.y * line.y) : z;
+    Vec3 line = tile_line(traced, sample);
+    double z = traced->hits->z[sample];
+    return traced->perspective ? z * sqrt(1 + line.x * line.x + line.y * line.y) : z;
 }
 
 #endif

@@ -1,6 +1,6 @@
-/* The interface between the pipeline of tilerender.h and an engine. The engine finds the surface
- * that each sample of a tile sees. The pipeline does batches, shadows, shading, antialiasing and
- * threads. */
+/* The interface between the pipeline of tilerender.h and an engine. For each tile, the engine finds
+ * the first hit of each sample (`bin` once, `list` per row of tiles, `trace` per tile). The
+ * pipeline does batches, shadows, shading, antialiasing and threads. */
 #ifndef CORCAST_RENDER_TILEENGINE_H
 #define CORCAST_RENDER_TILEENGINE_H
 
@@ -8,12 +8,13 @@
 #include "render/tile/samplegrid.h"
 #include "render/tile/thincells.h"
 
-/* A tile of a batch and what its samples show. */
+/* A tile of a batch, and the results for its samples. */
 typedef struct BatchTile {
-    TracedTile seen; /* seen.hits is `hits`, or NULL if the tile shows nothing */
+    TracedTile traced; /* traced.hits is `hits`, or NULL if the tile shows nothing */
     TileHits hits;
     double depth_base;                 /* mm; TileEngine.single_depths */
-    void *own;                         /* TileEngine.tile_bytes for the engine, zeroed at first */
+    void *own;                         /* scratch of the engine, TileEngine.tile_bytes long;
+                                        * initially zero */
     uint32_t *items;                   /* per hit: ShadowPoints.item, set by TileEngine.trace; NULL:
                                         * the engine's shadows do not need it */
     uint8_t (*shadowed)[TILE_SAMPLES]; /* per light; 1: the light is hidden from the sample */
@@ -21,7 +22,7 @@ typedef struct BatchTile {
     ThinCells cells, further;          /* thin vessels over the samples, and over shifted samples */
 } BatchTile;
 
-/* An engine. One pass takes one sample per grid point. Each worker has a workspace of its own. */
+/* A tile engine. One pass takes one sample per grid point. Each worker has its own workspace. */
 typedef struct TileEngine {
     /* How antialiasing with N x N samples per pixel is done. True: on a second grid, N times as
      * fine, with bins of its own. False: by N x N shifted passes over the same tiles. */

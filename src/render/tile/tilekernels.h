@@ -17,23 +17,24 @@ typedef struct TileLight {
     bool parallel;
 } TileLight;
 
-/* What shading needs beside the surface. */
+/* The finish and the lights with which a surface is shaded. */
 typedef struct TileLook {
     Finish finish;
     TileLight lights[VIEW_MAX_LIGHTS];
     size_t n_lights;
 } TileLook;
 
-/* The visible points of a tile, in the camera's frame. */
+/* The surface points that the samples of a tile hit, in the camera's frame. */
 typedef struct TileSurface {
     const TileHits *hits;
     float direction[3][TILE_SAMPLES]; /* unit, of the camera ray */
     float point[3][TILE_SAMPLES];     /* mm from the camera; set if a light is not parallel */
     float pigment[3][TILE_SAMPLES];
     const uint8_t (*shadowed)[TILE_SAMPLES]; /* per light and sample: 1 in shadow; NULL: none is */
-    const float *open; /* per sample: ambient visibility, 0 to 1; NULL: 1 for all */
-    const float (*parts)[TILE_SAMPLES]; /* per light and sample: visibility of the light, 0 to 1, if
-                                         * is_shared[light]; NULL: no light is shared */
+    const float *ambient; /* per sample: ambient visibility, 0 to 1; NULL: 1 for all */
+    const float (
+        *light_visibility)[TILE_SAMPLES]; /* per light and sample: visibility of the light, 0 to 1,
+                                           * if is_shared[light]; NULL: no light is shared */
     bool is_shared[VIEW_MAX_LIGHTS];
 } TileSurface;
 
@@ -77,11 +78,11 @@ typedef struct TileKernels {
                    const uint8_t background[3], uint8_t *pixels, size_t stride);
     /* Returns a mask: bit i is set if the visible side of the surface at sample i faces the light.
      * Bits of samples that hit nothing are undefined. */
-    uint64_t (*face)(const TracedTile *seen, const HitPoints *places,
+    uint64_t (*face)(const TracedTile *traced, const HitPoints *points,
                      const float normal[3][TILE_SAMPLES], const TileLight *light);
     /* Projects the points to the light view. Points of samples that hit nothing get a valid tile,
      * too. */
-    void (*aim)(const LightProjection *aim, const HitPoints *places, ProjectedPoints *aimed);
+    void (*aim)(const LightProjection *aim, const HitPoints *points, ProjectedPoints *aimed);
     /* Returns a mask of the samples whose projected point lies in the light's tile `tile`. */
     uint64_t (*within)(const ProjectedPoints *aimed, int32_t tile);
 } TileKernels;

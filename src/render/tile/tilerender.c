@@ -63,55 +63,55 @@ static int tiles_of(int samples)
     return (samples + TILE_SIDE - 1) / TILE_SIDE;
 }
 
-static bool is_inside(const TracedTile *seen, int sample)
+static bool is_inside(const TracedTile *traced, int sample)
 {
-    return tile_sample_x(sample) < seen->n_columns && tile_sample_y(sample) < seen->n_rows;
+    return tile_sample_x(sample) < traced->n_columns && tile_sample_y(sample) < traced->n_rows;
 }
 
 /* ---- shadows --------------------------------------------------------------------------------- */
 
 /* Returns the samples inside the image that hit something, as bits. */
-static uint64_t find_hits(const TracedTile *seen)
+static uint64_t find_hits(const TracedTile *traced)
 {
-    const bool whole = seen->n_columns == TILE_SIDE && seen->n_rows == TILE_SIDE;
+    const bool whole = traced->n_columns == TILE_SIDE && traced->n_rows == TILE_SIDE;
     uint64_t hits = 0;
     for (int sample = 0; sample < TILE_SAMPLES; sample++)
-        hits |= (uint64_t)(seen->hits->state[sample] == TILE_HIT) << sample;
+        hits |= (uint64_t)(traced->hits->state[sample] == TILE_HIT) << sample;
     for (int sample = 0; !whole && sample < TILE_SAMPLES; sample++)
-        if (!is_inside(seen, sample))
+        if (!is_inside(traced, sample))
             hits &= ~((uint64_t)1 << sample);
     return hits;
 }
 
 /* Sets the positions of a tile's hits in the frame of the view. Those of the ground are rounded as
  * the engine rounds its own. */
-static void locate(const TileEngine *engine, const BatchTile *tile, HitPoints *restrict places)
+static void locate(const TileEngine *engine, const BatchTile *tile, HitPoints *restrict points)
 {
-    const TracedTile *seen = &tile->seen;
+    const TracedTile *traced = &tile->traced;
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
-        places->x[sample] = seen->middle_x + (double)seen->x[sample];
-        places->y[sample] = seen->middle_y + (double)seen->y[sample];
-        places->z[sample] = tile->hits.z[sample];
+        points->x[sample] = traced->middle_x + (double)traced->x[sample];
+        points->y[sample] = traced->middle_y + (double)traced->y[sample];
+        points->z[sample] = tile->hits.z[sample];
     }
-    for (uint64_t left = engine->single_depths ? seen->ground : 0; left; left &= left - 1) {
-        double *z = &places->z[__builtin_ctzll(left)];
+    for (uint64_t left = engine->single_depths ? traced->ground : 0; left; left &= left - 1) {
+        double *z = &points->z[__builtin_ctzll(left)];
         *z = tile->depth_base + (double)(float)(*z - tile->depth_base);
     }
-    for (int sample = 0; seen->perspective && sample < TILE_SAMPLES; sample++) {
-        places->x[sample] *= places->z[sample];
-        places->y[sample] *= places->z[sample];
+    for (int sample = 0; traced->perspective && sample < TILE_SAMPLES; sample++) {
+        points->x[sample] *= points->z[sample];
+        points->y[sample] *= points->z[sample];
     }
 }
 
 /* Finds the shadows of one light by rays. */
 static void cast_shadows(const TilePicture *picture, int worker, const Light *light,
-                         const HitPoints *places, uint64_t wanted, uint8_t shadowed[TILE_SAMPLES])
+                         const HitPoints *points, uint64_t wanted, uint8_t shadowed[TILE_SAMPLES])
 {
     const Drawing *drawing = picture->canvas.drawing;
     for (; wanted; wanted &= wanted - 1) {
         int sample = __builtin_ctzll(wanted);
-        Vec3 at = {places->x[sample], places->y[sample], places->z[sample]};
-        Vec3 point = viewpoint_point(&picture->canvas.eye, at);
+        Vec3 at = {points->x[sample], points->y[sample], points->z[sample]};
+        Vec3 point = viewpoint_world_point(&picture->canvas.eye, at);
         shadowed[sample] = !shadowrays_count(drawing, worker, light, ALL_SETS, point);
     }
 }
@@ -121,22 +121,22 @@ static void query_lights(const TilePicture *picture, int worker, const BatchTile
     const View *view = picture->canvas.drawing->view;
     const TileKernels *kernels = picture->canvas.kernels;
     const TileBatch *batch = &picture->batches[worker];
-    const uint64_t hits = find_hits(&tile->seen);
-    HitPoints places;
-    locate(picture->engine, tile, &places);
-    for (uint64_t left = tile->items ? tile->seen.ground : 0; left; left &= left - 1)
+    const uint64_t hits = find_hits(&tile->traced);
+    HitPoints points;
+    locate(picture->engine, tile, &points);
+    for (uint64_t left = tile->items ? tile->traced.ground : 0; left; left &= left - 1)
         tile->items[__builtin_ctzll(left)] = NO_ITEM;
     for (size_t i = 0; i < view->n_lights; i++) {
         const Light *light = &view->lights[i];
         if (!light->casts_shadows || light->samples > 1)
             continue;
-        uint64_t wanted = hits & kernels->face(&tile->seen, &places, tile->hits.normal,
+        uint64_t wanted = hits & kernels->face(&tile->traced, &points, tile->hits.normal,
                                                &picture->canvas.look.lights[i]);
         size_t answer = (size_t)(tile->shadowed + i - batch->shadowed) * TILE_SAMPLES;
         if (batch->queues[i])
-            shadowqueue_add(batch->queues[i], &places, tile->items, wanted, (uint32_t)answer);
+            shadowqueue_add(batch->queues[i], &points, tile->items, wanted, (uint32_t)answer);
         else
-            cast_shadows(picture, worker, light, &places, wanted, tile->shadowed[i]);
+            cast_shadows(picture, worker, light, &points, wanted, tile->shadowed[i]);
     }
 }
 
@@ -150,7 +150,7 @@ static Status find_shadows(const TilePicture *picture, int worker, Err *err)
         return STATUS_OK;
     memset(batch->shadowed, 0, (size_t)batch->n_tiles * n_lights * sizeof *batch->shadowed);
     for (int i = 0; i < batch->n_tiles; i++)
-        if (batch->tiles[i].seen.hits)
+        if (batch->tiles[i].traced.hits)
             query_lights(picture, worker, &batch->tiles[i]);
     for (size_t i = 0; i < n_lights; i++)
         if (batch->queues[i])
@@ -161,39 +161,40 @@ static Status find_shadows(const TilePicture *picture, int worker, Err *err)
 /* ---- colors --------------------------------------------------------------------------------- */
 
 /* Returns the ray of a sample. */
-static Ray sample_ray(const TilePicture *picture, const TracedTile *seen, int sample)
+static Ray sample_ray(const TilePicture *picture, const TracedTile *traced, int sample)
 {
     const SampleGrid *grid = &picture->pass->grid;
     return camera_ray(&picture->canvas.drawing->view->camera,
-                      samplegrid_at(grid, seen->column + tile_sample_x(sample)),
-                      samplegrid_at(grid, seen->row + tile_sample_y(sample)));
+                      samplegrid_at(grid, traced->column + tile_sample_x(sample)),
+                      samplegrid_at(grid, traced->row + tile_sample_y(sample)));
 }
 
 /* Returns the surface that a sample hits. */
-static Surfel surfel_of(const TilePicture *picture, const TracedTile *seen, int sample)
+static Surfel surfel_of(const TilePicture *picture, const TracedTile *traced, int sample)
 {
-    const float(*n)[TILE_SAMPLES] = seen->hits->normal;
+    const float(*n)[TILE_SAMPLES] = traced->hits->normal;
     const Vec3 normal = {(double)n[0][sample], (double)n[1][sample], (double)n[2][sample]};
     const Geometry *geometry = picture->canvas.drawing->geometry;
-    return (Surfel){.t = tile_hit_distance(seen, sample),
-                    .normal = vec3_normalized(viewpoint_to_world(&picture->canvas.eye, normal)),
-                    .segment = geometry->segments[seen->hits->segment[sample]].segment};
+    return (Surfel){.t = tile_hit_distance(traced, sample),
+                    .normal =
+                        vec3_normalized(viewpoint_world_direction(&picture->canvas.eye, normal)),
+                    .segment = geometry->segments[traced->hits->segment[sample]].segment};
 }
 
 /* Colors each sample on its own, with the effects that the kernel does not know. */
-static void color_samples(const TilePicture *picture, int worker, const TracedTile *seen,
+static void color_samples(const TilePicture *picture, int worker, const TracedTile *traced,
                           float color[3][TILE_SAMPLES])
 {
     const SampleGrid *grid = &picture->pass->grid;
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
-        if (!is_inside(seen, sample))
+        if (!is_inside(traced, sample))
             continue;
-        const bool hit = seen->hits && seen->hits->state[sample] == TILE_HIT;
-        const Surfel surfel = hit ? surfel_of(picture, seen, sample) : (Surfel){0};
-        Rgb rgb =
-            ray_color(picture->canvas.drawing, worker, sample_ray(picture, seen, sample),
-                      samplegrid_at(grid, seen->column + tile_sample_x(sample)),
-                      samplegrid_at(grid, seen->row + tile_sample_y(sample)), hit ? &surfel : NULL);
+        const bool hit = traced->hits && traced->hits->state[sample] == TILE_HIT;
+        const Surfel surfel = hit ? surfel_of(picture, traced, sample) : (Surfel){0};
+        Rgb rgb = ray_color(picture->canvas.drawing, worker, sample_ray(picture, traced, sample),
+                            samplegrid_at(grid, traced->column + tile_sample_x(sample)),
+                            samplegrid_at(grid, traced->row + tile_sample_y(sample)),
+                            hit ? &surfel : NULL);
         color[0][sample] = rgb.r;
         color[1][sample] = rgb.g;
         color[2][sample] = rgb.b;
@@ -210,11 +211,11 @@ static float (*color_tile(const TilePicture *picture, int worker, const BatchTil
     float(*color)[TILE_SAMPLES] = NULL;
     if (canvas->wholly_colored) {
         color = canvas->each[worker].color;
-        color_samples(picture, worker, &tile->seen, color);
-    } else if (tile->seen.hits) {
-        color = canvas_shade(canvas, worker, &tile->seen, picture->has_shadows ? shadowed : NULL);
+        color_samples(picture, worker, &tile->traced, color);
+    } else if (tile->traced.hits) {
+        color = canvas_shade(canvas, worker, &tile->traced, picture->has_shadows ? shadowed : NULL);
     }
-    return canvas_cover(canvas, worker, &tile->seen, cells, x, y, color);
+    return canvas_cover(canvas, worker, &tile->traced, cells, x, y, color);
 }
 
 /* ---- shifted passes -------------------------------------------------------------------------- */
@@ -227,10 +228,10 @@ static bool wants_more(const Canvas *canvas, int column, int row)
 /* Starts the sums of a tile with its pixels' centres, which the frame holds. */
 static void begin_sums(const Canvas *canvas, BatchTile *tile)
 {
-    const TracedTile *seen = &tile->seen;
-    for (int j = 0; j < seen->n_rows; j++)
-        for (int i = 0; i < seen->n_columns; i++) {
-            size_t pixel = canvas_pixel(canvas, seen->column + i, seen->row + j);
+    const TracedTile *traced = &tile->traced;
+    for (int j = 0; j < traced->n_rows; j++)
+        for (int i = 0; i < traced->n_columns; i++) {
+            size_t pixel = canvas_pixel(canvas, traced->column + i, traced->row + j);
             for (size_t c = 0; c < 3; c++)
                 tile->sum[c][tile_sample_at(i, j)] = canvas->frame->color.values[3 * pixel + c];
         }
@@ -249,11 +250,12 @@ static void add_to_sums(const TilePicture *picture, int worker, int shift, Batch
 
 static void write_means(const Canvas *canvas, const BatchTile *tile)
 {
-    const TracedTile *seen = &tile->seen;
-    for (int j = 0; j < seen->n_rows; j++)
-        for (int i = 0; i < seen->n_columns; i++) {
-            size_t pixel = canvas_pixel(canvas, seen->column + i, seen->row + j);
-            for (size_t c = 0; c < 3 && wants_more(canvas, seen->column + i, seen->row + j); c++)
+    const TracedTile *traced = &tile->traced;
+    for (int j = 0; j < traced->n_rows; j++)
+        for (int i = 0; i < traced->n_columns; i++) {
+            size_t pixel = canvas_pixel(canvas, traced->column + i, traced->row + j);
+            for (size_t c = 0; c < 3 && wants_more(canvas, traced->column + i, traced->row + j);
+                 c++)
                 canvas->frame->color.values[3 * pixel + c] =
                     resampling_mean(&canvas->more, tile->sum[c][tile_sample_at(i, j)]);
         }
@@ -266,7 +268,7 @@ static Status trace_tile(const TilePicture *picture, int worker, int shift, Batc
     const Canvas *canvas = &picture->canvas;
     TRY(picture->engine->trace(picture->pass->bins, worker, shift, tile, err));
     if (!canvas->wholly_colored && canvas->drawing->view->ground.present)
-        canvas_trace_ground(canvas, &tile->seen, &tile->hits);
+        canvas_trace_ground(canvas, &tile->traced, &tile->hits);
     return STATUS_OK;
 }
 
@@ -291,14 +293,14 @@ static Status draw_shifted(const TilePicture *picture, int worker, Err *err)
 
 /* ---- the fine grid --------------------------------------------------------------------------- */
 
-/* Keeps the colors of a tile of the fine grid until those of a row of pixel tiles are complete. */
-static void keep_fine(const TilePicture *picture, const TileBatch *batch, const TracedTile *seen,
+/* Stores the colors of a tile of the fine grid until the tiles of a row of pixels are complete. */
+static void keep_fine(const TilePicture *picture, const TileBatch *batch, const TracedTile *traced,
                       float (*color)[TILE_SAMPLES])
 {
     size_t width = (size_t)picture->pass->grid.n_columns;
-    canvas_store(&picture->canvas, seen->n_columns, seen->n_rows, color,
+    canvas_store(&picture->canvas, traced->n_columns, traced->n_rows, color,
                  batch->fine_colors +
-                     3 * ((size_t)(seen->row - batch->fine_row) * width + (size_t)seen->column),
+                     3 * ((size_t)(traced->row - batch->fine_row) * width + (size_t)traced->column),
                  3 * width);
 }
 
@@ -331,14 +333,14 @@ static void add_up_rows(const TilePicture *picture, const TileBatch *batch, int 
 /* ---- tiles ----------------------------------------------------------------------------------- */
 
 /* Turns the normals of hits towards the viewer. */
-static void face_viewer(const TracedTile *seen, TileHits *hits)
+static void face_viewer(const TracedTile *traced, TileHits *hits)
 {
     float(*normal)[TILE_SAMPLES] = hits->normal;
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
         if (hits->state[sample] != TILE_HIT)
             continue;
         Vec3 v = {(double)normal[0][sample], (double)normal[1][sample], (double)normal[2][sample]};
-        Vec3 line = seen->perspective ? tile_line(seen, sample) : vec3(0, 0, 1);
+        Vec3 line = traced->perspective ? tile_line(traced, sample) : vec3(0, 0, 1);
         for (int c = 0; c < 3 && vec3_dot(v, line) > 0; c++)
             normal[c][sample] = -normal[c][sample];
     }
@@ -352,12 +354,12 @@ static void keep_tile(const TilePicture *picture, int worker, BatchTile *tile)
     if (canvas->wants_color)
         color = color_tile(picture, worker, tile, &tile->cells, 0, 0);
     if (picture->further) {
-        keep_fine(picture, &picture->batches[worker], &tile->seen, color);
+        keep_fine(picture, &picture->batches[worker], &tile->traced, color);
         return;
     }
-    if (picture->engine->either_side && canvas->wants_geometry && tile->seen.hits)
-        face_viewer(&tile->seen, &tile->hits);
-    canvas_draw(canvas, worker, &tile->seen, color);
+    if (picture->engine->either_side && canvas->wants_geometry && tile->traced.hits)
+        face_viewer(&tile->traced, &tile->hits);
+    canvas_draw(canvas, worker, &tile->traced, color);
 }
 
 /* Draws the tiles of the batch and empties it. */
@@ -379,13 +381,14 @@ static Status draw_batch(const TilePicture *picture, int worker, Err *err)
 static Status find_thin(const TilePicture *picture, BatchTile *tile, Err *err)
 {
     const ThinLayer *thin = picture->canvas.wants_color ? picture->canvas.drawing->thin : NULL;
-    const TracedTile *seen = &tile->seen;
+    const TracedTile *traced = &tile->traced;
     const int per_pixel = picture->pass->grid.side, side = picture->canvas.more.side;
     const int fine = side * TILE_SIDE;
-    if (per_pixel == 1 && thinlayer_misses(thin, seen->column / TILE_SIDE, seen->row / TILE_SIDE))
+    if (per_pixel == 1 &&
+        thinlayer_misses(thin, traced->column / TILE_SIDE, traced->row / TILE_SIDE))
         thin = NULL;
-    const CellBlock center = {seen->column, seen->row, TILE_SIDE, TILE_SIDE, per_pixel};
-    const CellBlock further = {seen->column * side, seen->row * side, fine, fine, side};
+    const CellBlock center = {traced->column, traced->row, TILE_SIDE, TILE_SIDE, per_pixel};
+    const CellBlock further = {traced->column * side, traced->row * side, fine, fine, side};
     TRY(thincells_fill(thin, center, &tile->cells, err));
     if (!picture->shifts || tile->cells.n == 0)
         thin = NULL;
@@ -401,11 +404,11 @@ static Status begin_tile(const TilePicture *picture, int column, int row, int wo
     TileBatch *batch = &picture->batches[worker];
     BatchTile *tile = &batch->tiles[batch->n_tiles];
     const bool listed = picture->engine->is_listed(picture->pass->bins, column, worker);
-    tile->seen = (TracedTile){.column = column * TILE_SIDE,
-                              .row = row * TILE_SIDE,
-                              .n_columns = tile_extent(grid->n_columns - column * TILE_SIDE),
-                              .n_rows = tile_extent(grid->n_rows - row * TILE_SIDE),
-                              .perspective = camera->projection == PROJECTION_PERSPECTIVE};
+    tile->traced = (TracedTile){.column = column * TILE_SIDE,
+                                .row = row * TILE_SIDE,
+                                .n_columns = tile_extent(grid->n_columns - column * TILE_SIDE),
+                                .n_rows = tile_extent(grid->n_rows - row * TILE_SIDE),
+                                .perspective = camera->projection == PROJECTION_PERSPECTIVE};
     TRY(find_thin(picture, tile, err));
     *shown = tile->cells.n > 0 || picture->canvas.wholly_colored ||
              picture->canvas.drawing->view->ground.present;
@@ -414,7 +417,7 @@ static Status begin_tile(const TilePicture *picture, int column, int row, int wo
     *shown |= picture->shifts;
     if (!picture->shifts || !picture->further)
         TRY(trace_tile(picture, worker, -1, tile, err));
-    *shown |= tile->seen.hits != NULL;
+    *shown |= tile->traced.hits != NULL;
     return STATUS_OK;
 }
 
@@ -432,7 +435,7 @@ static Status draw_tiles(const TilePicture *picture, int row, const uint8_t *wan
             continue;
         TRY(begin_tile(picture, column, row, worker, &shown, err));
         if (!shown && picture->further && !picture->shifts)
-            keep_fine(picture, batch, &batch->tiles[batch->n_tiles].seen, NULL);
+            keep_fine(picture, batch, &batch->tiles[batch->n_tiles].traced, NULL);
         batch->n_tiles += shown;
         if (batch->n_tiles == picture->batch_tiles)
             TRY(draw_batch(picture, worker, err));
@@ -597,7 +600,7 @@ static void release_picture(TilePicture *picture)
     canvas_release(&picture->canvas);
 }
 
-/* Allocates what batches need for the further samples. */
+/* Allocates the memory of batches for the further samples. */
 static Status make_further(TilePicture *picture, Err *err)
 {
     const SampleGrid *grid = &picture->pass->grid;

@@ -1,17 +1,19 @@
-/* From where and along which axes a picture, or a light, looks at the scene. */
+/* The position and orientation of a camera or of a light, and conversions between world coordinates
+ * and the frame of the viewpoint. Lengths are in mm. */
 #ifndef CORCAST_RENDER_VIEWPOINT_H
 #define CORCAST_RENDER_VIEWPOINT_H
 
 #include "scene/scene.h"
 
-/* A frame of its own: x to the right, y up, z along the view, mm from the location. Lines of sight
- * are parallel to z, or in perspective lead through the location. */
+/* A viewpoint. In its frame, x points right, y up and z along the view, with the origin at
+ * `location`. Lines of sight are parallel to z, or in perspective pass through `location`. */
 typedef struct Viewpoint {
     Vec3 location;
-    Vec3 axes[3]; /* right, up and along the view: orthonormal, left-handed */
+    Vec3 axes[3]; /* x, y and z axis of the frame, in world coordinates: orthonormal, left-handed */
     bool perspective;
 } Viewpoint;
 
+/* Returns the viewpoint of a camera. */
 static inline Viewpoint viewpoint_of_camera(const Camera *camera)
 {
     return (Viewpoint){
@@ -20,27 +22,29 @@ static inline Viewpoint viewpoint_of_camera(const Camera *camera)
         camera->projection == PROJECTION_PERSPECTIVE};
 }
 
-/* A direction of the world in the frame, and back. */
-static inline Vec3 viewpoint_to_frame(const Viewpoint *eye, Vec3 v)
+/* Converts a direction from world coordinates to the frame. */
+static inline Vec3 viewpoint_frame_direction(const Viewpoint *eye, Vec3 v)
 {
     return vec3(vec3_dot(v, eye->axes[0]), vec3_dot(v, eye->axes[1]), vec3_dot(v, eye->axes[2]));
 }
 
-static inline Vec3 viewpoint_to_world(const Viewpoint *eye, Vec3 v)
+/* Converts a direction from the frame to world coordinates. */
+static inline Vec3 viewpoint_world_direction(const Viewpoint *eye, Vec3 v)
 {
     Vec3 world = vec3_add_scaled(vec3_scale(eye->axes[0], v.x), eye->axes[1], v.y);
     return vec3_add_scaled(world, eye->axes[2], v.z);
 }
 
-/* A point of the world in the frame, and back. */
-static inline Vec3 viewpoint_place(const Viewpoint *eye, Vec3 point)
+/* Converts a point from world coordinates to the frame. */
+static inline Vec3 viewpoint_frame_point(const Viewpoint *eye, Vec3 point)
 {
-    return viewpoint_to_frame(eye, vec3_sub(point, eye->location));
+    return viewpoint_frame_direction(eye, vec3_sub(point, eye->location));
 }
 
-static inline Vec3 viewpoint_point(const Viewpoint *eye, Vec3 place)
+/* Converts a point from the frame to world coordinates. */
+static inline Vec3 viewpoint_world_point(const Viewpoint *eye, Vec3 point)
 {
-    return vec3_add(eye->location, viewpoint_to_world(eye, place));
+    return vec3_add(eye->location, viewpoint_world_direction(eye, point));
 }
 
 #endif

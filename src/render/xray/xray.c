@@ -38,8 +38,8 @@ enum { STRIP = 16 };
 
 /* ---- where primitives are -------------------------------------------------------------------- */
 
-/* From the camera's location: right and up in pictures, over the distance in perspective, and
- * ahead. */
+/* Returns a point relative to the camera's location: right and up in pictures (divided by the
+ * distance in perspective), and ahead. */
 static Vec3 seen_from(const Camera *camera, Vec3 point)
 {
     Vec3 from = vec3_sub(point, camera->location);
@@ -210,8 +210,8 @@ static Status draw_primitives(const XrayBand *band, XrayRow *own, size_t row, Er
     return store_columns(band, own, row, err);
 }
 
-/* How much of the ray lies inside surfaces, by their crossings. A first one from inside tells that
- * the ray starts there. */
+/* Returns the length of the ray inside surfaces, from its crossings. If the first crossing is from
+ * inside, the ray starts inside. */
 static double length_by_hits(Caster *caster, int worker, Ray ray)
 {
     Surfel surfel;
@@ -220,9 +220,9 @@ static double length_by_hits(Caster *caster, int worker, Ray ray)
     for (Ray rest = ray; caster_first(caster, worker, rest, &surfel);
          rest.origin = ray_at(ray, travelled)) {
         travelled += surfel.t;
-        if (surfel.leaves && inside)
+        if (surfel.from_inside && inside)
             length += travelled - start;
-        inside = !surfel.leaves;
+        inside = !surfel.from_inside;
         start = travelled;
     }
     return length;
@@ -277,7 +277,7 @@ done:
     return status;
 }
 
-static bool can(const Drawing *drawing)
+static bool supports_xray(const Drawing *drawing)
 {
     return drawing->view->effects.xray.per_mm > 0 && drawing->params->want_color;
 }
@@ -288,4 +288,4 @@ static bool needs_rays(const Drawing *drawing)
 }
 
 const Engine xray_engine = {
-    .name = "xray", .can = can, .needs_rays = needs_rays, .rows = draw_rows};
+    .name = "xray", .supports = supports_xray, .needs_rays = needs_rays, .rows = draw_rows};

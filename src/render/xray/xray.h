@@ -1,20 +1,21 @@
-/* The x-ray view: colors by the length of vessel along each ray. */
+/* The x-ray view: the color of a pixel depends on the length of the ray inside vessels [Xray in
+ * scene/effects.h]. */
 #ifndef CORCAST_RENDER_XRAY_H
 #define CORCAST_RENDER_XRAY_H
 
 #include "render/engine.h"
 
-/* Draws colors only, one sample per pixel. */
+/* Supports views with an x-ray effect. Draws colors only, one sample per pixel. */
 extern const Engine xray_engine;
 
-/* The part of a ray inside a vessel, mm from the ray's origin. */
+/* A part of a ray inside a vessel, mm from the ray's origin. */
 typedef struct RayStretch {
     double from, to;
 } RayStretch;
 
 /* Finds the parts of a ray, from its origin on, that lie inside a primitive: a sphere, a cylinder
  * with its end discs, or a joint with its discs. Exact except for rounding. Sets stretches[] in
- * rising order, apart from one another, and returns their number. */
+ * ascending order, without overlaps, and returns their number. */
 int primitive_stretches(const Primitive *primitive, const PrimitiveFrame *frame, Ray ray,
                         RayStretch stretches[3]);
 

@@ -1,15 +1,19 @@
-/* Fast exp(-x) and erf(x), from which the terms of the potential are made. They are as exact as a
- * surface in single precision needs, and take a fifth of the time of the C library's functions. */
-#ifndef CORCAST_MESH_ZONES_GAUSS_H
-#define CORCAST_MESH_ZONES_GAUSS_H
+/* Fast exp(-x) and erf(x), for the terms of the potential.
+ *
+ * They are as exact as a surface in single precision needs, and take a fifth of the time of the C
+ * library's functions. Each computes two values at once, in a vector register. All numbers are
+ * dimensionless. Private to the module mesh. */
+#ifndef CORCAST_MESH_REGIONS_GAUSS_H
+#define CORCAST_MESH_REGIONS_GAUSS_H
 
 #include <stdint.h>
 
-/* For larger x, 1 - erf(x) is below 2e-9. */
+/* For x above this, 1 - erf(x) is below 2e-9. */
 #define GAUSS_SATURATED 4.25
 
-/* Two numbers in one register, for the same operations. */
+/* Two numbers in one vector register. */
 typedef double Pair __attribute__((vector_size(16)));
+/* The bits of a Pair, and a mask: all bits of a number set, or none. */
 typedef uint64_t PairBits __attribute__((vector_size(16)));
 
 /* Returns, per number, a where the mask is set, else b. */
@@ -25,9 +29,11 @@ static inline Pair pair_abs(Pair x)
     return (Pair)((PairBits)x & ~pair_sign);
 }
 
-/* Returns exp(-x) for x >= 0. The relative error is below 1e-8 where the result is above 1e-300. It
- * is 2^n e^f with |f| <= ln 2 / 2, and e^f comes from its series. Adding 1.5 2^52 rounds to
- * integers, and leaves n in the lowest bits. */
+/* Returns exp(-x) for x >= 0. The relative error is below 1e-8 where the result is above 1e-300.
+ * For x above 690 it returns exp(-690).
+ *
+ * The result is 2^n e^f with |f| <= ln 2 / 2, and e^f comes from its series. Adding 1.5 2^52 rounds
+ * to integers, and leaves n in the lowest bits. */
 static inline Pair exp_minus_pair(Pair x)
 {
     x = pair_select((PairBits)(x < 690), x, (Pair){690, 690});
@@ -39,13 +45,15 @@ static inline Pair exp_minus_pair(Pair x)
     return (Pair)((PairBits)(even + f * odd) + ((PairBits)shifted << 52));
 }
 
+/* Returns exp(-x) of one number x >= 0, as exp_minus_pair. */
 static inline double exp_minus(double x)
 {
     return exp_minus_pair((Pair){x, x})[0];
 }
 
-/* Returns erf(x) with an error below 3e-7 [M. Abramowitz, I. Stegun: Handbook of Mathematical
- * Functions, 7.1.28]; exactly 1 beyond GAUSS_SATURATED. */
+/* Returns erf(x) with an absolute error below 3e-7 [M. Abramowitz, I. Stegun: Handbook of
+ * Mathematical Functions, 7.1.28]. Beyond GAUSS_SATURATED the result is exactly 1, and exactly -1
+ * on the other side. */
 static inline Pair erf_pair(Pair x)
 {
     const Pair one = {1, 1};

@@ -2,9 +2,9 @@
  * becomes a stub: it is cut off, or prolonged, to end a little behind the plane where its tube
  * begins. That is far enough that the end does not change the field at the plane, and near enough
  * that the stub does not meet other vessels. */
-#include "mesh/zones/junctions.h"
+#include "mesh/regions/junctions.h"
 
-#include "mesh/zones/nearpairs.h"
+#include "mesh/regions/nearpairs.h"
 #include <stdlib.h>
 
 typedef struct JunctionPlanner {

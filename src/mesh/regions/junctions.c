@@ -9,11 +9,11 @@
  * where they are near. A tube can become too short by that, which joins regions. Then more pairs
  * may share a region. The steps are repeated until nothing changes. They end, because a plane is
  * only pushed to one of a few positions. */
-#include "mesh/zones/junctions.h"
+#include "mesh/regions/junctions.h"
 
 #include "mesh/precision.h"
-#include "mesh/zones/freeends.h"
-#include "mesh/zones/nearpairs.h"
+#include "mesh/regions/freeends.h"
+#include "mesh/regions/nearpairs.h"
 #include <stdlib.h>
 
 /* In units of the radius: how far a plane may be shifted; the minimum gap left between two shifted
@@ -47,7 +47,7 @@ void junctions_release(Junctions *junctions)
     free(junctions->plane);
     free(junctions->is_tube);
     free(junctions->is_close);
-    free(junctions->strangers);
+    free(junctions->unconnected);
     *junctions = (Junctions){0};
 }
 
@@ -77,7 +77,7 @@ static void keep_off_ends(const Divider *divider)
             double least = round_room * tree->segments[i].radius_mm;
             FreeEnd *own = &divider->ends[i][end];
             if (is_end(divider->junctions, tree->nodes[i][end]))
-                *own = (FreeEnd){fmax(own->even_mm, least), fmax(own->clear_mm, least)};
+                *own = (FreeEnd){fmax(own->near_cylinder_mm, least), fmax(own->cylinder_mm, least)};
         }
 }
 
@@ -98,9 +98,9 @@ static bool join_path(const Divider *divider, uint32_t a, uint32_t b)
     const TreeOrder *order = &divider->order;
     bool changed = false;
     while (a != b) {
-        uint32_t *later = order->place[a] > order->place[b] ? &a : &b;
-        changed |= join_nodes(divider, *later, order->up[*later]);
-        *later = order->up[*later];
+        uint32_t *later = order->position[a] > order->position[b] ? &a : &b;
+        changed |= join_nodes(divider, *later, order->previous[*later]);
+        *later = order->previous[*later];
     }
     return changed;
 }
@@ -126,8 +126,8 @@ static bool place_close(const Divider *divider, uint32_t segment, double length)
         if (divider->tree->body == BODY_ROUND ||
             is_flat_end(divider, divider->tree->nodes[segment][end]))
             return false;
-        low[end] = ends[end].even_mm + CLOSE_MOVE * radius;
-        high[end] = length - fmax(ends[!end].clear_mm, term_room * radius);
+        low[end] = ends[end].near_cylinder_mm + CLOSE_MOVE * radius;
+        high[end] = length - fmax(ends[!end].cylinder_mm, term_room * radius);
         if (low[end] > high[end])
             return false;
     }
@@ -143,10 +143,10 @@ static bool place_planes(const Divider *divider, uint32_t segment)
     const FreeEnd *ends = divider->ends[segment];
     double length = segment_length(&divider->tree->segments[segment]);
     double room = room_needed(divider, segment);
-    bool is_clear = ends[0].clear_mm + ends[1].clear_mm + room <= length;
+    bool is_clear = ends[0].cylinder_mm + ends[1].cylinder_mm + room <= length;
     divider->junctions->is_close[segment] = !is_clear && place_close(divider, segment, length);
     for (int end = 0; end < 2 && !divider->junctions->is_close[segment]; end++)
-        divider->junctions->plane[segment][end] = ends[end].clear_mm;
+        divider->junctions->plane[segment][end] = ends[end].cylinder_mm;
     return is_clear || divider->junctions->is_close[segment];
 }
 
@@ -208,9 +208,9 @@ static bool push_plane(Divider *divider, uint32_t a, uint32_t b)
             needed[end] = HUGE_VAL;
     int end = needed[1] < needed[0];
     FreeEnd *own = &divider->ends[a][end];
-    if (!isfinite(needed[end]) || needed[end] <= own->even_mm)
+    if (!isfinite(needed[end]) || needed[end] <= own->near_cylinder_mm)
         return false;
-    *own = (FreeEnd){needed[end], fmax(own->clear_mm, needed[end])};
+    *own = (FreeEnd){needed[end], fmax(own->cylinder_mm, needed[end])};
     return true;
 }
 
@@ -376,14 +376,14 @@ static int compare_gaps(const void *a, const void *b)
 static void keep_strangers(const Divider *divider, size_t n)
 {
     Junctions *junctions = divider->junctions;
-    NearPair *pairs = junctions->strangers;
+    NearPair *pairs = junctions->unconnected;
     for (size_t i = 0; i < n; i++) {
         if (share_junction(divider, pairs[i].segments[0], pairs[i].segments[1]))
             continue;
         junctions->n_overlapping += pairs[i].gap_mm < 0;
-        pairs[junctions->n_strangers++] = pairs[i];
+        pairs[junctions->n_unconnected++] = pairs[i];
     }
-    qsort(pairs, junctions->n_strangers, sizeof *pairs, compare_gaps);
+    qsort(pairs, junctions->n_unconnected, sizeof *pairs, compare_gaps);
 }
 
 static Status reserve(Divider *divider, Err *err)
@@ -404,21 +404,21 @@ static Status reserve(Divider *divider, Err *err)
 
 Status junctions_find(const VesselTree *tree, const MeshParams *params, Junctions *out, Err *err)
 {
-    Junctions found = {.moved = freeends_moved(params)};
+    Junctions found = {.max_shift = freeends_max_shift(params)};
     Divider divider = {.tree = tree, .junctions = &found};
     size_t n_pairs = 0;
     Status status;
     TRY_GOTO(vesseltree_incident(tree, &found.incident, err));
     TRY_GOTO(vesseltree_blending(tree, &found.incident, &found.blending, err));
-    TRY_GOTO(reach_check(tree, params->reach_mm, err));
+    TRY_GOTO(precision_check(tree, params->max_coordinate_mm, err));
     TRY_GOTO(reserve(&divider, err));
     TRY_GOTO(treeorder_make(tree, &found.incident, &divider.order, err));
     TRY_GOTO(freeends_find(
         &(const FreeEndInput){tree, &found.incident, &found.blending, &divider.order, params},
         divider.ends, err));
     keep_off_ends(&divider);
-    TRY_GOTO(nearpairs_find(tree, params->threads, &found.strangers, &n_pairs, err));
-    TRY_GOTO(divide(&divider, found.strangers, n_pairs, err));
+    TRY_GOTO(nearpairs_find(tree, params->threads, &found.unconnected, &n_pairs, err));
+    TRY_GOTO(divide(&divider, found.unconnected, n_pairs, err));
     TRY_GOTO(number_junctions(&divider, err));
     keep_strangers(&divider, n_pairs);
     *out = found;

@@ -5,10 +5,10 @@
  * is nearly that of the segment alone, if it continued.
  *
  * Places are tried in steps from the far end on. The interval that the last one is in is halved. */
-#include "mesh/zones/freeends.h"
+#include "mesh/regions/freeends.h"
 
-#include "mesh/zones/junctionfield.h"
-#include "mesh/zones/nearpairs.h"
+#include "mesh/regions/junctionfield.h"
+#include "mesh/regions/nearpairs.h"
 #include <stdlib.h>
 
 /* In units of the level: what other vessels may add. Adding a part p moves the surface by p / 4
@@ -313,14 +313,14 @@ static Status find_both_free(size_t index, int worker, void *context, Err *err)
     return find_free(context, (uint32_t)index, 1, err);
 }
 
-double freeends_moved(const MeshParams *params)
+double freeends_max_shift(const MeshParams *params)
 {
     return 0.25 * fmin(fmax(params->tolerance, least_part), most_part);
 }
 
 Status freeends_find(const FreeEndInput *input, FreeEnd (*ends)[2], Err *err)
 {
-    FreeSearch search = {input, 4 * freeends_moved(input->params) * FIELD_LEVEL, ends};
+    FreeSearch search = {input, 4 * freeends_max_shift(input->params) * FIELD_LEVEL, ends};
     return threads_try(input->tree->n_segments, input->params->threads, find_both_free, &search,
                        err);
 }

@@ -1,14 +1,14 @@
 /* Nodes are taken from a stack, so that all that lies beyond a node follows it at once; then, from
  * the last node to the first, each tells the one before it where its part of the order ends. */
-#include "mesh/zones/treeorder.h"
+#include "mesh/regions/treeorder.h"
 
 #include <stdlib.h>
 
 void treeorder_release(TreeOrder *order)
 {
-    free(order->up);
-    free(order->place);
-    free(order->last);
+    free(order->previous);
+    free(order->position);
+    free(order->last_beyond);
     *order = (TreeOrder){0};
 }
 
@@ -18,17 +18,17 @@ static uint32_t order_tree(const VesselTree *tree, const IndexLists *incident, u
 {
     uint32_t top = 0;
     stack[top++] = root;
-    order->up[root] = root;
+    order->previous[root] = root;
     while (top) {
         uint32_t node = stack[--top];
-        order->place[node] = order->last[node] = n;
+        order->position[node] = order->last_beyond[node] = n;
         ordered[n++] = node;
         for (uint32_t i = incident->first[node]; i < incident->first[node + 1]; i++) {
             uint32_t segment = incident->items[i];
             uint32_t next = tree->nodes[segment][!segment_end_at(tree, segment, node)];
-            if (next == order->up[node])
+            if (next == order->previous[node])
                 continue;
-            order->up[next] = node;
+            order->previous[next] = node;
             stack[top++] = next;
         }
     }
@@ -40,20 +40,21 @@ Status treeorder_make(const VesselTree *tree, const IndexLists *incident, TreeOr
     TreeOrder order = {0};
     uint32_t *stack = NULL, *ordered = NULL, n = 0;
     Status status;
-    TRY_GOTO(mem_calloc(&order.up, tree->n_nodes, sizeof *order.up, "nodes", err));
-    TRY_GOTO(mem_calloc(&order.place, tree->n_nodes, sizeof *order.place, "nodes", err));
-    TRY_GOTO(mem_calloc(&order.last, tree->n_nodes, sizeof *order.last, "nodes", err));
+    TRY_GOTO(mem_calloc(&order.previous, tree->n_nodes, sizeof *order.previous, "nodes", err));
+    TRY_GOTO(mem_calloc(&order.position, tree->n_nodes, sizeof *order.position, "nodes", err));
+    TRY_GOTO(
+        mem_calloc(&order.last_beyond, tree->n_nodes, sizeof *order.last_beyond, "nodes", err));
     TRY_GOTO(mem_calloc(&stack, tree->n_nodes, sizeof *stack, "nodes", err));
     TRY_GOTO(mem_calloc(&ordered, tree->n_nodes, sizeof *ordered, "nodes", err));
     for (uint32_t i = 0; i < tree->n_nodes; i++)
-        order.place[i] = UINT32_MAX;
+        order.position[i] = UINT32_MAX;
     for (uint32_t i = 0; i < tree->n_nodes; i++)
-        if (order.place[i] == UINT32_MAX)
+        if (order.position[i] == UINT32_MAX)
             n = order_tree(tree, incident, i, n, stack, ordered, &order);
     for (uint32_t i = n; i-- > 0;) {
-        uint32_t node = ordered[i], up = order.up[node];
-        if (order.last[up] < order.last[node])
-            order.last[up] = order.last[node];
+        uint32_t node = ordered[i], up = order.previous[node];
+        if (order.last_beyond[up] < order.last_beyond[node])
+            order.last_beyond[up] = order.last_beyond[node];
     }
     *out = order;
     order = (TreeOrder){0};
@@ -68,7 +69,7 @@ int treeorder_end_towards(const TreeOrder *order, const VesselTree *tree, uint32
                           uint32_t other)
 {
     const uint32_t *ends = tree->nodes[segment];
-    int outer = order->up[ends[1]] == ends[0];
+    int outer = order->previous[ends[1]] == ends[0];
     bool beyond = treeorder_is_beyond(order, tree->nodes[other][0], ends[outer]) &&
                   treeorder_is_beyond(order, tree->nodes[other][1], ends[outer]);
     return beyond ? outer : !outer;

@@ -1,6 +1,6 @@
 /* Both changes follow one scheme: change the tree a little, find its junction regions anew, and
  * repeat until they are as wanted. One step does not suffice: a change of radii or lengths makes
- * regions larger or smaller, so that vessels that shared a region before may become strangers.
+ * regions larger or smaller, so that vessels that shared a region before may become unconnected.
  *
  * Two vessels that overlap are thinned by the same factor, together with the vessels that blend
  * with them and are not much thicker, because the surface of a centre line of short steps is that
@@ -10,10 +10,10 @@
  * if other vessels are near. Each end that is not flat grows by a step at a time. An end that would
  * then overlap a stranger, or that is not flat at its greatest length, goes back to where it was.
  */
-#include "mesh/zones/adjust.h"
+#include "mesh/regions/adjust.h"
 
-#include "mesh/zones/junctions.h"
-#include "mesh/zones/nearpairs.h"
+#include "mesh/regions/junctions.h"
+#include "mesh/regions/nearpairs.h"
 #include <stdlib.h>
 
 /* In units of the sum of the radii: the gap left between parted surfaces. */
@@ -60,7 +60,7 @@ static Status thin_pairs(Parting *parting, Err *err)
     for (size_t i = 0; i < tree->n_segments; i++)
         parting->kept[i] = 1;
     for (size_t i = 0; i < parting->junctions.n_overlapping; i++) {
-        const NearPair *pair = &parting->junctions.strangers[i];
+        const NearPair *pair = &parting->junctions.unconnected[i];
         double radii = tree->segments[pair->segments[0]].radius_mm +
                        tree->segments[pair->segments[1]].radius_mm;
         double factor = (pair->gap_mm + radii) / radii * (1 - free_part);
@@ -70,10 +70,11 @@ static Status thin_pairs(Parting *parting, Err *err)
     for (size_t i = 0; i < tree->n_segments; i++) {
         tree->segments[i].radius_mm *= parting->kept[i];
         if (tree->segments[i].radius_mm < least_kept * parting->radii[i])
-            return err_set(err, STATUS_INPUT,
-                           "segment %u and one that it does not belong with come so near that it "
-                           "would keep less than %g of its radius; their walls cannot be parted",
-                           tree->ids[i], least_kept);
+            return err_set(
+                err, STATUS_INPUT,
+                "segment %u overlaps an unconnected vessel so far that it would have to be "
+                "thinned to less than %g of its radius",
+                tree->ids[i], least_kept);
     }
     return STATUS_OK;
 }
@@ -89,8 +90,8 @@ static Status list_thinned(const Parting *parting, uint32_t **list, size_t *n, E
     return STATUS_OK;
 }
 
-Status vesseltree_part(VesselTree *tree, const MeshParams *params, uint32_t **thinned, size_t *n,
-                       Err *err)
+Status vesseltree_thin_overlaps(VesselTree *tree, const MeshParams *params, uint32_t **thinned,
+                                size_t *n, Err *err)
 {
     Parting parting = {.tree = tree};
     Status status;
@@ -159,7 +160,7 @@ static bool put_back_overlapping(const Lengthening *all)
     for (size_t i = 0; i < all->tips.n; i++) {
         TreeTip *tip = &all->tips.items[i];
         for (size_t k = 0; k < all->junctions.n_overlapping && tip->steps; k++) {
-            const uint32_t *pair = all->junctions.strangers[k].segments;
+            const uint32_t *pair = all->junctions.unconnected[k].segments;
             if (pair[0] != tip->segment && pair[1] != tip->segment)
                 continue;
             put_back(all, tip);
@@ -179,7 +180,7 @@ static bool lengthen(const Lengthening *all)
         uint32_t node = all->tree->nodes[tip->segment][tip->end];
         if (tip->is_stuck || all->junctions.of_node[node] == NO_JUNCTION)
             continue;
-        if ((tip->steps + 1) * end_step > LENGTHENED_MOST) {
+        if ((tip->steps + 1) * end_step > MAX_LENGTHENING) {
             put_back(all, tip);
         } else {
             tip->steps++;
@@ -204,8 +205,8 @@ static Status list_longer(const Lengthening *all, uint32_t **list, size_t *n, Er
     return STATUS_OK;
 }
 
-Status vesseltree_free_ends(VesselTree *tree, const MeshParams *params, uint32_t **lengthened,
-                            size_t *n, Err *err)
+Status vesseltree_lengthen_ends(VesselTree *tree, const MeshParams *params, uint32_t **lengthened,
+                                size_t *n, Err *err)
 {
     Lengthening all = {.tree = tree};
     Status status;

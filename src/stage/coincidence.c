@@ -1,8 +1,8 @@
-/* Nodes joined by segments of no length are one place. Of segments between the same two points the
- * thinner ones lie inside the thickest and are left out; measured trees hold such pairs. They are
- * sisters, which begin at one node and whose distal nodes are one place; or one of them returns
- * from the other's distal node to the other's proximal place. */
-#include "stage/places.h"
+/* Measured trees contain several segments between the same two points. The thinner ones lie inside
+ * the thickest one and are left out. Such a pair consists either of two sisters, which start at the
+ * same junction and end at the same junction, or of a segment and a daughter that leads from the
+ * segment's distal end back to its proximal junction. */
+#include "stage/coincidence.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -17,23 +17,25 @@ bool segment_can_be_drawn(const Tree *tree, size_t i)
     return tree_is_segment(tree, i) && tree->radius_mm[i] > 0 && has_length(tree, i);
 }
 
-/* Uncovered segments in lists, each the latest first: those that begin at one place together, or
- * where they are more than FEW also by the cell of space they end in, so that a place may have any
- * number of daughters. All arrays are owned. */
+/* Segments without a twin so far, in lists, the latest segment first. There is one list per
+ * junction for the segments that start there. If more than FEW segments start at a junction, their
+ * lists are also separated by the cell of space in which a segment ends, so that a junction with
+ * many daughters is not slow. All arrays are owned. */
 typedef struct SisterBins {
-    int32_t *start;     /* by segment: the first of the nodes, joined by segments of no length, that
-                         * the segment begins at */
-    int32_t *daughters; /* by such first node: the segments that begin there, drawn or not */
-    int32_t *first;     /* one a node, and then one a bin of cells; below 0: none */
+    int32_t *start;     /* per segment: the first node of the junction at which the segment
+                         * starts */
+    int32_t *daughters; /* per first node: number of segments that start there, drawn or not */
+    int32_t *first;     /* heads of the lists: one per node, then one per bin of cells; negative:
+                         * empty list */
     int32_t *next;      /* one a node */
     size_t n;           /* nodes */
-    size_t mask;        /* the number of bins of cells, a power of 2, less 1 */
+    size_t mask;        /* number of bins of cells, a power of 2, minus 1 */
 } SisterBins;
 
 enum { FEW = 8 };
 
-/* Of a cell: so long that most places are clear of its faces, and so short that few fit into
- * one. */
+/* Side of a cell, mm: so long that most nodes are farther than SHORTEST_MM from the cell's faces,
+ * and so short that a cell holds few nodes. */
 static const double cell_mm = 16e-9;
 
 static size_t bin_of(const SisterBins *bins, int32_t start, const double cell[3])
@@ -48,15 +50,17 @@ static size_t bin_of(const SisterBins *bins, int32_t start, const double cell[3]
     return bins->n + ((size_t)hash & bins->mask);
 }
 
-/* The cell of the point moved by `by` along all axes; zeros have one sign. */
+/* Returns the cell of a point that is moved by `by` mm along all axes. Adding 0.0 gives all zeros
+ * the same sign. */
 static void find_cell(Vec3 point, double by, double cell[3])
 {
     for (int axis = 0; axis < 3; axis++)
         cell[axis] = floor((vec3_component(point, axis) + by) / cell_mm) + 0.0;
 }
 
-/* What leads to the latest of the sisters in the list of a bin that end where segment i does, if
- * that is later than what `found` leads to; else `found`. NULL: none. */
+/* Returns the link to the latest sister in the list of a bin that ends where segment i ends, if
+ * this sister is later than the sister to which `found` links; otherwise returns `found`. NULL:
+ * there is no sister. */
 static int32_t *find_in(const Tree *tree, const SisterBins *bins, size_t bin, size_t i,
                         int32_t *found)
 {
@@ -72,8 +76,7 @@ static bool has_few_sisters(const SisterBins *bins, size_t i)
     return bins->daughters[bins->start[i]] <= FEW;
 }
 
-/* What leads to the latest of the sisters in the lists that end where segment i does; NULL:
- * none. */
+/* Returns the link to the latest sister that ends where segment i ends; NULL: there is none. */
 static int32_t *find_sister(const Tree *tree, const SisterBins *bins, size_t i)
 {
     if (has_few_sisters(bins, i))
@@ -95,7 +98,7 @@ static int32_t *find_sister(const Tree *tree, const SisterBins *bins, size_t i)
     return found;
 }
 
-/* Puts segment i into its list. */
+/* Inserts segment i into its list. */
 static void put(const Tree *tree, SisterBins *bins, size_t i)
 {
     size_t bin = (size_t)bins->start[i];
@@ -109,19 +112,19 @@ static void put(const Tree *tree, SisterBins *bins, size_t i)
 }
 
 /* Compares each segment with its elder sisters. */
-static void find_covers(const Tree *tree, SisterBins *bins, int32_t *cover)
+static void find_twins(const Tree *tree, SisterBins *bins, int32_t *twin)
 {
     for (size_t i = 0; i < tree->n; i++) {
-        cover[i] = segment_can_be_drawn(tree, i) ? PLACES_UNCOVERED : PLACES_CANNOT_DRAW;
-        if (cover[i] == PLACES_CANNOT_DRAW)
+        twin[i] = segment_can_be_drawn(tree, i) ? NO_TWIN : CANNOT_DRAW;
+        if (twin[i] == CANNOT_DRAW)
             continue;
         int32_t self = (int32_t)i, *sister = find_sister(tree, bins, i);
         if (sister && !(tree->radius_mm[i] > tree->radius_mm[*sister])) {
-            cover[self] = *sister;
+            twin[self] = *sister;
             continue;
         }
         if (sister) {
-            cover[*sister] = self;
+            twin[*sister] = self;
             *sister = bins->next[*sister];
         }
         put(tree, bins, i);
@@ -130,46 +133,47 @@ static void find_covers(const Tree *tree, SisterBins *bins, int32_t *cover)
 
 /* Returns true if segment i leads from the end of its parent's segment back to where that one
  * begins. */
-static bool returns(const Tree *tree, const int32_t *cover, size_t i)
+static bool returns(const Tree *tree, const int32_t *twin, size_t i)
 {
     const int32_t parent = tree->parent[i];
-    return cover[i] != PLACES_CANNOT_DRAW && cover[parent] != PLACES_CANNOT_DRAW &&
+    return twin[i] != CANNOT_DRAW && twin[parent] != CANNOT_DRAW &&
            vec3_distance(tree->position[i], tree->position[tree->parent[parent]]) <= SHORTEST_MM;
 }
 
-/* The last of the sisters that cover each other from `self` on; shortens the way there. */
-static int32_t outermost(int32_t *cover, int32_t self)
+/* Returns the last segment of the chain of twins from `self` on. Shortens the chain for later
+ * calls. */
+static int32_t outermost(int32_t *twin, int32_t self)
 {
-    for (; cover[self] >= 0; self = cover[self])
-        if (cover[cover[self]] >= 0)
-            cover[self] = cover[cover[self]];
+    for (; twin[self] >= 0; self = twin[self])
+        if (twin[twin[self]] >= 0)
+            twin[self] = twin[twin[self]];
     return self;
 }
 
-/* Compares each segment that returns with the thickest of those that it returns along. */
-static void find_returning_covers(const Tree *tree, int32_t *cover)
+/* Compares each segment that returns with the thickest segment that it returns along. */
+static void find_backward_twins(const Tree *tree, int32_t *twin)
 {
     for (size_t i = 0; i < tree->n; i++) {
-        if (!returns(tree, cover, i) || cover[i] != PLACES_UNCOVERED)
+        if (!returns(tree, twin, i) || twin[i] != NO_TWIN)
             continue;
-        int32_t along = outermost(cover, tree->parent[i]);
+        int32_t along = outermost(twin, tree->parent[i]);
         bool is_thicker = tree->radius_mm[i] > tree->radius_mm[along];
-        cover[is_thicker ? along : (int32_t)i] = PLACES_COVERED_BACKWARDS;
+        twin[is_thicker ? along : (int32_t)i] = BACKWARD_TWIN;
     }
 }
 
-/* The place of node i, those of the nodes before it being known. */
-static int32_t place_of(const Tree *tree, const Places *found, size_t i)
+/* Returns the junction of node i. The junctions of earlier nodes must be known. */
+static int32_t junction_of(const Tree *tree, const Coincidence *found, size_t i)
 {
     const int32_t parent = tree->parent[i];
-    if (tree_is_segment(tree, i) && !has_length(tree, i) && !places_can_draw(found, i))
-        return found->place[parent];
-    if (returns(tree, found->cover, i))
-        return found->place[tree->parent[parent]];
-    return outermost(found->cover, (int32_t)i);
+    if (tree_is_segment(tree, i) && !has_length(tree, i) && !coincidence_can_draw(found, i))
+        return found->junction[parent];
+    if (returns(tree, found->twin, i))
+        return found->junction[tree->parent[parent]];
+    return outermost(found->twin, (int32_t)i);
 }
 
-/* Finds where each segment begins, and counts those that begin together. */
+/* Finds the first node of each segment's start, and counts the segments per first node. */
 static void find_starts(const Tree *tree, SisterBins *bins)
 {
     for (size_t i = 0; i < tree->n; i++) {
@@ -201,45 +205,46 @@ static Status init_bins(const Tree *tree, SisterBins *bins, Err *err)
     return mem_calloc(&bins->next, bins->n, sizeof *bins->next, "nodes", err);
 }
 
-Status places_find(const Tree *tree, Places *places, Err *err)
+Status coincidence_find(const Tree *tree, Coincidence *coincidence, Err *err)
 {
     SisterBins bins = {0};
-    Places found = {0};
+    Coincidence found = {0};
     Status status = STATUS_OK;
     TRY_GOTO(init_bins(tree, &bins, err));
-    TRY_GOTO(mem_calloc(&found.cover, tree->n, sizeof *found.cover, "nodes", err));
-    TRY_GOTO(mem_calloc(&found.place, tree->n, sizeof *found.place, "nodes", err));
-    find_covers(tree, &bins, found.cover);
-    find_returning_covers(tree, found.cover);
+    TRY_GOTO(mem_calloc(&found.twin, tree->n, sizeof *found.twin, "nodes", err));
+    TRY_GOTO(mem_calloc(&found.junction, tree->n, sizeof *found.junction, "nodes", err));
+    find_twins(tree, &bins, found.twin);
+    find_backward_twins(tree, found.twin);
     for (size_t i = 0; i < tree->n; i++)
-        found.place[i] = place_of(tree, &found, i);
-    *places = found;
-    found = (Places){0};
+        found.junction[i] = junction_of(tree, &found, i);
+    *coincidence = found;
+    found = (Coincidence){0};
 done:
     free(bins.start);
     free(bins.daughters);
     free(bins.first);
     free(bins.next);
-    places_release(&found);
+    coincidence_release(&found);
     return status;
 }
 
-StageReport places_count(const Tree *tree, const Places *places)
+StageReport coincidence_count(const Tree *tree, const Coincidence *coincidence)
 {
     StageReport report = {0};
     for (size_t i = 0; i < tree->n; i++) {
         if (!tree_is_segment(tree, i))
             continue;
-        report.drawn += places_can_draw(places, i);
-        report.dropped += !places_can_draw(places, i);
-        report.covered += places_can_draw(places, i) && !places_draw(places, i);
+        report.drawn += coincidence_can_draw(coincidence, i);
+        report.dropped += !coincidence_can_draw(coincidence, i);
+        report.covered +=
+            coincidence_can_draw(coincidence, i) && !coincidence_draws(coincidence, i);
     }
     return report;
 }
 
-void places_release(Places *places)
+void coincidence_release(Coincidence *coincidence)
 {
-    free(places->cover);
-    free(places->place);
-    *places = (Places){0};
+    free(coincidence->twin);
+    free(coincidence->junction);
+    *coincidence = (Coincidence){0};
 }

@@ -1,7 +1,12 @@
-/* The potential field of a junction region, and the local part of it that matters in a ball. Each
- * node of the region has a group of terms. The field is the largest of the groups' sums. */
-#ifndef CORCAST_MESH_ZONES_JUNCTIONFIELD_H
-#define CORCAST_MESH_ZONES_JUNCTIONFIELD_H
+/* The potential field of a junction region, and its restriction to a ball.
+ *
+ * Each segment has one term of the potential. Each node of the region has a group of terms, those
+ * that blend at the node. The field is the largest of the groups' sums; the surface is where the
+ * field is FIELD_LEVEL. In a small ball only few terms matter. A LocalField lists them, so that the
+ * field in the ball costs little. Local fields are stored in a LocalFieldPool, which an octree uses
+ * as a stack while it descends. Private to the module mesh. */
+#ifndef CORCAST_MESH_REGIONS_JUNCTIONFIELD_H
+#define CORCAST_MESH_REGIONS_JUNCTIONFIELD_H
 
 #include "base/base.h"
 #include "scene/scene.h"
@@ -20,26 +25,31 @@ typedef struct PotentialTerm {
     bool is_round;    /* the tree's body is BODY_ROUND */
 } PotentialTerm;
 
+/* In PotentialTerm.stub: the segment is wholly in the region. */
 #define NO_STUB UINT16_MAX
 
-/* Returns the term of a segment that is not a branch stub. */
+/* Returns the term of a segment from a to b, with `stub` set to NO_STUB. a and b must differ, and
+ * radius_mm must be above 0. */
 PotentialTerm potentialterm_make(Vec3 a, Vec3 b, double radius_mm, uint32_t segment,
                                  VesselBody body);
 /* Returns the term's value at x, in [0, 1]. */
 double potentialterm_value(const PotentialTerm *term, Vec3 x);
 
-/* The terms of one junction region, and their groups. Group i holds the terms that blend at the
- * region's i-th node. BODY_ROUND terms do not blend: each is a group of its own. */
+/* The terms of one junction region, and their groups. All arrays are owned. Group i holds the terms
+ * that blend at the region's i-th node. BODY_ROUND terms do not blend: each is a group of its own.
+ */
 typedef struct JunctionField {
     PotentialTerm *terms;
     uint32_t n_terms;
-    uint32_t *first, *members; /* group g has the terms members[first[g] .. first[g + 1]) */
+    uint32_t *first;   /* per group, and one more: index of its first element of `members` */
+    uint32_t *members; /* group g has the terms members[first[g] .. first[g + 1]) */
     uint32_t n_groups;
 } JunctionField;
 
-/* The terms and groups that matter in a ball, as offsets into a LocalFieldPool. A group is a bit
- * set over the local terms, `words` 64-bit words long. localfield_narrow removes a group that is a
- * subset of another, but stops comparing when it has 256 groups. */
+/* The terms and groups that matter in a ball, as offsets into a LocalFieldPool. It is valid until
+ * the pool is truncated below it. A group is a bit set over the local terms, `words` 64-bit words
+ * long. localfield_narrow removes a group that is a subset of another, but stops comparing when it
+ * has 256 groups. */
 typedef struct LocalField {
     uint32_t first_term, n_terms, first_group, n_groups, words;
 } LocalField;
@@ -50,28 +60,29 @@ typedef struct TermBounds {
     double upper, lower;
 } TermBounds;
 
-/* The storage of local fields, used as a stack. Zero it before first use. */
+/* The storage of local fields, used as a stack: to remove the last fields, lower n_terms and
+ * n_groups. Zero it before first use; release it with localfieldpool_release. */
 typedef struct LocalFieldPool {
-    uint32_t *terms;
-    uint64_t *groups;
-    TermBounds *work;
+    uint32_t *terms;  /* indices of terms in the JunctionField */
+    uint64_t *groups; /* words of bit sets */
+    TermBounds *work; /* scratch of localfield_narrow */
     size_t work_capacity;
     size_t n_terms, n_groups, term_capacity, group_capacity;
 } LocalFieldPool;
 
 void localfieldpool_release(LocalFieldPool *pool);
 
-/* Maximum number of terms of a local field that is evaluated. Evaluation keeps one value per term
- * on the stack, so callers must check the number first. */
+/* Maximum number of terms of a local field that may be evaluated. Evaluation keeps one value per
+ * term on the stack (16 kB), so callers must check n_terms first. */
 enum { MAX_LOCAL_TERMS = 2048 };
 
 /* Sets the error "more than MAX_LOCAL_TERMS segments" and returns STATUS_INFEASIBLE. */
 Status localfield_refuse(Err *err);
 
-/* Appends all terms and groups of a field to the pool. */
+/* Appends all terms and groups of a field to the pool. Errors: STATUS_MEMORY. */
 MUST_CHECK Status localfield_all(const JunctionField *field, LocalFieldPool *pool, LocalField *out,
                                  Err *err);
-/* Appends a copy of a local field of the pool `from` to the pool `to`. */
+/* Appends a copy of a local field of the pool `from` to the pool `to`. Errors: STATUS_MEMORY. */
 MUST_CHECK Status localfield_copy(const LocalFieldPool *from, const LocalField *local,
                                   LocalFieldPool *to, LocalField *out, Err *err);
 
@@ -101,23 +112,25 @@ typedef struct NarrowField {
 } NarrowField;
 
 /* Finds the terms of `local` that may exceed 1e-5 in the larger ball, and appends them, with their
- * groups, to the pool. Errors: STATUS_MEMORY. */
+ * groups, to the pool. Sets out->bounds for the smaller ball. Errors: STATUS_MEMORY. */
 MUST_CHECK Status localfield_narrow(const JunctionField *field, LocalFieldPool *pool,
                                     const LocalField *local, const FieldBalls *balls,
                                     NarrowField *out, Err *err);
 
 /* The field at a point. */
 typedef struct FieldValue {
-    double phi;
+    double phi;            /* the field, dimensionless; FIELD_LEVEL on the surface, larger inside */
     uint32_t group;        /* index of the local group with the largest sum */
     uint32_t largest_term; /* index in the field of that group's largest term; set by
                             * localfield_gradient, 0 from localfield_value */
 } FieldValue;
 
-/* Returns the field at x. */
+/* Returns the field at x. `local` must have at most MAX_LOCAL_TERMS terms, and x must be in its
+ * ball. */
 FieldValue localfield_value(const JunctionField *field, const LocalFieldPool *pool,
                             const LocalField *local, Vec3 x);
-/* Returns the field at x. Sets *gradient to the gradient of the largest group's sum, 1/mm. */
+/* Returns the field at x, as localfield_value does. Sets *gradient to the gradient of the largest
+ * group's sum, 1/mm. */
 FieldValue localfield_gradient(const JunctionField *field, const LocalFieldPool *pool,
                                const LocalField *local, Vec3 x, Vec3 *gradient);
 

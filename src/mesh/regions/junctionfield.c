@@ -2,9 +2,9 @@
  * those at E + rho and max(0, E - rho). Its axial factor is symmetric about the middle of the
  * segment, where it is largest, and falls away from it. In the interval of width 2 rho it is
  * smallest at one of the two ends, and largest at the point nearest to the middle. */
-#include "mesh/zones/junctionfield.h"
+#include "mesh/regions/junctionfield.h"
 
-#include "mesh/zones/gauss.h"
+#include "mesh/regions/gauss.h"
 #include <float.h>
 #include <stdlib.h>
 
@@ -135,8 +135,7 @@ static Status reserve_part(LocalFieldPool *pool, size_t terms, size_t words, Err
 Status localfield_refuse(Err *err)
 {
     return err_set(err, STATUS_INFEASIBLE,
-                   "more than %d segments come together at one place; leave some out",
-                   MAX_LOCAL_TERMS);
+                   "more than %d segments meet at one point; leave some out", MAX_LOCAL_TERMS);
 }
 
 /* Begins an empty part at the top of the pool. Its groups come after its terms. */

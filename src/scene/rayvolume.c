@@ -1,13 +1,15 @@
-/* Rays that are seen through a rectangle fill a frustum, cut off where the vessels begin and end.
- * What may stand between it and a light lies in the convex hull of the frustum and the light. Each
- * such hull is kept as half-spaces that hold all its corners, whatever their normals: a box that
- * lies outside of one half-space is not in the hull. Taken are the normals of the faces of the hull
- * of a frustum and a point, which are those of the frustum and of planes through one of its edges
- * and the point, so that few boxes are kept that lie outside of it.
+/* The rays through a rectangle of the image fill a frustum, which is cut off at the nearest and at
+ * the farthest vessels. Objects that can shadow points of the frustum lie in the convex hull of the
+ * frustum and the light.
  *
- * What is seen on the ground may lie far away from the vessels. It is a quadrangle, a frustum
- * without depth, or, where the horizon is in sight, anywhere on the way there. */
-#include "scene/sight.h"
+ * Each hull is stored as half-spaces that contain all its corners: a box outside one half-space is
+ * outside the hull. Half-spaces with any normals would be correct. The normals used here are those
+ * of the faces of the hull of a frustum and a point: the faces of the frustum, and planes through
+ * one of its edges and the point. With these normals few boxes outside the hull are kept.
+ *
+ * The visible part of the ground may lie far away from the vessels. It is a quadrangle, stored as a
+ * frustum without depth. If the horizon is visible, it extends up to the horizon. */
+#include "scene/rayvolume.h"
 
 #include "scene/geometry.h"
 #include <math.h>
@@ -16,26 +18,27 @@
 enum { CORNERS = 8, FACES = 6, LIGHT_CORNERS = 4 };
 enum { MOST_POINTS = 2 * CORNERS, MOST_PLANES = 2 * (3 + FACES + 12 * LIGHT_CORNERS) };
 
-/* How far half-spaces are moved outwards, of the largest coordinate, for rounding. */
+/* Distance by which half-spaces are moved outwards for rounding, relative to the largest
+ * coordinate. */
 static const double slack = 1e-9;
 
-typedef struct SightHull {
+typedef struct VolumeHull {
     Vec3 point[MOST_POINTS]; /* it is their convex hull */
     int n_points;
     Vec3 normal[MOST_PLANES]; /* unit; all points have normal . x <= end */
     double end[MOST_PLANES];
     int n_planes;
-} SightHull;
+} VolumeHull;
 
-struct Sight {
+struct RayVolume {
     size_t n;
-    SightHull
-        hulls[]; /* of the pixels' rays; of the rays from vessels to each light, and from ground */
+    VolumeHull hulls[]; /* hulls of the pixels' rays, of the rays from vessels to each light, and of
+                         * the rays from the ground to each light */
 };
 
 /* ---- half-spaces ----------------------------------------------------------------------------- */
 
-static double largest_coordinate(const SightHull *hull)
+static double largest_coordinate(const VolumeHull *hull)
 {
     double largest = 0;
     for (int i = 0; i < hull->n_points; i++)
@@ -44,8 +47,8 @@ static double largest_coordinate(const SightHull *hull)
     return largest;
 }
 
-/* The two half-spaces square to a direction; none where it is 0. */
-static void add_slab(SightHull *hull, Vec3 across)
+/* Adds the two half-spaces perpendicular to a direction; none if it is 0. */
+static void add_slab(VolumeHull *hull, Vec3 across)
 {
     double length = vec3_length(across), room = slack * largest_coordinate(hull);
     for (int sign = -1; length > 0 && sign <= 1; sign += 2) {
@@ -58,8 +61,9 @@ static void add_slab(SightHull *hull, Vec3 across)
     }
 }
 
-/* Those along the axes and of the faces of the frustum whose corners the first points are. */
-static void add_faces(SightHull *hull)
+/* Adds the half-spaces along the axes and of the faces of the frustum, whose corners are the first
+ * points. */
+static void add_faces(VolumeHull *hull)
 {
     add_slab(hull, vec3(1, 0, 0));
     add_slab(hull, vec3(0, 1, 0));
@@ -73,13 +77,14 @@ static void add_faces(SightHull *hull)
     }
 }
 
-/* Those of the planes through an edge of the frustum and along a way from there. */
-static void add_edge(SightHull *hull, int from, int to, Vec3 way)
+/* Adds the half-spaces of the planes through an edge of the frustum and along a direction from
+ * it. */
+static void add_edge(VolumeHull *hull, int from, int to, Vec3 way)
 {
     add_slab(hull, vec3_cross(vec3_sub(hull->point[to], hull->point[from]), way));
 }
 
-static void add_edges(SightHull *hull, Vec3 light, bool parallel)
+static void add_edges(VolumeHull *hull, Vec3 light, bool parallel)
 {
     for (int from = 0; from < CORNERS; from++)
         for (int axis = 0; axis < 3; axis++)
@@ -88,7 +93,7 @@ static void add_edges(SightHull *hull, Vec3 light, bool parallel)
                          parallel ? light : vec3_sub(light, hull->point[from]));
 }
 
-static bool hull_meets(const SightHull *hull, Box box)
+static bool hull_meets(const VolumeHull *hull, Box box)
 {
     for (int i = 0; i < hull->n_planes; i++) {
         Vec3 n = hull->normal[i];
@@ -103,7 +108,7 @@ static bool hull_meets(const SightHull *hull, Box box)
 
 /* ---- rays ------------------------------------------------------------------------------------ */
 
-/* The rays through the corners of a rectangle that is a pixel larger on each side. */
+/* Sets the rays through the corners of the rectangle, enlarged by a pixel on each side. */
 static void corner_rays(const Camera *camera, PixelRect part, Ray rays[4])
 {
     for (int corner = 0; corner < 4; corner++)
@@ -112,11 +117,11 @@ static void corner_rays(const Camera *camera, PixelRect part, Ray rays[4])
                        corner & 2 ? part.top + part.height + 0.5 : part.top - 1.5);
 }
 
-/* The part of the rays between two depths along the direction of view. */
-static SightHull frustum_between(const Camera *camera, const Ray rays[4], double near_mm,
-                                 double far_mm)
+/* Returns the part of the rays between two depths along the direction of view. */
+static VolumeHull frustum_between(const Camera *camera, const Ray rays[4], double near_mm,
+                                  double far_mm)
 {
-    SightHull frustum = {.n_points = CORNERS};
+    VolumeHull frustum = {.n_points = CORNERS};
     for (int i = 0; i < CORNERS; i++) {
         const Ray *ray = &rays[i & 3];
         double along = vec3_dot(ray->direction, camera->direction);
@@ -125,8 +130,8 @@ static SightHull frustum_between(const Camera *camera, const Ray rays[4], double
     return frustum;
 }
 
-/* The part of the rays that lies within the depths of the box. */
-static SightHull frustum_of_box(const Camera *camera, const Ray rays[4], Box box)
+/* Returns the part of the rays within the depths of the box. */
+static VolumeHull frustum_of_box(const Camera *camera, const Ray rays[4], Box box)
 {
     double near_mm = HUGE_VAL, far_mm = 0;
     for (int i = 0; i < CORNERS; i++) {
@@ -139,10 +144,10 @@ static SightHull frustum_of_box(const Camera *camera, const Ray rays[4], Box box
     return frustum_between(camera, rays, fmax(0, near_mm), far_mm);
 }
 
-/* What the rays see of the ground. */
-static SightHull frustum_of_ground(const Camera *camera, const Ray rays[4], const Ground *ground)
+/* Returns the part of the ground that the rays hit. */
+static VolumeHull frustum_of_ground(const Camera *camera, const Ray rays[4], const Ground *ground)
 {
-    SightHull quadrangle = {.n_points = CORNERS};
+    VolumeHull quadrangle = {.n_points = CORNERS};
     for (int i = 0; i < CORNERS; i++) {
         double t;
         if (!ground_hit(ground, rays[i & 3], 0, SCENE_FARTHEST_MM, &t))
@@ -152,9 +157,9 @@ static SightHull frustum_of_ground(const Camera *camera, const Ray rays[4], cons
     return quadrangle;
 }
 
-/* The hull of a frustum and a light: of parallel light, of the frustum and itself, moved towards
- * the light beyond the bounds. */
-static void reach_to_light(SightHull *hull, const Light *light, Box bounds)
+/* Extends a frustum to its convex hull with a light. For parallel light, this is the hull of the
+ * frustum and of a copy that is moved towards the light beyond the bounds. */
+static void reach_to_light(VolumeHull *hull, const Light *light, Box bounds)
 {
     Vec3 towards = vec3_normalized(vec3_sub(light->location, light->target));
     double beyond = largest_coordinate(hull) + vec3_length(bounds.low) + vec3_length(bounds.high);
@@ -177,15 +182,15 @@ static void reach_to_light(SightHull *hull, const Light *light, Box bounds)
         add_edges(hull, hull->point[CORNERS + k], false);
 }
 
-Status sight_new(const View *view, Box bounds, PixelRect part, bool shadows, Sight **sight,
-                 Err *err)
+Status rayvolume_new(const View *view, Box bounds, PixelRect part, bool shadows, RayVolume **volume,
+                     Err *err)
 {
     Ray rays[4];
     size_t most = shadows ? 1 + 2 * view->n_lights : 1;
-    Sight *made;
+    RayVolume *made;
     TRY(mem_calloc(&made, 1, sizeof *made + most * sizeof *made->hulls, "part", err));
     corner_rays(&view->camera, part, rays);
-    SightHull seen = frustum_of_box(&view->camera, rays, bounds);
+    VolumeHull seen = frustum_of_box(&view->camera, rays, bounds);
     for (size_t i = 0; shadows && i < view->n_lights; i++) {
         made->hulls[made->n] = seen;
         reach_to_light(&made->hulls[made->n++], &view->lights[i], bounds);
@@ -196,19 +201,19 @@ Status sight_new(const View *view, Box bounds, PixelRect part, bool shadows, Sig
     }
     add_faces(&seen);
     made->hulls[made->n++] = seen;
-    *sight = made;
+    *volume = made;
     return STATUS_OK;
 }
 
-void sight_free(Sight *sight)
+void rayvolume_free(RayVolume *volume)
 {
-    free(sight);
+    free(volume);
 }
 
-bool sight_meets(const Sight *sight, Box box)
+bool rayvolume_meets(const RayVolume *volume, Box box)
 {
-    bool meets = !sight;
-    for (size_t i = sight ? sight->n : 0; i-- > 0 && !meets;)
-        meets = hull_meets(&sight->hulls[i], box);
+    bool meets = !volume;
+    for (size_t i = volume ? volume->n : 0; i-- > 0 && !meets;)
+        meets = hull_meets(&volume->hulls[i], box);
     return meets;
 }

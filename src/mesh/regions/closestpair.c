@@ -1,9 +1,9 @@
 /* If two boxes are padded by the radius and half a reach, they meet whenever the gap of the vessels
  * is at most the reach. The search begins with a small reach and doubles it until it finds a gap of
  * at most the reach. */
-#include "mesh/zones/junctions.h"
+#include "mesh/regions/junctions.h"
 
-#include "mesh/zones/nearpairs.h"
+#include "mesh/regions/nearpairs.h"
 #include <stdlib.h>
 
 enum { MAX_WORKERS = 256 };

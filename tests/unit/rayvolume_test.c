@@ -1,3 +1,4 @@
+/* The volumes that the rays of a tile can meet. */
 #include "scene/scene.h"
 #include "unit.h"
 
@@ -32,17 +33,17 @@ static Ray ray_of_part(const View *view, Random *random)
                       part.top - 0.5 + part.height * random_uniform(random));
 }
 
-static bool meets_at(const Sight *sight, Vec3 place)
+static bool meets_at(const RayVolume *volume, Vec3 place)
 {
-    return sight_meets(sight, (Box){place, place});
+    return rayvolume_meets(volume, (Box){place, place});
 }
 
-static Sight *sight_of(const View *view, bool shadows)
+static RayVolume *rayvolume_of(const View *view, bool shadows)
 {
     Err err;
-    Sight *sight = NULL;
-    must(sight_new(view, bounds, part, shadows, &sight, &err), &err);
-    return sight;
+    RayVolume *volume = NULL;
+    must(rayvolume_new(view, bounds, part, shadows, &volume, &err), &err);
+    return volume;
 }
 
 static void what_rays_through_the_part_meet_is_in_sight(void **state)
@@ -52,12 +53,12 @@ static void what_rays_through_the_part_meet_is_in_sight(void **state)
     random_seed(&random, 2385);
     for (int projection = 0; projection < 2; projection++) {
         View view = view_of((Projection)projection);
-        Sight *sight = sight_of(&view, false);
+        RayVolume *volume = rayvolume_of(&view, false);
         for (int n = 0; n < 20000; n++) {
             Vec3 place = ray_at(ray_of_part(&view, &random), 90 * random_uniform(&random));
-            assert_true(!box_holds(bounds, place, 0) || meets_at(sight, place));
+            assert_true(!box_holds(bounds, place, 0) || meets_at(volume, place));
         }
-        sight_free(sight);
+        rayvolume_free(volume);
     }
 }
 
@@ -82,36 +83,36 @@ static void what_stands_between_that_and_a_light_is_in_sight_of_shadows(void **s
     random_seed(&random, 77);
     for (int projection = 0; projection < 2; projection++) {
         View view = view_of((Projection)projection);
-        Sight *sight = sight_of(&view, true);
+        RayVolume *volume = rayvolume_of(&view, true);
         size_t between = 0;
         for (int n = 0; n < 60000; n++) {
             const Light *light = &view.lights[n % 3];
             Vec3 from = tile_hit_point(&view, &random);
             int k = (int)(light_points(light) * random_uniform(&random));
-            LightWay way = light_way_to_point(light, k, from);
+            LightDirection way = light_direction_to_point(light, k, from);
             double part_of_way = random_uniform(&random);
             Vec3 place = vec3_add_scaled(from, way.towards, fmin(way.distance, 150) * part_of_way);
             between += box_holds(bounds, place, 0);
-            assert_true(!box_holds(bounds, place, 0) || meets_at(sight, place));
+            assert_true(!box_holds(bounds, place, 0) || meets_at(volume, place));
         }
         assert_true(between > 10000);
-        sight_free(sight);
+        rayvolume_free(volume);
     }
 }
 
-/* The part of small boxes within the bounds that the sight meets. */
+/* The part of small boxes within the bounds that the volume meets. */
 static double share_in_sight(const View *view, bool shadows)
 {
-    Sight *sight = sight_of(view, shadows);
+    RayVolume *volume = rayvolume_of(view, shadows);
     Random random;
     size_t met = 0, n = 20000;
     random_seed(&random, 5);
     for (size_t i = 0; i < n; i++) {
         Vec3 at = vec3(-20 + 42 * random_uniform(&random), -15 + 32 * random_uniform(&random),
                        -9 + 20 * random_uniform(&random));
-        met += sight_meets(sight, box_with_ball(box_empty(), at, 0.1));
+        met += rayvolume_meets(volume, box_with_ball(box_empty(), at, 0.1));
     }
-    sight_free(sight);
+    rayvolume_free(volume);
     return (double)met / (double)n;
 }
 

@@ -3,7 +3,7 @@
  *
  * The distance of two segments is the smallest distance of one of their four ends from the other
  * segment, unless the common perpendicular of their lines meets both segments. */
-#include "mesh/zones/nearpairs.h"
+#include "mesh/regions/nearpairs.h"
 
 #include <stdlib.h>
 

@@ -1,6 +1,8 @@
-/* Vessels that share no node, but whose surfaces are near each other; distances of segments. */
-#ifndef CORCAST_MESH_ZONES_NEARPAIRS_H
-#define CORCAST_MESH_ZONES_NEARPAIRS_H
+/* Finds vessels that share no node, but whose surfaces are near each other; and measures distances
+ * between segments. A vessel here is a capsule: the points within the radius of the segment's axis.
+ * Exported by the public header of the module mesh. */
+#ifndef CORCAST_MESH_REGIONS_NEARPAIRS_H
+#define CORCAST_MESH_REGIONS_NEARPAIRS_H
 
 #include "mesh/meshreport.h"
 #include "mesh/proof/boxpairs.h"
@@ -8,7 +10,9 @@
 /* Lists the pairs of segments that share no node and whose gap is below NEAR_GAP times the smaller
  * radius.
  *
- * pairs    receives the pairs by rising indices (owned by the caller).
+ * threads  number of threads; 0: one per processor. The result does not depend on it.
+ * pairs    receives the pairs, by rising indices; free it with free().
+ * n        receives the number of pairs.
  * Errors   STATUS_MEMORY. */
 MUST_CHECK Status nearpairs_find(const VesselTree *tree, int threads, NearPair **pairs, size_t *n,
                                  Err *err);
@@ -19,13 +23,13 @@ static inline double segment_length(const FieldSegment *segment)
     return vec3_distance(segment->a, segment->b);
 }
 
-/* Returns the unit vector from a segment's first end to its second. */
+/* Returns the unit vector from a segment's first end `a` to its second end `b`. */
 static inline Vec3 segment_axis(const FieldSegment *segment)
 {
     return vec3_normalized(vec3_sub(segment->b, segment->a));
 }
 
-/* Returns the segment's end 0 or 1. */
+/* Returns the position of the segment's end 0 or 1. */
 static inline Vec3 segment_end(const FieldSegment *segment, int end)
 {
     return end ? segment->b : segment->a;
@@ -37,27 +41,29 @@ static inline Vec3 segment_inward(const FieldSegment *segment, int end)
     return vec3_normalized(vec3_sub(segment_end(segment, !end), segment_end(segment, end)));
 }
 
-/* Returns the direction at an angle from u towards v, which are unit vectors at a right angle. */
+/* Returns the unit vector in the plane of u and v, at `angle` radians from u towards v. u and v
+ * must be perpendicular unit vectors. */
 static inline Vec3 direction_at(Vec3 u, Vec3 v, double angle)
 {
     return vec3_add(vec3_scale(u, elementary_cos(angle)), vec3_scale(v, elementary_sin(angle)));
 }
 
-/* Returns the distance of the point x from a segment, mm. */
+/* Returns the distance of the point x from a segment's axis, between its ends, mm. */
 double segment_distance_to(const FieldSegment *segment, Vec3 x);
-/* Returns the distance between two segments, mm. */
+/* Returns the distance between the axes of two segments, mm. */
 double segments_distance(const FieldSegment *a, const FieldSegment *b);
-/* Returns the gap between the surfaces of two vessels, mm; below 0, they overlap. */
+/* Returns the gap between the surfaces of two vessels, mm. It is below 0 if they overlap. */
 double segments_gap(const FieldSegment *a, const FieldSegment *b);
 
-/* Returns the box about a segment, padded by `radius_mm`; the second rounds outwards to floats. */
+/* Returns the box about a segment's axis, padded on all sides by radius_mm. */
 Box segment_box(const FieldSegment *segment, double radius_mm);
+/* Returns the same box in single precision, rounded outwards. */
 FloatBox segment_floatbox(const FieldSegment *segment, double radius_mm);
 
-/* Returns the box about all vessels of a tree, padded by `margin_mm`. */
+/* Returns the box about all vessels of a tree, with their radii, padded by `margin_mm`. */
 Box vesseltree_box(const VesselTree *tree, double margin_mm);
-/* Builds a tree of the boxes of all vessels of the tree, which has at least one. Errors:
- * STATUS_MEMORY. */
+/* Builds a bounding volume hierarchy over the boxes of all vessels. `tree` must have at least one
+ * segment. Release *out with boxtree_release. Errors: STATUS_MEMORY. */
 MUST_CHECK Status segments_boxtree(const VesselTree *tree, BoxTree *out, Err *err);
 
 #endif

@@ -1,0 +1,57 @@
+/* Finds which nodes and segments of a tree coincide. Two vessel surfaces at the same position would
+ * make pictures undefined, so one of them is left out.
+ *
+ * A junction is a set of nodes at the same position: nodes that segments without length connect.
+ * One node of the set represents the junction. A twin of a segment is another segment between the
+ * same two junctions that is at least as thick. A segment with a twin is not drawn. Private to the
+ * module stage.
+ *
+ *     Coincidence found;
+ *     TRY(coincidence_find(&tree, &found, err));
+ *     if (coincidence_draws(&found, i))
+ *         ... draw segment i from junction[parent[i]] to junction[i]
+ *     coincidence_release(&found); */
+#ifndef CORCAST_STAGE_COINCIDENCE_H
+#define CORCAST_STAGE_COINCIDENCE_H
+
+#include "base/base.h"
+#include "stage/stage.h"
+#include "tree/tree.h"
+
+/* POV-Ray rejects cylinders shorter than this, mm [docs/POVRAY.md]. */
+#define SHORTEST_MM 1e-9
+
+/* Values of Coincidence.cover that are not the index of a sister. */
+enum { NO_TWIN = -1, CANNOT_DRAW = -2, BACKWARD_TWIN = -3 };
+
+typedef struct Coincidence {
+    /* Per node: the twin of the segment that ends at the node. Owned.
+     *     0 or more       index of the twin, which starts at the same junction
+     *     BACKWARD_TWIN   the twin runs in the opposite direction
+     *     NO_TWIN         the segment has no twin, and is drawn
+     *     CANNOT_DRAW     no segment ends here, or it has no length or no radius */
+    int32_t *twin;
+    int32_t *junction; /* per node: the node that represents its junction; owned */
+} Coincidence;
+
+/* Finds the twins and junctions of a tree. Release *coincidence with coincidence_release; there is
+ * nothing to release after an error. Errors: STATUS_MEMORY. Cost: O(n) for n nodes, and more if
+ * many nodes lie close together. */
+MUST_CHECK Status coincidence_find(const Tree *tree, Coincidence *coincidence, Err *err);
+void coincidence_release(Coincidence *coincidence);
+/* Returns a report in which only `drawn`, `dropped` and `covered` are set. */
+StageReport coincidence_count(const Tree *tree, const Coincidence *coincidence);
+
+/* Returns the stored result of segment_can_be_drawn. */
+static inline bool coincidence_can_draw(const Coincidence *coincidence, size_t i)
+{
+    return coincidence->twin[i] != CANNOT_DRAW;
+}
+
+/* Returns true if segment i can be drawn and has no twin. */
+static inline bool coincidence_draws(const Coincidence *coincidence, size_t i)
+{
+    return coincidence->twin[i] == NO_TWIN;
+}
+
+#endif
