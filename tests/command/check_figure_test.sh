@@ -228,7 +228,7 @@ test_bad_input_is_refused_in_a_sentence() {
         head -c "$bytes" "fine.$name" >"cut.$name"
         run corcast check-figure "cut.$name" --preset nature
         expect_status 2
-        expect_sentence "cut.$name: is not a sound $format file: "
+        expect_sentence "cut.$name: is not a valid $format file: "
     done <<'END'
 30 png PNG
 200 jpg JPEG

@@ -339,7 +339,7 @@ test_colors_blend_where_vessels_do() {
     printf 'id,0,0.5\n2,1,2\n3,3,4\n' >load.csv
     run corcast scene tree.swc --quiet --color-by load.csv:load --model blob --color-blend blended -o no.pov
     expect_status 2
-    expect_sentence 'colors that change with time do not blend; --moment chooses one moment'
+    expect_sentence 'colors that change with time cannot blend in a POV-Ray scene; choose one time with --moment'
     run_ok corcast scene tree.swc --quiet --color-by load.csv:load --moment 2 --model blob --color-blend blended -o yes.pov
 }
 

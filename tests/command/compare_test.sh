@@ -214,11 +214,11 @@ test_jpeg_and_webp_are_read_and_called_lossy() {
     head -c 900 b.jpg >cut.jpg
     run corcast compare a.png cut.jpg
     expect_status 2
-    expect_sentence 'cut\.jpg: is not a sound JPEG file'
+    expect_sentence 'cut\.jpg: is not a valid JPEG file'
     head -c 300 c.webp >cut.webp
     run corcast compare a.png cut.webp
     expect_status 2
-    expect_sentence 'cut\.webp: is not a sound WebP file'
+    expect_sentence 'cut\.webp: is not a valid WebP file'
 }
 
 test_a_tolerance_file_sets_the_limits() {
@@ -392,7 +392,7 @@ test_convert_reads_the_floats_that_compare_reads() {
     run_ok corcast compare half.pfm half.exr
     run corcast convert "$f/half-zip.exr" half.png
     expect_status 2
-    expect_sentence 'half-zip\.exr: holds floats; a picture of 8 or 16 bits is wanted'
+    expect_sentence 'half-zip\.exr: holds floats; a picture of 8 or 16 bits is needed'
 }
 
 test_two_pictures_have_a_page() {
@@ -476,7 +476,7 @@ test_sides_beyond_all_bounds_are_refused() {
     printf 'P6\n1000000 1000000\n255\nabc' >a.ppm
     run corcast compare a.ppm a.ppm
     expect_status 2
-    expect_sentence 'announces 3000000000000 bytes of pixels, and 3 follow'
+    expect_sentence 'announces 3000000000000 bytes of pixels, but 3 follow'
 }
 
 # Two noisy pictures of 61 x 47, and what other programs say of them.

@@ -155,7 +155,7 @@ test_numbers_of_looks_and_maps_are_decimal() {
     printf '0 0 0\n0x1 1 1\n' >map.txt
     run corcast render "$DATA/bifurcation.swc" --color-by radius --colormap ./map.txt -o p.png
     expect_status 2
-    expect_sentence "^corcast render: \./map\.txt:2: '0x1 1 1' is not three numbers"
+    expect_sentence "^corcast render: \./map\.txt:2: the line is '0x1 1 1'; it must be three numbers"
 }
 
 test_pixelmatch_in_a_tolerance_is_from_0_to_1() {

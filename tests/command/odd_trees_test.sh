@@ -99,7 +99,7 @@ test_more_daughters_at_one_node_than_povray_paints() {
     run_ok corcast scene "$DATA/star.swc" --quiet --model isosurface -o plain.pov
     run corcast scene "$DATA/star.swc" --quiet --model isosurface --color-by length -o painted.pov
     expect_status 2
-    grep -q 'cannot paint more than 256' stderr || fail "expected the reason$(said)"
+    grep -q 'can color at most 256' stderr || fail "expected the reason$(said)"
     expect_only plain.pov plain.inc
 }
 
@@ -137,7 +137,7 @@ test_two_hundred_segments_at_one_place() {
     seq 2 200 | awk '{ print $1, 3, 5, 1.25, 2 + $1 / 1e4, 1, 1 }' >>tree.swc
     run corcast scene tree.swc --model blob -o scene.pov
     expect_status 2
-    expect_sentence '[0-9]+ segments lie in one another at \('
+    expect_sentence '[0-9]+ segments overlap at \('
 }
 
 # scaled POWER: a tree of the size 2^POWER times 9 mm.

@@ -113,8 +113,8 @@ test_merge_names_the_tile_that_is_missing_broken_or_another() {
     merge_refuses 'view.png: does not belong to the same picture as p.tile-1.png: a different command' p.tile-1.png ../view.png
     merge_refuses 'tree.png: does not belong .* its tree or other input files differ' p.tile-1.png ../tree.png
     merge_refuses 'are both tile 2 of 3' p.tile-1.png p.tile-2.png p.tile-3.png p.tile-2.png
-    merge_refuses 'cut.png: is not a sound PNG' p.tile-1.png ../cut.png p.tile-3.png
-    merge_refuses 'bent.png: is not a sound PNG' p.tile-1.png ../bent.png p.tile-3.png
+    merge_refuses 'cut.png: is not a valid PNG' p.tile-1.png ../cut.png p.tile-3.png
+    merge_refuses 'bent.png: is not a valid PNG' p.tile-1.png ../bent.png p.tile-3.png
     merge_refuses 'nothing.png: cannot be read' p.tile-1.png nothing.png
     mkdir empty
     merge_refuses 'no tiles to merge were found' empty

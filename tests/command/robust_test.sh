@@ -416,7 +416,7 @@ test_a_geometry_that_povray_cannot_include_is_refused() {
     for name in 'é.pov' 'a"b.pov' $'a\nb.pov' $'\xff.pov'; do
         run corcast scene tree.swc -o "$name"
         expect_status 2
-        expect_sentence "POV-Ray cannot include a file named '.*\.inc': it takes only printable ASCII"
+        expect_sentence "POV-Ray cannot include a file called '.*\.inc'; use only printable ASCII"
     done
     expect_only tree.swc
     mkdir 'é"'

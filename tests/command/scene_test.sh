@@ -148,7 +148,7 @@ test_all_files_of_a_scene_take_their_names_or_none_does() {
     expect_sentence 'the settings .own.ini. would be written over'
     run corcast scene "$DATA/bifurcation.swc" --ini -o 'a[b.pov'
     expect_status 2
-    expect_sentence "POV-Ray reads no INI file named 'a\[b.ini'"
+    expect_sentence "POV-Ray cannot read an INI file called 'a\[b.ini'"
     run corcast scene "$DATA/bifurcation.swc" --ini -o -
     expect_status 2
     expect_sentence '^corcast scene: --ini writes a file beside S.pov'

@@ -69,7 +69,7 @@ test_a_table_without_titles_is_read_by_the_numbers_of_its_columns() {
     expect_json stdout '.segments == 999 and .terminals == 500 and .roots == 1 and (.root_radius_mm - 0.29358 | fabs) < 1e-6'
     run corcast info "$table"
     expect_status 2
-    expect_sentence 'svv_500.csv:1: the table has no titles; --columns says'
+    expect_sentence 'svv_500.csv:1: the table has no titles; name its columns with --columns'
 }
 
 test_a_grown_tree_comes_back_from_a_csv_of_segments() {
@@ -125,7 +125,7 @@ test_a_table_of_lines_that_is_empty_is_named() {
     : >lines.csv
     run corcast info nodes.csv --edges lines.csv
     expect_status 2
-    expect_sentence 'lines.csv: the table of lines is empty$'
+    expect_sentence 'lines.csv: the edge table has no rows$'
 }
 
 # Cut off at seven places, each file is refused in one sentence with its name, or is a smaller tree.
@@ -164,7 +164,7 @@ test_a_small_spatial_graph_that_unpacks_to_gigabytes_is_refused_at_once() {
     } >bomb.am
     run bash -c "ulimit -v 300000; exec '$CORCAST' info bomb.am"
     expect_status 2
-    expect_sentence 'bomb.am:2: it claims 300000000 VERTEX; a file of 2.4 MB holds at most '
+    expect_sentence 'bomb.am:2: its header states 300000000 VERTEX; a file of 2.4 MB can hold at most '
 }
 
 test_what_a_format_has_no_place_for_is_said() {
@@ -202,7 +202,7 @@ test_what_a_format_has_no_place_for_is_said() {
 test_ids_that_start_at_0_are_told_of() {
     printf '0 3 0 9 0 1 -1\n1 3 0 4 0 1 0\n' >tree.swc
     run_ok corcast info tree.swc
-    expect_stdout 'ids start at 0 in the file, and are one higher here'
+    expect_stdout 'ids start at 0 in the file; 1 was added to each'
 }
 
 # In svOneDSolver's units and by hand: 60 ml/min through a radius of 2 mm are 1000 mm3/s at 79.6 mm/s.

@@ -171,9 +171,9 @@ static Status add_legend(const Annotation *annotation, const Appearance *appeara
     Status status = text_check(&title, err);
     const FigureLegend legend = {.scale = &appearance->scale,
                                  .outside = appearance->outside,
-                                 .whole = are_whole(appearance),
+                                 .integers = are_whole(appearance),
                                  .title = text_chars(&title),
-                                 .across = across,
+                                 .horizontal = across,
                                  .length_mm =
                                      fmin(fmax((across ? width : height) / 2, 5 * em), 18 * em),
                                  .size_pt = annotation->text_pt,
