@@ -125,7 +125,7 @@ WORDS = [
     ("flipped", TURNED), ("rotated by", TURNED), ("exchanged", CHANNELS), ("channels in", CHANNELS),
     ("another tone curve", CURVE),
     ("only the background", BACKGROUND), ("only rounding", ROUNDING), ("an object", MISSING),
-    ("outlines differ", "outlines"), ("highlights", "highlights"), ("shading", SHADING),
+    ("only at outlines", "outlines"), ("highlights", "highlights"), ("shading", SHADING),
 ]
 WHOLE, HALF = (0, 1), (0, 0.5)
 # What is planted, and the answer that is right beside "unknown".

@@ -467,7 +467,7 @@ static void names_outlines_that_are_sampled_otherwise(void **state)
     (void)state;
     Shot shot = plain;
     shot.samples = 1;
-    expect_cause(&shot, "only outlines differ");
+    expect_cause(&shot, "only at outlines");
 }
 
 static void names_the_side_that_lacks_a_thing_and_its_place(void **state)
@@ -476,7 +476,7 @@ static void names_the_side_that_lacks_a_thing_and_its_place(void **state)
     Shot shot = plain;
     shot.without = 3;
     expect_cause(&shot, "an object, or a part of one, is in A only");
-    expect_cause(&shot, "from (123, 16) to (154, 47); 0 other pixels differ");
+    expect_cause(&shot, "from (123, 16) to (154, 47)); 0 other pixels differ");
     Picture b = shoot(&shot);
     const CompareResult result = judge(&b, &reference);
     assert_non_null(strstr(result.cause, "is in B only"));
@@ -502,7 +502,7 @@ static void names_another_background(void **state)
     Shot shot = spoilt(recolor_background, 29);
     expect_cause(&shot,
                  "only the background color differs (and pixels that blend with it at outlines): "
-                 "(235, 235, 235) in A and (17, 29, 43) in B");
+                 "(235, 235, 235) in A, (17, 29, 43) in B");
     shot.diffuse = 1.2;
     expect_cause(&shot, NULL);
 }
