@@ -50,7 +50,7 @@ test_architecture_names_each_mutable_global() {
 
 test_the_numbers_of_growth_are_those_of_the_source() {
     run_ok corcast grow --help
-    expect_stdout 'nearest segments tried for each terminal; from 1 to 1000 \(8\)'
+    expect_stdout '^ +default: 8\]$|1000; default: 8\]$'
     says METHODS.md 'The nearest segments (8; `--candidates`)'
     agree METHODS.md <<'END'
 one point in three is far enough @ grow/grow.c @ TOSSES_PER_ADDED = 3 }
@@ -111,7 +111,7 @@ A band begins at a multiple of eight rows @ render/render.h @ RENDER_BAND_STEP =
 in which tiles of 8 x 8 pixels @ tile.h @ TILE_SIDE = 8,
 longer than 2 x 16384 pixels @ rasteritem.c @ most_pixels = 16384;
 4 eps H, 0.004 pixels for the longest @ rasteritem.c @ length / 2 + radius > most_pixels * pixel
-cylinders seen within 0.02 rad of their axis @ rasteritem.c @ 0.02; /* of the angle
+cylinders seen within 0.02 rad of their axis @ rasteritem.c @ 0.02; /* sine of the smallest angle
 cylinders seen within 0.02 rad of their axis @ kernel_round.h @ steep_sine2 = 4e-4f;
 within 10⁻⁴ r of the ray @ kernel_joint.h @ off_joint_line = 1e-4f;
 0.001 mm and 3 · 2^-23 of the scene's radius @ rastershadow.c @ SHADOW_NEAREST_MM + 0x3p-23 * lightview_radius
@@ -226,7 +226,7 @@ For pictures above 4 million pixels the page has no depths @ report_planes.c @ M
 END
     run_ok corcast render --help
     tr -s "\n " "  " <stdout >help && mv help stdout
-    expect_stdout "memory MB [^-]*\(128\)"
+    expect_stdout "memory MB [^-]*default: 128\\]"
     says FORMATS.md 'larger pictures than `--memory` MB (128)'
 }
 

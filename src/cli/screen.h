@@ -1,7 +1,14 @@
-/* What an operation tells while it works, on standard error: sentences, and how far it is. Progress
- * is one line that changes on a terminal, and a line every ten seconds elsewhere, so that the log
- * of a long run shows that the run goes on. Sentences are held back until the command ends or its
- * progress is shown, and a command that fails drops them, so that it prints its error alone. */
+/* Prints the messages and the progress of a command on standard error.
+ *
+ * On a terminal, progress is one line that is overwritten. Elsewhere, a line is printed every ten
+ * seconds, so that the log of a long run shows that the run continues. Messages are held back until
+ * progress is first shown or the command ends. A command that fails drops the messages that are
+ * still held back, so that only its error is printed.
+ *
+ *     Screen screen;
+ *     Talk talk = screen_talk(&screen, quiet);
+ *     Status status = work(&talk);
+ *     (status == STATUS_OK ? screen_print_held : screen_drop_held)(&screen); */
 #ifndef CORCAST_CLI_SCREEN_H
 #define CORCAST_CLI_SCREEN_H
 
@@ -14,17 +21,17 @@ typedef struct HeldSentence {
 } HeldSentence;
 
 typedef struct Screen {
-    const char *what;       /* the step that is under way; NULL: none; borrowed */
-    bool quiet;             /* notes and progress are left out */
-    bool terminal;          /* standard error is one */
+    const char *what;       /* name of the current step; NULL: none; borrowed */
+    bool quiet;             /* notes and progress are not printed */
+    bool terminal;          /* standard error is a terminal */
     bool prompt;            /* sentences are printed at once */
-    bool shown;             /* progress stands on the terminal's last line */
+    bool shown;             /* the last line of the terminal shows progress */
     HeldSentence *held;     /* sentences in the order in which they came; owned */
-    bool catches;           /* SIGINT asks the step that is under way for its result */
-    double start_s, last_s; /* when the step began and was last shown, by clock_seconds */
+    bool catches;           /* SIGINT makes the current step end with its result so far */
+    double start_s, last_s; /* start of the step and last output, times of clock_seconds */
 } Screen;
 
-/* Makes a Talk that prints to standard error; `screen` is borrowed as long as the Talk is used. */
+/* Initializes *screen and returns a Talk that prints to standard error. The Talk borrows `screen`. */
 Talk screen_talk(Screen *screen, bool quiet);
 /* Prints the sentences that are held back. Later sentences are printed at once. */
 void screen_print_held(Screen *screen);

@@ -34,7 +34,7 @@ typedef enum MeasureWhen { WHEN_ALWAYS, WHEN_IDS, WHEN_NO_IDS, WHEN_MASK } Measu
 typedef struct MeasureRule {
     Limit limit;      /* LIMIT_NONE: not judged */
     MeasureId ppm_of; /* the rule judges parts per million of this count; 0: the measure itself */
-    const char *name; /* "largest difference off the edges" */
+    const char *name; /* "largest difference away from edges" */
     Limit threshold;  /* a setting that follows the name; LIMIT_NONE: none does */
     int digits;       /* significant digits of the threshold */
     const char *threshold_unit; /* what follows the threshold: " levels" */

@@ -35,10 +35,10 @@ Status check_sizes(int width_a, int height_a, int width_b, int height_b, Err *er
 {
     if (width_a == width_b && height_a == height_b)
         return STATUS_OK;
-    return err_set(err, STATUS_INPUT,
-                   "the images differ in size: %d x %d and %d x %d pixels; only images of one size "
-                   "can be compared",
-                   width_a, height_a, width_b, height_b);
+    return err_set(
+        err, STATUS_INPUT,
+        "the images differ in size (%d x %d and %d x %d pixels); both must have the same size",
+        width_a, height_a, width_b, height_b);
 }
 
 double percentile(double *values, size_t n, double fraction)

@@ -17,7 +17,7 @@ static Status need(const Tree *tree, const TreeMeta *overrides, MetaKey key, dou
     if (source->known[key])
         return STATUS_OK;
     return err_set(err, STATUS_INPUT,
-                   "needs the %s, which the tree does not state; give `%s`, or the header key %s",
+                   "needs the %s, which is not stored in this tree; give `%s` or the header key %s",
                    row->meaning, row->name, row->name);
 }
 

@@ -1,11 +1,17 @@
-/* The public header of the module diagram: a tree unrolled flat, with true lengths and diameters.
+/* The public header of the module diagram: draws a tree unrolled into the plane, with true lengths
+ * and diameters.
  *
- * Every main branch is a horizontal row of bars, one for each segment, as long and as wide as the
- * segment. The horizontal position is the length of the path from the root. Thin links lead from a
- * branch to the branches that leave it. Nothing crosses: daughter branches are above and below
- * their parent, and a branch that would overlap one that leaves farther along the parent is placed
- * farther out. In such diagrams people find low wall shear stress far more often than in pictures
- * of three dimensions [Borkin et al., IEEE Trans. Vis. Comput. Graph. 17 (2011) 2479-2488]. */
+ * Each branch is a horizontal row of bars. A bar is a segment, as long and as wide as the segment.
+ * The horizontal position of a bar is the path length from the root. Thin links lead from a branch
+ * to the branches that leave it. No bars or links cross: daughter branches are above and below
+ * their parent. If a branch would overlap another that leaves the parent farther along, the first
+ * one is placed farther out. In such diagrams people find low wall shear stress far more often than
+ * in 3D pictures [Borkin et al., IEEE Trans. Vis. Comput. Graph. 17 (2011) 2479-2488].
+ *
+ *     TRY(diagram_lay_out(&tree, 0, &diagram, err));
+ *     const FigureBars bars = diagram_bars(&style);
+ *     TRY(diagram_draw(&style, &bars, width, height, &color, err));
+ *     diagram_release(&diagram); */
 #ifndef CORCAST_DIAGRAM_DIAGRAM_H
 #define CORCAST_DIAGRAM_DIAGRAM_H
 
@@ -15,15 +21,16 @@
 #include "tree/tree.h"
 #include <stddef.h>
 
-/* The layout of a tree: mm, x to the right from the roots, y down from the top. A bar stands for
- * the segment that ends at node FigureBar.index, or for the link to that segment. */
+/* The layout of a tree, in mm: x to the right from the roots, y down from the top. A bar is the
+ * segment that ends at node FigureBar.index, or the link to that segment. */
 typedef struct Diagram {
     FigureBar *bar; /* owned; links first, then segments in the order of the tree */
     size_t n, n_links;
     double width_mm, height_mm; /* of all bars */
 } Diagram;
 
-/* Height over width that the default space between rows aims at. */
+/* Minimum height of a diagram as a fraction of its width, if the default space between rows is
+ * used. Reason of the value not recorded. */
 #define DIAGRAM_ASPECT 0.75
 
 /* Lays out a tree or forest, roots on the left. Segments without length have no bar.
@@ -36,14 +43,14 @@ typedef struct Diagram {
 MUST_CHECK Status diagram_lay_out(const Tree *tree, double gap_mm, Diagram *diagram, Err *err);
 void diagram_release(Diagram *diagram);
 
-/* What a diagram looks like, and the values in its labels. All pointers are borrowed. */
+/* The colors of a diagram, and the values in its labels. All pointers are borrowed. */
 typedef struct DiagramStyle {
     const Diagram *diagram;
     const Tree *tree;
     const float (*color)[3]; /* per node: linear RGB of its segment */
     float background[3];     /* linear RGB */
-    double margin;           /* free part on each side, in [0, 0.45] */
-    const char *name, *unit; /* of the values; name NULL: there are none */
+    double margin;           /* free space on each side, as a fraction of the page, in [0, 0.45] */
+    const char *name, *unit; /* name and unit of `values`; name NULL: there are no values */
     const double *values;    /* per node: value of its segment; NAN where there is none */
 } DiagramStyle;
 
@@ -51,12 +58,13 @@ typedef struct DiagramStyle {
  * SWC id of the segment that a link leads to. Borrows `style`. */
 FigureBars diagram_bars(const DiagramStyle *style);
 
-/* Makes *page of the bars with their margins, true to size. Release it with figure_release. The
- * page borrows `bars`. Memory that runs out shows in figure_check. */
+/* Makes a page of the bars and margins, true to size. Release *page with figure_release. The page
+ * borrows `bars`. If memory runs out, figure_check reports it. */
 void diagram_make_page(const DiagramStyle *style, const FigureBars *bars, FigurePage *page);
 
-/* Draws the bars as large as they fit, centred, into *color (owned): linear RGB of `width` x
- * `height` pixels. Errors: STATUS_MEMORY. */
+/* Draws the bars as large as the margins allow, centred, into a new plane of linear RGB, `width` x
+ * `height` pixels. Release *color with plane_release. Errors: STATUS_MEMORY; STATUS_INPUT for sides
+ * that plane_init refuses. */
 MUST_CHECK Status diagram_draw(const DiagramStyle *style, const FigureBars *bars, int width,
                                int height, Plane *color, Err *err);
 

@@ -378,7 +378,8 @@ Status diagram_lay_out(const Tree *tree, double gap_mm, Diagram *diagram, Err *e
     Status status = STATUS_OK;
     TRY_GOTO(find_paths(&layout, err));
     if (!(widest_mm(&layout) > 0)) {
-        status = err_set(err, STATUS_INPUT, "no segment has a length");
+        status = err_set(err, STATUS_INPUT,
+                         "all segments have length 0; a diagram needs at least one with a length");
         goto done;
     }
     TRY_GOTO(number_branches(&layout, err));

@@ -1,5 +1,9 @@
-/* Joins segments of vessels to curves. A curve is a chain of connected segments of the same kind.
- * Private to the module emit. */
+/* Joins segments of vessels to curves, for formats that draw curves (Blender, USD). Private to the
+ * module emit.
+ *
+ * A curve is a chain of connected segments of one kind: the same tree, Strahler order and paint. It
+ * has one point more than segments. Curves of one tree and order follow each other, so that a
+ * writer can make a group of each run [curves_group_end]. */
 #ifndef CORCAST_EMIT_CURVES_H
 #define CORCAST_EMIT_CURVES_H
 
@@ -8,7 +12,7 @@
 /* What the segments of a curve have in common. Curves are sorted by tree, order and paint. */
 typedef struct CurveKind {
     uint32_t tree, order;
-    uint32_t paint; /* an index chosen by the caller of curves_find */
+    uint32_t paint; /* index of a color or material, chosen by the caller of curves_find */
 } CurveKind;
 
 /* Curve k consists of segments[first[k] .. first[k + 1]), from its start to its end. Zeroed, there

@@ -1,6 +1,16 @@
-/* The public header of the module emit. The module writes scenes, meshes and curves as files of
- * other programs. The text of each language is in templates/; the C code adds numbers, and calls of
- * macros that the templates define. */
+/* The public header of the module emit: writes scenes, meshes and curves as files for other
+ * programs, such as POV-Ray, Blender and OpenSCAD.
+ *
+ * Each file format is an Emitter, one row of the table `emitters`. A format writes one kind of
+ * content: a scene (camera, lights, vessels), a triangle mesh, or curves along the vessels. The
+ * caller fills EmitParams with the content and appends the result to texts:
+ *
+ *     const Emitter *emitter = emitter_find("pov", false);
+ *     EmitOutput to = {.file = &file, .second = &second, .report = &report};
+ *     TRY(emit_write(emitter, &params, &to, err));
+ *
+ * The fixed text of each language is in templates/. The C code adds numbers, and calls of macros
+ * that the templates define. Lengths are mm. */
 #ifndef CORCAST_EMIT_EMIT_H
 #define CORCAST_EMIT_EMIT_H
 
@@ -8,11 +18,12 @@
 #include "field/field.h"
 #include "scene/scene.h"
 
-/* The largest number of vessels that OpenSCAD unites quickly. Above it, a mesh is the better
- * model. */
+/* The largest number of vessels that OpenSCAD unites quickly. Above it, a mesh is the better model.
+ * Reason of the value not recorded. */
 #define OPENSCAD_QUICK 100
 
-/* What an emitter writes. All pointers are borrowed. */
+/* The content of a file. All pointers are borrowed. A member is read only by the emitters that its
+ * comment names. */
 typedef struct EmitParams {
     const Scene *scene;           /* for emitters of scenes */
     const Anatomy *anatomy;       /* NULL: Strahler orders are 0, and trees have no names */
@@ -23,13 +34,13 @@ typedef struct EmitParams {
     const double *orders;    /* for emitters with has_colors: Strahler order per segment index */
     const MeshEnds *ends;    /* for emitters with has_parts */
     const char *templates;   /* the folder of templates, with a folder for each language */
-    const char *file;        /* name of the file as the file mentions it, without folders */
-    const char *second_file; /* name of the second file; NULL: its content is in the first */
-    const char *description; /* what the scene shows; line ends in it become blanks */
-    const char *settings;    /* name of the settings file; NULL: it is not written */
+    const char *file;        /* name of the file, without folders, for comments in the file */
+    const char *second_file; /* name of the second file, without folders; NULL: one file has all */
+    const char *description; /* what the scene shows, in words; line ends become blanks */
+    const char *settings;    /* name of the settings file; NULL: none is written */
     int antialias;           /* samples along a side of a pixel; 1: the program's default */
-    const char *generator;   /* program and version */
-    const char *command;     /* the command that makes the scene, in one line */
+    const char *generator;   /* name and version of corcast */
+    const char *command;     /* the command line that makes the scene */
     bool shadows;
     bool ids;              /* fields: adds the paint that the id plane needs */
     bool planes;           /* Tachyon: colors encode depth and segment */
@@ -47,11 +58,12 @@ typedef struct EmitReport {
     double openscad_s; /* estimated time in which OpenSCAD makes a solid; else 0 */
 } EmitReport;
 
-/* Where an emitter writes. All pointers are borrowed. */
+/* The texts that receive the files. All pointers are borrowed. */
 typedef struct EmitOutput {
-    Text *file, *second; /* the second is used if params->second_file is not NULL */
-    EmitReport *report;  /* zeroed before */
-    Text *settings;      /* used if params->settings is not NULL */
+    Text *file;
+    Text *second;       /* needed if params->second_file is not NULL */
+    EmitReport *report; /* the caller zeroes it */
+    Text *settings;     /* needed if params->settings is not NULL */
 } EmitOutput;
 
 /* A file format: one row of `emitters`. */
@@ -84,22 +96,25 @@ typedef struct Emitter {
     Status (*write)(const EmitParams *params, EmitOutput *to, Err *err);
 } Emitter;
 
-/* The table of formats. A row without a name ends it. */
+/* The table of formats. It ends with a row whose name is NULL. */
 extern const Emitter emitters[];
-/* Returns the default emitter of an extension ("pov"): of scenes, or of meshes and curves. Returns
- * NULL if there is none. */
+/* Returns the default emitter for an extension ("pov"): of meshes or curves if `of_meshes`, else of
+ * scenes. Returns NULL if there is none. */
 const Emitter *emitter_find(const char *extension, bool of_meshes);
-/* Returns the emitter with this extension that the option selects, or NULL. */
+/* Returns the emitter with this extension that the command-line option `option` selects, or NULL if
+ * there is none. */
 const Emitter *emitter_by_option(const char *extension, const char *option);
-/* Appends the extensions of emitters of scenes, or of meshes and curves: ".pov or .scad". */
+/* Appends the extensions of the emitters of meshes and curves if `of_meshes`, else of scenes, as a
+ * list in a sentence: ".pov, .scad or .tachyon". */
 void emitter_extensions(bool of_meshes, Text *out);
 
-/* Checks that the format can hold a model. Errors: STATUS_USAGE, with the names of the models that
- * it can hold. */
+/* Checks that the format can write a model of vessel geometry. Errors: STATUS_USAGE, with the names
+ * of the models that the format can write. */
 MUST_CHECK Status emit_check_model(const Emitter *emitter, SceneModel model, Err *err);
 
-/* Appends the file, the second file and the settings file to the texts of *to. Errors: those of
- * emit_check_model, Emitter.check_name, Emitter.write and Emitter.write_settings. */
+/* Appends the file, the second file and the settings file to the texts of *to. After an error the
+ * texts hold incomplete files. Errors: those of emit_check_model, Emitter.check_name, Emitter.write
+ * and Emitter.write_settings. */
 MUST_CHECK Status emit_write(const Emitter *emitter, const EmitParams *params, EmitOutput *to,
                              Err *err);
 

@@ -259,7 +259,8 @@ static Status put_file(const Glb *glb, Text *out, Err *err)
     size_t length = chars ? strlen(chars) : 0, blanks = (4 - length % 4) % 4;
     size_t all = HEADER_BYTES + 2 * CHUNK_HEAD_BYTES + length + blanks + buffer;
     if (all > UINT32_MAX)
-        TRY_GOTO(err_set(err, STATUS_INFEASIBLE, "a GLB holds 4 GB; this one would have %.1f",
+        TRY_GOTO(err_set(err, STATUS_INFEASIBLE,
+                         "the GLB would have %.1f GB; the format allows at most 4 GB",
                          (double)all * 1e-9));
     Record version = {.length = 0};
     text_append(out, "glTF", 4);

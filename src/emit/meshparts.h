@@ -1,11 +1,12 @@
-/* What several formats need of meshes and vessels: triangles by Strahler order, colors, boxes.
- * Private to the module emit. */
+/* Properties of meshes and vessels that several formats write: triangles by Strahler order, colors,
+ * bounding boxes. Lengths are mm. Private to the module emit. */
 #ifndef CORCAST_EMIT_MESHPARTS_H
 #define CORCAST_EMIT_MESHPARTS_H
 
 #include "emit/emit.h"
 
-/* Upper bound of Strahler orders. An order needs twice as many segments as the order below it. */
+/* Upper bound of Strahler orders. Each order needs at least twice as many segments as the order
+ * below it, so that 32 bits of segment indices cannot exceed it. */
 enum { MAX_ORDERS = 32 };
 
 /* Lists the triangles of params->mesh by the Strahler order of their segments, as list 0 to
@@ -16,22 +17,22 @@ MUST_CHECK Status triangles_by_order(const EmitParams *params, IndexLists *out, 
 /* Return the color of a segment of params->vessels: linear, and as 8-bit codes of sRGB. */
 Rgb vessel_color(const EmitParams *params, uint32_t segment);
 void vessel_color_codes(const EmitParams *params, uint32_t segment, uint8_t codes[3]);
-/* Appends these codes: "C0102A". */
+/* Appends the 8-bit codes of a segment's color in hexadecimal: "C0102A". */
 void put_color_code(Text *out, const EmitParams *params, uint32_t segment);
 
 /* Returns the roughness (the square root of a GGX lobe's alpha) of highlights as wide as the Phong
  * highlights of the finish. */
 double microfacet_roughness(const Finish *finish);
 
-/* Returns the box around the points of a mesh. */
+/* Returns the bounding box of the points of a mesh. */
 Box mesh_box(const VesselMesh *mesh);
 /* Returns the smallest box that holds `box` and a vessel with round ends. */
 Box box_with_vessel(Box box, const FieldSegment *segment);
-/* Returns the box around all vessels, with round ends. */
+/* Returns the bounding box of all vessels, with round ends. */
 Box vessels_box(const VesselTree *vessels);
 
-/* Finds, for each point, the segment of the first triangle that has it. *segments is owned by the
- * caller. Errors: STATUS_MEMORY. */
+/* Finds, per point of the mesh, the segment of the first triangle that has the point as a corner.
+ * The caller frees *segments. Errors: STATUS_MEMORY. */
 MUST_CHECK Status mesh_point_segments(const VesselMesh *mesh, uint32_t **segments, Err *err);
 
 #endif

@@ -88,8 +88,8 @@ Status obj_check_name(const char *second_file, Err *err)
     if (is_ascii_name(second_file, " "))
         return STATUS_OK;
     return err_set(err, STATUS_USAGE,
-                   "an OBJ cannot name '%s' as the file of its materials: it takes only printable "
-                   "ASCII, without blanks",
+                   "the material file of an OBJ cannot be called '%s'; use only printable ASCII "
+                   "without blanks",
                    second_file);
 }
 

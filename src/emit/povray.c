@@ -48,10 +48,10 @@ Status povray_check_name(const char *geometry_file, Err *err)
 {
     if (is_ascii_name(geometry_file, "\""))
         return STATUS_OK;
-    return err_set(err, STATUS_USAGE,
-                   "POV-Ray cannot include a file named '%s': it takes only printable ASCII, "
-                   "without '\"'",
-                   geometry_file);
+    return err_set(
+        err, STATUS_USAGE,
+        "POV-Ray cannot include a file called '%s'; use only printable ASCII without '\"'",
+        geometry_file);
 }
 
 /* An identifier made from a file name: capital first, as POV-Ray's own are lower case, which take
@@ -399,8 +399,7 @@ static Status check_settings_name(const char *name, Err *err)
     if (!strchr(name, '['))
         return STATUS_OK;
     return err_set(err, STATUS_USAGE,
-                   "POV-Ray reads no INI file named '%s': a '[' there begins the name of a section",
-                   name);
+                   "POV-Ray cannot read an INI file called '%s'; leave out the '['", name);
 }
 
 static void add_names(Values *values, const EmitParams *params)

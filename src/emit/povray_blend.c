@@ -81,8 +81,8 @@ Status put_blend_macros(Text *out, void *context, Err *err)
         return text_check(out, err);
     if (appearance->n_frames > 0)
         return err_set(err, STATUS_USAGE,
-                       "`color_blend`: in a scene of POV-Ray colors that change with time do not "
-                       "blend; `moment` chooses one moment");
+                       "`color_blend`: colors that change with time cannot blend in a POV-Ray "
+                       "scene; choose one time with `moment`");
     add_number(&values, "lowest", scale->under.given ? colorscale_lowest(scale) : -never);
     add_number(&values, "highest", scale->over.given ? colorscale_highest(scale) : never);
     add_flag(&values, "own", scale->under.given || scale->over.given || !all_are_known(appearance));

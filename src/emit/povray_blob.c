@@ -73,9 +73,8 @@ static Status check_crowd(const BlobCells *cells, const uint32_t *list, size_t n
         if (felt > CROWD)
             return err_set(
                 err, STATUS_INFEASIBLE,
-                "%zu segments lie in one another at (%.6g, %.6g, %.6g), more than POV-Ray "
-                "draws as a blob in good time; leave out thin ones (`prune_radius`) or "
-                "choose another model",
+                "%zu segments overlap at (%.6g, %.6g, %.6g), too many for POV-Ray to draw a blob "
+                "in reasonable time; leave out thin ones (`prune_radius`) or choose another model",
                 felt, middle.x, middle.y, middle.z);
     }
     return STATUS_OK;
@@ -88,11 +87,10 @@ static Status put_cell(BlobCells *cells, CellList from, const Box *clip, Err *er
     const uint32_t *list = cells->lists + from.first;
     const size_t n = from.n;
     if (n * BLOB_POVRAY_COMPONENTS >= BLOB_POVRAY_LIMIT)
-        return err_set(
-            err, STATUS_INFEASIBLE,
-            "%zu segments overlap in one place, more than POV-Ray draws in one blob; leave "
-            "out thin ones (`prune_radius`) or choose another model",
-            n);
+        return err_set(err, STATUS_INFEASIBLE,
+                       "%zu segments overlap at one point, more than POV-Ray can draw in one blob; "
+                       "leave out thin ones (`prune_radius`) or choose another model",
+                       n);
     TRY(check_crowd(cells, list, n, err));
     text_puts(text, clip ? "Blob_Cell()\n" : "Blob_Start()\n");
     for (size_t i = 0; i < n; i++) {
@@ -554,9 +552,10 @@ Status put_blob_macros(Text *out, void *context, Err *err)
     bool painted = geometry->scene->appearance.colors || geometry->params->ids;
     Values values = {0};
     if (painted && n > MAX_PAINTED)
-        return err_set(err, STATUS_INFEASIBLE,
-                       "POV-Ray can paint at most %d segments of a blob one by one, not %zu",
-                       MAX_PAINTED, n);
+        return err_set(
+            err, STATUS_INFEASIBLE,
+            "POV-Ray can color at most %d segments of a blob separately; this one has %zu",
+            MAX_PAINTED, n);
     add_shape(&values);
     add_flag(&values, "painted", painted);
     Text *top = add_value(&values, "top"), *n_groups = add_value(&values, "n_groups");

@@ -433,9 +433,8 @@ static Status put_cell_paint(CellWriter *writer, const Cell *cell, CellTextPart 
     }
     if (cell->count > MOST_PAINTS)
         return err_set(err, STATUS_INFEASIBLE,
-                       "%u vessels meet near (%g, %g, %g): POV-Ray cannot paint more than %d of an "
-                       "isosurface at one place; draw them in one color, or choose another "
-                       "model",
+                       "%u vessels meet near (%g, %g, %g); POV-Ray can color at most %d there "
+                       "separately; draw the isosurface in one color, or choose another model",
                        cell->count, cell->low.x, cell->low.y, cell->low.z, MOST_PAINTS);
     Text *declared = cell_text(writer, CELL_DECLARED), *pick = cell_text(writer, CELL_PICK);
     if (cell->n_groups > 0 || cell->count > MOST_COMPARED) {

@@ -1,8 +1,11 @@
-/* What POV-Ray needs for each kind of geometry: macros, and the members of objects. povray.c has
- * the table that chooses among them. In each `geometry` that is a void * is a PovrayGeometry, so
- * that the function can be a part of a template. Private to the module emit.
+/* The functions that write the kinds of geometry in POV-Ray's language. Private to the module emit.
  *
- * Errors of all: STATUS_INPUT if a template is missing, STATUS_MEMORY. */
+ * A scene for POV-Ray first defines macros, then declares objects whose members call the macros.
+ * For each kind of geometry there is a function that writes the macros and one that writes the
+ * members. The table in povray.c selects the functions by model. Every parameter `geometry` of type
+ * void * is a PovrayGeometry *; the type lets the function be a part of a template [values.h].
+ *
+ * Errors of all functions: STATUS_INPUT if a template is missing; STATUS_MEMORY. */
 #ifndef CORCAST_EMIT_POVRAY_MEMBERS_H
 #define CORCAST_EMIT_POVRAY_MEMBERS_H
 
@@ -19,10 +22,11 @@ Status put_cell_macros(Text *out, void *geometry, Err *err);
  * STATUS_INFEASIBLE if there are more segments than POV-Ray can paint. */
 Status put_blob_macros(Text *out, void *geometry, Err *err);
 
-/* Finds the cells of each object of an isosurface. */
+/* Finds the cells of each object of an isosurface: sets geometry->cells. */
 Status find_cells(PovrayGeometry *geometry, Err *err);
-/* Finds geometry->painted of a blob: the segments that rays of the part can hit. Without a part
- * these are all. If there are none, one segment remains, because POV-Ray needs one to paint. */
+/* Sets geometry->painted of a blob: the segments that rays of params->part can hit, or all segments
+ * if there is no part. If no segment can be hit, the list has one segment all the same, because
+ * POV-Ray needs one to color. */
 Status find_visible_segments(PovrayGeometry *geometry, Err *err);
 
 /* Append the declaration of geometry->object: a macro call for each primitive, an isosurface for
@@ -36,8 +40,7 @@ Status put_mesh(Text *out, PovrayGeometry *geometry, Err *err);
 /* Appends the call that draws a joint. */
 void put_joint(Text *text, const EmitParams *params, const Primitive *joint);
 
-/* ---- colors ----------------------------------------------------------------------------------
- */
+/* ---- colors ---- */
 
 /* Appends the fraction of the scale's range below the value x, as an expression of POV-Ray's
  * functions [colorscale_position]. For a scale that counts colors, the fraction is x itself. */

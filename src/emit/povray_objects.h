@@ -1,12 +1,12 @@
-/* A geometry as the POV-Ray objects that it declares: Tree, which is all of it, and Tree_1, Tree_2,
- * ... for the trees of a forest. Private to the module emit. */
+/* Divides a geometry into the objects that a POV-Ray scene declares: Tree, the whole geometry, and,
+ * for a forest, Tree_1, Tree_2, ... for its trees. Private to the module emit. */
 #ifndef CORCAST_EMIT_POVRAY_OBJECTS_H
 #define CORCAST_EMIT_POVRAY_OBJECTS_H
 
 #include "emit/emit.h"
 #include "emit/values.h"
 
-/* Some primitives or field segments of a geometry, by rising index. Borrowed. */
+/* A list of primitives, or of field segments, of a geometry, by ascending index. Borrowed. */
 typedef struct PovrayItems {
     const uint32_t *index;
     size_t n;
@@ -18,7 +18,7 @@ typedef struct PovrayGeometry {
     const EmitParams *params;
     const Scene *scene;
     EmitReport *report;
-    RayVolume *volume;    /* of params->part, or NULL */
+    RayVolume *volume;    /* the rays of params->part; NULL: there is no part */
     PovrayItems *objects; /* [0]: Tree; of a forest, [k]: Tree_k */
     size_t n_objects;
     uint32_t *indices;   /* the items of all objects */
@@ -35,13 +35,17 @@ typedef struct PovrayGeometry {
 MUST_CHECK Status povray_objects_find(PovrayGeometry *geometry, Err *err);
 void povray_objects_release(PovrayGeometry *geometry);
 
-/* Appends the declaration of geometry->object as a `kind`, such as "union". `members` has the part
- * `members`, and is released, also after an error. Errors: as values_expand. */
+/* Appends the declaration of the object with the index geometry->object.
+ *
+ * kind     the kind of POV-Ray object, such as "union".
+ * members  has a part called `members`; is released, even after an error.
+ * Errors   those of values_expand. */
 MUST_CHECK Status put_declaration(Text *out, const PovrayGeometry *geometry, const char *kind,
                                   Values *members, Err *err);
 
-/* Appends the declarations of all objects. `put_object` appends the declaration of
- * geometry->object. Errors: those of `put_object` and of put_declaration. */
+/* Appends the declarations of all objects. For each object, sets geometry->object and calls
+ * `put_object`, which appends its declaration. Errors: those of `put_object` and of
+ * put_declaration. */
 MUST_CHECK Status put_objects(Text *out, PovrayGeometry *geometry,
                               Status (*put_object)(Text *out, PovrayGeometry *geometry, Err *err),
                               Err *err);

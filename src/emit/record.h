@@ -1,12 +1,13 @@
-/* Little-endian numbers of binary files, on any machine. They are collected in a record, which is
- * appended to a text at once. Private to the module emit. */
+/* Writes little-endian numbers of binary files, on any machine. The numbers are collected in a
+ * record of up to 64 bytes, which is then appended to a text in one call. Private to the module
+ * emit. */
 #ifndef CORCAST_EMIT_RECORD_H
 #define CORCAST_EMIT_RECORD_H
 
 #include "base/base.h"
 #include <string.h>
 
-/* Up to 64 bytes. Zeroed, it is empty. */
+/* Zeroed, a record is empty. The caller must not add more than 64 bytes before flush_record. */
 typedef struct Record {
     char bytes[64];
     size_t length;
@@ -32,7 +33,7 @@ static inline void put_floats(Record *record, const float values[3])
         put_float(record, values[axis]);
 }
 
-/* Appends the record to a text, and empties it. */
+/* Appends the record to `out` and empties it. */
 static inline void flush_record(Record *record, Text *out)
 {
     text_append(out, record->bytes, record->length);

@@ -1,5 +1,5 @@
-/* The functions of the rows of `emitters`; see Emitter for what each does. Private to the module
- * emit. */
+/* The functions in the rows of the table `emitters`. The contracts are at the members check_name,
+ * write_settings and write of Emitter [emit.h]. Private to the module emit. */
 #ifndef CORCAST_EMIT_ROWS_H
 #define CORCAST_EMIT_ROWS_H
 

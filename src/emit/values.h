@@ -1,4 +1,13 @@
-/* The values of a template, collected one by one. Private to the module emit. */
+/* Fills in a template [tmpl/tmpl.h]: collects the values one by one, then expands the template.
+ * Private to the module emit.
+ *
+ *     Values values = {0};
+ *     add_number(&values, "radius", 0.5);
+ *     add_list(&values, "points", put_point, mesh, mesh->n_points);
+ *     TRY(values_expand(&values, params, "obj/scene.obj", out, err));   // also releases the values
+ *
+ * A value is a short text. A part is a long text, which a callback appends when the template
+ * reaches it. If memory runs out, values_expand reports STATUS_MEMORY. */
 #ifndef CORCAST_EMIT_VALUES_H
 #define CORCAST_EMIT_VALUES_H
 
@@ -6,9 +15,10 @@
 #include "emit/puttext.h" // IWYU pragma: export
 #include "tmpl/tmpl.h"
 
+/* The largest numbers of values and of parts of a template; the largest template sets them. */
 enum { VALUES_MAX = 40, PARTS_MAX = 6 };
 
-/* Appends what stands for the i-th of several items. */
+/* Appends the text of item `i` of a list, counted from 0. */
 typedef void PutItem(Text *out, const void *context, size_t i);
 
 /* A list of items. Each item is appended to the text when the template reaches it. */
@@ -28,49 +38,49 @@ typedef struct Values {
     size_t n_parts;
 } Values;
 
-/* Adds a value, and returns its text, which is empty and borrowed. `name` is borrowed until
- * values_expand, here and below. */
+/* Adds a value, and returns its text, empty, for the caller to append to. The text is borrowed
+ * until values_expand; so is `name`, in all functions below. */
 Text *add_value(Values *values, const char *name);
-/* Adds the exact text of a double. */
+/* Adds a double in the fewest digits that read back to the same double. */
 void add_number(Values *values, const char *name, double value);
-/* Adds the text of a float. */
+/* Adds a float in the fewest digits that read back to the same float. */
 void add_float(Values *values, const char *name, float value);
-/* Adds "1" or "0". */
+/* Adds "1" for true, "0" for false. */
 void add_flag(Values *values, const char *name, bool value);
 /* Adds the decimal text of a count. */
 void add_count(Values *values, const char *name, size_t count);
 /* Adds a string literal of Python and of USD: in double quotes, in one line. */
 void add_quoted(Values *values, const char *name, const char *chars);
-/* Adds `name` as a word of a shell, in one line. The program of this command line needs `quotes`
- * around a name with blanks; "": none. */
+/* Adds the file name `name` as one word of a shell's command line. Some programs need further
+ * quotes, `quotes`, around a name with blanks; "": no further quotes. */
 void add_word(Values *values, const char *value, const char *name, const char *quotes);
-/* Adds three values: `file`; for a command line that reads it, `input`, the file as a word of a
- * shell; and `output`, the same word with the extension `result` (".png"). `quotes` as add_word. */
+/* Adds three values: `file`, the name; `input`, the name as a word of a shell's command line; and
+ * `output`, that word with the extension `result` (".png"). `quotes` is that of add_word. */
 void add_file(Values *values, const char *file, const char *result, const char *quotes);
 /* Adds `description`, `generator` and `command`. */
 void add_source(Values *values, const EmitParams *params);
 /* Adds the values of add_source, and `extent`: the box in mm, and the position of its origin in the
  * tree if the geometry was moved. */
 void add_about(Values *values, const EmitParams *params, Box box, Vec3 origin);
-/* Adds the members of a finish by POV-Ray's names: `ambient`, `diffuse`, ... */
+/* Adds the members of a finish as values with POV-Ray's names: `ambient`, `diffuse`, ... */
 void add_finish(Values *values, const Finish *finish);
-/* Adds a part, which `put` appends when the template comes to it. */
+/* Adds a part. `put` appends it when the template reaches it, and receives `context`. */
 void add_part(Values *values, const char *name, Status (*put)(Text *, void *, Err *),
               void *context);
-/* Adds a part of `n` items. */
+/* Adds a part that consists of `n` items. `put` appends each, and receives `context`. */
 void add_list(Values *values, const char *name, PutItem *put, const void *context, size_t n);
 
-/* Loads `n` templates by their names in the folder of templates, such as "povray/cell.inc". Release
- * them with release_templates, also after an error. Errors: as tmpl_load. */
+/* Loads `n` templates by their paths in the folder of templates, such as "povray/cell.inc". Release
+ * them with release_templates, even after an error. Errors: those of tmpl_load. */
 MUST_CHECK Status load_templates(Tmpl *templates, const EmitParams *params,
                                  const char *const *names, size_t n, Err *err);
 void release_templates(Tmpl *templates, size_t n);
 
-/* Appends the template `name` with these values, and releases the values, also after an error.
- * Errors: as tmpl_stream. */
+/* Appends the template `name`, filled in with the values, to `out`. Releases the values, even after
+ * an error. Errors: those of tmpl_stream; STATUS_MEMORY. */
 MUST_CHECK Status values_expand(Values *values, const EmitParams *params, const char *name,
                                 Text *out, Err *err);
-/* Appends a template without values. */
+/* Appends a template that has no values. Errors: those of values_expand. */
 MUST_CHECK Status put_template(const EmitParams *params, const char *name, Text *out, Err *err);
 
 #endif

@@ -150,7 +150,8 @@ static Status put_entry(const ZipEntry *entry, Stored *stored, Text *out, Err *e
     deflateEnd(&packing.zlib);
     TRY(status);
     if (plain > UINT32_MAX || packed > UINT32_MAX - stored->offset)
-        return err_set(err, STATUS_INFEASIBLE, "a 3MF holds 4 GB; this one would have %.1f",
+        return err_set(err, STATUS_INFEASIBLE,
+                       "the 3MF would have %.1f GB; the format allows at most 4 GB",
                        (double)plain * 1e-9);
     stored->crc = (uint32_t)packing.crc;
     stored->packed = (uint32_t)packed;

@@ -1,4 +1,4 @@
-/* ZIP archives, the container of 3MF. Private to the module emit. */
+/* Writes ZIP archives, the container of 3MF. Private to the module emit. */
 #ifndef CORCAST_EMIT_ZIP_H
 #define CORCAST_EMIT_ZIP_H
 

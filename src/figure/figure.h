@@ -1,9 +1,16 @@
-/* The public header of the module figure: a page of pictures, diagrams, color bars, scale bars,
- * letters and text, as PDF, as SVG and as pixels.
+/* The public header of the module figure: lays out a page of pictures, diagrams, color bars, scale
+ * bars and text, and writes it as PDF, SVG or pixels.
+ *
+ *     figure_init(&page, 89, 60, 300, fonts);
+ *     figure_add_picture(&page, &picture, 0, 0);
+ *     figure_add_text(&page, &(FigureText){.text = "a", .x = 2, .y = 5, .size_pt = 8});
+ *     TRY_GOTO(figure_check(&page, err));
+ *     TRY_GOTO(figure_write_pdf(&page, &notes, "figure.pdf", err));
+ *     figure_release(&page);
  *
  * Lengths are mm from the page's upper left corner, x to the right and y down. Sizes of text are
- * points. Pictures are drawn first, below all other items. Each is on the pixel grid of the page's
- * resolution, so that none is resampled. */
+ * points (1/72 inch). Pictures are drawn first, below all other items. They lie on the pixel grid
+ * of the page's resolution, so that no picture is resampled. */
 #ifndef CORCAST_FIGURE_FIGURE_H
 #define CORCAST_FIGURE_FIGURE_H
 
@@ -31,8 +38,8 @@ void figurefonts_free(FigureFonts *fonts); /* NULL is allowed */
 /* Returns the width of a line of UTF-8, in mm; 0 if memory runs out. */
 double figure_text_width(const FigureFonts *fonts, const char *text, double size_pt, bool bold);
 
-/* Unicode characters that the font lacks, each once, in the order of the texts; the first
- * FIGURE_LETTERS of each kind. */
+/* The Unicode characters in texts that the font lacks. Each is listed once, in the order of the
+ * texts. Only the first FIGURE_LETTERS of each kind are listed, enough for a message. */
 enum { FIGURE_LETTERS = 8 };
 typedef struct FigureLetters {
     uint32_t substituted[FIGURE_LETTERS]; /* drawn as other letters: superscripts and subscripts as
@@ -127,8 +134,9 @@ void figure_release(FigurePage *page);
 /* Returns a length in pixels of the page, rounded. */
 int figure_pixels(const FigurePage *page, double mm);
 
-/* The following functions append an item. If memory runs out they mark the page as failed, which
- * figure_check reports. */
+/* The following functions append an item to the page. If memory runs out, they mark the page as
+ * failed, and figure_check reports STATUS_MEMORY. Items that are borrowed must outlive the page.
+ * `column` and `row` are the pixel position of the picture's first pixel on the page. */
 void figure_add_picture(FigurePage *page, const Picture *picture, int column, int row);
 void figure_add_box(FigurePage *page, FigureBox box, FigureColor color);
 /* Append a polygon or polyline of `n` points, at most FIGURE_CORNERS. */
@@ -138,11 +146,11 @@ void figure_add_line(FigurePage *page, const FigurePoint *corner, int n, bool cl
 void figure_add_ramp(FigurePage *page, FigureBox box, bool upwards,
                      const FigureColor stops[FIGURE_STOPS]);
 
-/* Appends a line drawing, borrowed. The upper left corner of its paper is at a point. */
+/* Appends a line drawing, borrowed. The upper left corner of its paper is at the point `at`. */
 void figure_add_strokes(FigurePage *page, const Strokes *strokes, FigurePoint at,
                         FigureColor color);
 
-/* Appends a diagram, borrowed, of `width_mm` x `height_mm`. Its origin is at a point. */
+/* Appends a diagram, borrowed, of `width_mm` x `height_mm`. Its origin is at the point `at`. */
 void figure_add_bars(FigurePage *page, const FigureBars *bars, FigurePoint at, double width_mm,
                      double height_mm);
 
@@ -158,8 +166,9 @@ void figure_add_text(FigurePage *page, const FigureText *text);
 
 /* Errors: STATUS_MEMORY if an item could not be added. */
 MUST_CHECK Status figure_check(const FigurePage *page, Err *err);
-/* Appends a sentence that names the characters the font lacks: those with a substitute, or those
- * that a box stands for. Appends nothing if there are none. */
+/* Appends a sentence that lists the characters that the font lacks: if `substituted`, those that
+ * are drawn as other letters, else those that are drawn as a box. Appends nothing if there are
+ * none. */
 void figure_put_missing(const FigurePage *page, bool substituted, Text *out);
 
 /* Returns the bounds of the items from index `first` on. */
@@ -172,9 +181,9 @@ void figure_move(FigurePage *page, size_t first, double dx, double dy);
 typedef struct FigureLegend {
     const ColorScale *scale;
     ScaleOutside outside; /* numbers of visible values that are outside the range */
-    bool whole;           /* all values are integers */
+    bool integers;        /* all values are integers, so ticks are integers as well */
     const char *title;    /* UTF-8; a quantity with its unit in parentheses, if it has one */
-    bool across;          /* the bar runs from the left to the right; else upwards */
+    bool horizontal;      /* the bar runs from left to right; false: from bottom to top */
     double length_mm;     /* of the bar */
     double size_pt;
     FigureColor ink;
@@ -189,14 +198,15 @@ void figure_add_legend(FigurePage *page, const FigureLegend *legend);
 void figure_add_scale_bar(FigurePage *page, double length_mm, const char *label, double size_pt,
                           FigureColor ink);
 
-/* Stores about `wanted` round numbers within the range of a scale, ascending, and returns how many.
- * The scale must not count colors [colorscale_selects_by_integer]. `whole`: only integers. */
+/* Stores about `wanted` round numbers within the range of a scale, ascending. Returns their number.
+ * The scale must not count colors [colorscale_selects_by_integer]. If `integers`, all are integers.
+ */
 enum { FIGURE_TICKS = 32 };
-int figure_ticks(const ColorScale *scale, int wanted, bool whole, double ticks[FIGURE_TICKS]);
+int figure_ticks(const ColorScale *scale, int wanted, bool integers, double ticks[FIGURE_TICKS]);
 
 /* ---- files ----------------------------------------------------------------------------------- */
 
-/* The provenance that a page states. All members are borrowed, one line each. */
+/* The metadata in the file of a page. All strings are borrowed, and have one line each. */
 typedef struct FigureNotes {
     const char *templates;   /* the folder */
     const char *description; /* title of the page */
@@ -204,24 +214,25 @@ typedef struct FigureNotes {
     const char *command;     /* the command line that makes the page */
 } FigureNotes;
 
-/* Appends the page as SVG: text as `text`, pictures as embedded PNG. `out` may have a stream.
- * Errors: STATUS_INPUT if a template is missing or does not fit; STATUS_IO; STATUS_MEMORY. */
+/* Appends the page as SVG. Texts become `text` elements, and pictures become embedded PNGs. `out`
+ * may have a stream [base/text.h]. Errors: STATUS_INPUT if a template is missing or does not fit;
+ * STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status figure_put_svg(const FigurePage *page, const FigureNotes *notes, Text *out,
                                  Err *err);
-/* Writes the page as PDF 1.5: text as text in embedded fonts, the same bytes every time. Errors:
- * STATUS_USAGE if a picture has more than FIGURE_PDF_SIDE pixels per side; STATUS_IO;
- * STATUS_MEMORY. */
+/* Writes the page as PDF 1.5. Text stays text, in embedded fonts. Equal pages give equal bytes.
+ * Errors: STATUS_USAGE if a picture has a side of more than FIGURE_PDF_SIDE pixels, a limit of the
+ * library cairo; STATUS_IO; STATUS_MEMORY. */
 enum { FIGURE_PDF_SIDE = 32767 };
 MUST_CHECK Status figure_write_pdf(const FigurePage *page, const FigureNotes *notes,
                                    const char *path, Err *err);
 
-/* Draws the page over `rows`, a picture of 3 channels that is a band of the page at its resolution,
- * from row `first` on. Items other than pictures are antialiased. The pixels do not depend on the
- * bands. Errors: STATUS_MEMORY. */
+/* Draws a band of the page over `rows`, a picture of 3 channels at the page's resolution. The band
+ * begins at row `first` of the page. Items other than pictures are antialiased. The pixels do not
+ * depend on how the page is divided into bands. Errors: STATUS_MEMORY. */
 MUST_CHECK Status figure_draw(const FigurePage *page, int first, Picture *rows, Err *err);
 
-/* Draws bars alone over all of `color`, a plane of 3 channels, in linear light. Every pixel is the
- * mean of what it covers, so that bars thinner than a pixel are as faint as they are thin.
+/* Draws only bars, over all of `color`, a plane of 3 channels of linear RGB. The color of a pixel
+ * is the mean over its area, so that a bar thinner than a pixel becomes proportionally fainter.
  *
  * scale       pixels per mm
  * offset      pixel position of the bars' origin
@@ -230,7 +241,7 @@ MUST_CHECK Status figure_draw(const FigurePage *page, int first, Picture *rows, 
 MUST_CHECK Status figure_draw_bars(const FigureBars *bars, double scale, const double offset[2],
                                    const float background[3], Plane *color, Err *err);
 
-/* Appends the names and versions of the libraries. */
+/* Appends the names and versions of the libraries that the module uses. */
 void figure_put_libraries(Text *text);
 
 #endif

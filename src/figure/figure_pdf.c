@@ -205,7 +205,7 @@ static Status make_surface(const Picture *picture, cairo_surface_t **out, Err *e
 {
     if (picture->width > FIGURE_PDF_SIDE || picture->height > FIGURE_PDF_SIDE)
         return err_set(err, STATUS_USAGE,
-                       "a picture of %dx%d pixels is too large for a PDF, which takes %d a side: "
+                       "a picture of %dx%d pixels is too large for a PDF (at most %d per side); "
                        "use .png or .tif",
                        picture->width, picture->height, FIGURE_PDF_SIDE);
     cairo_surface_t *surface =

@@ -1,4 +1,4 @@
-/* Lines of text as glyphs; private to the module figure. */
+/* Lays out lines of text as glyphs of a font. Private to the module figure. */
 #ifndef CORCAST_FIGURE_FONTS_H
 #define CORCAST_FIGURE_FONTS_H
 

@@ -1,4 +1,5 @@
-/* The items of a page, for its writers; private to the module figure. */
+/* Iterates over the items of a page, for the writers of PDF, SVG and pixels. Private to the module
+ * figure. */
 #ifndef CORCAST_FIGURE_ITEMS_H
 #define CORCAST_FIGURE_ITEMS_H
 
@@ -12,7 +13,7 @@ typedef Status FigurePut(void *context, const FigureItem *item, Err *err);
 MUST_CHECK Status figure_put_items(const FigurePage *page, FigurePut *const put[FIGURE_KINDS],
                                    void *context, Err *err);
 
-/* Returns bar `i` of an item of the kind FIGURE_BARS as a shape, in the colors of sRGB. */
+/* Returns bar `i` of an item of the kind FIGURE_BARS as an item of the kind FIGURE_SHAPE. */
 FigureItem figure_bar(const FigureItem *item, size_t i);
 
 #endif

@@ -20,7 +20,8 @@ static const double bar_ems = 1.1, tick_ems = 0.25, gap_ems = 0.3, point_ems = 0
 /* Returns a position on the page. A bar that points upwards begins at its lower end. */
 static FigurePoint place(const LegendLayout *layout, double along, double across)
 {
-    return layout->legend->across ? (FigurePoint){along, across} : (FigurePoint){across, -along};
+    return layout->legend->horizontal ? (FigurePoint){along, across}
+                                      : (FigurePoint){across, -along};
 }
 
 static FigureBox box_of(const LegendLayout *layout, double from, double to)
@@ -46,7 +47,7 @@ static void put_label(const LegendLayout *layout, double along, double across, c
 {
     FigurePoint at = place(layout, along, across);
     double capitals = FONT_CAPITALS * layout->em;
-    if (layout->legend->across)
+    if (layout->legend->horizontal)
         put_text(layout, text, at.x, at.y + capitals, ALIGN_CENTER);
     else
         put_text(layout, text, at.x, at.y + capitals / 2, ALIGN_LEFT);
@@ -141,9 +142,10 @@ static void put_ramp(const LegendLayout *layout)
         colorscale_at(legend->scale, (double)i / (FIGURE_STOPS - 1), color);
         stops[i] = figure_color(color);
     }
-    figure_add_ramp(layout->page, box_of(layout, 0, layout->length), !legend->across, stops);
-    int most = (int)fmin(fmax(layout->length / (legend->across ? 2.9 : 2.2) / layout->em, 2), 8);
-    int n = figure_ticks(legend->scale, most, legend->whole, ticks);
+    figure_add_ramp(layout->page, box_of(layout, 0, layout->length), !legend->horizontal, stops);
+    int most =
+        (int)fmin(fmax(layout->length / (legend->horizontal ? 2.9 : 2.2) / layout->em, 2), 8);
+    int n = figure_ticks(legend->scale, most, legend->integers, ticks);
     for (int i = 0; i < n; i++)
         along[i] = layout->length * colorscale_position(legend->scale, ticks[i]);
     put_ticks(layout, ticks, along, n);
@@ -167,7 +169,7 @@ static void put_classes(const LegendLayout *layout)
     int steps = colorscale_steps(scale), n = 0;
     double each = layout->length / steps;
     double values[COLORSCALE_MAX_BOUNDS + 2], along[COLORSCALE_MAX_BOUNDS + 2];
-    double pitch = (layout->legend->across ? 2.9 : 1.2) * layout->em;
+    double pitch = (layout->legend->horizontal ? 2.9 : 1.2) * layout->em;
     int apart = (int)fmax(ceil(pitch / each), steps / COLORSCALE_MAX_BOUNDS + 1);
     for (int i = 0; i < steps; i++) {
         float color[3];
@@ -201,14 +203,14 @@ static double put_counts(const LegendLayout *layout)
     const ColorScale *scale = layout->legend->scale;
     double first = scale->range[0], values = scale->range[1] - first + 1;
     int n = (int)fmin(values, (double)scale->map.n);
-    double pitch = (layout->legend->across ? 2.2 : 1.35) * layout->em;
+    double pitch = (layout->legend->horizontal ? 2.2 : 1.35) * layout->em;
     for (int i = 0; i < n; i++) {
         char label[64];
         float color[3];
         colorscale_linear(scale, first + i, color);
         snprintf(label, sizeof label, "%.0f%s", first + i,
                  i + 1 == n && values > n ? "\xE2\x80\xA6" : "");
-        put_swatch(layout, (layout->legend->across ? i : n - 1 - i) * pitch, color, label);
+        put_swatch(layout, (layout->legend->horizontal ? i : n - 1 - i) * pitch, color, label);
     }
     return n * pitch;
 }
@@ -221,7 +223,7 @@ static void put_none(const LegendLayout *layout)
         return;
     colorscale_linear(legend->scale, (double)NAN, color);
     double beyond = (point_ems + bar_ems + 1.2) * layout->em;
-    put_swatch(layout, legend->across ? layout->length + beyond : -beyond, color, "no value");
+    put_swatch(layout, legend->horizontal ? layout->length + beyond : -beyond, color, "no value");
 }
 
 /* Adds the title above everything else: one line, or the unit on a second line if the title is
@@ -232,7 +234,7 @@ static void put_title(const LegendLayout *layout, size_t first)
     const char *unit = strrchr(legend->title, '(');
     double width = figure_text_width(layout->page->fonts, legend->title, legend->size_pt, false);
     double y = figure_bounds(layout->page, first).top - 0.75 * layout->em;
-    bool two = unit && unit > legend->title && !legend->across && width > 7.5 * layout->em;
+    bool two = unit && unit > legend->title && !legend->horizontal && width > 7.5 * layout->em;
     if (two)
         put_text(layout, unit, 0, y, ALIGN_LEFT);
     Text name = TEXT_INIT;

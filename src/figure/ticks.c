@@ -16,11 +16,11 @@ static double round_step(double least)
     return 10 * power;
 }
 
-static int even(const double range[2], int wanted, bool whole, double ticks[FIGURE_TICKS])
+static int even(const double range[2], int wanted, bool integers, double ticks[FIGURE_TICKS])
 {
     double step = round_step((range[1] - range[0]) / wanted), slack = 1e-9 * (range[1] - range[0]);
     int n = 0;
-    if (whole)
+    if (integers)
         step = fmax(step, 1);
     for (double k = ceil((range[0] - slack) / step); k * step <= range[1] + slack; k++)
         if (n < FIGURE_TICKS)
@@ -45,7 +45,7 @@ static int powers(const double range[2], int apart, int digits, double ticks[FIG
     return n;
 }
 
-int figure_ticks(const ColorScale *scale, int wanted, bool whole, double ticks[FIGURE_TICKS])
+int figure_ticks(const ColorScale *scale, int wanted, bool integers, double ticks[FIGURE_TICKS])
 {
     const double *range = scale->range;
     if (!(range[0] < range[1])) {
@@ -53,9 +53,9 @@ int figure_ticks(const ColorScale *scale, int wanted, bool whole, double ticks[F
         return 1;
     }
     if (!scale->log)
-        return even(range, wanted, whole, ticks);
+        return even(range, wanted, integers, ticks);
     double decades = elementary_log10(range[1] / range[0]);
     int n = decades >= 2 ? powers(range, (int)ceil(decades / wanted), 1, ticks)
                          : powers(range, 1, 3, ticks);
-    return n >= 2 ? n : even(range, wanted, whole, ticks);
+    return n >= 2 ? n : even(range, wanted, integers, ticks);
 }

@@ -271,20 +271,20 @@ static Status be_patient(Growth *growth, Err *err)
     if (growth->params->from)
         outside = continue_outside(growth->params->from, growth->site.domain, &farthest, &mm);
     if (outside > 0)
-        return err_set(err, STATUS_INFEASIBLE,
-                       "no room for terminal %zu of `terminals` %zu in %zu tries: the domain does "
-                       "not hold the tree of `from`, of which %zu of %zu nodes are outside, node "
-                       "%d by %.3g mm",
-                       growth->site.net.terminals + 1, growth->params->terminals,
-                       growth->crowded + growth->outside, outside, growth->params->from->n,
-                       growth->params->from->id[farthest], mm);
+        return err_set(
+            err, STATUS_INFEASIBLE,
+            "gave up placing terminal %zu of `terminals` %zu after %zu attempts: the domain does "
+            "not contain the tree of `from`; %zu of %zu nodes are outside, node %d by %.3g mm",
+            growth->site.net.terminals + 1, growth->params->terminals,
+            growth->crowded + growth->outside, outside, growth->params->from->n,
+            growth->params->from->id[farthest], mm);
     bool shut_out = rules->pair > 0 && growth->site.domain->dimension == 2;
     return err_set(err, STATUS_INFEASIBLE,
-                   "no room for terminal %zu of `terminals` %zu in %zu tries: %s",
+                   "gave up placing terminal %zu of `terminals` %zu after %zu attempts: %s",
                    growth->site.net.terminals + 1, growth->params->terminals,
                    growth->crowded + growth->outside,
-                   shut_out ? "in the plane two trees that must not cross shut each other out of "
-                              "what is behind them; `pair_mm` needs a `domain` of three dimensions"
+                   shut_out ? "two trees that must not cross block each other in the plane; "
+                              "`pair_mm` needs a `domain` of three dimensions"
                             : "lower `terminals`, choose a larger `domain`, or move `gamma` and "
                               "`lambda` towards 3 and 2");
 }

@@ -85,8 +85,8 @@ static Status refuse(const Image *image, size_t pixel, const char *name, Err *er
 {
     size_t width = (size_t)(image->plane.values ? image->plane.width : image->picture.width);
     return err_set(err, STATUS_INPUT,
-                   "%s: is transparent at column %zu, row %zu; only opaque pictures can be read",
-                   name, pixel % width, pixel / width);
+                   "%s: is transparent at column %zu, row %zu; the picture must be opaque", name,
+                   pixel % width, pixel / width);
 }
 
 Status image_apply_alpha(Image *image, ImageAlpha alpha, const char *name, Err *err)

@@ -31,7 +31,8 @@ static Status take_line(Colormap *map, size_t *capacity, const char *line, Err *
         fits = fits && c[i] >= 0 && c[i] <= 1;
     if (!fits)
         return err_set(err, STATUS_INPUT,
-                       "'%.40s' is not three numbers from 0 to 1, red green blue", line);
+                       "the line is '%.40s'; it must be three numbers from 0 to 1: red green blue",
+                       line);
     TRY(mem_reserve(&map->srgb, capacity, map->n + 1, sizeof *map->srgb, "colors", err));
     for (int i = 0; i < 3; i++)
         map->srgb[map->n][i] = (float)c[i];

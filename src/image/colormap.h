@@ -1,4 +1,6 @@
-/* Color maps from numbers to colors. */
+/* Color maps: lists of colors, read from files, to which numbers are mapped. Included by the public
+ * header image.h. A color map knows only fractions from 0 to 1; a color scale [colorscale.h] maps
+ * the values of a quantity to these fractions. */
 #ifndef CORCAST_IMAGE_COLORMAP_H
 #define CORCAST_IMAGE_COLORMAP_H
 
@@ -10,18 +12,19 @@ typedef struct Colormap {
     bool separate;    /* the colors distinguish groups and are not interpolated */
 } Colormap;
 
-/* Reads a file of one color per line, "red green blue" in sRGB from 0 to 1. '#' starts a comment
- * line. A line `separate` before the first color makes the map separate. Release *map with
- * colormap_release. Errors: STATUS_INPUT, naming file and line, for other lines and for fewer than
- * 2 colors; STATUS_MEMORY. */
+/* Reads a color map from a file with one color per line: "red green blue" in sRGB, from 0 to 1. A
+ * line that starts with '#' is a comment. A line `separate` before the first color sets
+ * map->separate. Release *map with colormap_release. Errors: STATUS_INPUT, with file and line, for
+ * any other line and for fewer than 2 colors; STATUS_MEMORY. */
 MUST_CHECK Status colormap_read(Colormap *map, const char *path, Err *err);
 void colormap_release(Colormap *map);
 
-/* Stores the linear color at `fraction`, which is clamped to [0, 1]. Interpolates between
- * neighbouring colors in sRGB. NaN gives middle grey. */
+/* Computes the color, in linear RGB, at a fraction of the map: 0 is the first color, 1 the last.
+ * Fractions outside [0, 1] are clamped. Interpolates between neighbouring colors in sRGB. NaN gives
+ * middle grey. */
 void colormap_linear(const Colormap *map, double fraction, float rgb[3]);
 
-/* Stores the linear color with the index `number` modulo the number of colors. */
+/* Copies the color, in linear RGB, with the index `number` modulo the number of colors. */
 void colormap_color(const Colormap *map, size_t number, float rgb[3]);
 
 #endif

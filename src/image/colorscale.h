@@ -1,11 +1,17 @@
-/* A color scale from the values of a quantity to colors. */
+/* Color scales: map the values of a quantity, such as pressures in mmHg, to colors. Included by the
+ * public header image.h.
+ *
+ * A scale maps a value in two steps. colorscale_position maps the value to a position: 0 and 1 are
+ * the ends of the range. colorscale_at maps the position to a color, in linear RGB. There are three
+ * kinds of scales: continuous; with classes, each of one color; and scales whose values are
+ * integers that select the colors of a separate map in turn [colorscale_selects_by_integer]. */
 #ifndef CORCAST_IMAGE_COLORSCALE_H
 #define CORCAST_IMAGE_COLORSCALE_H
 
 #include "base/base.h"
 #include "image/colormap.h"
 
-/* A color for values outside of the map. If `given` is false, the default applies. */
+/* A color for values that the map does not cover. If `given` is false, the default applies. */
 typedef struct ScaleColor {
     bool given;
     float rgb[3]; /* linear */
@@ -29,9 +35,9 @@ typedef struct ColorScale {
     Colormap map;           /* owned by the maker of the scale */
 } ColorScale;
 
-/* Returns the position of a value on the scale: 0 and 1 at the ends of the range; 0.5 at the one
- * value of a range without width; NAN for a value that cannot be shown, which is NAN or, with
- * `log`, not above 0. */
+/* Returns the position of a value on the scale: 0 and 1 at the ends of the range, and beyond them
+ * for values outside the range. Returns 0.5 at the value of a range without width. Returns NAN for
+ * a value that cannot be shown: NAN and, with `log`, values not above 0. */
 double colorscale_position(const ColorScale *scale, double value);
 /* Returns the tolerance of positions: a position this far below a bound of two classes is on the
  * bound, and one this far outside the range is in the range. A mean of positions that are all on a
@@ -44,8 +50,8 @@ double colorscale_bound(const ColorScale *scale, int i);
 double colorscale_lowest(const ColorScale *scale);
 double colorscale_highest(const ColorScale *scale);
 
-/* Sets the range from the minimum to the maximum of the values that the scale can show: finite, and
- * above 0 with `log`. Returns false, and sets nothing, if there are none. */
+/* Sets the range to the minimum and maximum of the `n` values that the scale can show: those that
+ * are finite and, with `log`, above 0. Returns false, and sets nothing, if there are none. */
 bool colorscale_fit(ColorScale *scale, const double *values, size_t n);
 
 /* Computes two percentiles, percent[k] in 0 .. 100, of the values that the scale can show,
@@ -60,21 +66,22 @@ typedef struct ScaleOutside {
 } ScaleOutside;
 ScaleOutside colorscale_outside(const ColorScale *scale, const double *values, size_t n);
 
-/* Returns the number of separate colors of the scale: by its bounds, its classes, or a separate
- * map; 0: the scale is continuous. */
+/* Returns the number of separate colors of the scale, which its bounds, its classes or a separate
+ * map determine; 0 if the scale is continuous. */
 int colorscale_steps(const ColorScale *scale);
-/* Stores the linear color of a step, counted from 0. The steps of a continuous map are spread over
- * the whole map, its ends included. */
+/* Computes the color, in linear RGB, of separate color `step`, counted from 0. The classes of a
+ * continuous map are spread over the whole map, including its ends. */
 void colorscale_step_color(const ColorScale *scale, int step, float rgb[3]);
 
 /* Returns true if integers select the colors of a separate map, from 1 on, modulo the number of
  * colors. */
 bool colorscale_selects_by_integer(const ColorScale *scale);
 
-/* Stores the linear color at a position of a scale that does not count colors. A value on a
- * bound, or up to colorscale_tolerance below the bound, belongs to the class above. */
+/* Computes the color, in linear RGB, at a position. Not for scales of which
+ * colorscale_selects_by_integer is true. A position on a bound, or up to colorscale_tolerance below
+ * the bound, belongs to the class above. */
 void colorscale_at(const ColorScale *scale, double place, float rgb[3]);
-/* Stores the linear color of a value. */
+/* Computes the color, in linear RGB, of a value on any scale. */
 void colorscale_linear(const ColorScale *scale, double value, float rgb[3]);
 
 /* A continuous color map in the form of POV-Ray: linear colors at equidistant positions from 0 to
@@ -86,8 +93,8 @@ typedef struct ColorRamp {
 } ColorRamp;
 
 void colorramp_init(ColorRamp *ramp, const Colormap *map);
-/* Does the same as colorscale_at, with interpolated colors of `ramp`, which colorramp_init made
- * from scale->map. */
+/* Computes what colorscale_at computes, but interpolates between the entries of `ramp`, as POV-Ray
+ * does. colorramp_init must have filled `ramp` from scale->map. */
 void colorscale_on_ramp(const ColorScale *scale, const ColorRamp *ramp, double place, float rgb[3]);
 
 /* Appends "wss 3.70 to 54.1 Pa". */

@@ -109,11 +109,11 @@ static Status no_channels(const ExrReader *self, const exr_attr_chlist_t *list, 
                  list->entries[i].name.str);
     }
     image_plain_text(names);
-    return err_set(err, STATUS_INPUT,
-                   "%s: has the channels %s%s; only R G B, X Y Z or a single one, with an A or "
-                   "without, can be read%s",
-                   self->input.file.name, names, list->num_channels > SHOWN ? ", ..." : "",
-                   strchr(names, '.') ? ", or those of one layer" : "");
+    return err_set(
+        err, STATUS_INPUT,
+        "%s: has the channels %s%s; they must be R G B, X Y Z or a single one, with or without A%s",
+        self->input.file.name, names, list->num_channels > SHOWN ? ", ..." : "",
+        strchr(names, '.') ? ", or those of one layer" : "");
 }
 
 /* Chooses the channels of the plane. */

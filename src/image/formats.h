@@ -1,9 +1,13 @@
-/* The file formats behind image_read, ImageReader and ImageWriter; private to the module image.
+/* The file formats behind image_read, ImageReader and ImageWriter. Private to the module image.
  *
- * A format is an ImageDecoder, a RowEncoder, or both: tables of functions over a state of the
- * format's own. Every function runs in a guard. No decoder allocates memory for the pixels that a
- * header announces before it has compared their size with the size of the file: PNM and PFM
- * exactly, the other formats by image_check_claim. */
+ * To add a format, write an ImageDecoder, a RowEncoder, or both. Each is a table of functions that
+ * share a state of the format's own. The state begins with an ImageInput or ImageOutput, which
+ * holds the arguments and results. Every function runs in a guard [guard.h], because libraries
+ * report errors by longjmp.
+ *
+ * A header may announce more pixels than the file can hold. Therefore no decoder allocates memory
+ * for pixels before it has compared their size with the size of the file: PNM and PFM exactly, the
+ * other formats with image_check_claim. */
 #ifndef CORCAST_IMAGE_FORMATS_H
 #define CORCAST_IMAGE_FORMATS_H
 
@@ -19,17 +23,21 @@ typedef struct ImageBytes {
 
 /* ---- checks that formats share --------------------------------------------------------------- */
 
-/* Errors: STATUS_INPUT unless both sides, as a header states them, are in [1, IMAGE_MAX_SIDE]. */
+/* Checks the sides that a header states, in pixels. Errors: STATUS_INPUT unless both are in
+ * [1, IMAGE_MAX_SIDE]. */
 MUST_CHECK Status image_check_sides(const char *name, long long width, long long height, Err *err);
 
-/* Errors: those of image_check_sides; STATUS_INPUT, naming the file, its size and the sides, if
- * `bytes` of pixels exceed `maximum`, the bytes that a file of this size can hold at the best
- * compression. */
+/* Checks the size that a header states.
+ *
+ * bytes    the size of the pixels after decompression.
+ * maximum  the largest size that a file of this size can hold at the best compression.
+ * Errors   those of image_check_sides; STATUS_INPUT, with the file, its size and the sides, if
+ *          `bytes` is above `maximum`. */
 MUST_CHECK Status image_check_claim(const ImageBytes *file, long long width, long long height,
                                     size_t bytes, size_t maximum, Err *err);
 
-/* Errors: STATUS_MEMORY if the machine has less than `bytes` of memory for an image of these
- * sides. */
+/* Checks that the machine has `bytes` of memory for an image of these sides. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status image_check_memory(int width, int height, size_t bytes, Err *err);
 
 /* Returns true if chromaticities, x and y of red, green, blue and white, are within 0.002 of those
@@ -40,7 +48,8 @@ Status image_other_colors(const char *name, const char *where, Err *err);
 /* Stores the description in an ICC profile, without characters that are not printable ASCII; "" if
  * it has none. */
 void image_profile_name(const uint8_t *profile, size_t size, char text[IMAGE_PROFILE_NAME]);
-/* Errors: STATUS_INPUT, naming file and profile, unless an ICC profile is one of sRGB. */
+/* Checks that an ICC profile is one of sRGB. Errors: STATUS_INPUT, naming file and profile, if it
+ * is not. */
 MUST_CHECK Status image_check_profile(const char *name, const uint8_t *profile, size_t size,
                                       Err *err);
 
@@ -164,18 +173,20 @@ typedef struct RowEncoder {
 extern const RowEncoder ppm_encoder, pgm_encoder, png_encoder, tiff_encoder, jpeg_encoder,
     pfm_encoder, exr_encoder;
 
-/* Errors: STATUS_IO if the output is a pipe: the format must be able to go back in the file. */
+/* Checks that the output is seekable, for formats that must go back in the file. Errors: STATUS_IO
+ * if the output is a pipe. */
 MUST_CHECK Status imageoutput_check_seekable(const ImageOutput *output, Err *err);
 
 /* Returns the text of the note with this key; NULL if there is none. */
 const char *image_note(const ImageNotes *notes, const char *key);
 
-/* Makes the profile that a file of this form carries: the output profile of the inks, or the one of
- * sRGB; none if the codes are grey or linear. Errors: STATUS_MEMORY. */
+/* Makes the ICC profile for a file of this form: the output profile of the inks, or that of sRGB.
+ * No profile is made if the codes are grey or linear. The caller frees profile->bytes. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status image_profile(const ImageForm *form, ImageProfile *profile, Err *err);
 
-/* Converts `n` pixels of three codes to four. Codes have the number of bits that the inks were read
- * for. */
+/* Converts `n` pixels from sRGB (three codes) to CMYK (four codes). The codes have inks_bits(inks)
+ * bits: uint8_t or uint16_t. */
 void inks_convert(const Inks *inks, const void *rgb, void *cmyk, size_t n);
 int inks_bits(const Inks *inks);
 

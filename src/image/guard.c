@@ -53,9 +53,9 @@ static Status failed_reading(Err *err)
 {
     if (errno == ENOMEM)
         return mem_out_of("to read", running->name, err);
-    return err_set(
-        err, STATUS_INPUT, "%s: is not a sound %s file: %s", running->name, running->format,
-        *running->complaint ? running->complaint : "its header and its data do not agree");
+    return err_set(err, STATUS_INPUT, "%s: is not a valid %s file: %s", running->name,
+                   running->format,
+                   *running->complaint ? running->complaint : "its header contradicts its data");
 }
 
 static Status failed_writing(Err *err)

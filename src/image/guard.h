@@ -1,9 +1,10 @@
-/* Calls of libraries that report an error through a callback which must not return; private to the
- * module image.
+/* Runs code that calls image libraries, and turns their errors into a Status. Private to the module
+ * image.
  *
- * libpng and libjpeg call an error handler, and libtiff and Little CMS crash where an allocation of
- * theirs fails. Code that calls them runs in a guard, which such a callback leaves by longjmp. This
- * module is the only one that uses setjmp. */
+ * libpng and libjpeg report an error through a callback that must not return. libtiff and Little
+ * CMS crash if one of their allocations fails. Code that calls them therefore runs in a guard:
+ * guard_run(guard, work, self, err) calls work(self, err), and a callback of the library leaves
+ * `work` by longjmp [guard_leave]. This module is the only one that uses setjmp. */
 #ifndef CORCAST_IMAGE_GUARD_H
 #define CORCAST_IMAGE_GUARD_H
 
@@ -13,8 +14,8 @@
 
 enum { GUARD_TEXT = 200 };
 
-/* The work of a library on one file. Zeroed but for the first three members before the first call
- * of guard_run. */
+/* The work of a library on one file. Before the first call of guard_run, the caller sets the first
+ * three members and zeroes the others. */
 typedef struct Guard {
     const char *format;         /* of the file, for errors: "PNG" */
     const char *name;           /* the file that is read, for errors; NULL: a file is written */
@@ -28,10 +29,11 @@ typedef struct Guard {
 
 typedef Status GuardedWork(void *self, Err *err);
 
-/* Sets errno to 0 and returns work(self, err), or guard_failure if a callback left the guard.
+/* Sets errno to 0, calls work(self, err), and returns its status. If a callback left the guard,
+ * returns guard_failure(err) instead. Calls may be nested.
  *
- * Libraries go on without parts they had no memory for, and leave ENOMEM in errno. STATUS_OK
- * therefore becomes STATUS_MEMORY if errno is ENOMEM at the end. Calls may be nested.
+ * If a library has no memory for a part of a file, it may skip the part and leave ENOMEM in errno.
+ * Therefore STATUS_OK becomes STATUS_MEMORY if errno is ENOMEM at the end.
  *
  * self     must own everything that `work` acquires: the locals of `work` are lost when it is left.
  * Threads  The running guard is a variable of the thread. */
@@ -44,12 +46,12 @@ MUST_CHECK Status guard_run(Guard *guard, GuardedWork *work, void *self, Err *er
 void guard_leave(const char *complaint);
 /* Leaves the guard because an allocation failed. */
 void guard_leave_without_memory(void);
-/* Stores a complaint unless there is one. */
+/* Stores what a library reported, unless an earlier report is stored. */
 void guard_complain(const char *complaint);
-/* Forgets the complaint: what the library reported is no error here. */
+/* Removes the stored report, because it is not an error here. */
 void guard_forget(void);
 
-/* Writes the sentence for a failure of the running guard's library.
+/* Writes the error message for a failure of the running guard's library to *err.
  *
  * Returns  STATUS_MEMORY if errno is ENOMEM, else STATUS_INPUT for a file that is read and
  *          STATUS_IO for a file that is written. */

@@ -56,13 +56,13 @@ Status header_integer(HeaderCursor *cursor, const char *what, long long minimum,
 Status header_end(HeaderCursor *cursor, size_t needed, Err *err)
 {
     if (!has_more(cursor) || !at_blank(cursor))
-        return err_set(err, STATUS_INPUT, "%s: no blank stands between its header and its pixels",
+        return err_set(err, STATUS_INPUT, "%s: a blank must separate the header from the pixels",
                        cursor->file.name);
     cursor->at++;
     size_t found = cursor->file.size - cursor->at;
     if (found != needed)
         return err_set(err, STATUS_INPUT,
-                       "%s: its header announces %zu bytes of pixels, and %zu follow",
+                       "%s: its header announces %zu bytes of pixels, but %zu follow",
                        cursor->file.name, needed, found);
     return STATUS_OK;
 }

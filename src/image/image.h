@@ -1,9 +1,15 @@
-/* The public header of the module image: linear float planes, integer pictures, segment-id planes,
- * the conversions between them, and their files.
+/* The public header of the module image: images in memory, conversions between them, and their
+ * files.
  *
- * Rows are stored from the top down, pixels from left to right, channels interleaved. A picture
- * holds the integer codes of a file; a plane holds linear numbers. picture_from_plane is the only
- * color encoding step of the program. */
+ * There are three kinds of images. A Plane holds linear floats: colors, depths or normals. A
+ * Picture holds integer codes of 8 or 16 bits, as in a PNG. An IdPlane holds the id of the segment
+ * that is visible in each pixel. picture_from_plane, which encodes linear colors as sRGB codes, is
+ * the only color encoding step of the program. Rows are stored from the top down, pixels from left
+ * to right, channels interleaved.
+ *
+ *     TRY(picture_read(&picture, "a.png", ALPHA_REFUSED, err));
+ *     TRY(picture_write(&picture, "b.tif", ENCODING_SRGB, NULL, NULL, err));
+ *     picture_release(&picture); */
 #ifndef CORCAST_IMAGE_IMAGE_H
 #define CORCAST_IMAGE_IMAGE_H
 
@@ -45,9 +51,9 @@ typedef struct IdPlane {
     uint32_t *ids; /* owned */
 } IdPlane;
 
-/* Make zeroed images, which the caller releases. Errors: STATUS_INPUT unless both sides are in
- * [1, IMAGE_MAX_SIDE]; STATUS_MEMORY, before any memory is touched, if the machine has too
- * little. */
+/* Make images whose values are 0. Release them with plane_release, picture_release and
+ * idplane_release. Errors: STATUS_INPUT unless both sides are in [1, IMAGE_MAX_SIDE];
+ * STATUS_MEMORY, before any memory is touched, if the machine has too little. */
 MUST_CHECK Status plane_init(Plane *plane, int width, int height, int channels, Err *err);
 MUST_CHECK Status picture_init(Picture *picture, int width, int height, int channels, int bits,
                                Err *err);
@@ -254,7 +260,7 @@ MUST_CHECK Status picture_to_png(const Picture *picture, Encoding encoding, cons
  * "data:image/png;base64,...". */
 MUST_CHECK Status picture_put_uri(const Picture *picture, Text *out, Err *err);
 
-/* What files of a format can hold. */
+/* The properties that files of a format can have. */
 typedef struct ImageTraits {
     bool keeps_dpi;   /* ImageNotes.dpi */
     bool has_profile; /* an ICC profile, so that colors may be inks */
@@ -328,8 +334,8 @@ MUST_CHECK Status plane_read(Plane *plane, const char *path, ImageAlpha alpha, E
  * alpha moves to image->transparent. Errors: STATUS_MEMORY; *image is unchanged then. */
 MUST_CHECK Status image_composite(Image *image, const float background[3], Err *err);
 
-/* What a renderer makes, or what is read back from the files of another. Planes that were not
- * requested have NULL values. */
+/* The images that a renderer computes for one view, or that are read from the files of another
+ * renderer. Planes that were not requested have NULL values. Release with frame_release. */
 typedef struct Frame {
     Plane color;   /* linear; multiplied by alpha if there is an alpha plane */
     Plane alpha;   /* part of the pixel that is covered, 0 to 1; of transparent views */

@@ -103,7 +103,7 @@ Status picture_read(Picture *picture, const char *path, ImageAlpha alpha, Err *e
     if (image.plane.values) {
         image_release(&image);
         return err_set(err, STATUS_INPUT,
-                       "%s: holds floats; a picture of 8 or 16 bits is wanted here", name_of(path));
+                       "%s: holds floats; a picture of 8 or 16 bits is needed here", name_of(path));
     }
     *picture = image.picture;
     return STATUS_OK;
@@ -117,8 +117,7 @@ Status plane_read(Plane *plane, const char *path, ImageAlpha alpha, Err *err)
         image_release(&image);
         return err_set(
             err, STATUS_INPUT,
-            "%s: holds whole numbers; a plane of floats (PFM, OpenEXR or TIFF) is wanted "
-            "here",
+            "%s: holds integers; a picture of floats (PFM, OpenEXR or TIFF) is needed here",
             name_of(path));
     }
     *plane = image.plane;

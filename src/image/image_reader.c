@@ -16,11 +16,10 @@ struct ImageReader {
 
 Status image_no_rows(const char *name, Err *err)
 {
-    return err_set(
-        err, STATUS_INPUT,
-        "%s: is not a picture as corcast writes them: a PNG, or a TIFF of one page, of 8 "
-        "or 16 bits, opaque",
-        name);
+    return err_set(err, STATUS_INPUT,
+                   "%s: must be a picture as corcast writes it: an opaque PNG, or TIFF of one "
+                   "page, of 8 or 16 bits",
+                   name);
 }
 
 static Status choose_decoder(ImageReader *reader, const ImageDecoder **decoder, Err *err)

@@ -169,9 +169,11 @@ static Status check_inks(const char *path, const ImageForm *form, const RowEncod
     if (!form->packing.inks)
         return STATUS_OK;
     if (!encoder->traits.has_profile)
-        return err_set(err, STATUS_USAGE, "%s: only .tif and .jpg hold colors of a press", path);
+        return err_set(err, STATUS_USAGE, "%s: an output profile (CMYK) needs a .tif or .jpg",
+                       path);
     if (form->channels != 3)
-        return err_set(err, STATUS_USAGE, "%s: only opaque pictures in color go to a press", path);
+        return err_set(err, STATUS_USAGE,
+                       "%s: an output profile (CMYK) needs an opaque picture in color", path);
     assert(inks_bits(form->packing.inks) == form->bits && form->encoding == ENCODING_SRGB);
     return STATUS_OK;
 }

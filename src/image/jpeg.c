@@ -107,8 +107,7 @@ static Status check_upright(const JpegReader *self, Err *err)
     for (jpeg_saved_marker_ptr marker = self->jpeg.marker_list; marker; marker = marker->next)
         if (marker->marker == JPEG_APP0 + 1 && orientation_of(marker) != 1)
             return err_set(err, STATUS_INPUT,
-                           "%s: is turned by its Exif orientation, %u; only upright ones can be "
-                           "read",
+                           "%s: its Exif orientation is %u; it must be 1 (upright)",
                            self->input.file.name, orientation_of(marker));
     return STATUS_OK;
 }
@@ -119,8 +118,8 @@ static Status check_colors(JpegReader *self, Err *err)
     const char *name = self->input.file.name;
     unsigned size;
     if (space != JCS_GRAYSCALE && space != JCS_YCbCr && space != JCS_RGB)
-        return err_set(err, STATUS_INPUT, "%s: has %s; only grey and RGB can be read", name,
-                       space == JCS_CMYK || space == JCS_YCCK ? "the colors of inks (CMYK)"
+        return err_set(err, STATUS_INPUT, "%s: has %s; the colors must be grey or RGB", name,
+                       space == JCS_CMYK || space == JCS_YCCK ? "CMYK colors"
                                                               : "colors of an unknown kind");
     if (jpeg_read_icc_profile(&self->jpeg, &self->profile, &size))
         return image_check_profile(name, self->profile, size, err);

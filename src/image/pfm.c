@@ -41,18 +41,16 @@ static Status decode(void *work, Err *err)
     double scale;
     char word[32];
     if (file->size > 2 && file->bytes[2] == '4')
-        return err_set(err, STATUS_INPUT,
-                       "%s: is a PF4 file, of four channels; only PF and Pf can be read",
+        return err_set(err, STATUS_INPUT, "%s: is a PF4 file (four channels); it must be PF or Pf",
                        file->name);
     TRY(header_integer(&cursor, "width", 1, IMAGE_MAX_SIDE, &width, err));
     TRY(header_integer(&cursor, "height", 1, IMAGE_MAX_SIDE, &height, err));
     header_word(&cursor, word, sizeof word);
     if (!number_parse(word, &scale) || fabs(scale) != 1)
-        return err_set(
-            err, STATUS_INPUT,
-            "%s: the scale is \"%s\", by which some programs multiply and others divide; "
-            "only 1 and -1 can be read",
-            file->name, word);
+        return err_set(err, STATUS_INPUT,
+                       "%s: the scale is \"%s\"; it must be 1 or -1, because programs disagree on "
+                       "the meaning of others",
+                       file->name, word);
     int channels = file->bytes[1] == 'F' ? 3 : 1;
     size_t row_values = (size_t)width * (size_t)channels;
     TRY(header_end(&cursor, row_values * (size_t)height * 4, err));
@@ -99,8 +97,8 @@ static Status write_rows(void *work, Err *err)
     if (output->n < height &&
         fseeko(output->stream, self->start + rows_below * (off_t)row_bytes, SEEK_SET) != 0)
         return err_set(err, STATUS_IO,
-                       "a PFM begins with its last row, so one that does not fit into memory needs "
-                       "a file, not a pipe");
+                       "a PFM begins with its last row; write to a file, not a pipe, if it does "
+                       "not fit into memory");
     for (int y = output->n - 1; y >= 0; y--) {
         const float *from = (const float *)output->values + (size_t)y * row_values;
         for (size_t i = 0; i < row_values; i++)

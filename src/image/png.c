@@ -87,7 +87,7 @@ static Status check_single(PngReader *self, Err *err)
     png_uint_32 frames = animation ? png_get_uint_32(animation) : 1;
     if (frames > 1)
         return err_set(err, STATUS_INPUT,
-                       "%s: is an animation of %u pictures; only a single one can be read",
+                       "%s: is an animation of %u pictures; it must be a single picture",
                        self->input.file.name, (unsigned)frames);
     return STATUS_OK;
 }

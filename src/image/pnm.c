@@ -48,7 +48,8 @@ static Status read_key(HeaderCursor *cursor, const char *key, PnmHeader *header,
     while (i < 4 && strcmp(key, keys[i]) != 0)
         i++;
     if (i == 4)
-        return err_set(err, STATUS_INPUT, "%s: its header has the line \"%s\", which PAM has not",
+        return err_set(err, STATUS_INPUT,
+                       "%s: its header has the line \"%s\", which is not part of PAM",
                        cursor->file.name, key);
     TRY(header_integer(cursor, key, 1, i < 2 ? IMAGE_MAX_SIDE : i == 2 ? 4 : 65535, &value, err));
     if (i == 3)
@@ -114,7 +115,7 @@ static Status read_binary(HeaderCursor *cursor, const PnmHeader *header, Picture
     for (size_t i = 0; i < n; i++) {
         unsigned code = header->maximum > 255 ? at[2 * i] * 256u + at[2 * i + 1] : at[i];
         if (code > header->maximum)
-            return err_set(err, STATUS_INPUT, "%s: holds the value %u, above its largest, %u",
+            return err_set(err, STATUS_INPUT, "%s: holds the value %u, which is above MAXVAL, %u",
                            cursor->file.name, code, header->maximum);
         picture_set(picture, i, (uint16_t)code);
     }

@@ -17,8 +17,7 @@ bool image_is_srgb(const double xy[8])
 
 Status image_other_colors(const char *name, const char *where, Err *err)
 {
-    return err_set(err, STATUS_INPUT,
-                   "%s: has the colors of another space (%s); only those of sRGB can be read",
+    return err_set(err, STATUS_INPUT, "%s: its color space is not sRGB (%s); convert it to sRGB",
                    name, where);
 }
 
@@ -63,7 +62,6 @@ Status image_check_profile(const char *name, const uint8_t *profile, size_t size
     image_profile_name(profile, size, text);
     if (strstr(text, "sRGB") && !strstr(text, "inear"))
         return STATUS_OK;
-    return err_set(err, STATUS_INPUT,
-                   "%s: has the color profile \"%s\"; only colors of sRGB can be read", name,
+    return err_set(err, STATUS_INPUT, "%s: has the color profile \"%s\"; convert it to sRGB", name,
                    text);
 }

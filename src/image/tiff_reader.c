@@ -81,7 +81,7 @@ static const char *photometric_name(uint16_t photometric)
         uint16_t photometric;
         const char *name;
     } names[] = {{PHOTOMETRIC_MASK, "a mask for a picture"},
-                 {PHOTOMETRIC_SEPARATED, "the colors of inks (CMYK)"},
+                 {PHOTOMETRIC_SEPARATED, "CMYK colors"},
                  {PHOTOMETRIC_YCBCR, "YCbCr colors without JPEG compression"},
                  {PHOTOMETRIC_CIELAB, "CIELAB colors"},
                  {PHOTOMETRIC_ICCLAB, "ICCLAB colors"},
@@ -382,8 +382,7 @@ static Status check_single(TiffReader *self, Err *err)
             return guard_failure(err);
         TIFFGetField(self->tiff.handle, TIFFTAG_SUBFILETYPE, &kind);
         if (!(kind & (FILETYPE_REDUCEDIMAGE | FILETYPE_MASK)))
-            return err_set(err, STATUS_INPUT,
-                           "%s: has several pages; only a single picture can be read",
+            return err_set(err, STATUS_INPUT, "%s: has several pages; it must have one",
                            self->input.file.name);
     }
     return STATUS_OK;

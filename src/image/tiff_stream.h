@@ -1,4 +1,4 @@
-/* A TIFF that libtiff reads from or writes to a stream; private to the module image. */
+/* Connects libtiff to a FILE, or to a file in memory. Private to the module image. */
 #ifndef CORCAST_IMAGE_TIFF_STREAM_H
 #define CORCAST_IMAGE_TIFF_STREAM_H
 

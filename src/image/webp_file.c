@@ -33,7 +33,7 @@ static Status check_features(const ImageBytes *file, const WebPBitstreamFeatures
     const uint8_t *profile = find_chunk(file, "ICCP", &size);
     enum { BLANK = 64 << 20 }; /* a blank picture of any size takes a few bytes */
     if (features->has_animation)
-        return err_set(err, STATUS_INPUT, "%s: is an animation; only a single picture can be read",
+        return err_set(err, STATUS_INPUT, "%s: is an animation; it must be a single picture",
                        file->name);
     if (profile)
         TRY(image_check_profile(file->name, profile, size, err));

@@ -1,7 +1,7 @@
-/* A tube is a strip of triangles between two rims. Both rims are walked by rising angle, and the
- * one whose next point comes first goes on. All points are on one cylinder, so that the strip is
- * off the surface by no more than the longest chord of its rims. Rims in between, which make
- * triangles shorter, are regular.
+/* A tube is a strip of triangles between two rims. Both rims are walked by rising angle; the next
+ * triangle uses the rim whose next point has the smaller angle. All points are on one cylinder, so
+ * the strip is no farther from the surface than the longest chord of its rims. Additional rims,
+ * which make triangles shorter, are regular polygons.
  *
  * Coordinates are rounded to integer multiples of the spacing of floats at the largest of them, so
  * that every test of the finished mesh is exact in integers. */
@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Freed memory goes back to the system after so many regions. */
+/* Freed memory is returned to the system after this many regions. */
 enum { JUNCTIONS_PER_TRIM = 1024 };
 
 typedef struct RimRange {
@@ -24,7 +24,7 @@ typedef struct Assembly {
     const Junctions *junctions;
     VesselMesh *mesh;
     const TubeParams *params;
-    RimRange (*rims)[2]; /* one a segment and end */
+    RimRange (*rims)[2]; /* per segment and end */
     uint32_t *rim_points;
     size_t n_rim_points;
     ARRAY(double) angles; /* of the rims of one tube */

@@ -18,25 +18,29 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 
-/* What the tolerance means for cells and edges, measured so that the mean distance to the surface
- * stays below 0.15 of it, and one sample of a thousand is beyond it. */
+/* Fineness of a mesh as factors of the tolerance, and the size of cells at a tolerance of cells_at.
+ * They were measured, so that the mean distance to the surface is below 0.15 tolerances, and one
+ * sample of a thousand is beyond the tolerance. */
 static const double cells_at = 0.02, cell_ratio = 0.54, bending_ratio = 0.25, sagitta_part = 0.325,
                     split_part = 0.65, cap_part = 0.2, farthest_part = 1.4, worst_part = 2.25;
-/* Of a round body: its balls bend both ways, and its creases are cut off. */
+/* The factors for BODY_ROUND, whose balls are curved in both directions, and whose creases are cut
+ * off by triangles. */
 static const double round_sagitta_part = 0.24, round_farthest_part = 1.75;
 
-/* The most cells of a junction: with all that is made from them, they take 4 GB of memory. */
-enum { MOST_CELLS = 5000000 };
+/* Maximum number of cells of a junction region. With all that is made from them, they take 4 GB of
+ * memory. */
+enum { MAX_CELLS = 5000000 };
 
-/* How often all is made again where triangles cross, and by how much finer then the cells are. */
-enum { MOST_ROUNDS = 4 };
-/* Far from the origin it is not made again when one triangle in FOLDED_PART or more is crossed. */
+/* If triangles cross, all is built again, up to MAX_ROUNDS times. In each round, the cells of the
+ * regions about the crossings are smaller by the factor `finer`. */
+enum { MAX_ROUNDS = 4 };
+/* Far from the origin, nothing is built again if more than one triangle in FOLDED_PART crosses
+ * another. */
 enum { FOLDED_PART = 20 };
 static const double finer = 0.8;
 
-/* After a junction of more terms a thread does not keep its room: it would be ten times what most
- * need.
- */
+/* After a region with more terms, a thread releases its workspace, which would be ten times larger
+ * than most regions need. */
 enum { TERMS_TO_KEEP = 100 };
 
 typedef struct MeshBuild {
@@ -56,7 +60,7 @@ static MeshFineness fineness_of(const VesselTree *tree, double tolerance, double
 {
     bool is_round = tree->body == BODY_ROUND;
     double ratio = fmin(cell_ratio * sqrt(tolerance / cells_at), 0.7);
-    return (MeshFineness){{ratio, bending_ratio * tolerance / cells_at, MOST_CELLS},
+    return (MeshFineness){{ratio, bending_ratio * tolerance / cells_at, MAX_CELLS},
                           (is_round ? round_sagitta_part : sagitta_part) * tolerance,
                           split_part * tolerance,
                           (is_round ? round_farthest_part : farthest_part) * tolerance,
@@ -69,24 +73,24 @@ static int workers_of(const MeshParams *params)
     return params->threads > 0 ? params->threads : threads_available();
 }
 
-/* The sides of a regular polygon that is within `sagitta` of its circle. */
+/* Returns the number of sides of a regular polygon that is within `sagitta` radii of its circle. */
 static uint32_t sides_of(double sagitta)
 {
     return (uint32_t)fmax(8, ceil(PI / elementary_acos(1 - sagitta)));
 }
 
-/* Measured on grown trees of 200 to 20,000 segments at tolerances of 0.005 to 1.6, for each radius
- * of length, of which a segment counts so many at most: triangles and seconds are a / tolerance +
- * b; a mesh of the least triangles has so many. */
+/* Measured on grown trees of 200 to 20,000 segments at tolerances of 0.005 to 1.6. Per radius of
+ * length, at most most_radii per segment, the numbers of triangles and of seconds are
+ * a / tolerance + b, and the number of triangles is at least least_triangles. */
 static const double most_radii = 6, triangles_a = 1.9, triangles_b = 5, least_triangles = 8,
                     seconds_a = 1.15e-5, seconds_b = 1.6e-4, bytes_a_triangle = 50,
                     least_bytes = 24e6;
-/* A round body takes so many times as much. */
+/* BODY_ROUND takes this many times as much. */
 static const double round_part = 2.7;
-/* What is coarser than this has no fewer triangles. */
+/* A tolerance above this does not lower the number of triangles. */
 static const double coarsest = 1.6;
 
-/* The tolerance whose mesh has about `lod` times the triangles. */
+/* Returns the tolerance whose mesh has about `lod` times the triangles. */
 static double tolerance_of(const MeshParams *params)
 {
     double lod = params->lod > 0 ? params->lod : 1;
@@ -200,7 +204,7 @@ static Status find_slivers(MeshBuild *build, const VesselMesh *mesh, Err *err)
     return STATUS_OK;
 }
 
-/* The segments of one status, in *list (owned). */
+/* Lists the segments with this status in *list, which is owned by the caller. */
 static Status list_status(const MeshBuild *build, SegmentStatus status, uint32_t **list, size_t *n,
                           Err *err)
 {
@@ -214,7 +218,7 @@ static Status list_status(const MeshBuild *build, SegmentStatus status, uint32_t
     return STATUS_OK;
 }
 
-/* The segments with an end that nothing else meets, but that is not cut off flat. */
+/* Lists the segments with a free end that is not cut off flat. */
 static Status list_round(const MeshBuild *build, MeshReport *report, Err *err)
 {
     const VesselTree *tree = build->tree;
@@ -262,7 +266,7 @@ static Status fill_report(MeshBuild *build, const VesselMesh *mesh, atomic_bool 
     return build->tree->body != BODY_ROUND ? list_round(build, report, err) : STATUS_OK;
 }
 
-/* Makes all junctions, and the mesh and the report of them. */
+/* Builds all regions and joins them to the mesh. */
 static Status make_mesh(MeshBuild *build, VesselMesh *mesh, MeshReport *report, Err *err)
 {
     const MeshParams *params = build->params;
@@ -280,8 +284,8 @@ static Status make_mesh(MeshBuild *build, VesselMesh *mesh, MeshReport *report, 
                          &report->deviation, err);
 }
 
-/* Has the junctions made finer that triangles which cross lie in, of tubes those at both ends;
- * whether there are any. */
+/* Makes the cells smaller in the regions at both ends of each segment with a crossing triangle.
+ * Returns true if there is such a region. */
 static bool refine_crossed(MeshBuild *build, const VesselMesh *mesh, const atomic_bool *crossed,
                            int round)
 {
@@ -298,7 +302,7 @@ static bool refine_crossed(MeshBuild *build, const VesselMesh *mesh, const atomi
     return any;
 }
 
-/* One round of vesselmesh_build; *again when another may help. */
+/* Runs one round of vesselmesh_build. *again receives true if another round may help. */
 static Status build_once(MeshBuild *build, int round, VesselMesh *mesh, MeshReport *report,
                          bool *again, Err *err)
 {
@@ -309,10 +313,10 @@ static Status build_once(MeshBuild *build, int round, VesselMesh *mesh, MeshRepo
     TRY_GOTO(make_mesh(build, mesh, report, err));
     TRY_GOTO(mem_calloc(&crossed, mesh->n_triangles, sizeof *crossed, "triangles", err));
     TRY_GOTO(fill_report(build, mesh, crossed, report, err));
-    /* where roundings fold many triangles over each other, smaller ones only make it worse */
+    /* Where rounding folds many triangles over each other, smaller triangles make it worse. */
     bool hopeless =
         precision_is_short(build->tree) && report->crossings > mesh->n_triangles / FOLDED_PART;
-    *again = report->crossings > 0 && round < MOST_ROUNDS && !hopeless &&
+    *again = report->crossings > 0 && round < MAX_ROUNDS && !hopeless &&
              refine_crossed(build, mesh, crossed, round + 1);
 done:
     free(crossed);

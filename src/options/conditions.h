@@ -1,15 +1,19 @@
-/* The conditions under which options have an effect.
+/* The conditions under which options have an effect. For example, --quality has an effect only on
+ * .jpg files.
  *
- * The row of an option names its conditions (Option.when), and here a condition may name a whole
- * group of options. The tables of a command find out which conditions do not hold in this run
- * (OptionTable.unmet). options_check refuses an option of the command line that has a condition
- * among these, with the condition's sentence. */
+ * The row of an option lists its conditions (Option.when); conditions.c lists conditions of whole
+ * groups of options. The tables of a command compute the conditions that do not hold in this run
+ * (OptionTable.unmet). options_check refuses an option of the command line if one of its conditions
+ * does not hold, and explains the condition.
+ *
+ *     .when = WHEN(JPEG)                      in the row of --quality
+ *     return UNLESS(output_is_jpeg, JPEG);    in the function `unmet` of the table */
 #ifndef CORCAST_OPTIONS_CONDITIONS_H
 #define CORCAST_OPTIONS_CONDITIONS_H
 
 #include "base/base.h"
 
-/* Each name says what has to be so. conditions.c has the sentence of each. */
+/* The name states what must be true. conditions.c has a sentence for each condition. */
 typedef enum Condition {
     /* of a tree and its blood */
     WHEN_PRIES,
@@ -80,14 +84,16 @@ typedef enum Condition {
 /* A set of conditions, one bit for each. */
 typedef uint64_t ConditionSet;
 
-/* The set of one condition: WHEN(TIFF). */
+/* The set that contains one condition: WHEN(TIFF). */
 #define WHEN(name) ((ConditionSet)1 << WHEN_##name)
-/* The same where `holds` is false, else no condition: what OptionTable.unmet is made of. */
+/* The set that contains the condition if `holds` is false, else the empty set. The function
+ * OptionTable.unmet combines such sets with |. */
 #define UNLESS(holds, name) ((holds) ? (ConditionSet)0 : WHEN(name))
 
-/* Appends what follows "--NAME " in the sentence that refuses an option: "is for .tif". */
+/* Appends the end of the error sentence "--NAME is for .tif", after "--NAME ". `text` fails if
+ * memory runs out. */
 void condition_put(Condition condition, Text *text);
-/* Returns the conditions that all options of a group have, an OptionGroup. */
+/* Returns the conditions that all options of `group`, an OptionGroup, have in common. */
 ConditionSet conditions_of_group(int group);
 
 #endif

@@ -292,13 +292,13 @@ static Status take_value(const Option *option, const Written *as, int argc, char
     return STATUS_OK;
 }
 
-/* STATUS_USAGE for an option, as it was written, that the command does not have. */
+/* Returns STATUS_USAGE for an unknown option, with the most similar option if one is similar.
+ * `written` is the whole argument; `name` and `length` are the name in it. */
 static Status unknown_option(const Parsed *parsed, const char *written, const char *name,
                              size_t length, Err *err)
 {
-    (void)err_set(err, STATUS_USAGE,
-                  "unknown option '%s'; see corcast %s --help for those there are", written,
-                  parsed->command->name);
+    (void)err_set(err, STATUS_USAGE, "unknown option '%s'; `corcast %s --help` lists the options",
+                  written, parsed->command->name);
     return suggest_option(parsed, name, length, "--", err);
 }
 
@@ -333,7 +333,7 @@ static Status read_arguments(Parsed *parsed, int argc, char **argv, Err *err)
         } else if (!only_operands && argv[i][0] == '-' && argv[i][1] != '\0') {
             TRY(read_option(parsed, argc, argv, &i, err));
         } else if (parsed->n_operands == command->max_operands) {
-            return err_set(err, STATUS_USAGE, "'%s' is one operand too many; usage: corcast %s %s",
+            return err_set(err, STATUS_USAGE, "unexpected argument '%s'; usage: corcast %s %s",
                            argv[i], command->name, command->operands);
         } else {
             parsed->operands[parsed->n_operands++] = argv[i];
@@ -375,7 +375,7 @@ static Status note_files(Parsed *parsed, Err *err)
     return STATUS_OK;
 }
 
-/* STATUS_USAGE for what has to be there and is not. */
+/* Returns STATUS_USAGE if --output or an operand is missing. */
 static Status check_present(const Parsed *parsed, Err *err)
 {
     const Command *command = parsed->command;
@@ -397,7 +397,7 @@ const char *options_output(const Parsed *parsed)
     return output ? *(const char *const *)(output->base + output->option->where) : NULL;
 }
 
-/* The pixels of a size on paper. */
+/* Derives the pixels of a size on paper from its lengths and resolution. */
 static Status settle_size(const Option *option, PictureSize *size, Err *err)
 {
     enum { PAPER_DPI = 300 };

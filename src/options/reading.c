@@ -135,14 +135,14 @@ static void say_unit(const Talk *talk, const char *path, const TreeReading *read
         return;
     if (reading->has_plausible_unit && reading->plausible_unit != reading->unit)
         talk_note(talk,
-                  "%s: the unit is taken for %s, but the median radius, %.3g, looks like "
-                  "%s; --input-unit tells",
+                  "%s: assuming %s, but a median radius of %.3g suggests %s; set the unit with "
+                  "--input-unit",
                   path, unit, reading->median_radius_mm / length_unit_mm(reading->unit),
                   length_unit_names[reading->plausible_unit]);
     if (reading->looks_like_voxels)
         talk_note(talk,
-                  "%s: all coordinates are whole numbers, which looks like voxels; "
-                  "--voxel-size tells",
+                  "%s: all coordinates are integers, which suggests voxels; set their size with "
+                  "--voxel-size",
                   path);
 }
 

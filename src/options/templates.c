@@ -134,7 +134,7 @@ Status template_names(const char *folder, const char *extension, Text *lines, Er
     return text_check(lines, err);
 }
 
-/* Lists the names that there are, in place of a file that is not there. */
+/* Returns STATUS_USAGE with the unknown name and the names that exist. */
 static Status refuse_name(const char *what, const char *value, const char *folder,
                           const char *extension, Err *err)
 {
@@ -142,9 +142,10 @@ static Status refuse_name(const char *what, const char *value, const char *folde
     list_names(folder, extension, ", ", " or ", &names);
     Status status = text_check(&names, err);
     if (status == STATUS_OK)
-        status = err_set(err, STATUS_USAGE,
-                         "%s '%s' is not %s, nor has it the '/' of a path to a file of your own",
-                         what, value, text_chars(&names));
+        status = err_set(
+            err, STATUS_USAGE,
+            "%s '%s' is unknown; available: %s; for a file of your own, give a path with a '/'",
+            what, value, text_chars(&names));
     text_release(&names);
     return status;
 }

@@ -1,11 +1,12 @@
-/* Arrays of little-endian numbers, each in a script element that no browser executes:
+/* Each block is an array of little-endian numbers, in a script element that no browser executes:
  *
  *     position  float x 3 per node, relative to the origin, mm
  *     radius    float per node, mm
- *     parent    uint32 per node: index of its parent; a root's own index
+ *     parent    uint32 per node: index of its parent; a root has its own index
  *     id        uint32 per node
- *     field-K   per node, frame after frame: float, or uint16 if all values are integers, with
- * 65535 for no value map-K     uint8 x 3 per color, sRGB
+ *     field-K   per node, time after time: float; or uint16 if all values are integers,
+ *               with 65535 for no value
+ *     map-K     uint8 x 3 per color, sRGB
  *
  * Base64 takes 4 characters for 3 bytes. Numbers are therefore collected in pieces of whole
  * triples, each of which is appended to the text at once. */

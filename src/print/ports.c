@@ -13,27 +13,30 @@
 
 /* The female half of a conical Luer fitting [ISO 80369-7]: diameter at the face, depth, and the
  * decrease of the diameter per mm of depth. */
-static const double luer_mm = 4.3, luer_depth_mm = 7.5, luer_taper = 0.06;
-/* In units of the smaller of two radii: minimum clearance between a port and a vessel or another
- * port. In units of the distance between the ends of the curve: distance of the Bezier control
- * points from the ends. */
-static const double free_part = 0.4, pull = 0.4;
-/* In units of the rim's radius: vessels within this path length behind the rim belong to the port,
- * and are no obstacles. */
-static const double own_radii = 3;
+static const double luer_diameter_mm = 4.3, luer_depth_mm = 7.5, luer_taper = 0.06;
+/* Minimum clearance between a port and a vessel or another port, in units of the smaller of the two
+ * radii. */
+static const double min_clearance = 0.4;
+/* Distance of the Bezier control points from the ends of the curve, in units of the distance
+ * between the two ends. */
+static const double control_distance = 0.4;
+/* Vessels within this path length behind the rim, in units of the rim's radius, belong to the port:
+ * they are not obstacles for it. */
+static const double own_vessel_reach = 3;
 /* Depth of the straight end of a bent port without a fitting, as a fraction of the rim's depth
  * below the face. */
-static const double straight_part = 0.25;
+static const double straight_depth = 0.25;
 /* Minimum cosine between the vessel's axis and the face normal for a straight port: 60 degrees. */
-static const double least_cosine = 0.5;
+static const double min_straight_cosine = 0.5;
 
+/* The search for all ports of one block. */
 typedef struct PortSearch {
     const VesselTree *tree;
-    BoxTree boxes; /* of the tree's segments; owned */
-    IndexLists incident;
+    BoxTree boxes;       /* of the tree's segments; owned */
+    IndexLists incident; /* per node: the segments with an end there; owned */
     const Casing *casing;
     const PrintBlock *block;
-    Ports *ports;
+    Ports *ports; /* the ports found so far; new ones keep clear of them */
 } PortSearch;
 
 void ports_release(Ports *ports)
@@ -45,7 +48,7 @@ void ports_release(Ports *ports)
 }
 
 /* Returns the rim of a vessel end: its centre, its radius, and the direction out of the vessel. */
-static PortRing rim_of(const VesselTree *tree, const CutEnd *end)
+static PortRing rim_at_end(const VesselTree *tree, const CutEnd *end)
 {
     const FieldSegment *segment = &tree->segments[end->segment];
     Vec3 at = segment_end(segment, end->end), other = segment_end(segment, !end->end);
@@ -53,7 +56,7 @@ static PortRing rim_of(const VesselTree *tree, const CutEnd *end)
 }
 
 /* Returns the distance of the rim's centre below a face, mm. It is negative outside the casing. */
-static double depth_of(const PortRing *rim, const Casing *casing, int face)
+static double depth_below_face(const PortRing *rim, const Casing *casing, int face)
 {
     double off = face_coordinate(casing, face) - vec3_component(rim->center, face_axis(face));
     return face_is_low(face) ? -off : off;
@@ -70,8 +73,8 @@ static double edge_room(double radius_mm)
 static Vec3 place_on_face(const PortRing *rim, const Casing *casing, int face, double radius_mm)
 {
     double along = fmax(vec3_dot(rim->direction, face_normal(face)), 0.7), at[3];
-    double way_mm = 0.5 * depth_of(rim, casing, face) / along;
-    Vec3 ahead = vec3_add_scaled(rim->center, rim->direction, way_mm);
+    double path_mm = 0.5 * depth_below_face(rim, casing, face) / along;
+    Vec3 ahead = vec3_add_scaled(rim->center, rim->direction, path_mm);
     for (int axis = 0; axis < 3; axis++) {
         double room = radius_mm + 1.01 * edge_room(radius_mm);
         double low = vec3_component(casing->box.low, axis) + room;
@@ -88,7 +91,7 @@ static bool is_within(const Casing *casing, const PortRing *ring)
     for (int face = 0; face < CASING_FACES; face++) {
         double cosine = vec3_dot(ring->direction, face_normal(face));
         double high = ring->radius_mm * sqrt(fmax(1 - cosine * cosine, 0));
-        if (depth_of(ring, casing, face) < high + 0.1 * ring->radius_mm)
+        if (depth_below_face(ring, casing, face) < high + 0.1 * ring->radius_mm)
             return false;
     }
     return true;
@@ -113,13 +116,14 @@ static bool is_smooth(const Casing *casing, const PortRing *rim, const Port *por
 static bool lay_straight(const PortSearch *search, const PortRing *rim, int face, Port *port)
 {
     Vec3 normal = face_normal(face);
-    double depth = depth_of(rim, search->casing, face), cosine = vec3_dot(rim->direction, normal);
-    if (cosine < least_cosine || search->block->is_luer)
+    double depth = depth_below_face(rim, search->casing, face),
+           cosine = vec3_dot(rim->direction, normal);
+    if (cosine < min_straight_cosine || search->block->is_luer)
         return false;
-    double way_mm = depth / cosine, radius = rim->radius_mm + search->block->taper / 2 * way_mm;
+    double path_mm = depth / cosine, radius = rim->radius_mm + search->block->taper / 2 * path_mm;
     double sine = sqrt(fmax(1 - cosine * cosine, 0)), reach = radius / cosine;
     port->rings[0] =
-        (PortRing){vec3_add_scaled(rim->center, rim->direction, way_mm), rim->direction, radius};
+        (PortRing){vec3_add_scaled(rim->center, rim->direction, path_mm), rim->direction, radius};
     port->n_rings = 1;
     port->is_straight = true;
     port->face = face;
@@ -134,26 +138,26 @@ static bool lay_bent(const PortSearch *search, const PortRing *rim, int face, Po
 {
     const PrintBlock *block = search->block;
     Vec3 normal = face_normal(face);
-    double depth = depth_of(rim, search->casing, face), half_taper = block->taper / 2;
-    double straight = block->is_luer ? luer_depth_mm : straight_part * depth;
-    double last_mm = block->is_luer ? luer_mm / 2 : rim->radius_mm + half_taper * depth;
+    double depth = depth_below_face(rim, search->casing, face), half_taper = block->taper / 2;
+    double straight = block->is_luer ? luer_depth_mm : straight_depth * depth;
+    double last_mm = block->is_luer ? luer_diameter_mm / 2 : rim->radius_mm + half_taper * depth;
     double before_mm = last_mm - (block->is_luer ? luer_taper / 2 : half_taper) * straight;
     Vec3 out = place_on_face(rim, search->casing, face, last_mm);
     Vec3 bottom = vec3_add_scaled(out, normal, -straight);
     double bend_mm = vec3_distance(bottom, rim->center);
     if (depth <= straight)
         return false;
-    Vec3 one = vec3_add_scaled(rim->center, rim->direction, pull * bend_mm);
-    Vec3 other = vec3_add_scaled(bottom, normal, -pull * bend_mm);
+    Vec3 one = vec3_add_scaled(rim->center, rim->direction, control_distance * bend_mm);
+    Vec3 other = vec3_add_scaled(bottom, normal, -control_distance * bend_mm);
     for (int i = 0; i < PORT_RINGS - 1; i++) {
         double t = (i + 1.0) / (PORT_RINGS - 1), s = 1 - t;
         PortRing *ring = &port->rings[i];
         ring->center =
             vec3_add(vec3_add(vec3_scale(rim->center, s * s * s), vec3_scale(one, 3 * s * s * t)),
                      vec3_add(vec3_scale(other, 3 * s * t * t), vec3_scale(bottom, t * t * t)));
-        Vec3 way = vec3_scale(vec3_sub(one, rim->center), s * s);
-        way = vec3_add_scaled(way, vec3_sub(other, one), 2 * s * t);
-        ring->direction = vec3_normalized(vec3_add_scaled(way, vec3_sub(bottom, other), t * t));
+        Vec3 tangent = vec3_scale(vec3_sub(one, rim->center), s * s);
+        tangent = vec3_add_scaled(tangent, vec3_sub(other, one), 2 * s * t);
+        ring->direction = vec3_normalized(vec3_add_scaled(tangent, vec3_sub(bottom, other), t * t));
         ring->radius_mm = rim->radius_mm + t * (before_mm - rim->radius_mm);
     }
     port->rings[PORT_RINGS - 1] = (PortRing){out, normal, last_mm};
@@ -181,14 +185,14 @@ static bool is_apart(const FieldSegment *one, const FieldSegment *other)
 {
     double radii = one->radius_mm + other->radius_mm;
     return segments_distance(one, other) >
-           radii + free_part * fmin(one->radius_mm, other->radius_mm);
+           radii + min_clearance * fmin(one->radius_mm, other->radius_mm);
 }
 
-enum { MOST_OWN = 64 };
+enum { MAX_OWN = 64 };
 
-/* The vessels that belong to a port: those within own_radii behind the rim. */
+/* The vessels that belong to a port: those within own_vessel_reach behind the rim. */
 typedef struct OwnVessels {
-    uint32_t segments[MOST_OWN];
+    uint32_t segments[MAX_OWN];
     size_t n;
 } OwnVessels;
 
@@ -198,7 +202,7 @@ static void list_own(const PortSearch *search, uint32_t segment, uint32_t from, 
     const VesselTree *tree = search->tree;
     uint32_t next = tree->nodes[segment][!segment_end_at(tree, segment, from)];
     const uint32_t *first = &search->incident.first[next];
-    if (own->n == MOST_OWN)
+    if (own->n == MAX_OWN)
         return;
     own->segments[own->n++] = segment;
     left_mm -= vec3_distance(tree->segments[segment].a, tree->segments[segment].b);
@@ -221,7 +225,7 @@ static bool is_off_vessels(const PortSearch *search, const FieldSegment *stretch
                            const OwnVessels *own)
 {
     uint32_t k;
-    Box around = segment_box(stretch, (1 + free_part) * stretch->radius_mm);
+    Box around = segment_box(stretch, (1 + min_clearance) * stretch->radius_mm);
     for (BoxWalk walk = boxwalk_box(&search->boxes, around); boxwalk_next(&walk, &k);)
         if (!is_apart(stretch, &search->tree->segments[k]) && !is_own(own, k))
             return false;
@@ -231,7 +235,7 @@ static bool is_off_vessels(const PortSearch *search, const FieldSegment *stretch
 /* Returns true if a part of a port keeps clear of another port. */
 static bool is_off_port(const PortSearch *search, const FieldSegment *stretch, const Port *other)
 {
-    PortRing its_rim = rim_of(search->tree, other->end);
+    PortRing its_rim = rim_at_end(search->tree, other->end);
     for (int i = 0; i < other->n_rings; i++) {
         FieldSegment its = stretch_of(&its_rim, other, i);
         if (!is_apart(stretch, &its))
@@ -246,7 +250,7 @@ static void set_box(const PortRing *rim, Port *port)
     port->box = box_empty();
     for (int i = 0; i < port->n_rings; i++) {
         FieldSegment own = stretch_of(rim, port, i);
-        port->box = box_union(port->box, segment_box(&own, (1 + free_part) * own.radius_mm));
+        port->box = box_union(port->box, segment_box(&own, (1 + min_clearance) * own.radius_mm));
     }
 }
 
@@ -256,7 +260,7 @@ static bool is_free(const PortSearch *search, const PortRing *rim, const Port *p
 {
     OwnVessels vessels = {.n = 0};
     list_own(search, port->end->segment, search->tree->nodes[port->end->segment][port->end->end],
-             own_radii * rim->radius_mm, &vessels);
+             own_vessel_reach * rim->radius_mm, &vessels);
     for (int i = 0; i < port->n_rings; i++) {
         FieldSegment own = stretch_of(rim, port, i);
         if (!is_off_vessels(search, &own, &vessels))
@@ -276,7 +280,7 @@ static bool is_free(const PortSearch *search, const PortRing *rim, const Port *p
 }
 
 /* Returns true if there is a clear port to the face, straight or bent. */
-static bool lay_way(const PortSearch *search, const PortRing *rim, int face, bool bent, Port *port)
+static bool lay_port(const PortSearch *search, const PortRing *rim, int face, bool bent, Port *port)
 {
     if (!(bent ? lay_bent : lay_straight)(search, rim, face, port))
         return false;
@@ -288,12 +292,12 @@ static bool lay_way(const PortSearch *search, const PortRing *rim, int face, boo
  */
 static double distance_to(const PortRing *rim, const Casing *casing, int face)
 {
-    double depth = depth_of(rim, casing, face);
+    double depth = depth_below_face(rim, casing, face);
     return depth / fmax(vec3_dot(rim->direction, face_normal(face)), 0.05);
 }
 
 /* Tries the faces, the nearest along the axis first. */
-static bool find_way(const PortSearch *search, const PortRing *rim, Port *port)
+static bool find_port(const PortSearch *search, const PortRing *rim, Port *port)
 {
     bool tried[CASING_FACES] = {false};
     for (int i = 0; i < CASING_FACES; i++) {
@@ -304,7 +308,7 @@ static bool find_way(const PortSearch *search, const PortRing *rim, Port *port)
                 best = face;
         tried[best] = true;
         for (int bent = 0; bent < 2 && casing_has_face(search->casing, best); bent++)
-            if (lay_way(search, rim, best, bent, port))
+            if (lay_port(search, rim, best, bent, port))
                 return true;
     }
     return false;
@@ -322,10 +326,10 @@ Status ports_find(const VesselTree *tree, const CutEnds *ends, const Casing *cas
     for (int inlets = 1; inlets >= 0; inlets--)
         for (size_t i = 0; i < ends->n; i++) {
             CutEnd *end = &ends->items[i];
-            PortRing rim = rim_of(tree, end);
+            PortRing rim = rim_at_end(tree, end);
             Port port = {.end = end};
             if ((end->end == 0) != inlets || block->ports == PORTS_NONE ||
-                (block->ports == PORTS_INLET && !inlets) || !find_way(&search, &rim, &port))
+                (block->ports == PORTS_INLET && !inlets) || !find_port(&search, &rim, &port))
                 continue;
             end->opened = true;
             made.items[made.n++] = port;
@@ -377,7 +381,7 @@ static Status add_ring(const PortRing *rim, const Port *port, const PortRing *ri
 static Status add_port(const VesselTree *tree, Port *port, Solid *solid, Err *err)
 {
     const CutEnd *end = port->end;
-    const PortRing rim = rim_of(tree, end);
+    const PortRing rim = rim_at_end(tree, end);
     Vec3 uv[2], direction = rim.direction;
     uint32_t *points[2] = {NULL, NULL}, n = end->n;
     const uint32_t *before = end->rim;

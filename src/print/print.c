@@ -1,8 +1,8 @@
-/* The two sides of a wall are surfaces that the same mesher makes: of the vessels, and of the
- * vessels with radii that are larger by the wall. Their flat ends are in the same planes and have
- * rims of equally many points, and a flat ring joins them. No boolean operation is needed. What is
- * proved of both surfaces is true of the wall, except that the two may cross. The wall is searched
- * for crossings as a whole. */
+/* The two sides of a wall are meshed in the same way: the lumen from the vessels, the outer side
+ * from the vessels with radii that are larger by the wall. Their flat ends are in the same planes
+ * and have rims with the same number of points, so a flat ring joins them. No boolean operation is
+ * needed. What is proved of both surfaces is true of the wall, except that the two surfaces may
+ * cross. So the wall is searched for crossings as a whole. */
 #include "print/print.h"
 
 #include "mesh/mesh.h"
@@ -22,7 +22,7 @@ typedef struct PrintSide {
 
 typedef struct PrintMaking {
     VesselTree *tree;
-    VesselTree outer; /* with radii of the wall, and with pins */
+    VesselTree outer; /* the vessels with their walls, and with pins */
     SupportPins pins;
     PrintParams params;
     PrintSide sides[2]; /* the outer one, and that of the lumen */
@@ -108,7 +108,7 @@ static Status take_changes(PrintMaking *making, Err *err)
     return STATUS_OK;
 }
 
-/* Parts overlaps, lengthens ends and sets up pins. */
+/* Thins overlaps, lengthens ends and adds pins. */
 static Status prepare(PrintMaking *making, Err *err)
 {
     const PrintParams *params = &making->params;
@@ -186,7 +186,7 @@ static Status build_sides(PrintMaking *making, Err *err)
     return status;
 }
 
-/* Opens the ends of pins, and those that both sides are cut off flat at. */
+/* Opens the ends of pins, and the ends that are cut flat on both sides of the wall. */
 static void open_ends(PrintMaking *making)
 {
     CutEnds *ends = &making->sides[0].ends;
@@ -270,7 +270,8 @@ done:
     return status;
 }
 
-/* What was added to the tree is said of the segments that it was added to. */
+/* Replaces the indices of added segments by those of the original segments, in labels and reports.
+ */
 static void name_owners(PrintMaking *making, MeshReport *report)
 {
     const SupportPins *pins = &making->pins;
@@ -295,7 +296,7 @@ static void name_owners(PrintMaking *making, MeshReport *report)
                 supportpins_original_segment(pins, report->near[i].segments[k]);
 }
 
-/* The report of the solid: what is said of segments is what the outer side has. */
+/* Fills the report of the solid and checks it. Facts about segments are those of the outer side. */
 static Status prove(PrintMaking *making, MeshReport *report, Err *err)
 {
     PrintSide *outer = &making->sides[0];
@@ -322,7 +323,7 @@ static Status prove(PrintMaking *making, MeshReport *report, Err *err)
     return STATUS_OK;
 }
 
-/* A disc about the middle of each opening of the lumen, with the outside of the lumen outside. */
+/* Adds a disc to each opening of the lumen, facing out of the lumen. */
 static Status add_lids(PrintMaking *making, Err *err)
 {
     const CutEnds *ends = &making->sides[1].ends;

@@ -6,21 +6,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* In units of the radius of the vessel: that of its pin; the clearance about pins; the distance of
- * a pin from an open end. In units of the thickest pin's radius: height of the lowest vessel above
- * the plate. */
+/* In units of the vessel's radius: the radius of its pin, the clearance about pins, and the
+ * distance of a pin from an open end. In units of the thickest pin's radius: the height of the
+ * lowest vessel above the plate. */
 static const double pin_part = 0.8, free_part = 0.4, from_end = 3, lift_part = 3.5;
 /* Minimum height of the lowest vessel above the plate, and how far the plate reaches beyond the
  * vessels, mm. */
 static const double least_lift_mm = 2, edge_mm = 2;
-/* In units of the path to it: how much higher than an open end a pin may begin. */
+/* Maximum height of a pin's upper end above the open end that it supports, in units of the path
+ * between the two. */
 static const double most_rise = 0.5;
 /* In units of the radius: a point this much lower than a node still counts as level with it. */
 static const double level_part = 0.25;
 
 /* A point where a pin is to begin. */
 typedef struct PinFoot {
-    uint32_t node, segment; /* one that ended there before any was cut */
+    uint32_t node, segment; /* the thickest segment that ended at the node before any was split */
     Vec3 at;
     double radius_mm;
 } PinFoot;
@@ -28,9 +29,9 @@ typedef struct PinFoot {
 typedef struct Standing {
     VesselTree *tree;
     const PrintBase *base;
-    BoxTree boxes;         /* of the tree as it was; owned */
-    IndexLists incident;   /* likewise ... */
-    size_t incident_nodes; /* ... which had so many nodes */
+    BoxTree boxes;         /* of the segments before any was added; owned */
+    IndexLists incident;   /* per node, before any was added: its segments; owned */
+    size_t incident_nodes; /* number of nodes before any was added */
     PinFoot *feet;
     size_t n_feet, foot_capacity;
     size_t segment_capacity[3], owner_capacity, pin_capacity;
@@ -146,11 +147,11 @@ static bool is_free(const Standing *standing, const FieldSegment *pin, uint32_t 
     return true;
 }
 
-/* A place on a vessel. */
+/* A point on a vessel's axis. */
 typedef struct Spot {
     uint32_t segment;
-    int end; /* of the segment, from which it is so far */
-    double mm;
+    int end;   /* the segment's end that `mm` is measured from */
+    double mm; /* distance from this end */
 } Spot;
 
 /* Goes a distance along the vessel from an open end. Returns false if the vessel ends or branches

@@ -702,8 +702,9 @@ static Status find_alpha(Frame *over_black, const Frame *over_white, int antiali
     return STATUS_OK;
 }
 
-/* A pixel's linear color is the color of what is drawn plus the background's times the part that
- * is left, whatever the engine and the effects. Two backgrounds give both. */
+/* A pixel's linear color is the color of what is drawn plus the background's color times the
+ * uncovered fraction, for every engine and effect. Drawing the image on two backgrounds gives
+ * both. */
 static Status transparent_rows(Renderer *renderer, const WantedRows *wanted, Frame *frame, Err *err)
 {
     View over = *wanted->view;

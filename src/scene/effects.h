@@ -1,6 +1,6 @@
-/* Effects that `render` adds to the shaded picture or draws in its place. POV-Ray has none of them.
- * Widths are in pixels of the picture, radii are those of the nearer vessel, colors are linear
- * RGB. */
+/* Image effects: outlines, halos, fading and x-ray. `render` adds them to the shaded picture or,
+ * for an x-ray, draws them in its place. POV-Ray has none of them. Widths are in pixels, radii are
+ * those of the nearer vessel, colors are linear RGB. */
 #ifndef CORCAST_SCENE_EFFECTS_H
 #define CORCAST_SCENE_EFFECTS_H
 

@@ -1,5 +1,5 @@
-/* The shape of vessels: primitives, or the segments of an implicit field. Coordinates are
- * right-handed and in mm.
+/* The shape of vessels: primitives (cylinders, spheres, joints), the segments of an implicit field,
+ * or a mesh of triangles. Coordinates are right-handed and in mm.
  *
  * A segment has the index of the node at which it ends, as in the fields of the tree. The same
  * index therefore means the same segment in every model of a tree and in its Appearance. Some
@@ -33,7 +33,7 @@ typedef struct Primitive {
                          * towards b; borrowed from the geometry */
 } Primitive;
 
-/* Prepares a joint for many rays. */
+/* Prepares a joint for many rays. `primitive` must be a PRIMITIVE_JOINT. */
 JointFrame primitive_joint(const Primitive *primitive);
 
 /* Returns the radius at b of any primitive. */
@@ -66,8 +66,8 @@ static inline int primitive_hits(const Primitive *primitive, const PrimitiveFram
     return 0;
 }
 
-/* Returns true if each circle of a joint lies on one side of the other's plane. The wall and the
- * two discs then bound a solid; otherwise rulings cross. */
+/* Returns true if each circle of a joint lies on one side of the other circle's plane. The ruled
+ * surface and the two discs then bound a solid; otherwise rulings cross. */
 bool primitive_joint_is_solid(const Primitive *joint);
 
 /* A Gaussian line potential, or its approximation in a blob [METHODS section 2]. */
@@ -140,10 +140,11 @@ typedef struct Ball {
     double radius;
 } Ball;
 
-/* The balls around the two ends of every primitive and field segment: those of item i are balls 2 i
- * and 2 i + 1. The convex hulls of these pairs hold the whole geometry. An implicit surface extends
+/* The balls around the two ends of every primitive and field segment: item i has the balls 2 i and
+ * 2 i + 1. The convex hulls of these pairs contain the whole geometry. An implicit surface extends
  * beyond its segments by 0.551 r at free ends and by less than r where vessels meet; its balls
- * therefore have twice the radius. geometry_balls returns the number of balls. */
+ * therefore have twice the radius. geometry_balls returns the number of balls; geometry_ball
+ * returns ball `number`, 0 <= number < geometry_balls. */
 size_t geometry_balls(const Geometry *geometry);
 Ball geometry_ball(const Geometry *geometry, size_t number);
 

@@ -1,4 +1,5 @@
-/* Named parts of a mesh: its walls, and the flat ends at which blood enters and leaves. */
+/* The named parts of a mesh: its walls, and the flat ends at which blood enters and leaves. Exports
+ * for simulation name boundary patches by them. Every triangle belongs to one part. */
 #ifndef CORCAST_SCENE_MESHENDS_H
 #define CORCAST_SCENE_MESHENDS_H
 

@@ -1,9 +1,15 @@
 /* The public header of the module scene: what is drawn, independent of trees.
  *
- * A picture is made of a Geometry (the shape of the vessels), an Appearance (their colors and
+ * A picture consists of a Geometry (the shape of the vessels), an Appearance (their colors and
  * finish) and a View (camera, lights, ground and effects). All three are immutable after
- * construction. Any appearance fits any geometry of the same tree, and any view fits both.
- * Coordinates are right-handed and in millimetres, colors are linear RGB. */
+ * construction. Any appearance fits any geometry of the same tree, and any view fits both. The
+ * module stage makes them from a tree; the modules render and emit draw and write them:
+ *
+ *     TRY(render(&scene, &params, &frame, NULL, err));
+ *     scene_release(&scene);
+ *
+ * Coordinates are right-handed and in millimetres, colors are linear RGB. Release functions accept
+ * a zeroed object. */
 #ifndef CORCAST_SCENE_SCENE_H
 #define CORCAST_SCENE_SCENE_H
 
@@ -19,7 +25,7 @@
 #include "scene/vesseltree.h"
 #include "scene/view.h"
 
-/* What a picture is made of. Owns the three. */
+/* The three parts of a picture; owned. */
 typedef struct Scene {
     Geometry geometry;
     Appearance appearance;

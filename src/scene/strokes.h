@@ -1,4 +1,4 @@
-/* A line drawing on paper. */
+/* A line drawing on paper: polylines of constant width [render/ink/ink.h]. */
 #ifndef CORCAST_SCENE_STROKES_H
 #define CORCAST_SCENE_STROKES_H
 

@@ -1,4 +1,5 @@
-/* The surface of vessels as triangles. */
+/* The surface of vessels as a mesh of triangles. Each triangle has a label: the index of its
+ * segment, and flags that mark caps, the lumen of a hollow wall, and printing frames. */
 #ifndef CORCAST_SCENE_TRIANGLES_H
 #define CORCAST_SCENE_TRIANGLES_H
 

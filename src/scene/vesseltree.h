@@ -1,5 +1,6 @@
-/* Vessels as segments with radii, and the nodes that connect them. An implicit surface is built
- * from such a tree: its vessels blend only where they are connected. */
+/* A tree of vessels for surfaces and volumes: segments with radii, and the nodes that connect them.
+ * An implicit surface is built from such a tree: its vessels blend only where they are connected.
+ * vesseltree_blend decides which segments blend. */
 #ifndef CORCAST_SCENE_VESSELTREE_H
 #define CORCAST_SCENE_VESSELTREE_H
 

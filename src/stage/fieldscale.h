@@ -1,5 +1,11 @@
-/* The scale from the values of a field to colors: which values its ends have, how it is divided,
- * and what the colors mean in words. */
+/* The scale from the values of a field to colors: its ends, its classes, and the meaning of the
+ * colors in words.
+ *
+ *     TRY(fieldvalues_take(&tree, &series, "mmHg", &values, err));
+ *     TRY(fieldscale_color(&params, &map, &values, &values, &appearance, err));
+ *     fieldvalues_release(&values);
+ *
+ * `appearance` then has the color of each segment and states the meaning in Appearance.meaning. */
 #ifndef CORCAST_STAGE_FIELDSCALE_H
 #define CORCAST_STAGE_FIELDSCALE_H
 
@@ -13,15 +19,15 @@ struct Look;
 /* The values of one field. Release them with fieldvalues_release. */
 typedef struct FieldValues {
     FieldSeries series;
-    double *drawn; /* in all frames: the values of the segments that can be drawn; owned */
+    double *drawn; /* values of the segments that can be drawn, in all frames; owned */
     size_t n_drawn;
 } FieldValues;
 
 /* Converts a field of a tree to another unit.
  *
- * series  taken over, also on failure; zeroed.
+ * series  the field; moved to *out and zeroed, also on failure.
  * unit    NULL keeps the field's unit.
- * out     owned, also on failure.
+ * out     release it with fieldvalues_release, even after an error.
  * Errors  STATUS_USAGE if the field cannot be in this unit; STATUS_MEMORY. */
 MUST_CHECK Status fieldvalues_take(const Tree *tree, FieldSeries *series, const char *unit,
                                    FieldValues *out, Err *err);
@@ -43,17 +49,17 @@ typedef struct FieldScaleParams {
     int frame; /* of values that change with time, the frame that is shown, from 1; 0: all */
 } FieldScaleParams;
 
-/* Makes a scale for a field, and the appearance in which each segment has its value's color. The
- * appearance states in `said` what the colors mean.
+/* Makes a scale for a field, and the appearance in which each segment has the color of its value.
+ * Appearance.meaning states what the colors mean.
  *
  * map         the colors of the scale; moved to *appearance on success.
- * range_of    the values that decide the ends of the scale.
+ * range_of    the values that determine the ends of the scale.
  * drawn       the values that are shown; its times are moved to *appearance. May be `range_of`.
- * appearance  released with appearance_release.
+ * appearance  release it with appearance_release. Set on success only.
  * Errors      STATUS_INPUT if no value can be shown; STATUS_USAGE if ends or classes do not ascend,
  *             if an end is not above 0 with `log`, if `frame` is beyond the last frame, or if the
- *             map has separate colors and values are not integers; STATUS_MEMORY. Sentences put
- *             the names of options in backquotes. */
+ *             map has separate colors and values are not integers; STATUS_MEMORY. Messages put the
+ *             names of options in backquotes. */
 MUST_CHECK Status fieldscale_color(const FieldScaleParams *params, Colormap *map,
                                    const FieldValues *range_of, FieldValues *drawn,
                                    Appearance *appearance, Err *err);
@@ -62,8 +68,8 @@ MUST_CHECK Status fieldscale_color(const FieldScaleParams *params, Colormap *map
  * scale has fixed ends, is logarithmic or divided, or if a value is negative. */
 double fieldscale_decades(const Appearance *appearance);
 
-/* Errors: STATUS_USAGE unless `name`, which has `frames` frames, has frame number `frame`, from 1.
- */
+/* Checks that the field `name`, which has `frames` frames, has frame number `frame`, counted from
+ * 1. Errors: STATUS_USAGE if it has not. */
 MUST_CHECK Status fieldscale_check_frame(int frame, const char *name, size_t frames, Err *err);
 
 #endif

@@ -1,5 +1,6 @@
-/* The objects that a view is made for, as balls: the ends of vessels, and their shadows on the
- * ground. Coordinates are those of the geometry. Private to the module stage. */
+/* The objects that a camera frames, as balls: the ends of vessels, and their shadows on the ground.
+ * Subject has the balls of the vessels; Framed also those of the shadows. Coordinates are those of
+ * the geometry. Nothing is allocated. Private to the module stage. */
 #ifndef CORCAST_STAGE_SUBJECT_H
 #define CORCAST_STAGE_SUBJECT_H
 
@@ -39,8 +40,8 @@ typedef struct Framed {
 
 /* Makes the balls of a view, with the shadows of its lights on its ground. */
 Framed framed_of(const Subject *subject, const ViewParams *params, const View *view);
-/* Work like subject_segments and subject_ends. A shadow that is too long to be framed has no ball,
- * so there may also be 1 ball. */
+/* The same for Framed: the number of segments, and the balls of segment `number`. A shadow that is
+ * too long to be framed has no ball, so framed_ends may also return 1. */
 size_t framed_segments(const Framed *framed);
 int framed_ends(const Framed *framed, size_t number, Ball ends[2]);
 

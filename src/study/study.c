@@ -208,7 +208,7 @@ static Status check(const StudyOptions *options, const Parsed *parsed, Err *err)
         return err_set(err, STATUS_USAGE,
                        "-o DIR is missing; usage: corcast study PLAN.ini -o DIR");
     if (grows && parsed->n_operands > 1)
-        return err_set(err, STATUS_USAGE, "'%s' is one operand too many; a study has one plan",
+        return err_set(err, STATUS_USAGE, "unexpected argument '%s'; a study has one plan",
                        parsed->operands[1]);
     if (options->commands && strcmp(parsed->operands[0], "-") == 0)
         return err_set(err, STATUS_USAGE,

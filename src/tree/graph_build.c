@@ -286,13 +286,12 @@ static Status refuse_loops(const Building *building, const GraphLink *link, size
 {
     const Graph *graph = building->graph;
     Vec3 at = graph->point[link->a].position;
-    return graph_blame(
-        graph, GRAPH_LINES, graph->line[link->line].record,
-        err_set(err, STATUS_INPUT,
-                "the line closes a loop at %g, %g, %g mm, one of %zu; a tree has none, and "
-                "`break_loops` cuts each at its thinnest line",
-                at.x, at.y, at.z, loops),
-        err);
+    return graph_blame(graph, GRAPH_LINES, graph->line[link->line].record,
+                       err_set(err, STATUS_INPUT,
+                               "the line closes a loop at %g, %g, %g mm (loops in the network: "
+                               "%zu); use `break_loops` to cut each loop at its thinnest line",
+                               at.x, at.y, at.z, loops),
+                       err);
 }
 
 static Status cut_loops(Building *building, Err *err)

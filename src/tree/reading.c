@@ -10,7 +10,7 @@
 const char *const length_unit_names[LENGTH_UNITS + 1] = {"mm", "um", "cm", "m", NULL};
 
 const char *const root_reason_texts[ROOT_REASONS] = {
-    [ROOT_STATED] = "the file says so",
+    [ROOT_STATED] = "from the file",
     [ROOT_DIRECTION] = "lines lead away from it alone",
     [ROOT_THICKEST] = "the thickest of the ends",
 };
@@ -79,8 +79,8 @@ Status reading_note(TreeReading *reading, Err *err, const char *format, ...)
 Status reading_refuse_radius(const char *what, const char *text, Err *err)
 {
     return err_set(err, STATUS_INPUT,
-                   "the %s is '%.40s'; it must be a finite number that is not negative "
-                   "(`repair_radii` takes the parent's)",
+                   "the %s is '%.40s'; it must be a finite number of 0 or more "
+                   "(`repair_radii` uses the parent's radius)",
                    what, text);
 }
 

@@ -61,7 +61,7 @@ typedef enum RootReason {
     ROOT_REASONS
 } RootReason;
 
-/* Per RootReason: a text for people, "the file says so". */
+/* Per RootReason: a text for people, "from the file". */
 extern const char *const root_reason_texts[ROOT_REASONS];
 
 typedef struct ReadRoot {

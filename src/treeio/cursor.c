@@ -56,7 +56,7 @@ static void skip_between(Cursor *cursor)
         if (syntax->comment && *cursor->at == syntax->comment)
             while (cursor->at + 1 < cursor->end && *cursor->at != '\n')
                 cursor->at++;
-        else if (*cursor->at ? !strchr(syntax->between, *cursor->at) : !syntax->skips_zeros)
+        else if (*cursor->at ? !strchr(syntax->separators, *cursor->at) : !syntax->skips_zeros)
             return;
     }
 }
@@ -66,10 +66,10 @@ static size_t word_length(const Cursor *cursor)
 {
     const CursorSyntax *syntax = cursor->syntax;
     const char *at = cursor->at;
-    if (at < cursor->end && is_among(syntax->alone, *at))
+    if (at < cursor->end && is_among(syntax->single, *at))
         return 1;
-    while (at < cursor->end && *at && !is_among(syntax->between, *at) &&
-           !is_among(syntax->alone, *at) && !(syntax->has_quotes && *at == '"'))
+    while (at < cursor->end && *at && !is_among(syntax->separators, *at) &&
+           !is_among(syntax->single, *at) && !(syntax->has_quotes && *at == '"'))
         at++;
     return (size_t)(at - cursor->at);
 }
@@ -131,12 +131,12 @@ Status cursor_numbers(Cursor *cursor, const char *what, size_t n, double *out, E
         cursor->at += strspn(cursor->at, TEXT_BLANKS "\r\n");
         char *end = cursor->at + strcspn(cursor->at, TEXT_BLANKS "\r\n"), after = *end;
         if (cursor->at == end)
-            return err_set(err, STATUS_INPUT, "the file ends after %zu of the %zu numbers of %s", i,
-                           n, what);
+            return err_set(err, STATUS_INPUT, "the file ends after %zu of %zu numbers of %s", i, n,
+                           what);
         *end = '\0';
         Status status = STATUS_OK;
         if (!number_parse(cursor->at, &out[i]))
-            status = err_set(err, STATUS_INPUT, "'%.40s' of %s is no number%s", cursor->at, what,
+            status = err_set(err, STATUS_INPUT, "'%.40s' in %s is not a number%s", cursor->at, what,
                              decimal_comma_hint(cursor->at));
         *end = after;
         TRY(status);

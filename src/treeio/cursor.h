@@ -1,7 +1,13 @@
-/* A position in a file that is read as text: by lines, or by words and numbers.
+/* Reads the bytes of a file as text: line by line, or as words and numbers.
  *
- * A line is cut out of the text in place. A word is copied, because the text behind it may be
- * packed numbers. Errors name the file and the line, which cursor_locate_error finds. */
+ *     Cursor cursor = cursor_of("tree.vmv", NULL, text, size);
+ *     for (char *line; (line = cursor_line(&cursor)); )
+ *         if ((status = read_row(line, err)) != STATUS_OK)
+ *             return cursor_locate_error(&cursor, status, err);   // adds "tree.vmv:12: "
+ *
+ * Lines are cut out of the text in place. Words are copied, because binary numbers may follow
+ * directly after a word. Messages of the functions here lack file and line; cursor_locate_error
+ * adds them. */
 #ifndef CORCAST_TREEIO_CURSOR_H
 #define CORCAST_TREEIO_CURSOR_H
 
@@ -10,75 +16,84 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Size of a word with its zero. Longer words are cut. */
+/* Size of the buffer for a word, including the final zero. Longer words are truncated. */
 enum { CURSOR_WORD = 256 };
 
 /* How a text is divided into words. */
 typedef struct CursorSyntax {
-    const char *between; /* characters between words */
-    const char *alone;   /* characters that are a word each */
-    char comment;        /* begins a comment that ends with its line; 0: there are no comments */
-    bool has_quotes;     /* a text in double quotes is one word */
-    bool skips_zeros;    /* zero bytes stand between words; otherwise they end the words */
+    const char *separators; /* characters that separate words */
+    const char *single;     /* characters that are words by themselves, such as "{}" */
+    char comment;           /* begins a comment up to the end of the line; 0: no comments */
+    bool has_quotes;        /* text in double quotes is one word */
+    bool skips_zeros;       /* zero bytes separate words; if false, a zero byte ends the text */
 } CursorSyntax;
 
-/* Begin with cursor_of. All is borrowed. */
+/* Created by cursor_of. All pointers are borrowed. */
 typedef struct Cursor {
-    const char *name;           /* of the file */
+    const char *name;           /* name of the file, for errors */
     const CursorSyntax *syntax; /* NULL: the text is read by lines */
-    char *start, *at, *end;     /* the text; the next byte; the end of what may be read */
-    size_t line;                /* number of the line that was cut last; 0: none was cut */
-    bool in_bytes;              /* errors name the byte instead of the line */
+    char *start, *at, *end;     /* first byte of the text; next byte; end of the text */
+    size_t line;                /* number of the last line that was cut, from 1; 0: none yet */
+    bool in_bytes;              /* errors state the byte instead of the line */
 } Cursor;
 
-/* Returns a cursor at the beginning of a text of `size` bytes, with a zero behind it. */
+/* Returns a cursor at the beginning of a text of `size` bytes. A zero byte must follow the text. */
 Cursor cursor_of(const char *name, const CursorSyntax *syntax, char *text, size_t size);
 
 /* ---- lines ---- */
 
-/* Cuts the next line in place, without its end, which is LF or CRLF. Returns NULL at the end. */
+/* Cuts the next line in place and returns it without its end, LF or CRLF. Returns NULL at the end
+ * of the text. */
 char *cursor_line(Cursor *cursor);
-/* Moves behind the end of the line. */
+/* Moves to the beginning of the next line. */
 void cursor_skip_line(Cursor *cursor);
 
-/* Reads one line (zero-terminated, may be changed). `number` is its number in the file. Errors:
- * STATUS_INPUT, without file and line. */
+/* Reads one line.
+ *
+ * reader   the argument `reader` of lines_read.
+ * number   the number of the line in the file, from 1.
+ * line     zero-terminated; may be changed.
+ * Errors   STATUS_INPUT, without file and line; any other. */
 typedef Status ReadLine(void *reader, size_t number, char *line, Err *err);
-/* Calls `read` for each line of the text of a file. Errors: as `read`, with file and line. */
+/* Calls `read` for each line of the text of a file. Stops at the first error. Errors: those of
+ * `read`, with file and line. */
 MUST_CHECK Status lines_read(const char *name, char *text, size_t size, ReadLine *read,
                              void *reader, Err *err);
 
 /* ---- words ---- */
 
-/* Reads the next word into `word`. Returns false, with an empty word, at the end and before a zero
- * byte. */
+/* Copies the next word to `word`. Returns false, with an empty word, at the end of the text and at
+ * a zero byte. */
 bool cursor_word(Cursor *cursor, char word[CURSOR_WORD]);
-/* As cursor_word, but stops at the end of the line. */
+/* Copies the next word of the current line to `word`. Returns false, with an empty word, at the end
+ * of the line. Knows neither quotes nor comments. */
 bool cursor_word_in_line(Cursor *cursor, char word[CURSOR_WORD]);
-/* Moves behind the next word and returns true if it is `word`. Case does not matter. */
+/* If the next word is `word`, in upper or lower case, moves past it and returns true. Otherwise
+ * returns false and does not move. */
 bool cursor_accept(Cursor *cursor, const char *word);
-/* Reads `n` numbers that stand between blanks. `what` names them in errors. Errors: STATUS_INPUT,
- * without file and line. */
+/* Reads `n` numbers that are separated by blanks or line ends. Errors, which call them `what`:
+ * STATUS_INPUT, without file and line, for text that is not a number, and if fewer are left. */
 MUST_CHECK Status cursor_numbers(Cursor *cursor, const char *what, size_t n, double *out, Err *err);
 
-/* ---- places ---- */
+/* ---- position ---- */
 
-/* Returns the number of bytes up to the end. */
+/* Returns the number of bytes that are left. */
 static inline size_t cursor_left(const Cursor *cursor)
 {
     return (size_t)(cursor->end - cursor->at);
 }
 
-/* Puts "FILE:LINE: " in front of the sentence if `status` is STATUS_INPUT. Returns `status`. */
+/* Puts "FILE:LINE: " in front of the message of *err if `status` is STATUS_INPUT, or "FILE: byte N:
+ * " with cursor->in_bytes. Returns `status`. */
 Status cursor_locate_error(const Cursor *cursor, Status status, Err *err);
 
-/* Returns the index of a keyword in a list of `n`, or `n` if it is not there. Case does not matter.
- * Entries may be NULL. */
+/* Returns the index of `word` in a list of `n` keywords, or `n` if it is not in the list. Upper and
+ * lower case are equal. Entries of the list may be NULL. */
 size_t keyword_find(const char *word, const char *const *keywords, size_t n);
-/* Appends `n` keywords, one per line, that stand `stride` bytes apart in a table. Entries may be
- * NULL. */
+/* Appends `n` keywords of a table, one per line. The pointers to the keywords are `stride` bytes
+ * apart, and may be NULL. */
 void keywords_put(const char *const *first, size_t n, size_t stride, Text *text);
-/* Appends one member of all rows of an array. */
+/* Appends the keywords in one member of all rows of an array: KEYWORDS_PUT(rows, .name, text). */
 #define KEYWORDS_PUT(table, member, text)                                                          \
     keywords_put(&(table)[0] member, sizeof(table) / sizeof *(table), sizeof *(table), text)
 

@@ -1,33 +1,46 @@
-/* The functions of the formats in the table of treeio.c, and what their texts share.
+/* The functions that implement the file formats, and the helpers that text formats share. Private
+ * to the module treeio.
  *
- * A new format is a file of a submodule and a row of that table. The extension identifies it. If
- * several formats share an extension, and on standard input, a TreeDetect decides. A file that is a
- * tree, with ids and parents, has a TreeRead, which hands nodes to a TreeBuilder [tree/builder.h].
- * A file that is a network of points and lines has a GraphRead, which hands them to a Graph
- * [tree/graph.h]; treeio.c then makes a tree of it. Neither scales lengths. treeio.c applies the
- * user's options, except those that only the reader can apply (radius_array, columns, ...): the
- * reader finds them in graph->options, and its row lists them in `takes`. Assumptions go to
- * reading_note. treeio/xml.h parses XML, treeio/cursor.h cuts texts into lines and words,
- * treeio/text/dialect.h reads rows by tables of sections and fields. */
+ * To add a format, write a source file in a submodule and add a row to the table in treeio.c. A
+ * format consists of up to four functions:
+ *
+ *     TreeDetect   recognizes a file by its first bytes: needed if several formats share the
+ *                  extension, and for standard input.
+ *     TreeRead     reads a file of nodes with ids and parents into a TreeBuilder [tree/builder.h].
+ *     GraphRead    reads a file of points and lines into a Graph [tree/graph.h]. treeio.c then
+ * makes a tree of the graph. A format has either a TreeRead or a GraphRead. TreeWrite    writes a
+ * tree.
+ *
+ * Readers do not scale lengths: treeio.c converts units and applies the user's options. A few
+ * options only the reader can apply (radius_array, columns, ...): it finds them in graph->options,
+ * and the format's row lists them in `takes`. Readers record every assumption with reading_note.
+ *
+ * Helpers: treeio/xml.h parses XML; treeio/cursor.h cuts text into lines and words;
+ * treeio/text/dialect.h reads rows by tables of sections and fields. Messages "without file and
+ * line" are completed by the caller. */
 #ifndef CORCAST_TREEIO_FORMATS_H
 #define CORCAST_TREEIO_FORMATS_H
 
 #include "tree/tree.h"
 
-/* Returns true if a file that begins with these bytes (zero-terminated) has the format. */
+/* Returns true if a file that begins with the zero-terminated bytes `start` has the format. */
 typedef bool TreeDetect(const char *start);
-/* Hands a file to the builder. `bytes` is zero-terminated and may be changed; lines of a text end
- * with LF. Errors: STATUS_INPUT, with file and record; STATUS_MEMORY. */
+/* Reads a file into the builder.
+ *
+ * bytes    the file, with a zero after its `size` bytes. The reader may change them. In text
+ * formats all line ends were converted to LF. Errors   STATUS_INPUT, with file and line;
+ * STATUS_MEMORY. */
 typedef Status TreeRead(TreeBuilder *builder, char *bytes, size_t size, Err *err);
-/* As TreeRead, to a graph, in the file's own unit. */
+/* Reads a file into the graph, in the file's own unit of length. Otherwise like TreeRead. */
 typedef Status GraphRead(Graph *graph, char *bytes, size_t size, Err *err);
-/* Appends the file of a tree that tree_check accepts. The text may flow into a stream; the caller
- * checks it at the end. Errors: STATUS_INPUT, without the file's name, for a tree that the format
- * cannot hold; STATUS_MEMORY. */
+/* Appends the file of `tree`, which tree_check has accepted. `text` may have a stream
+ * [base/text.h], whose errors the caller checks at the end. Errors: STATUS_INPUT, without the
+ * file's name, for a tree that the format cannot hold; STATUS_MEMORY. */
 typedef Status TreeWrite(const Tree *tree, Text *text, Err *err);
-/* Returns true if a column of the tree is written, although the format writes no others. */
+/* Returns true if `column` is one of the few columns that the format can write. */
 typedef bool TreeStores(const TreeColumn *column);
-/* Appends the keywords of a format, one per line, from the tables of its reader. */
+/* Appends the keywords that the reader of a format knows, one per line. The fuzzer's dictionaries
+ * are made of them. */
 typedef void TreeKeywords(Text *text);
 
 TreeStores swc_stores, oned_stores;
@@ -44,10 +57,11 @@ TreeWrite swc_write, csv_write, csv_segments_write, oned_write, vmv_write, vtk_w
 
 /* ---- limits ---- */
 
-/* Limits of what a compressed or sparse file of `size` bytes may claim: bytes of unpacked numbers,
- * and points, lines or cells. Data of vessels take at least a byte per point and compress less than
- * 64 times. A file that claims more is refused before memory is allocated, even if the claim is
- * true. */
+/* Limits for what the header of a file of `size` bytes may announce: the bytes of its numbers after
+ * decompression, and the number of its points, lines or cells. They stop a small malicious file
+ * from allocating much memory. Real vessel data takes at least one byte per point and compresses
+ * less than 64 times. A file that announces more is refused before memory is allocated, even if
+ * what it announces is true. The constant terms, 64 MB and a million, let every small file pass. */
 static inline double max_unpacked_bytes(size_t size)
 {
     return 64e6 + 64 * (double)size;
@@ -56,31 +70,36 @@ static inline double max_elements(size_t size)
 {
     return 1e6 + (double)size;
 }
-/* Checks a number of elements against max_elements. Errors: STATUS_INPUT, without the file's name.
- */
+/* Checks a number of elements, which errors call `what` ("points"), against max_elements. Errors:
+ * STATUS_INPUT, without the file's name. */
 MUST_CHECK Status check_elements(const char *what, double count, size_t size, Err *err);
-/* Checks bytes of numbers against max_unpacked_bytes. Errors: STATUS_INPUT, without the file's
- * name. */
+/* Checks the size of numbers after decompression, in bytes, against max_unpacked_bytes. Errors:
+ * STATUS_INPUT, without the file's name. */
 MUST_CHECK Status check_unpacked(double bytes, size_t size, Err *err);
 
 /* ---- fields ---- */
 
-/* Returns the first character that is not blank after comments and empty lines. */
+/* Returns the first character that is not blank and not in a '#' comment; the final zero if there
+ * is none. */
 const char *text_first_row(const char *start);
 
-/* Refuses a line that holds a number with a decimal comma, as "10,5" between blanks or semicolons:
- * a comma separates fields. Errors: STATUS_INPUT, without file and line. */
+/* Checks that a line has no number with a decimal comma, such as "10,5" between blanks or
+ * semicolons. A comma would be taken for a separator of fields. Errors: STATUS_INPUT, without file
+ * and line. */
 MUST_CHECK Status fields_check_commas(const char *line, Err *err);
-/* Returns the end of a sentence that refuses a text: it names the decimal comma if the text has
- * one, and is "" otherwise. */
+/* Returns the end of an error message about `text`: advice to use a decimal point if `text` is a
+ * number with a decimal comma, and "" otherwise. */
 const char *decimal_comma_hint(const char *text);
 
-/* Each of these reads one field, which errors call `what`. Errors: STATUS_INPUT, without file and
- * record.
+/* The following functions read one field, which errors call `what`. They set *out on success only.
+ * Errors: STATUS_INPUT, without file and line, if the field is anything else.
  *
- * field_number reads a finite number of at least `minimum`; field_integer an integer in a range;
- * field_value a finite number, or NAN for an empty field, NA or NaN; field_radius a radius or a
- * diameter, or NAN for a bad one if the options repair radii [reading_radius]. */
+ *     field_number    a finite number of at least `minimum`
+ *     field_integer   an integer in [minimum, maximum]
+ *     field_value     a finite number; or an empty field, NA or NaN, which give NAN
+ *     field_radius    a radius or diameter, finite and 0 or more. If the options repair radii
+ *                     [reading_radius], one that is negative, infinite or NaN gives NAN. `options`
+ * may be NULL */
 MUST_CHECK Status field_number(const char *what, const char *text, double minimum, double *out,
                                Err *err);
 MUST_CHECK Status field_integer(const char *what, const char *text, int32_t minimum,
@@ -93,25 +112,27 @@ MUST_CHECK Status field_radius(const ReadOptions *options, const char *what, con
 
 /* Cuts the next field off a line of CSV, in place.
  *
- * at         the rest of the line; becomes NULL after the last field.
- * separator  if it is a blank, several blanks separate like one.
- * field      receives the field without blanks around it. A quoted field ends at a quote that no
- * other quote follows. Errors     STATUS_INPUT, without file and line, if a quote is not closed. */
+ * at         in and out: the rest of the line; NULL after the last field.
+ * separator  the character between fields. If it is a blank, several blanks count as one.
+ * field      receives the field, without blanks around it, borrowed from the line. In a quoted
+ *            field two quotes stand for one, and a single quote ends the field.
+ * Errors     STATUS_INPUT, without file and line, if a quoted field has no closing quote, or is not
+ *            followed by a separator. */
 MUST_CHECK Status csv_field(char **at, char separator, char **field, Err *err);
-/* Cuts a row of CSV into its `n` fields, in place. Errors: as csv_field; STATUS_INPUT, without file
- * and line, for any other number of fields. */
+/* Cuts a row of CSV into its `n` fields, in place. Errors: those of csv_field; STATUS_INPUT,
+ * without file and line, if the row does not have exactly `n` fields. */
 MUST_CHECK Status csv_row(char *line, char separator, char **field, size_t n, Err *err);
-/* Cuts "name [unit]" in two, in place. Returns the unit, or "" if there is none. */
+/* Cuts "name [unit]" into name and unit, in place. Returns the unit, or "" if there is none. */
 const char *csv_unit(char *title);
 
-/* The titles that a CSV of segments begins with, "id" first; NULL ends them. */
+/* The titles of the first columns of a CSV of segments, beginning with "id". NULL ends the list. */
 enum { CSV_SEGMENT_TITLES = 10 };
 extern const char *const csv_segment_titles[CSV_SEGMENT_TITLES + 1];
 
 /* ---- folders ---- */
 
-/* Reads a quantity ("flow") of a folder of svOneDSolver into columns of the tree. Errors: as
- * tree_read_values. */
+/* Reads a quantity ("flow") from a result folder of svOneDSolver into columns of the tree, one
+ * column per time step. Errors: those of tree_read_values. */
 MUST_CHECK Status steps_read(Tree *tree, const char *folder, const char *quantity, Err *err);
 
 #endif

@@ -52,7 +52,7 @@ Status names_add(Names *names, char *text, size_t index, size_t record, Err *err
     TRY(keymap_put(&names->first, key_of(without_fraction(text)), &first, &is_new, err));
     const Name *twin = find(names, *first, text);
     if (twin)
-        return err_set(err, STATUS_INPUT, "the %s '%.40s' has been given before, in line %zu",
+        return err_set(err, STATUS_INPUT, "the %s '%.40s' is already defined in line %zu",
                        names->what, text, twin->record);
     TRY(ARRAY_PUSH(&names->name, "names", err, (Name){text, index, record, *first}));
     *first = (uint32_t)names->name.n;

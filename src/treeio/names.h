@@ -1,4 +1,9 @@
-/* The names that a file gives to its nodes and segments, such as "12" or "IN1". */
+/* Maps the names that a file gives to its nodes or segments, such as "12" or "IN1", to indices.
+ *
+ *     Names names = {.what = "node"};
+ *     TRY(names_add(&names, "IN1", 0, line, err));    // "IN1" is node 0
+ *     TRY(names_find(&names, "IN1", &index, err));
+ *     names_release(&names); */
 #ifndef CORCAST_TREEIO_NAMES_H
 #define CORCAST_TREEIO_NAMES_H
 
@@ -8,22 +13,24 @@
 
 /* Begin with {.what = "node"}; release with names_release. */
 typedef struct Names {
-    const char *what; /* what the things are called in errors */
-    KeyMap first;     /* per hash of a name: an index in `name` + 1 */
+    const char *what; /* the word for a named thing in errors: "node" */
+    KeyMap first;     /* from the hash of a name to 1 + the index of its last entry in `name` */
     ARRAY(struct Name) name;
 } Names;
 
 void names_release(Names *names);
 
-/* Gives a thing a name and an index. O(1) on average.
+/* Adds a name for an index.
  *
- * text     borrowed. An integer in it loses its fraction, "12.0", in place.
+ * text     the name; borrowed until names_release. An integer with a fraction of zeros, "12.0", is
+ *          shortened to "12" in place, so that both spellings are one name.
  * record   the line of the file, for errors.
- * Errors   STATUS_INPUT, without file and line, if another thing has the name; STATUS_MEMORY. */
+ * Errors   STATUS_INPUT, without file and line, if the name was added before; STATUS_MEMORY.
+ * Cost     O(1) on average. */
 MUST_CHECK Status names_add(Names *names, char *text, size_t index, size_t record, Err *err);
 
-/* Finds the index of the thing of this name. `text` is changed as by names_add. Errors:
- * STATUS_INPUT, without file and line, if there is none. */
+/* Finds the index of a name. `text` may be shortened in place, as in names_add. Errors:
+ * STATUS_INPUT, without file and line, if the name was not added. */
 MUST_CHECK Status names_find(const Names *names, char *text, size_t *index, Err *err);
 
 #endif

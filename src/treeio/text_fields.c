@@ -13,8 +13,9 @@ Status check_elements(const char *what, double count, size_t size, Err *err)
     char bytes[BYTES_TEXT_SIZE];
     if (count <= max_elements(size))
         return STATUS_OK;
-    return err_set(err, STATUS_INPUT, "it claims %.0f %s; a file of %s holds at most %.0f", count,
-                   what, bytes_text((double)size, bytes), max_elements(size));
+    return err_set(err, STATUS_INPUT,
+                   "its header states %.0f %s; a file of %s can hold at most %.0f", count, what,
+                   bytes_text((double)size, bytes), max_elements(size));
 }
 
 Status check_unpacked(double bytes, size_t size, Err *err)
@@ -23,7 +24,7 @@ Status check_unpacked(double bytes, size_t size, Err *err)
     if (bytes <= max_unpacked_bytes(size))
         return STATUS_OK;
     return err_set(err, STATUS_INPUT,
-                   "its numbers take %s unpacked; a file of %s is unpacked to at most %s",
+                   "its numbers would unpack to %s; a file of %s may unpack to at most %s",
                    bytes_text(bytes, claim), bytes_text((double)size, file),
                    bytes_text(max_unpacked_bytes(size), most));
 }
@@ -55,8 +56,7 @@ static bool is_decimal_comma(const char *text, size_t length)
 
 const char *decimal_comma_hint(const char *text)
 {
-    return is_decimal_comma(text, strlen(text)) ? "; it has a decimal comma, a point is needed"
-                                                : "";
+    return is_decimal_comma(text, strlen(text)) ? "; use a decimal point, not a decimal comma" : "";
 }
 
 Status fields_check_commas(const char *line, Err *err)
@@ -75,10 +75,10 @@ Status fields_check_commas(const char *line, Err *err)
     }
     if (!found || words == 1)
         return STATUS_OK;
-    return err_set(err, STATUS_INPUT,
-                   "'%.*s' has a decimal comma; numbers need a decimal point, as a comma separates "
-                   "fields",
-                   (int)length, found);
+    return err_set(
+        err, STATUS_INPUT,
+        "'%.*s' has a decimal comma; use a decimal point, because commas separate fields",
+        (int)length, found);
 }
 
 Status field_number(const char *what, const char *text, double minimum, double *out, Err *err)
@@ -86,8 +86,7 @@ Status field_number(const char *what, const char *text, double minimum, double *
     double value;
     if (!number_parse(text, &value) || !isfinite(value) || value < minimum)
         return err_set(err, STATUS_INPUT, "the %s is '%.*s'; it must be a finite number%s%s", what,
-                       SHOWN, text, minimum == 0 ? " that is not negative" : "",
-                       decimal_comma_hint(text));
+                       SHOWN, text, minimum == 0 ? " of 0 or more" : "", decimal_comma_hint(text));
     *out = value;
     return STATUS_OK;
 }
@@ -160,10 +159,13 @@ Status csv_field(char **at, char separator, char **field, Err *err)
         *to++ = *from;
     }
     if (!*from)
-        return err_set(err, STATUS_INPUT, "a quote is not closed");
+        return err_set(err, STATUS_INPUT, "a quoted field has no closing quote");
     from = skip_blanks(from + 1, separator);
     if (*from && *from != separator)
-        return err_set(err, STATUS_INPUT, "a quote is followed by '%.40s'", from);
+        return err_set(
+            err, STATUS_INPUT,
+            "a quoted field is followed by '%.40s'; a separator or the end of the line must follow",
+            from);
     *at = behind(from);
     *to = '\0';
     return STATUS_OK;
@@ -179,8 +181,8 @@ Status csv_row(char *line, char separator, char **field, size_t n, Err *err)
     }
     if (count == n)
         return STATUS_OK;
-    return err_set(err, STATUS_INPUT, "the row has %zu field%s; there are %zu columns", count,
-                   count == 1 ? "" : "s", n);
+    return err_set(err, STATUS_INPUT, "the row has %zu field%s; it must have %zu, one per column",
+                   count, count == 1 ? "" : "s", n);
 }
 
 const char *csv_unit(char *title)

@@ -355,7 +355,8 @@ static bool loses_rule(const Format *format, const Tree *tree)
 bool tree_format_stores(const char *path, const TreeColumn *column)
 {
     const Format *format = find_written(path);
-    return !format || !(format->loses & LOSES_COLUMNS) || (format->stores && format->stores(column));
+    return !format || !(format->loses & LOSES_COLUMNS) ||
+           (format->stores && format->stores(column));
 }
 
 Status tree_format_losses(const char *path, const Tree *tree, TreeLosses *out, Err *err)
@@ -417,13 +418,15 @@ static Status refuse_extension(const char *path, bool written, Err *err)
     list_extensions(&known, written);
     Status status = STATUS_OK;
     TRY_GOTO(text_check(&known, err));
-    status = is_read
-                 ? err_set(err, STATUS_USAGE, "%s: %s files are only read; a tree is written to %s",
-                           path, find_format(path, NULL)->name, text_chars(&known))
-                 : err_set(err, STATUS_USAGE,
-                           "%s: not the name of a tree file, which ends in %s, or is - for "
-                           "standard input or output",
-                           path, text_chars(&known));
+    status =
+        is_read
+            ? err_set(err, STATUS_USAGE,
+                      "%s: %s files can be read, but not written; write the tree to %s", path,
+                      find_format(path, NULL)->name, text_chars(&known))
+            : err_set(
+                  err, STATUS_USAGE,
+                  "%s: unknown extension of a tree file; use %s, or - for standard input or output",
+                  path, text_chars(&known));
     suggest_extension(path, err);
 done:
     text_release(&known);
@@ -470,7 +473,7 @@ static Status refuse_option(const Format *format, const char *name, unsigned bit
     put_takers(bit, &takers);
     Status status = STATUS_OK;
     TRY_GOTO(text_check(&takers, err));
-    TRY_GOTO(err_set(err, STATUS_USAGE, "`%s` is for files of %s; %s is read as %s",
+    TRY_GOTO(err_set(err, STATUS_USAGE, "`%s` applies only to %s; %s is read as %s",
                      option_fields[k].field, text_chars(&takers), name, format->name));
 done:
     text_release(&takers);
@@ -491,7 +494,7 @@ static Status refuse_format(const char *called, Err *err)
     Status status = STATUS_OK;
     TRY_GOTO(text_check(&known, err));
     TRY_GOTO(err_set(err, STATUS_USAGE,
-                     "`input_format` '%s': known are %s, without the dot, and the names that "
+                     "`input_format` is '%s'; it must be %s, without the dot, or a name that "
                      "`corcast formats` lists",
                      called, text_chars(&known)));
 done:
@@ -660,8 +663,9 @@ static Status read_any(Tree *tree, const char *path, const MemoryFile *file,
     TRY_GOTO(open_source(&source, path, file, said->format, err));
     made.format = source.format->name;
     if (file && source.format->read == pvd_read)
-        TRY_GOTO(
-            err_set(err, STATUS_USAGE, "%s: a PVD file in memory cannot name other files", path));
+        TRY_GOTO(err_set(
+            err, STATUS_USAGE,
+            "%s: a PVD file cannot be read from memory, because it refers to other files", path));
     TRY_GOTO(check_options(source.format, source.name, said, err));
     TRY_GOTO(read_source(&source, tree, said, &made, err));
     if (reading) {
@@ -699,8 +703,9 @@ static Status write_to(const char *path, const Tree *tree, Text *text, Err *err)
     while (format->loses & LOSES_IDS && i < tree->n && !tree_is_segment(tree, i))
         i++;
     if (i == tree->n)
-        return err_set(err, STATUS_INPUT, "%s: %s holds segments alone, and the tree has none",
-                       path, format->form.name);
+        return err_set(err, STATUS_INPUT,
+                       "%s: %s stores only segments, and the tree has no segments", path,
+                       format->form.name);
     if (loses_rule(format, tree))
         written.meta.known[META_TERMINAL_FLOW] = false;
     return format->write(&written, text, err);

@@ -1,10 +1,20 @@
-/* The public header of treeio: reads and writes trees in files. The table in treeio.c lists the
- * formats; each is one file beside it. docs/FORMATS.md describes the files.
+/* The public header of the module treeio: reads and writes arterial trees in files.
+ *
+ *     Tree tree = {0};
+ *     TRY(tree_read(&tree, "tree.swc", err));
+ *     TRY(tree_write(&tree, "tree.vtp", err));
+ *     tree_release(&tree);
+ *
+ * The extension of a path selects the format. The table in treeio.c lists the formats, and each
+ * format has a source file of its own. docs/FORMATS.md describes the files. Some formats hold
+ * trees; others hold networks of points and lines, which the reader turns into a tree.
  *
  * Rules of every text format: a line ends with LF, CR or CRLF. A line that starts with '#' is a
- * comment, wherever it stands. A comment "key: value" with a key of meta_rows sets Tree.meta; other
- * comments are kept as remarks. Ids of a tree start at 1, because 0 means "nothing" in id planes.
- * If the ids of a file start at 0, they are read one higher. */
+ * comment. A comment "key: value" whose key is in meta_rows sets Tree.meta; other comments are
+ * stored as remarks. Node ids in a Tree start at 1, because 0 means "no segment" in id planes. If
+ * the ids in a file start at 0, the reader adds 1 to each.
+ *
+ * The functions may run on several threads at once, on different trees and files. */
 #ifndef CORCAST_TREEIO_TREEIO_H
 #define CORCAST_TREEIO_TREEIO_H
 
@@ -14,85 +24,94 @@
 
 /* ---- formats ---- */
 
-/* Returns true if a path has the extension of a tree format, in any case, or is "-". */
+/* Returns true if `path` has the extension of a tree format, in upper or lower case, or is "-". */
 bool tree_format_known(const char *path);
-/* Checks that a tree can be written to such a path. Errors: STATUS_USAGE, with the list of
- * extensions. */
+/* Checks that a tree can be written to `path`: some formats can only be read. Does not touch the
+ * file. Errors: STATUS_USAGE, with the list of the extensions that can be written. */
 MUST_CHECK Status tree_format_check(const char *path, Err *err);
 
-/* What a tree holds and the format of a path cannot hold. */
+/* The data of a tree that would be lost in a file of some format. */
 typedef struct TreeLosses {
     bool types, flow_shares, terminal_flow;
-    bool root_values;    /* values of roots in columns whose other values are written */
-    bool root_radii;     /* radii of roots that differ from the thickest segment there */
+    bool root_values;    /* values of roots, in columns whose other values are written */
+    bool root_radii;     /* radii of roots that differ from the root's thickest segment */
     bool isolated_roots; /* roots without segments */
-    size_t columns;      /* number of columns that tree_format_stores denies */
-    size_t merged;       /* number of nodes at the position of others; a reader makes one of them */
+    size_t columns;      /* number of columns for which tree_format_stores returns false */
+    size_t merged; /* number of nodes at the position of an earlier node; the format identifies
+                    * nodes by position, so that a reader merges them */
 } TreeLosses;
-/* Finds what is lost when a tree is written to such a path. Errors: STATUS_MEMORY. Cost: O(n). */
+/* Finds what is lost when `tree` is written to `path`. Does not write. Errors: STATUS_MEMORY. Cost:
+ * O(n). */
 MUST_CHECK Status tree_format_losses(const char *path, const Tree *tree, TreeLosses *out, Err *err);
-/* Returns true if the format of a path can hold a column. */
+/* Returns true if the format of `path` can store `column`, or if `path` has no known extension. */
 bool tree_format_stores(const char *path, const TreeColumn *column);
 
-/* Returns the name ("SWC"), the chief extension ("swc") or the description of format `i`, from 0
- * on; NULL after the last. Format 0 is written to standard output. */
+/* Return the name ("SWC"), the main extension ("swc") or the description of format `i`, counted
+ * from 0; NULL if there are no more formats. Format 0 is the format of standard output. The strings
+ * are static. */
 const char *tree_format_name(size_t i);
 const char *tree_format_extension(size_t i);
 const char *tree_format_description(size_t i);
-/* Appends the keywords of all formats that a file of this name may have, one per line. "-" may be
- * of any format. */
+/* Appends the keywords of all formats that a file called `path` may have, one per line. "-" may
+ * have any format. */
 void tree_format_keywords(const char *path, Text *text);
-/* Appends all chief extensions as a sentence lists them: ".swc or .csv". */
+/* Appends all main extensions as a list in a sentence: ".swc, .vtp or .csv". */
 void tree_format_list(Text *text);
 
 /* ---- reading ---- */
 
 /* Reads a tree.
  *
- * path     the extension decides the format. The format of standard input, "-", is recognized by
- *          its first bytes.
- * tree     receives the tree; release it with tree_release. Nodes are in the order of the file,
- *          except that a parent which the file names later moves to just before its first child.
+ * tree     receives the tree; release it with tree_release. Nodes are in the order of the file. One
+ *          exception: a parent that comes later in the file moves to just before its first child.
+ * path     the file. Its extension selects the format. "-" is standard input, whose format is
+ *          recognized by its first bytes.
  * Errors   STATUS_USAGE for an unknown extension. STATUS_INPUT, with file and line, for a wrong
- *          number of fields, a value that is no number or out of range, a duplicate id, an unknown
- *          parent, a cycle, a key with a bad value or with two values, a flow share given twice or
- *          to no node, flow shares that terminal_flow contradicts, and a file without nodes.
- *          STATUS_IO, STATUS_MEMORY. */
+ *          number of fields, a value that is not a number or is out of range, a duplicate id, an
+ *          unknown parent, a cycle, a metadata key with a bad value or with two values, a flow
+ * share given twice or to an unknown node, flow shares that contradict terminal_flow, and a file
+ *          without nodes. STATUS_IO, STATUS_MEMORY. */
 MUST_CHECK Status tree_read(Tree *tree, const char *path, Err *err);
 
-/* Reads a tree as the options say, and reports what was found.
+/* Reads a tree with options, and reports what the reader found and assumed.
  *
- * options  NULL: none.
- * reading  receives the report; release it with reading_release. May be NULL.
- * Errors   as tree_read and graph_build; STATUS_USAGE for an option that the file's format does not
- *          take, and for an unknown format. */
+ * options  such as the unit of the file. NULL: the defaults.
+ * reading  receives the report; release it with reading_release. NULL: no report is wanted.
+ * Errors   those of tree_read and graph_build; STATUS_USAGE for an option that does not apply to
+ * the file's format, and for an unknown options->input_format. */
 MUST_CHECK Status tree_read_as(Tree *tree, const char *path, const ReadOptions *options,
                                TreeReading *reading, Err *err);
 
-/* Reads a tree from the bytes of a file, as tree_read_as does. Errors: also STATUS_USAGE for an
- * index of other files (PVD). */
+/* Reads a tree from the bytes of a file in memory, as tree_read_as does. Errors: also STATUS_USAGE
+ * for a PVD file, because it refers to other files. */
 MUST_CHECK Status tree_read_bytes(Tree *tree, const MemoryFile *file, const ReadOptions *options,
                                   TreeReading *reading, Err *err);
 
 /* ---- writing ---- */
 
 /* Writes the metadata of a tree, then its nodes in array order. Every number reads back as the same
- * double. Leaves out what tree_format_losses reports. Errors: as tree_format_check; STATUS_INPUT
- * for a tree that tree_check refuses, or without segments in a format that holds segments alone;
- * STATUS_IO, STATUS_MEMORY. */
+ * double. Leaves out what tree_format_losses reports. "-" is standard output.
+ *
+ * Errors   those of tree_format_check; STATUS_INPUT for a tree that tree_check refuses, and for a
+ *          tree without segments in a format that stores only segments; STATUS_IO, STATUS_MEMORY.
+ */
 MUST_CHECK Status tree_write(const Tree *tree, const char *path, Err *err);
 
-/* Appends what tree_write would write to such a path. Errors: as tree_write. */
+/* Appends to `out` the bytes that tree_write would write to `path`. Errors: those of tree_write. */
 MUST_CHECK Status tree_write_text(const Tree *tree, const char *path, Text *out, Err *err);
 
-/* Writes a tree whose columns are series [tree/series.h] as an index for ParaView, P.pvd, and one
- * file per moment, P_0001.vtp, ..., whose columns have the names of their series. The index is
- * written last. Errors: STATUS_INPUT, without the file's name, if the tree has no series, or series
- * of different times; as tree_write. */
+/* Writes a tree with time series [tree/series.h] for ParaView. The index `path`, P.pvd, lists one
+ * file per time, P_0001.vtp, P_0002.vtp, ... In these files a column has the name of its series.
+ * The index is written last.
+ *
+ * Errors   STATUS_INPUT, without the file's name, if the tree has no series, or series with
+ *          different times; those of tree_write. */
 MUST_CHECK Status tree_write_moments(const Tree *tree, const char *path, Err *err);
-/* Counts the moments. Errors: as tree_write_moments. */
+/* Counts the files that tree_write_moments would write besides the index. Errors: those of
+ * tree_write_moments. */
 MUST_CHECK Status tree_count_moments(const Tree *tree, size_t *n, Err *err);
-/* Makes the path of the file of a moment, from 0 on, in *out (owned). Errors: STATUS_MEMORY. */
+/* Makes the path of the file for time `moment`, counted from 0. The caller frees *out. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status tree_moment_path(const char *path, size_t moment, char **out, Err *err);
 
 #endif

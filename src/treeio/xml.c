@@ -67,7 +67,8 @@ static char *trim(char *text)
 static Status begin(Xml *xml, const XmlElement *element, Err *err)
 {
     if (xml->depth == MAX_DEPTH)
-        return err_set(err, STATUS_INPUT, "elements are nested deeper than %d", MAX_DEPTH);
+        return err_set(err, STATUS_INPUT, "elements are nested more than %d levels deep",
+                       MAX_DEPTH);
     if (xml->handlers->begin)
         TRY(xml->handlers->begin(xml->reader, xml, element, err));
     xml->text_at[xml->depth] = xml->text.n;
@@ -117,9 +118,7 @@ static void XMLCALL on_entity(void *context, const XML_Char *name, int is_parame
         (void)notation;
     Xml *xml = context;
     check(xml, err_set(xml->err, STATUS_INPUT,
-                       "it declares the entity '%.40s'; documents with entities of their own are "
-                       "not read",
-                       name));
+                       "it declares the entity '%.40s'; remove all entity declarations", name));
 }
 
 /* The parser's own failure as a Status. */

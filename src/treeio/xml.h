@@ -1,5 +1,12 @@
-/* Reads XML for its dialects: one element after another, with names without their prefixes. Refuses
- * documents that declare entities, so that no document can be larger than its file. */
+/* Reads an XML document as a sequence of elements. Private to the module treeio.
+ *
+ * xml_read calls two handlers of the caller: `begin` at the start tag of an element, with its
+ * attributes, and `end` at the end tag, with the text in the element. Names come without their
+ * namespace prefixes. Inside a handler, the functions with a parameter `xml` return where the
+ * current element is.
+ *
+ * Documents that declare entities are refused: an expanded entity could make a document much larger
+ * than its file. */
 #ifndef CORCAST_TREEIO_XML_H
 #define CORCAST_TREEIO_XML_H
 
@@ -7,45 +14,52 @@
 
 typedef struct Xml Xml;
 
-/* An element that begins. Borrowed until the handler returns. */
+/* The start tag of an element. Valid until the handler returns. */
 typedef struct XmlElement {
     const char *name;
-    const char **attribute; /* names and values in turns; ends with NULL */
+    const char **attribute; /* name, value, name, value, ..., NULL */
 } XmlElement;
 
-/* Called for each element; either may be NULL. Errors: STATUS_INPUT, without file and line. */
+/* The functions that are called for each element. Either pointer may be NULL. Errors: STATUS_INPUT,
+ * without file and line; any other. */
 typedef struct XmlHandlers {
     Status (*begin)(void *reader, Xml *xml, const XmlElement *element, Err *err);
-    /* `text` is the text directly in the element, zero-terminated, without blanks at both ends. It
-     * may be changed. */
+    /* `text` is the text of the element without the text of elements inside it, zero-terminated,
+     * without blanks at both ends. The handler may change it. */
     Status (*end)(void *reader, Xml *xml, const char *name, char *text, Err *err);
 } XmlHandlers;
 
-/* Reads a document. `name` is the file's. Errors: as the handlers, with file and line; STATUS_INPUT
- * if the document is not well formed, declares entities, or is nested deeper than 64 elements;
- * STATUS_MEMORY. */
+/* Reads a document.
+ *
+ * name     the name of the file, for errors.
+ * reader   the first argument of the handlers.
+ * Errors   those of the handlers, with file and line; STATUS_INPUT, with file and line, if the
+ *          document is not well formed, declares entities, or has elements nested more than 64
+ *          levels deep; STATUS_MEMORY. */
 MUST_CHECK Status xml_read(const char *name, const char *bytes, size_t size,
                            const XmlHandlers *handlers, void *reader, Err *err);
 
-/* Returns the value of an attribute, or NULL if the element has none of this name. */
+/* Returns the value of the attribute `name`, or NULL if the element has no such attribute. */
 const char *xml_attribute(const XmlElement *element, const char *name);
-/* Finds the value of an attribute. Errors: STATUS_INPUT, without file and line, if there is none.
- */
+/* Finds the value of the attribute `name`. Errors: STATUS_INPUT, without file and line, if the
+ * element has no such attribute. */
 MUST_CHECK Status xml_require(const XmlElement *element, const char *name, const char **value,
                               Err *err);
 
-/* For a handler: the line of the current element; the number of elements around it; and the name of
- * the element `up` steps further out (1: its parent), or "" if there is none. */
+/* Return, in a handler: the line of the current element in the file; the number of elements around
+ * it; and the name of the element that is `up` levels further out (1: the parent), or "" if there
+ * is no such element. */
 size_t xml_line(const Xml *xml);
 size_t xml_depth(const Xml *xml);
 const char *xml_ancestor(const Xml *xml, size_t up);
-/* For a handler: stops reading. The rest need not be XML. */
+/* Makes xml_read return STATUS_OK after the current handler. The rest of the file need not be
+ * XML. */
 void xml_stop(Xml *xml);
-/* For a handler: the number of bytes before the current element. */
+/* Returns, in a handler, the number of bytes of the file before the current element. */
 size_t xml_byte(const Xml *xml);
 
-/* Returns true if the outermost element of a document that begins with these bytes has this name.
- */
+/* Returns true if the outermost element of the document that begins with the bytes `start` is
+ * called `element`. */
 bool xml_begins(const char *start, const char *element);
 
 #endif

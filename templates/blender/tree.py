@@ -5,10 +5,10 @@
 # or open this file in the text editor and run it. Coordinates and radii are millimetres, y is up:
 # ${extent}.
 #
-# The empty "tree" makes metres of them and turns y up into z, which is up in Blender. Below it is
-# a curve object for each Strahler order, in a forest for each tree and order. Its splines are
-# vessels, with a radius at each point; Bevel > Depth is 1 and stays so. A spline ends where the
-# order ends or the material changes; the property segment_ids has the ids of their first segments.
+# The empty "tree" scales millimetres to metres and turns y up into z up, as Blender has it. Below it
+# is one curve object per Strahler order, or in a forest per tree and order. Its splines are vessels,
+# with a radius at each point. Bevel > Depth is 1 and must stay 1. A spline ends where the order ends
+# or the material changes. The property segment_ids has the ids of the first segments of the splines.
 # Nothing else in the scene is changed.
 import bpy
 

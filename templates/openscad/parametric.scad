@@ -1,18 +1,18 @@
 // ${file}: ${description}
 // Auth: ${generator}, by: ${command}
 // ${count} vessels in millimetres, as modules. Extent: ${extent}
-// Of more than ${quick} vessels one closed surface is written instead, unless corcast scene --scad parametric asks for
-// modules.
+// For more than ${quick} vessels corcast writes one closed surface instead, unless corcast scene --scad parametric
+// requests modules.
 //
-// Open it and change what Window > Customizer shows; F5 shows the result at once, F6 makes it a solid. Or without
-// a window:
+// Open the file and change the values in Window > Customizer. F5 previews the result at once; F6 makes it a solid. From
+// the command line:
 //   openscad -o ${output} ${input}
 //   openscad -o ${output} -D 'part="wall"' -D wall=0.8 ${input}
-// CGAL, which unites the vessels, takes about ${seconds} s for all of them with $$fn = 12, and more with the square of $$fn.
+// CGAL, which unites the vessels, takes about ${seconds} s with $$fn = 12. The time grows with the square of $$fn.
 
 /* [Part] */
 // What to make
-part = "tree"; // [tree:the tree as a solid, wall:its wall about the empty tree, block:a block without the tree, outline:its shadow from the front to cut out (.svg or .dxf), vessels:cylinders alone, bifurcations:what joins them alone]
+part = "tree"; // [tree:the tree as a solid, wall:a wall around the empty tree, block:a block with the tree removed, outline:its outline from the front (.svg or .dxf), vessels:only the cylinders, bifurcations:only the joining balls]
 // Leave out vessels thinner than this, mm
 min_radius = 0; // [0:0.05:${max_radius}]
 
@@ -23,24 +23,24 @@ radius_scale = 1; // [0.25:0.05:4]
 wall = 0.8; // [0.1:0.1:5]
 // Cut the wall open where vessels end
 open_ends = true;
-// From the tree to the sides of the block, mm
+// Distance from the tree to the sides of the block, mm
 margin = 3; // [0.5:0.5:20]
 
 /* [Quality] */
-// Sides of a vessel
+// Number of sides of a vessel
 $$fn = 12; // [6:2:64]
 
 /* [Look] */
-// Of the preview; a solid has no color
+// Color of the preview; a solid has no color
 vessel_color = ${color}; // linear
 
 /* [Hidden] */
-// Where the coordinates below begin in those of the tree.
+// The origin of the coordinates below, in the tree's coordinates.
 origin = ${origin};
 low = ${low};
 high = ${high};
 
-// Set about tree(): what it draws, and how much thicker than the tree.
+// Special variables that control tree(): which parts it draws, and how much thicker than the tree.
 $$vessels = true;
 $$joints = true;
 $$openings = false;
@@ -54,7 +54,7 @@ module along(v) {
   rotate([0, acos(v[2] / norm(v)), atan2(v[1], v[0])]) children();
 }
 
-// A segment of the tree, straight from a to b; id is its number in the tree's file.
+// A segment of the tree, straight from a to b; id is its id in the tree's file.
 module vessel(id, a, b, radius, c = vessel_color) {
   if ($$vessels && radius >= min_radius)
     color(srgb(c)) translate(a) along(b - a) cylinder(h = norm(b - a), r = drawn(radius));

@@ -1,21 +1,21 @@
 // ${file}: ${description}
 // Auth: ${generator}, by: ${command}
 // One closed surface of ${triangles} triangles, in millimetres. Extent: ${extent}
-// That is what is written of more than ${quick} vessels, which OpenSCAD would take minutes to unite; of any number
-// corcast scene --scad parametric writes modules, with radii and wall in the customizer.
+// corcast writes this form for more than ${quick} vessels, which OpenSCAD would take minutes to unite. For any number of
+// vessels, corcast scene --scad parametric writes modules, with radii and wall in the customizer.
 //
-// F6 makes a solid of it at once, and so does, without a window:
+// F6 makes it a solid at once. From the command line:
 //   openscad -o ${output} ${input}
-// Cutting it, or uniting it with other things, takes CGAL about ${seconds} s.
+// Cutting it, or uniting it with other objects, takes CGAL about ${seconds} s.
 
 /* [Part] */
 // What to make
-part = "tree"; // [tree:the tree as a solid, half:what of it lies behind the plane z = cut, outline:its shadow from the front to cut out (.svg or .dxf)]
-// Where the half ends, mm
+part = "tree"; // [tree:the tree as a solid, half:the half behind the plane z = cut, outline:its outline from the front (.svg or .dxf)]
+// z at which the half ends, mm
 cut = ${middle};
 
 /* [Look] */
-// Of the preview; a solid has no color
+// Color of the preview; a solid has no color
 vessel_color = [0.78, 0.26, 0.24];
 
 /* [Hidden] */

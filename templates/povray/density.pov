@@ -4,24 +4,24 @@
 // Desc: ${description}
 // Auth: ${generator}, by: ${command}
 //
-// A glow in the shape of vessels: a medium whose density, from ${density_file}, is the part of each voxel that
-// they fill. Units are millimetres; seen from the front, x runs to the right, y up, and z towards the viewer.
+// A glow in the shape of vessels. The density of the medium, from ${density_file}, is the fraction of each voxel that
+// vessels fill. Units are millimetres. Seen from the front, x points to the right, y up, and z towards the viewer.
 // Extent: ${extent}
 //
 // Render: povray +I${input} +O${output} +W${width} +H${height} -D
 // Size: ${width}x${height}
 //
-// What stands in #ifndef can be set before an #include of this file and, if it is a number, on the command line,
-// as Declare=Glow_Emission=2. A pixel has the color Glow_Color * Glow_Emission * the millimetres of vessel behind it.
+// Every value inside #ifndef can be declared before an #include of this file. Numbers can also be set on the command
+// line: Declare=Glow_Emission=2. The color of a pixel is Glow_Color * Glow_Emission * the millimetres of vessel on its ray.
 #version 3.7;
 
 global_settings { assumed_gamma 1.0 max_trace_level 5 }
 
 #ifndef (Glow_Color)       #declare Glow_Color       = rgb <1, 0.42, 0.18>; #end // linear
-#ifndef (Glow_Emission)    #declare Glow_Emission    = ${emission}; #end // light of 1 mm of vessel
-#ifndef (Glow_Absorption)  #declare Glow_Absorption  = 0; #end // of 1 mm, of what is behind it
-#ifndef (Glow_Interpolate) #declare Glow_Interpolate = 1; #end // 0: voxels as boxes; 1: linear between them
-#ifndef (Glow_Samples)     #declare Glow_Samples     = ${samples}; #end // along a ray through the box
+#ifndef (Glow_Emission)    #declare Glow_Emission    = ${emission}; #end // light per mm of vessel
+#ifndef (Glow_Absorption)  #declare Glow_Absorption  = 0; #end // absorption of the light behind, per mm of vessel
+#ifndef (Glow_Interpolate) #declare Glow_Interpolate = 1; #end // 0: voxels are boxes; 1: linear interpolation
+#ifndef (Glow_Samples)     #declare Glow_Samples     = ${samples}; #end // samples along a ray through the box
 #ifndef (Background_Color) #declare Background_Color = rgb <0.004, 0.006, 0.012>; #end
 
 #declare Glow_Low  = ${low};
@@ -52,7 +52,7 @@ background { color Background_Color }
   media {
     emission   Glow_Color * Glow_Emission
     absorption rgb Glow_Absorption
-    method 2 // a mean of evenly spaced samples; 3 adds to it
+    method 2 // the mean of evenly spaced samples; method 3 is less exact
     intervals 1
     samples Glow_Samples
     density { D_Vessels }

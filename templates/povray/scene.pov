@@ -4,22 +4,22 @@
 // Desc: ${description}
 // Auth: ${generator}, by: ${command}
 //
-// Geometry stands in ${geometry_file}; this file is the stage: camera, lights, background.
-// Units are millimetres. The camera is given by its own vectors, so that the world is right-handed:
-// seen from the front, x runs to the right, y up, and z towards the viewer. Camera_Location, Camera_Look_At and
-// others, below, set another one.
+// The geometry is in ${geometry_file}. This file has the camera, the lights and the background.
+// Units are millimetres. The camera is given by its own vectors, so the world is right-handed:
+// seen from the front, x points to the right, y up, and z towards the viewer. To change the camera, declare
+// Camera_Location, Camera_Look_At and others, below.
 // Extent: ${extent}
 ${effects}//
 // Render: povray +I${input} +O${output} +W${width} +H${height} -D
 // Size: ${width}x${height}
 //
-// What stands in #ifndef and is a number can be set on the command line, as Declare=Light_Intensity=1.2 or
-// Declare=Vessel_Red=0.2; all that stands in #ifndef can be declared before an #include of this file. For a
-// transparent background: +UA Declare=Background_Transmit=1.
+// Every value inside #ifndef can be declared before an #include of this file. Numbers can also be set on the command
+// line: Declare=Light_Intensity=1.2 or Declare=Vessel_Red=0.2. For a transparent background:
+// +UA Declare=Background_Transmit=1.
 #version 3.7;
 
-// 0 the picture; 1 depth, 2 normals, 3 segment ids, 4 depth and ids below 65536, for checking other renderers
-// against.
+// 0 draws the picture; 1 depth, 2 normals, 3 segment ids, 4 depth and ids below 65536. 1 to 4 are for comparison with
+// other renderers.
 #ifndef (Corcast_Plane) #declare Corcast_Plane = 0; #end
 
 global_settings {
@@ -28,10 +28,11 @@ global_settings {
 }
 
 // ---- camera ---------------------------------------------------------------------------------
-// A part of the picture is the picture of a smaller camera: rows 128 to 191, say, of ${width}x${height} are
-// +W${width} +H64 Declare=Picture_Height=${height} Declare=Part_Top=128, and columns likewise. It has the whole's
-// pixels, to the code, with antialiasing too if that is without jitter and not +AM1 with a threshold above 0.
-#ifndef (Picture_Width)  #declare Picture_Width  = image_width; #end  // pixels of the whole
+// A part of the picture is the picture of a smaller camera. For example, rows 128 to 191 of ${width}x${height} are
+// +W${width} +H64 Declare=Picture_Height=${height} Declare=Part_Top=128; for columns use Picture_Width and Part_Left.
+// The part has exactly the pixels of the whole, also with antialiasing, except with jitter or with +AM1 and a
+// threshold above 0.
+#ifndef (Picture_Width)  #declare Picture_Width  = image_width; #end  // pixels of the whole picture
 #ifndef (Picture_Height) #declare Picture_Height = image_height; #end
 #ifndef (Part_Left)      #declare Part_Left      = 0; #end            // where the part begins, pixels
 #ifndef (Part_Top)       #declare Part_Top       = 0; #end
@@ -90,8 +91,8 @@ ${lights}
   Light_Axis(x) Light_Axis(y) Light_Axis(z)
 #end
 #if (Corcast_Plane = 1 | Corcast_Plane = 4)
-  // Distance along the viewing ray, from Depth_Near to Depth_Far, as a 32-bit fraction: the high half
-  // in red, the low half in green. Blue is where anything is seen, or the id.
+  // Distance along the viewing ray, as a 32-bit fraction from Depth_Near to Depth_Far: the high half
+  // in red, the low half in green. Blue is 1 where a vessel is visible, or contains the id.
   #declare Depth_Near = ${depth_near};
   #declare Depth_Far  = ${depth_far};
   #local Lx = Camera_Location.x; #local Ly = Camera_Location.y; #local Lz = Camera_Location.z;
@@ -118,8 +119,8 @@ ${lights}
 #end
 
 // ---- animation ------------------------------------------------------------------------------
-// Turn_Clock = 1: the tree turns once about the upright of the picture while clock goes from 0 to 1;
-// Growth_Clock = 1: it grows from its root.
+// With Turn_Clock = 1 the tree turns once about the vertical axis of the picture while clock goes from 0 to 1.
+// With Growth_Clock = 1 the tree grows from its root.
 #ifndef (Turn_Clock)   #declare Turn_Clock   = 0; #end
 #ifndef (Growth_Clock) #declare Growth_Clock = 0; #end
 #ifndef (Tree_Turn)    #declare Tree_Turn    = Turn_Clock * clock * 360; #end // degrees
@@ -134,7 +135,7 @@ ${lights}
 #end
 
 // ---- vessels --------------------------------------------------------------------------------
-// The look of the vessels has its defaults with the geometry: Vessel_Red, _Green, _Blue (linear) and
+// The file of the geometry has the defaults of the vessels' material: Vessel_Red, _Green, _Blue (linear) and
 // Vessel_Ambient, _Diffuse, _Brilliance, _Phong, _Phong_Size, _Specular, _Roughness.
 ${geometry}
 object {

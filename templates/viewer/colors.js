@@ -1,5 +1,6 @@
-// From values to colors, as corcast's own scales have it: places on a range, equal or of equal ratios, and colors
-// interpolated in sRGB between those of a map. A map of separate colors counts whole numbers round and round.
+// Maps values to colors as corcast's own scales do. A value has a position in 0..1 on its range, linear or logarithmic.
+// The color is interpolated in sRGB between the colors of a map. A map of separate colors gives each integer a color,
+// and repeats its colors cyclically.
 
 const NO_DATA = [128, 128, 128];
 
@@ -12,23 +13,23 @@ export class Scale {
     this.counts = map.separate && field.whole;
   }
 
-  // 0 and 1 at the ends of the range; NaN for what cannot be shown.
-  place(value) {
+  // Returns the position of a value: 0 and 1 at the ends of the range, NaN for a value that cannot be shown.
+  position(value) {
     const [low, high] = this.range;
     if (!Number.isFinite(value) || (this.log && value <= 0)) return NaN;
     if (high === low) return 0.5;
     return this.log ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low);
   }
 
-  // Writes the color of a place, sRGB bytes, into `out` from `at` on.
+  // Writes the color of a value, three sRGB bytes, into `out` from index `at` on.
   put(value, out, at) {
     const { bytes } = this.map, n = bytes.length / 3;
-    const place = this.counts ? value : this.place(value);
-    if (Number.isNaN(place)) {
+    const position = this.counts ? value : this.position(value);
+    if (Number.isNaN(position)) {
       for (let c = 0; c < 3; c++) out[at + c] = NO_DATA[c];
       return;
     }
-    const exact = this.counts ? (((place - 1) % n) + n) % n : Math.min(1, Math.max(0, place)) * (n - 1);
+    const exact = this.counts ? (((position - 1) % n) + n) % n : Math.min(1, Math.max(0, position)) * (n - 1);
     const from = this.map.separate ? Math.round(exact) : Math.min(n - 2, Math.floor(exact));
     const part = this.map.separate ? 0 : exact - from;
     for (let c = 0; c < 3; c++) {
@@ -43,13 +44,13 @@ export class Scale {
     return `rgb(${out.join(" ")})`;
   }
 
-  // The value at a place.
-  at(place) {
+  // Returns the value at a position.
+  at(position) {
     const [low, high] = this.range;
-    return this.log ? low * Math.pow(high / low, place) : low + (high - low) * place;
+    return this.log ? low * Math.pow(high / low, position) : low + (high - low) * position;
   }
 
-  // Round values of the range, a few.
+  // Returns a few round values in the range.
   ticks() {
     const [low, high] = this.range;
     if (high === low) return [low];
@@ -81,7 +82,7 @@ function thinned(ticks) {
   return ticks.filter((tick, k) => k % every === 0);
 }
 
-// A number for people: `digits` that count, no exponents where they are not needed.
+// Returns a number as text with `digits` significant digits, and an exponent only for very large or small numbers.
 export function number(value, digits = 4) {
   if (!Number.isFinite(value)) return "–";
   if (value !== 0 && (Math.abs(value) >= 1e6 || Math.abs(value) < 1e-4)) return value.toExponential(digits - 2);

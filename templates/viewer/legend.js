@@ -1,4 +1,4 @@
-// The color scale with its unit, and the scale bar, drawn on the page and into screenshots by the same hand.
+// Draws the color scale with its unit, and the scale bar, on the page and into screenshots.
 import { number } from "./colors.js";
 
 const BAR = 12, GAP = 5;
@@ -10,12 +10,23 @@ function style(context, ink) {
   context.strokeStyle = ink;
 }
 
-function fieldName(scale) {
-  const { name, unit } = scale.field;
-  return name + (unit ? ` (${unit})` : "") + (scale.log ? ", logarithmic" : "");
+// The words for fields, as the legends of pictures have them. A field of the user's keeps its name.
+const FIELD_WORDS = {
+  wss: "wall shear stress", reynolds: "Reynolds number", strahler: "Strahler order",
+  "diameter-strahler": "diameter-defined order", level: "bifurcation level", branch: "main branch",
+};
+
+// Returns the words for the field of this name.
+export function fieldWords(name) {
+  return Object.hasOwn(FIELD_WORDS, name) ? FIELD_WORDS[name] : name;
 }
 
-// A patch for each whole number, as far as the colors of the map are different ones.
+function scaleTitle(scale) {
+  const { name, unit } = scale.field;
+  return fieldWords(name) + (unit ? ` (${unit})` : "") + (scale.log ? ", logarithmic" : "");
+}
+
+// Draws a patch of color for each integer of the range, at most one for each color of the map.
 function drawPatches(context, scale, width, top) {
   const [low, high] = scale.range, n = Math.min(high - low + 1, scale.map.bytes.length / 3);
   for (let k = 0; k < n; k++) {
@@ -30,10 +41,10 @@ function drawRamp(context, scale, width, top) {
     context.fillStyle = scale.color(scale.at((x + 0.5) / width));
     context.fillRect(x, top, 1.5, BAR);
   }
-  return scale.ticks().map((value) => ({ at: scale.place(value) * width, value }));
+  return scale.ticks().map((value) => ({ at: scale.position(value) * width, value }));
 }
 
-// Labels that have room, each within the width.
+// Draws the labels of ticks within the width. A label that would overlap the one before is left out.
 function drawLabels(context, ticks, width, top) {
   let free = -Infinity;
   for (const { at, value } of ticks) {
@@ -48,17 +59,17 @@ function drawLabels(context, ticks, width, top) {
 
 export const LEGEND_HEIGHT = 34, TITLE_HEIGHT = 18;
 
-// At the context's origin; with `titled` the field is said in a line above.
+// Draws the color scale at the context's origin. If `titled` is true, a line above names the field.
 export function drawLegend(context, scale, width, ink, titled) {
   style(context, ink);
-  if (titled) context.fillText(fieldName(scale), 0, 0);
+  if (titled) context.fillText(scaleTitle(scale), 0, 0);
   const top = titled ? TITLE_HEIGHT : 0, draw = scale.counts ? drawPatches : drawRamp;
   const ticks = draw(context, scale, width, top);
   context.fillStyle = ink;
   drawLabels(context, ticks, width, top);
 }
 
-// A bar of a round length, at most `most` pixels, its right end at the context's origin.
+// Draws a scale bar of a round length, at most `most` pixels, with its right end at the context's origin.
 export function drawScaleBar(context, mmPerPixel, most, ink) {
   const power = Math.pow(10, Math.floor(Math.log10(most * mmPerPixel)));
   const length = [5, 2, 1].map((k) => k * power).find((mm) => mm <= most * mmPerPixel);
@@ -70,7 +81,7 @@ export function drawScaleBar(context, mmPerPixel, most, ink) {
   context.textAlign = "left";
 }
 
-// A canvas of so many pixels of the page, cleared, with its context scaled to the screen's.
+// Resizes a canvas to CSS pixels, clears it, and returns its context, which is scaled to the screen's pixels.
 export function sized(canvas, width, height) {
   const ratio = Math.min(window.devicePixelRatio || 1, 3);
   canvas.width = Math.round(width * ratio);

@@ -1,5 +1,6 @@
-// The page's one program: state that the address tells, and what keys, hands and the address change of it. A picture is
-// drawn when something has changed, and only then.
+// The page's main program. It holds the state of the page, which the address of the page stores, and changes the state
+// when the user presses keys, uses the mouse or the touch screen, or changes the address. A picture is drawn only after
+// a change.
 import { Color, SRGBColorSpace, WebGLRenderer } from "three";
 import { Scale } from "./colors.js";
 import { drawLegend, drawScaleBar, LEGEND_HEIGHT, TITLE_HEIGHT } from "./legend.js";
@@ -10,16 +11,16 @@ import { Vessels } from "./vessels.js";
 import { View, VIEWS } from "./view.js";
 
 const find = (id) => document.getElementById(id);
-const DECADES = 2.5; // from so many on a scale is logarithmic, unless somebody says otherwise
+const DECADES = 2.5; // a range of at least this many powers of 10 gets a logarithmic scale by default
 const SHADE = 0.75;
-const LOW = 544; // pixels of the page: a window less high has no room beside the tools
-const HIT = 4; // pixels of the page that a vessel is at least wide for a pointer
+const LOW = 544; // CSS pixels: in a window less high, the tree is drawn below the tools
+const HIT = 4; // CSS pixels: minimum width of a vessel for picking with the pointer
 
 const tree = new Tree();
 const start = tree.properties.start;
 const state = {
   field: null, map: null, log: null, moment: 0, grown: 1, haze: true, shade: true, panels: true,
-  hovered: -1, pinned: -1, // numbers of segments, or -1
+  hovered: -1, pinned: -1, // indices of segments, or -1
 };
 let scale = null, wanted = false, playing = 0, written = 0, known = location.hash;
 
@@ -61,7 +62,7 @@ function mmPerPixel() {
   return view.isOrthographic ? view.pose.height / canvas.clientHeight : 0;
 }
 
-// What of the window the panels leave free; the tree stands in its middle.
+// Returns the part of the window that the panels leave free. The tree is drawn in its middle.
 function freeBox() {
   const { innerWidth: width, innerHeight: height } = window, side = find("side").getBoundingClientRect();
   if (side.width === 0) return { left: 0, top: 0, width, height };
@@ -78,7 +79,7 @@ function resize() {
   wantPicture();
 }
 
-// The colors of the page, light or dark as the reader has it.
+// Applies the page's colors, light or dark by the browser's setting.
 function takeScheme() {
   const styles = getComputedStyle(document.documentElement);
   const color = (name) => new Color().setStyle(styles.getPropertyValue(name).trim(), SRGBColorSpace);
@@ -91,14 +92,15 @@ function takeScheme() {
   wantPicture();
 }
 
-// How faint what is farthest away is; on a dark ground it is soon lost.
+// Returns how strongly the farthest vessels fade. On a dark background they must fade less to stay visible.
 function haze() { return dark.matches ? 0.25 : 0.45; }
 
 // ---- what is shown ------------------------------------------------------------------------------
 
 const named = (list, name) => list.find((item) => item.name === name);
 
-// The range that the page was made with holds for its field as long as the scale is of its kind.
+// Returns the range of a field's scale: the range that the page was made with, for the same field and the same kind of
+// scale; else the range of the values.
 function rangeFor(field, log) {
   if (start && start.field === field.name && start.log === log) return [start.low, start.high];
   return log ? field.logRange : field.range;
@@ -137,7 +139,7 @@ function show() {
   find("grown").value = state.grown;
   panel.showScale(scale, scale && scale.field);
   panel.showTime(scale && scale.field, moment);
-  view.resize(window.innerWidth, window.innerHeight, freeBox()); // as the panels now are
+  view.resize(window.innerWidth, window.innerHeight, freeBox()); // after the panels have changed
   showSegment(shown);
   wantAddress();
 }
@@ -150,7 +152,7 @@ function showSegment(i) {
 
 let finding = false;
 
-// Finds the shade a few directions a picture, so that the page answers meanwhile.
+// Computes the ambient occlusion, a few directions per picture, so that the page stays responsive.
 function findShade() {
   if (finding) return;
   finding = true;
@@ -167,7 +169,7 @@ function change(what) {
   show();
 }
 
-// Another field is shown on its own kind of scale.
+// Selects a field. `log: null` chooses between a linear and a logarithmic scale by the field's range.
 function setField(name) { change({ field: named(tree.fields, name) ? name : null, log: null }); }
 
 function pin(i) {
@@ -184,9 +186,9 @@ function nextField(step) {
 // ---- the address --------------------------------------------------------------------------------
 
 const rounded = (v) => String(Number(v.toFixed(3)));
-const fromOrigin = (place, sign) => place.map((v, c) => v + sign * tree.properties.origin[c]);
+const fromOrigin = (point, sign) => point.map((v, c) => v + sign * tree.properties.origin[c]);
 
-// The view as options of `corcast render`, and with these names in the address.
+// Returns the view as options of `corcast render`. The address uses the same names.
 function viewOptions() {
   const { turn, rise, target, height } = view.pose;
   return [["projection", view.isOrthographic ? "orthographic" : "perspective"],
@@ -194,7 +196,7 @@ function viewOptions() {
     ["height", rounded(height)]];
 }
 
-// Not where somebody has set another address, which is about to be read.
+// Writes the state to the address, unless the user has just set another address, which is about to be read.
 function writeAddress() {
   if (location.hash !== known) return;
   const parts = viewOptions();
@@ -219,9 +221,9 @@ function numbers(text, count) {
   return list.length === count && list.every(Number.isFinite) ? list : null;
 }
 
-function within(text, low, high, otherwise) {
+function clamped(text, low, high, fallback) {
   const value = Number(text);
-  return text !== null && Number.isFinite(value) ? Math.min(high, Math.max(low, value)) : otherwise;
+  return text !== null && Number.isFinite(value) ? Math.min(high, Math.max(low, value)) : fallback;
 }
 
 function readAddress() {
@@ -234,8 +236,8 @@ function readAddress() {
     field: named(tree.fields, field) ? field : null,
     map: get.get("map") ?? (start && start.map),
     log: log === null ? (start && start.field === field ? start.log : null) : log === "on",
-    moment: Math.round(within(get.get("moment"), 1, 1e6, 1)) - 1,
-    grown: within(get.get("grown"), 0, 1, 1),
+    moment: Math.round(clamped(get.get("moment"), 1, 1e6, 1)) - 1,
+    grown: clamped(get.get("grown"), 0, 1, 1),
     haze: get.get("haze") !== "off",
     shade: get.get("shade") !== "off",
     panels: get.get("panels") !== "off",
@@ -245,7 +247,7 @@ function readAddress() {
   readPose(get);
 }
 
-// All of the tree, where the address does not tell what of it.
+// Sets the view from the address. Without a view there, shows all of the tree.
 function readPose(get) {
   const target = numbers(get.get("look-at"), 3), height = Number(get.get("height"));
   view.frame(...(numbers(get.get("turn"), 2) || [0, 0]));
@@ -253,9 +255,9 @@ function readPose(get) {
   if (height > 0 && Number.isFinite(height)) view.change({ height });
 }
 
-// The command that draws what is shown as a figure, free of this machine's graphics.
+// Returns the command that draws the same view as a figure, which does not depend on this computer's graphics card.
 function renderCommand() {
-  const { isOrthographic } = view, list = (place) => fromOrigin(place, 1).map(rounded).join(",");
+  const { isOrthographic } = view, list = (point) => fromOrigin(point, 1).map(rounded).join(",");
   const words = isOrthographic ? viewOptions() : [["projection", "perspective"], ["location", list(view.eye)],
     ["look-at", list(view.pose.target)], ["angle", rounded(view.angleAcross)]];
   words.push(["size", `${canvas.clientWidth}x${canvas.clientHeight}`]);

@@ -1,6 +1,6 @@
-// What stands beside the picture: which field is shown, the legend, and the values of a segment.
+// The panels beside the picture: the selected field, the legend, and the values of a segment.
 import { number } from "./colors.js";
-import { drawLegend, drawScaleBar, LEGEND_HEIGHT, sized } from "./legend.js";
+import { drawLegend, drawScaleBar, fieldWords, LEGEND_HEIGHT, sized } from "./legend.js";
 
 const find = (id) => document.getElementById(id);
 
@@ -40,8 +40,9 @@ export class Panel {
     const { properties, segments, low, high } = tree;
     find("name").textContent = properties.name;
     const sides = low.map((l, c) => number(high[c] - l, 3)).join(" × ");
-    find("said").textContent = `${segments.length.toLocaleString("en")} segments, ${sides}\u00a0mm`;
-    const fields = tree.fields.map(({ name, unit }) => option(name, unit ? `${name} (${unit})` : name));
+    find("summary").textContent = `${segments.length.toLocaleString("en")} segments, ${sides}\u00a0mm`;
+    const words = ({ name, unit }) => fieldWords(name) + (unit ? ` (${unit})` : "");
+    const fields = tree.fields.map((field) => option(field.name, words(field)));
     find("field").append(option("", "one color"), ...fields);
     find("map").append(...tree.maps.map(({ name }) => option(name, name)));
     find("made").textContent = `${properties.generator}: ${properties.command}`;
@@ -65,7 +66,7 @@ export class Panel {
     if (!this.scale || width === 0) return;
     drawLegend(sized(canvas, width, LEGEND_HEIGHT), this.scale, width, ink(), false);
     const [low, high] = this.scale.range, { name, unit } = this.scale.field;
-    canvas.setAttribute("aria-label", `${name} from ${number(low)} to ${number(high)} ${unit}`);
+    canvas.setAttribute("aria-label", `${fieldWords(name)} from ${number(low)} to ${number(high)} ${unit}`);
   }
 
   drawScaleBar(mmPerPixel) {
@@ -77,7 +78,7 @@ export class Panel {
     drawScaleBar(context, mmPerPixel, 150, ink());
   }
 
-  // The times of a field that changes, or none.
+  // Shows the slider of times for a field that changes with time, and hides it for any other field.
   showTime(field, moment) {
     const times = field ? field.times : [];
     find("time").hidden = times.length < 2;
@@ -87,7 +88,8 @@ export class Panel {
     find("clock").textContent = `time ${number(times[moment])}`;
   }
 
-  // All that is known of a segment; `pinned`: it stays.
+  // Shows all values of segment i, or hides the panel if i is -1. `pinned`: the panel stays when the pointer leaves.
+  // `go` is called with the segment that the user jumps to.
   showSegment(i, moment, pinned, go) {
     const { tree } = this;
     find("readout").hidden = i < 0;
@@ -96,7 +98,9 @@ export class Panel {
     find("readout").classList.toggle("pinned", pinned);
     find("values").replaceChildren(...tree.fields.map(({ name, unit, values, times }) => {
       const at = times.length > 1 ? Math.min(moment, times.length - 1) * tree.n : 0;
-      return row(name, number(values[at + i], 5), unit);
+      const line = row(fieldWords(name), number(values[at + i], 5), unit);
+      line.dataset.field = name;
+      return line;
     }));
     const up = tree.parent[i], isSegment = (node) => tree.numberOf.has(tree.id[node]);
     find("kin").replaceChildren(

@@ -1,12 +1,13 @@
-// The light that one texel of a wall gets from one direction, and what it would get without the other vessels.
+// Computes the light that one texel of the vessels' surface gets from one direction, and the light that it would get
+// without other vessels.
 precision highp float;
 precision highp int;
 
 uniform highp sampler2D segments; // start and radius, then end
-uniform highp sampler2D depths; // as seen from the direction
+uniform highp sampler2D depths; // the shadow map of the direction
 uniform mat4 fromWorld;
 uniform vec3 towards;
-uniform float texel, deep; // of the depths, mm
+uniform float texel, deep; // width of a texel of the shadow map, and its depth range, mm
 uniform int count;
 
 out vec4 light;
@@ -24,8 +25,8 @@ void main() {
   vec3 normal = cos(turn) * v + sin(turn) * w;
   float cosine = dot(normal, towards);
   if (cosine <= 0.0) discard;
-  vec3 place = mix(start.xyz, end, (float(cell.y) + 0.5) / float(ALONG)) + normal * (start.w + texel);
-  vec3 seen = 0.5 * (fromWorld * vec4(place, 1.0)).xyz + 0.5;
+  vec3 point = mix(start.xyz, end, (float(cell.y) + 0.5) / float(ALONG)) + normal * (start.w + texel);
+  vec3 seen = 0.5 * (fromWorld * vec4(point, 1.0)).xyz + 0.5;
   float reached = texture(depths, seen.xy).r >= seen.z - texel / deep ? 1.0 : 0.0;
   light = vec4(cosine * reached, cosine, 0.0, 0.0);
 }

@@ -1,7 +1,9 @@
-// How open each place of the vessels' wall is to the sky around it: ambient occlusion, found once by the graphics card.
-// The tree is drawn as depths from directions all around, and each texel of a wall, 8 around a segment and 4 along it,
-// adds up the light of those that reach it, weighted by their cosines. It does not depend on the view, so that a tree
-// that is turned costs no more; its mean over directions smooths what a single map of depths is too coarse for.
+// Computes the ambient occlusion of the vessels' surface, once, on the graphics card.
+//
+// The tree is drawn as shadow maps from directions all around. Each segment has 8 texels around its axis and 4 along
+// it. A texel adds up the light of the directions from which it is visible, weighted by their cosines. The result does
+// not depend on the view, so turning the tree costs nothing. The mean over many directions hides that a single shadow
+// map is coarse.
 import {
   Color, CustomBlending, DataTexture, DepthTexture, FloatType, GLSL3, HalfFloatType, Mesh, NearestFilter, OneFactor,
   OrthographicCamera, PlaneGeometry, RawShaderMaterial, RGBAFormat, Scene, UnsignedIntType, Vector3, WebGLRenderTarget,
@@ -9,16 +11,16 @@ import {
 import fragmentShader from "./shade.frag.glsl";
 
 export const AROUND = 8, ALONG = 4, WIDTH = 2048;
-const DIRECTIONS = 64, MAP = 1024;
+const DIRECTIONS = 64, MAP = 1024; // number of shadow maps, and their side in texels
 
-// Directions of equal parts of the sphere, so ordered that each next one is far from the one before.
+// Returns direction k: the directions divide the sphere evenly, and consecutive ones are far apart.
 function direction(k) {
   const z = 1 - (2 * (((k * 29) % DIRECTIONS) + 0.5)) / DIRECTIONS, turn = k * 29 * Math.PI * (3 - Math.sqrt(5));
   const level = Math.sqrt(1 - z * z);
   return new Vector3(level * Math.cos(turn), level * Math.sin(turn), z);
 }
 
-// Start and radius, then end, of each segment.
+// Returns a texture with two texels per segment: start and radius, then end.
 function segmentTexture(geometry, n) {
   const height = Math.ceil((2 * n) / WIDTH), numbers = new Float32Array(4 * WIDTH * height);
   const [start, end, sizes] = ["start", "end", "sizes"].map((name) => geometry.getAttribute(name).array);
@@ -76,7 +78,7 @@ export class Shade {
 
   get isDone() { return this.done === DIRECTIONS; }
 
-  // Adds the light of the next direction; false when there is none.
+  // Adds the light of the next direction. Returns false if all directions are done.
   step() {
     if (this.isDone) return false;
     const { renderer, camera } = this, towards = direction(this.done);

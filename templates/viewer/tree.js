@@ -1,13 +1,13 @@
-// The tree that the page holds: numbers of its nodes, unpacked once, and what follows from them. Node i other than a
-// root is the far end of segment i, a cylinder with round ends; coordinates are in mm from `origin` on.
+// The tree that the page holds: the numbers of its nodes, unpacked once, and what is derived from them. Node i, unless
+// it is a root, is the distal end of segment i, a cylinder with round ends. Coordinates are in mm relative to `origin`.
 
-const NONE = 0xffff; // stands for no value among whole numbers of 16 bits
+const NONE = 0xffff; // in a field of 16-bit integers: no value
 
 function text(id) {
   return document.getElementById(id).textContent;
 }
 
-// The numbers of a block of base64, little-endian as all machines are that browsers run on.
+// Decodes a block of base64 to numbers. They are little-endian, as are all machines that browsers run on.
 function block(id, Numbers) {
   const chars = atob(text(id));
   const bytes = new Uint8Array(chars.length);
@@ -21,7 +21,8 @@ function readField(field, k) {
   return { ...field, values };
 }
 
-// From the least to the greatest of what can be shown, in all moments; with `log` above 0.
+// Returns the minimum and maximum of the finite values at all times; with `log`, of the values above 0. Returns null if
+// there is none.
 function rangeOf(values, n, segments, log) {
   let low = Infinity, high = -Infinity;
   for (let at = 0; at < values.length; at += n)
@@ -52,7 +53,7 @@ export class Tree {
     this.maps = this.properties.maps.map((map, k) => ({ ...map, bytes: block("map-" + k, Uint8Array) }));
   }
 
-  // Segments that have a length and a radius, the number of each by its id, and the daughters of each node.
+  // Finds the segments that have a length and a radius, the index of each by its id, and the daughters of each node.
   findSegments() {
     const { n, parent, position, radius } = this;
     this.segments = [];
@@ -66,7 +67,7 @@ export class Tree {
     }
   }
 
-  // The box of what is drawn, and the way along the vessels from the root to each node.
+  // Finds the box of the segments, and the path length along the vessels from the root to each node, mm.
   measure() {
     const { n, parent, position, radius } = this;
     this.low = [Infinity, Infinity, Infinity];
@@ -77,11 +78,11 @@ export class Tree {
           this.low[c] = Math.min(this.low[c], position[3 * node + c] - radius[i]);
           this.high[c] = Math.max(this.high[c], position[3 * node + c] + radius[i]);
         }
-    this.way = new Float32Array(n);
+    this.pathLength = new Float32Array(n);
     this.longest = 0;
     for (let i = 0; i < n; i++) {
-      if (parent[i] !== i) this.way[i] = this.way[parent[i]] + this.length(i);
-      if (this.way[i] > this.longest) this.longest = this.way[i];
+      if (parent[i] !== i) this.pathLength[i] = this.pathLength[parent[i]] + this.length(i);
+      if (this.pathLength[i] > this.longest) this.longest = this.pathLength[i];
     }
   }
 
@@ -90,13 +91,14 @@ export class Tree {
     return Math.hypot(p[b] - p[a], p[b + 1] - p[a + 1], p[b + 2] - p[a + 2]);
   }
 
-  // The segment that a ray meets first, of those within `grown` of the longest way, or -1; a vessel counts as at
-  // least `slack` thick for each mm from the ray's start on, and `least` thick anyhow, so that thin ones can be met.
+  // Returns the index of the first segment that a ray hits, or -1. Only segments that begin within the fraction `grown`
+  // of the longest path count. To make thin vessels easy to hit, a vessel's radius counts as at least `least` mm, plus
+  // `slack` mm per mm of distance from the ray's start.
   pick(from, along, slack, least, grown) {
     const { parent, position, radius } = this;
     let best = -1, nearest = Infinity;
     for (const i of this.segments) {
-      if (this.way[parent[i]] > grown * this.longest) continue;
+      if (this.pathLength[parent[i]] > grown * this.longest) continue;
       const a = 3 * parent[i], b = 3 * i;
       const x = position[b] - position[a], y = position[b + 1] - position[a + 1], z = position[b + 2] - position[a + 2];
       const px = position[a] - from.x, py = position[a + 1] - from.y, pz = position[a + 2] - from.z;

@@ -1,6 +1,7 @@
-// What a ray sees of a cylinder with round ends, in POV-Ray's light as corcast's pictures have it (METHODS section 3).
-// All distances are taken from a place on the box and by cross products, which floats can bear: a ray's start may be
-// 10^4 radii away. The part of the pixel that the vessel covers becomes coverage of the pixel's samples.
+// Intersects a ray with a cylinder with round ends, and shades the hit by POV-Ray's light model as corcast's pictures
+// do (METHODS section 3). Floats are too coarse for distances from the ray's start, which may be 10^4 radii away. So
+// all distances are measured from a point on the box, and by cross products. The fraction of the pixel that the vessel
+// covers becomes the coverage of the pixel's samples.
 precision highp float;
 precision highp int;
 
@@ -17,16 +18,16 @@ uniform bool parallel;
 uniform float pixel;
 uniform float ambient, diffuse, brilliance, phong, phongSize, specular, sharpness;
 uniform float lightIsPoint[LIGHTS];
-uniform vec3 lightPlace[LIGHTS], lightColor[LIGHTS];
+uniform vec3 lightPosition[LIGHTS], lightColor[LIGHTS];
 uniform float halfDiagonal;
 uniform vec3 paper, accent; // the paper's color is sRGB
 uniform float fade;
-uniform highp sampler2D open; // sums of light that comes, and of what would
+uniform highp sampler2D open; // sums of the light that arrives, and of the light without other vessels [shade.js]
 uniform float shade, rim;
 
 out vec4 seen;
 
-// Where the ray enters the solid, t along it, when it passes the core at less than the radius.
+// Returns the parameter t where the ray enters the solid. The ray must pass the axis at less than the radius.
 float entry(vec3 p, vec3 d, float len, float r) {
   float a = max(dot(d.yz, d.yz), 1e-12), aside = p.y * d.z - p.z * d.y;
   float t = (-dot(p.yz, d.yz) - sqrt(max(0.0, a * r * r - aside * aside))) / a;
@@ -38,11 +39,11 @@ float entry(vec3 p, vec3 d, float len, float r) {
   return -along - sqrt(max(0.0, r * r - dot(off, off)));
 }
 
-vec3 lit(vec3 place, vec3 normal, vec3 view, vec3 color) {
+vec3 lit(vec3 point, vec3 normal, vec3 view, vec3 color) {
   vec3 sum = color * ambient;
   for (int i = 0; i < LIGHTS; i++) {
     vec3 middle = (viewMatrix * vec4(0, 0, 0, 1)).xyz;
-    vec3 towards = lightIsPoint[i] > 0.5 ? middle + halfDiagonal * lightPlace[i] - place : lightPlace[i];
+    vec3 towards = lightIsPoint[i] > 0.5 ? middle + halfDiagonal * lightPosition[i] - point : lightPosition[i];
     towards = normalize(towards);
     float cosine = dot(normal, towards);
     if (cosine <= 0.0) continue;
@@ -62,7 +63,7 @@ float openTexel(int around, int along) {
   return sums.y > 0.0 ? sums.x / sums.y : 1.0;
 }
 
-// How open the wall is to the sky, from 0 to 1, between the nearest texels.
+// Returns the ambient visibility of the surface, from 0 to 1, interpolated between the nearest texels.
 float openness(vec3 normal, float part) {
   float around = atan(normal.z, normal.y) / 6.2831853 * float(AROUND) - 0.5, along = part * float(ALONG) - 0.5;
   int i = int(floor(around)), k = int(floor(along));
@@ -79,7 +80,7 @@ void main() {
   float len = size.x, r = size.y;
   vec3 d = normalize(ray * axes);
   float a = max(dot(d.yz, d.yz), 1e-12);
-  float core = clamp(at.x - d.x * dot(at.yz, d.yz) / a, 0.0, len); // of the core's points, the nearest to the ray
+  float core = clamp(at.x - d.x * dot(at.yz, d.yz) / a, 0.0, len); // the point of the axis that is nearest to the ray
   vec3 q = at - vec3(core, 0.0, 0.0);
   float along = -dot(q, d);
   vec3 off = q + along * d;
@@ -88,7 +89,8 @@ void main() {
   float h = 0.5 * pixel * (parallel ? 1.0 : length(ray) + along);
   float cover = (min(r, apart + h) - max(-r, apart - h)) / (2.0 * h);
 #ifdef DEPTHS
-  // In the mean over many maps, a vessel thinner than a pixel darkens by what it covers.
+  // A vessel thinner than a pixel is drawn with the probability of its coverage, so that the mean over all shadow maps
+  // is darkened by the coverage.
   if (cover <= fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))))) discard;
 #else
   if (cover <= 0.0) discard;
@@ -97,19 +99,19 @@ void main() {
   float t = apart < r ? entry(at, d, len, r) : along;
   vec3 hit = at + t * d;
   vec3 normal = normalize(hit - vec3(clamp(hit.x, 0.0, len), 0.0, 0.0));
-  vec4 place = viewMatrix * vec4(from + axes * hit, 1.0);
-  vec4 clip = projectionMatrix * place;
-  gl_FragDepth = clamp(0.5 * clip.z / clip.w + 0.5, 0.0, 1.0) * (1.0 - 0.999 * isPicked); // before all others
+  vec4 point = viewMatrix * vec4(from + axes * hit, 1.0);
+  vec4 clip = projectionMatrix * point;
+  gl_FragDepth = clamp(0.5 * clip.z / clip.w + 0.5, 0.0, 1.0) * (1.0 - 0.999 * isPicked); // picked: in front of all
 
   seen = vec4(0);
 #ifndef DEPTHS
   mat3 toView = mat3(viewMatrix) * axes;
-  vec3 color = lit(place.xyz, toView * normal, toView * d, pigment);
+  vec3 color = lit(point.xyz, toView * normal, toView * d, pigment);
   color = mix(color, accent, 0.8 * isPicked);
   if (shade > 0.0 && isPicked == 0.0) color *= mix(1.0, openness(normal, hit.x / max(len, 1e-9)), shade);
-  color += rim * pow(1.0 - abs(dot(normal, d)), 3.0); // parts dark vessels from a dark ground
+  color += rim * pow(1.0 - abs(dot(normal, d)), 3.0); // separates dark vessels from a dark background
   float middle = (viewMatrix * vec4(0, 0, 0, 1)).z;
-  float depth = clamp(0.5 + 0.5 * (middle - place.z) / halfDiagonal, 0.0, 1.0);
+  float depth = clamp(0.5 + 0.5 * (middle - point.z) / halfDiagonal, 0.0, 1.0);
   seen = vec4(mix(encoded(color), paper, fade * depth * (1.0 - isPicked)), cover);
 #endif
 }

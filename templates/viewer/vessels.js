@@ -1,5 +1,6 @@
-// All segments as one mesh: a box for each, in whose pixels the shader finds the cylinder and its round ends exactly,
-// so that a segment costs 8 corners however close the viewer comes, and outlines are those of corcast's pictures.
+// Draws all segments as one mesh with one box per segment. In the pixels of a box, the fragment shader intersects the
+// ray with the cylinder and its round ends exactly. So a segment costs 8 corners at any distance, and outlines are
+// equal to those of corcast's pictures.
 import {
   BackSide, BufferAttribute, Color, CustomBlending, GLSL3, InstancedBufferAttribute, InstancedBufferGeometry, Mesh,
   OneFactor, RawShaderMaterial, Scene, Vector3, ZeroFactor,
@@ -14,14 +15,14 @@ const FACES = [
 ];
 
 function geometry(tree) {
-  const { segments, parent, position, radius, way } = tree, n = segments.length;
+  const { segments, parent, position, radius, pathLength } = tree, n = segments.length;
   const start = new Float32Array(3 * n), end = new Float32Array(3 * n), sizes = new Float32Array(3 * n);
   segments.forEach((i, k) => {
     for (let c = 0; c < 3; c++) {
       start[3 * k + c] = position[3 * parent[i] + c];
       end[3 * k + c] = position[3 * i + c];
     }
-    sizes.set([radius[i], way[parent[i]] / tree.longest, way[i] / tree.longest], 3 * k);
+    sizes.set([radius[i], pathLength[parent[i]] / tree.longest, pathLength[i] / tree.longest], 3 * k);
   });
   const made = new InstancedBufferGeometry();
   made.instanceCount = n;
@@ -46,7 +47,7 @@ function uniforms(look) {
     specular: value(look.specular),
     sharpness: value(look.roughness > 0 ? 1 / look.roughness : 0),
     lightIsPoint: value(lights.map((light) => (light.point ? 1 : 0))),
-    lightPlace: value(lights.map((light) => new Vector3(...light.direction))),
+    lightPosition: value(lights.map((light) => new Vector3(...light.direction))),
     lightColor: value(lights.map((light) => new Vector3(...light.color))),
     eye: value(new Vector3()),
     gaze: value(new Vector3()),
@@ -58,8 +59,8 @@ function uniforms(look) {
     grown: value(1),
     picked: value(-1),
     accent: value(new Color()),
-    open: value(null), // texture of how open each place of the walls is
-    shade: value(0), // how much of that is shown
+    open: value(null), // texture of the ambient occlusion [shade.js]
+    shade: value(0), // strength of the ambient occlusion, 0..1
     rim: value(0), // light from behind, linear
   };
 }
@@ -75,8 +76,8 @@ export class Vessels {
       fragmentShader,
       defines,
       uniforms: uniforms(look),
-      side: BackSide, // so that a viewer inside a box sees it
-      alphaToCoverage: true, // and the picture stays opaque where samples are covered in part:
+      side: BackSide, // so that a box is drawn also for a viewer inside it
+      alphaToCoverage: true, // with the blending below, partly covered pixels stay opaque:
       blending: CustomBlending,
       blendSrc: OneFactor,
       blendDst: ZeroFactor,
@@ -108,7 +109,7 @@ export class Vessels {
     renderer.render(this.scene, camera);
   }
 
-  // Depths alone, into the renderer's target.
+  // Draws depths alone, into the renderer's target.
   drawDepths(renderer, camera, height) {
     this.mesh.material = this.depths;
     aim(this.depths.uniforms, camera, height);
@@ -116,7 +117,7 @@ export class Vessels {
     this.mesh.material = this.material;
   }
 
-  // Colors all segments by a scale, of the values of one moment; without, in the look's color.
+  // Colors all segments by a scale and the values at one time. If `scale` is null, uses the look's color.
   paint(scale, moment) {
     const attribute = this.mesh.geometry.getAttribute("color"), { segments, n } = this.tree;
     segments.forEach((i, k) => {
@@ -127,7 +128,7 @@ export class Vessels {
   }
 }
 
-// What the shader needs to know of a camera of a picture so many pixels high.
+// Sets the shader's parameters for a camera and a picture of this height in pixels.
 function aim({ eye, gaze, parallel, pixel }, camera, height) {
   camera.updateMatrixWorld();
   eye.value.setFromMatrixPosition(camera.matrixWorld);
@@ -138,7 +139,7 @@ function aim({ eye, gaze, parallel, pixel }, camera, height) {
     : (2 * Math.tan((camera.fov * Math.PI) / 360)) / camera.zoom / height;
 }
 
-// sRGB bytes of a linear color.
+// Returns a linear color as sRGB bytes.
 function encoded(linear) {
   return linear.map((v) => Math.round(255 * (v < 0.0031308 ? 12.92 * v : 1.055 * Math.pow(v, 1 / 2.4) - 0.055)));
 }

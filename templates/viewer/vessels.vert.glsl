@@ -1,17 +1,18 @@
-// A box about a cylinder with round ends, a pixel wider than it, in coordinates whose x runs from its start to its end.
+// Places a box about a cylinder with round ends, one pixel wider than the cylinder. The x axis of the box's coordinates
+// runs from the cylinder's start to its end.
 precision highp float;
 precision highp int;
 
-in vec3 position; // of a corner, each -1 or 1
+in vec3 position; // of a corner, each coordinate -1 or 1
 in vec3 start, end;
-in vec3 sizes; // radius, and the way from the root to start and end, over the longest
+in vec3 sizes; // radius; path lengths from the root to start and end, as fractions of the longest
 in vec4 color; // sRGB
 
 uniform mat4 viewMatrix, projectionMatrix;
 uniform vec3 eye, gaze;
 uniform bool parallel;
-uniform float pixel; // width of a pixel: mm, or over the distance
-uniform float grown; // the part of the longest way that is shown
+uniform float pixel; // width of a pixel: mm in parallel projection, else mm per mm of distance
+uniform float grown; // the fraction of the longest path that is shown
 uniform int picked;
 
 flat out mat3 axes;
@@ -37,8 +38,8 @@ void main() {
   number = gl_InstanceID;
   isPicked = gl_InstanceID == picked ? 1.0 : 0.0;
   float reach = distance(eye, 0.5 * (start + end)) + whole;
-  float one = pixel * (parallel ? 1.0 : reach); // pixel there
-  size = vec2(whole * part, max(sizes.x, isPicked * 2.0 * one)); // what is picked can be seen, however thin
+  float one = pixel * (parallel ? 1.0 : reach); // width of a pixel at the segment, mm
+  size = vec2(whole * part, max(sizes.x, isPicked * 2.0 * one)); // picked: radius of 2 pixels at least
   float wide = size.y + one;
   at = vec3(position.x > 0.0 ? size.x + wide : -wide, position.yz * wide);
   vec3 world = start + axes * at;

@@ -1,11 +1,11 @@
-// From where the tree is seen. A pose is what `corcast render` calls it: degrees to the right about the upright and
-// then up (--turn), the point in the middle (--look-at), and the mm that the picture's height shows there (--height),
-// in either projection.
+// The camera of the page. Its pose has the terms of `corcast render`, in either projection: degrees to the right about
+// the vertical axis and then up (--turn), the point in the middle of the picture (--look-at), and the height of the
+// picture at this point in mm (--height).
 import { OrthographicCamera, PerspectiveCamera, Vector3 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
-const ANGLE = 26; // degrees, from the top of a perspective picture to its bottom
-const MARGIN = 0.05; // free part on each side when the tree is framed
+const ANGLE = 26; // vertical angle of view of a perspective picture, degrees
+const MARGIN = 0.05; // fraction of the window that is left free on each side of the whole tree
 const STEEPEST = 89.9;
 const radians = (degrees) => (degrees * Math.PI) / 180;
 const degrees = (radian) => (radian * 180) / Math.PI;
@@ -66,7 +66,7 @@ export class View {
 
   get eye() { return this.camera.position.toArray(); }
 
-  // Degrees from the left of a perspective picture to its right.
+  // The horizontal angle of view of a perspective picture, degrees.
   get angleAcross() { return 2 * degrees(Math.atan(Math.tan(radians(ANGLE / 2)) * this.perspective.aspect)); }
 
   change(what) { this.pose = { ...this.pose, ...what }; }
@@ -79,7 +79,7 @@ export class View {
     this.pose = pose;
   }
 
-  // Shows all of the tree from a direction.
+  // Shows the whole tree from a direction.
   frame(turn, rise) {
     const back = towardsEye(turn, rise), right = new Vector3(0, 1, 0).cross(back).normalize();
     const up = back.clone().cross(right);
@@ -90,21 +90,21 @@ export class View {
       for (const node of [i, parent[i]]) {
         at.fromArray(position, 3 * node);
         axes.forEach((axis, k) => {
-          const place = at.dot(axis);
-          low[k] = Math.min(low[k], place - radius[i]);
-          high[k] = Math.max(high[k], place + radius[i]);
+          const along = at.dot(axis);
+          low[k] = Math.min(low[k], along - radius[i]);
+          high[k] = Math.max(high[k], along + radius[i]);
         });
       }
     const target = new Vector3();
     axes.forEach((axis, k) => target.addScaledVector(axis, (low[k] + high[k]) / 2));
     const { free } = this, all = this.orthographic.view.fullHeight / (1 - 2 * MARGIN);
     const span = all * Math.max((high[1] - low[1]) / free.height, (high[0] - low[0]) / free.width);
-    // In perspective what is nearer is larger.
+    // In perspective, nearer vessels are larger and need more room.
     const height = this.isOrthographic ? span : span + (high[2] - low[2]) * Math.tan(radians(ANGLE / 2));
     this.pose = { turn, rise, target: target.toArray(), height };
   }
 
-  // A window of so many pixels of the page, of which a part is free.
+  // Sets the size of the window, and the part of it that the panels leave free, in CSS pixels.
   resize(width, height, free) {
     this.free = free;
     this.perspective.aspect = width / height;
@@ -115,7 +115,7 @@ export class View {
       camera.setViewOffset(width, height, -right, -down, width, height);
   }
 
-  // To be called before each picture: goes on with a movement, and has the depths hold all of the tree.
+  // To be called before each picture: continues a movement, and sets the depth range to hold the whole tree.
   step() {
     this.controls.update();
     const { camera } = this, away = camera.position.length();
@@ -125,13 +125,13 @@ export class View {
     camera.updateProjectionMatrix();
   }
 
-  // The ray through a place of the canvas, in pixels of the page, and how far apart two of those are on it: the first
-  // in mm, the second in mm for each mm along it.
+  // Returns the ray through a point of the canvas, given in CSS pixels, and the width of a pixel on it: `least` mm plus
+  // `slack` mm per mm along the ray.
   ray(x, y) {
     const box = this.canvas.getBoundingClientRect();
-    const place = [((x - box.left) / box.width) * 2 - 1, 1 - ((y - box.top) / box.height) * 2];
-    const from = new Vector3(...place, -1).unproject(this.camera);
-    const along = new Vector3(...place, 1).unproject(this.camera).sub(from).normalize();
+    const point = [((x - box.left) / box.width) * 2 - 1, 1 - ((y - box.top) / box.height) * 2];
+    const from = new Vector3(...point, -1).unproject(this.camera);
+    const along = new Vector3(...point, 1).unproject(this.camera).sub(from).normalize();
     if (this.isOrthographic) return { from, along, least: this.pose.height / box.height, slack: 0 };
     return { from, along, least: 0, slack: (2 * Math.tan(radians(ANGLE / 2))) / box.height };
   }

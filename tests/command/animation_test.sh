@@ -70,12 +70,12 @@ test_a_folder_of_svonedsolver_gives_the_pictures_of_columns() {
         expect_status 2
         expect_sentence "$2"
     }
-    refused steps 'steps: of a folder of svOneDSolver one of flow, pressure, area, wss and Re is shown'
-    refused steps:wss 'steps: there is no file \.\.\._wss\.dat in it'
+    refused steps 'steps: name the quantity of the result folder: flow, pressure, area, wss or Re, as in steps:flow'
+    refused steps:wss 'steps: the folder has no file \.\.\._wss\.dat'
     echo 1 2 3 >steps/tree_segment7_flow.dat
-    refused steps:flow 'steps/tree_segment7_flow.dat:1: there are 3 time steps, and 8 in tree_segment10_flow.dat'
+    refused steps:flow 'steps/tree_segment7_flow.dat:1: the file has 3 time steps, but there are 8 in tree_segment10_flow.dat'
     mv steps/tree_segment7_flow.dat steps/tree_aorta_flow.dat
-    refused steps:flow "tree_aorta_flow.dat:1: the name of the segment, 'tree_aorta', does not end in the id"
+    refused steps:flow "tree_aorta_flow.dat:1: the segment's name, 'tree_aorta', must end in the id"
 }
 
 # write_vtp COLUMN FILE: the tree with its radius and this column of pulse.csv as arrays of points.
@@ -122,12 +122,12 @@ test_an_index_of_vtp_files_is_a_series() {
         expect_status 2
         expect_sentence "$sentence"
     }
-    sentence='bad.pvd:3: m2.vtp has this timestep already, 0.5' refused 0.5 m2.vtp 0.5 m3.vtp
+    sentence='bad.pvd:3: m2.vtp already has the timestep 0.5; each timestep must occur once' refused 0.5 m2.vtp 0.5 m3.vtp
     sentence='bad.pvd:2: no.vtp: ' refused 0.5 no.vtp
     sentence="bad.pvd:2: the timestep is 'x'" refused x m2.vtp
-    sentence="bad.pvd:2: 'bad.pvd' is an index itself" refused 0 bad.pvd
+    sentence="bad.pvd:2: 'bad.pvd' is a PVD file; a PVD file can only refer to trees" refused 0 bad.pvd
     sed '/^31 /,$d' tree.swc >less.swc && mv less.swc tree.swc && write_vtp 2 less.vtp
-    sentence='the tree in less.vtp is not that in m2.vtp' refused 0 m2.vtp 1 less.vtp
+    sentence='the tree in less.vtp differs from the tree in m2.vtp; all must have the same nodes' refused 0 m2.vtp 1 less.vtp
 }
 
 test_values_become_columns_of_a_converted_tree() {
@@ -162,11 +162,11 @@ test_an_index_that_is_written_reads_back() {
     expect_same columns.ppm wide.ppm
     run corcast convert tree.swc x.pvd
     expect_status 2
-    expect_sentence 'tree.swc: the tree has no values that change with time'
+    expect_sentence 'tree.swc: the tree has no time series'
     awk -F, -v OFS=, 'NR == 1 { $2 = "a_1"; $3 = "a_2"; $4 = "b_1"; $5 = "b_3"; } { NF = 5; print }' pulse.csv >two.csv
     run corcast convert tree.swc x.pvd --values two.csv
     expect_status 2
-    expect_sentence 'the series a and b are of different times'
+    expect_sentence 'the series a and b have different times'
     run corcast convert run_0002.vtp run.pvd --values pulse.csv
     expect_status 2
     expect_sentence "'run_0002.vtp' would be written over the input 'run_0002.vtp'"
@@ -228,24 +228,24 @@ test_animations_that_cannot_be_are_refused() {
         expect_status 2
         expect_sentence "$sentence"
     }
-    refused "'x.png' has no place for a number" --turntable 3 -o x.png
-    refused "'x%s.png' has no place" --turntable 3 -o x%s.png
-    refused "'x%d%d.png' has no place" --turntable 3 -o x%d%d.png
-    refused "'-' has no place" --turntable 3 -o -
+    refused "'x.png' must contain the picture number" --turntable 3 -o x.png
+    refused "'x%s.png' must contain the picture number" --turntable 3 -o x%s.png
+    refused "'x%d%d.png' must contain the picture number" --turntable 3 -o x%d%d.png
+    refused "'-' must contain the picture number" --turntable 3 -o -
     refused "exclude each other" --turntable 3 --growth 3 -o x%d.png
     refused "does not change with time" --frames all -o x%d.png
     refused "flow does not change with time" --color-by flow --frames all -o x%d.png
     refused "pulse has 8 frames, not 9" --color-by pulse.csv --frames 2..9 -o x%d.png
     refused "--moment 9: pulse has 8 frames" --color-by pulse.csv --moment 9 -o x.png
-    refused "'4..3' is not all or A..B" --color-by pulse.csv --frames 4..3 -o x%d.png
-    refused "pulse.csv:1: there is no column 'x'" --color-by pulse.csv:x -o x.png
+    refused "'4..3' is not valid; use all or A..B" --color-by pulse.csv --frames 4..3 -o x%d.png
+    refused "pulse.csv:1: no column is called 'x'" --color-by pulse.csv:x -o x.png
     sed -i '4s/^[0-9]*/4711/' pulse.csv
-    refused "pulse.csv:4: the tree has no segment 4711" --color-by pulse.csv -o x.png
+    refused "pulse.csv:4: the tree has no segment with the id 4711" --color-by pulse.csv -o x.png
     printf 'id,a\n2,nan\n' >nothing.csv
     refused "the field a has no value" --color-by nothing.csv:a -o x.png
     refused "nothing.csv: is a folder|No such file|not exist|missing" --color-by no/nothing.csv -o x.png
     awk 'BEGIN { printf "id"; for (k = 0; k < 100000; k++) printf "," k; print "" }' >wide.csv
-    refused "wide.csv:1: there are more than 10000 columns" --color-by wide.csv -o x.png
+    refused "wide.csv:1: the file has more than 10000 columns" --color-by wide.csv -o x.png
     expect_only pulse.csv nothing.csv wide.csv tree.swc
 }
 
@@ -264,7 +264,7 @@ test_flow_of_measured_trees_parts_as_is_asked_for() {
     printf 'id,flow\n4711,3\n' >flows.csv
     run corcast info "$DATA/coronary.swc" --terminal-flow flows.csv
     expect_status 2
-    expect_sentence 'flows.csv:2: the tree has no segment 4711'
+    expect_sentence 'flows.csv:2: the tree has no segment with the id 4711'
 }
 
 run_tests "$@"

@@ -7,7 +7,7 @@
 taken() {
     run corcast check-figure "$2" --preset "$1" "${@:3}"
     expect_status 0
-    expect_stdout "^$2: $1 takes it; not checked: "
+    expect_stdout "^$2: meets the preset $1. Not checked: "
     [ "$(wc -l <stdout)" = 1 ] || fail "expected one line, got: $(cat stdout)"
 }
 
@@ -46,7 +46,7 @@ plos 1559 p.tif
 springer 1984 s.tif
 END
     run_ok corcast render tree.swc --preset poster-a0 --dpi 3 -o a.tif
-    refused poster-a0 a.tif 'resolution: 3 dpi, less than 150 for halftone'
+    refused poster-a0 a.tif 'resolution: 3 dpi; the minimum for halftone is 150'
 }
 
 test_a_preset_says_what_nobody_else_does() {
@@ -64,7 +64,7 @@ test_a_preset_says_what_nobody_else_does() {
     expect_sentence '--column needs --preset'
     run corcast render tree.swc --preset sience -o x.png
     expect_status 2
-    expect_sentence "--preset: 'sience' is not elsevier, nature, plos, poster-a0 or springer"
+    expect_sentence "--preset: 'sience' is unknown; available: elsevier, nature, plos, poster-a0 or springer"
 }
 
 test_figures_and_pages_of_several_parts_go_by_presets() {
@@ -116,7 +116,7 @@ test_a_text_size_of_all_panels_wins_over_the_page() {
     printf '[panel a]\ntree = tree.swc\npreset = plos\n' >panel.ini
     run corcast figure panel.ini -o panel.svg
     expect_status 2
-    expect_sentence "panel.ini:3: 'preset' is not a key of"
+    expect_sentence "panel.ini:3: unknown key 'preset' in"
 }
 
 # A picture of 300 dpi, 80 x 60 mm, that all take.
@@ -129,41 +129,41 @@ test_faults_of_pictures_are_named_one_each() {
     fine
     taken nature fine.tif
     taken plos fine.tif
-    refused springer fine.tif 'resolution: 300 dpi, less than 600 for combination' --kind combination
-    refused elsevier fine.tif 'resolution: 300 dpi, less than 1000 for line' --kind line
+    refused springer fine.tif 'resolution: 300 dpi; the minimum for combination is 600' --kind combination
+    refused elsevier fine.tif 'resolution: 300 dpi; the minimum for line is 1000' --kind line
     run_ok corcast convert fine.ppm low.tif --dpi 250
-    refused nature low.tif 'resolution: 250 dpi, less than 300 for halftone'
+    refused nature low.tif 'resolution: 250 dpi; the minimum for halftone is 300'
     run_ok corcast convert fine.ppm dense.tif --dpi 601
-    refused plos dense.tif 'width: 39.9 mm, less than 66.8 mm'
+    refused plos dense.tif 'width: 39.9 mm; the minimum is 66.8 mm'
     run_ok corcast convert fine.ppm denser.tif --dpi 610
-    refused_twice plos denser.tif 'resolution: 610 dpi, more than 600' 'width: 39.3 mm, less than 66.8 mm'
+    refused_twice plos denser.tif 'resolution: 610 dpi; the maximum is 600' 'width: 39.3 mm; the minimum is 66.8 mm'
     run_ok corcast convert fine.ppm none.jpg
-    refused_twice nature none.jpg 'resolution: the file has none; 945 pixels are 270 dpi over a column of 89 mm' \
-        'pixels: 945 across, fewer than the 1051 of a column of 89 mm at 300 dpi'
+    refused_twice nature none.jpg 'resolution: the file states none; 945 pixels are 270 dpi across a column of 89 mm' \
+        'pixels: 945 across; a column needs 1051 pixels \(89 mm at 300 dpi\)'
     run_ok corcast convert fine.ppm deep.tif --dpi 300 --bits 16
-    refused plos deep.tif 'bits: 16 a channel, more than 8'
+    refused plos deep.tif 'bits: 16 per channel; the maximum is 8'
     run_ok corcast convert fine.ppm zip.tif --dpi 300 --compression deflate
-    refused plos zip.tif 'compression: deflate; wanted is lzw'
+    refused plos zip.tif 'compression: deflate; the preset accepts lzw'
     run_ok corcast convert fine.ppm inks.tif --dpi 300 --cmyk-profile "$CMYK"
-    refused nature inks.tif 'colors: cmyk; taken are rgb grey'
+    refused nature inks.tif 'color mode: the figure is cmyk; the preset accepts rgb grey'
     taken elsevier inks.tif
     oiiotool fine.tif --ch R,G,B,A=0.5 --compression lzw -o glassy.tif
-    refused plos glassy.tif 'alpha: a channel of transparency; figures are to be flat'
+    refused plos glassy.tif 'alpha: the figure has an alpha channel; flatten the image'
     run_ok corcast convert fine.ppm fine.png --dpi 300
-    refused springer fine.png 'format: png; taken are eps tif'
+    refused springer fine.png 'format: png; the preset accepts eps tif'
     ppmmake black 2204 709 >wide.ppm
     run_ok corcast convert wide.ppm wide.tif --dpi 300
-    refused nature wide.tif 'width: 186.6 mm, more than 183 mm'
+    refused nature wide.tif 'width: 186.6 mm; the maximum is 183 mm'
     ppmmake black 945 2100 >high.ppm
     run_ok corcast convert high.ppm high.tif --dpi 300
-    refused nature high.tif 'height: 177.8 mm, more than 170 mm'
+    refused nature high.tif 'height: 177.8 mm; the maximum is 170 mm'
     ppmmake black 2240 1600 >large.ppm
     run_ok corcast convert large.ppm large.tif --dpi 300 --compression none
-    refused_twice plos large.tif 'size: 10.8 MB, not less than 10 MB' 'compression: none; wanted is lzw'
+    refused_twice plos large.tif 'file size: 10.8 MB; it must be below 10 MB' 'compression: none; the preset accepts lzw'
     run corcast check-figure "$DATA/images/pages.tif" --preset nature
-    expect_stdout 'pages: 2; one is wanted'
+    expect_stdout 'pages: 2; a figure must have one page'
     run corcast check-figure "$DATA/images/wide-profile.tif" --preset nature
-    expect_stdout 'profile: "Wide built-in"; colors without ado are sRGB'
+    expect_stdout 'profile: "Wide built-in"; the preset accepts sRGB'
 }
 
 # page_with_font FONT FILE: a page whose only font is this dictionary.
@@ -181,33 +181,33 @@ test_faults_of_pages_are_named() {
     grow_tree 3
     run_ok corcast render tree.swc --size 80mmx50mm --dpi 300 --scale-bar 10 -o fine.pdf
     taken nature fine.pdf
-    refused elsevier fine.pdf 'resolution: 300 dpi of picture 1, less than 500 for combination' --kind combination
+    refused elsevier fine.pdf 'resolution: 300 dpi in image 1; the minimum for combination is 500' --kind combination
     run_ok corcast render tree.swc --size 80mmx50mm --dpi 200 -o low.pdf
-    refused nature low.pdf 'resolution: 200 dpi of picture 1, less than 300 for halftone'
+    refused nature low.pdf 'resolution: 200 dpi in image 1; the minimum for halftone is 300'
     run_ok corcast render tree.swc --size 200mmx50mm --dpi 300 --antialias 1 -o wide.pdf
-    refused nature wide.pdf 'width: 200.0 mm, more than 183 mm'
+    refused nature wide.pdf 'width: 200.0 mm; the maximum is 183 mm'
     page_with_font '/Subtype/Type1/BaseFont/Helvetica' bare.pdf
     refused nature bare.pdf 'fonts: Helvetica is not embedded'
     local drawn='/Subtype/Type3/FontBBox[0 0 750 750]/FontMatrix[.001 0 0 .001 0 0]/CharProcs<</m 6 0 R>>'
     drawn+='/Encoding<</Type/Encoding/Differences[109/m]>>/FirstChar 109/LastChar 109/Widths[1000]'
     page_with_font "$drawn" drawn.pdf
-    refused nature drawn.pdf 'fonts: one without a name is a Type 3 font; TrueType, OpenType and Type 1 fonts are taken'
+    refused nature drawn.pdf 'fonts: a font without a name is a Type 3 font; the accepted kinds are TrueType, OpenType and Type 1'
     page_with_font "$drawn/BaseFont/Dots" named.pdf
     refused nature named.pdf 'fonts: Dots is a Type 3 font; .*'
     head -c 900 fine.pdf >cut.pdf
     run corcast check-figure cut.pdf --preset nature
     expect_status 2
-    expect_sentence 'cut.pdf: is not a sound PDF, as pdfinfo has it'
+    expect_sentence 'cut.pdf: is not a valid PDF according to pdfinfo'
     PATH=/nowhere "$CORCAST" check-figure fine.pdf --preset nature >stdout 2>stderr
     [ $? = 3 ] || fail "expected status 3 without poppler"
-    expect_sentence 'pdfinfo is not there; it comes with poppler-utils'
+    expect_sentence 'pdfinfo is not installed; it is part of poppler-utils'
 }
 
 test_what_nobody_can_check_is_said() {
     printf '%%!PS-Adobe-3.0 EPSF-3.0\n' >f.eps
     run corcast check-figure f.eps --preset plos
     expect_status 0
-    expect_stdout '^f.eps: plos takes it; not checked: anything in a .eps but its format and size$'
+    expect_stdout '^f.eps: meets the preset plos. Not checked: everything in a .eps except its format and size$'
 }
 
 test_the_verdict_is_json_too() {
@@ -228,7 +228,7 @@ test_bad_input_is_refused_in_a_sentence() {
         head -c "$bytes" "fine.$name" >"cut.$name"
         run corcast check-figure "cut.$name" --preset nature
         expect_status 2
-        expect_sentence "cut.$name: is not a sound $format file: "
+        expect_sentence "cut.$name: is not a valid $format file: "
     done <<'END'
 30 png PNG
 200 jpg JPEG
@@ -243,7 +243,7 @@ END
     expect_sentence 'none.tif: cannot be read: No such file'
     run corcast check-figure fine.tif
     expect_status 2
-    expect_sentence '--preset is missing; corcast presets lists those there are'
+    expect_sentence '--preset is missing; run `corcast presets` for a list'
     while IFS='|' read -r change sentence; do
         sed "$change" "$REPO/templates/presets/nature.ini" >mine.ini
         run corcast check-figure fine.tif --preset ./mine.ini

@@ -168,7 +168,7 @@ test_refuses_options_of_triangles_and_a_lattice_elsewhere() {
     expect_sentence '--lod is for formats of triangles'
     run corcast export "$DATA/bifurcation.swc" --lattice -o m.stl
     expect_status 2
-    expect_sentence '--lattice is for \.3mf'
+    expect_sentence '--lattice needs a \.3mf output'
     expect_only
 }
 

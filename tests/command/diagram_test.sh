@@ -68,7 +68,7 @@ test_a_tree_without_length_has_no_diagram() {
     printf '1 1 0 0 0 2.385 -1\n2 3 0 0 0 2.385 1\n' >tree.swc
     run corcast diagram tree.swc -o tree.svg
     expect_status 2
-    expect_sentence "tree.swc: no segment has a length"
+    expect_sentence "tree.swc: all segments have length 0; a diagram needs at least one with a length"
     expect_only tree.swc
 }
 

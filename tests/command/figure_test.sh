@@ -178,19 +178,19 @@ refused() {
 
 test_mistakes_are_named_with_file_and_line() {
     run_ok corcast grow --terminals 12 --quiet -o t.swc
-    refused '[panel a]\ntree = t.swc\ncolor-by = flow\n' "r\.ini:3: 'color-by' is not a key of \[panel\]; did you mean color-by"
-    refused '[panel a]\ntree = t.swc\nsize = 3x3\n' "r\.ini:3: 'size' is not a key of"
-    refused '[panel a]\ntree = t.swc\n[panel a]\n' 'r\.ini:3: there is a section \[panel a\] already'
-    refused '[figure]\n[figure]\n' 'r\.ini:2: there is a section \[figure\] already'
+    refused '[panel a]\ntree = t.swc\ncolr-by = flow\n' "r\.ini:3: unknown key 'colr-by' in \[panel\]; did you mean color-by"
+    refused '[panel a]\ntree = t.swc\nsize = 3x3\n' "r\.ini:3: unknown key 'size' in"
+    refused '[panel a]\ntree = t.swc\n[panel a]\n' 'r\.ini:3: the section \[panel a\] is given twice'
+    refused '[figure]\n[figure]\n' 'r\.ini:2: the section \[figure\] is given twice'
     refused '[panel a]\ntree = t.swc\nmodel = joined\nmodel = blob\n' "r\.ini:4: 'model' is given twice"
     refused '[panel a]\ntree = t.swc\ngrow = --terminals 9\n' 'r\.ini:3: the tree is given twice'
     refused '[panel a]\ntree = t.swc\nmodel = jined\n' 'r\.ini:3: .*jined.* is not one of'
     refused '[panel a]\ntree = t.swc\n[figure]\ncolumns = 0\n' 'r\.ini:4: .*columns.*0'
-    refused '[panel a]\ntree = t.swc\n[panels]\n' 'r\.ini:3: \[panels\] stands before all panels'
+    refused '[panel a]\ntree = t.swc\n[panels]\n' 'r\.ini:3: \[panels\] must come before all panels'
     refused '[panels]\nmodle = joined\n' "r\.ini:2: 'modle'"
     refused '[boxes]\n' 'r\.ini:1: \[boxes\] is not \[figure\]'
-    refused 'size = 3x3\n' 'r\.ini:1: .* stands before any section'
-    refused '[figure]\n' 'r\.ini: there is no \[panel NAME\]'
+    refused 'size = 3x3\n' 'r\.ini:1: .* is before the first section'
+    refused '[figure]\n' 'r\.ini: the figure has no \[panel NAME\]'
     refused '[panel a]\nmodel = joined\n' 'r\.ini: \[panel a\] has no tree'
 }
 
@@ -236,10 +236,10 @@ test_numbers_beyond_all_bounds_are_refused_in_a_short_sentence() {
 test_names_that_there_are_none_of() {
     run corcast figure nosuch -o x.pdf
     expect_status 2
-    expect_sentence "no such figure: 'nosuch' is not fig1, fig2, fig3 or fig4"
+    expect_sentence "figure 'nosuch' is unknown; available: fig1, fig2, fig3 or fig4"
     ! grep -q -- --figure stderr || fail "expected no option that there is none of: $(cat stderr)"
     for word in --help -h; do
-        refused "[panel a]\ngrow = --terminals 3 $word\n" "panel a\]: grow: $word is for the command alone"
+        refused "[panel a]\ngrow = --terminals 3 $word\n" "panel a\]: grow: $word cannot be used here"
         [ ! -s stdout ] || fail "expected no help, got $(head -1 stdout)"
     done
     run_ok corcast grow --terminals 4 --quiet -o t.swc
@@ -300,13 +300,13 @@ test_what_cannot_be_drawn_is_named_with_its_section() {
     run_ok corcast grow --terminals 12 --quiet -o t.swc
     refused '[panel a]\ntree = u.swc\n' 'panel a\]: u\.swc'
     refused '[panel a]\ngrow = --terminals zero\n' "panel a\]: grow: --terminals: 'zero'"
-    refused '[panel a]\ngrow = --terminals 9 -o /tmp/x.swc\n' 'panel a\]: grow: -o is for the command alone'
-    refused "[panel a]\ngrow = --domain 'disc:9\n" 'panel a\]: grow: a quote is not closed'
+    refused '[panel a]\ngrow = --terminals 9 -o /tmp/x.swc\n' 'panel a\]: grow: -o cannot be used here'
+    refused "[panel a]\ngrow = --domain 'disc:9\n" 'panel a\]: grow: missing closing quote'
     refused '[panel a]\ntree = t.swc\nlegend = on\n' 'panel a\]: --legend needs --color-by'
-    refused '[panel a]\ntree = t.swc\nspan = 2\n' 'panel a\] spans 2 columns, of which there are 1'
-    refused '[figure]\nmargin = 70\n[panel a]\ntree = t.swc\n' 'panel a\] has no room'
+    refused '[panel a]\ntree = t.swc\nspan = 2\n' 'panel a\] spans 2 columns, but the figure has 1'
+    refused '[figure]\nmargin = 70\n[panel a]\ntree = t.swc\n' 'panel a\] does not fit'
     refused '[panel a]\ntree = t.swc\nprojection = perspective\n[inset i]\nof = a\nat = 0.1,0.1\nplace = 0.8,0.8\nwidth = 9' \
-        'panel a\]: an inset is a part of an orthographic picture'
+        'panel a\]: an inset needs an orthographic panel'
     refused '[panel a]\ntree = t.swc\n[inset i]\nof = b\nat = 0.1,0.1\nplace = 0.8,0.8\n' 'inset i\]: of: b is not the name'
     refused '[panel a]\ntree = t.swc\n[inset i]\nof = a\n' "inset i\] needs 'at'"
     refused '[panel a]\ntree = t.swc\n[text n]\ntext = x\n' "text n\] needs 'text' and 'at'"

@@ -83,13 +83,13 @@ test_a_domain_that_holds_a_part_of_the_tree_is_said_to_when_there_is_no_room() {
     printf '50 0\n95 0\n95 45\n50 45\n\n5.99 1.99\n6.01 1.99\n6.01 2.01\n5.99 2.01\n' >apart.txt
     run corcast grow --from measured.swc --domain polygon:apart.txt --terminals 20 -o grown.swc
     expect_status 2
-    expect_sentence 'the domain does not hold the tree of --from, of which [0-9]+ of 10 nodes are outside'
+    expect_sentence 'the domain does not contain the tree of --from; [0-9]+ of 10 nodes are outside'
 }
 
 test_it_is_said_how_the_radii_of_the_tree_changed() {
     write_measured
     run_ok corcast grow --from measured.swc --terminals 150 --q-perf 30 -o grown.swc --json grown.json
-    grep -q 'the radii of the tree of --from changed by a median factor of [0-9.]* ([0-9.]* to [0-9.]*)' stderr ||
+    grep -q 'the radii of the --from tree changed by a median factor of [0-9.]* ([0-9.]* to [0-9.]*)' stderr ||
         fail "expected the change of the radii$(said)"
     grep -v '^#' measured.swc | awk '{ print $1, $6 }' | sort >before
     grep -v '^#' grown.swc | awk '{ print $1, $6 }' | sort >after
@@ -232,7 +232,7 @@ test_what_cannot_grow_on_is_refused() {
 2 node 2 is at z = .*plane z = 0|--from ball.swc --domain disc:50
 2 --from: node 1 is an inlet without a vessel|--from bare.swc --domain disc:50
 2 --from: node 2, a terminal, has the position of its parent|--from point.swc --domain disc:50
-2 --refine: would move the tree of --from|--from tree.swc --refine geometry
+2 --refine would move the --from tree|--from tree.swc --refine geometry
 2 give --terminal-flow equal, territory or demand|--from shares.swc --domain disc:50
 END
 }
@@ -281,10 +281,10 @@ test_domains_stand_where_they_are_placed() {
     run_ok corcast refine placed.swc --refine geometry -o refined.swc
     run corcast grow --domain hull:placed.swc,5@30,0,0 -o hull.swc
     expect_status 2
-    expect_sentence 'hull:placed.swc,5@30,0,0: a hull lies about its tree and has no other place$'
+    expect_sentence 'hull:placed.swc,5@30,0,0: a hull surrounds its tree and cannot be placed with @$'
     run corcast grow --domain hull:5 -o hull.swc
     expect_status 2
-    expect_sentence "is about the tree of --from, and there is none"
+    expect_sentence "needs the tree of --from, which is missing"
 }
 
 test_a_tree_outside_its_domain_is_said_where_and_by_how_much() {

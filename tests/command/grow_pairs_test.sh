@@ -79,10 +79,10 @@ test_pairs_that_cannot_be_are_refused() {
 --pair 0.3: the vessels of the pair of nodes [0-9]+ and [0-9]+ are 0.[0-9]+ and 0.[0-9]+ mm in radius, so that pairs must be at least 0.[0-9]+ mm apart|--pair 0.3 --inlet 0,30,0 --inlet 0,-30,0
 --pair: '-1' is not a number from 0 to 1000|--pair=-1
 ^corcast grow: --pair 200: must be below what the domain is across, 141.4 mm$|--domain disc:50 --pair 200 --inlet 0,50 --inlet 4.5,-49
-in the plane two trees that must not cross shut each other out of what is behind them|--quiet --domain disc:50 --pair 2 --inlet 0,50 --inlet 4.5,-49 --q-perf 20
+two trees that must not cross block each other in the plane|--quiet --domain disc:50 --pair 2 --inlet 0,50 --inlet 4.5,-49 --q-perf 20
 END
     run_ok corcast grow --terminals 8 --domain disc:50 --pair 2 --inlet 0,50 --inlet 4.5,-49 --q-perf 20 -o few.swc
-    grep -q '^corcast: two trees that must not cross soon shut each other out in the plane' stderr ||
+    grep -q '^corcast: two trees that must not cross block each other in the plane' stderr ||
         fail "expected that to be said beforehand"
     run_ok corcast grow "${two[@]}" --terminals 40 -o pairs.swc
     run corcast grow --from pairs.swc --terminals 80 --pair 1 -o none.swc

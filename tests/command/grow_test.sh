@@ -100,11 +100,11 @@ test_a_tree_in_any_convex_shape_stays_inside() {
 test_a_full_domain_is_said_and_partial_writes_the_tree_so_far() {
     run corcast grow --terminals 50 --gamma 0.05 --lambda 100 -o tree.swc
     expect_status 2
-    expect_sentence "no room for terminal 2"
+    expect_sentence "gave up placing terminal 2"
     expect_only
     run corcast grow --terminals 50 --gamma 0.05 --lambda 100 --partial --json grow.json -o tree.swc
     expect_status 0
-    grep -q "no room for terminal 2" stderr || fail "expected the reason on standard error"
+    grep -q "gave up placing terminal 2" stderr || fail "expected the reason on standard error"
     expect_json grow.json '.complete == false and .terminals == 1 and .rejected > 0'
     check_tree tree.swc
 }
@@ -130,7 +130,7 @@ test_the_exponent_may_follow_the_radius() {
     check_tree larger.swc
     run corcast info tree.swc --stats --terminal-flow murray
     expect_status 2
-    expect_sentence '--terminal-flow murray: the exponent of tree.swc follows the radius; give --gamma'
+    expect_sentence '--terminal-flow murray: the exponent of tree.swc varies with radius; give one number with --gamma'
 }
 
 # Where all exponents are one, the tree is that of this one.
@@ -239,10 +239,10 @@ test_quiet_says_nothing_and_otherwise_one_line_is_said() {
 test_a_tree_that_is_not_as_it_should_be_is_said_even_when_quiet() {
     run_ok corcast grow --terminals 50 --gamma 1.568 --lambda 0 --domain ball:11.51 -o tree.swc --quiet --json t.json
     if [ "$(jq .broken t.json)" -gt 0 ]; then
-        expect_sentence "$(jq .broken t.json) segments? (is|are) shorter than wide or too near"
+        expect_sentence "$(jq .broken t.json) segments? (is|are) still shorter than wide or too close"
     fi
     run_ok corcast grow --terminals 500 --gamma 0.5 --domain shell:30,50,30,10,20 -o tree.swc --quiet
-    grep -q 'smaller than the radius of the root, [0-9.e+]* mm: such a tree is of numbers only' stderr ||
+    grep -q 'smaller than the root radius, [0-9.e+]* mm, so the vessels overlap everywhere' stderr ||
         fail "expected a warning of a root larger than the domain$(said)"
     run_ok corcast grow --terminals 400 --domain rect:40,30 --q-perf 90000 -o tree.swc --quiet
     grep -q '^corcast: the domain, 40 x 30 mm, was too full' stderr || fail "expected a warning with a size$(said)"

@@ -57,7 +57,7 @@ test_a_command_that_fails_after_it_read_a_tree_prints_one_line() {
     local command commands=0
     micrometre_tree
     run_ok corcast info t.swc
-    expect_sentence 'looks like um'
+    expect_sentence 'suggests um'
     while read -r command; do
         run corcast $command
         [ "$status" -ge 2 ] || fail "expected this to fail: corcast $command"
@@ -155,7 +155,7 @@ test_numbers_of_looks_and_maps_are_decimal() {
     printf '0 0 0\n0x1 1 1\n' >map.txt
     run corcast render "$DATA/bifurcation.swc" --color-by radius --colormap ./map.txt -o p.png
     expect_status 2
-    expect_sentence "^corcast render: \./map\.txt:2: '0x1 1 1' is not three numbers"
+    expect_sentence "^corcast render: \./map\.txt:2: the line is '0x1 1 1'; it must be three numbers"
 }
 
 test_pixelmatch_in_a_tolerance_is_from_0_to_1() {
@@ -220,10 +220,10 @@ test_a_type_may_be_any_whole_number() {
 test_a_name_that_templates_lack_is_answered_with_those_there_are() {
     run corcast render "$DATA/bifurcation.swc" --color-by radius --colormap jet -o p.png
     expect_status 2
-    expect_sentence "^corcast render: --colormap: 'jet' is not Dark2, .*, inferno, magma, plasma, romaO, vik or viridis"
+    expect_sentence "^corcast render: --colormap: 'jet' is unknown; available: Dark2, .*, inferno, magma, plasma, romaO, vik or viridis"
     run corcast render "$DATA/bifurcation.swc" --look nosuch -o p.png
     expect_status 2
-    expect_sentence "--look: 'nosuch' is not cast, clinical, .*, wax or xray"
+    expect_sentence "--look: 'nosuch' is unknown; available: cast, clinical, .*, wax or xray"
 }
 
 # A letter, black on nothing, and the same in white on black.
@@ -241,7 +241,7 @@ test_the_mask_of_a_transparent_png_is_what_is_opaque() {
     expect_same opaque.swc clear.swc
     run corcast convert clear.png clear.ppm
     expect_status 2
-    expect_sentence "clear\.png: is transparent, which 'clear\.ppm' cannot be"
+    expect_sentence "clear\.png: is transparent, which 'clear\.ppm' cannot store"
 }
 
 test_a_truncated_stl_is_told_its_size() {

@@ -121,13 +121,13 @@ test_what_cannot_be_drawn_is_refused_in_one_sentence_and_nothing_is_written() {
         expect_sentence "$1"
     }
     refused '\-\-legend needs --color-by' --legend -o x.png
-    refused 'scale-bar is for orthographic' --scale-bar 10 --projection perspective -o x.png
+    refused 'scale-bar needs an orthographic picture' --scale-bar 10 --projection perspective -o x.png
     refused 'scale-bar.*0.*not a number from' --scale-bar 0 -o x.png
-    refused '700 mm is longer than the picture is wide' --scale-bar 700 -o x.png
+    refused '700 mm is longer than the width of the picture' --scale-bar 700 -o x.png
     refused '\-\-legend-at needs --legend' --legend-at bottom -o x.png
     refused 'needs --legend, --scale-bar or --letter' --text-size 6 -o x.png
-    refused '\-\-legend needs .* mm of a picture of 9 mm' --color-by flow --legend --size 9mm -o x.png
-    refused '\.pfm holds numbers to measure' --scale-bar 10 -o x.pfm
+    refused '\-\-legend needs .* mm, but the picture has 9 mm' --color-by flow --legend --size 9mm -o x.png
+    refused '\.pfm stores measured values' --scale-bar 10 -o x.pfm
     refused 'a page holds one of 8 bits' --bits 16 -o x.svg
     expect_only tree.swc
 }

@@ -9,9 +9,9 @@ make_crossing() {
 
 test_looks_are_listed_with_what_povray_does_not_draw() {
     run_ok corcast looks
-    expect_stdout '^clinical	POV-Ray draws the same	the bright red of textbooks'
-    expect_stdout '^journal	POV-Ray draws it without outlines and halos	true colors'
-    expect_stdout '^depth	POV-Ray draws it without halos and fading with depth	'
+    expect_stdout '^clinical	also in POV-Ray	the bright red of textbooks'
+    expect_stdout '^journal	in POV-Ray without outlines and halos	true colors'
+    expect_stdout '^depth	in POV-Ray without halos and fading with depth	'
     [ "$(corcast looks | wc -l)" = "$(ls "$REPO"/templates/looks | wc -l)" ] || fail "expected every look to be listed"
     ! corcast looks | awk -F '	' 'NF != 3 || $3 == ""' | grep . || fail "expected every look to say what it is"
 }
@@ -19,7 +19,7 @@ test_looks_are_listed_with_what_povray_does_not_draw() {
 test_a_scene_says_what_of_the_look_it_is_without() {
     make_crossing
     run_ok corcast scene tree.swc --input-unit mm --look journal -o tree.pov
-    expect_sentence "^corcast: --look journal: outlines and halos are corcast's own, and the scene is without them"
+    expect_sentence "^corcast: --look journal: outlines and halos are corcast's own, and the scene omits them"
     grep -q '^// Not in this scene, but in what corcast render draws: outlines and halos$' tree.pov ||
         fail "expected the header to say what is not in the scene"
     run_ok corcast scene tree.swc --quiet --look clinical -o plain.pov
@@ -32,7 +32,7 @@ test_halos_part_vessels_whatever_the_model() {
     make_crossing
     sed 's/^width = 2.5/width = 40/' "$REPO/templates/looks/journal.ini" >wide.ini
     sed '/^\[halo\]/,$d' wide.ini >bare.ini
-    for model in $(corcast models | grep -v mesh); do
+    for model in $(corcast models | cut -f 1 | grep -v mesh); do
         run_ok corcast render tree.swc --quiet --model "$model" --size 64x64 --background 0,0,1 --look ./wide.ini -o with.ppm
         run_ok corcast render tree.swc --quiet --model "$model" --size 64x64 --background 0,0,1 --look ./bare.ini -o without.ppm
         expect_differing 30 600 without.ppm with.ppm
@@ -49,7 +49,7 @@ test_an_xray_shows_lengths_alone() {
         awk '{ exit !($1 > 0.13533 && $1 < 0.13534) }' || fail "expected exp(-2) of the light in the middle"
     run corcast render tree.swc --look xray --color-by radius -o no.png
     expect_status 2
-    expect_sentence '--look xray has two colors of its own; --color-by has no effect'
+    expect_sentence '--color-by has no effect: --look xray uses two fixed colors'
     run corcast render tree.swc --look xray --ao 3 -o no.png
     expect_status 2
     expect_sentence '^corcast render: --ao is of lit walls, and an x-ray has none$'
@@ -58,7 +58,7 @@ test_an_xray_shows_lengths_alone() {
     expect_sentence '^corcast render: --shadows are of lights, and an x-ray has none$'
     run corcast scene tree.swc --quiet --look xray -o no.pov
     expect_status 2
-    expect_sentence '--look xray is an x-ray, which POV-Ray does not draw; render does'
+    expect_sentence '--look xray: POV-Ray cannot draw an x-ray; use render'
     run corcast verify tree.swc --quiet --look xray -o report
     expect_status 2
     expect_only film.ini film.pfm tree.swc
@@ -94,7 +94,7 @@ test_options_that_effects_leave_no_room_for_are_refused() {
     make_crossing
     run corcast render tree.swc --quiet --look journal --exact -o no.png
     expect_status 2
-    expect_sentence '--exact is the picture that verify draws, and verify leaves out what --look journal adds to it'
+    expect_sentence '--exact draws the picture of verify, which omits the effects of --look journal'
     run corcast render tree.swc --quiet --look journal --antialias-threshold 0.1 -o no.png
     expect_status 2
     expect_sentence '--antialias-threshold: --look journal needs all samples of every pixel'

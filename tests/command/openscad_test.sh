@@ -256,7 +256,7 @@ test_what_a_solid_cannot_have_is_refused() {
 test_a_model_of_many_vessels_is_one_closed_surface_unless_modules_are_asked_for() {
     grow_tree 52
     run_ok corcast scene tree.swc -o tree.scad
-    grep -q '^corcast: 103 vessels are more than OpenSCAD unites in good time, 100: tree.scad is one closed surface; --scad parametric' stderr ||
+    grep -q '^corcast: OpenSCAD would take too long to join 103 vessels (limit 100), so tree.scad is one closed surface; use --scad parametric' stderr ||
         fail "expected the choice to be said$(said)"
     grep -q '^// One closed surface' tree.scad || fail "expected the header to say so: $(head -4 tree.scad)"
     expect_json tree.scad.json '.watertight and .genus == 0 and .segments == 103'
@@ -270,7 +270,7 @@ test_a_model_of_many_vessels_is_one_closed_surface_unless_modules_are_asked_for(
     for how in '--scad parametric' '--model cylinders' '--color-by radius'; do
         # shellcheck disable=SC2086
         run_ok corcast scene tree.swc $how -o modules.scad
-        grep -qE 'OpenSCAD takes about [0-9.e+]+ s to make a solid of 103 vessels' stderr ||
+        grep -qE 'OpenSCAD needs about [0-9.e+]+ s to join 103 vessels to a solid' stderr ||
             fail "expected to hear of OpenSCAD's time$(said)"
         grep -q '^  vessel(' modules.scad || fail "expected modules of $how"
     done

@@ -131,7 +131,7 @@ test_a_grey_picture_has_no_inks() {
     printf 'P2 2 1 255 9 200\n' >grey.pgm
     run corcast convert grey.pgm grey.tif --cmyk-profile "$CMYK"
     expect_status 2
-    expect_sentence 'grey.tif: only opaque pictures in color go to a press'
+    expect_sentence 'grey.tif: an output profile (CMYK) needs an opaque picture in color'
     expect_only grey.pgm
 }
 
@@ -184,7 +184,7 @@ END
     expect_sentence '--cmyk-intent needs --cmyk-profile'
     run corcast render tree.swc --size 30x20 --bits 16 -o p.jpg
     expect_status 2
-    expect_sentence "--bits: '16': a .jpg has 8 bits"
+    expect_sentence "--bits: '16': a .jpg stores 8 bits"
     run corcast convert tree.swc other.csv --quality 3
     expect_status 2
     expect_sentence '--quality is for pictures'

@@ -71,7 +71,7 @@ test_refuses_tiles_that_are_not() {
         # shellcheck disable=SC2086
         run corcast render tree.swc $SMALL --tile=$tile -o p.png
         expect_status 2
-        expect_sentence "--tile: '$tile' is not I/N with I from 1 to N and N from 1 to 22"
+        expect_sentence "--tile: '$tile' is not I/N with 1 <= I <= N <= 22"
     done
     # shellcheck disable=SC2086
     run corcast render tree.swc $SMALL --tiles 23 --commands -o p.png
@@ -80,7 +80,7 @@ test_refuses_tiles_that_are_not() {
     # shellcheck disable=SC2086
     run corcast render tree.swc $SMALL --tile 1/2 -o p.ppm
     expect_status 2
-    expect_sentence "'p.ppm' cannot say what part of what it is"
+    expect_sentence "'p.ppm' cannot record which tile it is"
     expect_only tree.swc
 }
 
@@ -109,15 +109,15 @@ test_merge_names_the_tile_that_is_missing_broken_or_another() {
     run_ok corcast convert p.tile-2.png ../plain.png
     merge_refuses 'tile 2 of 3 is missing; there are 2' p.tile-3.png p.tile-1.png
     merge_refuses 'tile 3 of 3 is missing; there are 2' p.tile-1.png p.tile-2.png
-    merge_refuses 'plain.png: is no tile that render' p.tile-3.png ../plain.png
-    merge_refuses 'view.png: is no tile of the picture that p.tile-1.png is of: another command' p.tile-1.png ../view.png
-    merge_refuses 'tree.png: is no tile of the picture .* it was made from another tree' p.tile-1.png ../tree.png
+    merge_refuses 'plain.png: is not a tile drawn by render' p.tile-3.png ../plain.png
+    merge_refuses 'view.png: does not belong to the same picture as p.tile-1.png: a different command' p.tile-1.png ../view.png
+    merge_refuses 'tree.png: does not belong .* its tree or other input files differ' p.tile-1.png ../tree.png
     merge_refuses 'are both tile 2 of 3' p.tile-1.png p.tile-2.png p.tile-3.png p.tile-2.png
-    merge_refuses 'cut.png: is not a sound PNG' p.tile-1.png ../cut.png p.tile-3.png
-    merge_refuses 'bent.png: is not a sound PNG' p.tile-1.png ../bent.png p.tile-3.png
+    merge_refuses 'cut.png: is not a valid PNG' p.tile-1.png ../cut.png p.tile-3.png
+    merge_refuses 'bent.png: is not a valid PNG' p.tile-1.png ../bent.png p.tile-3.png
     merge_refuses 'nothing.png: cannot be read' p.tile-1.png nothing.png
     mkdir empty
-    merge_refuses 'there is no tile to merge' empty
+    merge_refuses 'no tiles to merge were found' empty
     run corcast merge p.tile-1.png p.tile-2.png p.tile-3.png -o p.tile-2.png
     expect_status 2
     expect_sentence 'p.tile-2.png. would be written over|are one file'
@@ -157,14 +157,14 @@ test_tiles_that_differ_in_their_note_alone_are_refused_in_either_order() {
     rm merged.png
     for other in aaa zzz; do
         retell ", $own," ", $other," 2.png kernels.png
-        merge_refuses 'kernels.png: is no tile .* other instructions drew it' 1.png kernels.png
-        merge_refuses '1.png: is no tile .* other instructions drew it' kernels.png 1.png
+        merge_refuses 'kernels.png: does not belong .* different processor instructions' 1.png kernels.png
+        merge_refuses '1.png: does not belong .* different processor instructions' kernels.png 1.png
     done
     for other in 0 f; do
         hash=$(grep -ao 'made from [0-9a-f]*' 2.png | cut -d ' ' -f 3)
         retell "$hash" "$(printf '%064d' 0 | tr 0 $other)" 2.png from.png
-        merge_refuses 'from.png: is no tile .* it was made from another tree' 1.png from.png
-        merge_refuses '1.png: is no tile .* it was made from another tree' from.png 1.png
+        merge_refuses 'from.png: does not belong .* its tree or other input files differ' 1.png from.png
+        merge_refuses '1.png: does not belong .* its tree or other input files differ' from.png 1.png
     done
 }
 

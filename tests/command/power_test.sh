@@ -23,7 +23,7 @@ missed() {
 test_says_from_which_size_on_a_tolerance_finds_each_fault() {
     draw_picture
     run_ok corcast power --quiet --render "pnmtopng $PWD/drawn.ppm >{}" --levels 9.5 --ppm 0
-    expect_stdout '^96 x 64 pixels of 8 bits; two drawings are the same$'
+    expect_stdout '^96 x 64 pixels of 8 bits; two drawings are identical$'
     expect_stdout '^codes lower by 0.3 to 30 levels +10 '
     expect_stdout '^bits lost by 1 to 4 bits +4 '
     expect_stdout '^codes lower .* 1$'
@@ -71,8 +71,8 @@ test_a_renderer_that_does_not_repeat_itself_raises_a_false_alarm() {
     run corcast power --quiet --extension ppm --levels 0 --ppm 0 \
         --render 'if [ -e once ]; then sed s/240/241/ drawn.ppm >{}; else touch once; cp drawn.ppm {}; fi'
     expect_status 1
-    expect_stdout 'two drawings are not the same'
-    expect_stdout '^false alarm: yours calls two drawings of the same scene different$'
+    expect_stdout 'two drawings are different'
+    expect_stdout '^false alarm: yours reports a difference between two drawings of the same scene$'
 }
 
 test_nothing_is_left_of_a_measurement_that_ends_early() {
@@ -93,13 +93,13 @@ test_nothing_is_left_of_a_measurement_that_ends_early() {
 test_what_cannot_be_asked_is_refused() {
     run corcast power
     expect_status 2
-    expect_sentence '--render is a command with \{\} for the file'
+    expect_sentence '--render needs a command with \{\} in place of the output file'
     run corcast power --render 'cp a b'
     expect_status 2
-    expect_sentence '--render is a command with \{\} for the file'
+    expect_sentence '--render needs a command with \{\} in place of the output file'
     run corcast power --render 'cp a {}' --verdict 'cmp {a}'
     expect_status 2
-    expect_sentence '--verdict is a command with \{a\} and \{b\}'
+    expect_sentence '--verdict needs a command with \{a\} and \{b\}'
     run corcast power --render 'cp a {}' --verdict 'cmp {a} {b}' --ppm 3
     expect_status 2
     expect_sentence '--ppm and --verdict are two rules'

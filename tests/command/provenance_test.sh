@@ -99,7 +99,7 @@ test_neither_threads_nor_names_nor_reports_are_said() {
 test_the_comment_of_a_scene_makes_it_again() {
     local model
     run_ok corcast grow --quiet --terminals 9 -o 'a "tree".swc'
-    for model in $(corcast models); do
+    for model in $(corcast models | cut -f 1); do
         run_ok corcast scene 'a "tree".swc' --quiet --model "$model" --color-by flow --range 0.5,30.25 --log \
             --location 12.5,3,88 --look-at 1,2,3 --up=0,1,0.125 --shadows --background 0.1,0.2,0.3 -o scene.pov
         cp scene.inc kept

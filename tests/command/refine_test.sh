@@ -75,10 +75,10 @@ test_the_json_of_grow_tells_the_refined_target_and_root() {
 test_vessels_that_stay_in_each_others_way_are_counted() {
     run_ok corcast grow --terminals 230 --domain rect:4,30 --gamma 2 --seed 5 --p-term 80 --refine geometry --json grow.json -o tree.swc --quiet
     [ "$(jq .broken grow.json)" -gt 10 ] || fail "expected broken rules: $(jq .broken grow.json)"
-    grep -qx "corcast: $(jq .broken grow.json) segments are shorter than wide or too near to others all the same" stderr ||
+    grep -qx "corcast: $(jq .broken grow.json) segments are still shorter than wide or too close to other segments" stderr ||
         fail "expected their number$(said)"
     run_ok corcast refine tree.swc --refine geometry --json refined.json -o refined.swc --quiet
-    grep -qx "corcast: $(jq .broken refined.json) segments are shorter than wide or too near to others all the same" stderr ||
+    grep -qx "corcast: $(jq .broken refined.json) segments are still shorter than wide or too close to other segments" stderr ||
         fail "expected their number$(said)"
     run_ok corcast grow --terminals 60 -o clear.swc
     run_ok corcast refine clear.swc --refine geometry --json clear.json -o refined.swc --quiet

@@ -369,7 +369,7 @@ test_options_without_effect_are_refused() {
 --erf is for --model isosurface|scene tree.swc -o x.pov --model blob --erf exact
 --cell-beta is for --model isosurface|verify tree.swc -o x --cell-beta 4
 --ids is for --model isosurface and blob; other scenes have ids anyway|scene tree.swc -o x.pov --ids on
---bits: .16.: a .pfm has floats of 32 bits anyway|render tree.swc -o x.pfm --bits 16
+--bits: .16.: a .pfm always stores floats of 32 bits|render tree.swc -o x.pfm --bits 16
 --antialias is for --plane color|povray tree.pov --size 9x9 -o x.png --plane id --antialias 3
 --hematocrit is for --viscosity-law pries|grow --terminals 3 -o x.swc --hematocrit 0.3
 --viscosity is for --viscosity-law constant|grow --terminals 3 -o x.swc --viscosity-law pries --viscosity 3
@@ -416,7 +416,7 @@ test_a_geometry_that_povray_cannot_include_is_refused() {
     for name in 'é.pov' 'a"b.pov' $'a\nb.pov' $'\xff.pov'; do
         run corcast scene tree.swc -o "$name"
         expect_status 2
-        expect_sentence "POV-Ray cannot include a file named '.*\.inc': it takes only printable ASCII"
+        expect_sentence "POV-Ray cannot include a file called '.*\.inc'; use only printable ASCII"
     done
     expect_only tree.swc
     mkdir 'é"'

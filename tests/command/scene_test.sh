@@ -2,7 +2,7 @@
 # `scene`, and `povray` with scripts in place of POV-Ray. tests/povray runs the real program.
 . "$(dirname "$0")/../lib.sh"
 
-MODELS=$(corcast models)
+MODELS=$(corcast models | cut -f 1)
 
 # stand_in BODY: makes ./povray.sh and has corcast call it instead of POV-Ray.
 stand_in() {
@@ -148,10 +148,10 @@ test_all_files_of_a_scene_take_their_names_or_none_does() {
     expect_sentence 'the settings .own.ini. would be written over'
     run corcast scene "$DATA/bifurcation.swc" --ini -o 'a[b.pov'
     expect_status 2
-    expect_sentence "POV-Ray reads no INI file named 'a\[b.ini'"
+    expect_sentence "POV-Ray cannot read an INI file called 'a\[b.ini'"
     run corcast scene "$DATA/bifurcation.swc" --ini -o -
     expect_status 2
-    expect_sentence '^corcast scene: --ini is a file beside S.pov'
+    expect_sentence '^corcast scene: --ini writes a file beside S.pov'
     expect_only s.ini own.ini
 }
 

@@ -133,7 +133,7 @@ test_refuses_a_wall_without_named_parts_and_beside_a_print() {
     expect_sentence '--wall is for named parts: a \.vtp, or an \.stl with --parts'
     run corcast export "$DATA/bifurcation.swc" --wall 0.3 --print scale=2 -o m.vtp
     expect_status 2
-    expect_sentence '--wall and --print, which has a wall= of its own, exclude each other'
+    expect_sentence '--wall and --print exclude each other'
     expect_only
 }
 
@@ -148,7 +148,7 @@ test_the_flow_of_ends_parts_as_it_is_told() {
 test_refuses_parts_of_a_body_without_flat_ends() {
     run corcast export "$DATA/bifurcation.swc" --model rounded -o m.vtp
     expect_status 2
-    expect_sentence '--model rounded has no flat ends that could be named parts'
+    expect_sentence '--parts needs flat vessel ends, which --model rounded lacks'
     expect_only
 }
 
@@ -214,7 +214,7 @@ test_several_trees_have_inlets_by_their_ids() {
 test_refuses_parts_where_a_format_has_no_names_of_parts() {
     run corcast export "$DATA/bifurcation.swc" --parts -o m.glb
     expect_status 2
-    expect_sentence '--parts is for \.stl and \.vtp'
+    expect_sentence '--parts needs an \.stl or \.vtp output'
     expect_only
 }
 

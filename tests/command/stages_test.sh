@@ -53,19 +53,19 @@ test_stages_that_contradict_each_other_are_refused_with_their_names() {
         expect_sentence "$sentence"
         expect_only stages.ini
     done <<'END'
-s/keep-radii = on/toss = terminal/|^corcast grow: stages.ini: \[tissue\]: gamma 3 would change the radii of stage \[trunk\], which has 2.4; say keep-radii = on, or the same gamma$
-s/p-term = 60/p-term = 90/|stages.ini: \[tissue\]: p-term 90 mmHg leaves nothing to drop beyond stage \[trunk\], whose radii are kept and whose terminals are at 88.5
+s/keep-radii = on/toss = terminal/|^corcast grow: stages.ini: \[tissue\]: gamma 3 would change the radii of stage \[trunk\], which has gamma 2.4; set keep-radii = on, or use the same gamma$
+s/p-term = 60/p-term = 90/|stages.ini: \[tissue\]: p-term 90 mmHg leaves no pressure drop beyond stage \[trunk\], whose radii are kept and whose terminals are at 88.5
 s/terminals = 600/terminals = 40/|stages.ini: \[tissue\]: terminals 40: must be above the 40 of stage \[trunk\]$
-s/^gamma = 3/gamma = 3\ngamma = 2.9/|stages.ini:13: stage \[tissue\] says 'gamma' twice
-s/.tissue./[trunk]/|stages.ini:8: there is a stage \[trunk\] already
-s/keep-radii = on/inlet = 0,0,30/|stages.ini:11: 'inlet' is for the first stage; the others grow on its trees
-s/keep-radii = on/inlet-shares = 2,1/|stages.ini:11: 'inlet-shares' is for the first stage
+s/^gamma = 3/gamma = 3\ngamma = 2.9/|stages.ini:13: stage \[tissue\] sets 'gamma' twice
+s/.tissue./[trunk]/|stages.ini:8: the stage \[trunk\] is defined twice
+s/keep-radii = on/inlet = 0,0,30/|stages.ini:11: 'inlet' can be set only in the first stage; later stages continue its trees
+s/keep-radii = on/inlet-shares = 2,1/|stages.ini:11: 'inlet-shares' can be set only in the first stage
 s/domain = ball:31.5/domain = ball:5@100,0,0/|stages.ini: \[tissue\]: .*the domain does not hold the tree
 s/^keep-radii.*//;s/gamma = 3/gamma = 0.1:3,2:2/|stages.ini: \[tissue\]: gamma 0.1:3,2:2 would change the radii of stage \[trunk\], which has 2.4
-s/gamma = 3/gama = 3/|stages.ini:12: 'gama' is no option of a stage
-s/gamma = 3/from = x.swc/|stages.ini:12: 'from' is no option of a stage
+s/gamma = 3/gama = 3/|stages.ini:12: unknown option 'gama' in a stage
+s/gamma = 3/from = x.swc/|stages.ini:12: unknown option 'from' in a stage
 s/gamma = 3/gamma = three/|stages.ini:12: --gamma: 'three'
-1,2s/.trunk./; none/|stages.ini:3: 'domain' stands above the first stage
+1,2s/.trunk./; none/|stages.ini:3: 'domain' is before the first stage
 END
     printf '# nothing\n' >stages.ini
     run corcast grow --stages stages.ini -o tree.swc
@@ -74,7 +74,7 @@ END
     write_stages
     run corcast grow --stages stages.ini --refine geometry -o tree.swc
     expect_status 2
-    expect_sentence '--refine: would give --stages one law'
+    expect_sentence '--refine cannot be used with --stages'
 }
 
 test_growth_ends_at_a_radius() {

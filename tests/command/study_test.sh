@@ -111,8 +111,8 @@ test_a_tree_that_finds_no_room_is_a_row_that_says_so() {
     printf '[grow]\nterminals = 50\nlambda = 100\ngamma = 3, 0.05\n' >plan.ini
     run_ok corcast study plan.ini -o runs --trees --quiet
     expect_json "$(run_of 1).json" '.terminals == 50 and .error == null'
-    expect_json "$(run_of 2).json" '(.error | test("no room for terminal 2")) and .terminals == null'
-    grep -q '^2,50,100,0.05,.*no room for terminal 2' runs/study.csv || fail "expected the reason, got: $(cat runs/study.csv)"
+    expect_json "$(run_of 2).json" '(.error | test("gave up placing terminal 2")) and .terminals == null'
+    grep -q '^2,50,100,0.05,.*gave up placing terminal 2' runs/study.csv || fail "expected the reason, got: $(cat runs/study.csv)"
     run_ok corcast study plan.ini -o runs --trees
     grep -qx 'corcast: 2 runs: 0 grown, 2 there already' stderr || fail "expected both to be kept, got: $(cat stderr)"
 }

@@ -30,7 +30,7 @@ test_every_case_has_its_state() {
     expect_status 1
     expect_stdout '^changed moved\.ppm: color: pixels off by more than 1 level.* the worst, 31 levels'
     expect_stdout '^new     fresh\.ppm: has no reference$'
-    expect_stdout '^missing gone\.ppm: has a reference, but was not drawn$'
+    expect_stdout '^missing gone\.ppm: has a reference but no picture$'
     expect_stdout '^within  near\.ppm: 1 of 20 pixels differ, 0 are masked$'
     expect_stdout '^differ: 6 cases: 2 same, 1 within, 1 changed, 1 new, 1 missing; 1 other file$'
 }
@@ -61,10 +61,10 @@ test_what_is_accepted_agrees_afterwards_and_has_its_reason() {
         fail "expected the hash of what was accepted"
     run corcast compare --reference stored drawn --accept nothing.ppm --reason 'x'
     expect_status 2
-    expect_sentence "there is no case 'nothing\.ppm' in drawn, nor in stored"
+    expect_sentence "no picture 'nothing\.ppm' in drawn or stored"
     run corcast compare --reference stored drawn --accept a.ppm
     expect_status 2
-    expect_sentence '--accept and --reason go together'
+    expect_sentence '--accept and --reason must be given together'
 }
 
 test_only_a_case_that_compare_lists_is_accepted() {
@@ -82,7 +82,7 @@ test_only_a_case_that_compare_lists_is_accepted() {
     expect_same victim/v.ppm kept.ppm
     [ ! -e stored/accepted.tsv ] || fail "expected nothing to be accepted: $(cat stored/accepted.tsv)"
     run corcast compare --reference victim drawn --accept ../stored/a.ppm --reason 'x'
-    expect_sentence "there is no case '\.\./stored/a\.ppm' in drawn, nor in victim"
+    expect_sentence "no picture '\.\./stored/a\.ppm' in drawn or victim"
 }
 
 test_the_first_picture_may_be_accepted_before_there_are_references() {
@@ -135,10 +135,10 @@ test_what_is_masked_is_not_judged() {
     pnmtopng <<<"P2 5 4 255 $(printf '9 %.0s' {1..20})" >stored/a.mask.png
     run corcast compare --reference stored drawn
     expect_status 1
-    expect_stdout '^broken  a\.ppm: the mask leaves no pixel to judge$'
+    expect_stdout '^broken  a\.ppm: the mask hides every pixel$'
     pnmtopng <<<'P2 2 1 255 0 9' >stored/a.mask.png
     run corcast compare --reference stored drawn
-    expect_stdout '^broken  a\.ppm: mask, reference and picture differ in size or depth$'
+    expect_stdout '^broken  a\.ppm: the mask, the reference and the picture differ in size or bits per pixel$'
 }
 
 test_a_broken_picture_or_one_of_another_size_fails_alone() {
@@ -150,7 +150,7 @@ test_a_broken_picture_or_one_of_another_size_fails_alone() {
     run corcast compare --reference stored drawn
     expect_status 1
     expect_stdout '^broken  b\.ppm: drawn/b\.ppm: '
-    expect_stdout '^changed c\.ppm: the images differ in size: 5 x 4 and 4 x 4 pixels'
+    expect_stdout '^changed c\.ppm: the images differ in size \(5 x 4 and 4 x 4 pixels\)'
     expect_stdout '1 same, 1 changed, 1 broken$'
 }
 
@@ -158,7 +158,7 @@ test_folders_without_pictures_and_options_of_pairs_are_refused() {
     mkdir stored drawn
     run corcast compare --reference stored drawn
     expect_status 2
-    expect_sentence 'stored: there is no picture in it, nor in drawn'
+    expect_sentence 'no pictures found in stored or drawn'
     run corcast compare --reference stored drawn --html page.html
     expect_status 2
     expect_sentence '--html is for two pictures, not for --reference'

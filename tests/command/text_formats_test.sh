@@ -49,7 +49,7 @@ test_networks_of_secomb_have_loops() {
     [ -r "$file" ] || skip "$file is not here"
     run corcast info "$file"
     expect_status 2
-    expect_sentence 'Tumor1998.network.dat:86: the line closes a loop .* one of 14;'
+    expect_sentence 'Tumor1998.network.dat:86: the line closes a loop .* \(loops in the network: 14\);'
     run_ok corcast info --break-loops "$file"
     expect_stdout ' 92 points and 104 lines$'
     expect_stdout ' 14 lines cut where loops closed$'
@@ -58,7 +58,7 @@ test_networks_of_secomb_have_loops() {
                   $column != "" { boundary++ } END { print n - 1, boundary }' cut.csv)" = "92 17" ] ||
         fail "expected 92 nodes, 17 of them with a boundary type"
     run corcast info "$SHARED/secomb/Brain.network.dat"
-    expect_sentence 'one of 3;'
+    expect_sentence 'loops in the network: 3\)'
 }
 
 # 31 columns without titles: both ends of a vessel in the first six, its radius in the 22nd.
@@ -69,7 +69,7 @@ test_a_table_without_titles_is_read_by_the_numbers_of_its_columns() {
     expect_json stdout '.segments == 999 and .terminals == 500 and .roots == 1 and (.root_radius_mm - 0.29358 | fabs) < 1e-6'
     run corcast info "$table"
     expect_status 2
-    expect_sentence 'svv_500.csv:1: the table has no titles; --columns says'
+    expect_sentence 'svv_500.csv:1: the table has no titles; name its columns with --columns'
 }
 
 test_a_grown_tree_comes_back_from_a_csv_of_segments() {
@@ -125,7 +125,7 @@ test_a_table_of_lines_that_is_empty_is_named() {
     : >lines.csv
     run corcast info nodes.csv --edges lines.csv
     expect_status 2
-    expect_sentence 'lines.csv: the table of lines is empty$'
+    expect_sentence 'lines.csv: the edge table has no rows$'
 }
 
 # Cut off at seven places, each file is refused in one sentence with its name, or is a smaller tree.
@@ -164,7 +164,7 @@ test_a_small_spatial_graph_that_unpacks_to_gigabytes_is_refused_at_once() {
     } >bomb.am
     run bash -c "ulimit -v 300000; exec '$CORCAST' info bomb.am"
     expect_status 2
-    expect_sentence 'bomb.am:2: it claims 300000000 VERTEX; a file of 2.4 MB holds at most '
+    expect_sentence 'bomb.am:2: its header states 300000000 VERTEX; a file of 2.4 MB can hold at most '
 }
 
 test_what_a_format_has_no_place_for_is_said() {
@@ -172,7 +172,7 @@ test_what_a_format_has_no_place_for_is_said() {
     printf '%s\n' id,parent,x_mm,y_mm,z_mm,radius_mm,type,flow_share,age 1,,0,9,0,1,3,0, 2,1,0,4,0,1,3,0,41 \
         3,2,-4,0,0,0.5,5,0.75,37.5 4,2,4,0,0,0.5,3,1.5, >tree.csv
     run_ok corcast convert tree.csv tree.vmv
-    expect_sentence '^corcast: the columns age and the types and the flow shares are left out: the format has no place for them$'
+    expect_sentence '^corcast: the columns age and the types and the flow shares are left out: the format cannot store them$'
     run_ok corcast convert tree.csv tree.segments.csv
     expect_sentence '^corcast: the types and the flow shares are left out: '
     run_ok corcast convert tree.csv tree.gxl
@@ -186,7 +186,7 @@ test_what_a_format_has_no_place_for_is_said() {
     for extension in vmv segments.csv in; do
         run_ok corcast convert tree.swc "tree.$extension"
         grep -q "^corcast: the roots' own radii are left out: " stderr || fail "got of $extension: $(cat stderr)"
-        grep -q '^corcast: nodes that lie where others do: 2; ' stderr || fail "got of $extension: $(cat stderr)"
+        grep -q '^corcast: nodes that share a position with another node: 2; ' stderr || fail "got of $extension: $(cat stderr)"
         run_ok corcast info --json "tree.$extension"
         expect_json stdout '.segments == 4'
         run_ok corcast convert tree.swc "tree.$extension" --quiet
@@ -202,7 +202,7 @@ test_what_a_format_has_no_place_for_is_said() {
 test_ids_that_start_at_0_are_told_of() {
     printf '0 3 0 9 0 1 -1\n1 3 0 4 0 1 0\n' >tree.swc
     run_ok corcast info tree.swc
-    expect_stdout 'ids start at 0 in the file, and are one higher here'
+    expect_stdout 'ids start at 0 in the file; 1 was added to each'
 }
 
 # In svOneDSolver's units and by hand: 60 ml/min through a radius of 2 mm are 1000 mm3/s at 79.6 mm/s.
@@ -214,7 +214,7 @@ test_derived_fields_become_columns_of_what_is_written() {
     sed -n '4p' tree.segments.csv | awk -F, '{ exit !(($11 - 79.57747) ^ 2 < 1e-8 && ($12 - 0.5570423) ^ 2 < 1e-12) }' ||
         fail "expected velocity and shear stress, got $(sed -n '4p' tree.segments.csv)"
     run_ok corcast convert tree.swc tree.csv --fields all
-    expect_sentence '^corcast: pressure are? left out: neither the tree nor an option says what they? needs?$'
+    expect_sentence '^corcast: pressure are? left out: they need values that neither the tree nor an option gives$'
     run_ok corcast convert tree.swc tree.csv --fields all --p-perf 90
     [ ! -s stderr ] || fail "expected all fields: $(cat stderr)"
     run_ok corcast convert tree.swc other.csv --fields strahler --quiet

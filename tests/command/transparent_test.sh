@@ -79,7 +79,7 @@ test_what_cannot_be_transparent_is_refused() {
         expect_sentence "$sentence"
         expect_only tree.swc
     done <<'END'
--o p.ppm|'p\.ppm' cannot be transparent; --background none takes \.png, \.tif or \.exr
+-o p.ppm|'p\.ppm' cannot be transparent; --background none needs \.png, \.tif or \.exr
 -o p.pfm|'p\.pfm' cannot be transparent
 -o p.pdf|'p\.pdf' cannot be transparent
 -o p.jpg|'p\.jpg' cannot be transparent
@@ -107,7 +107,7 @@ test_convert_keeps_alpha_or_lays_it_on_a_color() {
         { for (c = 1; c <= 3; c++) if (($c - $(c + 3)) ^ 2 > 1) exit 1 }' || fail "expected the picture over teal"
     run corcast convert none.png no.jpg
     expect_status 2
-    expect_sentence "none\.png: is transparent, which 'no\.jpg' cannot be; --background lays it on a color"
+    expect_sentence "none\.png: is transparent, which 'no\.jpg' cannot store; use --background"
     run_ok corcast render tree.swc --size 40x30 --background none --quiet -o none.exr
     run corcast convert none.exr no.pfm
     expect_status 2

@@ -87,7 +87,7 @@ test_bad_radii_are_repaired_when_asked() {
     printf '1 3 0 0 0 2 -1\n2 3 0 10 0 1.5 1\n3 3 0 20 0 -0.14 2\n4 3 5 20 0 NaN 3\n5 3 9 20 0 1 4\n' >bad.swc
     run corcast info bad.swc
     expect_status 2
-    expect_sentence "bad.swc:3: the radius is '-0.14'; .* \(--repair-radii takes the parent's\)"
+    expect_sentence "bad.swc:3: the radius is '-0.14'; .* \(--repair-radii uses the parent's radius\)"
     run corcast convert --repair-radii bad.swc good.swc
     expect_status 0
     expect_sentence 'bad.swc: radii replaced by those of the parents: 2'
@@ -184,7 +184,7 @@ test_an_index_names_files_only() {
         timeout 10 "$CORCAST" info index.pvd <tree.vtp >stdout 2>stderr
         status=$? command_line="info index.pvd, which names $name"
         expect_status 2
-        expect_sentence "index.pvd:1: (./)?$name: (not the name of|is )"
+        expect_sentence "index.pvd:1: (./)?$name: (unknown extension|is )"
     done
 }
 
@@ -273,7 +273,7 @@ PY
         (ulimit -v 700000 && exec timeout 20 "$CORCAST" info $file) >stdout 2>stderr
         status=$? command_line="info $file"
         expect_status 2
-        expect_sentence "$file:.*a file of [0-9.]+ .B (holds|is unpacked to) at most"
+        expect_sentence "$file:.*a file of [0-9.]+ .B (can hold|may unpack to) at most"
     done
 }
 

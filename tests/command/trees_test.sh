@@ -110,7 +110,7 @@ test_a_tree_on_standard_input_is_told_by_its_first_bytes() {
         expect_json stdout '.terminals == 7'
     done
     printf '*Tree\n0 9 0 1 1 1 1 1 1 1 1 1\n\n*Vessels\n1\n' | run corcast info -
-    expect_sentence 'standard input: there is no section \*Connectivity'
+    expect_sentence 'standard input: the file has no section \*Connectivity'
 }
 
 test_a_column_of_a_csv_colors_its_segments() {
@@ -129,7 +129,7 @@ test_a_column_of_a_csv_colors_its_segments() {
     run corcast render tree.csv --color-by aeg --size 40x30 -o weight.ppm
     expect_sentence "did you mean age?"
     run_ok corcast convert tree.csv tree.swc
-    grep -q "^corcast: the columns age are left out: the format has no place" stderr || fail "got $(cat stderr)"
+    grep -q "^corcast: the columns age are left out: the format cannot store" stderr || fail "got $(cat stderr)"
     run_ok corcast convert tree.csv other.csv
     [ ! -s stderr ] || fail "expected nothing to be lost: $(cat stderr)"
 }

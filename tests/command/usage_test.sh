@@ -154,7 +154,7 @@ END
 test_lists_hold_what_options_take() {
     local name
     grow_tree 5
-    for name in $(corcast models); do
+    for name in $(corcast models | cut -f 1); do
         run_ok corcast render --exact tree.swc --quiet --size 16x12 --model "$name" -o picture.ppm
     done
     for name in $(corcast fields | cut -f 1); do
@@ -166,13 +166,13 @@ test_lists_hold_what_options_take() {
     for name in $(corcast colormaps | cut -f 1); do
         run_ok corcast render --exact tree.swc --quiet --size 16x12 --color-by level --colormap "$name" -o picture.ppm
     done
-    for name in $(corcast domains); do
+    for name in $(corcast domains | cut -f 1); do
         run corcast grow --domain "${name%%:*}:" -o other.swc
         expect_status 2
         ! grep -q 'unknown shape' stderr || fail "expected the shape $name to be known$(said)"
     done
     [ "$(corcast models | wc -l) $(corcast fields | wc -l)" = "6 12" ] || fail "expected 6 models and 12 fields"
-    corcast fields | grep -q "^wss	Pa$" || fail "expected the unit of wss"
+    corcast fields | grep -q "^wss	Pa	wall shear stress$" || fail "expected the unit of wss"
     ls "$REPO/templates/colormaps" | sed -n 's/\.txt$//p' | LC_ALL=C sort >expected
     corcast colormaps | cut -f 1 >listed
     expect_same expected listed
@@ -194,7 +194,7 @@ test_a_slip_is_answered_with_what_may_have_been_meant() {
     means "unknown option '--lamda'; .*; did you mean --lambda\?" grow --lamda 2 -o tree.swc
     means "unknown option '--color_by=flow'; .*; did you mean --color-by\?" render tree.swc --color_by=flow
     means "unknown option '--Antialias'; .*; did you mean --antialias\?" render tree.swc --Antialias 3
-    means "unknown option '--zqwx'; see corcast render --help for those there are" render tree.swc --zqwx 3
+    means "unknown option '--zqwx'; \`corcast render --help\` lists the options" render tree.swc --zqwx 3
     means "unknown command 'bronchus'; corcast --help lists all commands" bronchus
     printf 'progjection = perspective\n' >mine.ini
     means "mine\.ini:1: 'progjection' is not an option of render; did you mean projection\?" \

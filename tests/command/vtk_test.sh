@@ -37,12 +37,12 @@ END
 test_the_arteries_of_a_brain_in_metres() {
     expect_network brain_pvs/arteries_smooth.vtk '.segments == 12708 and .bifurcations == 145 and
         .reading.degrees[1] == 147 and .reading.components == 1 and
-        .reading.roots[0].reason == "the file says so" and .reading.network.points == 12709 and
+        .reading.roots[0].reason == "from the file" and .reading.network.points == 12709 and
         .reading.median_radius_mm > 0.49 and .reading.median_radius_mm < 1.40 and
         (.reading.unit_said and .reading.believed_unit == "m") and
         (.reading.assumed[2] | startswith("stated inlets that are not roots: 2 "))' --input-unit m
     run_ok corcast info "$SHARED/brain_pvs/arteries_smooth.vtk"
-    expect_sentence 'taken for mm, but the median radius, 0.000536, looks like m; --input-unit'
+    expect_sentence 'assuming mm, but a median radius of 0.000536 suggests m; set the unit with --input-unit'
 }
 
 test_vessels_of_the_cortex_with_radii_of_cells() {
@@ -57,10 +57,10 @@ test_vessels_of_the_cortex_with_radii_of_cells() {
     expect_stdout '^  left out      1 line cut where a loop closed$'
     run corcast info "$SHARED/bluebrain_vascpy/one_loop.vtk"
     expect_status 2
-    expect_sentence 'one_loop.vtk: cell 120: the line closes a loop .* one of 1; .* --break-loops'
+    expect_sentence 'one_loop.vtk: cell 120: the line closes a loop .* \(loops in the network: 1\); .* --break-loops'
     run corcast info "$SHARED/bluebrain_vascpy/fork_multiple_properties.vtk"
     expect_status 2
-    expect_sentence "no array is called a radius, --radius-array names none, and --radius gives none; .*'edge_property1'"
+    expect_sentence "no array has the name of a radius; name one with --radius-array, or set --radius; .*'edge_property1'"
     expect_network bluebrain_vascpy/fork_multiple_properties.vtk '.segments == 3 and
         .min_radius_mm == 1' --radius-array point_property2
 }
@@ -235,22 +235,22 @@ test_a_small_file_that_unpacks_to_gigabytes_is_refused_before_it_takes_their_mem
     [ "$(stat -c %s bomb.vtp)" -lt 7000000 ] || fail "expected a small file"
     run bash -c "ulimit -v 300000; exec '$CORCAST' info bomb.vtp"
     expect_status 2
-    expect_sentence "bomb.vtp:1: the array 'radius' of PointData: it announces 1.1 GB; by the numbers of points and cells of its piece it has at most 24 bytes$"
+    expect_sentence "bomb.vtp:1: the array 'radius' of PointData: it announces 1.1 GB; the points and cells of its piece allow at most 24 bytes$"
     write_zeros Int8 1000000 1
     run bash -c "ulimit -v 300000; exec '$CORCAST' info bomb.vtp"
     expect_status 2
-    expect_sentence 'it announces 33.6 MB; .* it has at most 1.0 MB$'
+    expect_sentence 'it announces 33.6 MB; .* allow at most 1.0 MB$'
     write_zeros Int8 999999999999 100
     run bash -c "ulimit -v 300000; exec '$CORCAST' info bomb.vtp"
     expect_status 2
-    expect_sentence 'bomb.vtp:1: it claims 999999999999 points; a file of [0-9.]+ MB holds at most '
+    expect_sentence 'bomb.vtp:1: its header states 999999999999 points; a file of [0-9.]+ MB can hold at most '
 }
 
 test_options_that_a_format_does_not_take_are_refused() {
     cp "$DATA/bifurcation.swc" tree.swc
     run corcast info tree.swc --radius-array thickness
     expect_status 2
-    expect_sentence "--radius-array is for files of VTK.*; tree.swc is read as SWC"
+    expect_sentence "--radius-array applies only to VTK.*; tree.swc is read as SWC"
     run corcast grow --terminals 3 --break-loops -o out.swc
     expect_status 2
     expect_sentence '--break-loops needs --from'
@@ -261,7 +261,7 @@ test_options_that_a_format_does_not_take_are_refused() {
     expect_status 2
     run corcast info tree.swc --input-format swcc
     expect_status 2
-    expect_sentence "--input-format 'swcc': known are .swc, .*, without the dot"
+    expect_sentence "--input-format is 'swcc'; it must be .swc, .*, without the dot"
 }
 
 run_tests

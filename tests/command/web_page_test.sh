@@ -78,7 +78,7 @@ test_more_segments_than_a_browser_turns_are_refused_with_the_radius_that_leaves_
     awk 'BEGIN { for (i = 1; i <= 200002; i++) print i, 3, i / 100, 0, 0, 1 - i / 400000, (i > 1 ? i - 1 : -1) }' >long.swc
     run corcast export long.swc -o page.html
     expect_status 2
-    expect_sentence 'long.swc: 200001 segments make a page of 17(\.[0-9]+)? MB, and a browser does not turn more than 200000; --prune-radius 0\.5 leaves'
+    expect_sentence 'long.swc: 200001 segments make a page of 17(\.[0-9]+)? MB, and a browser can rotate at most 200000; --prune-radius 0\.5 leaves'
     expect_only long.swc
 }
 
@@ -88,7 +88,7 @@ test_values_of_more_moments_than_a_browser_opens_are_refused_with_their_size() {
         for (i = 1; i <= 150000; i++) printf "\n%d,%g,0,0,1,%d%s", i, i / 100, (i > 1 ? i - 1 : -1), values }' >long.csv
     run corcast export long.csv --quiet -o page.html
     expect_status 2
-    expect_sentence 'the fields, 1[34][0-9] with all moments, make a page of 10[0-9](\.[0-9]+)? MB, .* 100 MB; leave columns'
+    expect_sentence 'the fields \(1[34][0-9], counting each moment\) make a page of 10[0-9](\.[0-9]+)? MB, .* 100 MB; remove columns'
     expect_only long.csv
 }
 
@@ -107,7 +107,7 @@ test_without_the_viewer_a_page_is_refused_and_what_is_missing_named() {
     mkdir -p share && cp -R "$REPO/templates" share/templates
     run env CORCAST_TEMPLATES="$PWD/share/templates" "$CORCAST" export tree.swc -o page.html
     expect_status 3
-    expect_sentence 'without the viewer .* install npm and esbuild'
+    expect_sentence 'without the page viewer; install npm and esbuild'
     [ ! -e page.html ] || fail "expected no page"
 }
 
@@ -137,7 +137,7 @@ ticks(2, 50, true, false, 3, 10, 30);
 ticks(2, 12, true, false, 2, 3, 5, 7, 10);
 ticks(1e-6, 1e6, true, false, 1e-6, 1e-3, 1, 1e3, 1e6);
 for (const [low, high, log, place, value] of [[2, 10, false, 0.25, 4], [1, 1000, true, 1 / 3, 10], [4, 9, true, 0.5, 6]]) {
-  expect("place", [scale(low, high, log).place(value)], [place]);
+  expect("position", [scale(low, high, log).position(value)], [place]);
   expect("value", [scale(low, high, log).at(place)], [value]);
 }
 const color = [0, 0, 0];

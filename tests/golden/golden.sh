@@ -62,12 +62,12 @@ draw_povray() {
     corcast povray --quiet scene.pov $(case_options "$1" | grep -oE -- '--(size|antialias) [^ ]+') -o "$2"
 }
 
-# Of what POV-Ray reads: comments are nothing to the picture.
+# Prints the hash of the scene without comments and empty lines, which do not change the picture.
 scene_hash() {
-    sed 's|//.*||' scene.pov scene.inc | sha256sum | cut -d ' ' -f 1
+    sed 's|//.*||; s/ *$//; /^$/d' scene.pov scene.inc | sha256sum | cut -d ' ' -f 1
 }
 
-# Of the decoded pixels, whatever the file looks like.
+# Prints the hash of the decoded pixels, which does not depend on the form of the file.
 pixel_hash() {
     pngtopnm "$1" | sha256sum | cut -d ' ' -f 1
 }

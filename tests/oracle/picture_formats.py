@@ -165,8 +165,8 @@ def exr_kinds():
     check("plain.exr", corcast("plain.exr"), rgb)
     done = subprocess.run([CORCAST, "compare", "layer.exr", "layer.exr", "--layer", "top"], capture_output=True, text=True)
     check("layer top", done.stdout, "agree (tier A): 0 of")
-    for name, sentence in (("layer", "has the channels top.B, top.G, top.R; only R G B, X Y Z or a single one"),
-                           ("two", "has the channels G, R; only R G B, X Y Z or a single one"),
+    for name, sentence in (("layer", "has the channels top.B, top.G, top.R; they must be R G B, X Y Z or a single one"),
+                           ("two", "has the channels G, R; they must be R G B, X Y Z or a single one"),
                            ("luma", "has the channels BY, RY, Y;"), ("parts", "has 2 parts"),
                            ("deep", "has deep pixels; only flat images can be read")):
         check(f"{name}.exr", corcast(f"{name}.exr"), sentence)
@@ -241,7 +241,7 @@ def tiff_kinds():
         name = f"bilevel-{compression}.tif"
         picture.convert("1").save(name, compression=compression)
         check(name, corcast(name), deep(numpy.asarray(Image.open(name).convert("L"))))
-    for mode, sentence in (("CMYK", "has the colors of inks (CMYK)"), ("LAB", "has CIELAB colors"),
+    for mode, sentence in (("CMYK", "has CMYK colors"), ("LAB", "has CIELAB colors"),
                            ("YCbCr", "has YCbCr colors without JPEG compression")):
         picture.convert(mode).save(f"{mode}.tif")
         check(mode, corcast(f"{mode}.tif"), sentence)
@@ -319,7 +319,7 @@ def pnm():
     open("scale.pfm", "wb").write(f"Pf\n{W} {H}\n-2.0\n".encode() + bytes(4 * W * H))
     check("scale.pfm", corcast("scale.pfm"), 'the scale is "-2.0"')
     open("four.pfm", "wb").write(f"PF4\n{W} {H}\n-1.0\n".encode() + bytes(16 * W * H))
-    check("four.pfm", corcast("four.pfm"), "is a PF4 file, of four channels")
+    check("four.pfm", corcast("four.pfm"), "is a PF4 file (four channels)")
 
 
 # ---- PNG: written by netpbm and Pillow ----------------------------------------------------------------------------
@@ -372,11 +372,11 @@ def lossy():
                 color.convert(mode).save(name, progressive=progressive, subsampling=sampling, quality=90)
                 check(name, corcast(name), deep(numpy.asarray(Image.open(name))))
     color.convert("CMYK").save("cmyk.jpg")
-    check("cmyk.jpg", corcast("cmyk.jpg"), "has the colors of inks (CMYK)")
+    check("cmyk.jpg", corcast("cmyk.jpg"), "has CMYK colors")
     exif = Image.Exif()
     exif[0x0112] = 6
     color.save("turned.jpg", exif=exif)
-    check("turned.jpg", corcast("turned.jpg"), "is turned by its Exif orientation, 6")
+    check("turned.jpg", corcast("turned.jpg"), "its Exif orientation is 6")
     clear = Image.fromarray(codes(8, 4))
     for name, picture, options in (("lossy.webp", color, {"quality": 80}), ("lossless.webp", color, {"lossless": True}),
                                    ("clear.webp", clear, {"lossless": True, "exact": True}), ("clear-lossy.webp", clear, {"quality": 80})):

@@ -122,10 +122,10 @@ CURVE, SHADING, COLORS = "some other curve", "shading", "other colors"
 WORDS = [
     ("moved by", MOVED), ("blurred", BLURRED), ("power of", GAMMA), ("encoded", GAMMA),
     ("negative", GAMMA), ("made brighter", TONE), ("made darker", TONE), ("mirrored", TURNED),
-    ("upside down", TURNED), ("turned by", TURNED), ("exchanged", CHANNELS), ("channels as", CHANNELS),
-    ("some other curve", CURVE),
-    ("only the background", BACKGROUND), ("only rounding", ROUNDING), ("one thing", MISSING),
-    ("outlines differ", "outlines"), ("highlights", "highlights"), ("shading", SHADING),
+    ("flipped", TURNED), ("rotated by", TURNED), ("exchanged", CHANNELS), ("channels in", CHANNELS),
+    ("another tone curve", CURVE),
+    ("only the background", BACKGROUND), ("only rounding", ROUNDING), ("an object", MISSING),
+    ("only at outlines", "outlines"), ("highlights", "highlights"), ("shading", SHADING),
 ]
 WHOLE, HALF = (0, 1), (0, 0.5)
 # What is planted, and the answer that is right beside "unknown".
@@ -218,7 +218,7 @@ def main():
                 made.add(planted_codes.tobytes())
                 cause, kind = cause_of(corcast, path, folder + "/b.ppm")
                 named[planted, kind] += 1
-                # Two sentences are true of other faults, too: that no code is off by more than 1, and that B is A
+                # Two sentences are true of other faults, too: that no value is off by more than 1, and that B is A
                 # under some curve of tones, which a gain that clips and a gamma are.
                 rounded = kind == ROUNDING and np.abs(planted_codes - codes).max() <= 1
                 curved = kind == CURVE and right in (TONE, GAMMA)

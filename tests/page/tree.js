@@ -98,7 +98,7 @@ async function checkPicture() {
 
 async function values() {
   return Object.fromEntries(await evaluate("[...document.querySelectorAll('#values tr')].map((r) =>" +
-    " [r.cells[0].textContent, [r.cells[1].textContent, r.cells[2].textContent]])"));
+    " [r.dataset.field, [r.cells[1].textContent, r.cells[2].textContent]])"));
 }
 
 function checkValues(id, shown) {

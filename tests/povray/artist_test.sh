@@ -3,7 +3,7 @@
 # #declare.
 . "$(dirname "$0")/../lib.sh"
 
-MODELS=$(corcast models)
+MODELS=$(corcast models | cut -f 1)
 
 # draw SCENE ARGUMENT...: a small picture, SCENE.png, and POV-Ray's words in SCENE.log.
 draw() {

@@ -31,7 +31,7 @@ test_the_clock_of_povray_picks_the_frames_of_corcast() {
 
 test_a_frame_is_verified_in_every_model() {
     make_pulse
-    for model in $(corcast models); do
+    for model in $(corcast models | cut -f 1); do
         # shellcheck disable=SC2086
         run_ok corcast verify tree.swc --color-by pulse.csv --moment 7 --model "$model" $SIZE -o check
     done

@@ -310,11 +310,9 @@ static void names_a_blur_and_its_width(void **state)
     (void)state;
     Shot shot = plain;
     shot.sigma = 1.3;
-    expect_cause(&shot,
-                 "B is nearly A blurred, by as much as a Gaussian of standard deviation 1.3");
+    expect_cause(&shot, "B is nearly A blurred (Gaussian, standard deviation 1.3");
     shot.sigma = 0.6;
-    expect_cause(&shot,
-                 "B is nearly A blurred, by as much as a Gaussian of standard deviation 0.6");
+    expect_cause(&shot, "B is nearly A blurred (Gaussian, standard deviation 0.6");
     Picture b = shoot(&shot);
     const CompareResult result = judge(&b, &reference);
     assert_non_null(strstr(result.cause, "A is nearly B blurred"));
@@ -378,7 +376,7 @@ static void names_rows_and_channels_that_are_exchanged(void **state)
 {
     (void)state;
     Shot shot = spoilt(flip_rows, 0);
-    expect_cause(&shot, "B is A upside down, top for bottom");
+    expect_cause(&shot, "B is A flipped top to bottom");
     shot = spoilt(exchange_channels, 2);
     expect_cause(&shot, "B is A with red and blue exchanged");
     shot = spoilt(exchange_channels, 12);
@@ -394,7 +392,7 @@ static void tells_highlights_from_other_shading(void **state)
     shot.highlight = 0.31;
     expect_cause(&shot, "only highlights differ");
     shot.highlight = 0.17;
-    expect_cause(&shot, "B being darker");
+    expect_cause(&shot, "B is darker");
     shot = plain;
     shot.diffuse = 1.14;
     expect_cause(&shot, "only shading differs");
@@ -469,7 +467,7 @@ static void names_outlines_that_are_sampled_otherwise(void **state)
     (void)state;
     Shot shot = plain;
     shot.samples = 1;
-    expect_cause(&shot, "only outlines differ");
+    expect_cause(&shot, "only at outlines");
 }
 
 static void names_the_side_that_lacks_a_thing_and_its_place(void **state)
@@ -477,8 +475,8 @@ static void names_the_side_that_lacks_a_thing_and_its_place(void **state)
     (void)state;
     Shot shot = plain;
     shot.without = 3;
-    expect_cause(&shot, "one thing, or a part of one, is in A only");
-    expect_cause(&shot, "from (123, 16) to (154, 47); 0 other pixels differ");
+    expect_cause(&shot, "an object, or a part of one, is in A only");
+    expect_cause(&shot, "from (123, 16) to (154, 47)); 0 other pixels differ");
     Picture b = shoot(&shot);
     const CompareResult result = judge(&b, &reference);
     assert_non_null(strstr(result.cause, "is in B only"));
@@ -502,8 +500,9 @@ static void names_another_background(void **state)
 {
     (void)state;
     Shot shot = spoilt(recolor_background, 29);
-    expect_cause(&shot, "only the background differs, and what is mixed with it at outlines: it is "
-                        "(235, 235, 235) in A and (17, 29, 43) in B");
+    expect_cause(&shot,
+                 "only the background color differs (and pixels that blend with it at outlines): "
+                 "(235, 235, 235) in A, (17, 29, 43) in B");
     shot.diffuse = 1.2;
     expect_cause(&shot, NULL);
 }

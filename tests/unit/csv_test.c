@@ -124,15 +124,16 @@ static void rejects_titles_that_make_no_table(void **state)
 {
     (void)state;
     assert_refused("id,parent,x_mm,y_mm,radius_mm\n1,,0,0,1\n",
-                   ":1: there is no column z_mm; a CSV of nodes has id, parent, x_mm, y_mm, z_mm, "
-                   "radius_mm and any others");
+                   ":1: no column is called z_mm; a CSV of nodes needs id, parent, x_mm, y_mm, "
+                   "z_mm and radius_mm");
     assert_refused("# x\nid,parent,x_mm,y_mm,z_mm,radius_mm,id\n",
                    ":2: two columns are called 'id'");
     assert_refused("id,parent,x_mm,y_mm,z_mm,radius_mm,q [a],q [b]\n",
                    ":1: two columns are called 'q'");
     assert_refused("id,parent,x_mm,y_mm,z_mm,radius_mm,\n", ":1: a column has no name");
-    assert_refused("id,\"parent\n", ":1: a quote is not closed");
-    assert_refused("\"id\"2,parent\n", ":1: a quote is followed by '2,parent'");
+    assert_refused("id,\"parent\n", ":1: a quoted field has no closing quote");
+    assert_refused("\"id\"2,parent\n", ":1: a quoted field is followed by '2,parent'; a separator "
+                                       "or the end of the line must follow");
     assert_refused("id,parent,x_mm,y_mm,z_mm,radius_mm\n# only\n",
                    ": the file has no nodes; a tree has at least one");
 }
@@ -154,17 +155,15 @@ static void rejects_rows_naming_line_and_column(void **state)
     static const struct {
         const char *row, *sentence;
     } bad[] = {
-        {"1,,0,0,0,1", ":3: the row has 6 fields; there are 8 columns"},
-        {"1,,0,0,0,1,,,9", ":3: the row has 9 fields; there are 8 columns"},
+        {"1,,0,0,0,1", ":3: the row has 6 fields; it must have 8, one per column"},
+        {"1,,0,0,0,1,,,9", ":3: the row has 9 fields; it must have 8, one per column"},
         {"0,,0,0,0,1,,", ":3: the id is '0'; it must be a whole number from 1 to 100000000"},
         {"1,-2,0,0,0,1,,",
          ":3: the parent is '-2'; it must be a whole number from -1 to 100000000"},
         {"1,,O,0,0,1,,", ":3: the x_mm is 'O'; it must be a finite number"},
         {"1,,0,,0,1,,", ":3: the y_mm is ''; it must be a finite number"},
-        {"1,,0,0,0,-1,,",
-         ":3: the radius_mm is '-1'; it must be a finite number that is not negative"},
-        {"1,,0,0,0,1,-3,",
-         ":3: the flow_share is '-3'; it must be a finite number that is not negative"},
+        {"1,,0,0,0,-1,,", ":3: the radius_mm is '-1'; it must be a finite number of 0 or more"},
+        {"1,,0,0,0,1,-3,", ":3: the flow_share is '-3'; it must be a finite number of 0 or more"},
         {"1,,0,0,0,1,,high", ":3: the wss is 'high'; it must be a finite number"},
         {"1,,0,0,0,1,,inf", ":3: the wss is 'inf'; it must be a finite number"},
         {"7,4,0,0,0,1,,", ":3: the id 7 is already that of line 2; every node needs its own"},

@@ -207,21 +207,22 @@ static void missing_data_are_asked_for_by_option(void **state)
 {
     (void)state;
     TreeMeta params = {0};
-    assert_needs(&params, "flow",
-                 "the field flow needs the flow through the inlet, which the tree does not state; "
-                 "give `q_perf_ml_min`, or the header key q_perf_ml_min");
+    assert_needs(
+        &params, "flow",
+        "the field flow needs the flow through the inlet, which is not stored in this tree; "
+        "give `q_perf_ml_min` or the header key q_perf_ml_min");
     assert_needs(
         &params, "pressure",
-        "the field pressure needs the pressure at the inlet, which the tree does not state; "
-        "give `p_perf_mmHg`, or the header key p_perf_mmHg");
+        "the field pressure needs the pressure at the inlet, which is not stored in this tree; "
+        "give `p_perf_mmHg` or the header key p_perf_mmHg");
     meta_set_number(&params, META_Q_PERF, 32.5);
     static const char *const viscous[] = {"wss", "reynolds"};
     for (size_t i = 0; i < 2; i++) {
         char sentence[200];
         snprintf(
             sentence, sizeof sentence,
-            "the field %s needs the viscosity of the blood, which the tree does not state; give "
-            "`viscosity_cP`, or the header key viscosity_cP",
+            "the field %s needs the viscosity of the blood, which is not stored in this tree; give "
+            "`viscosity_cP` or the header key viscosity_cP",
             viscous[i]);
         assert_needs(&params, viscous[i], sentence);
     }
@@ -317,14 +318,14 @@ static void a_viscosity_given_alone_means_a_constant_one(void **state)
     Field field;
     Err err;
     assert_int_equal(derive_field(&tree, &params, "wss", &field, &err), STATUS_INPUT);
-    assert_string_equal(err.text,
-                        "the field wss needs the hematocrit, which the tree does not state; give "
-                        "`hematocrit`, or the header key hematocrit");
+    assert_string_equal(
+        err.text, "the field wss needs the hematocrit, which is not stored in this tree; give "
+                  "`hematocrit` or the header key hematocrit");
     params.known[META_PLASMA_VISCOSITY] = false;
     assert_int_equal(derive_field(&tree, &params, "wss", &field, &err), STATUS_INPUT);
-    assert_string_equal(err.text,
-                        "the field wss needs the viscosity of the plasma, which the tree does not "
-                        "state; give `plasma_viscosity_cP`, or the header key plasma_viscosity_cP");
+    assert_string_equal(
+        err.text, "the field wss needs the viscosity of the plasma, which is not stored in "
+                  "this tree; give `plasma_viscosity_cP` or the header key plasma_viscosity_cP");
     tree_release(&tree);
 }
 

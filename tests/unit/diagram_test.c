@@ -196,7 +196,8 @@ static void rejects_a_tree_without_any_length(void **state)
     must(tree_init(&tree, 1, &err), &err);
     tree.id[0] = 1;
     assert_int_equal(diagram_lay_out(&tree, 0, &diagram, &err), STATUS_INPUT);
-    assert_string_equal(err.text, "no segment has a length");
+    assert_string_equal(err.text,
+                        "all segments have length 0; a diagram needs at least one with a length");
     tree_release(&tree);
 }
 

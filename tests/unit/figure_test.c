@@ -313,7 +313,7 @@ static void a_legend_has_points_and_a_swatch_only_for_values_that_need_them(void
     assert_int_equal(count_items(&legend, FIGURE_SHAPE), 1);
     legend.outside = (ScaleOutside){.below = 2, .above = 1, .none = 7};
     assert_int_equal(count_items(&legend, FIGURE_SHAPE), 3);
-    legend.across = true;
+    legend.horizontal = true;
     assert_int_equal(count_items(&legend, FIGURE_SHAPE), 3);
 }
 
@@ -351,7 +351,7 @@ typedef struct Tick {
 static void expect_labels(const ColorScale *scale, bool across, const Tick *expected, size_t n)
 {
     const FigureLegend legend = {
-        .scale = scale, .title = "q", .across = across, .length_mm = 30, .size_pt = 7};
+        .scale = scale, .title = "q", .horizontal = across, .length_mm = 30, .size_pt = 7};
     FigurePage page;
     size_t found = 0;
     figure_init(&page, 80, 60, 300, fonts);
@@ -455,7 +455,7 @@ static void what_is_outside_has_its_color_at_its_end(void **state)
     for (int across = 0; across < 2; across++) {
         const FigureLegend legend = {.scale = &scale,
                                      .title = "q",
-                                     .across = across,
+                                     .horizontal = across,
                                      .length_mm = 30,
                                      .size_pt = 7,
                                      .outside = {.below = 1, .above = 1, .none = 1}};
@@ -488,7 +488,7 @@ static void swatches_have_the_colors_of_their_numbers(void **state)
     (void)state;
     for (int across = 0; across < 2; across++) {
         const FigureLegend legend = {
-            .scale = &scale, .title = "order", .across = across, .length_mm = 30, .size_pt = 7};
+            .scale = &scale, .title = "order", .horizontal = across, .length_mm = 30, .size_pt = 7};
         FigurePage page;
         int found = 0;
         figure_init(&page, 80, 60, 300, fonts);

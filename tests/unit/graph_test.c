@@ -209,8 +209,8 @@ static void refuses_loops_unless_told_to_cut_them(void **state)
     (void)state;
     Net net = {0};
     put_square(&net);
-    refused(&net, "net:204: the line closes a loop at 0, 2.5, 0 mm, one of 1; a tree has none, and "
-                  "`break_loops` cuts each at its thinnest line");
+    refused(&net, "net:204: the line closes a loop at 0, 2.5, 0 mm (loops in the network: 1); "
+                  "use `break_loops` to cut each loop at its thinnest line");
 }
 
 static void cuts_a_loop_at_its_thinnest_line(void **state)
@@ -337,8 +337,8 @@ static void refuses_what_no_tree_can_be_made_of(void **state)
                   "longer than 0");
     const GraphPoint bad = {.position = {0, 0, 0}, .radius = -0.5};
     assert_int_equal(graph_point(&net.graph, &bad, &net.err), STATUS_INPUT);
-    assert_string_equal(net.err.text, "the radius is '-0.5'; it must be a finite number that is "
-                                      "not negative (`repair_radii` takes the parent's)");
+    assert_string_equal(net.err.text, "the radius is '-0.5'; it must be a finite number of 0 or "
+                                      "more (`repair_radii` uses the parent's radius)");
 }
 
 int main(void)

@@ -380,7 +380,7 @@ static void says_what_to_change_when_the_radii_exceed_all_numbers(void **state)
     assert_infeasible(&params, "disc:50", "with this `gamma` and");
     params.lambda = 100;
     params.gamma = logcurve_constant(0.05);
-    assert_infeasible(&params, "disc:50", "no room for terminal 2 of `terminals` 1000");
+    assert_infeasible(&params, "disc:50", "gave up placing terminal 2 of `terminals` 1000");
     params.gamma = logcurve_constant(3);
     params.lambda = 5000;
     assert_infeasible(&params, "disc:50", "`lambda` 5000");

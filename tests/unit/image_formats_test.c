@@ -224,13 +224,13 @@ static void says_what_it_does_not_read(void **state)
         {"glassy.tif", "is transparent at column 0, row 0"},
         {"glassy.exr", "is transparent at column 0, row 0"},
         {"dwaa.exr", "is compressed by DWAA or DWAB, which the library OpenEXRCore cannot"},
-        {"aces.exr", "has the colors of another space (chromaticities)"},
+        {"aces.exr", "its color space is not sRGB (chromaticities)"},
         {"pages.tif", "has several pages"},
         {"animated.png", "is an animation of 2 pictures"},
         {"wide-profile.png", "has the color profile \"Wide built-in\""},
         {"wide-profile.tif", "has the color profile \"Wide built-in\""},
-        {"p3.png", "has the colors of another space (cHRM chunk)"},
-        {"p3.tif", "has the colors of another space (PrimaryChromaticities or WhitePoint)"}};
+        {"p3.png", "its color space is not sRGB (cHRM chunk)"},
+        {"p3.tif", "its color space is not sRGB (PrimaryChromaticities or WhitePoint)"}};
     for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
         char path[128];
         Image image = {.picture = {.width = -7}};
@@ -248,7 +248,7 @@ static void says_what_it_does_not_read(void **state)
     assert_non_null(strstr(err.text, "holds floats"));
     assert_int_equal(plane_read(&plane, "tests/data/images/rgb8-lzw.tif", ALPHA_REFUSED, &err),
                      STATUS_INPUT);
-    assert_non_null(strstr(err.text, "holds whole numbers"));
+    assert_non_null(strstr(err.text, "holds integers"));
 }
 
 /* The TIFF's codes are multiplied by alpha, 128 of 255: 30 becomes 60. */

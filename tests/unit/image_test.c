@@ -193,13 +193,13 @@ static void says_what_is_wrong_with_a_pnm(void **state)
     refuses("P6 5 -5 255 ", "the height is \"-5\"");
     refuses("P6 99999999999 5 255 ", "the width is \"99999999999\"");
     refuses("P6 5 5 65536 ", "the largest value is \"65536\"");
-    refuses("P6 2 1 255\nabcde", "announces 6 bytes of pixels, and 5 follow");
-    refuses("P6 2 1 255\nabcdefg", "announces 6 bytes of pixels, and 7 follow");
+    refuses("P6 2 1 255\nabcde", "announces 6 bytes of pixels, but 5 follow");
+    refuses("P6 2 1 255\nabcdefg", "announces 6 bytes of pixels, but 7 follow");
     refuses("P6 1048576 1048576 65535\nabc", "announces 6597069766656 bytes");
     refuses("P3 1048576 1048576 255\n1 2 3", "more than its 28 bytes can hold");
     refuses("P3 1 1 255\n1 2 256", "the value of a pixel is \"256\"");
     refuses("P3 1 1 255\n1 2 3 4", "\"4\" follows its last pixel");
-    refuses("P5 1 1 9\n:", "holds the value 58, above its largest, 9");
+    refuses("P5 1 1 9\n:", "holds the value 58, which is above MAXVAL, 9");
 }
 
 /* Every prefix of a file is refused with a sentence, and no changed byte does harm. */
@@ -517,15 +517,15 @@ static void says_what_is_wrong_with_a_pfm(void **state)
     (void)state;
     static const struct {
         const char *text, *sentence;
-    } cases[] = {{"P6 1 1 255 abc", "holds whole numbers; a plane of floats"},
+    } cases[] = {{"P6 1 1 255 abc", "holds integers; a picture of floats"},
                  {"PF", "ends before the width"},
                  {"PF 1 0 -1\n", "the height is \"0\""},
                  {"PF 1 1 nan\n", "the scale is \"nan\""},
                  {"PF 1 1 0\n", "the scale is \"0\""},
-                 {"PF 1 1 -2.5\n", "the scale is \"-2.5\", by which some programs multiply"},
-                 {"PF 1 1 -1", "no blank stands between"},
+                 {"PF 1 1 -2.5\n", "the scale is \"-2.5\"; it must be 1 or -1"},
+                 {"PF 1 1 -1", "a blank must separate"},
                  {"PF 1048576 1048576 -1\nabcd", "announces 13194139533312 bytes"},
-                 {"Pf 1 1 -1\nabcde", "announces 4 bytes of pixels, and 5 follow"}};
+                 {"Pf 1 1 -1\nabcde", "announces 4 bytes of pixels, but 5 follow"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         Plane plane;
         assert_int_equal(

@@ -200,10 +200,12 @@ static void test_what_needs_files_is_refused(void **state)
     (void)state;
     refused("--turntable 12",
             "--only K is missing: a picture in memory is one of the animation's 12");
-    refused("--tile 1/2 --resume", "--resume is for files, not for pictures in memory");
-    refused("--turntable 3 --commands", "--commands is for files, not for pictures in memory");
-    refused("--ink 0.2", "--ink draws lines for an .svg or .pdf");
-    refused("--bits 12", "--bits: '12': a picture has 8 or 16 bits");
+    refused("--tile 1/2 --resume",
+            "--resume needs files; it cannot be used with pictures in memory");
+    refused("--turntable 3 --commands",
+            "--commands needs files; it cannot be used with pictures in memory");
+    refused("--ink 0.2", "--ink writes .svg or .pdf only");
+    refused("--bits 12", "--bits: '12': this format stores 8 or 16 bits");
 }
 
 static void test_one_picture_of_an_animation_is_drawn(void **state)

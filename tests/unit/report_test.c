@@ -300,7 +300,7 @@ static void merges_no_page_of_another_program(void **state)
     assert_int_equal(report_merge(&(ReportMerge){&folder, 1, NULL, templates},
                                   "build/report_test/no.html", &agree, &err),
                      STATUS_INPUT);
-    assert_holds(err.text, "report.html: is not a report of this version of corcast");
+    assert_holds(err.text, "report.html: is not a report written by this version of corcast");
     write_output("report.html", "<!-- row: begin -->\n<!-- row: end -->\n<!-- case: begin -->\n"
                                 "<!-- case: end -->\n");
     write_output("report.json", "{\"severity\": \"3\"}");
@@ -355,11 +355,10 @@ static void a_surface_that_is_missing_extra_or_too_far_is_found_out(void **state
         float a, b;
         size_t missing, extra, beyond;
         const char *reason;
-    } cases[] = {
-        {9, OUT, 1, 0, 0, "1 pixels are seen by POV-Ray's root finder alone and 0 by proof"},
-        {OUT, 9, 0, 1, 0, "0 pixels are seen by POV-Ray's root finder alone and 1 by proof"},
-        {9, 10, 0, 0, 1, "the worst 4 times, at (4, 0)"},
-        {9, NAN, 1, 0, 0, "1 pixels are seen by POV-Ray's root finder alone"}};
+    } cases[] = {{9, OUT, 1, 0, 0, "hits found only by POV-Ray: 1, only by proof: 0"},
+                 {OUT, 9, 0, 1, 0, "hits found only by POV-Ray: 0, only by proof: 1"},
+                 {9, 10, 0, 0, 1, "the worst by a factor of 4 at (4, 0)"},
+                 {9, NAN, 1, 0, 0, "hits found only by POV-Ray: 1"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         Surface s = {.a = {3, 5, 7, OUT, cases[i].a, OUT, OUT},
                      .b = {3, 5, 7, OUT, cases[i].b, OUT, OUT},

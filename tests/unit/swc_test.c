@@ -323,7 +323,7 @@ static void ids_may_start_at_0_and_the_parent_of_a_root_may_be_0(void **state)
     assert_written(&tree, "4 2 0.5 0 0 1.5 -1\n1 2 1 2 4 0.5 4\n");
     tree_release(&tree);
     assert_refused("# flow_share: 1 2.5\n0 2 .5 0 0 1.5 -1\n1 2 1 2 4 .5 0\n",
-                   ": the ids start at 0, but a flow_share names nodes by ids from 1 on");
+                   ": the ids start at 0, but a flow_share refers to nodes by ids from 1 on");
 }
 
 static void more_columns_become_columns_of_the_tree(void **state)
@@ -356,7 +356,7 @@ static void rejects_a_wrong_field_count(void **state)
     assert_refused("1 2 0 0 0 .5 -1\n2 2 1 1 1 .5 1 8\n",
                    ":2: the row has 8 fields; it must have 7: id type x y z radius parent");
     assert_refused("1 2 0 0 0 .5 -1 8 9\n2 2 1 1 1 .5 1\n",
-                   ":2: the row has 7 fields; the rows before it have 9");
+                   ":2: the row has 7 fields; earlier rows have 9");
 }
 
 static void rejects_what_is_not_a_number(void **state)
@@ -364,7 +364,7 @@ static void rejects_what_is_not_a_number(void **state)
     (void)state;
     assert_refused("1 2 0 O 0 .5 -1\n", ":1: the y coordinate is 'O'; it must be a finite number");
     assert_refused("1 2 0 0 0 .5mm -1\n",
-                   ":1: the radius is '.5mm'; it must be a finite number that is not negative");
+                   ":1: the radius is '.5mm'; it must be a finite number of 0 or more");
     assert_refused("1 2 0 0 0x1p3 .5 -1\n",
                    ":1: the z coordinate is '0x1p3'; it must be a finite number");
     assert_refused("one 2 0 0 0 .5 -1\n",
@@ -384,16 +384,16 @@ static void rejects_what_is_not_finite(void **state)
                    ":1: the z coordinate is '-inf'; it must be a finite number");
     assert_refused("1 2 0 1e999 0 .5 -1\n",
                    ":1: the y coordinate is '1e999'; it must be a finite number");
-    assert_refused("1 2 0 0 0 NaN -1\n", ":1: the radius is 'NaN'; it must be a finite number that "
-                                         "is not negative (`repair_radii` takes the parent's)");
+    assert_refused("1 2 0 0 0 NaN -1\n", ":1: the radius is 'NaN'; it must be a finite number of 0 "
+                                         "or more (`repair_radii` uses the parent's radius)");
 }
 
 static void rejects_a_negative_radius_and_takes_zero(void **state)
 {
     (void)state;
     assert_refused("1 2 0 0 0 -0.375 -1\n",
-                   ":1: the radius is '-0.375'; it must be a finite number that is not negative "
-                   "(`repair_radii` takes the parent's)");
+                   ":1: the radius is '-0.375'; it must be a finite number of 0 or more "
+                   "(`repair_radii` uses the parent's radius)");
     Tree tree = read_text("1 2 0 0 0 0 -1\n");
     assert_true(tree.radius_mm[0] == 0);
     tree_release(&tree);
@@ -481,8 +481,8 @@ static void rejects_missing_files_and_unknown_extensions(void **state)
     Err err;
     assert_int_equal(tree_read(&tree, "/nonexistent/t.swc", &err), STATUS_INPUT);
     assert_int_equal(tree_read(&tree, "t.swq", &err), STATUS_USAGE);
-    assert_memory_equal(err.text, "t.swq: not the name of a tree file, which ends in .swc, ", 55);
-    assert_non_null(strstr(err.text, ", or is - for standard input or output; did you mean .swc?"));
+    assert_memory_equal(err.text, "t.swq: unknown extension of a tree file; use .swc, ", 51);
+    assert_non_null(strstr(err.text, ", or - for standard input or output; did you mean .swc?"));
     assert_int_equal(tree_write(&tree, "t", &err), STATUS_USAGE);
     assert_true(tree_format_known("a.b/T.SWC") && tree_format_known("-"));
     assert_false(tree_format_known("swc") || tree_format_known("t.swc.gz"));
@@ -673,8 +673,8 @@ static void a_bad_row_of_a_large_file_is_named_by_its_line(void **state)
     const struct {
         const char *row, *sentence;
     } cases[] = {
-        {"31007 3 0 0 0 -1 1\n", ":31007: the radius is '-1'; it must be a finite number that is "
-                                 "not negative"},
+        {"31007 3 0 0 0 -1 1\n",
+         ":31007: the radius is '-1'; it must be a finite number of 0 or more"},
         {"# remark\n7 3 0 0 0 1 1\n",
          ":31008: the id 7 is already that of line 7; every node needs "
          "its own"},

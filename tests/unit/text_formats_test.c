@@ -100,9 +100,9 @@ static void what_no_deck_can_hold_is_refused(void **state)
         const char *swc, *sentence;
     } bad[] = {
         {"1 0 0 0 0 1 -1\n2 0 1 0 0 1 1\n3 0 0 5 0 1 -1\n4 0 1 5 0 1 3\n",
-         "a deck of svOneDSolver holds one tree; this is a forest of 2"},
+         "a svOneDSolver deck can hold one tree; this file has 2"},
         {"1 0 0 0 0 1 -1\n2 0 1 0 0 1 1\n3 0 0 5 0 1 1\n",
-         "a deck of svOneDSolver has one segment at its inlet; this tree has 2"},
+         "a svOneDSolver deck must have one segment at its inlet; this tree has 2"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         Err err;
@@ -123,13 +123,13 @@ static void rejects_decks_that_make_no_sense(void **state)
     } bad[] = {
         {"NODE 0 0 0\n", ":1: a NODE card needs 5 fields, found 4"},
         {"NODE 0 0 0 z\n", ":1: the coordinate is 'z'; it must be a finite number"},
-        {"NODE 0 0 0 0\n\nNODE 0 1 0 0\n", ":3: the NODE '0' has been given before, in line 1"},
-        {"NDOE 0 0 0 0\n", ":1: 'NDOE' is no card of a deck of svOneDSolver"},
+        {"NODE 0 0 0 0\n\nNODE 0 1 0 0\n", ":3: the NODE '0' is already defined in line 1"},
+        {"NDOE 0 0 0 0\n", ":1: 'NDOE' is not a card of svOneDSolver"},
         {"SEGMENT a 7 2.25 50 0 1 2\n", ":1: a SEGMENT card needs 9 to 17 fields, found 8"},
         {"SEGMENT a 7 2.25 50 0 1 2 -1.5\n",
-         ":1: the outlet area is '-1.5'; it must be a finite number that is not negative"},
+         ":1: the outlet area is '-1.5'; it must be a finite number of 0 or more"},
         {"NODE 0 0 0 0\nSEGMENT a 7 2.25 50 0 1 2 1.5\n", ":2: there is no NODE '1'"},
-        {"JOINTINLET I 2 7\n", ":1: the card says 2 segments and names 1"},
+        {"JOINTINLET I 2 7\n", ":1: the card states 2 segments, but names 1"},
         {"NODE 0 0 0 0\nNODE 1 1 0 0\nSEGMENT a 7 1 1 0 1 2 2\nJOINT J 1 I O\nJOINTINLET I 1 8\n",
          ":4: there is no SEGMENT of number '8'"},
         {"JOINT J 1 I O\n", ":1: there is no JOINTINLET 'I'"},
@@ -198,7 +198,7 @@ static void vmv_of_other_programs_is_read(void **state)
     assert_nodes(&tree, "1 3 0 0 0 0.0035 -1\n2 3 0 0.25 0 0.0035 1\n");
     tree_release(&tree);
     assert_refused("vmv", "$PARAM_BEGIN\n$NUM_VERTS 7\n$PARAM_END\n",
-                   ": the file says 7 vertices and has 0");
+                   ": the file states 7 vertices, but has 0");
 }
 
 static void the_order_of_strands_means_nothing_where_two_enter_one_vertex(void **state)
@@ -219,29 +219,28 @@ static void rejects_vmv_that_makes_no_sense(void **state)
     static const struct {
         const char *text, *sentence;
     } bad[] = {
-        {"1 2 3\n", ":1: '1' stands in no section of VMV"},
-        {"$VERTS_BEGIN\n", ":1: '$VERTS_BEGIN' begins or ends no section of VMV"},
+        {"1 2 3\n", ":1: '1' is outside all sections of the VMV file"},
+        {"$VERTS_BEGIN\n", ":1: '$VERTS_BEGIN' does not begin or end a section of a VMV file"},
         {"$VERT_LIST_BEGIN\n1 0 0 0\n",
          ":2: a vertex (number, three coordinates, radius, at most one value) needs 5 to 6 fields, "
          "found 4"},
         {"$VERT_LIST_BEGIN\n1 0 0 0 1\n1 0 0 2 1\n",
-         ":3: the vertex '1' has been given before, in line 2"},
-        {"$VERT_LIST_BEGIN\n1 0 0 0 -2\n",
-         ":2: the radius is '-2'; it must be a finite number that is not negative (`repair_radii` "
-         "takes the parent's)"},
+         ":3: the vertex '1' is already defined in line 2"},
+        {"$VERT_LIST_BEGIN\n1 0 0 0 -2\n", ":2: the radius is '-2'; it must be a finite number of "
+                                           "0 or more (`repair_radii` uses the parent's radius)"},
         {"$VERT_LIST_BEGIN\n1 0 0 0 2\n$VERT_LIST_END\n$STRANDS_LIST_BEGIN\n1 1 2\n",
          ":5: there is no vertex '2'"},
         {"$VERT_LIST_BEGIN\n1 0 0 0 2\n$VERT_LIST_END\n$STRANDS_LIST_BEGIN\n1 1\n",
-         ":5: a strand has two vertices or more; this has 1"},
+         ":5: the strand has 1 vertices; it must have two or more"},
         {"$PARAM_BEGIN\nNUM_VERTS 3000000\n$PARAM_END\n$VERT_LIST_BEGIN\n1 0 0 0 2\n",
-         ": the file says 3000000 vertices and has 1"},
+         ": the file states 3000000 vertices, but has 1"},
         {"$VERT_LIST_BEGIN\n1 0 0 0 2\n$VERT_LIST_END\n$FLOW_SIMULATION_BEGIN\n1 2\n3 4\n",
-         ":6: there are more rows than vertices, of which there are 1"},
+         ":6: there are more rows than the 1 vertices"},
         {"$VERT_LIST_BEGIN\n1 0 0 0 2\n2 0 0 0 2\n$FLOW_SIMULATION_BEGIN\n1 2\n3\n",
-         ":6: the row has 1 value; the first has 2"},
+         ":6: the row has 1 value; the first row has 2"},
         {"$PARAM_BEGIN\nFLOW_SIMULATION_TIME_STEPS 3\n$PARAM_END\n"
          "$VERT_LIST_BEGIN\n1 0 0 0 2\n$VERT_LIST_END\n$FLOW_SIMULATION_BEGIN\n1 2\n",
-         ": the file says 3 time steps of flows and has 2"},
+         ": the file states 3 time steps of flows, but has 2"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
         assert_refused("vmv", bad[i].text, bad[i].sentence);
@@ -269,17 +268,17 @@ static void trees_of_vita_hang_together_by_their_section_connectivity(void **sta
 static void rejects_trees_of_vita_that_make_no_sense(void **state)
 {
     (void)state;
-    assert_refused("cco", "3\n", ":1: a tree of VItA begins with *Tree");
-    assert_refused("cco", "*Forest\n", ":1: '*Forest' is no section of VItA's trees");
+    assert_refused("cco", "3\n", ":1: the file does not begin with *Tree, as VItA trees do");
+    assert_refused("cco", "*Forest\n", ":1: '*Forest' is not a section of a VItA tree");
     assert_refused("cco", "*Vessels\n1\n0 0 9 0 0.5 4 1 0 0 0 0 2\n",
                    ":3: a VItA vessel needs at least 13 fields, found 12");
     assert_refused("cco", "*Vessels\n1\n0 0 9 0 0.5 4 1 0 0 0 0 2 -1.3\n",
-                   ":3: the radius is '-1.3'; it must be a finite number that is not negative "
-                   "(`repair_radii` takes the parent's)");
+                   ":3: the radius is '-1.3'; it must be a finite number of 0 or more "
+                   "(`repair_radii` uses the parent's radius)");
     assert_refused("cco", "*Vessels\n1\n0 0 9 0 0.5 4 1 0 0 0 0 2 1\n",
-                   ": there is no section *Connectivity");
+                   ": the file has no section *Connectivity");
     assert_refused("cco", "*Vessels\n2\n0 0 9 0 0.5 4 1 0 0 0 0 2 1\n*Connectivity\n0 -1\n",
-                   ": the file says 2 vessels and has 1");
+                   ": the file states 2 vessels, but has 1");
     assert_refused("cco", "*Vessels\n1\n0 0 9 0 0.5 4 1 0 0 0 0 2 1\n*Connectivity\n0 5\n",
                    ":5: there is no vessel '5'");
 }
@@ -293,8 +292,8 @@ static void edge_lists_of_opencco_lead_from_the_second_end_to_the_first(void **s
                         "5 3 2.5 0 0 0.75 1\n");
     tree_release(&tree);
     assert_refused("dat", "0.5 4 1 0 9 0.25 1.25\n-2 0 0 0.5 4 1\n",
-                   ":2: the line '-2 0 0 0.5 4 1' is not seven numbers: the ends of a segment and "
-                   "its radius");
+                   ":2: the line is '-2 0 0 0.5 4 1'; it must be seven numbers: both ends of a "
+                   "segment and its radius");
 }
 
 /* ---- Secomb's networks ---- */
@@ -334,14 +333,14 @@ static void rejects_networks_that_make_no_sense(void **state)
     assert_refused("dat", TISSUE "1\nname\n1 5 1 2\n",
                    ":9: a row of the segments needs at least 5 fields, found 4");
     assert_refused("dat", TISSUE "1\nname\n1 5 1 2 thick\n",
-                   ":9: the diameter is 'thick'; it must be a finite number that is not negative");
+                   ":9: the diameter is 'thick'; it must be a finite number of 0 or more");
     assert_refused("dat", TISSUE "1\nname\n1 5 1 2 9\n2\nname\n1 0 0 0\n",
-                   ": the file ends before all its nodes are there");
+                   ": the file ends before all nodes were read");
     assert_refused("dat", TISSUE "1\nname\n1 5 1 3 9\n2\nname\n1 0 0 0\n2 0 0 1\n",
                    ":9: there is no node '3'");
     assert_refused("dat", TISSUE "1\nname\n1 5 1 2 9\n2\nname\n1 0 0 0\n2 0 0 1\n1\nname\n5 2 1\n",
                    ":16: there is no node '5'");
-    assert_refused("dat", "", ": the file ends before all its segments are there");
+    assert_refused("dat", "", ": the file ends before all segments were read");
 }
 
 /* ---- MetaIO ---- */
@@ -418,29 +417,29 @@ static void rejects_scenes_of_metaio_that_make_no_sense(void **state)
     static const struct {
         const char *text, *sentence;
     } bad[] = {
-        {SCENE, ": there is no tube in the file"},
-        {TUBE "PointDim = x y z r\nPoints =\n", ":5: the tube does not say NPoints"},
+        {SCENE, ": the file has no tube"},
+        {TUBE "PointDim = x y z r\nPoints =\n", ":5: the tube has no NPoints"},
         {TUBE "PointDim = x y z\nNPoints = 1\nPoints =\n",
          ":6: PointDim must name x, y, z and a radius"},
         {TUBE "PointDim = x y z r\nNPoints = 2000000000\nPoints =\n1 2 3 4\n",
          ":7: the file ends within the points of a tube"},
         {TUBE "BinaryData = True\nPointDim = x y z r\nNPoints = 2000000000\nPoints =\n1 2 3 4\n",
-         ":7: the file ends within the points of a tube, which are to take 32000000000 bytes"},
+         ":7: the file ends within the points of a tube, which take 32000000000 bytes"},
         {TUBE "PointDim = x y z r\nNPoints = 1\nPoints =\n1 2 3\n",
-         ":7: the point '1 2 3' is not the 4 numbers of PointDim"},
+         ":7: the point is '1 2 3'; it must be 4 numbers, as PointDim states"},
         {TUBE "ElementSpacing = 1 2\n", ":4: ElementSpacing is '1 2'; it must be 3 numbers"},
         {TUBE "ElementType = MET_SHORT\n",
          ":4: ElementType is 'MET_SHORT'; it must be MET_FLOAT or MET_DOUBLE"},
         {"ObjectType = Tube\nNDims = 4\n", ":2: the NDims is '4'; it must be a whole number from 2 "
                                            "to 3"},
         {TUBE "ParentID = 8\nPointDim = x y z r\nNPoints = 1\nPoints =\n1 2 3 4\n",
-         ":7: there is no object of the ID '8'"},
+         ":7: there is no object with the ID '8'"},
         {TUBE "ID = 3\nParentID = 3\nPointDim = x y z r\nNPoints = 1\nPoints =\n1 2 3 4\n" TUBE
               "ID = 3\nPointDim = x y z r\nNPoints = 1\nPoints =\n",
-         ":16: the object of the ID '3' has been given before, in line 8"},
+         ":16: the object with the ID '3' is already defined in line 8"},
         {"ObjectType = Group\nNDims = 3\nID = 0\nOffset = 1 0 0\n" TUBE
          "ParentID = 0\nPointDim = x y z r\nNPoints = 1\nPoints =\n1 2 3 4\n",
-         ":11: the object 0 moves those that it holds, which is not read"},
+         ":11: object 0 transforms the objects in it, which is not supported"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
         assert_refused("tre", bad[i].text, bad[i].sentence);
@@ -580,33 +579,38 @@ static void rejects_graphs_of_amira_that_make_no_sense(void **state)
         const char *at, *with, *sentence;
     } bad[] = {
         {"HxSpatialGraph", "HxCluster",
-         ":22: the ContentType is 'HxCluster'; networks are HxSpatialGraph, HxLineSet or "
+         ":22: the ContentType is 'HxCluster'; it must be HxSpatialGraph, HxLineSet or "
          "SkeletonGraph"},
         {"define EDGE 3\n", "", ":21: the header does not define EDGE"},
         {"define POINT 8", "define POINT 900000",
-         ":39: 2700000 numbers of 'EdgePointCoordinates' cannot be in the 122 bytes left"},
+         ":39: 2700000 numbers of 'EdgePointCoordinates' do not fit in the 122 bytes that are "
+         "left"},
         {"define POINT 8", "define POINT 2000000000",
-         ":6: it claims 2000000000 POINT; a file of 637 bytes holds at most 1000637"},
+         ":6: its header states 2000000000 POINT; a file of 637 bytes can hold at most 1000637"},
         {"define POINT 8", "define POINT -8",
          ":6: the POINT is '-8'; it must be a whole number from 0 to 2147483647"},
-        {"define POINT 8", "define POINT 9", ":47: '@5' of EdgePointCoordinates is no number"},
+        {"define POINT 8", "define POINT 9", ":47: '@5' in EdgePointCoordinates is not a number"},
         {"@5\n\n# Data", "@5(HxMagic,12)\n\n# Data",
-         ":19: the block @5 is packed by 'HxMagic'; HxByteRLE and HxZip are read"},
+         ":19: block @5 is packed by 'HxMagic'; it must be HxByteRLE or HxZip"},
         {"float thickness", "complex thickness",
-         ":19: 'complex' is no type of numbers that is read"},
-        {"} @6", "}", ":18: a declaration is 'EDGE { TYPE NAME } @BLOCK'"},
-        {"@6\n3\n1\n2\n", "@8\n3\n1\n2\n", ":57: the block @8 is not declared"},
-        {"@7\n11\n12", "@7\n11\ntwelve", ":62: 'twelve' of Labels is no number"},
-        {"@7\n11\n12", "@7\n11 12 7\n12", ":63: '13' stands where a block begins"},
-        {"@3\n3\n2", "@3\n3\n3", ": the edges have 9 points together, POINT is 8"},
-        {"@3\n3\n2", "@3\n3\n1", ": edge 1 has 1 points; it needs those of both its vertices"},
-        {"0 1\n1 2\n3 1", "0 1\n1 4\n3 1", ": an edge leads to vertex 4; there are 4"},
+         ":19: 'complex' is not a known type of numbers"},
+        {"} @6", "}",
+         ":18: the declaration is not understood; it must be 'EDGE { TYPE NAME } @BLOCK'"},
+        {"@6\n3\n1\n2\n", "@8\n3\n1\n2\n", ":57: block @8 is not declared in the header"},
+        {"@7\n11\n12", "@7\n11\ntwelve", ":62: 'twelve' in Labels is not a number"},
+        {"@7\n11\n12", "@7\n11 12 7\n12", ":63: '13' was found where a block must begin"},
+        {"@3\n3\n2", "@3\n3\n3",
+         ": the edges have 9 points in total; the header defines POINT as 8"},
+        {"@3\n3\n2", "@3\n3\n1",
+         ": edge 1 has 1 points; it must have at least 2, the points of its vertices"},
+        {"0 1\n1 2\n3 1", "0 1\n1 4\n3 1",
+         ": an edge refers to vertex 4; there are 4 vertices, counted from 0"},
         {"NumEdgePoints } @3", "EdgePoints } @3",
-         ": there is no block of EDGE { NumEdgePoints } with 1 number each"},
+         ": no block holds EDGE { NumEdgePoints } with 1 number each"},
         {"thickness", "weight",
-         ": no array is called a radius, `radius_array` names none, and `radius` gives none; its "
-         "arrays of one number "
-         "are 'Labels' of points, 'weight' of points, 'strahler' of cells"},
+         ": no array has the name of a radius; name one with `radius_array`, or set `radius`; the "
+         "arrays with one number per element are 'Labels' of points, 'weight' of points, "
+         "'strahler' of cells"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
         assert_amira_refused(bad[i].at, bad[i].with, bad[i].sentence);
@@ -694,7 +698,7 @@ static void a_second_table_holds_the_lines_between_nodes(void **state)
                          "edges.csv:4: the from is '3'; it must be a whole number from 0 to 2");
     unlink(edges);
     assert_table_refused("x0,y0,z0,x1,y1,z1,radius\n0,1,2,3,4,5,6\n", &options,
-                         "the table is no table of nodes, which `edges` are for");
+                         "`edges` was given, but this is not a table of nodes");
 }
 
 static void a_csv_of_segments_is_written_and_read_again(void **state)
@@ -729,29 +733,30 @@ static void rejects_tables_that_make_no_sense(void **state)
         const char *text, *columns, *sentence;
     } bad[] = {
         {"1,2,3,4\n", NULL,
-         "csv:1: the table has no titles; `columns` says which column is which, "},
+         "csv:1: the table has no titles; name its columns with `columns`, "},
         {"a,b,c\n1,2,3\n", NULL,
-         "csv:1: the table has neither the columns x, y, z of nodes nor x0, y0, z0, x1, y1, z1"},
+         "csv:1: no columns are called x, y, z (of nodes) or x0, y0, z0, x1, y1, z1"},
         {"from,to,r\n1,2,3\n", NULL,
-         "csv:1: the table is one of lines; read that of their nodes, and this one as `edges`"},
+         "csv:1: this is an edge table; read the table of nodes, and give this one as `edges`"},
         {"id,x,y,r\n1,2,3,4\n", NULL,
-         "csv: the table has nodes, but no parents; `edges` names the table of lines"},
-        {"id,parent,x,y,r\n1,,3,4\n", NULL, "csv:2: the row has 4 fields; there are 5 columns"},
+         "csv: the table has nodes, but no parents; give the edge table as `edges`"},
+        {"id,parent,x,y,r\n1,,3,4\n", NULL,
+         "csv:2: the row has 4 fields; it must have 5, one per column"},
         {"id,parent,x,y,r\n1,,3,4,1\n2,5,3,4,1\n", NULL, "csv:3: there is no node '5'"},
         {"id,parent,x,y,r\n1,,3,4,1\n1,,3,5,1\n", NULL,
-         "csv:3: the node '1' has been given before, in line 2"},
+         "csv:3: the node '1' is already defined in line 2"},
         {"id,parent,x,y,r\n1,,3,east,1\n", NULL,
          "csv:2: the y is 'east'; it must be a finite number"},
         {"id,parent,x,y,d\n1,,3,4,-1\n", NULL,
-         "csv:2: the diameter is '-1'; it must be a finite number that is not negative"},
+         "csv:2: the diameter is '-1'; it must be a finite number of 0 or more"},
         {"id,parent,x_mm,y_um,r\n1,,3,4,-1\n", "radius=r",
-         "csv:1: the unit of 'y_um' is not that of the columns before it"},
+         "csv:1: the unit of column 'y_um' differs from the unit of the columns before it"},
         {"id,parent,x,y,r\n1,,3,4,1\n", "radius=R",
-         "csv: there is no column 'R', which `columns` names"},
-        {"1,2\n", "x,y,z", "csv: there is no column 3, which `columns` calls 'z'"},
+         "csv: no column is called 'R', which `columns` names"},
+        {"1,2\n", "x,y,z", "csv: the table has no column 3, which `columns` names for 'z'"},
         {"id,parent,x,y,thick,r\n1,,3,4,1,1\n", "radius=thick,radius=r",
-         "csv:1: two columns are to be radius"},
-        {"id,parent,x,y,\"r\n", NULL, "csv:1: a quote is not closed"},
+         "csv:1: two columns are used as radius; only one may be"},
+        {"id,parent,x,y,\"r\n", NULL, "csv:1: a quoted field has no closing quote"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         const ReadOptions options = {.columns = bad[i].columns};

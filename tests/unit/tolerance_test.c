@@ -156,7 +156,7 @@ static void measures_by_how_much_an_outline_has_moved(void **state)
     assert_near(r.values[MEASURE_SILHOUETTE_PX], 32 / outline, 1e-12);
     assert_near(ledger.entries[1].moved_px, 32 / (104 * 0.78539816339744831), 1e-12);
     assert_int_equal(r.values[MEASURE_EXTRA_PIXELS], 32);
-    assert_false(rule_named(&r, "outline of what is seen")->met);
+    assert_false(rule_named(&r, "shift of the silhouette")->met);
     assert_false(rule_named(&r, "outline of a segment")->met);
     ledger_release(&ledger);
     side_release(&a);
@@ -448,7 +448,7 @@ static void says_which_line_of_a_tolerance_is_wrong(void **state)
     (void)state;
     static const struct {
         const char *text, *sentence;
-    } cases[] = {{"tier = mine\ncolor_pmm = 3\n", ":2: 'color_pmm' is not a limit"},
+    } cases[] = {{"tier = mine\ncolor_pmm = 3\n", ":2: unknown limit 'color_pmm'"},
                  {"gain = -0.1\n", ":1: gain is '-0.1'; it must be a number of at least 0"},
                  {"\nregion_pixels = 2.5\n", ":2: region_pixels is '2.5'"},
                  {"color_common_only = yes\n", "it must be on or off"},

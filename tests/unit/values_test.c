@@ -126,26 +126,27 @@ static void refuses_values_that_do_not_fit(void **state)
     static const struct {
         const char *text, *column, *sentence;
     } cases[] = {
-        {"", NULL, ": there are no values in it"},
-        {"a,b\n1,2\n", NULL, ":1: there is no column id or name, to tell the segments"},
-        {"id\n7\n", NULL, ":1: there is no column of values"},
-        {"id,name,a\n7,7,1\n", NULL, ":1: two columns tell the segment"},
+        {"", NULL, ": the file has no values"},
+        {"a,b\n1,2\n", NULL,
+         ":1: no column is called id or name, which must identify the segments"},
+        {"id\n7\n", NULL, ":1: the file has no column of values"},
+        {"id,name,a\n7,7,1\n", NULL, ":1: two columns state the segment; only one may"},
         {"id,a,\n7,7,1\n", NULL, ":1: column 3 has no name"},
         {"id,a,a\n7,7,1\n", "a", ":1: two columns are called 'a'"},
-        {"id,a\n7,1\n9,1\n", "a", ":3: the tree has no segment 9"},
-        {"id,a\n7,1\nx,1\n", "a", ":3: 'x' is not the id of a segment"},
-        {"id,a\n7,1\n\n7,1\n", "a", ":4: segment 7 stands on line 2 already"},
-        {"id,a\n7,1,3\n", "a", ":2: the row has 3 fields; there are 2 columns"},
+        {"id,a\n7,1\n9,1\n", "a", ":3: the tree has no segment with the id 9"},
+        {"id,a\n7,1\nx,1\n", "a", ":3: the segment id is 'x'; it must be an integer"},
+        {"id,a\n7,1\n\n7,1\n", "a", ":4: segment 7 already has a row, in line 2"},
+        {"id,a\n7,1,3\n", "a", ":2: the row has 3 fields; it must have 2, one per column"},
         {"id,a\n7,1e999\n", "a", ":2: the a is '1e999'; it must be a finite number"},
-        {"id,a,b\n7,1,2\n", "c", ":1: there is no column 'c'; there are a, b"},
+        {"id,a,b\n7,1,2\n", "c", ":1: no column is called 'c'; the columns are a, b"},
         {"id,time,a,b\n7,1,2,3\n", NULL,
-         ":1: there are 2 columns of values; say which, as in FILE.csv:a"},
+         ":1: the file has 2 columns of values; name one, as in FILE.csv:a"},
         {"id,time,a\n7,1,2\n7,2,2\n8,1,2\n", NULL,
-         ": segment 8 has no row for time 2, and others have"},
+         ": segment 8 has no row for time 2, which others have"},
         {"id,time,a\n7,1,2\n7,2,2\n7,1,2\n", NULL,
-         ":4: segment 7 at time 1 stands on line 2 already"},
+         ":4: segment 7 at time 1 already has a row, in line 2"},
         {"name,time,a\nbranch0_seg0,1,2\n", NULL,
-         ":2: 'branch0_seg0' is a branch of SimVascular's, and the tree has no column BranchId"},
+         ":2: 'branch0_seg0' names a SimVascular branch, but the tree has no column BranchId"},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         Tree tree = make_tree();
@@ -242,10 +243,11 @@ static void refuses_flows_that_make_no_sense(void **state)
     Tree tree = make_tree();
     Err err;
     static const char *const cases[][2] = {
-        {"id,flow\n8,-1\n", ": a flow is -1; it must not be below 0"},
-        {"id,flow\n8,0\n", ": no flow is above 0"},
-        {"id,flow [m]\n8,1\n", ": the column flow must be one, in ml/min"},
-        {"id,flow_0,flow_1\n8,1,2\n", ": the column flow must be one, in ml/min"}};
+        {"id,flow\n8,-1\n", ": a flow is -1; it must be 0 or more"},
+        {"id,flow\n8,0\n", ": all flows are 0; at least one must be above 0"},
+        {"id,flow [m]\n8,1\n", ": the file must have exactly one column called flow, in ml/min"},
+        {"id,flow_0,flow_1\n8,1,2\n",
+         ": the file must have exactly one column called flow, in ml/min"}};
     for (size_t k = 0; k < 4; k++) {
         write_input(cases[k][0]);
         assert_int_equal(tree_read_flows(&tree, input, &err), STATUS_INPUT);

@@ -207,9 +207,8 @@ static void radii_are_found_by_name_or_named(void **state)
         tree_release(&tree);
     }
     refuses("vtk", CHAIN "POINT_DATA 2\nFIELD f 2\nage 1 2 int\n1 2\nv 2 2 int\n1 2 3 4\n",
-            ": no array is called a radius, `radius_array` names none, and `radius` gives none; "
-            "its arrays of one "
-            "number are 'age' of points");
+            ": no array has the name of a radius; name one with `radius_array`, or set `radius`; "
+            "the arrays with one number per element are 'age' of points");
 }
 
 static void an_array_says_where_the_inlets_are(void **state)
@@ -233,36 +232,37 @@ static void refuses_legacy_files_that_say_no_network(void **state)
         const char *text, *sentence;
     } cases[] = {
         {"id,x\n",
-         ":1: a legacy VTK file begins with '# vtk DataFile Version', this one with 'id,x'"},
+         ":1: the file begins with 'id,x'; a legacy VTK file begins with '# vtk DataFile Version'"},
         {LEGACY("3.0", "TEXT"), ":3: the third line is 'TEXT'; it must be ASCII or BINARY"},
         {LEGACY("3.0", "ASCII") "DATASET STRUCTURED_GRID\n",
-         ":4: the dataset is STRUCTURED_GRID; lines are in POLYDATA and UNSTRUCTURED_GRID"},
+         ":4: the dataset is STRUCTURED_GRID; it must be POLYDATA or UNSTRUCTURED_GRID"},
         {POLYDATA "POINTS many float\n",
          ":5: the number of points is 'many'; it must be a whole number"},
-        {POLYDATA "POINTS 2 complex\n", ":5: 'complex' is no type of numbers"},
-        {POLYDATA "POINTS 2 float\n0 0 x 1 0 0\n", ":6: 'x' of POINTS is no number"},
+        {POLYDATA "POINTS 2 complex\n", ":5: 'complex' is not a type of numbers"},
+        {POLYDATA "POINTS 2 float\n0 0 x 1 0 0\n", ":6: 'x' in POINTS is not a number"},
         {POLYDATA "POINTS 2 float\n0 0 0 1 0    \n",
-         ":7: the file ends after 5 of the 6 numbers of POINTS"},
+         ":7: the file ends after 5 of 6 numbers of POINTS"},
         {POLYDATA "POINTS 4000000000 double\n0 0 0",
-         ":5: POINTS announces 12000000000 numbers, and the file goes on for 6 bytes"},
+         ":5: POINTS announces 12000000000 numbers, but only 6 bytes of the file are left"},
         {POLYDATA POINTS "LINES 1 4\n9 0 1 2\n",
          ":10: cell 0 has 9 points, which 4 numbers cannot hold"},
         {POLYDATA POINTS "LINES 2 2\nOFFSETS int\n0 7\nCONNECTIVITY int\n0 1\n",
-         ": cell 0 ends at 7 of the numbers of points; ends must rise to at most 2"},
+         ": cell 0 ends at entry 7 of the list of point indices; ends must increase up to at most "
+         "2"},
         {POLYDATA POINTS "LINES 1 3\n2 0 7\n" RADII,
-         ": cell 0: it refers to point 7; there are 4 points, numbered from 0 on"},
-        {POLYDATA POINTS RADII, ": there are no lines in it"},
+         ": cell 0: it refers to point 7; there are 4 points, counted from 0"},
+        {POLYDATA POINTS RADII, ": the file has no lines"},
         {POLYDATA POINTS "POLYGONS 1 4\n3 0 1 2\n" RADII,
-         ": there are no lines in it, only other cells"},
+         ": the file has no lines, only other cells"},
         {POLYDATA POINTS "LINES 1 3\n2 0 1\nPOINT_DATA 3\nFIELD f 1\nradius 1 3 int\n1 2 3\n",
          ": the array 'radius' has 3 values for 4 points"},
         {POLYDATA POINTS "LINES 1 3\n2 0 1\nCELL_DATA 1\nFIELD f 1\nradius 1 1 int\n-2\n",
-         ": cell 0: the radius is '-2'; it must be a finite number that is not negative "
-         "(`repair_radii` takes the parent's)"},
+         ": cell 0: the radius is '-2'; it must be a finite number of 0 or more (`repair_radii` "
+         "uses the parent's radius)"},
         {POLYDATA POINTS "LINES 1 3\n2 0 1\nMESH 7\n",
-         ":11: 'MESH' is no keyword of a VTK file of lines"},
+         ":11: 'MESH' is not a keyword of a VTK file of lines"},
         {LEGACY("3.0", "BINARY") "DATASET POLYDATA\nPOINTS 2 float\n0123456789",
-         ": byte 72: POINTS announces 6 numbers, and the file goes on for 10 bytes"},
+         ": byte 72: POINTS announces 6 numbers, but only 10 bytes of the file are left"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
         refuses("vtk", cases[i].text, cases[i].sentence);
@@ -278,26 +278,25 @@ static void refuses_xml_that_says_no_network(void **state)
     static const struct {
         const char *text, *sentence;
     } cases[] = {
-        {"<gxl/>", ":1: the document is <gxl>; VTK's are <VTKFile>"},
+        {"<gxl/>", ":1: the outermost element is <gxl>; it must be <VTKFile>"},
         {"<VTKFile type=\"ImageData\"/>",
-         ":1: the file is of type 'ImageData'; lines are in PolyData and UnstructuredGrid"},
+         ":1: the file has the type 'ImageData'; it must be PolyData or UnstructuredGrid"},
         {VTP("compressor=\"vtkLZMADataCompressor\"") VTP_END,
-         ":2: it is compressed by vtkLZMADataCompressor; vtkZLibDataCompressor and "
-         "vtkLZ4DataCompressor are read"},
+         ":2: the compressor is vtkLZMADataCompressor; it must be vtkZLibDataCompressor or "
+         "vtkLZ4DataCompressor"},
         {VTP(""), ":3: not well-formed XML: no element found"},
         {"<?xml version=\"1.0\"?>\n<!DOCTYPE a [<!ENTITY b \"bb\">]>\n" VTP_END,
-         ":2: it declares the entity 'b'; documents with entities of their own are not read"},
-        {VTK_ARRAY("", "0 0 zero"), ":3: the array '' of Points: 'zero' is no number"},
-        {VTK_ARRAY("", "0 0 0 1"),
-         ":3: the array '' of Points: it has 4 numbers, which are no tuples "
-         "of 3"},
+         ":2: it declares the entity 'b'; remove all entity declarations"},
+        {VTK_ARRAY("", "0 0 zero"), ":3: the array '' of Points: 'zero' is not a number"},
+        {VTK_ARRAY("", "0 0 0 1"), ":3: the array '' of Points: it has 4 numbers, which is not a "
+                                   "multiple of its 3 components"},
         {VTK_ARRAY("format=\"binary\"", "AQAAA*=="),
-         ":3: the array '' of Points: a byte of 42 is no letter of base64"},
+         ":3: the array '' of Points: it has a byte of value 42, which is not a base64 character"},
         {VTK_ARRAY("format=\"binary\"", "AAAAgA=="),
-         ":3: the array '' of Points: it announces 2.1 GB; there are 3 bytes more in the file"},
+         ":3: the array '' of Points: it announces 2.1 GB, but only 3 bytes of the file are left"},
         {VTK_ARRAY("format=\"appended\"", ""),
-         ": the array '' of Points: it is said to be at byte 0 of the appended data, which has 0"},
-        {VTP("") VTP_POINTS VTP_END, ": there are no lines in it"},
+         ": the array '' of Points: its offset is 0, but the appended data has only 0 bytes"},
+        {VTP("") VTP_POINTS VTP_END, ": the file has no lines"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
         refuses("vtp", cases[i].text, cases[i].sentence);

@@ -44,11 +44,11 @@ static void gxl_that_is_none_is_refused(void **state)
 {
     (void)state;
     assert_refused("gxl", "<gxl><graph><node id=\"a\"/><node id=\"a\"/></graph></gxl>",
-                   ":1: the node 'a' has been given before, in line 1");
+                   ":1: the node 'a' is already defined in line 1");
     assert_refused("gxl", "<gxl><graph>\n<edge from=\"a\" to=\"b\"/></graph></gxl>",
                    ":2: there is no node 'a'");
     assert_refused("gxl", "<gxl><graph><node id=\"a\"/></graph></gxl>",
-                   ": point 1 of 1 has no place");
+                   ": point 1 of 1 has no position");
     assert_refused("gxl", "<gxl><graph><node/></graph></gxl>",
                    ":1: the element <node> has no attribute id");
     assert_refused("gxl",
@@ -58,11 +58,10 @@ static void gxl_that_is_none_is_refused(void **state)
     assert_refused("gxl",
                    "<gxl><graph><node id=\"a\"/><node id=\"b\"/>"
                    "<edge from=\"a\" to=\"b\"/></graph></gxl>",
-                   ": point 1 of 2 has no place");
+                   ": point 1 of 2 has no position");
     assert_refused("gxl", "<gxl><graph>\n", ":2: not well-formed XML: no element found");
     assert_refused("gxl", "<!DOCTYPE x [<!ENTITY a \"b\">]>\n<gxl/>",
-                   ":1: it declares the entity 'a'; documents with entities of their own are not "
-                   "read");
+                   ":1: it declares the entity 'a'; remove all entity declarations");
 }
 
 /* ---- GraphML ---- */
@@ -110,9 +109,8 @@ static void ids_that_are_tuples_are_places(void **state)
     assert_nodes(&tree, "1 3 11 20 3 1.5 -1\n2 3 15 22 4 1.5 1\n");
     tree_release(&tree);
     assert_refused("graphml", text,
-                   ": no array is called a radius, `radius_array` names none, and `radius` gives "
-                   "none; its arrays of "
-                   "one number are 'width' of edges");
+                   ": no array has the name of a radius; name one with `radius_array`, or set "
+                   "`radius`; the arrays with one number per element are 'width' of edges");
 }
 
 static void keys_may_have_any_names(void **state)
@@ -128,9 +126,9 @@ static void keys_may_have_any_names(void **state)
     Tree tree = read_as("graphml", text, &options);
     assert_nodes(&tree, "1 3 1 2 0 0.25 -1\n2 3 4 6 0 0.25 1\n");
     tree_release(&tree);
-    assert_refused("graphml", text,
-                   ": nodes have no number 'X', which is to be x; `graphml_keys` says what their "
-                   "places are called");
+    assert_refused(
+        "graphml", text,
+        ": nodes have no key 'X' to read x from; name the keys of positions with `graphml_keys`");
     Err err;
     const ReadOptions wrong[] = {{.graphml_keys = "x=east,w=north"}, {.graphml_keys = "x"}};
     for (int i = 0; i < 2; i++) {
@@ -221,9 +219,9 @@ static void a_workbook_that_names_no_point_is_refused(void **state)
     char text[400];
     snprintf(text, sizeof text, "%s7</Data></Cell></Row></Table></Worksheet></Workbook>", head);
     assert_refused("xml", text, ":2: there is no point '7'");
-    assert_refused("xml", "<Workbook><Worksheet/></Workbook>", ": there are no lines in it");
+    assert_refused("xml", "<Workbook><Worksheet/></Workbook>", ": the file has no lines");
     assert_refused("xml", "<Workbook><Cell Index=\"0\"/></Workbook>",
-                   ":1: the Index of a cell is '0'; it may be 1 to 256");
+                   ":1: the Index of a cell is '0'; it must be 1 to 256");
 }
 
 /* ---- writing ---- */

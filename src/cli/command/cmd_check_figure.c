@@ -49,7 +49,7 @@ static Status print_verdict(FigureFindings *found, const char *path,
     if (options->json)
         return print_json(found, path, options, err);
     if (found->n_refused == 0)
-        printf("%s: %s takes it; not checked: %s", path, options->preset,
+        printf("%s: meets the preset %s. Not checked: %s", path, options->preset,
                text_chars(&found->unchecked) ? text_chars(&found->unchecked) : "nothing\n");
     else
         print_lines(path, &found->refused);

@@ -166,7 +166,7 @@ static void print_unit(const TreeReading *reading)
     if (reading->median_radius_mm > 0)
         printf("  median radius %.6g mm\n", reading->median_radius_mm);
     printf("  unit          %s, %s", length_unit_names[reading->unit],
-           reading->unit_is_stated ? "as is said" : "assumed");
+           reading->unit_is_stated ? "given" : "assumed");
     if (reading->median_radius_mm > 0)
         printf("; radii look like %s", reading->has_plausible_unit
                                            ? length_unit_names[reading->plausible_unit]

@@ -1,8 +1,11 @@
-/* What there is to choose from, one name a line, for people and scripts. */
+/* The commands that list what options accept: models, fields, looks, presets, domains, formats,
+ * morphometries. Each line has a name, a tab and a description, so that scripts can cut the name
+ * off; fields, looks and formats have one more column between the two. */
 #include "cli/commands.h"
 #include "derive/derive.h"
 #include "domain/domain.h"
 #include "job/picture/picture.h"
+#include "job/picture/preset.h"
 #include "options/options.h"
 #include "options/templates.h"
 #include "treeio/treeio.h"
@@ -10,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Fills `lines`. */
+/* Appends all lines of a list. */
 typedef Status ListNames(Text *lines, Err *err);
 
 static Status list(ListNames *names, Err *err)
@@ -25,18 +28,64 @@ static Status list(ListNames *names, Err *err)
     return status;
 }
 
+/* A description of a name that another module defines. */
+typedef struct Description {
+    const char *name, *text;
+} Description;
+
+static const Description fields[] = {
+    {"radius", "radius of the segment"},
+    {"length", "length of the segment"},
+    {"flow", "blood flow through the segment"},
+    {"velocity", "mean velocity of the blood"},
+    {"pressure", "pressure at the downstream end of the segment"},
+    {"wss", "wall shear stress"},
+    {"reynolds", "Reynolds number"},
+    {"level", "number of bifurcations between the root and the segment"},
+    {"strahler", "Strahler order; terminals have order 1"},
+    {"diameter-strahler", "diameter-defined Strahler order"},
+    {"branch", "number of the branch; a branch follows the thickest daughter"},
+    {"tree", "number of the tree in a forest"},
+    {0},
+};
+
+static const Description shapes[] = {
+    {"disc", "flat disc of radius R mm around the origin"},
+    {"ball", "ball of radius R mm around the origin"},
+    {"rect", "flat rectangle, sides W and H mm, centered on the origin"},
+    {"box", "box, sides A, B and C mm, centered on the origin"},
+    {"ellipsoid", "ellipsoid, semi-axes A, B and C mm, centered on the origin"},
+    {"shell", "wall of a left ventricle: ellipsoid with a cavity, cut off at the height BASE"},
+    {"polygon", "inside of the rings in a text file, in units of MM mm"},
+    {"mask", "image whose pixels that are not black are tissue, MM mm wide; or a NIfTI file"},
+    {"mesh", "inside of a closed surface (.stl, .obj), in units of MM mm"},
+    {"hull", "everything within MM mm of the tree of --from, or of the tree in a file"},
+    {"surface", "layer along a closed surface (.stl, .obj), OFFSET mm inside it"},
+    {0},
+};
+
+/* Returns the description of a name; "" if the table has none. */
+static const char *describe(const Description *table, const char *name)
+{
+    while (table->name && strcmp(table->name, name) != 0)
+        table++;
+    return table->name ? table->text : "";
+}
+
 static Status list_fields(Text *lines, Err *err)
 {
     for (size_t i = 0; derive_field_name(i); i++)
-        text_printf(lines, *derive_field_unit(i) ? "%s\t%s\n" : "%s\n", derive_field_name(i),
-                    derive_field_unit(i));
+        text_printf(lines, "%s\t%s\t%s\n", derive_field_name(i),
+                    *derive_field_unit(i) ? derive_field_unit(i) : "-",
+                    describe(fields, derive_field_name(i)));
     return text_check(lines, err);
 }
 
 static Status list_domains(Text *lines, Err *err)
 {
     for (size_t i = 0; domain_shape_name(i); i++)
-        text_printf(lines, "%s:%s\n", domain_shape_name(i), domain_shape_parameters(i));
+        text_printf(lines, "%s:%s\t%s\n", domain_shape_name(i), domain_shape_parameters(i),
+                    describe(shapes, domain_shape_name(i)));
     return text_check(lines, err);
 }
 
@@ -48,7 +97,7 @@ static Status list_formats(Text *lines, Err *err)
     return text_check(lines, err);
 }
 
-/* Appends what is to be said of a look: whether POV-Ray repeats it, and what it is. */
+/* Appends the name of a look, whether POV-Ray can reproduce it, and what it looks like. */
 static Status describe_look(const char *name, Text *lines, Err *err)
 {
     char *path = NULL;
@@ -62,9 +111,9 @@ static Status describe_look(const char *name, Text *lines, Err *err)
     effects_list(&effects, &names);
     text_printf(lines, "%s\t", name);
     if (effects.xray.per_mm > 0)
-        text_puts(lines, "POV-Ray draws none");
+        text_puts(lines, "not in POV-Ray");
     else
-        text_puts(lines, names.length ? "POV-Ray draws it without " : "POV-Ray draws the same");
+        text_puts(lines, names.length ? "in POV-Ray without " : "also in POV-Ray");
     if (!(effects.xray.per_mm > 0))
         text_add(lines, &names);
     text_printf(lines, "\t%s\n", look.about);
@@ -72,32 +121,65 @@ static Status describe_look(const char *name, Text *lines, Err *err)
     return text_check(lines, err);
 }
 
-static Status list_looks(Text *lines, Err *err)
+static Status describe_preset(const char *name, Text *lines, Err *err)
+{
+    Preset preset;
+    TRY(preset_read(name, &preset, err));
+    text_printf(lines, "%s\t%s\n", name, preset.about);
+    preset_release(&preset);
+    return text_check(lines, err);
+}
+
+/* Appends the name of a published data set and the first clause of the comment in its file. */
+static Status describe_morphometry(const char *name, Text *lines, Err *err)
+{
+    static const FileForm form = {.name = "a published table", .most_bytes = 1e6, .is_text = true};
+    char *path = NULL, *text = NULL;
+    size_t size;
+    TRY(template_file("morphometry", "morphometry", name, ".txt", &path, err));
+    Status status = file_read(path, &form, &text, &size, err);
+    free(path);
+    TRY(status);
+    const char *head = text + strspn(text, "# ");
+    text_printf(lines, "%s\t%.*s\n", name, (int)strcspn(head, ":\n"), head);
+    free(text);
+    return text_check(lines, err);
+}
+
+/* Calls `describe_name` for each file of a folder of the templates, in alphabetical order. */
+static Status list_templates(const char *folder, const char *extension,
+                             Status (*describe_name)(const char *name, Text *lines, Err *err),
+                             Text *lines, Err *err)
 {
     Text names = TEXT_INIT;
-    Status status = template_names("looks", ".ini", &names, err);
+    Status status = template_names(folder, extension, &names, err);
     char *rest = NULL, *all = NULL;
     if (status == STATUS_OK)
         status = mem_strdup(&all, text_chars(&names), err);
     for (char *name = all ? strtok_r(all, "\n", &rest) : NULL; name && status == STATUS_OK;
          name = strtok_r(NULL, "\n", &rest))
-        status = describe_look(name, lines, err);
+        status = describe_name(name, lines, err);
     free(all);
     text_release(&names);
     return status;
 }
 
+static Status list_looks(Text *lines, Err *err)
+{
+    return list_templates("looks", ".ini", describe_look, lines, err);
+}
+
 static Status list_presets(Text *lines, Err *err)
 {
-    return template_names("presets", ".ini", lines, err);
+    return list_templates("presets", ".ini", describe_preset, lines, err);
 }
 
 static Status list_morphometries(Text *lines, Err *err)
 {
-    return template_names("morphometry", ".txt", lines, err);
+    return list_templates("morphometry", ".txt", describe_morphometry, lines, err);
 }
 
-/* What models may be made of. */
+/* The values of `models --of`, and the elements that models of each kind are made of. */
 typedef enum ModelKind { MODELS_OF_ANYTHING, MODELS_OF_PRIMITIVES, MODELS_OF_A_FIELD } ModelKind;
 static const char *const model_kinds[] = {"anything", "primitives", "field", NULL};
 static const unsigned kind_elements[] = {~0U, MODEL_PRIMITIVES, MODEL_FIELD};
@@ -123,7 +205,7 @@ Status run_models(void *options, Parsed *parsed, Err *err)
     const ModelsOptions *own = options;
     for (int i = 0; i < SCENE_MODELS; i++)
         if (model_is_of((SceneModel)i, kind_elements[own->of]))
-            puts(models[i].name);
+            printf("%s\t%s\n", models[i].name, models[i].description);
     return STATUS_OK;
 }
 

@@ -1,4 +1,5 @@
-/* A window that shows a picture and hears mouse and keyboard; the only place that knows SDL. */
+/* A window that shows an image and receives mouse and keyboard events. No other module uses SDL.
+ * All functions must be called from the thread that opened the window. */
 #ifndef CORCAST_CLI_WINDOW_WINDOW_H
 #define CORCAST_CLI_WINDOW_WINDOW_H
 
@@ -10,31 +11,33 @@ typedef struct Window Window;
 typedef enum WindowEventKind {
     WINDOW_NOTHING, /* nothing has happened */
     WINDOW_QUIT,
-    WINDOW_KEY,   /* `key` */
-    WINDOW_DRAG,  /* `x` and `y`, pixels right and down; with `button` */
-    WINDOW_WHEEL, /* `y`, steps away from the user */
-    WINDOW_SIZE,  /* `x` and `y`, pixels */
-    WINDOW_EXPOSED
+    WINDOW_KEY,    /* sets `key` */
+    WINDOW_DRAG,   /* sets `button`, and `x` and `y`: movement right and down, pixels */
+    WINDOW_WHEEL,  /* sets `y`: steps of the wheel, positive away from the user */
+    WINDOW_SIZE,   /* sets `x` and `y`: new width and height, pixels */
+    WINDOW_EXPOSED /* the window must be redrawn with window_show */
 } WindowEventKind;
 
 enum { WINDOW_KEY_ESCAPE = 27, WINDOW_LEFT = 1, WINDOW_MIDDLE = 2, WINDOW_RIGHT = 3 };
 
 typedef struct WindowEvent {
     WindowEventKind kind;
-    int key;    /* what it types, in lower case, or WINDOW_KEY_ESCAPE */
+    int key;    /* lower-case character of the key, or WINDOW_KEY_ESCAPE */
     int button; /* WINDOW_LEFT, ...; the left one with shift held is WINDOW_MIDDLE */
     double x, y;
 } WindowEvent;
 
-/* Opens a window whose inside has this size. STATUS_TOOL when there is no display, or no SDL 2. */
+/* Opens a window. `width` and `height` are the size of its content in pixels. Close *out with
+ * window_close. Errors: STATUS_TOOL if there is no display or no SDL 2, STATUS_MEMORY. */
 MUST_CHECK Status window_open(Window **out, const char *title, int width, int height, Err *err);
 void window_close(Window *window);
 
-/* The next event, if there is one; waits for it when `wait`. */
+/* Returns the next event. If there is none, waits for one if `wait` is true, else returns
+ * WINDOW_NOTHING. */
 WindowEvent window_event(Window *window, bool wait);
 
-/* Shows a picture of 8-bit red, green and blue, rows from the top down, stretched over the
- * window. */
+/* Shows an image, stretched over the window. `rgb` has 8 bits per channel, rows from the top down;
+ * it is copied. Errors: STATUS_TOOL. */
 MUST_CHECK Status window_show(Window *window, const uint8_t *rgb, int width, int height, Err *err);
 void window_title(Window *window, const char *title);
 

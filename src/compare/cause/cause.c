@@ -101,14 +101,14 @@ static bool is_turned(const Picture *a, const Picture *b, const Samples *samples
 static void find_turn(const Picture *a, const Picture *b, const Samples *samples, Sentence *out)
 {
     static const Turn turns[] = {
-        {true, false, {0, 1, 2}, "mirrored, left for right"},
-        {false, true, {0, 1, 2}, "upside down, top for bottom"},
-        {true, true, {0, 1, 2}, "turned by 180 degrees"},
+        {true, false, {0, 1, 2}, "mirrored left to right"},
+        {false, true, {0, 1, 2}, "flipped top to bottom"},
+        {true, true, {0, 1, 2}, "rotated by 180 degrees"},
         {false, false, {2, 1, 0}, "with red and blue exchanged"},
         {false, false, {1, 0, 2}, "with red and green exchanged"},
         {false, false, {0, 2, 1}, "with green and blue exchanged"},
-        {false, false, {1, 2, 0}, "with its channels as green, blue, red"},
-        {false, false, {2, 0, 1}, "with its channels as blue, red, green"},
+        {false, false, {1, 2, 0}, "with channels in the order green, blue, red"},
+        {false, false, {2, 0, 1}, "with channels in the order blue, red, green"},
     };
     for (size_t i = 0; i < sizeof turns / sizeof *turns && !*out->text; i++)
         if (is_turned(a, b, samples, &turns[i]))
@@ -275,7 +275,7 @@ bool cause_shift(const Picture *a, const Picture *b, const Samples *samples, con
         return true;
     if (trial.after == 0 || has_shifted_saturation(a, b, shift))
         snprintf(out->text, out->size,
-                 "B is %sA moved by (%d, %d) pixels, right and down being positive",
+                 "B is %sA moved by (%d, %d) pixels (right and down are positive)",
                  trial.after > 0 ? "nearly " : "", shift->dx, shift->dy);
     return false;
 }
@@ -295,7 +295,8 @@ Status compare_cause(const Picture *a, const Picture *b, CompareResult *result, 
     const Shift shift = *out.text ? (Shift){0} : cause_best_shift(a, b, &samples);
     const bool partly_moved = !*out.text && cause_shift(a, b, &samples, &shift, &out);
     if (!*out.text && result->values[MEASURE_MAX_CODE] <= 1)
-        snprintf(out.text, out.size, "only rounding differs: no code is off by more than 1");
+        snprintf(out.text, out.size,
+                 "only rounding differs: no 8- or 16-bit value is off by more than 1");
     if (!*out.text)
         TRY(cause_tone(a, b, &samples, &out, err));
     if (!*out.text && !partly_moved)

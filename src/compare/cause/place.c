@@ -118,8 +118,8 @@ static void say_background(const Backgrounds *self, Sentence *out)
     for (int side = 0; side < 2; side++)
         describe_background(&self->labels, side, self->pictures[side]->channels, colors[side]);
     snprintf(out->text, out->size,
-             "only the background differs, and what is mixed with it at outlines: it is %s in A "
-             "and %s in B",
+             "only the background color differs (and pixels that blend with it at outlines): %s in "
+             "A, %s in B",
              colors[0], colors[1]);
 }
 
@@ -198,8 +198,8 @@ static void say_lack(const Picture *a, const Picture *b, const CompareResult *re
         bool only = 20 * lack.pixels >= 19 * differing;
         if (lack.pixels >= 9 && one && only && 4 * lack.background >= 3 * lack.rim)
             snprintf(out->text, out->size,
-                     "one thing, or a part of one, is in %s only, %zu pixels from (%d, %d) to "
-                     "(%d, %d); %zu other pixels differ",
+                     "an object, or a part of one, is in %s only (%zu pixels, from (%d, %d) to "
+                     "(%d, %d)); %zu other pixels differ",
                      side ? "B" : "A", lack.pixels, lack.left, lack.top, lack.right, lack.bottom,
                      differing - lack.pixels);
     }
@@ -215,7 +215,7 @@ static void say_missing_segment(const CompareResult *result, Sentence *out)
         if ((entry->area_a == 0 || entry->area_b == 0) && area <= differing &&
             20 * area >= 19 * differing)
             snprintf(out->text, out->size,
-                     "segment %u is in %s only, %zu pixels from (%d, %d) to (%d, %d); %zu other "
+                     "segment %u is in %s only (%zu pixels, from (%d, %d) to (%d, %d)); %zu other "
                      "pixels differ",
                      entry->id, entry->area_a ? "A" : "B", area, entry->left, entry->top,
                      entry->right, entry->bottom, differing - area);
@@ -343,8 +343,8 @@ static Status say_outlines(const Picture *a, const Picture *b, const Samples *sa
     sum = sum_rows(&self);
     if (99 * sum.off <= sum.at_edges && sum.inner >= self.enough && 2 * sum.changed <= sum.inner)
         snprintf(out->text, out->size,
-                 "only outlines differ by more than %d levels, by up to %.4g on %.3g %% of the "
-                 "pixels",
+                 "differences above %d levels are only at outlines: up to %.4g levels, on %.3g %% "
+                 "of the pixels",
                  SLIGHT, result->values[MEASURE_MAX_ABS],
                  100.0 * (double)sum.at_edges / result->values[MEASURE_PIXELS]);
     free(self.rows);
@@ -559,13 +559,13 @@ static void say_shading(const CompareResult *result, const LightSums *light, Sen
         return;
     double all = sqrt(result->values[MEASURE_DIFFERING_PIXELS]); /* sigmas, if all go one way */
     snprintf(out->text, out->size,
-             "only %s, by up to %.4g levels on %.3g %% of the pixels, B %s; the outlines %s",
+             "only %s, by up to %.4g levels on %.3g %% of the pixels (B is %s); the outlines %s",
              highlights ? "highlights differ" : "shading differs", result->values[MEASURE_MAX_ABS],
              100.0 * result->values[MEASURE_DIFFERING_PIXELS] / result->values[MEASURE_PIXELS],
-             result->values[MEASURE_SIGN_SIGMA] > 0.98 * all ? "being brighter"
+             result->values[MEASURE_SIGN_SIGMA] > 0.98 * all ? "brighter"
              : result->values[MEASURE_SIGN_SIGMA] < -0.98 * all
-                 ? "being darker"
-                 : "being brighter here and darker there",
+                 ? "darker"
+                 : "brighter in some parts and darker in others",
              result->has_ids ? "of all segments are equal" : "against the background are equal");
 }
 

@@ -128,8 +128,8 @@ Status power_measure(const PowerInput *input, int threads, Power *power, Err *er
     if (reference->width != drawn->width || reference->height != drawn->height ||
         reference->channels != drawn->channels || reference->bits != drawn->bits)
         return err_set(err, STATUS_INPUT,
-                       "the two drawings have unlike shapes: %d x %d pixels of %d x %d bits, and "
-                       "%d x %d of %d x %d",
+                       "the two drawings differ in format: %d x %d pixels of %d x %d bits, and %d "
+                       "x %d pixels of %d x %d bits",
                        reference->width, reference->height, reference->channels, reference->bits,
                        drawn->width, drawn->height, drawn->channels, drawn->bits);
     TRY(mem_calloc(&made.cases, n_picture_faults * FAULT_SIZES, sizeof *made.cases, "faults", err));
@@ -204,21 +204,23 @@ static void put_fault(const Power *power, size_t first, size_t end, Text *out)
 
 static void put_sum(const Power *power, Text *out)
 {
-    text_printf(out, "%-42s", "missed of all that were planted");
+    text_printf(out, "%-42s", "faults missed, of all planted");
     for (int rule = 0; rule < POWER_RULES; rule++)
         text_printf(out, " %5zu of %3zu", power->missed[rule], power->planted);
     text_puts(out, "\n");
     for (int rule = 0; rule < POWER_RULES; rule++)
         if (power->alarm[rule])
-            text_printf(out, "false alarm: %s calls two drawings of the same scene different\n",
-                        rule_name(power, rule));
+            text_printf(
+                out,
+                "false alarm: %s reports a difference between two drawings of the same scene\n",
+                rule_name(power, rule));
 }
 
 void power_text(const Power *power, Text *out)
 {
     text_printf(out, "%d x %d pixels of %d bits; two drawings are %s\n", power->width,
-                power->height, power->bits, power->repeats ? "the same" : "not the same");
-    text_printf(out, "%-42s", "fault, found from this size on by");
+                power->height, power->bits, power->repeats ? "identical" : "different");
+    text_printf(out, "%-42s", "fault; smallest size found by");
     for (int rule = 0; rule < POWER_RULES; rule++)
         text_printf(out, " %12.12s", rule_name(power, rule));
     text_puts(out, "\n");

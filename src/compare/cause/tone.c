@@ -131,17 +131,17 @@ typedef struct Curve {
 } Curve;
 
 static const Curve curves[KINDS] = {
-    [ENCODED_AGAIN] = {ALONE, "encoded as sRGB twice, and so too bright", NULL, 1},
-    [NOT_ENCODED] = {ALONE, "not encoded as sRGB, and so too dark", NULL, 1},
-    [ENCODED_BY_POWER] = {ALONE, "encoded by a gamma of 2.2 and not as sRGB", NULL, 1},
-    [ENCODED_AS_SRGB] = {ALONE, "encoded as sRGB and not by a gamma of 2.2", NULL, 1},
-    [NEGATIVE] = {ALONE, "as a negative", NULL, 1},
+    [ENCODED_AGAIN] = {ALONE, "encoded as sRGB twice, which is too bright", NULL, 1},
+    [NOT_ENCODED] = {ALONE, "not encoded as sRGB, which is too dark", NULL, 1},
+    [ENCODED_BY_POWER] = {ALONE, "encoded with a gamma of 2.2 instead of sRGB", NULL, 1},
+    [ENCODED_AS_SRGB] = {ALONE, "encoded as sRGB instead of a gamma of 2.2", NULL, 1},
+    [NEGATIVE] = {ALONE, "as a negative (inverted)", NULL, 1},
     [TIMES_LIGHT] = {TIMES, "made", "linear colors", 1},
-    [PLUS_LIGHT] = {PLUS, "made", "linear colors, from 0 to 1,", 1},
+    [PLUS_LIGHT] = {PLUS, "made", "linear colors (0 to 1)", 1},
     [TIMES_CODE] = {TIMES, "made", "sRGB codes", 1},
     [PLUS_CODE] = {PLUS, "made", "sRGB codes, from 0 to 255,", 255},
-    [POWER_OF_CODE] = {POWER, "of another gamma,", "sRGB codes, from 0 to 1,", 1},
-    [ANY_CURVE] = {ALONE, "under some other curve of tones, the same everywhere", NULL, 1},
+    [POWER_OF_CODE] = {POWER, "with another gamma,", "sRGB codes, from 0 to 1,", 1},
+    [ANY_CURVE] = {ALONE, "with another tone curve, the same everywhere", NULL, 1},
 };
 
 static void say(const Curve *curve, double number, Sentence *out)

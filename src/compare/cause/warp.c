@@ -11,6 +11,7 @@
  * codes, and no part of the picture that should have changed is as it was. */
 #include "compare/cause/guesses.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -482,22 +483,34 @@ static bool is_moved_everywhere(const Patches *patches, double dx, double dy)
     return is_everywhere(patches, &expected);
 }
 
+/* Returns the smallest difference of A at (x, y) from the pixels of A that a displacement by (dx,
+ * dy) may bring there: those at the displacement rounded down and up. */
+static int change_of_move(const Picture *a, int x, int y, double dx, double dy)
+{
+    const double slack = 0.1; /* error of the displacement found */
+    int least = INT_MAX;
+    for (int v = (int)floor(dy + slack); v <= (int)ceil(dy - slack); v++)
+        for (int u = (int)floor(dx + slack); u <= (int)ceil(dx - slack); u++) {
+            int apart = pixels_apart(a, x, y, a, x - u, y - v);
+            least = apart < least ? apart : least;
+        }
+    return least;
+}
+
 /* Returns true if a part of the picture was not moved, however few pixels of it show something:
- * more than 0.5 % of the pixels that a displacement by (dx, dy) changes clearly are equal in A and
- * B. A change is clear when A differs by 48 codes, summed over the channels, over one step:
- * rounding hides smaller changes where the displacement is a tenth of a pixel. */
+ * more than 0.5 % of the pixels that a displacement by (dx, dy) must change clearly are equal in A
+ * and B. A change is clear from 48 codes on, summed over the channels: interpolation cannot undo
+ * it. */
 static bool has_unmoved_part(const Patches *patches, double dx, double dy)
 {
-    const Picture *a = patches->a, *b = patches->b;
-    const double unit = fmin(fmax(fabs(dx), fabs(dy)), 1);
-    const int u = (int)lround(dx / unit), v = (int)lround(dy / unit),
-              clear = a->bits == 8 ? 48 : 48 * 257;
+    const Picture *a = patches->a;
+    const int clear = a->bits == 8 ? 48 : 48 * 257;
     size_t moved = 0, equal = 0;
     for (int y = 0; y < a->height; y++)
         for (int x = 0; x < a->width; x++)
-            if (pixels_apart(a, x, y, a, x - u, y - v) >= clear) {
+            if (change_of_move(a, x, y, dx, dy) >= clear) {
                 moved++;
-                equal += pixels_apart(a, x, y, b, x, y) == 0;
+                equal += pixels_apart(a, x, y, patches->b, x, y) == 0;
             }
     return (double)equal > 0.005 * (double)moved;
 }
@@ -575,7 +588,7 @@ static void try_shift(Patches *patches, Sentence *out)
          (2 * after < before && explains(patches, before, left_by_blur(patches, &blurred)))) &&
         is_all(patches, &found))
         snprintf(out->text, out->size,
-                 "B is nearly A moved by (%.*f, %.*f) pixels%s, right and down being positive",
+                 "B is nearly A moved by (%.*f, %.*f) pixels (right and down are positive)%s",
                  digits, round_to(dx, unit), digits, round_to(dy, unit),
                  alone         ? ""
                  : blurred > 0 ? " and blurred a little"
@@ -594,8 +607,7 @@ static void try_blur(Patches *patches, Sentence *out)
         if (sigma < 0.98 * most_sigma && explains(patches, before, after) &&
             is_all(patches, &found))
             snprintf(out->text, out->size,
-                     "%s is nearly %s blurred, by as much as a Gaussian of standard deviation "
-                     "%.2g pixels",
+                     "%s is nearly %s blurred (Gaussian, standard deviation %.2g pixels)",
                      sharper ? "A" : "B", sharper ? "B" : "A", sigma);
     }
 }

@@ -43,17 +43,15 @@ static void judge(SurfaceCheck *check)
     check->agrees = check->missing == 0 && check->extra == 0 && check->beyond == 0;
     check->reason[0] = '\0';
     if (check->missing || check->extra)
-        snprintf(
-            check->reason, sizeof check->reason,
-            "surface: %zu pixels are seen by POV-Ray's root finder alone and %zu by proof alone, "
-            "although the ray does not graze",
-            check->missing, check->extra);
+        snprintf(check->reason, sizeof check->reason,
+                 "surface: hits found only by POV-Ray: %zu, only by proof: %zu, on rays that do "
+                 "not graze",
+                 check->missing, check->extra);
     else if (check->beyond)
-        snprintf(
-            check->reason, sizeof check->reason,
-            "surface: %zu pixels are farther from the surface than the accuracy allows, the worst "
-            "%.3g times, at (%d, %d)",
-            check->beyond, check->max_ratio, check->worst_x, check->worst_y);
+        snprintf(check->reason, sizeof check->reason,
+                 "surface: %zu pixels are farther from the surface than POV-Ray's accuracy allows, "
+                 "the worst by a factor of %.3g at (%d, %d)",
+                 check->beyond, check->max_ratio, check->worst_x, check->worst_y);
 }
 
 Status surface_check(const Plane *a, const Plane *b, const Plane *allowed, SurfaceCheck *out,

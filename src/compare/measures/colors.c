@@ -137,8 +137,8 @@ Status compare_colors(const Rendering *of_a, const Rendering *of_b, const Tolera
     TRY(check_sizes(a->width, a->height, b->width, b->height, err));
     if (a->channels != b->channels || (a->channels != 1 && a->channels != 3))
         return err_set(err, STATUS_INPUT,
-                       "the images differ in depth: %d and %d channels of floats; both must have 1 "
-                       "or both 3",
+                       "the images differ in channels (%d and %d floats per pixel); both must have "
+                       "1 or both 3",
                        a->channels, b->channels);
     TRY(labels_check_ids(a->width, a->height, of_a->ids, of_b->ids, err));
     CompareResult made = result_start(PLANE_COLOR, a->width, a->height, of_a->ids, tolerance);

@@ -11,7 +11,8 @@ Status labels_check_ids(int width, int height, const IdPlane *a, const IdPlane *
     if (!a && !b)
         return STATUS_OK;
     if (!a || !b)
-        return err_set(err, STATUS_INPUT, "only one of the two images has an id plane");
+        return err_set(err, STATUS_INPUT,
+                       "only one of the two images has an id plane; give both or none");
     const IdPlane *planes[] = {a, b};
     for (int i = 0; i < 2; i++)
         if (planes[i]->width != width || planes[i]->height != height)

@@ -65,11 +65,12 @@ static Status check_planes(const Plane *const planes[3], Err *err)
         if (plane->width != a->width || plane->height != a->height ||
             plane->channels != a->channels)
             return err_set(err, STATUS_INPUT,
-                           "both pictures and the noise need one size and as many channels");
+                           "both pictures and the variance must have the same size and the same "
+                           "number of channels");
         for (size_t i = 0; i < (size_t)a->width * (size_t)a->height * (size_t)a->channels; i++)
             if (!isfinite(plane->values[i]) || (p == 2 && plane->values[i] < 0))
                 return err_set(err, STATUS_INPUT,
-                               "a color is not finite, or a variance is below 0");
+                               "a color is not finite, or a variance is negative");
     }
     return STATUS_OK;
 }

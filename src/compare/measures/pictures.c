@@ -40,8 +40,8 @@ static Status check_views(const Rendering *a, const Rendering *b, Err *err)
     TRY(check_sizes(in_a->width, in_a->height, in_b->width, in_b->height, err));
     if (in_a->channels != in_b->channels || in_a->bits != in_b->bits)
         return err_set(err, STATUS_INPUT,
-                       "the images differ in depth: %d x %d and %d x %d bits a pixel; only images "
-                       "of one depth can be compared",
+                       "the images differ in channels x bits per pixel (%d x %d and %d x %d); both "
+                       "must have the same",
                        in_a->channels, in_a->bits, in_b->channels, in_b->bits);
     return labels_check_ids(in_a->width, in_a->height, a->ids, b->ids, err);
 }

@@ -82,17 +82,18 @@ static void add_pixel_rule(Check *check, const char *name, size_t measured, size
 
 static Check check_surface(const SurfaceCheck *surface)
 {
-    const char *table = "Surface, as POV-Ray's root finder sees it";
+    const char *table = "Surface found by POV-Ray";
     Check check = {.title = "surface", .agrees = surface->agrees, .reason = surface->reason};
-    add_pixel_rule(&check, "missing or extra pixels, grazing ones aside",
+    add_pixel_rule(&check, "missing or extra pixels, except at grazing rays",
                    surface->missing + surface->extra, 0);
-    add_pixel_rule(&check, "pixels farther off than the accuracy allows", surface->beyond, 0);
+    add_pixel_rule(&check, "pixels farther from the surface than the accuracy allows",
+                   surface->beyond, 0);
     add(&check, table, "pixels judged", (double)surface->common, "");
     add(&check, table, "grazing pixels", (double)surface->grazing, "");
     add(&check, table, "median distance from the surface", surface->median_mm, "mm");
     add(&check, table, "99th percentile", surface->p99_mm, "mm");
     add(&check, table, "largest distance", surface->max_mm, "mm");
-    add(&check, table, "largest distance over what is allowed", surface->max_ratio, "");
+    add(&check, table, "largest distance / allowed distance", surface->max_ratio, "");
     return check;
 }
 
@@ -136,7 +137,7 @@ int report_checks(const ReportCase *report, Check checks[CHECKS_MAX])
     if (report->settled)
         checks[n++] = check_settled(report->settled);
     if (report->exact)
-        checks[n++] = check_pictures(report->exact, "Colors of the surface where it is");
+        checks[n++] = check_pictures(report->exact, "Colors on the exact surface");
     if (report->surface)
         checks[n++] = check_surface(report->surface);
     for (int pair = 0; report->witness && pair < WITNESS_PAIRS; pair++)

@@ -37,7 +37,8 @@ static Status read_json(json_t **out, const char *path, Err *err)
     if (no_memory)
         return mem_out_of("to read", path, err);
     if (!json)
-        return err_set(err, STATUS_INPUT, "%s:%d: is no JSON: %s", path, error.line, error.text);
+        return err_set(err, STATUS_INPUT, "%s:%d: is not valid JSON: %s", path, error.line,
+                       error.text);
     *out = json;
     return STATUS_OK;
 }
@@ -49,7 +50,8 @@ static Status find_part(const char *page, const char *path, const char *const ma
     const char *from = strstr(page, marks_of[0]);
     const char *to = from ? strstr(from, marks_of[1]) : NULL;
     if (!to)
-        return err_set(err, STATUS_INPUT, "%s: is not a report of this version of corcast", path);
+        return err_set(err, STATUS_INPUT, "%s: is not a report written by this version of corcast",
+                       path);
     part->start = from + strlen(marks_of[0]);
     part->size = (size_t)(to - part->start);
     return STATUS_OK;
@@ -225,15 +227,15 @@ static Status write_page(const MergedCase *cases, size_t n, const Text *power,
         text_printf(&heading, "%zu of %zu cases", differing, n);
     else
         text_printf(&heading, "All %zu cases", n);
-    const ReportFrame frame = {
-        .title = differing ? "corcast: cases differ" : "corcast: all cases agree",
-        .heading = text_chars(&heading),
-        .sentence = "Each case is two pictures: B is judged, A is its reference.",
-        .rows = &rows,
-        .cases = &sections,
-        .power = power,
-        .n_cases = n,
-        .agrees = differing == 0};
+    const ReportFrame frame = {.title =
+                                   differing ? "corcast: cases differ" : "corcast: all cases agree",
+                               .heading = text_chars(&heading),
+                               .sentence = "Each case compares picture B with its reference A.",
+                               .rows = &rows,
+                               .cases = &sections,
+                               .power = power,
+                               .n_cases = n,
+                               .agrees = differing == 0};
     Status status = report_write_frame(&frame, templates, path, err);
     text_release(&rows);
     text_release(&sections);

@@ -33,8 +33,8 @@ static void put_settled(const ReportCase *report, Text *sentence)
     const Settled *settled = report->settled;
     for (SettledCause cause = settled->from; cause <= settled->to; cause++)
         if (settled->count[cause])
-            text_printf(sentence, " Settled: %s, %zu; %s is right there.",
-                        settled_cause_sentence(cause), settled->count[cause], report->b.name);
+            text_printf(sentence, " Differences decided in favour of %s: %s, %zu.", report->b.name,
+                        settled_cause_sentence(cause), settled->count[cause]);
 }
 
 static void put_agreement(const ReportCase *report, int compared, Text *sentence)
@@ -44,8 +44,7 @@ static void put_agreement(const ReportCase *report, int compared, Text *sentence
         text_printf(sentence, "All %zu pixels have the same color in both pictures. ",
                     result_count(color, MEASURE_PIXELS));
     else
-        text_printf(sentence,
-                    "%zu of %zu pixels differ in color, the worst by %.3g of 255 levels. ",
+        text_printf(sentence, "%zu of %zu pixels differ in color, by at most %.3g of 255 levels. ",
                     result_count(color, MEASURE_DIFFERING_PIXELS),
                     result_count(color, MEASURE_PIXELS), color->values[MEASURE_MAX_ABS]);
     text_printf(sentence, compared == 1 ? "The %d plane compared is" : "The %d planes compared are",
@@ -56,8 +55,8 @@ static void put_agreement(const ReportCase *report, int compared, Text *sentence
     if (report->witness)
         text_printf(sentence, " %s.", report->witness->sentence);
     if (report->surface)
-        text_puts(sentence, " What POV-Ray's root finder sees is the surface to its accuracy, and "
-                            "the surface has POV-Ray's colors.");
+        text_puts(sentence, " The surface found by POV-Ray agrees with the exact surface to "
+                            "POV-Ray's accuracy, and so do its colors.");
 }
 
 static void put_sentence(const ReportCase *report, Text *sentence)
@@ -184,10 +183,10 @@ static void side_words(const ReportSide *side, Text *alt, Text *sides)
     bool timed = !isnan(side->seconds);
     text_printf(alt, "%s %s", timed ? "The scene as rendered by" : "The picture", side->name);
     if (timed)
-        text_printf(sides, "%s %s took %.2f s for the picture", side->name, side->version,
+        text_printf(sides, "%s %s rendered the picture in %.2f s", side->name, side->version,
                     side->seconds);
     if (timed && side->tiles > 1)
-        text_printf(sides, ", which it drew in %zu tiles", side->tiles);
+        text_printf(sides, ", in %zu tiles", side->tiles);
     text_puts(sides, timed ? ". " : "");
 }
 
@@ -217,7 +216,7 @@ static void put_segments(const CompareResult *color, Text *out)
                     color->worst_segments[i].differing);
     text_puts(out, color->n_worst_segments ? " pixels."
                    : color->has_ids        ? "No segment differs."
-                                           : "Not told apart: no id planes were given.");
+                                           : "Not compared by segment: no id planes were given.");
 }
 
 static void fill_words(const ReportCase *report, Markup *parts)

@@ -85,8 +85,7 @@ static void describe_place(const CompareResult *result, const PixelPlace *place,
     else if (place->id_a != place->id_b)
         snprintf(out, size, "at (%d, %d), %s in A and %s in B", place->x, place->y, a, b);
     else
-        snprintf(out, size, "at (%d, %d), %s", place->x, place->y,
-                 place->id_a ? a : "the background");
+        snprintf(out, size, "at (%d, %d), %s", place->x, place->y, place->id_a ? a : "background");
 }
 
 /* To three digits, as people read it, or to as many as tell it from what is allowed. */

@@ -127,7 +127,7 @@ static Status set_limit(Tolerance *tolerance, Limit limit, const char *value, Er
 {
     static const char *const allowed[] = {
         [LIMIT_NUMBER] = "a number of at least 0, or inf",
-        [LIMIT_COUNT] = "a whole number of at least 0, or inf",
+        [LIMIT_COUNT] = "an integer of at least 0, or inf",
         [LIMIT_SWITCH] = "on or off",
         [LIMIT_THRESHOLD] = "a number from 0 to 1",
     };
@@ -175,13 +175,14 @@ static Status take_line(void *user, const char *section, const char *key, const 
 {
     ToleranceReader *reader = user;
     if (*section || !key)
-        return err_set(err, STATUS_INPUT, "a tolerance has no sections, and here is [%s]", section);
+        return err_set(err, STATUS_INPUT, "a tolerance file has no sections, but this one has [%s]",
+                       section);
     if (strcmp(key, "tier") == 0)
         return take_name(&reader->name, value, err);
     for (Limit i = 0; i < LIMITS; i++)
         if (limit_keys[i].key && strcmp(key, limit_keys[i].key) == 0)
             return set_limit(&reader->tolerance, i, value, err);
-    return err_set(err, STATUS_INPUT, "'%s' is not a limit of a tolerance", key);
+    return err_set(err, STATUS_INPUT, "unknown limit '%s' in a tolerance file", key);
 }
 
 Status tolerance_read(Tolerance *tolerance, char **name, const char *path, Err *err)

@@ -58,8 +58,7 @@ static Status add_case(Suite *suite, const char *name, bool is_reference, Err *e
 {
     if (suite->n == MOST_CASES)
         return err_set(err, STATUS_INPUT,
-                       "there are more than %d pictures to compare; links to "
-                       "folders may repeat them",
+                       "more than %d pictures to compare; check for links that repeat folders",
                        MOST_CASES);
     TRY(mem_reserve(&suite->cases, &suite->capacity, suite->n + 1, sizeof *suite->cases, "cases",
                     err));
@@ -259,7 +258,8 @@ static Status apply_mask(HeldPair *held, SuiteCase *entry, Err *err)
     Picture *b = &held->images[1].picture;
     if (mask->width != a->width || mask->height != a->height || a->width != b->width ||
         a->height != b->height || a->bits != b->bits || a->channels != b->channels)
-        return err_set(err, STATUS_INPUT, "mask, reference and picture differ in size or depth");
+        return err_set(err, STATUS_INPUT,
+                       "the mask, the reference and the picture differ in size or bits per pixel");
     size_t n = (size_t)a->width * (size_t)a->height, channels = (size_t)a->channels;
     for (size_t i = 0; i < n; i++) {
         bool masked = false;
@@ -274,8 +274,7 @@ static Status apply_mask(HeldPair *held, SuiteCase *entry, Err *err)
                 held->alphas[side].codes16[i] = UINT16_MAX;
         }
     }
-    return entry->masked < n ? STATUS_OK
-                             : err_set(err, STATUS_INPUT, "the mask leaves no pixel to judge");
+    return entry->masked < n ? STATUS_OK : err_set(err, STATUS_INPUT, "the mask hides every pixel");
 }
 
 static Status read_pair(const Judging *judging, HeldPair *held, SuiteCase *entry, Err *err)
@@ -346,7 +345,7 @@ static void judge_case(size_t index, int worker, void *context)
     if (!entry->is_reference || !entry->is_picture) {
         entry->state = entry->is_picture ? SUITE_NEW : SUITE_MISSING;
         snprintf(entry->sentence, sizeof entry->sentence,
-                 entry->is_picture ? "has no reference" : "has a reference, but was not drawn");
+                 entry->is_picture ? "has no reference" : "has a reference but no picture");
     } else if (judge(judging, entry, &err) != STATUS_OK) {
         entry->state = SUITE_BROKEN;
         snprintf(entry->sentence, sizeof entry->sentence, "%s", err.text);
@@ -361,8 +360,8 @@ Status suite_judge(Suite *suite, const SuiteFolders *folders, int threads, Err *
     Status status = STATUS_OK;
     TRY_GOTO(list_cases(&made, folders->reference, folders->pictures, err));
     if (made.n == 0)
-        TRY_GOTO(err_set(err, STATUS_INPUT, "%s: there is no picture in it, nor in %s",
-                         folders->reference, folders->pictures));
+        TRY_GOTO(err_set(err, STATUS_INPUT, "no pictures found in %s or %s", folders->reference,
+                         folders->pictures));
     threads_for(made.n, threads, judge_case, &judging);
     for (size_t i = 0; i < made.n; i++)
         made.count[made.cases[i].state]++;
@@ -458,10 +457,10 @@ Status suite_accept(const char *reference, const char *pictures, const char *nam
     if (entry)
         status = accept_case(entry, reference, pictures, reason, err);
     else
-        status = err_set(err, STATUS_INPUT,
-                         "there is no case '%s' in %s, nor in %s; a case is a picture that compare "
-                         "lists without --accept",
-                         name, pictures, reference);
+        status = err_set(
+            err, STATUS_INPUT,
+            "no picture '%s' in %s or %s; `corcast compare` without --accept lists the names", name,
+            pictures, reference);
 done:
     suite_release(&suite);
     return status;

@@ -119,9 +119,10 @@ static Status find_emitter(const ExportOptions *options, const Emitter **emitter
         return STATUS_OK;
     if (options->parts && !asked && !(*emitter)->has_parts)
         return err_set(err, STATUS_USAGE,
-                       "--parts is for .stl and .vtp, which hold names of parts");
+                       "--parts needs an .stl or .vtp output, whose formats store names of parts");
     if (options->lattice && !asked)
-        return err_set(err, STATUS_USAGE, "--lattice is for .3mf, which holds beams");
+        return err_set(err, STATUS_USAGE,
+                       "--lattice needs a .3mf output, whose format stores beams");
     *emitter = asked ? asked : *emitter;
     return STATUS_OK;
 }
@@ -134,7 +135,7 @@ static Status read_print(ExportOptions *options, const Emitter *emitter, Err *er
         return STATUS_OK;
     if (options->print && options->wall_mm > 0)
         return err_set(err, STATUS_USAGE,
-                       "--wall and --print, which has a wall= of its own, exclude each other");
+                       "--wall and --print exclude each other; use the key wall= of --print");
     TRY(printing_parse(options->print ? options->print : "", print, err));
     if (options->wall_mm > 0)
         print->params = (PrintParams){.wall_mm = options->wall_mm, .lids = true};
@@ -143,11 +144,14 @@ static Status read_print(ExportOptions *options, const Emitter *emitter, Err *er
         options->prune_radius_mm =
             fmax(options->prune_radius_mm, print->min_diameter_mm / print->scale / 2);
     if (!strcmp(emitter->name, "mesh2"))
-        return err_set(err, STATUS_USAGE, "`print` is for solids, and .inc is a scene's");
+        return err_set(
+            err, STATUS_USAGE,
+            "`print` needs an output that stores solids; .inc is part of a POV-Ray scene");
     if (print_is_joined(&print->params) && options->meshing.body != BODY_POTENTIAL)
-        return err_set(err, STATUS_USAGE,
-                       "`%s`: walls, blocks and bases need --model isosurface, whose ends are flat",
-                       options->print ? "print" : "wall");
+        return err_set(
+            err, STATUS_USAGE,
+            "`%s`: walls, blocks and bases need flat vessel ends; use --model isosurface",
+            options->print ? "print" : "wall");
     return STATUS_OK;
 }
 
@@ -160,8 +164,9 @@ static Status plan_mesh(ExportOptions *options, const Emitter **emitter, Err *er
     else
         *emitter = emitter_find("ply", true);
     if ((*emitter)->has_parts && options->meshing.body == BODY_ROUND)
-        return err_set(err, STATUS_USAGE,
-                       "`model` rounded has no flat ends that could be named parts");
+        return err_set(
+            err, STATUS_USAGE,
+            "--parts needs flat vessel ends, which `model` rounded lacks; use isosurface");
     return read_print(options, *emitter, err);
 }
 

@@ -17,11 +17,12 @@ static Status take_vessels(MeshResult *made, VesselBody body, const Talk *talk, 
     TRY(stage_vessels(&made->of.tree, &made->vessels, &report, err));
     made->vessels.body = body;
     if (report.dropped)
-        talk_warn(talk, "%zu segments have no length or no radius and are left out",
+        talk_warn(talk, "segments that are left out, as they have no length or no radius: %zu",
                   report.dropped);
     if (report.covered)
         talk_warn(talk,
-                  "%zu segments lie within others between the same two points and are left out",
+                  "segments that are left out, as they are inside others between the same two "
+                  "points: %zu",
                   report.covered);
     return STATUS_OK;
 }
@@ -53,7 +54,7 @@ static WorkCost estimate_mesh(const void *job, const Talk *talk)
     const Triangulation *work = job;
     char memory[BYTES_TEXT_SIZE];
     const MeshEstimate estimate = vesselmesh_estimate(&work->made->vessels, &work->params);
-    talk_note(talk, "about %.2g triangles, which take %.*f s and %s of memory", estimate.triangles,
+    talk_note(talk, "expecting about %.2g triangles, %.*f s and %s of memory", estimate.triangles,
               estimate.seconds < 10, estimate.seconds, bytes_text(estimate.bytes, memory));
     return (WorkCost){.memory = estimate.bytes};
 }
@@ -113,7 +114,7 @@ static void say_result(const MeshResult *made, const Talk *talk)
     if (report->n_near)
         talk_note(talk, "%zu pair%s of unconnected vessels almost touch", report->n_near,
                   report->n_near == 1 ? "" : "s");
-    talk_note(talk, "%zu triangles, %.6g mm^3", made->mesh.n_triangles, report->volume_mm3);
+    talk_note(talk, "%zu triangles enclose %.6g mm^3", made->mesh.n_triangles, report->volume_mm3);
     if (made->print && !made->print->params.lids)
         mesh_say_print(made, talk);
 }

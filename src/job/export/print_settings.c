@@ -149,8 +149,8 @@ static Status refuse_key(const char *item, size_t length, Err *err)
         suggestion_offer(&like, keys[i].name);
     }
     const char *all = text_chars(&names);
-    Status status = err_set(err, STATUS_USAGE, "`print`: '%.*s' is not one of %s", (int)length,
-                            item, all ? all : "its keys");
+    Status status = err_set(err, STATUS_USAGE, "`print`: unknown key '%.*s'; the keys are %s",
+                            (int)length, item, all ? all : "its keys");
     suggestion_add(&like, "", err);
     text_release(&names);
     return status;
@@ -165,8 +165,8 @@ static Status read_item(const char *item, PrintSettings *out, Err *err)
         return refuse_key(item, length, err);
     const char *value = item[length] ? &item[length + 1] : "";
     if (!key->read(key, value, out))
-        return err_set(err, STATUS_USAGE, "`print`: '%s' is wrong: %s takes %s", item, key->name,
-                       key->takes);
+        return err_set(err, STATUS_USAGE, "`print`: '%s' is not valid; the key %s takes %s", item,
+                       key->name, key->takes);
     return STATUS_OK;
 }
 
@@ -177,12 +177,14 @@ static Status settle_block(PrintParams *params, Err *err)
 {
     PrintBlock *block = &params->block;
     if (!block->is_wanted && (block->ports != PORTS_NONE || block->margin_mm > 0))
-        return err_set(err, STATUS_USAGE, "`print`: ports and margin need a block");
+        return err_set(err, STATUS_USAGE, "`print`: the keys ports and margin need the key block");
     if (block->is_wanted && print_has_wall(params))
-        return err_set(err, STATUS_USAGE,
-                       "`print`: in a block vessels are hollow, and have no wall of their own");
+        return err_set(
+            err, STATUS_USAGE,
+            "`print`: the key wall excludes the key block, in which vessels are channels");
     if (block->is_wanted && params->base.is_wanted)
-        return err_set(err, STATUS_USAGE, "`print`: a block stands by itself, and takes no base");
+        return err_set(err, STATUS_USAGE,
+                       "`print`: the key base excludes the key block, which needs no base");
     if (block->margin_mm == 0)
         block->margin_mm = block->is_luer ? luer_margin_mm : plain_margin_mm;
     return STATUS_OK;
@@ -206,7 +208,7 @@ Status printing_parse(const char *text, PrintSettings *out, Err *err)
     made.params.base.min_pin_radius_mm = fmax(made.min_diameter_mm, made.nozzle_mm) / 2;
     TRY(settle_block(&made.params, err));
     if (made.prunes && made.min_diameter_mm == 0)
-        return err_set(err, STATUS_USAGE, "`print`: thin=prune needs min-diameter");
+        return err_set(err, STATUS_USAGE, "`print`: thin=prune needs the key min-diameter");
     *out = made;
     return STATUS_OK;
 }

@@ -15,13 +15,13 @@ static Status check_nozzle(const PrintSettings *settings, const PrintChanges *ch
     double nozzle = settings->nozzle_mm, wall = printing_thinnest_wall(settings, changes);
     if (changes->trunk_mm < nozzle)
         return err_set(err, STATUS_INPUT,
-                       "the nozzle of %g mm is wider than the trunk, %.3g mm when printed; no "
-                       "vessel can be made with it (`print` takes a scale)",
+                       "the nozzle (%g mm) is wider than the trunk (%.3g mm when printed), so no "
+                       "vessel can be printed; enlarge the tree with the key scale= of `print`",
                        nozzle, changes->trunk_mm);
     if (print_has_wall(&settings->params) && wall < nozzle)
         return err_set(err, STATUS_INPUT,
-                       "the nozzle of %g mm is wider than the wall, %.3g mm at its thinnest",
-                       nozzle, wall);
+                       "the nozzle (%g mm) is wider than the thinnest wall (%.3g mm)", nozzle,
+                       wall);
     return STATUS_OK;
 }
 
@@ -67,6 +67,6 @@ Status printing_check_bed(const PrintSettings *settings, const VesselMesh *mesh,
     if (bed[2] == 0 || (fits && size[2] <= bed[2]))
         return STATUS_OK;
     return err_set(err, STATUS_INPUT,
-                   "the print of %.4g x %.4g x %.4g mm does not fit the bed of %g x %g x %g mm",
+                   "the print (%.4g x %.4g x %.4g mm) does not fit the bed (%g x %g x %g mm)",
                    size[0], size[1], size[2], bed[0], bed[1], bed[2]);
 }

@@ -52,7 +52,8 @@ static Status check(const SceneOptions *options, const Emitter *emitter, Err *er
     const SceneModel model =
         picture->as_mesh ? model_with(MODEL_TRIANGLES) : (SceneModel)picture->model;
     if (options->ini && options->output && strcmp(options->output, "-") == 0)
-        return err_set(err, STATUS_USAGE, "--ini is a file beside S.pov; standard output has none");
+        return err_set(err, STATUS_USAGE,
+                       "--ini writes a file beside S.pov; it cannot be used with standard output");
     TRY(picture_check_povray(picture, err));
     return emit_check_model(emitter, model, err);
 }
@@ -87,8 +88,8 @@ static ScadForm form_by_size(const Tree *tree, const char *output, const Talk *t
     if (n <= OPENSCAD_QUICK)
         return SCAD_PARAMETRIC;
     talk_note(talk,
-              "%zu vessels are more than OpenSCAD unites in good time, %d: %s is one closed "
-              "surface; --scad parametric writes modules",
+              "OpenSCAD would take too long to join %zu vessels (limit %d), so %s is one closed "
+              "surface; use --scad parametric to write modules instead",
               n, OPENSCAD_QUICK, output);
     return SCAD_POLYHEDRON;
 }
@@ -103,7 +104,7 @@ static Status make_scene(const PictureOptions *picture, const Parsed *parsed, Sc
                          err));
     TRY(picture_say(&made->scene, &report, parsed->common.talk, err));
     return made->emitter->has_view
-               ? picture_say_effects(picture, &made->scene.view, "the scene is without them",
+               ? picture_say_effects(picture, &made->scene.view, "the scene omits them",
                                      parsed->common.talk, err)
                : STATUS_OK;
 }
@@ -195,13 +196,13 @@ static void say_limits(const SceneResult *made, const EmitReport *report, const 
         talk_note(talk, "%s", misfit.text);
     if (report->joint_sides > 0)
         talk_note(talk,
-                  "more joints than POV-Ray holds exactly; they are meshes of %d sides, of more "
-                  "with Declare=Joint_Sides=N",
+                  "POV-Ray cannot hold this many exact joints; they are meshes with %d sides (more "
+                  "with Declare=Joint_Sides=N)",
                   report->joint_sides);
     if (report->openscad_s > 0 && geometry->drawn > OPENSCAD_QUICK)
         talk_note(talk,
-                  "OpenSCAD takes about %.2g s to make a solid of %zu vessels, and its preview a "
-                  "moment; --scad polyhedron is a solid at once",
+                  "OpenSCAD needs about %.2g s to join %zu vessels to a solid; its preview is "
+                  "fast; --scad polyhedron writes a finished solid",
                   report->openscad_s, geometry->drawn);
 }
 

@@ -124,13 +124,16 @@ static Status take_geometry(Volumes *made, const Talk *talk, Err *err)
     const GeometryParams rounded = {.model = model_with(MODEL_VOXELS)};
     TRY(stage_geometry(&made->of->tree, &rounded, &made->geometry, &report, err));
     if (report.dropped)
-        talk_warn(talk, "%zu segments have no length or no radius and are left out",
+        talk_warn(talk, "segments that are left out, as they have no length or no radius: %zu",
                   report.dropped);
     made->within = made->geometry.drawn;
     for (size_t i = 0; i < made->geometry.n_primitives; i++)
         made->within -= made->geometry.primitives[i].kind == PRIMITIVE_CYLINDER;
     if (made->within)
-        talk_warn(talk, "%zu segments have both ends of thicker ones and no voxels", made->within);
+        talk_warn(
+            talk,
+            "segments that have both ends of a thicker segment and no voxels of their own: %zu",
+            made->within);
     return STATUS_OK;
 }
 
@@ -202,7 +205,7 @@ static WorkCost estimate_volumes(const void *job, const Talk *talk)
     const int64_t *n = made->params.grid.n;
     char bytes[BYTES_TEXT_SIZE], memory[BYTES_TEXT_SIZE];
     talk_note(
-        talk, "%lld x %lld x %lld voxels, which take about %.*f s, %s of memory and %s of disk",
+        talk, "expecting %lld x %lld x %lld voxels, about %.*f s, %s of memory and %s of disk",
         (long long)n[0], (long long)n[1], (long long)n[2], estimate.seconds < 10, estimate.seconds,
         bytes_text(estimate.memory, memory), bytes_text(estimate.bytes, bytes));
     return (WorkCost){estimate.memory, estimate.bytes};
@@ -234,7 +237,7 @@ static void say_result(const Volumes *made, const Talk *talk)
         talk_warn(talk, "%zu label%s no voxel; each was given a voxel that it touches",
                   report->n_given_voxels,
                   report->n_given_voxels == 1 ? " dominates" : "s dominate");
-    talk_note(talk, "%lld voxels hold vessels, %.6g mm^3", (long long)report->filled,
+    talk_note(talk, "%lld voxels contain vessels, %.6g mm^3", (long long)report->filled,
               report->volume_mm3);
 }
 

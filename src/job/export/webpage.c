@@ -156,7 +156,8 @@ static Status add_fields(const Coloring *coloring, const Talk *talk, Webpage *pa
     TRY_GOTO(add_columns(page, &said, err));
     TRY_GOTO(text_check(&lacking, err));
     if (*text_chars(&lacking))
-        talk_note(talk, "%s are left out: neither the tree nor an option says what they need",
+        talk_note(talk,
+                  "%s are left out: they need values that neither the tree nor an option gives",
                   text_chars(&lacking));
 done:
     text_release(&lacking);
@@ -240,8 +241,8 @@ static Status check_count(const PictureTree *of, Err *err)
         return STATUS_OK;
     TRY(radius_to_prune(&of->tree, &radius_mm, err));
     return err_set(err, STATUS_INFEASIBLE,
-                   "%s: %zu segments make a page of %s, and a browser does not turn "
-                   "more than %d; --prune-radius %.3g leaves about as many",
+                   "%s: %zu segments make a page of %s, and a browser can rotate at most %d; "
+                   "--prune-radius %.3g leaves about that many",
                    of->path, n, bytes_text((double)n * bytes_each, size), WEBPAGE_MOST_SEGMENTS,
                    radius_mm);
 }
@@ -258,11 +259,10 @@ static Status check_bytes(const Webpage *page, Err *err)
     }
     if (bytes <= WEBPAGE_MOST_BYTES)
         return STATUS_OK;
-    return err_set(
-        err, STATUS_INFEASIBLE,
-        "%s: the fields, %zu with all moments, make a page of %s, and a browser does not "
-        "open more than %d MB; leave columns or moments out of the file",
-        page->of->path, moments, bytes_text(bytes, size), WEBPAGE_MOST_BYTES / 1000000);
+    return err_set(err, STATUS_INFEASIBLE,
+                   "%s: the fields (%zu, counting each moment) make a page of %s, and a browser "
+                   "opens at most %d MB; remove columns or moments from the file",
+                   page->of->path, moments, bytes_text(bytes, size), WEBPAGE_MOST_BYTES / 1000000);
 }
 
 /* Finds the viewer's file. *path is owned. */
@@ -279,8 +279,8 @@ static Status find_viewer(const char *templates, char **path, Err *err)
         free(place);
     }
     return err_set(err, STATUS_TOOL,
-                   "this corcast was built without the viewer that pages hold: install npm and "
-                   "esbuild (`make deps FOR=page`) and run `make` again");
+                   "this corcast was built without the page viewer; install npm and esbuild (`make "
+                   "deps FOR=page`) and run `make` again");
 }
 
 static Status put_page(const void *job, const char *command, FileSlot files[], Err *err)

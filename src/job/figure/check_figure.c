@@ -56,11 +56,11 @@ static void check_lengths(Check *check, double width_mm, double height_mm)
 {
     const Preset *preset = check->preset;
     if (preset->most_mm > 0 && width_mm > preset->most_mm + slack_mm)
-        refuse(check, "width: %.1f mm, more than %g mm", width_mm, preset->most_mm);
+        refuse(check, "width: %.1f mm; the maximum is %g mm", width_mm, preset->most_mm);
     if (width_mm < preset->least_mm - slack_mm)
-        refuse(check, "width: %.1f mm, less than %g mm", width_mm, preset->least_mm);
+        refuse(check, "width: %.1f mm; the minimum is %g mm", width_mm, preset->least_mm);
     if (preset->height_mm > 0 && height_mm > preset->height_mm + slack_mm)
-        refuse(check, "height: %.1f mm, more than %g mm", height_mm, preset->height_mm);
+        refuse(check, "height: %.1f mm; the maximum is %g mm", height_mm, preset->height_mm);
 }
 
 /* Checks the resolution. PNG stores whole pixels per metre, and JPEG whole pixels per inch: both
@@ -70,10 +70,10 @@ static void check_resolution(Check *check, double dpi, const char *of)
     const Preset *preset = check->preset;
     double least = preset->least_dpi[check->kind];
     if (dpi < 0.99 * least)
-        refuse(check, "resolution: %.4g dpi%s, less than %g for %s", dpi, of, least,
-               content_kinds[check->kind]);
+        refuse(check, "resolution: %.4g dpi%s; the minimum for %s is %g", dpi, of,
+               content_kinds[check->kind], least);
     if (preset->most_dpi > 0 && dpi > 1.01 * preset->most_dpi)
-        refuse(check, "resolution: %.4g dpi%s, more than %g", dpi, of, preset->most_dpi);
+        refuse(check, "resolution: %.4g dpi%s; the maximum is %g", dpi, of, preset->most_dpi);
 }
 
 /* Without a resolution, the pixels must do for the narrowest column. */
@@ -87,11 +87,12 @@ static void check_pixels(Check *check, const ImageFacts *facts)
                       facts->height / facts->dpi * MM_PER_INCH);
         return;
     }
-    refuse(check, "resolution: the file has none; %d pixels are %.0f dpi over a column of %g mm",
+    refuse(check,
+           "resolution: the file states none; %d pixels are %.0f dpi across a column of %g mm",
            facts->width, facts->width / check->preset->single_mm * MM_PER_INCH,
            check->preset->single_mm);
     if (facts->width < 0.99 * column)
-        refuse(check, "pixels: %d across, fewer than the %.0f of a column of %g mm at %g dpi",
+        refuse(check, "pixels: %d across; a column needs %.0f pixels (%g mm at %g dpi)",
                facts->width, column, check->preset->single_mm, least);
 }
 
@@ -101,11 +102,11 @@ static void check_colors(Check *check, const char *colors, const char *profile)
 {
     const char *listed = check->preset->colors;
     if (!preset_has(listed, colors))
-        refuse(check, "colors: %s; taken are %s", colors, listed);
+        refuse(check, "color mode: the figure is %s; the preset accepts %s", colors, listed);
     else if (strcmp(colors, "cmyk") == 0 && !*profile)
-        refuse(check, "profile: inks without the ICC profile of their press");
+        refuse(check, "profile: a CMYK figure needs the ICC profile of its output device");
     else if (strcmp(colors, "rgb") == 0 && *profile && !strstr(profile, "sRGB"))
-        refuse(check, "profile: \"%s\"; colors without ado are sRGB", profile);
+        refuse(check, "profile: \"%s\"; the preset accepts sRGB", profile);
 }
 
 static void check_picture(Check *check, const ImageFacts *facts)
@@ -114,16 +115,17 @@ static void check_picture(Check *check, const ImageFacts *facts)
     bool tiff = strcmp(facts->format, "tif") == 0;
     check_pixels(check, facts);
     if (facts->bits > preset->bits)
-        refuse(check, "bits: %d a channel, more than %g", facts->bits, preset->bits);
+        refuse(check, "bits: %d per channel; the maximum is %g", facts->bits, preset->bits);
     if (facts->has_alpha)
-        refuse(check, "alpha: a channel of transparency; figures are to be flat");
+        refuse(check, "alpha: the figure has an alpha channel; flatten the image");
     if (facts->pages > 1)
-        refuse(check, "pages: %d; one is wanted", facts->pages);
+        refuse(check, "pages: %d; a figure must have one page", facts->pages);
     if (tiff && strcmp(preset->compression, "any") != 0 &&
         strcmp(preset->compression, facts->compression) != 0)
-        refuse(check, "compression: %s; wanted is %s", facts->compression, preset->compression);
+        refuse(check, "compression: %s; the preset accepts %s", facts->compression,
+               preset->compression);
     check_colors(check, facts->colors, facts->profile);
-    text_puts(&check->found->unchecked, "letters in the pixels, and their sizes\n");
+    text_puts(&check->found->unchecked, "text in the pixels and its size\n");
 }
 
 /* ---- pages ----------------------------------------------------------------------------------- */
@@ -145,10 +147,10 @@ static Status ask(Check *check, const char *program, TakeLine *take, Err *err)
     int ended = answer ? pclose(answer) : 0;
     text_release(&command);
     if (status == STATUS_OK && (!answer || ended == 127 << 8))
-        status = err_set(err, STATUS_TOOL, "%.*s is not there; it comes with poppler-utils",
+        status = err_set(err, STATUS_TOOL, "%.*s is not installed; it is part of poppler-utils",
                          (int)strcspn(program, " "), program);
     else if (status == STATUS_OK && ended != 0)
-        status = err_set(err, STATUS_INPUT, "%s: is not a sound PDF, as %.*s has it", check->path,
+        status = err_set(err, STATUS_INPUT, "%s: is not a valid PDF according to %.*s", check->path,
                          (int)strcspn(program, " "), program);
     return status;
 }
@@ -160,7 +162,7 @@ static void take_info(Check *check, char *line, int number)
     int pages;
     double width, height, mm = MM_PER_INCH / 72;
     if (sscanf(line, "Pages: %d", &pages) == 1 && pages != 1)
-        refuse(check, "pages: %d; one is wanted", pages);
+        refuse(check, "pages: %d; a figure must have one page", pages);
     if (sscanf(line, "Page size: %lf x %lf pts", &width, &height) == 2)
         check_lengths(check, width * mm, height * mm);
 }
@@ -180,10 +182,11 @@ static void take_font(Check *check, char *line, int number)
     if (strcmp(words[n - 5], "no") == 0)
         refuse(check, "fonts: %s is not embedded", words[0]);
     if (n >= 8 && strcmp(words[n - 8], "Type") == 0 && strcmp(words[n - 7], "3") == 0)
-        refuse(check, "fonts: %s is a Type 3 font; TrueType, OpenType and Type 1 fonts are taken",
-               strcmp(words[0], "[none]") ? words[0] : "one without a name");
+        refuse(check,
+               "fonts: %s is a Type 3 font; the accepted kinds are TrueType, OpenType and Type 1",
+               strcmp(words[0], "[none]") ? words[0] : "a font without a name");
     if (number == 2 && strcmp(check->preset->text_form, "outlined") == 0)
-        refuse(check, "fonts: text is live; it is to be outlines");
+        refuse(check, "fonts: text must be converted to outlines");
 }
 
 /* Two lines of heads; page num type width height color comp bpc enc interp object ID x-ppi y-ppi.
@@ -197,21 +200,21 @@ static void take_image(Check *check, char *line, int number)
                              color, &bits, &dpi) != 4)
         return;
     char of[64];
-    snprintf(of, sizeof of, " of picture %d", number - 1);
+    snprintf(of, sizeof of, " in image %d", number - 1);
     if (strcmp(type, "image") == 0)
         check_resolution(check, dpi, of);
     if (strcmp(type, "smask") == 0)
-        refuse(check, "alpha: picture %d is a mask of transparency", number - 1);
+        refuse(check, "alpha: image %d is a transparency mask; flatten the image", number - 1);
     bool grey = strcmp(color, "gray") == 0;
     if (strcmp(color, "rgb") == 0 || strcmp(color, "cmyk") == 0 || grey)
         check_colors(check, grey ? "grey" : color, "sRGB");
     if (bits > check->preset->bits)
-        refuse(check, "bits: %d a channel, more than %g", bits, check->preset->bits);
+        refuse(check, "bits: %d per channel; the maximum is %g", bits, check->preset->bits);
 }
 
 static Status check_pdf(Check *check, Err *err)
 {
-    text_puts(&check->found->unchecked, "sizes of letters, colors of lines and letters\n");
+    text_puts(&check->found->unchecked, "size of text, colors of lines and text\n");
     TRY(ask(check, "pdfinfo", take_info, err));
     TRY(ask(check, "pdffonts", take_font, err));
     return ask(check, "pdfimages -list", take_image, err);
@@ -225,16 +228,16 @@ static Status check_file(Check *check, Err *err)
     const Preset *preset = check->preset;
     TRY(image_facts(check->path, &facts, err));
     if (!preset_has(preset->formats, facts.format))
-        refuse(check, "format: %s; taken are %s", facts.format, preset->formats);
+        refuse(check, "format: %s; the preset accepts %s", facts.format, preset->formats);
     if (preset->megabytes > 0 && (double)facts.bytes >= preset->megabytes * 1e6)
-        refuse(check, "size: %.1f MB, not less than %g MB", (double)facts.bytes * 1e-6,
+        refuse(check, "file size: %.1f MB; it must be below %g MB", (double)facts.bytes * 1e-6,
                preset->megabytes);
     if (facts.width > 0)
         check_picture(check, &facts);
     else if (strcmp(facts.format, "pdf") == 0)
         return check_pdf(check, err);
     else
-        text_printf(&check->found->unchecked, "anything in a .%s but its format and size\n",
+        text_printf(&check->found->unchecked, "everything in a .%s except its format and size\n",
                     facts.format);
     return STATUS_OK;
 }
@@ -244,8 +247,7 @@ Status check_figure_make(const CheckFigureOptions *options, const char *path,
 {
     Preset preset = {0};
     if (!options->preset)
-        return err_set(err, STATUS_USAGE,
-                       "--preset is missing; corcast presets lists those there are");
+        return err_set(err, STATUS_USAGE, "--preset is missing; run `corcast presets` for a list");
     TRY(preset_read(options->preset, &preset, err));
     Check check = {.preset = &preset, .kind = options->kind, .path = path, .found = findings};
     Status status = check_file(&check, err);

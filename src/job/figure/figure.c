@@ -255,12 +255,14 @@ static Status put_text(Figure *figure, const Section *section, Err *err)
 {
     const TextOptions *options = section->own.options;
     if (!options->text || !options->has_at)
-        return err_set(err, STATUS_USAGE,
-                       "[text %s] needs 'text' and 'at', mm from the page's upper left corner",
-                       section->name);
+        return err_set(
+            err, STATUS_USAGE,
+            "[text %s] needs 'text' and 'at' (mm from the upper left corner of the page)",
+            section->name);
     if (!(fabs(options->at.x) <= far_mm && fabs(options->at.y) <= far_mm))
-        return err_set(err, STATUS_USAGE, "[text %s]: at: %g,%g is more than %g mm off the page",
-                       section->name, options->at.x, options->at.y, far_mm);
+        return err_set(err, STATUS_USAGE,
+                       "[text %s]: at: %g,%g is more than %g mm outside the page", section->name,
+                       options->at.x, options->at.y, far_mm);
     const FigureText text = {.text = options->text,
                              .x = options->at.x,
                              .y = options->at.y,
@@ -359,7 +361,7 @@ static Status find_recipe(const char *name, char **path, Err *err)
 {
     if (strchr(name, '/') || strcmp(file_extension(name), "ini") == 0)
         return mem_strdup(path, name, err);
-    return template_find("no such figure:", "figures", name, ".ini", path, err);
+    return template_find("figure", "figures", name, ".ini", path, err);
 }
 
 static Status find_folder(const char *recipe, char **folder, Err *err)

@@ -57,8 +57,8 @@ static Status place_panel(const Figure *figure, const FigureBox *cell, double ti
     place.height = figure_pixels(page, top + height) - place.top;
     if (place.width < 1 || place.height < 1)
         return err_set(err, STATUS_USAGE,
-                       "[panel %s] has no room: the page is %.4g x %.4g mm, with `margin_mm` and "
-                       "`gap_mm`",
+                       "[panel %s] does not fit: the page has %.4g x %.4g mm, including "
+                       "`margin_mm` and `gap_mm`",
                        section->name, page->width_mm, page->height_mm);
     figure->places[i] = place;
     return STATUS_OK;
@@ -78,7 +78,7 @@ static Status lay_out(Figure *figure, int (*cell)[2], Err *err)
         const Section *section = figure->plan.sections[i];
         int span = ((const PanelOptions *)section->own.options)->span;
         if (span > options->columns)
-            return err_set(err, STATUS_USAGE, "[panel %s] spans %d columns, of which there are %d",
+            return err_set(err, STATUS_USAGE, "[panel %s] spans %d columns, but the figure has %d",
                            section->name, span, options->columns);
         double left = margin + cell[i][0] * (wide + gap), top = margin + cell[i][1] * (high + gap);
         double title =

@@ -26,16 +26,17 @@ static Status check_inset(const FigurePlan *plan, const Section *section, Err *e
         return err_set(err, STATUS_USAGE, "[inset %s]: of: %s%s is not the name of a panel",
                        section->name, inset->of ? "" : "nothing", inset->of ? inset->of : "");
     if (!inset->has_at || !inset->has_place)
-        return err_set(err, STATUS_USAGE,
-                       "[inset %s] needs 'at', the middle of what it shows, and 'place', where its "
-                       "own middle lies, both over the panel's width and height, as in 0.3,0.6",
-                       section->name);
+        return err_set(
+            err, STATUS_USAGE,
+            "[inset %s] needs 'at' (centre of the part that it shows) and 'place' (its own "
+            "centre), both as fractions of the panel's width and height, such as 0.3,0.6",
+            section->name);
     const double all[] = {inset->at.x, inset->at.y, inset->place.x, inset->place.y};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)
         if (!(fabs(all[i]) <= far_sides))
             return err_set(
                 err, STATUS_USAGE,
-                "[inset %s]: %s: %g is not over the panel's width or height, which are 1",
+                "[inset %s]: %s: %g is not a fraction of the panel's width or height, from 0 to 1",
                 section->name, i < 2 ? "at" : "place", all[i]);
     return STATUS_OK;
 }
@@ -126,7 +127,7 @@ static Status put_inset(Figure *figure, const Section *section, size_t of, const
     int top = place->top + (int)lround(options->place.y * place->height) - inset->pixels[1] / 2;
     if (left < 0 || top < 0 || left + inset->pixels[0] > figure_pixels(page, page->width_mm) ||
         top + inset->pixels[1] > figure_pixels(page, page->height_mm))
-        return err_set(err, STATUS_USAGE, "[inset %s] does not lie on the page", section->name);
+        return err_set(err, STATUS_USAGE, "[inset %s] extends beyond the page", section->name);
     const FigureBox shown = {left * pixel, top * pixel, (left + inset->pixels[0]) * pixel,
                              (top + inset->pixels[1]) * pixel};
     if (!panel->in_lines)

@@ -153,7 +153,7 @@ static Status unknown_key(const char *name, const char *section, const Parsed *a
     Suggestion suggestion = suggestion_for(name, strlen(name));
     offer_keys(a, is_own, &suggestion);
     offer_keys(b, is_of_panels, &suggestion);
-    (void)err_set(err, STATUS_USAGE, "'%.40s' is not a key of [%s]", name, section);
+    (void)err_set(err, STATUS_USAGE, "unknown key '%.40s' in [%s]", name, section);
     suggestion_add(&suggestion, "", err);
     return STATUS_USAGE;
 }
@@ -237,7 +237,7 @@ static Status add_section(Reading *reading, SectionKind kind, const char *name, 
     FigurePlan *plan = reading->plan;
     for (size_t i = 0; i < plan->n; i++)
         if (plan->sections[i]->kind == kind && strcmp(plan->sections[i]->name, name) == 0)
-            return err_set(err, STATUS_USAGE, "there is a section [%s %s] already",
+            return err_set(err, STATUS_USAGE, "the section [%s %s] is given twice",
                            kinds[kind].name, name);
     TRY(mem_reserve(&plan->sections, &plan->capacity, plan->n + 1, sizeof *plan->sections,
                     "sections", err));
@@ -256,7 +256,7 @@ static Status begin_panels(Reading *reading, Err *err)
 {
     for (size_t i = 0; i < reading->plan->n; i++)
         if (reading->plan->sections[i]->kind == SECTION_PANEL)
-            return err_set(err, STATUS_USAGE, "[panels] stands before all panels");
+            return err_set(err, STATUS_USAGE, "[panels] must come before all panels");
     reading->in = IN_PANELS;
     return STATUS_OK;
 }
@@ -267,7 +267,7 @@ static Status begin_section(Reading *reading, const char *head, Err *err)
                  : strcmp(head, "panels") == 0 ? &reading->seen_panels
                                                : NULL;
     if (seen && *seen)
-        return err_set(err, STATUS_USAGE, "there is a section [%s] already", head);
+        return err_set(err, STATUS_USAGE, "the section [%s] is given twice", head);
     if (seen) {
         *seen = true;
         reading->in = IN_FIGURE;
@@ -330,7 +330,7 @@ static Status take_line(void *user, const char *head, const char *name, const ch
     case IN_NOTHING:
         break;
     }
-    return err_set(err, STATUS_USAGE, "'%.40s' stands before any section", name);
+    return err_set(err, STATUS_USAGE, "'%.40s' is before the first section", name);
 }
 
 /* What holds only of the whole. */
@@ -344,11 +344,12 @@ static Status check_plan(const FigurePlan *plan, Err *err)
             continue;
         panels++;
         if (!panel->tree && !section->maker)
-            return err_set(err, STATUS_USAGE,
-                           "[panel %s] has no tree: give 'tree', or 'grow' with options of grow",
-                           section->name);
+            return err_set(
+                err, STATUS_USAGE,
+                "[panel %s] has no tree: give 'tree', or 'grow' with options of `corcast grow`",
+                section->name);
     }
-    return panels ? STATUS_OK : err_set(err, STATUS_USAGE, "there is no [panel NAME]");
+    return panels ? STATUS_OK : err_set(err, STATUS_USAGE, "the figure has no [panel NAME]");
 }
 
 Status figureplan_read(const char *path, Parsed *figure, FigurePlan *plan, Err *err)

@@ -42,7 +42,7 @@ static Status cut_words(const char *arguments, Words *words, Err *err)
             return err_set(err, STATUS_USAGE, "there are more than %d words", MOST_WORDS);
         words->word[words->n++] = rest;
         if (!cut_word(&rest))
-            return err_set(err, STATUS_USAGE, "a quote is not closed in %.60s", arguments);
+            return err_set(err, STATUS_USAGE, "missing closing quote in %.60s", arguments);
     }
     return STATUS_OK;
 }
@@ -56,8 +56,7 @@ static Status check_words(const Words *words, Err *err)
         for (size_t k = 0; k < sizeof others / sizeof *others; k++)
             if (strncmp(words->word[i], others[k], strlen(others[k])) == 0)
                 return err_set(err, STATUS_USAGE,
-                               "%s is for the command alone: a panel's tree "
-                               "goes into the figure",
+                               "%s cannot be used here: the tree of a panel goes into the figure",
                                words->word[i]);
     return STATUS_OK;
 }

@@ -60,9 +60,7 @@ static Status check_pattern(const char *output, Err *err)
     Place place;
     if (find_place(output, &place))
         return STATUS_OK;
-    return err_set(err, STATUS_USAGE,
-                   "-o: '%s' has no place for a number; several pictures take a name as in "
-                   "f%%04d.png",
+    return err_set(err, STATUS_USAGE, "-o: '%s' must contain the picture number, as in f%%04d.png",
                    output);
 }
 
@@ -76,7 +74,8 @@ Status animation_read(const AnimationOptions *options, const char *output, Anima
     if (options->frames) {
         made.kind = ANIMATION_SERIES;
         if (!read_frames(options->frames, &made))
-            return err_set(err, STATUS_USAGE, "--frames: '%.40s' is not all or A..B, as in 1..24",
+            return err_set(err, STATUS_USAGE,
+                           "--frames: '%.40s' is not valid; use all or A..B, such as 1..24",
                            options->frames);
     } else if (options->turn || options->growth) {
         made.kind = options->turn ? ANIMATION_TURN : ANIMATION_GROWTH;
@@ -96,10 +95,10 @@ Status animation_count(Animation *animation, const Appearance *appearance, Err *
         return STATUS_OK;
     int n = (int)appearance->n_frames;
     if (n == 0)
-        return err_set(err, STATUS_USAGE,
-                       "--frames: %s does not change with time; it needs --color-by with values "
-                       "that do",
-                       appearance->name ? appearance->name : "the picture");
+        return err_set(
+            err, STATUS_USAGE,
+            "--frames: %s does not change with time; give --color-by with values that do",
+            appearance->name ? appearance->name : "the picture");
     if (animation->last > n)
         return err_set(err, STATUS_USAGE, "--frames: %s has %d frames, not %d", appearance->name, n,
                        animation->last);

@@ -71,9 +71,9 @@ Status annotation_check(const Annotation *annotation, const PictureOptions *pict
     if (annotation->legend && !picture->coloring.field)
         return err_set(err, STATUS_USAGE, "--legend needs --color-by");
     if (annotation->has_scale_bar && !flat)
-        return err_set(err, STATUS_USAGE,
-                       "--scale-bar is for orthographic pictures: in perspective a length has "
-                       "another size at each distance");
+        return err_set(
+            err, STATUS_USAGE,
+            "--scale-bar needs an orthographic picture: in perspective no scale bar is correct");
     return STATUS_OK;
 }
 
@@ -171,9 +171,9 @@ static Status add_legend(const Annotation *annotation, const Appearance *appeara
     Status status = text_check(&title, err);
     const FigureLegend legend = {.scale = &appearance->scale,
                                  .outside = appearance->outside,
-                                 .whole = are_whole(appearance),
+                                 .integers = are_whole(appearance),
                                  .title = text_chars(&title),
-                                 .across = across,
+                                 .horizontal = across,
                                  .length_mm =
                                      fmin(fmax((across ? width : height) / 2, 5 * em), 18 * em),
                                  .size_pt = annotation->text_pt,
@@ -217,8 +217,8 @@ Status annotation_make_room(const Annotation *annotation, const FigureFonts *fon
     int needed = (int)ceil((size[side] + gap_of(annotation)) / pixel);
     if (needed > pixels[side] * 2 / 3)
         return err_set(err, STATUS_USAGE,
-                       "--legend needs %.0f mm of a picture of %.0f mm: take a larger --size or a "
-                       "smaller --text-size",
+                       "--legend needs %.0f mm, but the picture has %.0f mm; use a larger --size "
+                       "or a smaller --text-size",
                        needed * pixel, pixels[side] * pixel);
     picture->stage.room[side] = needed;
     return STATUS_OK;
@@ -253,7 +253,7 @@ static Status put_scale_bar(const Annotation *annotation, const Scene *scene, Fi
     const size_t first = page->n;
     if (annotation->scale_bar_mm > shown)
         return err_set(err, STATUS_USAGE,
-                       "--scale-bar: %g mm is longer than the picture is wide, %.4g mm",
+                       "--scale-bar: %g mm is longer than the width of the picture, %.4g mm",
                        annotation->scale_bar_mm, shown);
     Text label = TEXT_INIT;
     put_length(annotation->scale_bar_mm, &label);

@@ -1,4 +1,12 @@
-/* What explains a picture, drawn over it or beside it: color bar, scale bar, letter. */
+/* Draws the explanations of a picture: legend, scale bar and panel letter.
+ *
+ * The legend is a color bar, or a row of swatches, with ticks, the name of the field and its unit.
+ * The scale bar shows a length of the tree. The letter is the "a" or "b" of a panel in a figure.
+ * All three are appended to a page (FigurePage), which is drawn over the picture or contains it:
+ *
+ *     annotation_check(annotation, picture, err);                          // before the scene
+ *     annotation_make_room(annotation, fonts, appearance, picture, err);   // before the view
+ *     annotation_put(annotation, scene, where, page, err);                 // after the view */
 #ifndef CORCAST_JOB_PICTURE_ANNOTATION_H
 #define CORCAST_JOB_PICTURE_ANNOTATION_H
 
@@ -6,47 +14,57 @@
 #include "job/picture/picture.h"
 #include "options/options.h"
 
+/* The side of the picture on which the legend is drawn. */
 typedef enum LegendSide { LEGEND_RIGHT, LEGEND_BOTTOM } LegendSide;
 
+/* The options for annotations. Strings are borrowed from the parsed command line. */
 typedef struct Annotation {
-    bool legend, has_side, has_title;
+    bool legend;    /* a legend is drawn */
+    bool has_side;  /* `legend_at` is specified by an option */
+    bool has_title; /* `title` is specified by an option */
     LegendSide legend_at;
-    const char *title;   /* of the legend; NULL: the field's name and unit */
-    const char *letter;  /* NULL: none */
-    double scale_bar_mm; /* of the tree */
-    bool has_scale_bar;
-    double text_pt;
+    const char *title;   /* title of the legend; NULL: name and unit of the field */
+    const char *letter;  /* NULL: no letter */
+    double scale_bar_mm; /* length in the tree that the scale bar stands for */
+    bool has_scale_bar;  /* a scale bar is drawn */
+    double text_pt;      /* font size of legend and scale bar, points */
 } Annotation;
 
-/* Of a zeroed Annotation. */
+/* Sets the defaults of a zeroed Annotation. */
 void annotation_set_defaults(Annotation *annotation);
 extern const OptionTable annotation_table; /* sets an Annotation */
 
-/* Whether there is anything to draw. */
+/* Returns true if a legend, a scale bar or a letter is to be drawn. */
 bool annotation_is_any(const Annotation *annotation);
 
-/* STATUS_USAGE when a legend has no colors to explain, a scale bar is asked for in perspective,
- * where no length of the picture is one of the tree. */
+/* Checks the options. Errors: STATUS_USAGE if there is a legend but no --color-by, or a scale bar
+ * in a perspective picture, where a length of the tree has no fixed length in the picture. */
 MUST_CHECK Status annotation_check(const Annotation *annotation, const PictureOptions *picture,
                                    Err *err);
 
-/* Pixels an inch of a picture on a page: its own, or 300 where its size is in pixels. */
+/* Returns the resolution of the page in dots per inch: that of the picture's size on paper, or 300
+ * if the size is in pixels. */
 double annotation_dpi(const PictureOptions *picture);
 
-/* Has a camera that frames the tree leave room for the legend: sets the view's room in *picture.
- * STATUS_USAGE when the legend leaves none for the tree. */
+/* Reserves space for the legend, so that a camera that frames the tree leaves this space empty.
+ *
+ * picture  receives the reserved space, in its view parameters.
+ * Errors   STATUS_USAGE if the legend leaves no space for the tree; STATUS_MEMORY. */
 MUST_CHECK Status annotation_make_room(const Annotation *annotation, const FigureFonts *fonts,
                                        const Appearance *appearance, PictureOptions *picture,
                                        Err *err);
 
-/* Appends all of it to a page, for the picture of a scene that stands at `where` on it.
- * STATUS_USAGE when the scale bar is longer than the picture is wide; as figure_check. */
+/* Appends legend, scale bar and letter to a page.
+ *
+ * where   the rectangle of the page that the picture of `scene` covers.
+ * Errors  STATUS_USAGE if the scale bar is longer than the width of the picture; the errors of
+ *         figure_check; STATUS_MEMORY. */
 MUST_CHECK Status annotation_put(const Annotation *annotation, const Scene *scene, FigureBox where,
                                  FigurePage *page, Err *err);
 
-/* The color as a page has it. */
+/* Converts a linear RGB color to the color type of pages. */
 FigureColor annotation_color(Rgb linear);
-/* Black or white, whichever is read on this color. */
+/* Returns black or white: the one that is readable on the background. */
 FigureColor annotation_ink(Rgb background);
 
 #endif

@@ -253,7 +253,7 @@ void coloring_say(const Appearance *appearance, const Talk *talk)
     talk_note(talk, "%s", appearance->meaning);
     const double decades = fieldscale_decades(appearance);
     if (decades > most_decades)
-        talk_note(talk, "the field %s spans %.1f decades, which --log shows evenly",
+        talk_note(talk, "the field %s spans %.1f decades; use --log for a logarithmic scale",
                   appearance->scale.name, decades);
 }
 

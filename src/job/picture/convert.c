@@ -67,8 +67,8 @@ static Status read_picture(const ConvertOptions *options, const char *from, cons
         return STATUS_OK;
     picture_release(picture);
     return err_set(err, STATUS_USAGE,
-                   "%s: is transparent, which '%s' cannot be; --background lays it on a color, "
-                   "and .png and .tif keep it",
+                   "%s: is transparent, which '%s' cannot store; use --background to put it on a "
+                   "color, or write .png or .tif",
                    from, to);
 }
 
@@ -192,8 +192,7 @@ Status convert_run(void *options, Parsed *parsed, Err *err)
         return unknown_kind(kind == FILE_UNKNOWN ? to : from, err);
     if ((kind_from == FILE_TREE) != (kind == FILE_TREE))
         return err_set(err, STATUS_USAGE,
-                       "'%s' cannot become '%s': a tree and an image are different things", from,
-                       to);
+                       "cannot convert '%s' to '%s': one is a tree, the other an image", from, to);
     if (kind == FILE_TREE)
         return convert_tree(own_options, parsed, to, err);
     TRY(press_check(&own_options->press, to, err));

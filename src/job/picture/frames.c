@@ -18,7 +18,8 @@ Status frames_check_output(const char *path, bool planes, Err *err)
 {
     if (strcmp(path, "-") == 0) {
         if (planes)
-            return err_set(err, STATUS_USAGE, "--planes needs -o FILE, to name the planes after");
+            return err_set(err, STATUS_USAGE,
+                           "--planes needs -o FILE, from which the names of the planes are formed");
         return STATUS_OK;
     }
     static const char *const known[] = {"png", "ppm", "pfm", "tif", "tiff", "jpg", "jpeg", "exr"};

@@ -9,9 +9,9 @@ Status line_drawing_check(const PictureOptions *picture, const char *output, Err
 {
     if (!frames_is_page(output))
         return err_set(err, STATUS_USAGE,
-                       "--ink draws lines for an .svg or .pdf; --look ink draws pixels");
+                       "--ink writes .svg or .pdf only; for pixels use --look ink");
     if (!model_is_of(picture->model, MODEL_PRIMITIVES))
-        return err_set(err, STATUS_USAGE, "--ink is for --model %s, not %s",
+        return err_set(err, STATUS_USAGE, "--ink needs --model %s, not %s",
                        models_of(MODEL_PRIMITIVES).text, models[picture->model].name);
     return STATUS_OK;
 }

@@ -1,4 +1,5 @@
-/* Vessels as lines instead of a picture. */
+/* Draws the vessels of a scene as lines (--ink) instead of as a shaded picture. The lines are
+ * vector graphics on a page, .pdf or .svg. Hidden lines are omitted. */
 #ifndef CORCAST_JOB_PICTURE_LINE_DRAWING_H
 #define CORCAST_JOB_PICTURE_LINE_DRAWING_H
 
@@ -6,14 +7,18 @@
 #include "job/picture/picture.h"
 #include "options/options.h"
 
-/* Widths of lines on paper, mm. */
+/* Accepted range of --ink: line widths on paper, mm. */
 extern const Range ink_range;
 
-/* STATUS_USAGE when --ink fights another option of the command line, or `output` is no page. */
+/* Checks that --ink can be used. Errors: STATUS_USAGE if the model has no line drawing, or if the
+ * file `output` is not a .pdf or .svg. */
 MUST_CHECK Status line_drawing_check(const PictureOptions *picture, const char *output, Err *err);
 
-/* Writes the page of the form, and in it, below all else, the scene's vessels as lines of
- * `line_mm`. As ink_draw and frames_write_page. */
+/* Draws the vessels of the scene as lines below everything else on the page form->page, and writes
+ * the page.
+ *
+ * line_mm  width of the lines on paper.
+ * Errors   the errors of ink_draw and frames_write_page. */
 MUST_CHECK Status line_drawing_write(const Scene *scene, double line_mm, int threads,
                                      const FramesForm *form, Err *err);
 

@@ -271,15 +271,16 @@ static Status check_camera(const PictureOptions *options, Err *err)
     bool perspective = options->projection == PROJECTION_PERSPECTIVE;
     if (options->has_height && perspective)
         return err_set(err, STATUS_USAGE,
-                       "--height is for orthographic pictures; a perspective one takes --angle");
+                       "--height needs an orthographic picture; in perspective use --angle");
     if (options->has_angle && !perspective)
-        return err_set(err, STATUS_USAGE,
-                       "--angle is for perspective pictures; an orthographic one takes --height");
+        return err_set(
+            err, STATUS_USAGE,
+            "--angle needs a perspective picture; in orthographic projection use --height");
     if (stage->has_location && (options->has_view || options->has_turn))
         return err_set(err, STATUS_USAGE, "--%s and --location exclude each other; give one",
                        options->has_view ? "view" : "turn");
     if (options->turn.n > 2)
-        return err_set(err, STATUS_USAGE, "--turn takes AZ,EL, degrees, as in 30,15, or AZ alone");
+        return err_set(err, STATUS_USAGE, "--turn takes AZ,EL or AZ in degrees, such as 30,15");
     if (stage->has_up && !(vec3_length(stage->up) > 0 && isfinite(vec3_length(stage->up))))
         return err_set(err, STATUS_USAGE,
                        "--up: the vector must have a length from 1e-150 to 1e150");
@@ -296,8 +297,7 @@ Status picture_check_povray(const PictureOptions *options, Err *err)
 {
     if (options->occlusion == 0)
         return STATUS_OK;
-    return err_set(err, STATUS_USAGE,
-                   "--ao is corcast's own: POV-Ray has no ambient occlusion to hold it against");
+    return err_set(err, STATUS_USAGE, "--ao cannot be verified: POV-Ray has no ambient occlusion");
 }
 
 /* Says which segments and joints of the tree the picture does not show. */
@@ -315,8 +315,8 @@ static Status say_losses(const Geometry *geometry, const PictureReport *made, co
                   report->dropped, segments);
     if (report->covered)
         talk_note(talk,
-                  "%zu of %zu segments lie within others between the same two points and are not "
-                  "drawn",
+                  "%zu of %zu segments are inside other segments between the same two points and "
+                  "are not drawn",
                   report->covered, segments);
     if (hidden)
         talk_note(talk,
@@ -324,18 +324,18 @@ static Status say_losses(const Geometry *geometry, const PictureReport *made, co
                   "there and shows nothing",
                   hidden, segments);
     if (report->thinned)
-        talk_note(talk,
-                  "%zu segment%s thinned, because of an overlap with others that do not belong "
-                  "there, or blend with such",
+        talk_note(talk, "%zu segment%s thinned until unconnected vessels no longer overlap",
                   report->thinned, report->thinned == 1 ? " is" : "s are");
     if (report->places_short + report->places_sharp)
         talk_note(talk,
-                  "at %zu places vessels are too short for joints, at %zu they turn too sharply; "
-                  "these are %s",
+                  "joints that could not be built: %zu (vessels too short), %zu (turn too sharp); "
+                  "they are %s",
                   report->places_short, report->places_sharp,
-                  made->joints == JOINTS_PAPER ? "joined all the same" : "drawn round");
+                  made->joints == JOINTS_PAPER ? "built all the same" : "replaced by spheres");
     if (report->places_crowded)
-        talk_note(talk, "at %zu places too many vessels meet to be joined; these are drawn round",
+        talk_note(talk,
+                  "joints that could not be built, as too many vessels meet: %zu; they are "
+                  "replaced by spheres",
                   report->places_crowded);
     return STATUS_OK;
 }
@@ -371,8 +371,8 @@ static Status check_distance(const Scene *scene, Err *err)
         farthest_corner(&scene->view.camera, &scene->geometry.bounds) > least)
         return STATUS_OK;
     return err_set(err, STATUS_INPUT,
-                   "all of the tree is nearer to the camera than %g mm, where neither POV-Ray "
-                   "nor render sees it; a larger --input-unit or another camera shows it",
+                   "the whole tree is nearer to the camera than %g mm, where neither POV-Ray nor "
+                   "render draws it; use a larger --input-unit or another camera",
                    least);
 }
 
@@ -394,18 +394,18 @@ static void say_limits(const Scene *scene, bool shadows, const Talk *talk)
     camera_depth_range(&scene->view.camera, geometry->bounds, &near_mm, &far_mm);
     if (may_be_hidden(scene) && near_mm < nearest_mm)
         talk_note(talk,
-                  "what is nearer to the camera than %g mm is not seen, as by POV-Ray; a larger "
-                  "--input-unit or another camera shows all of the tree",
+                  "parts of the tree nearer to the camera than %g mm are not drawn, as in POV-Ray; "
+                  "use a larger --input-unit or another camera",
                   nearest_mm);
     if (balls)
         talk_note(talk,
-                  "%zu balls of at most %g mm are not seen, as by POV-Ray; a larger --input-unit "
-                  "shows them",
-                  balls, ball_mm);
+                  "spheres that are not drawn, as in POV-Ray, because their radius is at most %g "
+                  "mm: %zu; use a larger --input-unit",
+                  ball_mm, balls);
     if (shadows && 2 * thickest < shadow_mm)
         talk_note(talk,
-                  "what is nearer to a lit point than %g mm casts no shadow on it, as in POV-Ray, "
-                  "and no vessel is as thick",
+                  "no vessel casts a shadow on itself: as in POV-Ray, parts nearer than %g mm to a "
+                  "lit point cast none, and all vessels are thinner",
                   shadow_mm);
 }
 
@@ -419,8 +419,7 @@ static Status read_look(const PictureOptions *options, const Parsed *parsed, Loo
     TRY(coloring_read_look(options->look, look, err));
     if (is_xray(look) && options->coloring.field)
         return err_set(err, STATUS_USAGE,
-                       "--look %s has two colors of its own; --color-by has no effect",
-                       options->look);
+                       "--color-by has no effect: --look %s uses two fixed colors", options->look);
     if (is_xray(look))
         TRY(options_refuse(parsed, WHEN(LIT) | WHEN(LIGHTS), err));
     if (options->has_background && !color_is_none(options->background))
@@ -493,7 +492,7 @@ static Status find_domain(const PictureTree *of, Box *domain, Err *err)
     Status status = tree_domain_box(&of->tree, domain, &found, err);
     if (status == STATUS_OK && !found)
         status = err_set(err, STATUS_INPUT,
-                         "does not tell the domain that it was grown in, for --frame domain");
+                         "--frame domain: the tree does not state the domain that it was grown in");
     if (status != STATUS_OK)
         err_prefix(err, "%s: ", of->path);
     return status;
@@ -571,8 +570,8 @@ static Status blend(const PictureOptions *options, Appearance *appearance, Err *
         return STATUS_OK;
     if (colorscale_selects_by_integer(scale))
         return err_set(err, STATUS_USAGE,
-                       "--color-blend blended: --colormap %s has separate colors, which blend only "
-                       "with --classes",
+                       "--color-blend blended: the colors of --colormap %s are separate and blend "
+                       "only with --classes",
                        options->coloring.colormap);
     if (colorscale_steps(scale) > MOST_STEPS)
         return err_set(err, STATUS_USAGE,
@@ -659,8 +658,7 @@ Status picture_say_effects(const PictureOptions *options, const View *view, cons
 {
     Text names = TEXT_INIT;
     if (view->effects.xray.per_mm > 0)
-        return err_set(err, STATUS_USAGE,
-                       "--look %s is an x-ray, which POV-Ray does not draw; render does",
+        return err_set(err, STATUS_USAGE, "--look %s: POV-Ray cannot draw an x-ray; use render",
                        options->look);
     effects_list(&view->effects, &names);
     Status status = text_check(&names, err);
@@ -687,8 +685,8 @@ Status picture_check_ids(const Geometry *geometry, const char *tree_path, Err *e
     for (size_t i = 0; i < geometry->n_ids; i++)
         if (geometry->ids[i] > IMAGE_MAX_ID)
             return err_set(err, STATUS_INPUT,
-                           "%s: the id %u does not fit an id plane, which holds ids up to %d; "
-                           "`corcast convert` numbers the nodes from 1 on",
+                           "%s: the id %u is too large for an id plane (maximum %d); `corcast "
+                           "convert` renumbers the nodes from 1",
                            tree_path, geometry->ids[i], IMAGE_MAX_ID);
     return STATUS_OK;
 }

@@ -202,7 +202,7 @@ MUST_CHECK Status picture_say(const Scene *scene, const PictureReport *report, c
 
 /* Prints a note that lists the effects of the look that POV-Ray does not draw, if there are any.
  *
- * what     the end of the sentence, about these effects: "left out on both sides".
+ * what     the end of the sentence, about these effects: "omitted on both sides".
  * Errors   STATUS_USAGE if the look is an x-ray, because nothing of the picture would be left;
  *          STATUS_MEMORY. */
 MUST_CHECK Status picture_say_effects(const PictureOptions *options, const View *view,

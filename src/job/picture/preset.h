@@ -1,41 +1,52 @@
-/* What a publisher asks of a figure: a file of templates/presets. */
+/* Reads a publisher's requirements on figures: a file of templates/presets.
+ *
+ * A preset states, for example, that a column is 89 mm wide and that a photograph needs 300 dpi.
+ * `render --preset NAME` uses the preset's size and resolution, and `check-figure` compares a file
+ * with the preset. */
 #ifndef CORCAST_JOB_PICTURE_PRESET_H
 #define CORCAST_JOB_PICTURE_PRESET_H
 
 #include "base/base.h"
 
-/* What a figure consists of: shades, shades with lines or letters, lines alone. */
+/* What a figure consists of. Publishers require a resolution for each kind. */
 typedef enum ContentKind {
-    CONTENT_HALFTONE,
-    CONTENT_COMBINATION,
-    CONTENT_LINE,
+    CONTENT_HALFTONE,    /* shades, such as a photograph */
+    CONTENT_COMBINATION, /* shades together with lines or text */
+    CONTENT_LINE,        /* lines only */
     CONTENT_KINDS
 } ContentKind;
-extern const char *const content_kinds[]; /* by ContentKind; NULL ends them */
+extern const char *const content_kinds[]; /* names by ContentKind; NULL ends the list */
 
-/* Lengths in mm, resolutions in pixels an inch; 0 as a bound: there is none. Texts are of `text`.
- */
+/* The requirements of one publisher. Lengths are in mm, resolutions in pixels per inch. A bound of
+ * 0 is no bound. All strings except `text` are borrowed from `text`. */
 typedef struct Preset {
-    char *text; /* owned */
-    const char *about;
-    double single_mm, double_mm, least_mm, most_mm; /* widths: of columns, of anything */
-    double height_mm;                               /* at most */
-    double render_dpi;                              /* of what is drawn anew */
-    double least_dpi[CONTENT_KINDS], most_dpi;
-    const char *formats, *colors; /* words: "tif eps", "rgb grey cmyk" */
-    const char *compression;      /* of a TIFF: "any" or a word of --compression */
-    double bits;                  /* at most */
-    double megabytes;             /* less than */
-    double least_pt, most_pt;     /* of text */
-    const char *text_form;        /* "live", "outlined", "any" */
+    char *text;                      /* contents of the file; owned */
+    const char *about;               /* a description in one line */
+    double single_mm, double_mm;     /* width of one column and of two columns */
+    double least_mm, most_mm;        /* minimum and maximum width of a figure */
+    double height_mm;                /* maximum height of a figure */
+    double render_dpi;               /* resolution that `render` uses */
+    double least_dpi[CONTENT_KINDS]; /* minimum resolution, by ContentKind */
+    double most_dpi;                 /* maximum resolution */
+    const char *formats;             /* accepted file formats, separated by blanks: "tif eps" */
+    const char *colors;              /* accepted color modes: "rgb grey cmyk" */
+    const char *compression;         /* of a TIFF: "any", or a value of --compression */
+    double bits;                     /* maximum bits per channel */
+    double megabytes;                /* the file must be smaller, MB of 10^6 bytes */
+    double least_pt, most_pt;        /* minimum and maximum font size, points */
+    const char *text_form;           /* "live" (text with fonts), "outlined" (curves) or "any" */
 } Preset;
 
-/* Reads the preset of this name, or the file if it has a '/'. STATUS_USAGE when there is none,
- * STATUS_INPUT with file and line for one that is none, or not whole. */
+/* Reads a preset.
+ *
+ * name    name of a file in templates/presets, or a path if it contains a '/'.
+ * out     set on success only; release it with preset_release.
+ * Errors  STATUS_USAGE if there is no such preset; STATUS_INPUT, with file and line, if the file is
+ *         malformed or a key is missing; STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status preset_read(const char *name, Preset *out, Err *err);
 void preset_release(Preset *preset);
 
-/* Whether `word` is one of the words of a list of the preset's. */
+/* Returns true if `word` is one of the blank-separated words in `words`. */
 bool preset_has(const char *words, const char *word);
 
 #endif

@@ -124,10 +124,10 @@ static Status check_bits(const char *output, int bits, Err *err)
         const char *extension, *other;
         int bits[2];
         const char *sentence;
-    } rules[] = {{"exr", "exr", {16, 32}, "an .exr has floats of 16 or 32 bits"},
-                 {"pfm", "pfm", {0, 0}, "a .pfm has floats of 32 bits anyway"},
-                 {"jpg", "jpeg", {8, 8}, "a .jpg has 8 bits"},
-                 {"", "", {8, 16}, "a picture has 8 or 16 bits"}};
+    } rules[] = {{"exr", "exr", {16, 32}, "an .exr stores floats of 16 or 32 bits"},
+                 {"pfm", "pfm", {0, 0}, "a .pfm always stores floats of 32 bits"},
+                 {"jpg", "jpeg", {8, 8}, "a .jpg stores 8 bits"},
+                 {"", "", {8, 16}, "this format stores 8 or 16 bits"}};
     size_t i = 0, last = sizeof rules / sizeof *rules - 1;
     while (i < last && !is_of(output, rules[i].extension, rules[i].other))
         i++;

@@ -74,7 +74,8 @@ static Status plan_rows(Rendering *r, Err *err)
     const RenderOptions *options = r->options;
     const RenderKernels kernels = options->kernels;
     if (r->in_memory && (options->shard.commands || options->shard.resume))
-        return err_set(err, STATUS_USAGE, "--%s is for files, not for pictures in memory",
+        return err_set(err, STATUS_USAGE,
+                       "--%s needs files; it cannot be used with pictures in memory",
                        options->shard.commands ? "commands" : "resume");
     TRY(shard_check(&options->shard, &r->form, r->parsed, err));
     TRY(shard_of_tile(options->shard.tile, r->form.height, &r->shard, err));
@@ -273,9 +274,9 @@ static Status write_result(const RenderOptions *options, const Press *press, con
                              .colors = result->colors};
     TRY(frames_check_output(options->output, false, err));
     if (image_traits(options->output).floats == codes)
-        return err_set(err, STATUS_USAGE, "-o: '%s' does not suit a picture of %s: %s",
+        return err_set(err, STATUS_USAGE, "-o: '%s' cannot store a picture of %s; %s",
                        options->output, codes ? "8 or 16 bits" : "floats",
-                       codes ? "take .png, .tif, .jpg or .ppm" : "take .exr or .pfm");
+                       codes ? "use .png, .tif, .jpg or .ppm" : "use .exr or .pfm");
     return frames_write(frame, &form, err);
 }
 

@@ -77,8 +77,7 @@ static void warn_of_nothing(const Rendering *r, const FramesForm *form)
     if (r->shard.rows < r->shard.height || r->animation.kind != ANIMATION_NONE)
         return;
     talk_note(r->parsed->common.talk,
-              "%s shows no vessel: the camera looks past the tree, or the vessels are too small to "
-              "be drawn",
+              "%s shows no vessel: the camera misses the tree, or the vessels are too small",
               r->name ? r->name : form->path);
 }
 

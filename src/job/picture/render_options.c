@@ -169,7 +169,7 @@ static Status check_method(const RenderOptions *options, Err *err)
         elements |= MODEL_BLOB;
     if (model_is_of(model, elements))
         return STATUS_OK;
-    return err_set(err, STATUS_USAGE, "--method %s is for %s, not for %s", methods[options->method],
+    return err_set(err, STATUS_USAGE, "--method %s needs %s, not %s", methods[options->method],
                    models_of(elements).text, models[model].name);
 }
 
@@ -177,9 +177,10 @@ static Status check_method(const RenderOptions *options, Err *err)
 static Status check_file(const RenderOptions *options, Err *err)
 {
     if (image_traits(options->output).floats && annotation_is_any(&options->annotation))
-        return err_set(err, STATUS_USAGE,
-                       "-o: %s holds numbers to measure, and no legend, scale bar or letter",
-                       strcmp(file_extension(options->output), "exr") ? "a .pfm" : "an .exr");
+        return err_set(
+            err, STATUS_USAGE,
+            "-o: %s stores measured values and cannot have a legend, scale bar or letter",
+            strcmp(file_extension(options->output), "exr") ? "a .pfm" : "an .exr");
     return press_check(&options->press, options->output, err);
 }
 
@@ -192,7 +193,7 @@ static Status check_transparent(const RenderOptions *options, Err *err)
         return STATUS_OK;
     if (!is_one_of(file_extension(options->output), able))
         return err_set(err, STATUS_USAGE,
-                       "-o: '%s' cannot be transparent; --background none takes .png, .tif or .exr",
+                       "-o: '%s' cannot be transparent; --background none needs .png, .tif or .exr",
                        options->output);
     if (annotation_is_any(&options->annotation))
         return err_set(err, STATUS_USAGE,
@@ -208,9 +209,9 @@ Status render_check(const RenderOptions *options, Err *err)
         TRY(line_drawing_check(picture, options->output, err));
     if (options->min_width_px > 0 && !covers_thin(options))
         return err_set(err, STATUS_USAGE,
-                       "--min-width is for --method fastest, without --exact and --hits povray");
+                       "--min-width needs --method fastest, without --exact and --hits povray");
     if (options->min_width_px > 0 && model_is_of((SceneModel)picture->model, MODEL_TRIANGLES))
-        return err_set(err, STATUS_USAGE, "--min-width is for vessels, not for --model %s",
+        return err_set(err, STATUS_USAGE, "--min-width has no effect on --model %s",
                        models[picture->model].name);
     TRY(annotation_check(&options->annotation, picture, err));
     TRY(check_transparent(options, err));
@@ -218,7 +219,7 @@ Status render_check(const RenderOptions *options, Err *err)
         return err_set(err, STATUS_USAGE,
                        "--antialias-threshold needs --antialias N, with N from 2 to 9");
     if (options->exact && options->method != RENDER_TRACE)
-        return err_set(err, STATUS_USAGE, "--exact is --method trace, not --method %s",
+        return err_set(err, STATUS_USAGE, "--exact uses --method trace; do not give --method %s",
                        methods[options->method]);
     if (options->has_method && options->method != RENDER_TRACE)
         TRY(check_method(options, err));
@@ -265,8 +266,7 @@ static Status check_effects(const RenderOptions *options, const View *view, Err 
         return STATUS_OK;
     if (options->exact)
         return err_set(err, STATUS_USAGE,
-                       "--exact is the picture that verify draws, and verify leaves out what "
-                       "--look %s adds to it",
+                       "--exact draws the picture of verify, which omits the effects of --look %s",
                        options->picture.look);
     if (options->threshold > 0)
         return err_set(err, STATUS_USAGE,
@@ -274,7 +274,8 @@ static Status check_effects(const RenderOptions *options, const View *view, Err 
                        options->picture.look);
     if (options->min_width_px > 0 && effects_have_shape(&view->effects))
         return err_set(err, STATUS_USAGE,
-                       "--min-width: --look %s draws the edges of vessels as they are",
+                       "--min-width has no effect with --look %s, which draws vessel edges at "
+                       "their true width",
                        options->picture.look);
     return STATUS_OK;
 }

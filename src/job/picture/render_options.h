@@ -1,4 +1,8 @@
-/* The options of `render`, which panels of a figure have, too. */
+/* The options of `render`. Panels of a figure have these options, too.
+ *
+ * A caller zeroes a RenderOptions, calls render_set_defaults, and lets the option tables set it.
+ * Then render_settle completes it, render_check refuses contradictions, and render_make_scene
+ * builds the scene. */
 #ifndef CORCAST_JOB_PICTURE_RENDER_OPTIONS_H
 #define CORCAST_JOB_PICTURE_RENDER_OPTIONS_H
 
@@ -9,13 +13,21 @@
 #include "job/picture/shard.h"
 #include "render/render.h"
 
+/* Strings are borrowed from the parsed command line; NULL: not specified. */
 typedef struct RenderOptions {
-    const char *output, *planes, *json;
-    unsigned hits;
-    bool exact, has_method;
+    const char *output; /* the picture's file; NULL: the picture stays in memory */
+    const char *planes; /* planes that are written, separated by commas: "depth,id" */
+    const char *json;   /* file of the report */
+    unsigned hits;      /* choice: where a ray hits an isosurface: 0 the exact surface, 1 the point
+                         * that POV-Ray's root finder finds */
+    bool exact;         /* draws the picture that `verify` compares with POV-Ray's */
+    bool has_method;    /* `method` is specified by an option */
     RenderMethod method;
     RenderKernels kernels;
-    double threshold, memory_mb, min_width_px, ink_mm;
+    double threshold;    /* antialiases only pixels that differ from a neighbour by more; 0: all */
+    double memory_mb;    /* memory of one band of rows */
+    double min_width_px; /* minimum drawn width of vessels; 0: true widths */
+    double ink_mm;       /* line width of a line drawing; 0: a shaded picture */
     AnimationOptions animation;
     ShardOptions shard;
     Annotation annotation;
@@ -23,25 +35,36 @@ typedef struct RenderOptions {
     PressOptions press;
 } RenderOptions;
 
-extern const OptionTable render_table; /* sets a RenderOptions but what has tables of its own */
-/* Of zeroed options, those of all tables. */
+/* Sets the members of a RenderOptions that no other option table sets. */
+extern const OptionTable render_table;
+/* Sets all defaults of a zeroed RenderOptions. */
 void render_set_defaults(void *options);
 
-/* Settles what follows from --exact and --method where nothing is said of it. */
+/* Sets the options that follow from --exact and --method and that are not specified themselves. */
 void render_settle(RenderOptions *options);
 
-/* STATUS_USAGE when options fight each other, or the method does not know one. */
+/* Checks the options. Errors: STATUS_USAGE if two options exclude each other, or if the method does
+ * not support an option. */
 MUST_CHECK Status render_check(const RenderOptions *options, Err *err);
 
-/* What the options ask of the renderer, but for planes and progress. `cells` is borrowed. */
+/* Returns the parameters of the renderer, without planes and progress.
+ *
+ * threads  number of threads; 0: all processors.
+ * cells    receives the cells of an isosurface; the result borrows it. */
 RenderParams render_params_of(const RenderOptions *options, int threads, CellParams *cells);
 
-/* The scene, with room for a legend, and what of it and its pictures follows from the animation.
- * STATUS_USAGE when options have no place beside effects of the look; as picture_scene_of,
- * animation_count and annotation_make_room. */
+/* Makes the scene, reserves space for a legend, and determines the pictures of an animation.
+ *
+ * options    receives the reserved space.
+ * fonts      measure the text of a legend; may be NULL if there is no legend.
+ * scene      set on success only; release it with scene_release.
+ * report     receives what the scene does not show of the tree.
+ * animation  receives the pictures to draw.
+ * Errors     STATUS_USAGE if an option has no effect together with the effects of the look; the
+ *            errors of picture_scene_of, animation_count and annotation_make_room. */
 MUST_CHECK Status render_make_scene(RenderOptions *options, Parsed *parsed,
                                     const PictureSource *source, const FigureFonts *fonts,
-                                    Scene *scene, PictureReport *made, Animation *animation,
+                                    Scene *scene, PictureReport *report, Animation *animation,
                                     Err *err);
 
 #endif

@@ -69,7 +69,7 @@ Status panel_draw(Parsed *parsed, Panel *panel, Err *err)
     Rendering r;
     panel->in_lines = options->ink_mm > 0;
     if (panel->n_insets > 0 && options->picture.projection == PROJECTION_PERSPECTIVE)
-        return err_set(err, STATUS_USAGE, "an inset is a part of an orthographic picture");
+        return err_set(err, STATUS_USAGE, "an inset needs an orthographic panel");
     TRY(rendering_open(options, parsed, panel->fonts, &r, err));
     r.name = panel->name;
     Status status = draw_views(&r, panel, err);

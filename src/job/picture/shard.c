@@ -77,14 +77,13 @@ Status shard_check(const ShardOptions *options, const FramesForm *form, const Pa
     static const char *const noted[] = {"png", "tif", "tiff", NULL};
     if (shard_is_asked(options) && !is_one_of(file_extension(form->path), noted))
         return err_set(err, STATUS_USAGE,
-                       "-o: '%s' cannot say what part of what it is; parts are .png or .tif",
-                       form->path);
+                       "-o: '%s' cannot record which tile it is; use .png or .tif", form->path);
     if (options->tiles > most_tiles(form->height))
         return err_set(err, STATUS_USAGE, "--tiles: %d rows have at most %d tiles, not %d",
                        form->height, most_tiles(form->height), options->tiles);
     if (options->commands && strcmp(parsed->operands[0], "-") == 0)
         return err_set(err, STATUS_USAGE,
-                       "--commands reads the tree often, not from standard input");
+                       "--commands needs the tree in a file, because each command reads it again");
     return STATUS_OK;
 }
 
@@ -112,11 +111,10 @@ Status shard_of_tile(const char *tile, int height, Shard *shard, Err *err)
         memcpy(first, tile, (size_t)(slash - tile));
     if (tile && (!slash || !integer_parse(slash + 1, 1, most, &count) ||
                  !integer_parse(first, 1, count, &number)))
-        return err_set(
-            err, STATUS_USAGE,
-            "--tile: '%.40s' is not I/N with I from 1 to N and N from 1 to %d, the tiles "
-            "of %d rows or more that %d rows have",
-            tile, most, height < RENDER_BAND_STEP ? height : RENDER_BAND_STEP, height);
+        return err_set(err, STATUS_USAGE,
+                       "--tile: '%.40s' is not I/N with 1 <= I <= N <= %d (tiles have at least %d "
+                       "rows, the picture has %d)",
+                       tile, most, height < RENDER_BAND_STEP ? height : RENDER_BAND_STEP, height);
     made.number = (int)number;
     made.count = (int)count;
     place(&made);
@@ -252,7 +250,7 @@ Status shard_put_commands(const ShardOptions *options, const Parsed *parsed, con
     Text same = TEXT_INIT;
     Status status;
     if (!options->lines)
-        return err_set(err, STATUS_USAGE, "--commands has no place to go to");
+        return err_set(err, STATUS_USAGE, "--commands: the caller gave no text for the commands");
     TRY_GOTO(command_again(parsed, without, &same, err));
     for (int k = first; k <= last; k++) {
         text_add(options->lines, &same);

@@ -38,7 +38,8 @@ static Status check_same(const ImageReader *first, const TileFile *a, const Imag
 {
     static const struct {
         const char *key, *sentence;
-    } notes[] = {{"Software", "another program drew it"}, {"Comment", "another command drew it"}};
+    } notes[] = {{"Software", "a different version of the program drew it"},
+                 {"Comment", "a different command drew it"}};
     const ImageForm *one = imagereader_form(first), *other = imagereader_form(reader);
     const char *why = NULL;
     for (size_t i = 0; i < sizeof notes / sizeof *notes && !why; i++) {
@@ -48,14 +49,14 @@ static Status check_same(const ImageReader *first, const TileFile *a, const Imag
             why = notes[i].sentence;
     }
     if (!why && strcmp(a->shard.kernels, b->shard.kernels) != 0)
-        why = "a processor with other instructions drew it (--kernels)";
+        why = "it was drawn with different processor instructions (--kernels)";
     if (!why && strcmp(a->shard.made_from.hex, b->shard.made_from.hex) != 0)
-        why = "it was made from another tree, or other files besides";
+        why = "its tree or other input files differ";
     if (!why && (one->width != other->width || one->channels != other->channels ||
                  one->bits != other->bits || one->encoding != other->encoding ||
                  a->shard.height != b->shard.height || a->shard.count != b->shard.count))
-        why = "its size, bits or number of tiles is another";
-    return why ? err_set(err, STATUS_INPUT, "%s: is no tile of the picture that %s is of: %s",
+        why = "its size, bits or number of tiles differ";
+    return why ? err_set(err, STATUS_INPUT, "%s: does not belong to the same picture as %s: %s",
                          b->path, a->path, why)
                : STATUS_OK;
 }
@@ -74,7 +75,7 @@ static Status add_file(void *user, const char *path, bool named, Err *err)
     if (!is_tile && !named)
         goto done;
     if (!is_tile || imagereader_form(reader)->height != tile.shard.rows)
-        TRY_GOTO(err_set(err, STATUS_INPUT, "%s: is no tile that render --tile drew", path));
+        TRY_GOTO(err_set(err, STATUS_INPUT, "%s: is not a tile drawn by render --tile", path));
     TRY_GOTO(mem_strdup(&tile.path, path, err));
     if (tiles->first)
         TRY_GOTO(check_same(tiles->first, &tiles->tile[0], reader, &tile, err));
@@ -102,7 +103,7 @@ static int by_number(const void *a, const void *b)
 static Status check_complete(TileFiles *tiles, Err *err)
 {
     if (tiles->n == 0)
-        return err_set(err, STATUS_INPUT, "there is no tile to merge");
+        return err_set(err, STATUS_INPUT, "no tiles to merge were found");
     qsort(tiles->tile, tiles->n, sizeof *tiles->tile, by_number);
     const int count = tiles->tile[0].shard.count;
     for (size_t i = 0; i < tiles->n; i++) {

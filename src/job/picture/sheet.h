@@ -1,4 +1,10 @@
-/* A page that is being filled, and what its file states about itself. */
+/* A page that is filled with graphics, together with its fonts and the metadata of its file.
+ *
+ *     sheet_open(&sheet, err);                      // loads the fonts
+ *     sheet_begin(&sheet, pixels, dpi);             // an empty page
+ *     ...                                           // draw on sheet.page
+ *     sheet_describe(&sheet, &text, command, err);  // sets sheet.notes
+ *     sheet_release(&sheet); */
 #ifndef CORCAST_JOB_PICTURE_SHEET_H
 #define CORCAST_JOB_PICTURE_SHEET_H
 
@@ -8,20 +14,23 @@
 
 typedef struct Sheet {
     FigurePage page;
-    FigureFonts *fonts; /* owned; NULL: nothing is drawn */
-    FigureNotes notes;
-    char *templates, *description, *command; /* owned; what notes borrow */
+    FigureFonts *fonts;                      /* owned; NULL before sheet_open */
+    FigureNotes notes;                       /* metadata of the file; borrows the strings below */
+    char *templates, *description, *command; /* owned */
 } Sheet;
 
-/* Loads the fonts. *sheet is zeroed before; the caller calls sheet_release even after an error.
- * Errors: as figurefonts_load and templates_folder. */
+/* Loads the fonts.
+ *
+ * sheet   zeroed before; the caller calls sheet_release even after an error.
+ * Errors  the errors of figurefonts_load and templates_folder; STATUS_MEMORY. */
 MUST_CHECK Status sheet_open(Sheet *sheet, Err *err);
-/* Begins an empty page with this width and height in pixels, at `dpi` pixels per inch. */
+/* Begins an empty page. `pixels` are its width and height; `dpi` is in pixels per inch. */
 void sheet_begin(Sheet *sheet, const int pixels[2], double dpi);
-/* Sets the notes of the file. The text moves out of `description`; `command` is copied. Errors:
+/* Sets the metadata of the file. Moves the text out of `description`, and copies `command`. Errors:
  * STATUS_MEMORY. */
 MUST_CHECK Status sheet_describe(Sheet *sheet, Text *description, const char *command, Err *err);
-/* Says which letters of the page the font lacks: a warning for boxes, a note for substitutes. */
+/* Reports the characters of the page that the font lacks: a warning for characters that are drawn
+ * as boxes, a note for characters that are replaced by similar ones. */
 void sheet_say(const Sheet *sheet, const Talk *talk);
 void sheet_release(Sheet *sheet);
 

@@ -118,8 +118,8 @@ static Status find_angles(const BifurcationOptions *options, const double radii[
         double cosine = (1 + one * one - other * other) / (2 * one);
         if (!(fabs(cosine) < 1))
             return err_set(err, STATUS_USAGE,
-                           "no angles make the target least for these radii and --lambda %g: one "
-                           "vessel is as thick as the others together; give --angles",
+                           "no angles minimise the target for these radii and --lambda %g: one "
+                           "vessel is as thick as the other two together; give --angles",
                            options->lambda);
         angles[i] = elementary_acos(cosine) / DEGREE;
     }

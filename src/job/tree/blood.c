@@ -102,7 +102,8 @@ static Status check_gamma(const BloodOptions *blood, const Tree *tree, const cha
     if (blood->said.known[META_GAMMA] || !tree->meta.known[META_GAMMA_BY_RADIUS])
         return STATUS_OK;
     return err_set(err, STATUS_USAGE,
-                   "--terminal-flow murray: the exponent of %s follows the radius; give --gamma",
+                   "--terminal-flow murray: the exponent of %s varies with radius; give one number "
+                   "with --gamma",
                    tree_path);
 }
 

@@ -82,11 +82,12 @@ static Status find_lambda(const CertifyOptions *options, const char *path, const
     if (options->has_lambda || range_has(BOUND_LAMBDA_RANGE, *lambda))
         return STATUS_OK;
     if (!tree->meta.known[META_LAMBDA])
-        return err_set(err, STATUS_INPUT,
-                       "%s does not say lambda, the exponent of the target; give --lambda", path);
+        return err_set(
+            err, STATUS_INPUT,
+            "%s does not state lambda, the exponent of the target; give it with --lambda", path);
     return err_set(err, STATUS_INPUT,
-                   "%s: lambda is %g, and a bound is proved for lambda %s; give --lambda", path,
-                   *lambda, range_text(BOUND_LAMBDA_RANGE, range));
+                   "%s: lambda is %g, but a bound can be proved only for lambda %s; give --lambda",
+                   path, *lambda, range_text(BOUND_LAMBDA_RANGE, range));
 }
 
 static Status check_viscosity(const CertifyOptions *options, const char *path, const Tree *tree,
@@ -96,8 +97,8 @@ static Status check_viscosity(const CertifyOptions *options, const char *path, c
     if (derive_viscosity_law(tree, &said) == VISCOSITY_CONSTANT)
         return STATUS_OK;
     return err_set(err, STATUS_INPUT,
-                   "%s: its viscosity follows the radius by Pries's law, for which no bound is "
-                   "proved; --viscosity-law constant bounds it with one viscosity",
+                   "%s: no bound can be proved for the viscosity law pries; use --viscosity-law "
+                   "constant to assume one viscosity",
                    path);
 }
 

@@ -93,7 +93,8 @@ static Status add_all(Tree *tree, const TreeMeta *said, const Talk *talk, Err *e
             TRY_GOTO(skip_lacking(add_field(tree, said, name, err), name, &lacking));
     TRY_GOTO(text_check(&lacking, err));
     if (*text_chars(&lacking))
-        talk_note(talk, "%s are left out: neither the tree nor an option says what they need",
+        talk_note(talk,
+                  "%s are left out: they need values that neither the tree nor an option gives",
                   text_chars(&lacking));
 done:
     text_release(&lacking);

@@ -58,8 +58,7 @@ static void note_grown(const Talk *talk, const GrowReport *report, const GrowPar
                   report->terminals / 2, params->pair_mm, report->apart_mm);
     if (report->median_change > 0 && !params->keep_radii)
         talk_note(talk,
-                  "the radii of the tree of --from changed by a median factor of %.2g (%.2g to "
-                  "%.2g)",
+                  "the radii of the --from tree changed by a median factor of %.2g (%.2g to %.2g)",
                   report->median_change, report->least_change, report->greatest_change);
 }
 
@@ -74,15 +73,15 @@ static void warn_of_size(const Talk *talk, const GrowReport *report, const Domai
         snprintf(depth, sizeof depth, " x %.4g", size.z);
     if (report->root_radius_mm > vec3_length(size))
         talk_warn(talk,
-                  "the domain, %.4g x %.4g%s mm%s, is smaller than the radius of the root, %.4g "
-                  "mm: such a tree is of numbers only; move --gamma towards 3 or lower --q-perf",
+                  "the domain, %.4g x %.4g%s mm%s, is smaller than the root radius, %.4g mm, so "
+                  "the vessels overlap everywhere; move --gamma towards 3 or lower --q-perf",
                   size.x, size.y, depth, unit, report->root_radius_mm);
     else if (report->thickness < 1)
-        talk_warn(talk,
-                  "the domain, %.4g x %.4g%s mm%s, was too full for vessels of their real "
-                  "thickness: they keep clear of each other at %g of it only; ask for fewer "
-                  "terminals, a larger domain or a smaller --q-perf",
-                  size.x, size.y, depth, unit, report->thickness);
+        talk_warn(
+            talk,
+            "the domain, %.4g x %.4g%s mm%s, is too small: vessels were kept apart with %g of "
+            "their true radii only; use fewer terminals, a larger domain or a smaller --q-perf",
+            size.x, size.y, depth, unit, report->thickness);
 }
 
 /* ---- the report ------------------------------------------------------------------------------ */
@@ -131,7 +130,8 @@ static Status check(const GrowOptions *options, Err *err)
     TRY(tree_output_check(options->output, err));
     if (options->stages && refining->level != GROW_REFINE_NONE)
         return err_set(err, STATUS_USAGE,
-                       "--refine: would give --stages one law; use corcast refine afterwards");
+                       "--refine cannot be used with --stages, whose stages have laws of their "
+                       "own; run `corcast refine` afterwards");
     return refining_check_growing(refining, &options->growing, err);
 }
 

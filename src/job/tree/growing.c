@@ -172,10 +172,9 @@ static Status take_meta(Growing *growing, Err *err)
     grow_take(&growing->params, &from->meta, growing->given);
     if (from->flow_share && !from->meta.known[META_TERMINAL_FLOW] &&
         !growing->given[META_TERMINAL_FLOW])
-        return err_set(
-            err, STATUS_USAGE,
-            "--from: the tree has flow shares, and does not say after what new terminals "
-            "are to get theirs; give --terminal-flow equal, territory or demand");
+        return err_set(err, STATUS_USAGE,
+                       "--from: the tree has flow shares but does not state how new terminals get "
+                       "theirs; give --terminal-flow equal, territory or demand");
     return STATUS_OK;
 }
 
@@ -248,9 +247,8 @@ Status growing_run(Growing *growing, const Parsed *parsed, Tree *tree, GrowRepor
     const Talk *talk = parsed->common.talk;
     TRY(grow_params_check(&growing->params, &growing->domain, err));
     if (growing->params.pair_mm > 0 && growing->domain.dimension == 2)
-        talk_note(talk, "two trees that must not cross soon shut each other out in the plane: as a "
-                        "rule some 20 terminals in pairs find room, and any number in a domain of "
-                        "three dimensions");
+        talk_note(talk, "two trees that must not cross block each other in the plane: usually only "
+                        "about 20 paired terminals fit; use a three-dimensional domain for more");
     growing->params.progress = progress_report;
     growing->params.progress_context = &progress;
     progress_start(&progress, "growing", talk);

@@ -68,11 +68,11 @@ Status tree_output(const Tree *tree, const char *path, const Talk *talk, Err *er
     TRY_GOTO(text_check(&left_out, err));
     TRY_GOTO(tree_write(tree, path, err));
     if (*text_chars(&left_out))
-        talk_note(talk, "%s are left out: the format has no place for them", text_chars(&left_out));
+        talk_note(talk, "%s are left out: the format cannot store them", text_chars(&left_out));
     if (lost.merged > 0)
         talk_note(talk,
-                  "nodes that lie where others do: %zu; the format tells nodes by their places, so "
-                  "that such a segment may come back as none",
+                  "nodes that share a position with another node: %zu; this format identifies "
+                  "nodes by position, so their segments may be lost when the file is read",
                   lost.merged);
 done:
     text_release(&left_out);

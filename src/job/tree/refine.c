@@ -70,7 +70,8 @@ static Status note_columns(const Tree *tree, const Talk *talk, Err *err)
             text_printf(&names, "%s%.40s", n++ ? ", " : "", tree->column[k].name);
     Status status = text_check(&names, err);
     if (status == STATUS_OK && *text_chars(&names))
-        talk_note(talk, "the columns %s are left out: their segments move", text_chars(&names));
+        talk_note(talk, "the columns %s are left out, because their segments move",
+                  text_chars(&names));
     text_release(&names);
     return status;
 }

@@ -43,7 +43,7 @@ Status refining_check_growing(const Refining *refining, const Growing *growing, 
         return STATUS_OK;
     if (growing->from_path)
         return err_set(err, STATUS_USAGE,
-                       "--refine: would move the tree of --from; use corcast refine afterwards");
+                       "--refine would move the --from tree; run `corcast refine` afterwards");
     return STATUS_OK;
 }
 
@@ -102,6 +102,6 @@ Status refining_apply(const Refining *refining, const Parsed *parsed, const Doma
 void refining_warn_broken(const Talk *talk, size_t broken)
 {
     if (broken > 0)
-        talk_warn(talk, "%zu segment%s shorter than wide or too near to others all the same",
+        talk_warn(talk, "%zu segment%s still shorter than wide or too close to other segments",
                   broken, broken == 1 ? " is" : "s are");
 }

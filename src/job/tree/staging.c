@@ -45,16 +45,17 @@ static Status check_line(const Staging *staging, const StageLine *line, Err *err
         if (strcmp(other->stage, line->stage) != 0)
             continue;
         if (!line->name)
-            return err_set(err, STATUS_INPUT, "there is a stage [%s] already", line->stage);
+            return err_set(err, STATUS_INPUT, "the stage [%s] is defined twice", line->stage);
         if (other->name && strcmp(other->name, line->name) == 0)
-            return err_set(err, STATUS_INPUT, "stage [%s] says '%s' twice", line->stage,
+            return err_set(err, STATUS_INPUT, "stage [%s] sets '%s' twice", line->stage,
                            line->name);
     }
     bool is_of_first =
         line->name && (strcmp(line->name, "inlet") == 0 || strcmp(line->name, "inlet-shares") == 0);
     if (is_of_first && !is_first)
         return err_set(err, STATUS_INPUT,
-                       "'%s' is for the first stage; the others grow on its trees", line->name);
+                       "'%s' can be set only in the first stage; later stages continue its trees",
+                       line->name);
     return STATUS_OK;
 }
 
@@ -63,13 +64,13 @@ static Status take_line(void *user, const char *section, const char *name, const
 {
     Staging *staging = user;
     if (*section == '\0')
-        return err_set(err, STATUS_INPUT, "'%s' stands above the first stage, [NAME]", name);
+        return err_set(err, STATUS_INPUT, "'%s' is before the first stage, [NAME]", name);
     TRY(mem_reserve(&staging->line, &staging->capacity, staging->n + 1, sizeof *staging->line,
                     "lines", err));
     const StageLine line = {section, name, value};
     const Setting *setting = name ? find_option(staging, name) : NULL;
     if (name && !setting)
-        return err_set(err, STATUS_INPUT, "'%s' is no option of a stage", name);
+        return err_set(err, STATUS_INPUT, "unknown option '%s' in a stage", name);
     TRY(check_line(staging, &line, err));
     staging->line[staging->n++] = line;
     if (!name)
@@ -87,8 +88,8 @@ static Status refuse_gamma(const Staging *staging, const char *name, Err *err)
     TRY_GOTO(text_check(&own, err));
     TRY_GOTO(text_check(&last, err));
     status = err_set(err, STATUS_INPUT,
-                     "%s: [%s]: gamma %s would change the radii of stage [%s], which has %s; say "
-                     "keep-radii = on, or the same gamma",
+                     "%s: [%s]: gamma %s would change the radii of stage [%s], which has gamma %s; "
+                     "set keep-radii = on, or use the same gamma",
                      staging->path, name, text_chars(&own), staging->last_name, text_chars(&last));
 done:
     text_release(&own);
@@ -105,12 +106,12 @@ static Status check_stage(const Staging *staging, const char *name, Err *err)
     if (!params->keep_radii && !logcurve_is_same(&params->gamma, &staging->last_gamma))
         return refuse_gamma(staging, name, err);
     if (params->keep_radii && params->blood.p_term_mmhg >= staging->last_p_term)
-        return err_set(err, STATUS_INPUT,
-                       "%s: [%s]: p-term %g mmHg leaves nothing to drop beyond stage [%s], whose "
-                       "radii are kept and whose terminals are at %g; it must fall from stage to "
-                       "stage",
-                       staging->path, name, params->blood.p_term_mmhg, staging->last_name,
-                       staging->last_p_term);
+        return err_set(
+            err, STATUS_INPUT,
+            "%s: [%s]: p-term %g mmHg leaves no pressure drop beyond stage [%s], whose radii are "
+            "kept and whose terminals are at %g mmHg; p-term must fall from stage to stage",
+            staging->path, name, params->blood.p_term_mmhg, staging->last_name,
+            staging->last_p_term);
     if (params->terminals <= staging->last_terminals)
         return err_set(
             err, STATUS_INPUT, "%s: [%s]: terminals %zu: must be above the %zu of stage [%s]",
@@ -203,7 +204,8 @@ static Status check_all(Staging *staging, Err *err)
 {
     Growing before = *staging->growing;
     if (staging->n == 0)
-        return err_set(err, STATUS_INPUT, "%s: has no stage, [NAME]", staging->path);
+        return err_set(err, STATUS_INPUT, "%s: has no stage; begin one with a line [NAME]",
+                       staging->path);
     for (size_t at = 0; at < staging->n;) {
         const char *name = staging->line[at].stage;
         at = apply(staging, at);

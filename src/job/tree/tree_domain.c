@@ -54,17 +54,16 @@ Status tree_domain_parse(const char *spec, const Tree *from, const char *from_pa
     double mm;
     if (has_place(values))
         return err_set(err, STATUS_USAGE,
-                       "--domain %s: a hull lies about its tree and has no other place", spec);
+                       "--domain %s: a hull surrounds its tree and cannot be placed with @", spec);
     if (!number_parse(comma ? comma + 1 : values, &mm) || comma == values)
         return err_set(err, STATUS_USAGE,
-                       "--domain %s: a hull is hull:MM, what lies within MM of the tree of --from, "
-                       "or hull:FILE,MM, of the tree in a file",
+                       "--domain %s: use hull:MM (everything within MM of the --from tree) or "
+                       "hull:FILE,MM (of the tree in a file)",
                        spec);
     if (!comma && !from)
-        return err_set(err, STATUS_USAGE,
-                       "--domain %s: is about the tree of --from, and there is none; give "
-                       "hull:FILE,MM",
-                       spec);
+        return err_set(
+            err, STATUS_USAGE,
+            "--domain %s: needs the tree of --from, which is missing; or give hull:FILE,MM", spec);
     if (!comma)
         return hull_of(from, mm, from_path, domain, err);
     char *path = NULL;
@@ -92,7 +91,9 @@ Status tree_domain(const Tree *tree, Domain *domain, bool *found, Err *err)
     const char *spec = tree->meta.text[META_DOMAIN];
     Status status =
         is_standard_input(spec)
-            ? err_set(err, STATUS_INPUT, "the domain %s was read from standard input", spec)
+            ? err_set(err, STATUS_INPUT,
+                      "the domain %s was read from standard input, which cannot be read again",
+                      spec)
             : tree_domain_parse(spec, NULL, NULL, domain, err);
     if (status != STATUS_OK)
         err_prefix(err, "the tree's own domain cannot be read, so give --domain: ");

@@ -63,8 +63,8 @@ static Status check_given(const CompareOptions *options, PlaneKind plane, Err *e
 {
     if (options->reference || options->noise || options->variance)
         return err_set(err, STATUS_USAGE,
-                       "--reference, --noise and --variance are for files, not for images in "
-                       "memory");
+                       "--reference, --noise and --variance need files; they cannot be used with "
+                       "images in memory");
     for (int i = 0; i < 2; i++)
         if (plane == PLANE_ID ? !options->given[i].ids : !options->given[i].image)
             return err_set(err, STATUS_USAGE, "image %s has no %s plane", i ? "B" : "A",
@@ -78,12 +78,12 @@ static Status check_operands(const CompareOptions *options, const Parsed *parsed
         return check_given(options, plane_of(options, parsed), err);
     if (options->reference && parsed->n_operands != 1)
         return err_set(err, STATUS_USAGE,
-                       "--reference takes one folder of pictures, not two files");
+                       "--reference takes one operand, a folder of pictures; two were given");
     if (!options->reference && parsed->n_operands != 2)
         return err_set(err, STATUS_USAGE,
-                       "compare needs two files, A and B, or --reference and one folder");
+                       "give two files, A and B, or --reference DIR and one folder");
     if (!options->accept != !options->reason || (options->reason && !*options->reason))
-        return err_set(err, STATUS_USAGE, "--accept and --reason go together; one is missing");
+        return err_set(err, STATUS_USAGE, "--accept and --reason must be given together");
     return STATUS_OK;
 }
 
@@ -93,15 +93,15 @@ static Status check_pair(const CompareOptions *options, PlaneKind plane, const P
     const bool color = plane == PLANE_COLOR;
     TRY(options_refuse(parsed, compare_unmet(plane), err));
     if (!options->ids_a != !options->ids_b)
-        return err_set(err, STATUS_USAGE, "--ids-a and --ids-b go together; one is missing");
+        return err_set(err, STATUS_USAGE, "--ids-a and --ids-b must be given together");
     const bool has_ids = options->ids_a || (options->given[0].ids && options->given[1].ids);
     if (options->ledger && !has_ids)
-        return err_set(err, STATUS_USAGE, "--ledger needs --ids-a and --ids-b, to tell segments");
+        return err_set(err, STATUS_USAGE,
+                       "--ledger needs --ids-a and --ids-b to identify segments");
     if (!color && (options->ledger || wants_pictures(options)))
         return err_set(err, STATUS_USAGE,
-                       "-o, --difference, --flicker, --ledger, --html and --report are of two "
-                       "pictures, not "
-                       "of two %s planes",
+                       "-o, --difference, --flicker, --ledger, --html and --report need two "
+                       "pictures, not two %s planes",
                        plane_kind_name(plane));
     return STATUS_OK;
 }
@@ -153,7 +153,7 @@ static Status compare_linear(const CompareOptions *options, const Tolerance *tol
     CompareResult *result = &made->result;
     if (options->ledger)
         return err_set(err, STATUS_USAGE,
-                       "--ledger is of two pictures of 8 or 16 bits and one gamma");
+                       "--ledger needs two pictures of 8 or 16 bits with the same gamma");
     const Rendering a = values_of(made, 0), b = values_of(made, 1);
     TRY(compare_colors(&a, &b, tolerance, options->metrics || options->page || options->report,
                        result, err));
@@ -171,10 +171,9 @@ static Status compare_geometry(const Tolerance *tolerance, Comparison *made, Err
     const ComparedSide *sides = made->sides;
     for (int i = 0; i < 2; i++)
         if (!sides[i].image.plane.values)
-            return err_set(
-                err, STATUS_INPUT,
-                "%s: holds whole numbers; a %s plane is of floats (PFM, OpenEXR or TIFF)",
-                sides[i].name, plane_kind_name(made->plane));
+            return err_set(err, STATUS_INPUT,
+                           "%s: holds integers; a %s plane must hold floats (PFM, OpenEXR or TIFF)",
+                           sides[i].name, plane_kind_name(made->plane));
     const Rendering a = values_of(made, 0), b = values_of(made, 1);
     return compare_planes(made->plane, &a, &b, tolerance, &made->result, err);
 }
@@ -195,8 +194,8 @@ static void note_losses(const ComparedSide sides[2], const Talk *talk)
 {
     for (int i = 0; i < 2; i++)
         if (sides[i].image.lossy)
-            talk_note(talk, "%s is lossy (%s): its colors are off by what was compressed away",
-                      sides[i].name, sides[i].image.lossy);
+            talk_note(talk, "%s is lossy (%s): compression has changed its colors", sides[i].name,
+                      sides[i].image.lossy);
 }
 
 static Status compare_pair(CompareOptions *options, const Parsed *parsed, Comparison *made,

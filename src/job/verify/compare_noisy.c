@@ -80,9 +80,9 @@ json_t *noise_json(const NoiseResult *result)
 void noise_text(const NoiseResult *result, Text *out)
 {
     text_printf(out,
-                "%s (noise, false alarms %.3g): B is %.5g times as bright as A, %.3g sigmas, at "
-                "most %.3g allowed; the worst tile of 32 x 32 pixels, %.3g sigmas, at most %.3g "
-                "allowed, begins at (%d, %d)\n",
+                "%s (noise test, false alarm rate %.3g): B is %.5g times as bright as A (%.3g "
+                "sigmas, limit %.3g); worst block of 32 x 32 pixels: %.3g sigmas (limit %.3g), "
+                "upper left pixel (%d, %d)\n",
                 result->agrees ? "agree" : "differ", result->rate, result->gain, result->sigmas,
                 result->limit, result->tile_sigmas, result->tile_limit, result->tile.x,
                 result->tile.y);

@@ -154,7 +154,7 @@ static SideSource source_of(const CompareOptions *options, const Parsed *parsed,
 
 static const char *holds(const ComparedSide *side)
 {
-    return side->image.plane.values ? "floats" : "whole numbers";
+    return side->image.plane.values ? "floats" : "integers";
 }
 
 /* Images of unlike gamma become planes of linear colors; pictures of unlike depth become 16-bit.
@@ -191,8 +191,8 @@ Status sides_read(const CompareOptions *options, const Parsed *parsed, PlaneKind
         return STATUS_OK;
     if (!sides[0].image.plane.values != !sides[1].image.plane.values)
         return err_set(err, STATUS_INPUT,
-                       "%s holds %s and %s %s; only images of one depth can be compared, or two "
-                       "that --bits makes pictures of 8 or 16 bits",
+                       "%s holds %s and %s %s; both must have the same type, or use --bits to "
+                       "convert both to 8 or 16 bits",
                        sides[0].name, holds(&sides[0]), sides[1].name, holds(&sides[1]));
     return plane == PLANE_COLOR ? match_images(sides, err) : STATUS_OK;
 }

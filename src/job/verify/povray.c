@@ -22,7 +22,8 @@ static Status size_of_scene(const char *path, PictureSize *size, Err *err)
     free(text);
     if (found)
         return STATUS_OK;
-    return err_set(err, STATUS_USAGE, "%s has no line '// Size: WxH'; give --size", path);
+    return err_set(err, STATUS_USAGE, "%s has no line '// Size: WxH'; give the size with --size",
+                   path);
 }
 
 static const char *const planes[] = {"color", "depth", "normal", "id", "depth-id", NULL};

@@ -61,7 +61,7 @@ static Status make_folder(char **folder, Err *err)
 {
     char *here = realpath(".", NULL), *beside = NULL;
     if (!here)
-        return err_set(err, STATUS_IO, "the current folder is gone");
+        return err_set(err, STATUS_IO, "the current folder no longer exists");
     Status status;
     TRY_GOTO(file_join(here, "power", &beside, err));
     status = file_temporary_folder(beside, folder, err);
@@ -243,12 +243,12 @@ static Status check(const PowerOptions *options, Err *err)
 {
     if (!options->render || !strstr(options->render, "{}"))
         return err_set(err, STATUS_USAGE,
-                       "--render is a command with {} for the file that it draws into, as "
+                       "--render needs a command with {} in place of the output file, such as "
                        "--render 'povray scene.pov +O{} -D'");
     if (options->verdict && (!strstr(options->verdict, "{a}") || !strstr(options->verdict, "{b}")))
         return err_set(err, STATUS_USAGE,
-                       "--verdict is a command with {a} and {b} for the two pictures, as "
-                       "--verdict 'idiff -fail 0.004 {a} {b}'");
+                       "--verdict needs a command with {a} and {b} in place of the two pictures, "
+                       "such as --verdict 'idiff -fail 0.004 {a} {b}'");
     return STATUS_OK;
 }
 

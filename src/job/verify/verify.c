@@ -62,7 +62,8 @@ static Status check(const VerifyOptions *options, Err *err)
 {
     const PictureOptions *picture = &options->picture;
     if (strcmp(options->folder, "-") == 0)
-        return err_set(err, STATUS_USAGE, "-o: a report is a folder, not standard output");
+        return err_set(err, STATUS_USAGE,
+                       "-o: a report is a folder and cannot be written to standard output");
     TRY(bits_check(options->bits, err));
     TRY(picture_check_povray(picture, err));
     if (options->witness == WITNESS_TACHYON)
@@ -92,9 +93,8 @@ static Status check_shows_something(const Verification *v, Err *err)
         0)
         return STATUS_OK;
     return err_set(err, STATUS_INPUT,
-                   "neither POV-Ray nor corcast shows a vessel of %s in this view, so nothing is "
-                   "verified: the camera looks past the tree, or the vessels are too small to be "
-                   "drawn",
+                   "neither POV-Ray nor corcast shows a vessel of %s in this view, so nothing can "
+                   "be verified: the camera misses the tree, or the vessels are too small",
                    v->tree);
 }
 
@@ -109,7 +109,7 @@ static Status verify(Verification *v, VerifyFolder *folder, Parsed *parsed, Err 
     TRY(picture_scene(&all_moments, parsed, &v->scene, &made, err));
     TRY(picture_check_ids(&v->scene.geometry, v->tree, err));
     TRY(picture_say(&v->scene, &made, parsed->common.talk, err));
-    TRY(picture_say_effects(picture, &v->scene.view, "left out on both sides", parsed->common.talk,
+    TRY(picture_say_effects(picture, &v->scene.view, "omitted on both sides", parsed->common.talk,
                             err));
     v->scene.view.effects = (Effects){0};
     if (!picture->stage.has_location)

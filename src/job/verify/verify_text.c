@@ -94,7 +94,7 @@ static void put_settled(const Settled *settled, Text *out)
         if (count == 0)
             continue;
         put_verdict("settled", count <= allowed, out);
-        text_printf(out, "%s: %zu, at most %zu allowed; corcast is right there\n",
+        text_printf(out, "%s: %zu (limit %zu); corcast is right in these pixels\n",
                     settled_cause_sentence(cause), count, allowed);
     }
     for (int i = 0; i < settled->n_first && settled->from == SETTLED_ROOT; i++) {

@@ -32,7 +32,8 @@
 #define FAR_CURVED 6.8f
 #define FAR_WIDTH 1.675f
 
-/* A squared length in radii, in units of 1 / k, and a second derivative likewise. */
+/* IN_UNITS2 converts a squared length from radii to units of 1 / k. PER_UNITS2 converts a second
+ * derivative, and multiplies it by the level. */
 #define IN_UNITS2(length) (2 * (length) * (length))
 #define PER_UNITS2(curvature) (0.5f * LEVEL * (curvature))
 

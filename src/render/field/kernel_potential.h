@@ -138,9 +138,9 @@ LANE_FN Lanes most_beyond(Lanes e2, Lanes w, Lanes leaves)
     return gauss_beyond(e2, w, leaves) * lanes_min(ends, lanes_set(1));
 }
 
-/* The term falls for good where its computed slope says so and is right but for 2e-5 of its parts;
- * where it recedes from both the axis' line and the end that it leaves; and where exp(-w^2) is next
- * to nothing. It is complete. */
+/* Returns the value of a complete term at z, and its bound from there on. The term decreases from z
+ * on if its computed slope is negative by more than 2e-5 of the slope's parts, if the line recedes
+ * from both the axis line and the end that it leaves, or if exp(-w^2) is negligible. */
 LANE_FN TermThere term_at(const PacketTerm *term, Lanes z)
 {
     Lanes dz = z - term->z, w = lanes_fma(term->w1, dz, term->w0);

@@ -123,8 +123,9 @@ LANE_FN LaneMask hits_in_front(const FlatTile *plane, int first, LaneMask hit, L
     return hit & ~behind;
 }
 
-/* Traces a packet that only one term touches: with k^2 q = ln(A / C) the gradient is, but for a
- * factor, that of A / A and sqrt q. False if it needs a wider margin than that allows. */
+/* Traces a packet that only one term touches. With k^2 q = ln(A / C), the gradient is, up to a
+ * factor, given by the gradient of A over A, and by sqrt q. Returns false if the packet needs a
+ * wider margin than this method allows. */
 LANE_FN bool trace_lone(const FlatTile *plane, int first, const TileTerm *term)
 {
     const FieldTile *tile = plane->tile;

@@ -81,7 +81,7 @@ typedef struct InkCurve {
     double begin, span;      /* of an arc, in turns */
     const JointFrame *joint; /* of an outline: borrowed */
     double angle[2],
-        fraction[2];  /* likewise: about where it begins and ends, and on which ellipses */
+        fraction[2];  /* joints: approximate angles at which it begins and ends, and the ellipses */
     Vec3 aside;       /* of a line: from it to where the ray to the viewer begins */
     double shift[2];  /* lines: offset from the projected to the drawn position, mm of
                        * paper */

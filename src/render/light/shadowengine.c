@@ -1,6 +1,6 @@
-/* The bins of as many lights as there are threads are made side by side, each by one thread,
- * because making bins has serial parts. Of the lights that are left over, all threads make the bins
- * of one after the other, unless the geometry is so small that threads would not help. */
+/* Making bins has serial parts. Bins are therefore made for several lights at the same time, one
+ * light per thread, as long as there is a light for each thread. For each of the remaining lights,
+ * all threads work together, unless the geometry is so small that threads would not help. */
 #include "render/light/shadowengine.h"
 
 #include <stdlib.h>

@@ -61,10 +61,13 @@ static Status begin_element(void *context, Xml *xml, const XmlElement *element, 
         TRY(field_number("timestep", time, -HUGE_VAL, &made.time, err));
     collection->n_untimed += !time || !*time;
     if (part && *part && strcmp(part, "0") != 0)
-        return err_set(err, STATUS_INPUT, "part %.20s: a tree in several files cannot be read",
-                       part);
+        return err_set(
+            err, STATUS_INPUT,
+            "the DataSet has part %.20s; a tree that is split into several files cannot be read",
+            part);
     if (strcasecmp(file_extension(file), "pvd") == 0)
-        return err_set(err, STATUS_INPUT, "'%.60s' is an index itself", file);
+        return err_set(err, STATUS_INPUT,
+                       "'%.60s' is a PVD file; a PVD file can only refer to trees", file);
     TRY(ARRAY_RESERVE(&collection->moments, 1, "moments", err));
     TRY(beside(collection->name, file, &made.path, err));
     collection->moments.items[collection->moments.n++] = made;
@@ -86,13 +89,17 @@ static Status check_moment(const Collection *collection, const Moment *moment, E
     if (tree->n != first->n ||
         memcmp(tree->parent, first->parent, tree->n * sizeof *tree->parent) != 0 ||
         memcmp(tree->id, first->id, tree->n * sizeof *tree->id) != 0)
-        return err_set(err, STATUS_INPUT, "%s: the tree in %s is not that in %s", collection->name,
-                       moment->path, of_first->path);
+        return err_set(
+            err, STATUS_INPUT,
+            "%s: the tree in %s differs from the tree in %s; all must have the same nodes",
+            collection->name, moment->path, of_first->path);
     bool same = tree->n_columns == first->n_columns;
     for (size_t k = 0; k < first->n_columns && same; k++)
         same = strcmp(tree->column[k].name, first->column[k].name) == 0;
     return same ? STATUS_OK
-                : err_set(err, STATUS_INPUT, "%s: the arrays in %s are not those in %s",
+                : err_set(err, STATUS_INPUT,
+                          "%s: the arrays in %s differ from the arrays in %s; all must have the "
+                          "same names",
                           collection->name, moment->path, of_first->path);
 }
 
@@ -103,8 +110,8 @@ static Status check_file(const char *path, Err *err)
     struct stat about;
     if (stat(path, &about) != 0 || S_ISREG(about.st_mode))
         return STATUS_OK;
-    return err_set(err, STATUS_INPUT, "%s: is not a file, which is all that an index may name",
-                   path);
+    return err_set(err, STATUS_INPUT,
+                   "%s: is not a regular file; a PVD file can only refer to regular files", path);
 }
 
 static Status read_moment(Collection *collection, Moment *moment, const ReadOptions *options,
@@ -132,16 +139,18 @@ static Status read_moments(Collection *collection, const ReadOptions *options, E
         of_moments.repair_radii = options->repair_radii;
     }
     if (n == 0)
-        return err_set(err, STATUS_INPUT, "%s: there is no DataSet in it", collection->name);
+        return err_set(err, STATUS_INPUT, "%s: the file has no DataSet; it must have at least one",
+                       collection->name);
     if (untimed > 0 && untimed < n)
         return err_set(err, STATUS_INPUT,
-                       "%s: %zu of %zu DataSets have no timestep; either all have one or none",
+                       "%s: %zu of %zu DataSets have no timestep; give all of them one, or none",
                        collection->name, untimed, n);
     qsort(collection->moments.items, n, sizeof *collection->moments.items, by_time);
     for (size_t i = 0; i < n; i++) {
         Moment *moment = &collection->moments.items[i];
         if (i > 0 && moment->time == moment[-1].time)
-            return err_set(err, STATUS_INPUT, "%s:%zu: %s has this timestep already, %g",
+            return err_set(err, STATUS_INPUT,
+                           "%s:%zu: %s already has the timestep %g; each timestep must occur once",
                            collection->name, moment->line, moment[-1].path, moment->time);
         TRY(read_moment(collection, moment, &of_moments, err));
     }
@@ -236,8 +245,9 @@ Status pvd_read(TreeBuilder *builder, char *bytes, size_t size, Err *err)
     TRY_GOTO(read_moments(&collection, builder->options, err));
     TRY_GOTO(build(builder, &collection, err));
     if (collection.n_untimed > 1)
-        TRY_GOTO(reading_note(builder->reading, err,
-                              "the index states no times; moments are 0, 1, ... in its order"));
+        TRY_GOTO(reading_note(
+            builder->reading, err,
+            "the file states no times; times 0, 1, ... were assigned in the order of the file"));
 done:
     release(&collection);
     return status;

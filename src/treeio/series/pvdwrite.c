@@ -44,7 +44,8 @@ static Status check_times(const Moments *moments, const NamedSeries *named, Err 
     if (same)
         return STATUS_OK;
     return err_set(err, STATUS_INPUT,
-                   "the series %.60s and %.60s are of different times; a .pvd has the same for all",
+                   "the series %.60s and %.60s have different times; in a .pvd all series must "
+                   "have the same times",
                    first->name, named->name);
 }
 
@@ -81,8 +82,7 @@ static Status find_moments(const Tree *tree, Moments *moments, Err *err)
         TRY(add_series(moments, k, err));
     if (moments->series.n > 0)
         return STATUS_OK;
-    return err_set(err, STATUS_INPUT,
-                   "the tree has no values that change with time, which a .pvd is for");
+    return err_set(err, STATUS_INPUT, "the tree has no time series; a .pvd needs at least one");
 }
 
 static const Series *first_series(const Moments *moments)

@@ -73,7 +73,7 @@ static Status list_files(StepsReader *reader, Err *err)
         reader->names.items[reader->names.n++] = name;
     }
     if (reader->names.n == 0)
-        TRY_GOTO(err_set(err, STATUS_INPUT, "%s: there is no file ..._%s.dat in it", reader->folder,
+        TRY_GOTO(err_set(err, STATUS_INPUT, "%s: the folder has no file ..._%s.dat", reader->folder,
                          reader->quantity));
     qsort(reader->names.items, reader->names.n, sizeof *reader->names.items, by_name);
 done:
@@ -96,13 +96,13 @@ static Status find_node(StepsReader *reader, size_t file, size_t *node, Err *err
         found = idindex_find(&reader->ids, (int32_t)id);
     if (found == 0)
         return err_set(err, STATUS_INPUT,
-                       "the name of the segment, '%.*s', does not end in the id of one of the tree",
+                       "the segment's name, '%.*s', must end in the id of a segment of the tree",
                        (int)(end < 60 ? end : 60), name);
     *node = found - 1;
     size_t *file_of = &reader->file_of[*node];
     if (*file_of)
-        return err_set(err, STATUS_INPUT, "segment %d has %s already", reader->tree->id[*node],
-                       reader->names.items[*file_of - 1]);
+        return err_set(err, STATUS_INPUT, "segment %d already has %s from another file",
+                       reader->tree->id[*node], reader->names.items[*file_of - 1]);
     *file_of = file + 1;
     return STATUS_OK;
 }
@@ -112,7 +112,7 @@ static Status open_columns(StepsReader *reader, size_t steps, Err *err)
 {
     Tree *tree = reader->tree;
     if (steps > BUILDER_MAX_COLUMNS)
-        return err_set(err, STATUS_INPUT, "there are %zu time steps, of which at most %d are read",
+        return err_set(err, STATUS_INPUT, "the file has %zu time steps; at most %d can be read",
                        steps, BUILDER_MAX_COLUMNS);
     TRY(mem_check((double)steps * (double)tree->n * sizeof(double), reader->folder, err));
     TRY(mem_calloc(&reader->column, steps, sizeof *reader->column, "time steps", err));
@@ -144,8 +144,8 @@ static Status take_line(StepsReader *reader, size_t node, char *line, Err *err)
     if (!reader->column)
         TRY(open_columns(reader, steps, err));
     if (steps != reader->steps)
-        return err_set(err, STATUS_INPUT, "there are %zu time steps, and %zu in %s", steps,
-                       reader->steps, reader->names.items[0]);
+        return err_set(err, STATUS_INPUT, "the file has %zu time steps, but there are %zu in %s",
+                       steps, reader->steps, reader->names.items[0]);
     for (char *word; (word = next_word(&line)); k++)
         TRY(field_value(reader->quantity, word, &reader->column[k][node], err));
     return STATUS_OK;
@@ -170,7 +170,7 @@ static Status read_text(StepsReader *reader, size_t file, char *line, Err *err)
     size_t node = 0;
     TRY(find_node(reader, file, &node, err));
     return line ? take_line(reader, node, line, err)
-                : err_set(err, STATUS_INPUT, "there are no values in it");
+                : err_set(err, STATUS_INPUT, "the file has no values");
 }
 
 static Status read_file(StepsReader *reader, size_t file, Err *err)
@@ -200,8 +200,8 @@ static Status find_quantity(StepsReader *reader, Err *err)
             return STATUS_OK;
         }
     return err_set(err, STATUS_INPUT,
-                   "%s: of a folder of svOneDSolver one of flow, pressure, area, wss and Re is "
-                   "shown, as in %s:flow",
+                   "%s: name the quantity of the result folder: flow, pressure, area, wss or Re, "
+                   "as in %s:flow",
                    reader->folder, reader->folder);
 }
 

@@ -70,10 +70,11 @@ static Status add_field(ValuesReader *reader, char *title, Err *err)
     bool is_key = strcmp(title, "id") == 0 || strcmp(title, "name") == 0;
     bool is_time = strcmp(title, "time") == 0;
     if (index > BUILDER_MAX_COLUMNS)
-        return err_set(err, STATUS_INPUT, "there are more than %d columns of values",
+        return err_set(err, STATUS_INPUT,
+                       "the file has more than %d columns of values, the maximum",
                        BUILDER_MAX_COLUMNS);
     if ((is_key && reader->key != NONE) || (is_time && reader->time != NONE))
-        return err_set(err, STATUS_INPUT, "two columns tell the %s",
+        return err_set(err, STATUS_INPUT, "two columns state the %s; only one may",
                        is_key ? "segment" : "time of a row");
     ValueColumn made = {.wanted = !is_key && !is_time, .unit = csv_unit(title)};
     if (made.wanted && !*title)
@@ -158,7 +159,7 @@ static Status refuse_column(const ValuesReader *reader, Err *err)
             text_printf(&known, "%s%.40s", shown++ ? ", " : "", reader->columns.items[i].name);
     Status status = STATUS_OK;
     TRY_GOTO(text_check(&known, err));
-    status = err_set(err, STATUS_INPUT, "there is no column '%.40s'; there are %s%s",
+    status = err_set(err, STATUS_INPUT, "no column is called '%.40s'; the columns are %s%s",
                      reader->wanted, text_chars(&known), shown == SHOWN ? ", ..." : "");
 done:
     text_release(&known);
@@ -190,7 +191,7 @@ static Status name_whole(ValuesReader *reader, const char *base, Err *err)
         return STATUS_OK;
     if (reader->time != NONE)
         return err_set(err, STATUS_INPUT,
-                       "there are %zu columns of values; say which, as in FILE.csv:%.40s", n,
+                       "the file has %zu columns of values; name one, as in FILE.csv:%.40s", n,
                        column->name);
     if (series_parse(column->name, &length, &time)) {
         reader->what[length] = '\0';
@@ -251,8 +252,9 @@ static Status read_titles(ValuesReader *reader, char *line, Err *err)
     }
     if (reader->key == NONE || count_columns(reader, MATCH_ALL, NULL) == 0)
         return err_set(err, STATUS_INPUT,
-                       reader->key == NONE ? "there is no column id or name, to tell the segments"
-                                           : "there is no column of values");
+                       reader->key == NONE
+                           ? "no column is called id or name, which must identify the segments"
+                           : "the file has no column of values");
     TRY(mem_calloc(&reader->field, reader->columns.n, sizeof *reader->field, "fields", err));
     text_append(&base, name, dot && dot > name ? (size_t)(dot - name) : strlen(name));
     Status status = STATUS_OK;
@@ -301,7 +303,7 @@ static Status index_nodes(ValuesReader *reader, const char *name, Err *err)
     reader->of_branches = branch_of(name) != NONE;
     if (reader->of_branches && !(branches = tree_column(tree, "BranchId")))
         return err_set(err, STATUS_INPUT,
-                       "'%.40s' is a branch of SimVascular's, and the tree has no column BranchId",
+                       "'%.40s' names a SimVascular branch, but the tree has no column BranchId",
                        name);
     for (size_t i = 0; i < tree->n; i++)
         if (key_of(reader, branches, i) >= n_keys)
@@ -326,10 +328,10 @@ static Status find_key(ValuesReader *reader, const char *name, int32_t *key, Err
     if (reader->of_branches)
         number = branch_of(name);
     else if (!integer_parse(name, 0, INT32_MAX, &number))
-        return err_set(err, STATUS_INPUT, "'%.40s' is not the id of a segment", name);
+        return err_set(err, STATUS_INPUT, "the segment id is '%.40s'; it must be an integer", name);
     if (number < 0 || (size_t)number >= reader->nodes.n ||
         indexlists_length(&reader->nodes, (size_t)number) == 0)
-        return err_set(err, STATUS_INPUT, "the tree has no segment %.40s", name);
+        return err_set(err, STATUS_INPUT, "the tree has no segment with the id %.40s", name);
     *key = (int32_t)number;
     return STATUS_OK;
 }
@@ -366,7 +368,7 @@ static Status read_row(ValuesReader *reader, size_t line, char *text, Err *err)
     const char *name = reader->field[reader->key];
     TRY(find_key(reader, name, &row.key, err));
     if (reader->time == NONE && reader->line_of[row.key])
-        return err_set(err, STATUS_INPUT, "segment %.40s stands on line %zu already", name,
+        return err_set(err, STATUS_INPUT, "segment %.40s already has a row, in line %zu", name,
                        reader->line_of[row.key]);
     reader->line_of[row.key] = line;
     if (reader->time != NONE) {
@@ -422,15 +424,16 @@ static Status check_times(const ValuesReader *reader, const TimedRow *row, const
     for (size_t k = 0; k < n; k++) {
         bool is_next = row + k < end && row[k].key == row->key;
         if (is_next && k > 0 && row[k].time == row[k - 1].time)
-            return err_set(err, STATUS_INPUT, "%s:%zu: %s %d at time %s stands on line %zu already",
-                           reader->path, row[k].line, kind, row->key,
-                           number_text(times[k - 1], time), row[k - 1].line);
+            return err_set(err, STATUS_INPUT,
+                           "%s:%zu: %s %d at time %s already has a row, in line %zu", reader->path,
+                           row[k].line, kind, row->key, number_text(times[k - 1], time),
+                           row[k - 1].line);
         if (!is_next || row[k].time != times[k])
-            return err_set(err, STATUS_INPUT, "%s: %s %d has no row for time %s, and others have",
+            return err_set(err, STATUS_INPUT, "%s: %s %d has no row for time %s, which others have",
                            reader->path, kind, row->key, number_text(times[k], time));
     }
     if (row + n < end && row[n].key == row->key)
-        return err_set(err, STATUS_INPUT, "%s:%zu: %s %d at time %s stands twice", reader->path,
+        return err_set(err, STATUS_INPUT, "%s:%zu: %s %d at time %s has two rows", reader->path,
                        row[n].line, kind, row->key, number_text(row[n].time, time));
     return STATUS_OK;
 }
@@ -438,7 +441,7 @@ static Status check_times(const ValuesReader *reader, const TimedRow *row, const
 static Status check_all_times(const ValuesReader *reader, const double *times, size_t n, Err *err)
 {
     if (n * reader->n_wanted > BUILDER_MAX_COLUMNS)
-        return err_set(err, STATUS_INPUT, "%s: there are %zu times, of which at most %zu are read",
+        return err_set(err, STATUS_INPUT, "%s: the file has %zu times; at most %zu can be read",
                        reader->path, n, BUILDER_MAX_COLUMNS / reader->n_wanted);
     for (size_t i = 0; i < reader->rows.n; i += n)
         TRY(check_times(reader, reader->rows.items + i, times, n, err));
@@ -504,7 +507,7 @@ static Status read_csv(ValuesReader *reader, Err *err)
     TRY_GOTO(lines_read(reader->path, bytes, size, read_line, reader, err));
     TRY_GOTO(fill_times(reader, err));
     if (!reader->line_of)
-        TRY_GOTO(err_set(err, STATUS_INPUT, "%s: there are no values in it", reader->path));
+        TRY_GOTO(err_set(err, STATUS_INPUT, "%s: the file has no values", reader->path));
 done:
     free(bytes);
     return status;
@@ -565,16 +568,18 @@ static Status sum_flows(const Tree *tree, const char *path, double *share, doubl
     const TreeColumn *flow = &tree->column[0];
     *sum = 0;
     if (tree->n_columns != 1 || (*flow->unit && strcmp(flow->unit, "ml/min") != 0))
-        return err_set(err, STATUS_INPUT, "%s: the column flow must be one, in ml/min", path);
+        return err_set(err, STATUS_INPUT,
+                       "%s: the file must have exactly one column called flow, in ml/min", path);
     for (size_t i = 0; i < tree->n; i++) {
         share[i] = isnan(flow->value[i]) ? 0 : flow->value[i];
         if (share[i] < 0)
-            return err_set(err, STATUS_INPUT, "%s: a flow is %g; it must not be below 0", path,
+            return err_set(err, STATUS_INPUT, "%s: a flow is %g; it must be 0 or more", path,
                            share[i]);
         *sum += share[i];
     }
     if (!(*sum > 0 && isfinite(*sum)))
-        return err_set(err, STATUS_INPUT, "%s: no flow is above 0", path);
+        return err_set(err, STATUS_INPUT, "%s: all flows are 0; at least one must be above 0",
+                       path);
     return STATUS_OK;
 }
 

@@ -1,5 +1,9 @@
-/* Reads values of segments from a file that is not the tree's own. The values become columns of the
- * tree. docs/FIELDS.md describes such files. */
+/* Reads values of segments, such as pressures, from a file other than the tree's file. Part of the
+ * public header of treeio.
+ *
+ * The values become columns of the tree: one number per node, for the segment that ends there. A
+ * file is a CSV with a column of segment ids, or a result folder of svOneDSolver. docs/FIELDS.md
+ * describes the files. */
 #ifndef CORCAST_TREEIO_VALUES_H
 #define CORCAST_TREEIO_VALUES_H
 
@@ -7,23 +11,23 @@
 #include "tree/tree.h"
 #include <stdbool.h>
 
-/* Splits "FILE:COLUMN" or "FILE". FILE is a CSV file or a result folder of svOneDSolver.
+/* Splits "FILE:COLUMN" or "FILE", where FILE is a CSV file or a result folder of svOneDSolver.
  *
- * path     receives the length of the path.
- * column   receives the column after the path, borrowed from `text`; NULL if there is none.
- * Returns  false if the text names no such file. */
+ * path     receives the number of characters of FILE.
+ * column   receives COLUMN, borrowed from `text`; NULL if there is no COLUMN.
+ * Returns  false, and sets nothing, if FILE is neither. */
 bool values_parse(const char *text, size_t *path, const char **column);
 
-/* Reads values of the tree's segments, by their ids, into columns of the tree. They replace columns
- * of the same name. Segments without a row get NAN.
+/* Reads values of the tree's segments into columns of the tree. The ids in the file identify the
+ * segments. A new column replaces a column of the same name. Segments without a row get NAN.
  *
- * column   the column or series [tree/series.h] to read. NULL: all columns are read.
- * name     receives the name of what was read (owned). NULL: it is not wanted. With `name` and
- *          without `column`, the file must hold one column, one series, or one column per frame.
- *          Columns per frame become a series that is named after the file.
- * Errors   STATUS_INPUT, with file and line, if no column is called id or name; an id belongs to no
- *          segment, or occurs twice; a value is not a number; frames are missing; no column is
- *          called `column`; or there are more than BUILDER_MAX_COLUMNS columns. STATUS_MEMORY.
+ * column   the column or time series [tree/series.h] to read. NULL: all columns.
+ * name     receives the name of the column or series that was read; the caller frees it. NULL: not
+ *          wanted. If `name` is not NULL but `column` is, the file must hold one column, one
+ * series, or one column per time. The columns of times become a series named after the file. Errors
+ * STATUS_INPUT, with file and line, if no column is called id or name; an id belongs to no segment,
+ * or occurs twice; a value is not a number; frames are missing; no column is called `column`; or
+ * there are more than BUILDER_MAX_COLUMNS columns. STATUS_MEMORY.
  *
  * After an error the tree may have some of the new columns. */
 MUST_CHECK Status tree_read_values(Tree *tree, const char *path, const char *column, char **name,

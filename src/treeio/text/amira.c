@@ -36,8 +36,8 @@ typedef enum AmiraPacking { BYTE_RLE, ZIP, PLAIN } AmiraPacking;
 static const char *const packing_names[PLAIN] = {"HxByteRLE", "HxZip"};
 
 static const CursorSyntax syntax = {
-    .between = " \t\r\n\v\f,=",
-    .alone = "{}()",
+    .separators = " \t\r\n\v\f,=",
+    .single = "{}()",
     .comment = '#',
     .has_quotes = true,
     .skips_zeros = true,
@@ -105,7 +105,7 @@ static Status read_parameters(AmiraReader *reader, Err *err)
     char word[CURSOR_WORD], last[CURSOR_WORD] = "";
     for (size_t depth = 1; depth > 0; memcpy(last, word, sizeof last)) {
         if (!cursor_word(&reader->cursor, word))
-            return err_set(err, STATUS_INPUT, "a brace of the header is not closed");
+            return err_set(err, STATUS_INPUT, "the header has a '{' without a '}'");
         depth += strcmp(word, "{") == 0;
         depth -= strcmp(word, "}") == 0;
         if (strcasecmp(last, "ContentType") == 0)
@@ -123,7 +123,7 @@ static Status read_count(AmiraReader *reader, const char *name, Err *err)
     size_t of = keyword_find(name, element_names, ELEMENTS);
     int32_t number;
     if (!cursor_word(&reader->cursor, count))
-        return err_set(err, STATUS_INPUT, "the header ends behind '%.40s'", name);
+        return err_set(err, STATUS_INPUT, "the header ends after '%.40s'", name);
     if (of == ELEMENTS)
         return STATUS_OK;
     TRY(field_integer(name, count, 0, INT32_MAX, &number, err));
@@ -143,7 +143,7 @@ static Status read_type(AmiraField *field, const char *word, Err *err)
     number[strcspn(number, "]")] = '\0';
     field->type = vtk_type_called(NAMING_AMIRA, word, length);
     if (field->type == VTK_TYPES || !integer_parse(number, 1, MAX_COMPONENTS, &components))
-        return err_set(err, STATUS_INPUT, "'%.40s' is no type of numbers that is read", word);
+        return err_set(err, STATUS_INPUT, "'%.40s' is not a known type of numbers", word);
     field->components = (size_t)components;
     return STATUS_OK;
 }
@@ -157,13 +157,12 @@ static Status read_packing(Cursor *cursor, AmiraField *field, Err *err)
         return STATUS_OK;
     if (!cursor_word(cursor, name) || !cursor_word(cursor, bytes) ||
         !integer_parse(bytes, 0, INT64_MAX, &size) || !cursor_accept(cursor, ")"))
-        return err_set(err, STATUS_INPUT, "the block @%lld is packed in no way that is known",
-                       field->block);
+        return err_set(err, STATUS_INPUT, "the packing of block @%lld is not known", field->block);
     field->packing = (AmiraPacking)keyword_find(name, packing_names, PLAIN);
     field->packed = (size_t)size;
     if (field->packing == PLAIN)
         return err_set(err, STATUS_INPUT,
-                       "the block @%lld is packed by '%.40s'; HxByteRLE and HxZip are read",
+                       "block @%lld is packed by '%.40s'; it must be HxByteRLE or HxZip",
                        field->block, name);
     return STATUS_OK;
 }
@@ -177,7 +176,8 @@ static Status read_declaration(AmiraReader *reader, size_t of, Err *err)
     if (!cursor_accept(cursor, "{") || !cursor_word(cursor, type) || !cursor_word(cursor, name) ||
         !cursor_accept(cursor, "}") || !cursor_word(cursor, block) || *block != '@' ||
         !integer_parse(block + 1, 0, INT32_MAX, &field.block))
-        return err_set(err, STATUS_INPUT, "a declaration is '%s { TYPE NAME } @BLOCK'",
+        return err_set(err, STATUS_INPUT,
+                       "the declaration is not understood; it must be '%s { TYPE NAME } @BLOCK'",
                        element_names[of]);
     TRY(read_type(&field, type, err));
     TRY(read_packing(cursor, &field, err));
@@ -193,7 +193,7 @@ static Status read_statement(AmiraReader *reader, const char *word, Err *err)
     if (strcasecmp(word, "define") == 0)
         return cursor_word(&reader->cursor, name)
                    ? read_count(reader, name, err)
-                   : err_set(err, STATUS_INPUT, "the header ends behind 'define'");
+                   : err_set(err, STATUS_INPUT, "the header ends after 'define'");
     size_t of = keyword_find(word, element_names, ELEMENTS);
     if (of < ELEMENTS)
         return read_declaration(reader, of, err);
@@ -208,10 +208,10 @@ static Status check_header(const AmiraReader *reader, Err *err)
                                                [LINE_SET] = {VERTICES, VERTICES, LINES},
                                                [SKELETON] = {VERTICES, VERTICES, NEIGHBOURS}};
     if (reader->content == CONTENTS)
-        return err_set(err, STATUS_INPUT,
-                       "the ContentType is '%s'; networks are HxSpatialGraph, HxLineSet or "
-                       "SkeletonGraph",
-                       reader->content_name);
+        return err_set(
+            err, STATUS_INPUT,
+            "the ContentType is '%s'; it must be HxSpatialGraph, HxLineSet or SkeletonGraph",
+            reader->content_name);
     for (size_t k = 0; k < 3; k++) {
         size_t of = needed[reader->content][k];
         if (!reader->has_count[of])
@@ -266,8 +266,9 @@ static Status unpack_rle(const char *from, size_t packed, char *to, size_t size,
         n += count;
         at += takes;
     }
-    return n == size && at == packed ? STATUS_OK
-                                     : err_set(err, STATUS_INPUT, "no runs of %zu bytes", size);
+    return n == size && at == packed
+               ? STATUS_OK
+               : err_set(err, STATUS_INPUT, "not byte runs that unpack to %zu bytes", size);
 }
 
 static Status unpack(AmiraReader *reader, const AmiraField *field, size_t n, Err *err)
@@ -303,8 +304,9 @@ static Status check_claim(const AmiraReader *reader, const AmiraField *field, si
         has = (double)field->packed * max_ratio[field->packing];
     }
     if (needs > has)
-        return err_set(err, STATUS_INPUT, "%zu numbers of '%.40s' cannot be in the %zu bytes left",
-                       n, field->name, left);
+        return err_set(err, STATUS_INPUT,
+                       "%zu numbers of '%.40s' do not fit in the %zu bytes that are left", n,
+                       field->name, left);
     return STATUS_OK;
 }
 
@@ -339,7 +341,7 @@ static Status read_block_line(Cursor *cursor, long long *block, Err *err)
     memcpy(word, cursor->at, length);
     word[length] = '\0';
     if (*word != '@' || !integer_parse(word + 1, 0, INT32_MAX, block))
-        return err_set(err, STATUS_INPUT, "'%.30s' stands where a block begins", word);
+        return err_set(err, STATUS_INPUT, "'%.30s' was found where a block must begin", word);
     cursor_skip_line(cursor);
     return STATUS_OK;
 }
@@ -358,7 +360,7 @@ static Status read_blocks(AmiraReader *reader, Err *err)
         while (i < reader->fields.n && reader->fields.items[i].block != block)
             i++;
         if (i == reader->fields.n)
-            return err_set(err, STATUS_INPUT, "the block @%lld is not declared", block);
+            return err_set(err, STATUS_INPUT, "block @%lld is not declared in the header", block);
         TRY(read_block(reader, &reader->fields.items[i], err));
     }
 }
@@ -379,7 +381,7 @@ static Status need_field(const AmiraReader *reader, size_t of, const char *name,
     *field = find_field(reader, of, name);
     if (*field && (*field)->value && (*field)->components == components)
         return STATUS_OK;
-    return err_set(err, STATUS_INPUT, "%s: there is no block of %s { %s } with %zu number%s each",
+    return err_set(err, STATUS_INPUT, "%s: no block holds %s { %s } with %zu number%s each",
                    reader->graph->name, element_names[of], name, components,
                    components == 1 ? "" : "s");
 }
@@ -393,13 +395,15 @@ static Status find_ends(const AmiraReader *reader, const AmiraField *counts, siz
     for (size_t i = 0; i < edges; i++) {
         double count = counts->value[i];
         if (!(count >= 2) || count != floor(count))
-            return err_set(err, STATUS_INPUT,
-                           "%s: edge %zu has %g points; it needs those of both its vertices",
-                           reader->graph->name, i, count);
+            return err_set(
+                err, STATUS_INPUT,
+                "%s: edge %zu has %g points; it must have at least 2, the points of its vertices",
+                reader->graph->name, i, count);
         sum += count;
     }
     if (sum != (double)points)
-        return err_set(err, STATUS_INPUT, "%s: the edges have %.15g points together, POINT is %zu",
+        return err_set(err, STATUS_INPUT,
+                       "%s: the edges have %.15g points in total; the header defines POINT as %zu",
                        reader->graph->name, sum, points);
     TRY(mem_calloc(&made, edges, sizeof *made, "edges", err));
     for (size_t i = 0; i < edges; i++)
@@ -413,7 +417,8 @@ static Status join_vertex(const AmiraReader *reader, double vertex, size_t point
                           Err *err)
 {
     if (!(vertex >= 0 && vertex < (double)reader->count[VERTEX]) || vertex != floor(vertex))
-        return err_set(err, STATUS_INPUT, "%s: an edge leads to vertex %g; there are %zu",
+        return err_set(err, STATUS_INPUT,
+                       "%s: an edge refers to vertex %g; there are %zu vertices, counted from 0",
                        reader->graph->name, vertex, reader->count[VERTEX]);
     size_t *of = &first[(size_t)vertex];
     if (*of == 0)
@@ -554,7 +559,7 @@ static Status name_radius(AmiraReader *reader, Err *err)
         find_field(reader, VERTICES, "thickness") ||
         (reader->graph->options && reader->graph->options->radius_array))
         return STATUS_OK;
-    TRY(reading_note(reader->graph->reading, err, "the numbers '%.60s' of vertices are radii",
+    TRY(reading_note(reader->graph->reading, err, "used the vertex numbers '%.60s' as radii",
                      data->name));
     free(data->name);
     return mem_strdup(&data->name, "radius", err);
@@ -607,7 +612,8 @@ static Status add_skeleton(AmiraReader *reader, Err *err)
     for (size_t i = 0; i < data->n_points; i++) {
         double count = counts->value[i];
         if (!(count >= 0 && count <= (double)(n - at)) || count != floor(count))
-            return err_set(err, STATUS_INPUT, "%s: vertex %zu has %g neighbours of the %zu left",
+            return err_set(err, STATUS_INPUT,
+                           "%s: vertex %zu has %g neighbours, but only %zu entries are left",
                            reader->graph->name, i, count, n - at);
         for (size_t end = at + (size_t)count; at < end; at++) {
             const double corner[] = {(double)i, list->value[at]};

@@ -61,8 +61,8 @@ static Status read_titles(CsvReader *reader, char *line, Err *err)
     for (int column = 0; column <= LAST_NEEDED; column++)
         if (!reader->has[column])
             return err_set(err, STATUS_INPUT,
-                           "there is no column %s; a CSV of nodes has id, parent, x_mm, y_mm, "
-                           "z_mm, radius_mm and any others",
+                           "no column is called %s; a CSV of nodes needs id, parent, x_mm, y_mm, "
+                           "z_mm and radius_mm",
                            node_columns[column]);
     TRY(mem_calloc(&reader->field, reader->columns.n, sizeof *reader->field, "fields", err));
     return mem_calloc(&reader->value, reader->builder->n_columns, sizeof *reader->value,

@@ -14,7 +14,7 @@ void dialect_release(DialectReader *reader)
 {
     names_release(&reader->points);
     names_release(&reader->segments);
-    ARRAY_RELEASE(&reader->kept);
+    ARRAY_RELEASE(&reader->pending);
     ARRAY_RELEASE(&reader->fields);
     free(reader->column);
 }
@@ -139,7 +139,7 @@ static Status add_elements(DialectReader *reader, DialectRow *row, Err *err)
         TRY(graph_point(graph, &row->start, err));
         TRY(graph_point(graph, &row->end, err));
     }
-    return ARRAY_PUSH(&reader->kept, "segments", err,
+    return ARRAY_PUSH(&reader->pending, "segments", err,
                       (DialectSegment){row->from, row->to, row->segment});
 }
 
@@ -160,7 +160,7 @@ static Status read_row(DialectReader *reader, DialectRow *row, Err *err)
     if (row->count < section->min_fields ||
         (section->max_fields && row->count > section->max_fields))
         return refuse_count(section, row->count, err);
-    row->element = section->of == GRAPH_POINTS ? reader->graph->n_points : reader->kept.n;
+    row->element = section->of == GRAPH_POINTS ? reader->graph->n_points : reader->pending.n;
     row->point = row->start = row->end = point;
     row->segment = (GraphLine){.radius = (double)NAN, .is_directed = true, .record = row->line};
     for (size_t k = 0; k < dialect->n_fields; k++)
@@ -215,8 +215,8 @@ static Status add_segment(DialectReader *reader, DialectSegment *segment, Err *e
 
 Status dialect_add_segments(DialectReader *reader, Err *err)
 {
-    for (size_t i = 0; i < reader->kept.n; i++) {
-        DialectSegment *segment = &reader->kept.items[i];
+    for (size_t i = 0; i < reader->pending.n; i++) {
+        DialectSegment *segment = &reader->pending.items[i];
         TRY(graph_blame(reader->graph, GRAPH_LINES, segment->line.record,
                         add_segment(reader, segment, err), err));
     }

@@ -1,59 +1,73 @@
-/* Reads text formats of networks that have one element per row, by tables of sections and fields.
+/* Reads text formats that have one point or segment per row. Private to the submodule treeio/text.
  *
- * A format states its sections, the fields of their rows, and at most three functions: which
- * section a line belongs to, what a row means beyond its fields, and what is missing at the end. */
+ * A format describes itself by a Dialect: a table of its sections, a table of the fields of their
+ * rows, and up to three functions. `choose` returns the section of a line, `comment` reads a
+ * comment, and DialectSection.read adds meaning to a row that the tables cannot express.
+ * dialect_read reads all lines and adds the points to the graph. dialect_add_segments then adds the
+ * segments, because a segment may refer to a point that comes later in the file.
+ *
+ *     DialectReader reader = {.dialect = &vmv, .graph = graph, .points = {.what = "vertex"}};
+ *     status = dialect_read(&reader, text, size, err);
+ *     if (status == STATUS_OK)
+ *         status = dialect_add_segments(&reader, err);
+ *     dialect_release(&reader); */
 #ifndef CORCAST_TREEIO_DIALECT_H
 #define CORCAST_TREEIO_DIALECT_H
 
 #include "tree/tree.h"
 #include "treeio/names.h"
 
-/* The meaning of a field. A row adds a point if it has FIELD_POINT, and a segment if it has
- * FIELD_TO or FIELD_END. */
+/* The meaning of a field. A row with a FIELD_POINT adds a point. A row with a FIELD_TO or FIELD_END
+ * adds a segment. */
 typedef enum FieldRole {
     FIELD_POINT,    /* name of the row's point */
     FIELD_OF_POINT, /* name of an earlier point, to which the row's columns belong */
     FIELD_SEGMENT,  /* name of the row's segment */
     FIELD_POSITION, /* x of the point; the next two fields are y and z */
     FIELD_START,    /* x of the segment's proximal end, a point without a name; then y, z */
-    FIELD_END,      /* the same for the distal end */
-    FIELD_FROM,     /* name of the segment's proximal point, which may come later */
-    FIELD_TO,       /* name of the segment's distal point */
-    FIELD_RADIUS,   /* of the row's point or segment */
-    FIELD_DIAMETER, /* the same */
-    FIELD_AREA,     /* of the cross-section: the same */
-    FIELD_NUMBER,   /* a column, which exists in every tree of the format */
-    FIELD_VALUE     /* a column, which exists if a row has it; NA is no value */
+    FIELD_END,      /* x of the segment's distal end, a point without a name; then y, z */
+    FIELD_FROM,     /* name of the segment's proximal point, which may come later in the file */
+    FIELD_TO,       /* name of the segment's distal point, which may come later in the file */
+    FIELD_RADIUS,   /* radius of the row's point or segment */
+    FIELD_DIAMETER, /* diameter of the row's point or segment */
+    FIELD_AREA,     /* cross-sectional area of the row's point or segment */
+    FIELD_NUMBER,   /* a value for a column that every tree of the format has */
+    FIELD_VALUE     /* a value for a column that a tree has if a row does; NA: no value */
 } FieldRole;
 
 typedef struct DialectField {
-    size_t section, at; /* index of the section; index of the field in a row */
+    size_t section; /* index in Dialect.section */
+    size_t at;      /* index of the field in a row, from 0 */
     FieldRole role;
-    const char *name, *unit; /* what the field is called; its column's unit */
-    bool not_negative;       /* a number below 0 is refused */
+    const char *name, *unit; /* name of the field, for errors and columns; unit of the column */
+    bool not_negative;       /* numbers below 0 are refused */
 } DialectField;
 
-/* A row. All texts are borrowed from the file. */
+/* A row. All strings are borrowed from the text of the file. */
 typedef struct DialectRow {
-    char **field;
-    size_t count, line;
+    char **field; /* `count` fields */
+    size_t count;
+    size_t line;    /* line in the file, from 1 */
     size_t element; /* index of the point or segment that the row's columns belong to */
     bool has_point, has_segment;
-    GraphPoint point, start, end; /* the row's point; the segment's own ends */
-    char *from, *to;              /* names of the segment's ends; NULL: they are its own */
+    GraphPoint point;
+    GraphPoint start, end; /* ends of the segment that are points without names */
+    char *from, *to;       /* names of the segment's ends; NULL: `start` and `end` are the ends */
     GraphLine segment;
 } DialectRow;
 
 typedef struct DialectReader DialectReader;
+/* Changes a row whose fields have been read, or adds something itself. Errors: STATUS_INPUT,
+ * without file and line; STATUS_MEMORY. */
 typedef Status ReadDialectRow(DialectReader *reader, DialectRow *row, Err *err);
 
 typedef struct DialectSection {
-    const char *title;             /* matches without regard to case */
-    const char *row;               /* what a row is called in errors, "a vessel" */
-    size_t min_fields, max_fields; /* of a row; max_fields of 0: any number */
-    GraphElement of;               /* what the rows add, and what their columns belong to */
-    ReadDialectRow *read; /* called when the fields were read, before the row's elements are
-                           * added; NULL: the fields are all */
+    const char *title;             /* compared without regard to case */
+    const char *row;               /* the word for a row in errors: "a vessel" */
+    size_t min_fields, max_fields; /* number of fields in a row; max_fields of 0: any number */
+    GraphElement of;               /* the rows add points, or segments; columns belong to these */
+    ReadDialectRow *read; /* called after the fields were read and before the row's point or segment
+                           * is added; NULL: the fields are enough */
 } DialectSection;
 
 typedef struct Dialect {
@@ -61,46 +75,50 @@ typedef struct Dialect {
     size_t n_sections;
     const DialectField *field;
     size_t n_fields;
-    const char *none; /* text of a number that is missing; NULL: none may be */
-    Status (*comment)(Graph *graph, const char *comment, Err *err); /* NULL: no comments */
-    /* Sets reader->section for a row, or returns false in *is_row for a line that is no row. */
+    const char *none; /* text in place of a missing number; NULL: numbers must not be missing */
+    /* Reads the text after the '#' of a comment. NULL: the format has no comments. */
+    Status (*comment)(Graph *graph, const char *comment, Err *err);
+    /* Sets reader->section for a row; or sets *is_row to false if the line is not a row but, for
+     * example, a title. */
     Status (*choose)(DialectReader *reader, DialectRow *row, bool *is_row, Err *err);
 } Dialect;
 
-/* A segment, which is added when all points are there. */
+/* A segment that will be added after all points. */
 typedef struct DialectSegment {
-    char *from, *to; /* names of its points; NULL: `line` has their indices */
+    char *from, *to; /* names of the end points; NULL: `line` already has their indices */
     GraphLine line;
 } DialectSegment;
 
 struct DialectReader {
     const Dialect *dialect;
     Graph *graph;
-    void *own;      /* of the format */
-    size_t section; /* begins with n_sections: none */
-    size_t skip;    /* number of lines to pass over */
+    void *own;      /* data of the format; not used here */
+    size_t section; /* index of the current section; n_sections: none yet */
+    size_t skip;    /* number of lines to skip at the beginning of the text */
     Names points, segments;
-    ARRAY(DialectSegment) kept; /* all segments, in the order of the file */
+    ARRAY(DialectSegment) pending; /* all segments, in the order of the file */
     ARRAY(char *) fields;
-    size_t *column; /* per field of the table: its column + 1; 0: none yet */
+    size_t *column; /* per field of the table: 1 + the index of its column; 0: none yet */
 };
 
-/* Reads all lines of a text. The caller releases the reader, also after an error.
+/* Reads all lines of a text, and adds the points to the graph.
  *
- * reader   begin with dialect, graph, own, the names of points and segments, and skip.
+ * reader   the caller sets dialect, graph, own, skip, points.what and segments.what, zeroes the
+ *          rest, and releases the reader with dialect_release, even after an error.
  * Errors   STATUS_INPUT, with file and line; STATUS_MEMORY. */
 MUST_CHECK Status dialect_read(DialectReader *reader, char *text, size_t size, Err *err);
-/* Adds the segments to the graph, and sets the points of each in reader->kept. Errors:
+/* Adds the segments to the graph, and sets the indices of their points in reader->pending. Errors:
  * STATUS_INPUT, with file and line, for a name that no point has; STATUS_MEMORY. */
 MUST_CHECK Status dialect_add_segments(DialectReader *reader, Err *err);
 void dialect_release(DialectReader *reader);
 
-/* Appends the titles of sections and the names of fields, one per line. */
+/* Appends the titles of the sections and the names of the fields, one per line. */
 void dialect_put_keywords(const Dialect *dialect, Text *text);
-/* Returns the section of this title, or n_sections. */
+/* Returns the index of the section called `title`, or n_sections if there is none. */
 size_t dialect_find_section(const Dialect *dialect, const char *title);
 
-/* Reads three fields as a position. Errors: STATUS_INPUT, without file and line. */
+/* Reads three fields as a position: x, y, z. Errors: STATUS_INPUT, without file and line, unless
+ * all are finite numbers. */
 MUST_CHECK Status field_position(char *const field[3], Vec3 *position, Err *err);
 
 #endif

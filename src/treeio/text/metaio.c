@@ -127,7 +127,8 @@ static Status find_column(TubeReader *reader, const char *name, int32_t *column,
     while (k < reader->n_columns && strcmp(reader->column[k], name) != 0)
         k++;
     if (k == MAX_COLUMNS)
-        return err_set(err, STATUS_INPUT, "PointDim names more than %d numbers", MAX_COLUMNS);
+        return err_set(err, STATUS_INPUT, "PointDim has more than %d names, the maximum",
+                       MAX_COLUMNS);
     if (k == reader->n_columns) {
         TRY(graph_column(reader->graph, GRAPH_POINTS, name, "", &number, err));
         reader->column[reader->n_columns++] = name;
@@ -143,7 +144,8 @@ static Status read_point_dim(TubeReader *reader, char *value, Err *err)
     header->has_point_dim = true;
     for (char *name; (name = text_field(&value)); header->n_columns++) {
         if (header->n_columns == MAX_COLUMNS)
-            return err_set(err, STATUS_INPUT, "PointDim names more than %d numbers", MAX_COLUMNS);
+            return err_set(err, STATUS_INPUT, "PointDim has more than %d names, the maximum",
+                           MAX_COLUMNS);
         int32_t *meaning = &header->meaning[header->n_columns];
         *meaning = meaning_of(name);
         if (*meaning == 0)
@@ -310,8 +312,8 @@ static Status read_row(TubeReader *reader, Err *err)
     for (const char *at = line; found < n && number_take(&at, &number[found]); found++)
         at += strspn(at, TEXT_BLANKS);
     if (reader->header.has_point_dim ? !numbers_parse(line, n, number) : found < n)
-        return err_set(err, STATUS_INPUT, "the point '%.40s' is not the %zu numbers of PointDim",
-                       line, n);
+        return err_set(err, STATUS_INPUT,
+                       "the point is '%.40s'; it must be %zu numbers, as PointDim states", line, n);
     return add_point(reader, number, err);
 }
 
@@ -323,7 +325,7 @@ static Status read_packed(TubeReader *reader, Err *err)
     size_t n = header->n_columns, size = n * vtk_type_size(header->type);
     if ((size_t)header->points > cursor_left(cursor) / size)
         return err_set(err, STATUS_INPUT,
-                       "the file ends within the points of a tube, which are to take %.0f bytes",
+                       "the file ends within the points of a tube, which take %.0f bytes",
                        (double)header->points * (double)size);
     for (int32_t i = 0; i < header->points; i++, cursor->at += size) {
         vtk_numbers(header->type, header->is_big_endian, cursor->at, n, number);
@@ -345,7 +347,7 @@ static bool has(const TubeHeader *header, Meaning meaning)
 static Status check_header(const TubeHeader *header, bool gives_radius, Err *err)
 {
     if (header->points < 0)
-        return err_set(err, STATUS_INPUT, "the tube does not say NPoints");
+        return err_set(err, STATUS_INPUT, "the tube has no NPoints");
     if (!has(header, MEANS_X) || !has(header, MEANS_Y) ||
         (header->dimensions == 3 && !has(header, MEANS_Z)) ||
         (!has(header, MEANS_RADIUS) && !gives_radius))
@@ -362,14 +364,17 @@ static Status assume_point_dim(TubeReader *reader, Err *err)
     static const int32_t order[] = {MEANS_X, MEANS_Y, MEANS_Z, MEANS_RADIUS};
     TubeHeader *header = &reader->header;
     if (header->is_binary)
-        return err_set(err, STATUS_INPUT, "packed points need PointDim, which names their numbers");
+        return err_set(
+            err, STATUS_INPUT,
+            "the tube has binary points, but no PointDim, which must name their numbers");
     for (size_t k = 0; k < 4; k++)
         if (k != 2 || header->dimensions == 3)
             header->meaning[header->n_columns++] = order[k];
     if (reader->assumed++ > 0)
         return STATUS_OK;
-    return reading_note(reader->graph->reading, err,
-                        "a tube without PointDim has x, y, z and the radius first in each row");
+    return reading_note(
+        reader->graph->reading, err,
+        "a tube has no PointDim; assumed that each row begins with x, y, z and radius");
 }
 
 static Status read_tube(TubeReader *reader, Err *err)
@@ -445,11 +450,13 @@ static Status hang(const TubeReader *reader, const TubeObject *tube, Err *err)
     const TubeObject *parent = &reader->objects.items[number];
     if (parent->is_moved)
         return err_set(err, STATUS_INPUT,
-                       "the object %d moves those that it holds, which is not read", parent->id);
+                       "object %d transforms the objects in it, which is not supported",
+                       parent->id);
     if (parent->count == 0 || parent == tube)
         return STATUS_OK;
     if (tube->parent_point >= 0 && (size_t)tube->parent_point >= parent->count)
-        return err_set(err, STATUS_INPUT, "ParentPoint is %d; tube %d has %zu points",
+        return err_set(err, STATUS_INPUT,
+                       "ParentPoint is %d; tube %d has %zu points, counted from 0",
                        tube->parent_point, parent->id, parent->count);
     TubeLink first = link_to(graph, tube, parent, tube->first);
     TubeLink last = link_to(graph, tube, parent, tube->first + tube->count - 1);
@@ -472,7 +479,7 @@ static Status read_all(TubeReader *reader, Err *err)
     for (char *line; (line = cursor_line(&reader->cursor));)
         TRY(cursor_locate_error(&reader->cursor, read_line(reader, line, err), err));
     if (reader->objects.n == 0)
-        return err_set(err, STATUS_INPUT, "%s: there is no tube in the file", graph->name);
+        return err_set(err, STATUS_INPUT, "%s: the file has no tube", graph->name);
     for (size_t i = 0; i < reader->objects.n; i++)
         TRY(graph_blame(graph, GRAPH_LINES, reader->objects.items[i].line,
                         hang(reader, &reader->objects.items[i], err), err));
@@ -484,7 +491,7 @@ Status metaio_read(Graph *graph, char *bytes, size_t size, Err *err)
     TubeReader reader = {.graph = graph,
                          .cursor = cursor_of(graph->name, NULL, bytes, size),
                          .header = no_header,
-                         .ids = {.what = "object of the ID"}};
+                         .ids = {.what = "object with the ID"}};
     Status status = read_all(&reader, err);
     ARRAY_RELEASE(&reader.objects);
     names_release(&reader.ids);

@@ -56,7 +56,7 @@ static Status read_list(DialectReader *reader, DialectRow *row, Err *err)
     int32_t count = 0;
     TRY(field_integer("number of segments", row->field[2], 1, INT32_MAX, &count, err));
     if ((size_t)count != row->count - 3)
-        return err_set(err, STATUS_INPUT, "the card says %d segments and names %zu", count,
+        return err_set(err, STATUS_INPUT, "the card states %d segments, but names %zu", count,
                        row->count - 3);
     TRY(names_add(&lists->names, row->field[1], n, row->line, err));
     TRY(ARRAY_PUSH(&lists->list, "lists of segments", err, (SegmentList){first, (size_t)count}));
@@ -123,8 +123,7 @@ static Status choose_card(DialectReader *reader, DialectRow *row, bool *is_row, 
     reader->section = dialect_find_section(reader->dialect, row->field[0]);
     return reader->section < CARDS
                ? STATUS_OK
-               : err_set(err, STATUS_INPUT, "'%.40s' is no card of a deck of svOneDSolver",
-                         row->field[0]);
+               : err_set(err, STATUS_INPUT, "'%.40s' is not a card of svOneDSolver", row->field[0]);
 }
 
 static const Dialect dialect = {.section = cards,
@@ -162,7 +161,7 @@ static Status join_list(DialectReader *reader, const SegmentLists *lists, char *
     const SegmentList *list = &lists->list.items[number];
     for (size_t i = 0; i < list->count; i++) {
         TRY(names_find(&reader->segments, deck->word.items[list->first + i], &number, err));
-        const GraphLine *line = &reader->kept.items[number].line;
+        const GraphLine *line = &reader->pending.items[number].line;
         size_t end = lists->enters ? line->b : line->a;
         if (*point == reader->graph->n_points)
             *point = end;
@@ -203,8 +202,8 @@ Status oned_read(Graph *graph, char *bytes, size_t size, Err *err)
         TRY_GOTO(graph_blame(graph, GRAPH_LINES, deck.joint.items[i].line,
                              join_ends(&reader, &deck.joint.items[i], err), err));
     TRY_GOTO(reading_note(graph->reading, err,
-                          "a segment has the radius of its outlet area; materials, tables and "
-                          "boundary conditions are left out"));
+                          "radii come from the outlet areas; materials, tables and boundary "
+                          "conditions were left out"));
 done:
     dialect_release(&reader);
     release_lists(&deck.inlets);
@@ -351,10 +350,10 @@ static Status check_tree(const DeckTree *deck, Err *err)
         roots += !tree_is_segment(deck->tree, i);
     if (roots > 1)
         return err_set(err, STATUS_INPUT,
-                       "a deck of svOneDSolver holds one tree; this is a forest of %zu", roots);
+                       "a svOneDSolver deck can hold one tree; this file has %zu", roots);
     if (deck->children[0] != 1)
         return err_set(err, STATUS_INPUT,
-                       "a deck of svOneDSolver has one segment at its inlet; this tree has %d",
+                       "a svOneDSolver deck must have one segment at its inlet; this tree has %d",
                        deck->children[0]);
     return STATUS_OK;
 }

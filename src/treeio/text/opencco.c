@@ -18,7 +18,8 @@ static Status read_line(void *context, size_t number, char *line, Err *err)
     if (!numbers_parse(line, N_NUMBERS, v))
         return err_set(
             err, STATUS_INPUT,
-            "the line '%.40s' is not seven numbers: the ends of a segment and its radius", line);
+            "the line is '%.40s'; it must be seven numbers: both ends of a segment and its radius",
+            line);
     GraphPoint end = {.position = {v[0], v[1], v[2]}, .radius = (double)NAN, .record = number};
     const GraphLine segment = {.a = graph->n_points + 1,
                                .b = graph->n_points,
@@ -34,7 +35,7 @@ static Status read_line(void *context, size_t number, char *line, Err *err)
 Status opencco_read(Graph *graph, char *bytes, size_t size, Err *err)
 {
     TRY(lines_read(graph->name, bytes, size, read_line, graph, err));
-    return reading_note(graph->reading, err, "the root's segment is not in such a file");
+    return reading_note(graph->reading, err, "the file format does not store the root's segment");
 }
 
 bool opencco_detect(const char *start)

@@ -105,12 +105,12 @@ Status secomb_read(Graph *graph, char *bytes, size_t size, Err *err)
     graph->unit = LENGTH_UM;
     TRY_GOTO(dialect_read(&reader, bytes, size, err));
     if (state.table < BOUNDARY)
-        TRY_GOTO(err_set(err, STATUS_INPUT, "%s: the file ends before all its %s are there",
+        TRY_GOTO(err_set(err, STATUS_INPUT, "%s: the file ends before all %s were read",
                          graph->name, tables[state.table].title));
     TRY_GOTO(dialect_add_segments(&reader, err));
     TRY_GOTO(reading_note(graph->reading, err,
-                          "radii are half the diameters of the file; flow is from the first node "
-                          "of a segment to the second, and enters at boundary nodes of type 2"));
+                          "radii are half the diameters; flow runs from a segment's first node to "
+                          "its second, and enters at boundary nodes of type 2"));
 done:
     dialect_release(&reader);
     return status;

@@ -193,11 +193,11 @@ static Status begin_rows(SwcReader *reader, const char *id, size_t count, Err *e
 static Status refuse_count(const SwcReader *reader, size_t count, Err *err)
 {
     if (count > MAX_FIELDS)
-        return err_set(err, STATUS_INPUT, "the row has %zu fields; it may have at most %d", count,
+        return err_set(err, STATUS_INPUT, "the row has %zu fields; it must have at most %d", count,
                        MAX_FIELDS);
     if (reader->n_fields > N_FIELDS)
-        return err_set(err, STATUS_INPUT, "the row has %zu field%s; the rows before it have %zu",
-                       count, count == 1 ? "" : "s", reader->n_fields);
+        return err_set(err, STATUS_INPUT, "the row has %zu field%s; earlier rows have %zu", count,
+                       count == 1 ? "" : "s", reader->n_fields);
     return err_set(err, STATUS_INPUT,
                    "the row has %zu field%s; it must have %d: id type x y z radius parent", count,
                    count == 1 ? "" : "s", N_FIELDS);
@@ -361,10 +361,9 @@ Status swc_read(TreeBuilder *builder, char *bytes, size_t size, Err *err)
         return STATUS_OK;
     if (builder->n_shares > 0 || builder->n_pairs > 0)
         return err_set(err, STATUS_INPUT,
-                       "%s: the ids start at 0, but a %s names nodes by ids from 1 on",
+                       "%s: the ids start at 0, but a %s refers to nodes by ids from 1 on",
                        builder->name, builder->n_shares > 0 ? share_key : tree_pairs_name);
-    return reading_note(builder->reading, err,
-                        "ids start at 0 in the file, and are one higher here");
+    return reading_note(builder->reading, err, "ids start at 0 in the file; 1 was added to each");
 }
 
 /* ---- writing --------------------------------------------------------------------------------- */

@@ -168,12 +168,12 @@ static Status check_sayings(const ColumnOptions *sayings, const char *name, Err 
         const ColumnOption *saying = &sayings->option.items[i];
         if (!saying->used && saying->column)
             return err_set(err, STATUS_INPUT,
-                           "%s: there is no column '%.40s', which `columns` names", name,
+                           "%s: no column is called '%.40s', which `columns` names", name,
                            saying->column);
         if (!saying->used)
             return err_set(err, STATUS_INPUT,
-                           "%s: there is no column %zu, which `columns` calls '%.40s'", name,
-                           saying->number, saying->role);
+                           "%s: the table has no column %zu, which `columns` names for '%.40s'",
+                           name, saying->number, saying->role);
     }
     return STATUS_OK;
 }
@@ -260,16 +260,16 @@ static Status judge_kind(Table *table, Err *err)
         }
     }
     if (table->beside)
-        return err_set(err, STATUS_INPUT,
-                       "the table of lines has no columns from and to; `columns` says which they "
-                       "are");
+        return err_set(
+            err, STATUS_INPUT,
+            "no columns of the edge table are called from and to; name them with `columns`");
     if (table->at[ROLE_FROM] && table->at[ROLE_TO])
-        return err_set(err, STATUS_INPUT,
-                       "the table is one of lines; read that of their nodes, and this one as "
-                       "`edges`");
+        return err_set(
+            err, STATUS_INPUT,
+            "this is an edge table; read the table of nodes, and give this one as `edges`");
     return err_set(err, STATUS_INPUT,
-                   "the table has neither the columns x, y, z of nodes nor x0, y0, z0, x1, y1, z1 "
-                   "of vessels; `columns` says which they are");
+                   "no columns are called x, y, z (of nodes) or x0, y0, z0, x1, y1, z1 (of "
+                   "vessels); name them with `columns`");
 }
 
 static Status add_column(Table *table, char *title, Err *err)
@@ -289,7 +289,8 @@ static Status add_column(Table *table, char *title, Err *err)
         role = role_of_title(title, &column.unit);
     }
     if (role != ROLES && table->at[role] && saying)
-        return err_set(err, STATUS_INPUT, "two columns are to be %s", roles[role].alias[0]);
+        return err_set(err, STATUS_INPUT, "two columns are used as %s; only one may be",
+                       roles[role].alias[0]);
     if (role != ROLES && !table->at[role]) {
         column.role = role;
         table->at[role] = table->columns.n + 1;
@@ -356,10 +357,10 @@ static Status judge_units(Table *table, Err *err)
             continue;
         LengthUnit *of = is_radius ? &of_radius : &unit;
         if (*of != LENGTH_UNITS && *of != column->unit)
-            return err_set(err, STATUS_INPUT,
-                           "the unit of '%.40s' is not that of the columns "
-                           "before it",
-                           column->title);
+            return err_set(
+                err, STATUS_INPUT,
+                "the unit of column '%.40s' differs from the unit of the columns before it",
+                column->title);
         *of = column->unit;
     }
     Graph *graph = table->graph;
@@ -373,7 +374,7 @@ static Status judge_units(Table *table, Err *err)
     if (of_radius != LENGTH_UNITS)
         table->radius_factor *= length_unit_mm(of_radius) / length_unit_mm(graph->unit);
     if (!table->at[ROLE_RADIUS] && table->at[ROLE_DIAMETER])
-        return reading_note(graph->reading, err, "radii are half of the column '%s'",
+        return reading_note(graph->reading, err, "radii are half the column '%s'",
                             table->columns.items[table->at[ROLE_DIAMETER] - 1].title
                                 ? table->columns.items[table->at[ROLE_DIAMETER] - 1].title
                                 : "diameter");
@@ -424,7 +425,7 @@ static Status begin_table(Table *table, char *line, bool *is_row, Err *err)
     TRY(look_at_line(table, line, &fields, is_row, err));
     if (*is_row && table->sayings->option.n == 0)
         return err_set(err, STATUS_INPUT,
-                       "the table has no titles; `columns` says which column is which, as in "
+                       "the table has no titles; name its columns with `columns`, as in "
                        "x0=1,y0=2,z0=3,x1=4,y1=5,z1=6,radius=7");
     for (size_t k = 0; *is_row && k < fields; k++)
         TRY(add_column(table, NULL, err));
@@ -609,7 +610,7 @@ static Status note_texts(const Table *table, Err *err)
     for (size_t k = 0; k < table->columns.n; k++)
         if (table->columns.items[k].texts > 0)
             TRY(reading_note(table->graph->reading, err,
-                             "the column '%.40s' has text in %zu rows, which is no value",
+                             "the column '%.40s' has text in %zu rows; they have no value",
                              table->columns.items[k].title, table->columns.items[k].texts));
     return STATUS_OK;
 }
@@ -667,7 +668,7 @@ static Status read_beside(const Table *nodes, const char *path, Err *err)
     TRY(file_read(path, &form, &bytes, &size, err));
     Status status = read_table(&edges, bytes, size, err);
     if (status == STATUS_OK && edges.columns.n == 0)
-        status = err_set(err, STATUS_INPUT, "%s: the table of lines is empty", path);
+        status = err_set(err, STATUS_INPUT, "%s: the edge table has no rows", path);
     release_table(&edges);
     free(bytes);
     return status;
@@ -683,14 +684,14 @@ static Status read_tables(Table *table, char *bytes, size_t size, Err *err)
     if (table->kind == NODES && edges)
         TRY(read_beside(table, edges, err));
     if (table->kind == NODES && edges && !table->at[ROLE_ID])
-        TRY(reading_note(graph->reading, err, "nodes have no ids, and are numbered from 0 on"));
+        TRY(reading_note(graph->reading, err, "nodes have no ids; they were numbered from 0"));
     TRY(check_sayings(table->sayings, table->name, err));
     if (table->kind != NODES && edges)
-        return err_set(err, STATUS_INPUT,
-                       "%s: the table is no table of nodes, which `edges` are for", table->name);
+        return err_set(err, STATUS_INPUT, "%s: `edges` was given, but this is not a table of nodes",
+                       table->name);
     if (table->kind == NODES && !edges && !table->at[ROLE_PARENT])
         return err_set(err, STATUS_INPUT,
-                       "%s: the table has nodes, but no parents; `edges` names the table of lines",
+                       "%s: the table has nodes, but no parents; give the edge table as `edges`",
                        table->name);
     bool as_network = options && (options->merge_tolerance_mm > 0 || options->break_loops);
     graph->is_tree = table->kind == NODES && !edges && !as_network;

@@ -49,10 +49,10 @@ static Status choose_section(DialectReader *reader, DialectRow *row, bool *is_ro
         reader->section = dialect_find_section(reader->dialect, first);
         return reader->section < SECTIONS
                    ? STATUS_OK
-                   : err_set(err, STATUS_INPUT, "'%.40s' is no section of VItA's trees", first);
+                   : err_set(err, STATUS_INPUT, "'%.40s' is not a section of a VItA tree", first);
     }
     if (reader->section == SECTIONS)
-        return err_set(err, STATUS_INPUT, "a tree of VItA begins with *Tree");
+        return err_set(err, STATUS_INPUT, "the file does not begin with *Tree, as VItA trees do");
     if (reader->section != VESSELS || *expected >= 0)
         return STATUS_OK;
     *is_row = false;
@@ -78,10 +78,11 @@ Status vita_read(Graph *graph, char *bytes, size_t size, Err *err)
     Status status = STATUS_OK;
     TRY_GOTO(dialect_read(&reader, bytes, size, err));
     if (reader.section != CONNECTIVITY)
-        TRY_GOTO(err_set(err, STATUS_INPUT, "%s: there is no section *Connectivity", graph->name));
-    if (reader.kept.n != (size_t)expected)
-        TRY_GOTO(err_set(err, STATUS_INPUT, "%s: the file says %d vessels and has %zu", graph->name,
-                         expected, reader.kept.n));
+        TRY_GOTO(
+            err_set(err, STATUS_INPUT, "%s: the file has no section *Connectivity", graph->name));
+    if (reader.pending.n != (size_t)expected)
+        TRY_GOTO(err_set(err, STATUS_INPUT, "%s: the file states %d vessels, but has %zu",
+                         graph->name, expected, reader.pending.n));
     TRY_GOTO(dialect_add_segments(&reader, err));
 done:
     dialect_release(&reader);

@@ -72,7 +72,7 @@ static Status read_strand(DialectReader *reader, DialectRow *row, Err *err)
         line.a = line.b;
     }
     if (row->count < 3)
-        return err_set(err, STATUS_INPUT, "a strand has two vertices or more; this has %zu",
+        return err_set(err, STATUS_INPUT, "the strand has %zu vertices; it must have two or more",
                        row->count - 1);
     state->n_strands++;
     return STATUS_OK;
@@ -97,13 +97,13 @@ static Status read_values(DialectReader *reader, DialectRow *row, Err *err)
     VmvState *state = reader->own;
     TimeSteps *series = &state->series[reader->section];
     if (series->rows == reader->graph->n_points)
-        return err_set(err, STATUS_INPUT,
-                       "there are more rows than vertices, of which there are %zu", series->rows);
+        return err_set(err, STATUS_INPUT, "there are more rows than the %zu vertices",
+                       series->rows);
     if (series->rows == 0)
         TRY(add_steps(reader, series, row->count, err));
     if (row->count != series->steps)
-        return err_set(err, STATUS_INPUT, "the row has %zu value%s; the first has %zu", row->count,
-                       row->count == 1 ? "" : "s", series->steps);
+        return err_set(err, STATUS_INPUT, "the row has %zu value%s; the first row has %zu",
+                       row->count, row->count == 1 ? "" : "s", series->steps);
     for (size_t k = 0; k < row->count; k++) {
         double value;
         TRY(field_value("value", row->field[k], &value, err));
@@ -147,7 +147,8 @@ static Status change_section(DialectReader *reader, const char *title, Err *err)
         if (begins || strcasecmp(title + length, "_END") == 0)
             return STATUS_OK;
     }
-    return err_set(err, STATUS_INPUT, "'$%.40s' begins or ends no section of VMV", title);
+    return err_set(err, STATUS_INPUT, "'$%.40s' does not begin or end a section of a VMV file",
+                   title);
 }
 
 /* Lines after the strands may stand in no section. */
@@ -162,7 +163,7 @@ static Status choose_section(DialectReader *reader, DialectRow *row, bool *is_ro
         return change_section(reader, first[1] || row->count == 1 ? first + 1 : row->field[1], err);
     if (*is_row || state->n_strands > 0)
         return STATUS_OK;
-    return err_set(err, STATUS_INPUT, "'%.40s' stands in no section of VMV", first);
+    return err_set(err, STATUS_INPUT, "'%.40s' is outside all sections of the VMV file", first);
 }
 
 static const Dialect dialect = {.section = sections,
@@ -184,7 +185,7 @@ static Status check_count(const Graph *graph, const char *what, int32_t stated, 
 {
     if (stated < 0 || (size_t)stated == found)
         return STATUS_OK;
-    return err_set(err, STATUS_INPUT, "%s: the file says %d %s and has %zu", graph->name, stated,
+    return err_set(err, STATUS_INPUT, "%s: the file states %d %s, but has %zu", graph->name, stated,
                    what, found);
 }
 

@@ -12,7 +12,7 @@
 #include <string.h>
 #include <strings.h>
 
-static const CursorSyntax syntax = {.between = " \t\r\n", .alone = ""};
+static const CursorSyntax syntax = {.separators = " \t\r\n", .single = ""};
 
 typedef struct LegacyReader {
     Cursor cursor;
@@ -56,7 +56,7 @@ static Status read_numbers(LegacyReader *reader, VtkType type, const char *what,
     size_t left = cursor_left(cursor), size = reader->is_binary ? vtk_type_size(type) : 2;
     if (n > (left + 1) / size)
         return err_set(err, STATUS_INPUT,
-                       "%s announces %zu numbers, and the file goes on for %zu bytes", what, n,
+                       "%s announces %zu numbers, but only %zu bytes of the file are left", what, n,
                        left);
     TRY(mem_calloc(&made, n, sizeof *made, "numbers", err));
     if (!reader->is_binary)
@@ -100,7 +100,7 @@ static Status read_length(Cursor *cursor, size_t *length, Err *err)
     for (size_t k = 0; k < size && k < left; k++)
         made = made << 8 | ((unsigned char)cursor->at[k] & (k ? 0xff : 0x3f));
     if (left < size || made > left - size)
-        return err_set(err, STATUS_INPUT, "the file ends within a text");
+        return err_set(err, STATUS_INPUT, "the file ends within a string");
     cursor->at += size;
     *length = (size_t)made;
     return STATUS_OK;
@@ -126,7 +126,7 @@ static Status read_texts(LegacyReader *reader, VtkArray *array, size_t n, Err *e
     for (size_t i = 0; i < n; i++) {
         size_t length = 0;
         if (cursor->at >= cursor->end)
-            return err_set(err, STATUS_INPUT, "the file ends within a text");
+            return err_set(err, STATUS_INPUT, "the file ends within a string");
         if (reader->is_binary)
             TRY(read_length(cursor, &length, err));
         else
@@ -146,7 +146,8 @@ static Status read_array(LegacyReader *reader, char *name, VtkType type, size_t 
     VtkArray array = {.n = n, .components = components};
     Status status = STATUS_OK;
     if (components == 0 || components > 1000 || n > SIZE_MAX / 1000 / sizeof(double))
-        return err_set(err, STATUS_INPUT, "the array '%.40s' has %zu components", name, components);
+        return err_set(err, STATUS_INPUT, "the array '%.40s' has %zu components, too many", name,
+                       components);
     decode(name);
     TRY_GOTO(mem_strdup(&array.name, name, err));
     if (type == VTK_TEXT)
@@ -198,7 +199,8 @@ static Status read_scalars(LegacyReader *reader, Err *err)
     cursor_word(&reader->cursor, name);
     TRY(read_type(reader, NULL, &type, err));
     if (cursor_word_in_line(&reader->cursor, word) && !integer_parse(word, 1, 1000, &components))
-        return err_set(err, STATUS_INPUT, "the number of components is '%.40s'", word);
+        return err_set(err, STATUS_INPUT,
+                       "the number of components is '%.40s'; it must be an integer", word);
     if (cursor_accept(&reader->cursor, "LOOKUP_TABLE"))
         cursor_word(&reader->cursor, word);
     return read_array(reader, name, type, (size_t)components, reader->n, err);
@@ -222,7 +224,8 @@ static Status read_points(LegacyReader *reader, Err *err)
     VtkType type;
     VtkData *data = &reader->data;
     if (data->point)
-        return err_set(err, STATUS_INPUT, "POINTS are given twice");
+        return err_set(err, STATUS_INPUT,
+                       "there is a second section POINTS; only one may be given");
     TRY(read_count(reader, "points", &data->n_points, err));
     TRY(read_type(reader, "POINTS", &type, err));
     return read_numbers(reader, type, "POINTS", 3 * data->n_points, &data->point, err);
@@ -232,7 +235,8 @@ static Status read_cell_types(LegacyReader *reader, Err *err)
 {
     double **types = &reader->cells[VTK_CELL_KINDS - 1].type;
     if (*types)
-        return err_set(err, STATUS_INPUT, "CELL_TYPES are given twice");
+        return err_set(err, STATUS_INPUT,
+                       "there is a second section CELL_TYPES; only one may be given");
     TRY(read_count(reader, "cells", &reader->n_types, err));
     return read_numbers(reader, VTK_INT32, "CELL_TYPES", reader->n_types, types, err);
 }
@@ -320,7 +324,7 @@ static Status read_counted_cells(LegacyReader *reader, size_t n, size_t size, Vt
 {
     TRY(read_numbers(reader, VTK_INT32, "the cells", size, &cells->corner, err));
     if (n > size)
-        return err_set(err, STATUS_INPUT, "%zu cells cannot stand in %zu numbers", n, size);
+        return err_set(err, STATUS_INPUT, "%zu cells cannot be stored in %zu numbers", n, size);
     TRY(mem_calloc(&cells->end, n, sizeof *cells->end, "cells", err));
     size_t from = 0, to = 0;
     for (cells->n = 0; cells->n < n; cells->n++) {
@@ -342,7 +346,8 @@ static Status read_cells(LegacyReader *reader, VtkCells *cells, Err *err)
 {
     size_t n = 0, size = 0;
     if (cells->n > 0 || cells->end)
-        return err_set(err, STATUS_INPUT, "cells of one kind are given twice");
+        return err_set(err, STATUS_INPUT,
+                       "there is a second section for cells of this kind; only one may be given");
     TRY(read_count(reader, "cells", &n, err));
     TRY(read_count(reader, "numbers", &size, err));
     cells->n_corners = size;
@@ -364,7 +369,7 @@ static Status read_block(LegacyReader *reader, const char *keyword, Err *err)
     for (size_t k = 0; k < sizeof attributes / sizeof *attributes; k++)
         if (strcasecmp(keyword, attributes[k].keyword) == 0)
             return read_attribute(reader, k, err);
-    return err_set(err, STATUS_INPUT, "'%.40s' is no keyword of a VTK file of lines", keyword);
+    return err_set(err, STATUS_INPUT, "'%.40s' is not a keyword of a VTK file of lines", keyword);
 }
 
 /* Reads the four lines before the first block. */
@@ -376,10 +381,10 @@ static Status read_head(LegacyReader *reader, Err *err)
     char word[CURSOR_WORD];
     size_t length = strcspn(cursor->at, "\r\n");
     if (!vtk_detect(cursor->at))
-        return err_set(err, STATUS_INPUT,
-                       "a legacy VTK file begins with '# vtk DataFile Version', this one with "
-                       "'%.*s'",
-                       length < 40 ? (int)length : 40, cursor->at);
+        return err_set(
+            err, STATUS_INPUT,
+            "the file begins with '%.*s'; a legacy VTK file begins with '# vtk DataFile Version'",
+            length < 40 ? (int)length : 40, cursor->at);
     cursor_skip_line(cursor);
     cursor_skip_line(cursor);
     cursor_word(cursor, word);
@@ -392,7 +397,7 @@ static Status read_head(LegacyReader *reader, Err *err)
     cursor_word(cursor, word);
     if (keyword_find(word, sets, 2) == 2)
         return err_set(err, STATUS_INPUT,
-                       "the dataset is %.40s; lines are in POLYDATA and UNSTRUCTURED_GRID", word);
+                       "the dataset is %.40s; it must be POLYDATA or UNSTRUCTURED_GRID", word);
     reader->is_binary = cursor->in_bytes = coding == 1;
     return STATUS_OK;
 }
@@ -405,7 +410,7 @@ static Status read_all(LegacyReader *reader, Err *err)
     while (cursor_word(&reader->cursor, keyword))
         TRY(read_block(reader, keyword, err));
     if (reader->cursor.at < reader->cursor.end)
-        return err_set(err, STATUS_INPUT, "a zero byte where a keyword should be");
+        return err_set(err, STATUS_INPUT, "a zero byte was found instead of a keyword");
     return STATUS_OK;
 }
 
@@ -413,8 +418,9 @@ static Status add_all_cells(LegacyReader *reader, Err *err)
 {
     const VtkCells *typed = &reader->cells[VTK_CELL_KINDS - 1];
     if (typed->n != reader->n_types)
-        return err_set(err, STATUS_INPUT, "there are %zu CELLS and %zu CELL_TYPES", typed->n,
-                       reader->n_types);
+        return err_set(err, STATUS_INPUT,
+                       "there are %zu CELLS, but %zu CELL_TYPES; each cell needs one type",
+                       typed->n, reader->n_types);
     for (size_t k = 0; k < VTK_CELL_KINDS; k++)
         TRY(vtk_add_cells(&reader->data, &reader->cells[k], &vtk_cell_kinds[k], 0, err));
     return STATUS_OK;

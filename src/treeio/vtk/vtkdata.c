@@ -66,9 +66,9 @@ Status vtk_find_type(VtkNaming naming, const char *name, const char *numbers_onl
 {
     VtkType found = vtk_type_called(naming, name, strlen(name));
     if (found == VTK_TYPES)
-        return err_set(err, STATUS_INPUT, "'%.40s' is no type of numbers", name);
+        return err_set(err, STATUS_INPUT, "'%.40s' is not a type of numbers", name);
     if (found == VTK_TEXT && numbers_only)
-        return err_set(err, STATUS_INPUT, "%s cannot be strings", numbers_only);
+        return err_set(err, STATUS_INPUT, "%s are strings; they must be numbers", numbers_only);
     *type = found;
     return STATUS_OK;
 }
@@ -248,7 +248,7 @@ static Status find_or_add(VtkArrays *arrays, const char *name, Err *err)
             return STATUS_OK;
     }
     if (arrays->n == BUILDER_MAX_COLUMNS)
-        return err_set(err, STATUS_INPUT, "there are more than %d names of numbers",
+        return err_set(err, STATUS_INPUT, "there are more than %d names of numbers, the maximum",
                        BUILDER_MAX_COLUMNS);
     arrays->next = arrays->n;
     TRY(mem_strdup(&made.name, name, err));
@@ -310,8 +310,8 @@ static Status set_positions(VtkData *data, double *const axis[3], const char *na
         const double *of = axis[i % 3];
         data->point[i] = of ? of[i / 3] : i % 3 == 2 ? 0 : (double)NAN;
         if (isnan(data->point[i]))
-            return err_set(err, STATUS_INPUT, "%s: point %zu of %zu has no place", name, i / 3 + 1,
-                           data->n_points);
+            return err_set(err, STATUS_INPUT, "%s: point %zu of %zu has no position", name,
+                           i / 3 + 1, data->n_points);
     }
     return STATUS_OK;
 }
@@ -371,8 +371,8 @@ Status vtk_add_cells(VtkData *data, const VtkCells *cells, const VtkCellKind *ki
         double end = cells->end[i];
         if (!(end >= at && end <= (double)cells->n_corners && end == floor(end)))
             return err_set(err, STATUS_INPUT,
-                           "cell %zu ends at %g of the numbers of points; ends must rise to at "
-                           "most %zu",
+                           "cell %zu ends at entry %g of the list of point indices; ends must "
+                           "increase up to at most %zu",
                            i, end, cells->n_corners);
         const double *corner = end > at ? cells->corner + (size_t)at : NULL;
         TRY(add_cell(data, cells->type ? cells->type[i] : kind->type, corner, (size_t)(end - at),

@@ -101,12 +101,12 @@ static Status check_corners(const VtkData *data, const Graph *graph, Err *err)
         while (data->end[line] <= i)
             line++;
         if (!(point >= 0 && point < (double)data->n_points && point == floor(point)))
-            return graph_blame(graph, GRAPH_LINES, data->cell[line],
-                               err_set(err, STATUS_INPUT,
-                                       "it refers to point %g; there are %zu points, numbered "
-                                       "from 0 on",
-                                       point, data->n_points),
-                               err);
+            return graph_blame(
+                graph, GRAPH_LINES, data->cell[line],
+                err_set(err, STATUS_INPUT,
+                        "it refers to point %g; there are %zu points, counted from 0", point,
+                        data->n_points),
+                err);
     }
     return STATUS_OK;
 }
@@ -130,7 +130,7 @@ Status vtk_to_graph(const VtkData *data, Graph *graph, Err *err)
     TRY(check_arrays(&data->arrays[GRAPH_POINTS], data->n_points, "points", graph, err));
     TRY(check_arrays(&data->arrays[GRAPH_LINES], data->n_cells, "cells", graph, err));
     if (data->n_lines == 0 && !vtk_find_metadata(data))
-        return err_set(err, STATUS_INPUT, "%s: there are no lines in it%s", graph->name,
+        return err_set(err, STATUS_INPUT, "%s: the file has no lines%s", graph->name,
                        data->n_cells ? ", only other cells" : "");
     TRY(vtk_find_meaning(&meaning, data, graph, err));
     if (meaning.id)

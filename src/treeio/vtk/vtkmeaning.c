@@ -104,7 +104,8 @@ static Status refuse_radius(const VtkData *data, const Graph *graph, const char 
     Status status = text_check(&names, err);
     if (status == STATUS_OK)
         status = err_set(err, STATUS_INPUT, "%s: %s; %s%.600s", graph->name, what,
-                         n ? "its arrays of one number are " : "it has no array of one number",
+                         n ? "the arrays with one number per element are "
+                           : "no array has one number per element",
                          text_chars(&names));
     text_release(&names);
     return status;
@@ -119,10 +120,10 @@ static Status find_radius(VtkMeaning *meaning, const VtkData *data, const Graph 
     if (!wanted && graph->options && graph->options->radius_mm > 0)
         return STATUS_OK;
     if (!wanted)
-        return refuse_radius(data, graph,
-                             "no array is called a radius, `radius_array` names none, and `radius` "
-                             "gives none",
-                             err);
+        return refuse_radius(
+            data, graph,
+            "no array has the name of a radius; name one with `radius_array`, or set `radius`",
+            err);
     char what[160];
     snprintf(what, sizeof what, "there is no array '%.60s' of one number for each point or cell",
              wanted);

@@ -91,11 +91,12 @@ static Status find_parents(VtkTree *tree, Err *err)
             size_t from = (size_t)data->corner[k - 1], to = (size_t)data->corner[k];
             size_t node = node_of(tree, id_at(tree, to));
             if (tree->parent[node])
-                return graph_blame(tree->graph, GRAPH_LINES, data->cell[i],
-                                   err_set(err, STATUS_INPUT,
-                                           "it leads to node %d, as another line does",
-                                           tree->id[node]),
-                                   err);
+                return graph_blame(
+                    tree->graph, GRAPH_LINES, data->cell[i],
+                    err_set(err, STATUS_INPUT,
+                            "it ends at node %d, as another line does; each node has one parent",
+                            tree->id[node]),
+                    err);
             tree->parent[node] = id_at(tree, from);
             tree->point[node] = (uint32_t)to + 1;
             tree->cell[node] = (uint32_t)data->cell[i] + 1;
@@ -110,7 +111,7 @@ static Status add_node(const VtkTree *tree, size_t node, Err *err)
     double type = meaning->type ? meaning->type->value[i] : TREE_VESSEL_TYPE;
     double share = meaning->share ? meaning->share->value[i] : 0;
     if (!(fabs(type) <= INT32_MAX))
-        return err_set(err, STATUS_INPUT, "the type is %g, which is no whole number", type);
+        return err_set(err, STATUS_INPUT, "the type is %g; it must be an integer", type);
     const BuilderNode made = {.id = tree->id[node],
                               .parent = tree->parent[node] ? tree->parent[node] : TREE_NO_PARENT,
                               .type = (int32_t)type,

@@ -68,13 +68,13 @@ static Status read_file_element(VtpReader *reader, const XmlElement *element, Er
     const char *compressor = attribute_or_empty(element, "compressor");
     if (strcmp(type, "PolyData") != 0 && strcmp(type, "UnstructuredGrid") != 0)
         return err_set(err, STATUS_INPUT,
-                       "the file is of type '%.40s'; lines are in PolyData and UnstructuredGrid",
+                       "the file has the type '%.40s'; it must be PolyData or UnstructuredGrid",
                        type);
     int packing = VTP_PLAIN;
     while (packing < VTP_PACKINGS && strcmp(packings[packing], compressor) != 0)
         packing++;
     if (packing == VTP_PACKINGS)
-        return err_set(err, STATUS_INPUT, "it is compressed by %.60s; %s and %s are read",
+        return err_set(err, STATUS_INPUT, "the compressor is %.60s; it must be %s or %s",
                        compressor, packings[VTP_ZLIB], packings[VTP_LZ4]);
     reader->coding = (VtpCoding){
         .is_big_endian = strcmp(attribute_or_empty(element, "byte_order"), "BigEndian") == 0,
@@ -159,8 +159,8 @@ static Status begin(void *context, Xml *xml, const XmlElement *element, Err *err
     VtpReader *reader = context;
     if (xml_depth(xml) == 0) {
         if (strcmp(element->name, "VTKFile") != 0)
-            return err_set(err, STATUS_INPUT, "the document is <%.40s>; VTK's are <VTKFile>",
-                           element->name);
+            return err_set(err, STATUS_INPUT,
+                           "the outermost element is <%.40s>; it must be <VTKFile>", element->name);
         return read_file_element(reader, element, err);
     }
     if (strcmp(element->name, "Piece") == 0)
@@ -190,7 +190,8 @@ static Status parse_numbers(VtkArray *array, char *text, size_t *n, Err *err)
         TRY(mem_reserve(&array->value, &array->capacity, *n + 1, sizeof *array->value,
                         "numbers of an array", err));
         if (!number_parse(at, &array->value[*n]))
-            return err_set(err, STATUS_INPUT, "'%.40s' is no number%s", at, decimal_comma_hint(at));
+            return err_set(err, STATUS_INPUT, "'%.40s' is not a number%s", at,
+                           decimal_comma_hint(at));
         ++*n;
     }
     return STATUS_OK;
@@ -217,7 +218,8 @@ static Status finish_array(XmlArray *of, size_t n, Err *err)
         return to_text(&of->array, n, err);
     of->array.n = n / of->array.components;
     if (n % of->array.components != 0)
-        return err_set(err, STATUS_INPUT, "it has %zu numbers, which are no tuples of %zu", n,
+        return err_set(err, STATUS_INPUT,
+                       "it has %zu numbers, which is not a multiple of its %zu components", n,
                        of->array.components);
     return STATUS_OK;
 }
@@ -290,8 +292,7 @@ static Status decode_appended(VtpReader *reader, Err *err)
         Status status = of->offset < size
                             ? decode(reader, of, from + 1 + of->offset, end_of_file, err)
                             : err_set(err, STATUS_INPUT,
-                                      "it is said to be at byte %zu of the appended data, which "
-                                      "has %zu",
+                                      "its offset is %zu, but the appended data has only %zu bytes",
                                       of->offset, size);
         if (blame_array(of, status, err) == STATUS_INPUT)
             err_prefix(err, "%s: ", reader->name);
@@ -351,7 +352,7 @@ static Status add_cells(const VtpReader *reader, size_t piece, VtkData *data, si
         if (!corners || !ends)
             continue;
         if (kind->has_types && (!types || types->array.n != ends->array.n))
-            return err_set(err, STATUS_INPUT, "cells have no types, or not as many");
+            return err_set(err, STATUS_INPUT, "cells must have exactly one type each");
         const VtkCells cells = {.corner = corners->array.value,
                                 .end = ends->array.value,
                                 .type = types ? types->array.value : NULL,
@@ -371,8 +372,8 @@ static Status append_values(VtkArray *to, const VtkArray *more, Err *err)
     if (!to->value && !more->value)
         return STATUS_OK;
     if (to->components != more->components || !to->value || !more->value)
-        return err_set(err, STATUS_INPUT, "the array '%.60s' differs from piece to piece",
-                       to->name);
+        return err_set(err, STATUS_INPUT,
+                       "the array '%.60s' must have the same components in all pieces", to->name);
     TRY(mem_reserve(&to->value, &capacity, n + added, sizeof *to->value, "values", err));
     memcpy(to->value + n, more->value, added * sizeof *to->value);
     to->n += more->n;

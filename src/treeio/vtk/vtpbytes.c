@@ -41,7 +41,7 @@ static int bits_of(char letter)
 
 static Status refuse_end(Err *err)
 {
-    return err_set(err, STATUS_INPUT, "there are fewer bytes than it announces");
+    return err_set(err, STATUS_INPUT, "it has fewer bytes than it announces");
 }
 
 /* Reads the next four letters. Blanks between them do not count. */
@@ -57,7 +57,8 @@ static Status next_group(ByteStream *stream, Err *err)
             continue;
         int six = letter == '=' && letters >= 2 ? 0 : bits_of(letter);
         if (six < 0)
-            return err_set(err, STATUS_INPUT, "a byte of %d is no letter of base64",
+            return err_set(err, STATUS_INPUT,
+                           "it has a byte of value %d, which is not a base64 character",
                            (unsigned char)letter);
         padding += letter == '=';
         bits = bits << 6 | (uint32_t)six;
@@ -112,7 +113,7 @@ static Status check_claim(const ByteStream *stream, double claimed, double most,
     char claim[BYTES_TEXT_SIZE], left[BYTES_TEXT_SIZE];
     if (claimed <= most)
         return STATUS_OK;
-    return err_set(err, STATUS_INPUT, "it announces %s; there are %s more in the file",
+    return err_set(err, STATUS_INPUT, "it announces %s, but only %s of the file are left",
                    bytes_text(claimed, claim), bytes_text(bytes_left(stream), left));
 }
 
@@ -170,8 +171,7 @@ static Status check_room(const VtpSource *source, double total, Err *err)
     double size = (double)source->number_size, most = source->max_numbers * size;
     if (total > most)
         return err_set(err, STATUS_INPUT,
-                       "it announces %s; by the numbers of points and cells of its piece it has at "
-                       "most %s",
+                       "it announces %s; the points and cells of its piece allow at most %s",
                        bytes_text(total, claim), bytes_text(most, allowed));
     TRY(check_unpacked(source->taken + total / size * sizeof(double), source->file_size, err));
     return mem_check(source->taken + total + total / size * sizeof(double), source->name, err);
@@ -187,7 +187,7 @@ Status bytes_inflate(const char *packed, size_t n, char *out, size_t size, Err *
     libdeflate_free_decompressor(inflater);
     return result == LIBDEFLATE_SUCCESS
                ? STATUS_OK
-               : err_set(err, STATUS_INPUT, "no zlib data of %zu bytes", size);
+               : err_set(err, STATUS_INPUT, "not zlib data that unpacks to %zu bytes", size);
 }
 
 static Status unpack_lz4(const char *packed, size_t n, char *out, size_t size, Err *err)
@@ -195,7 +195,7 @@ static Status unpack_lz4(const char *packed, size_t n, char *out, size_t size, E
     if (n <= INT_MAX && size <= INT_MAX &&
         LZ4_decompress_safe(packed, out, (int)n, (int)size) == (int)size)
         return STATUS_OK;
-    return err_set(err, STATUS_INPUT, "no LZ4 data of %zu bytes", size);
+    return err_set(err, STATUS_INPUT, "not LZ4 data that unpacks to %zu bytes", size);
 }
 
 static Status unpack_blocks(ByteStream *stream, const PackedBlocks *blocks, char *packed, char *out,

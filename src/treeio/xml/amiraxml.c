@@ -40,7 +40,7 @@ static Status begin_cell(WorkbookReader *reader, const XmlElement *element, Err 
     if (!index)
         return STATUS_OK;
     if (!integer_parse(index, 1, MAX_COLUMNS, &number))
-        return err_set(err, STATUS_INPUT, "the Index of a cell is '%.40s'; it may be 1 to %d",
+        return err_set(err, STATUS_INPUT, "the Index of a cell is '%.40s'; it must be 1 to %d",
                        index, MAX_COLUMNS);
     reader->column = (size_t)number - 1;
     return STATUS_OK;
@@ -83,7 +83,7 @@ static Status end_cell(WorkbookReader *reader, char *text, size_t line, Err *err
     if (!reader->is_read || !reader->in_row)
         return STATUS_OK;
     if (reader->column >= MAX_COLUMNS)
-        return err_set(err, STATUS_INPUT, "a row has more than %d cells", MAX_COLUMNS);
+        return err_set(err, STATUS_INPUT, "a row has more than %d cells, the maximum", MAX_COLUMNS);
     char **title = &reader->title[reader->column];
     if (reader->row > 0)
         return *title ? take_value(reader, *title, text, line, err) : STATUS_OK;

@@ -260,8 +260,8 @@ static Status check_axes(const GraphmlReader *reader, const KeyNames *names, Err
         if (names->name[k] ? has_numbers(reader, names->name[k]) : k == 2)
             continue;
         return err_set(err, STATUS_INPUT,
-                       "%s: nodes have no number '%.60s', which is to be %c; `graphml_keys` says "
-                       "what their places are called",
+                       "%s: nodes have no key '%.60s' to read %c from; name the keys of positions "
+                       "with `graphml_keys`",
                        reader->graph->name, names->name[k] ? names->name[k] : "X", "xyz"[k]);
     }
     return STATUS_OK;

@@ -94,7 +94,8 @@ static Status end(void *context, Xml *xml, const char *name, char *text, Err *er
     size_t component = reader->component++;
     if (of_point && strcmp(attribute, "position") == 0) {
         if (component > 2)
-            return err_set(err, STATUS_INPUT, "a position has more than 3 numbers");
+            return err_set(err, STATUS_INPUT,
+                           "a position has more than 3 numbers; it must have at most 3");
         attribute = axes[component];
     } else if (component > 0) {
         return STATUS_OK;

@@ -105,7 +105,7 @@ static Status add_line(NamedNetwork *network, size_t i, size_t from, double *cor
         corner[k] = (double)point;
     }
     if (n < 2)
-        return err_set(err, STATUS_INPUT, "the segment has %zu of its points; it must have two", n);
+        return err_set(err, STATUS_INPUT, "the segment has %zu end points; it must have two", n);
     return vtk_add_line(&network->data, i, corner, n, 0, err);
 }
 
