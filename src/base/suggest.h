@@ -22,8 +22,8 @@ typedef struct Suggestion {
 
 /* Starts a search for a word of `length` characters, with no name offered yet. */
 Suggestion suggestion_for(const char *word, size_t length);
-/* Offers a name. A name is similar if the number of edits is at most a third of its length; the
- * bound is a choice that keeps far-fetched names out. Words and names of more than 32 characters
+/* Offers a name. A name is similar if the number of edits is at most a third of its length.
+ * Reason for a third not recorded. Words and names of more than 32 characters
  * are never similar. On a tie, the name that was offered first stays. */
 void suggestion_offer(Suggestion *suggestion, const char *name);
 /* Appends "; did you mean PREFIXname?" to the error sentence if a similar name was offered. `err`

@@ -21,7 +21,7 @@ typedef struct Contacts {
 } Contacts;
 
 /* Margin of a boundary edge: how far beyond its ends it still makes a contact, as a fraction of its
- * length. It must exceed the rounding error of an intersection. */
+ * length. Reason for 1e-9 not recorded. */
 #define CONTACT_MARGIN 1e-9
 
 /* Adds a contact at the position `t`, clamped to [0, 1]. */
