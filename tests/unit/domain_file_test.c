@@ -538,7 +538,7 @@ static void files_that_are_no_stl_are_refused(void **state)
     char binary[84 + 50 - 1] = "Binary";
     binary[80] = 1;
     expect_bytes_refused("mesh:a.stl", binary, sizeof binary,
-                         "of the 1 triangles that it states has 134 bytes, this one 133");
+                         "with 1 triangles it must have 134 bytes, but it has 133");
     expect_bytes_refused("mesh:a.stl", binary, 70, "fewer than the 84");
 }
 
