@@ -238,7 +238,7 @@ test_formats_lists_the_keys_of_a_tree() {
 
 # `--tolerance` takes the keys that FORMATS.md lists, and no other.
 test_formats_lists_the_keys_of_a_tolerance() {
-    sed -n '/^## Tolerances/,/^## /p' "$REPO/docs/FORMATS.md" | tr '\n' ' ' | sed 's/.*The keys: `\([^`]*\)`.*/\1/; s/\. .*//' |
+    sed -n '/^## Tolerances/,/^## /p' "$REPO/docs/FORMATS.md" | tr '\n' ' ' | sed 's/.*other keys are limits: `\([^`]*\)`.*/\1/; s/\. .*//' |
         tr ' ' '\n' | grep . | sort >listed
     sed -n 's/^    \[LIMIT_[A-Z0-9_]*\] = {"\([a-z0-9_]*\)".*/\1/p' "$REPO/src/compare/rules/tolerance.c" | sort >known
     expect_same listed known

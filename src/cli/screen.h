@@ -31,7 +31,8 @@ typedef struct Screen {
     double start_s, last_s; /* start of the step and last output, times of clock_seconds */
 } Screen;
 
-/* Initializes *screen and returns a Talk that prints to standard error. The Talk borrows `screen`. */
+/* Initializes *screen and returns a Talk that prints to standard error. The Talk borrows `screen`.
+ */
 Talk screen_talk(Screen *screen, bool quiet);
 /* Prints the sentences that are held back. Later sentences are printed at once. */
 void screen_print_held(Screen *screen);

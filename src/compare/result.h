@@ -207,8 +207,8 @@ typedef enum PixelClass {
     PIXEL_EDGE,          /* ids differ, at an edge */
     PIXEL_SHADOW,        /* ids and geometry agree; one is over 1.5 times as bright as the other */
     PIXEL_GEOMETRY,      /* ids agree; depth or normal differs */
-    PIXEL_SHADING,  /* ids and geometry agree or are unknown; color differs by over one code */
-    PIXEL_ROUNDING, /* ids and geometry agree or are unknown; color differs by one code */
+    PIXEL_SHADING,       /* ids and geometry agree or are unknown; color differs by over one code */
+    PIXEL_ROUNDING,      /* ids and geometry agree or are unknown; color differs by one code */
     PIXEL_IDENTICAL,
     PIXEL_CLASSES
 } PixelClass;
@@ -221,12 +221,12 @@ typedef struct LedgerEntry {
     uint32_t id;
     size_t area_a, area_b; /* pixels */
     size_t common;         /* pixels that show the segment in both images */
-    size_t differing; /* pixels that show the segment in either image, and differ in color or id */
-    double outline_px;       /* length of the segment's outline in A; in B if A does not show it */
-    double signed_levels[3]; /* per channel: mean difference of the common pixels */
-    double gain;             /* g of the least squares fit B = g A; NAN if A is black */
-    double moved_px;         /* (area_b - area_a) / outline_px; positive: outwards */
-    double max_levels;       /* largest difference of a common pixel */
+    size_t differing;  /* pixels that show the segment in either image, and differ in color or id */
+    double outline_px; /* length of the segment's outline in A; in B if A does not show it */
+    double signed_levels[3];      /* per channel: mean difference of the common pixels */
+    double gain;                  /* g of the least squares fit B = g A; NAN if A is black */
+    double moved_px;              /* (area_b - area_a) / outline_px; positive: outwards */
+    double max_levels;            /* largest difference of a common pixel */
     int left, top, right, bottom; /* box of the segment's pixels in both images, inclusive */
 } LedgerEntry;
 

@@ -9,8 +9,8 @@
 
 /* What POV-Ray draws, and where. All pointers are borrowed until povraytiles_free. */
 typedef struct PovrayTilesParams {
-    EmitParams emit; /* the scene, its colors at all moments, and how it is written; without file
-                      * names, `ids`, `built` and `part` */
+    EmitParams emit;    /* the scene, its colors at all moments, and how it is written; without file
+                         * names, `ids`, `built` and `part` */
     const char *folder; /* an existing folder, for scenes and planes */
     double clock;       /* moment of the scene, in [0, 1] */
     int antialias;      /* N x N samples per pixel of the colors */

@@ -361,8 +361,9 @@ int main(int argc, char **argv)
         if (points.n >= from && points.n <= to)
             solve(&points, &rows[points.shape[0] == 'b'][points.n]);
     fclose(file);
-    printf("| | N | topologies | sets | remaining topologies, mean (max) | "
-           "sets where annealing has the best | open, mean (max) |\n|---|---|---|---|---|---|---|\n");
+    printf(
+        "| | N | topologies | sets | remaining topologies, mean (max) | "
+        "sets where annealing has the best | open, mean (max) |\n|---|---|---|---|---|---|---|\n");
     for (int shape = 0; shape < 2; shape++)
         for (int n = from; n <= to; n++) {
             const Row *row = &rows[shape][n];

@@ -592,8 +592,7 @@ static void rejects_graphs_of_amira_that_make_no_sense(void **state)
         {"define POINT 8", "define POINT 9", ":47: '@5' in EdgePointCoordinates is not a number"},
         {"@5\n\n# Data", "@5(HxMagic,12)\n\n# Data",
          ":19: block @5 is packed by 'HxMagic'; it must be HxByteRLE or HxZip"},
-        {"float thickness", "complex thickness",
-         ":19: 'complex' is not a known type of numbers"},
+        {"float thickness", "complex thickness", ":19: 'complex' is not a known type of numbers"},
         {"} @6", "}",
          ":18: the declaration is not understood; it must be 'EDGE { TYPE NAME } @BLOCK'"},
         {"@6\n3\n1\n2\n", "@8\n3\n1\n2\n", ":57: block @8 is not declared in the header"},
@@ -732,8 +731,7 @@ static void rejects_tables_that_make_no_sense(void **state)
     static const struct {
         const char *text, *columns, *sentence;
     } bad[] = {
-        {"1,2,3,4\n", NULL,
-         "csv:1: the table has no titles; name its columns with `columns`, "},
+        {"1,2,3,4\n", NULL, "csv:1: the table has no titles; name its columns with `columns`, "},
         {"a,b,c\n1,2,3\n", NULL,
          "csv:1: no columns are called x, y, z (of nodes) or x0, y0, z0, x1, y1, z1"},
         {"from,to,r\n1,2,3\n", NULL,
