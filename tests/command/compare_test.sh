@@ -290,7 +290,7 @@ test_help_says_what_the_tiers_are() {
     for tier in A B surface none; do
         expect_stdout "^  $tier +[a-z]+"
     done
-    expect_stdout '\(2 in tier A\)'
+    expect_stdout 'default: 2 in tier A'
 }
 
 # expect_cause SENTENCE: of a.png and b.png, where b.png was made by another program.

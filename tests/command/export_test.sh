@@ -155,7 +155,7 @@ test_names_stay_in_their_place_in_every_format() {
     [ "$(grep -c '^[^#a-z]' x.obj)" = 0 ] || fail "expected no line that OBJ does not know"
     run corcast export "$DATA/bifurcation.swc" -o 'my tree.obj' --quiet
     expect_status 2
-    expect_sentence "cannot name 'my tree.mtl'"
+    expect_sentence "the material file of an OBJ cannot be called 'my tree.mtl'"
 }
 
 # The limit is on the size of files, so that writing fails half way.

@@ -187,7 +187,7 @@ test_mistakes_are_named_with_file_and_line() {
     refused '[panel a]\ntree = t.swc\nmodel = jined\n' 'r\.ini:3: .*jined.* is not one of'
     refused '[panel a]\ntree = t.swc\n[figure]\ncolumns = 0\n' 'r\.ini:4: .*columns.*0'
     refused '[panel a]\ntree = t.swc\n[panels]\n' 'r\.ini:3: \[panels\] must come before all panels'
-    refused '[panels]\nmodle = joined\n' "r\.ini:2: 'modle'"
+    refused '[panels]\nmodle = joined\n' "r\.ini:2: unknown key 'modle'"
     refused '[boxes]\n' 'r\.ini:1: \[boxes\] is not \[figure\]'
     refused 'size = 3x3\n' 'r\.ini:1: .* is before the first section'
     refused '[figure]\n' 'r\.ini: the figure has no \[panel NAME\]'

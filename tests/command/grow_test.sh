@@ -245,7 +245,7 @@ test_a_tree_that_is_not_as_it_should_be_is_said_even_when_quiet() {
     grep -q 'smaller than the root radius, [0-9.e+]* mm, so the vessels overlap everywhere' stderr ||
         fail "expected a warning of a root larger than the domain$(said)"
     run_ok corcast grow --terminals 400 --domain rect:40,30 --q-perf 90000 -o tree.swc --quiet
-    grep -q '^corcast: the domain, 40 x 30 mm, was too full' stderr || fail "expected a warning with a size$(said)"
+    grep -q '^corcast: the domain, 40 x 30 mm, is too small' stderr || fail "expected a warning with a size$(said)"
 }
 
 test_a_mesh_that_is_too_small_is_asked_about_its_unit() {

@@ -98,7 +98,7 @@ test_what_has_no_effect_on_lines_is_refused() {
     expect_sentence 'color-by has no effect on a line drawing'
     run corcast render tree.swc --ink 0.2 --model isosurface -o lines.svg
     expect_status 2
-    expect_sentence 'ink is for --model cylinders, joined and rounded, not isosurface'
+    expect_sentence '--ink needs --model cylinders, joined and rounded, not isosurface'
     run corcast render tree.swc --ink 0 -o lines.svg
     expect_status 2
     expect_sentence 'ink.*from 0\.01 to 10'

@@ -85,7 +85,7 @@ test_a_scene_of_cells_that_would_take_minutes_to_find_is_refused_with_a_sentence
     rows '1 3 0 0 0 1 -1' '2 3 4.1 0 0 0.7 1' '3 3 7.3 2.2 0 0.5 2' '4 3 7.1 -2.9 1 70194 2' '5 3 11 3.4 2 0.4 3'
     within 30 "$CORCAST" scene tree.swc --quiet --model isosurface -o tree.pov
     expect_status 2
-    grep -q 'radii that are too different' stderr || fail "expected the reason$(said)"
+    grep -q 'radii that differ too much' stderr || fail "expected the reason$(said)"
     expect_only tree.swc
 }
 

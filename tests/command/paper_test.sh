@@ -131,7 +131,7 @@ test_a_grey_picture_has_no_inks() {
     printf 'P2 2 1 255 9 200\n' >grey.pgm
     run corcast convert grey.pgm grey.tif --cmyk-profile "$CMYK"
     expect_status 2
-    expect_sentence 'grey.tif: an output profile (CMYK) needs an opaque picture in color'
+    expect_sentence 'grey.tif: an output profile \(CMYK\) needs an opaque picture in color'
     expect_only grey.pgm
 }
 

@@ -161,7 +161,7 @@ test_tiles_that_differ_in_their_note_alone_are_refused_in_either_order() {
         merge_refuses '1.png: does not belong .* different processor instructions' kernels.png 1.png
     done
     for other in 0 f; do
-        hash=$(grep -ao 'made from [0-9a-f]*' 2.png | cut -d ' ' -f 3)
+        hash=$(grep -aoE 'made from [0-9a-f]{64}' 2.png | cut -d ' ' -f 3)
         retell "$hash" "$(printf '%064d' 0 | tr 0 $other)" 2.png from.png
         merge_refuses 'from.png: does not belong .* its tree or other input files differ' 1.png from.png
         merge_refuses '1.png: does not belong .* its tree or other input files differ' from.png 1.png

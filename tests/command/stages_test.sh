@@ -61,7 +61,7 @@ s/.tissue./[trunk]/|stages.ini:8: the stage \[trunk\] is defined twice
 s/keep-radii = on/inlet = 0,0,30/|stages.ini:11: 'inlet' can be set only in the first stage; later stages continue its trees
 s/keep-radii = on/inlet-shares = 2,1/|stages.ini:11: 'inlet-shares' can be set only in the first stage
 s/domain = ball:31.5/domain = ball:5@100,0,0/|stages.ini: \[tissue\]: .*the domain does not hold the tree
-s/^keep-radii.*//;s/gamma = 3/gamma = 0.1:3,2:2/|stages.ini: \[tissue\]: gamma 0.1:3,2:2 would change the radii of stage \[trunk\], which has 2.4
+s/^keep-radii.*//;s/gamma = 3/gamma = 0.1:3,2:2/|stages.ini: \[tissue\]: gamma 0.1:3,2:2 would change the radii of stage \[trunk\], which has gamma 2.4
 s/gamma = 3/gama = 3/|stages.ini:12: unknown option 'gama' in a stage
 s/gamma = 3/from = x.swc/|stages.ini:12: unknown option 'from' in a stage
 s/gamma = 3/gamma = three/|stages.ini:12: --gamma: 'three'

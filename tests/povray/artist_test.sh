@@ -44,7 +44,7 @@ test_no_look_and_no_plane_makes_povray_warn() {
     local model look plane=0
     run_ok corcast grow --quiet --terminals 40 --inlet 0,50 --inlet 0,-50 -o tree.swc
     for model in $MODELS; do
-        for look in $(corcast looks | grep -v 'draws none' | cut -f 1); do
+        for look in $(corcast looks | grep -v 'not in POV-Ray' | cut -f 1); do
             run_ok corcast scene tree.swc --quiet --model "$model" --look "$look" --shadows on --size 24x18 --view iso \
                 --projection perspective --color-by flow --log --classes 5 --prune-radius 0.3 -o "$model.pov"
             draw "$model" +W24 +H18 Declare=Corcast_Plane=$((plane++ % 5))

@@ -125,7 +125,7 @@ class Pictures(unittest.TestCase):
         a = self.tree.render(size=(80, 60))
         found = corcast.compare(a, corcast.Image.from_array(a.pixels[::-1]))
         self.assertFalse(found.agrees)
-        self.assertIn("upside down", found.cause)
+        self.assertIn("flipped top to bottom", found.cause)
 
     def test_a_notebook_shows_trees_pictures_and_pages(self):
         self.assertTrue(self.tree._repr_png_().startswith(b"\x89PNG"))

@@ -8,12 +8,13 @@
 #include <stdlib.h>
 
 /* The planes of a check. */
-typedef struct SurfacePlanes {
+typedef struct SurfaceCheckPlanes {
     const Plane *a, *b, *allowed;
-} SurfacePlanes;
+} SurfaceCheckPlanes;
 
 /* Classes one pixel; its error is appended to `errors` when it is common. */
-static void count_pixel(const SurfacePlanes *planes, size_t i, SurfaceCheck *check, double *errors)
+static void count_pixel(const SurfaceCheckPlanes *planes, size_t i, SurfaceCheck *check,
+                        double *errors)
 {
     const double a = (double)planes->a->values[i], b = (double)planes->b->values[i];
     const double allowed = (double)planes->allowed->values[i];
@@ -68,7 +69,7 @@ Status surface_check(const Plane *a, const Plane *b, const Plane *allowed, Surfa
                           .max_mm = NAN,
                           .worst_x = -1,
                           .worst_y = -1};
-    const SurfacePlanes planes = {a, b, allowed};
+    const SurfaceCheckPlanes planes = {a, b, allowed};
     double *errors;
     TRY(mem_calloc(&errors, check.pixels, sizeof *errors, "errors of pixels", err));
     for (size_t i = 0; i < check.pixels; i++)
