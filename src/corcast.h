@@ -133,13 +133,15 @@ CORCAST_API int corcast_options_new(const char *command, corcast_options **out,
 
 /* Sets one option.
  *
- * name     without dashes: "terminals". One name does not exist on the command line: "templates",
- * the folder with looks, fonts and templates. Default: templates/ of the installed library. value
- * as on the command line: "1000", "800x600", "on". The library copies it. A flag takes "on" or
- * "off". An option that may be given several times adds one value per call. NULL sets the default
- * again. Errors   CORCAST_WRONG for an unknown name, and for a value that is malformed or out of
- * range; the option then keeps its value. Conditions between options are checked by the operation
- *          that takes the options.
+ * name     The option's name without dashes: "terminals". One name does not exist on the command
+ *          line: "templates", the folder with looks, fonts and templates. Its default is
+ *          templates/ of the installed library.
+ * value    The text as on the command line: "1000", "800x600", "on". A flag takes "on" or "off".
+ *          NULL sets the default again. The library copies the text. An option that may be given
+ *          several times adds one value per call.
+ * Errors   CORCAST_WRONG for an unknown name, and for a value that is malformed or out of range.
+ *          The option then keeps its value. The operation that takes the options checks the
+ *          conditions between options.
  * Stability: stable. */
 CORCAST_API int corcast_options_set(corcast_options *options, const char *name, const char *value,
                                     corcast_error *error);
@@ -154,12 +156,13 @@ CORCAST_API int corcast_options_set(corcast_options *options, const char *name, 
 CORCAST_API int corcast_options_get(corcast_options *options, const char *name, const char **value,
                                     corcast_error *error);
 
-/* Receives the progress of an operation. `step` names the current step, for example
- * "growing". The first call of a step has the fraction 0; after its last call comes one with step
- * NULL. `fraction` is in [0, 1]. Return 0 to continue.
- * Any other value stops the operation soon: it fails with CORCAST_FAILED and the kind "cancelled",
- * unless it ends before it notices. The callback must not use the handles of the operation that
- * calls it. */
+/* Receives the progress of an operation. `step` names the current step, for example "growing".
+ * `fraction` is in [0, 1]. The first call of a step has the fraction 0. A call with `step` NULL
+ * reports that the step has ended.
+ *
+ * Return 0 to continue. Any other value stops the operation soon: the operation fails with
+ * CORCAST_FAILED and the kind "cancelled", unless it ends before it checks the value. The callback
+ * must not use the handles of the operation that calls it. */
 typedef int corcast_progress(void *user, const char *step, double fraction);
 
 /* Receives a sentence about the work, without a final newline. `is_warning` is 0 for a fact, and 1
@@ -192,16 +195,21 @@ CORCAST_API const char *corcast_report_json(const corcast_report *report);
 
 /* Finds one number of a report.
  *
- * key      names of members separated by dots: "parts.radii" of certify. Items of arrays are
- * numbers from 0 on: "cases.0.ssim". value    receives the number; 1 or 0 for true or false; NAN
- * for null. Errors   CORCAST_WRONG if there is no such member, or if it is neither a number, nor
- * true, false or null. Stability: stable. */
+ * key      Names of members separated by dots: "parts.radii" of certify. Items of arrays are
+ *          numbered from 0: "cases.0.ssim".
+ * value    Receives the number; 1 for true, 0 for false, NAN for null.
+ * Errors   CORCAST_WRONG if the report has no such member, or if the member is neither a number,
+ *          nor true, false or null.
+ * Stability: stable. */
 CORCAST_API int corcast_report_number(const corcast_report *report, const char *key, double *value,
                                       corcast_error *error);
 
-/* Finds one text of a report, by a key as corcast_report_number takes it. The string is UTF-8 and
- * belongs to the report; NULL for null. Errors: CORCAST_WRONG if there is no such member, or if it
- * is neither a text nor null.
+/* Finds one text of a report.
+ *
+ * key      As for corcast_report_number.
+ * value    Receives the text in UTF-8; NULL for null. The string belongs to the report.
+ * Errors   CORCAST_WRONG if the report has no such member, or if the member is neither a text nor
+ *          null.
  * Stability: stable. */
 CORCAST_API int corcast_report_text(const corcast_report *report, const char *key,
                                     const char **value, corcast_error *error);
@@ -281,13 +289,15 @@ CORCAST_API int corcast_tree_nodes(const corcast_tree *tree, corcast_nodes *node
  * tree: radius, length, flow, velocity, pressure, wss, reynolds, level, strahler,
  * diameter-strahler, tree, branch (docs/METHODS.md has the definitions).
  *
- * options  NULL, or options of "info", whose group "blood" supplies numbers that the tree's file
- * does not state: "p-perf". values   receives an array with an entry per node; NAN at roots, and
- * wherever there is no value. It belongs to the tree and is valid until the tree is freed or
- * changed, or the same field is found again. unit     receives the unit, "" for a pure number,
- * valid as long as `values`. May be NULL. Errors   CORCAST_WRONG for an unknown name, and for a
- * field that needs a number that neither the tree nor the options have; the sentence names the
- * option. Stability: stable. */
+ * options  NULL, or options of "info". The options of the group "blood", such as "p-perf", supply
+ *          numbers that the tree's file does not state.
+ * values   Receives an array with an entry per node; NAN at roots, and wherever there is no value.
+ *          The array belongs to the tree. It is valid until the tree is freed or changed, or the
+ *          same field is found again.
+ * unit     Receives the unit; "" for a pure number. Valid as long as `values`. May be NULL.
+ * Errors   CORCAST_WRONG for an unknown name, and for a field that needs a number that neither the
+ *          tree nor the options have. The error's sentence names the option.
+ * Stability: stable. */
 CORCAST_API int corcast_tree_field(corcast_tree *tree, const char *name,
                                    const corcast_options *options, const double **values,
                                    const char **unit, corcast_error *error);
@@ -368,7 +378,8 @@ typedef enum corcast_type {
     CORCAST_U32 = 4  /* uint32_t, of CORCAST_ID */
 } corcast_type;
 
-/* The geometry, appearance and view of a tree that is drawn. It keeps no reference to its tree. */
+/* The geometry, appearance and view of a tree that is drawn. A scene keeps no reference to its
+ * tree. */
 typedef struct corcast_scene corcast_scene;
 
 /* Makes the scene of a tree.
@@ -493,9 +504,9 @@ CORCAST_API void corcast_mesh_free(corcast_mesh *mesh);
 /* Runs a command on a tree and writes its files, with the bytes of the command line.
  *
  * options  of "export" (meshes, curves, volumes, pages), "scene" (POV-Ray, OpenSCAD, Tachyon),
- *          "render" (pictures, planes, animations, pages), "diagram" or "convert" (trees). The
- * option "output" is not used: `path` is the output. Its extension decides the format. Some
- *          commands write further files, whose names begin like `path`.
+ *          "render" (pictures, planes, animations, pages), "diagram" or "convert" (trees).
+ *          The option "output" is not used: `path` is the output. Its extension decides the
+ *          format. Some commands write further files, whose names begin like `path`.
  * Errors   CORCAST_WRONG if a file would be written over one that is read.
  * Stability: stable. */
 CORCAST_API int corcast_export(const corcast_tree *tree, const corcast_options *options,

@@ -58,7 +58,8 @@ Call call_begin(corcast_error *error);
 /* Ends a call: stores status and sentence in the caller's error. Returns the corcast_status. */
 int call_end(Call *call, Status status);
 
-/* Give the caller's locale back to a callback, and take it again. */
+/* Surround each callback. callback_begin restores the caller's locale and returns the library's
+ * own; callback_end sets the library's own locale again. */
 locale_t callback_begin(locale_t before);
 void callback_end(locale_t own);
 

@@ -1,4 +1,4 @@
-/* The picture of a caller. */
+/* The content of a corcast_image: colors and planes of a picture. All members are owned. */
 #ifndef CORCAST_API_IMAGE_H
 #define CORCAST_API_IMAGE_H
 

@@ -1,12 +1,18 @@
-/* The environment variables that select other programs. */
+/* Reads the environment variables that select other programs. Only the command line reads the
+ * environment; the library receives a ProgramChoice as a parameter.
+ *
+ * Use: TRY(povray_from_environment(&choice, err)); */
 #ifndef CORCAST_CLI_PROGRAMS_H
 #define CORCAST_CLI_PROGRAMS_H
 
 #include "oracle/program.h"
 
-/* Read which program to run, CORCAST_POVRAY or CORCAST_TACHYON, and how long to wait for it,
- * CORCAST_POVRAY_PATIENCE in seconds. The strings of the result are borrowed from the environment.
- * Errors: STATUS_USAGE if the patience is not a number of 0 or more. */
+/* Read the program's path and the waiting time from the environment. The path is CORCAST_POVRAY or
+ * CORCAST_TACHYON; without the variable, the path is NULL: the default name. The waiting time of
+ * both programs is CORCAST_POVRAY_PATIENCE, in seconds; its default is PROGRAM_PATIENCE_S.
+ *
+ * povray, tachyon  Set also on failure. The strings are borrowed from the environment.
+ * Errors           STATUS_USAGE if the waiting time is not a finite number of 0 or more. */
 MUST_CHECK Status povray_from_environment(ProgramChoice *povray, Err *err);
 MUST_CHECK Status tachyon_from_environment(ProgramChoice *tachyon, Err *err);
 

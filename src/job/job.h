@@ -1,5 +1,11 @@
-/* The operations of corcast, each described by a Command and done by functions of its own header.
- * An operation prints nothing: sentences and progress go through parsed->common.talk. */
+/* The operations of corcast: grow, render, export and others. A Command describes an operation: its
+ * name, its help and its options. The operation's own header declares the functions that do the
+ * work. An operation prints nothing: it passes sentences and progress to parsed->common.talk.
+ *
+ * Use: list the operations that a caller can choose by name.
+ *
+ *     for (size_t i = 0; job_commands[i]; i++)
+ *         puts(job_commands[i]->name); */
 #ifndef CORCAST_JOB_JOB_H
 #define CORCAST_JOB_JOB_H
 
@@ -10,7 +16,7 @@ extern const Command command_grow, command_refine, command_bifurcation, command_
     command_merge, command_diagram, command_figure, command_verify, command_compare, command_report,
     command_power, command_check_figure;
 
-/* The commands above in the order of the help; NULL ends them. */
+/* Commands in the order of the help; NULL ends the list. command_merge is not in the list. */
 extern const Command *const job_commands[];
 
 #endif

@@ -1,5 +1,11 @@
-/* The channel through which an operation tells its caller about its work: sentences, and how far it
- * is. The command line prints them; a program that calls the library takes them by callbacks. */
+/* The channel through which an operation reports to its caller: messages and progress. The command
+ * line prints them. A program that calls the library receives them by callbacks.
+ *
+ * Use, for one step of an operation:
+ *
+ *     progress_start(&progress, "growing", talk);
+ *     while (work remains && progress_show(&progress, fraction)) ...
+ *     progress_end(&progress); */
 #ifndef CORCAST_OPTIONS_TALK_H
 #define CORCAST_OPTIONS_TALK_H
 
@@ -26,8 +32,8 @@ typedef struct Talk {
     void *user; /* passed to all callbacks; borrowed */
 } Talk;
 
-/* Formats a sentence, of any length, and passes it to `talk`, which may be NULL: then nobody
- * listens. A sentence of 1024 bytes or more is dropped if memory runs out. */
+/* Formats a sentence, of any length, and passes it to `talk`. If `talk` is NULL, does nothing. A
+ * sentence of 1024 bytes or more is dropped if memory runs out. */
 void talk_note(const Talk *talk, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void talk_warn(const Talk *talk, const char *format, ...) __attribute__((format(printf, 2, 3)));
 

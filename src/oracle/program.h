@@ -1,5 +1,8 @@
-/* Runs another program that draws a scene into a picture, without a window, and watches it. Private
- * to the module oracle, except ProgramChoice. */
+/* Runs another program that draws a scene into a picture, without a window, and ends the program if
+ * it makes no progress. Private to the module oracle, except ProgramChoice.
+ *
+ * A Program describes the executable, its arguments, and how to decide whether its picture is
+ * complete. Use: fill a Program, then program_draw(&program, &output, &seconds, err). */
 #ifndef CORCAST_ORACLE_PROGRAM_H
 #define CORCAST_ORACLE_PROGRAM_H
 
@@ -11,16 +14,16 @@ typedef struct ProgramChoice {
         *path; /* executable; without a slash it is searched in PATH; NULL: the default name */
     double patience_s;    /* the program is ended after this many seconds without output, and after
                            * five times as many seconds without progress; 0: never */
-    const char *patience; /* what error sentences call patience_s: the name of a setting that users
+    const char *patience; /* name of patience_s in error messages: the name of a setting that users
                            * can change; NULL: "patience" */
 } ProgramChoice;
 
-/* The seconds of patience that users get if they choose none. POV-Ray prints nothing while it
- * parses a large scene, which takes minutes. */
+/* Default of patience_s, in seconds. POV-Ray prints nothing while it parses a large scene, which
+ * takes minutes; a smaller value would end such runs. */
 #define PROGRAM_PATIENCE_S 600
 
-/* Called with the fraction of the picture that is drawn, in [0, 1]. */
-/* Returns false to end the program, whose run then fails with STATUS_CANCELLED. */
+/* Receives the fraction of the picture that is drawn, in [0, 1]. Returns false to end the program,
+ * whose run then fails with STATUS_CANCELLED. */
 typedef bool ProgramProgress(double fraction, void *context);
 
 /* The folder in which the program finds the scene, as the program must name it. */
@@ -43,7 +46,7 @@ void arguments_release(Arguments *arguments);
 
 /* A program, and the picture that it is to draw. All pointers are borrowed. */
 typedef struct Program {
-    const char *name;    /* for sentences: "POV-Ray" */
+    const char *name;    /* name in messages: "POV-Ray" */
     const char *package; /* the Debian package that contains it */
     ProgramChoice choice;
     const char *scene;         /* path of the scene, a regular file with any name */

@@ -28,8 +28,8 @@ typedef struct TachyonRun {
  * frame   receives id and depth (mm along the ray; INFINITY where nothing is visible). Release it
  *         with frame_release, also after an error.
  * run     may be changed by a call that fails.
- * Errors  as emit_write and program_draw; a failure of Tachyon has its own words in the sentence.
- */
+ * Errors  as emit_write and program_draw; if Tachyon fails, the message quotes Tachyon's own
+ *         message. */
 MUST_CHECK Status tachyon_draw(const TachyonParams *params, Frame *frame, TachyonRun *run,
                                Err *err);
 

@@ -1,4 +1,11 @@
-/* The operation `study`: grows and measures trees for all combinations of some values. */
+/* The operation `study`: grows and measures a tree for each combination of chosen option values.
+ *
+ * A plan [study_plan.h] lists options of `grow` and their values. Each combination is a run
+ * [study_run.h], which writes a file of its own. The tables study.csv and study.jsonl
+ * [study_table.h] are made from the files at the end. A study that was interrupted, or whose runs
+ * were grown elsewhere, therefore ends with the same tables.
+ *
+ * Use: corcast study plan.ini -o runs; or study_run(&options, &parsed, &lines, &err). */
 #ifndef CORCAST_STUDY_STUDY_H
 #define CORCAST_STUDY_STUDY_H
 
@@ -7,23 +14,24 @@
 /* What the options of `study` set. */
 typedef struct StudyOptions {
     const char *output; /* folder for the runs and the tables */
-    int only;      /* only this run is grown, counted from 1, and no table is written; 0: all */
-    bool table;    /* nothing is grown: makes a table of the operands */
-    bool trees;    /* the trees are kept, too */
-    bool commands; /* nothing is grown: makes a command per run */
+    int only;      /* the single run that is grown, counted from 1, without tables; 0: all runs */
+    bool table;    /* grow nothing; make a table of the operands */
+    bool trees;    /* also write the tree of each run, as SWC */
+    bool commands; /* grow nothing; make one command per run */
 } StudyOptions;
 
 /* Describes the operation. Its options set a StudyOptions. */
 extern const Command command_study;
 
-/* Reads the plan, the first operand, and grows its runs into the folder. A run whose file is there
- * and was made from the same is not grown again.
+/* Reads the plan, the first operand, and grows its runs into the folder. A run is not
+ * grown again if its file exists and was made from the same inputs. A run that fails does not stop
+ * the other runs, but no table is then written.
  *
- * lines   with `commands`, the commands are appended; with `table`, the table as CSV. Unchanged
- *         otherwise.
+ * lines   With `commands`, receives the commands. With `table`, receives the table as CSV. Both are
+ *         appended. Otherwise unchanged.
  * Errors  STATUS_USAGE if options exclude each other; STATUS_INPUT if the plan is bad; STATUS_IO;
- *         STATUS_MEMORY; STATUS_CANCELLED, and finished runs stay; and those of growth, of the
- *         first run that failed. */
+ *         STATUS_MEMORY. STATUS_CANCELLED if the caller stopped the operation; the files of
+ * finished runs remain. The error of the first run that failed, as study_grow_run. */
 MUST_CHECK Status study_run(const StudyOptions *options, Parsed *parsed, Text *lines, Err *err);
 
 #endif

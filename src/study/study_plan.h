@@ -1,4 +1,11 @@
-/* The plan of a study: values of options of `grow`, and the runs, one for each combination. */
+/* The plan of a study: options of `grow`, the values of each option, and the runs. There is one run
+ * per combination of values.
+ *
+ * Use:
+ *
+ *     TRY(study_plan_read("plan.ini", &plan, err));
+ *     TRY(study_plan_options(&plan, 0, threads, &parsed, err));
+ *     study_plan_release(&plan); */
 #ifndef CORCAST_STUDY_STUDY_PLAN_H
 #define CORCAST_STUDY_STUDY_PLAN_H
 
@@ -7,13 +14,13 @@
 #include "job/tree/refining.h"
 #include "options/options.h"
 
-/* Maximum number of runs of a plan. */
+/* Maximum number of runs of a plan. A larger plan is refused. Reason of the value not recorded. */
 enum { STUDY_MOST_RUNS = 1000000 };
 
-/* An option and its values, as the option writes them. */
+/* An option and its values, as text in the form that the command line accepts. */
 typedef struct StudyKey {
     char *name;   /* owned */
-    char **value; /* owned, with the n strings */
+    char **value; /* n strings; the array and the strings are owned */
     size_t n, capacity;
 } StudyKey;
 
@@ -21,12 +28,12 @@ typedef struct StudyPlan {
     StudyKey *key; /* in the order of the file; owned */
     size_t n, capacity;
     size_t runs;   /* number of combinations; the value of the last key changes first */
-    HashText hash; /* of program version, keys and values */
+    HashText hash; /* hash of program version, keys and values */
 } StudyPlan;
 
 /* What the options of a run set. */
 typedef struct StudyGrowth {
-    const char *output; /* "T.swc", for the command line that the tree's file states */
+    const char *output; /* "T.swc", for the command line that the tree's file records */
     Growing growing;
     Refining refining;
 } StudyGrowth;

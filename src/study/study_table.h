@@ -1,4 +1,11 @@
-/* Tables of JSON objects: the runs of a study, or the output of `info --json`. */
+/* Tables of JSON objects: the runs of a study, or the output of `info --json`. Each object is a
+ * row.
+ *
+ * Use, with a zeroed table:
+ *
+ *     TRY(study_table_add(&table, "runs", err));
+ *     TRY(study_table_write(&table, "study.csv", err));
+ *     study_table_release(&table); */
 #ifndef CORCAST_STUDY_STUDY_TABLE_H
 #define CORCAST_STUDY_STUDY_TABLE_H
 
@@ -13,18 +20,19 @@ typedef struct StudyRow {
 typedef struct StudyTable {
     StudyRow *row; /* owned */
     size_t n, capacity;
-    bool shards; /* only runs of studies are rows */
+    bool shards; /* only runs of studies are accepted as rows */
 } StudyTable;
 
 /* Adds a row for each object in a JSON or JSON Lines file, or in the .json files of a folder.
  *
- * Errors  STATUS_INPUT if a file is missing or is not JSON, or if a named file contains something
- *         else than rows of this table; files of a folder may. STATUS_MEMORY. */
+ * Errors  STATUS_INPUT if a file is missing or is not JSON, or if `path` is a file and contains
+ *         anything else than rows of this table. Files of a folder may contain other things.
+ * STATUS_MEMORY. */
 MUST_CHECK Status study_table_add(StudyTable *table, const char *path, Err *err);
 void study_table_release(StudyTable *table);
 
 /* Sorts the rows of a table of runs by the number of the run. Errors: STATUS_INPUT if the runs are
- * of several plans, or a run is missing or there twice. */
+ * of several plans, or if a run is missing or exists twice. */
 MUST_CHECK Status study_table_check(StudyTable *table, Err *err);
 
 /* Appends the table as CSV. There is a column for each member of any object, in the order of their

@@ -1,5 +1,14 @@
-/* Several pictures of one tree: the frames of values that change with time, a rotation, or growth.
- */
+/* An animation: several pictures of one tree. The pictures show the frames of values that change
+ * with time (a series), a rotation of the view (a turn), or the growth of the tree.
+ *
+ * Pictures are numbered from 1. A series and a turn keep the geometry, so that a renderer can reuse
+ * what it has prepared. Each picture of growth has a geometry of its own.
+ *
+ * Use, after the scene of the whole tree is made:
+ *
+ *     TRY(animation_read(&options, output, &animation, err));
+ *     TRY(animation_count(&animation, &scene.appearance, err));
+ *     TRY(animation_scene(&animation, &subject, number, &shown, &grown, err)); */
 #ifndef CORCAST_JOB_PICTURE_ANIMATION_H
 #define CORCAST_JOB_PICTURE_ANIMATION_H
 
@@ -9,7 +18,7 @@
 
 typedef struct AnimationOptions {
     const char *frames; /* "all" or "A..B"; NULL: no series */
-    int turn, growth;   /* number of pictures; 0: none */
+    int turn, growth;   /* number of pictures of a turn, of growth; 0: no such animation */
 } AnimationOptions;
 
 typedef enum AnimationKind {
@@ -21,12 +30,13 @@ typedef enum AnimationKind {
 
 typedef struct Animation {
     AnimationKind kind;
-    int first, last; /* pictures that are drawn, counted from 1; last 0: to the end of the series */
+    int first, last; /* first and last picture that are drawn, counted from 1; last 0: to the end of
+                      * the series */
     int n;           /* pictures of the whole animation; 0: the number of frames, not known yet */
 } Animation;
 
-/* Reads the options. Errors: STATUS_USAGE if they ask for two kinds, if --frames is not a range, or
- * if the `output` of an animation has no place for a number. */
+/* Reads the options. Errors: STATUS_USAGE if they select two kinds, if --frames is not a range, or
+ * if the `output` of an animation does not contain exactly one %d, %4d or %04d. */
 MUST_CHECK Status animation_read(const AnimationOptions *options, const char *output,
                                  Animation *animation, Err *err);
 /* Counts the frames of a series and completes its animation; leaves other kinds as they are.
@@ -35,8 +45,11 @@ MUST_CHECK Status animation_read(const AnimationOptions *options, const char *ou
  */
 MUST_CHECK Status animation_count(Animation *animation, const Appearance *appearance, Err *err);
 
-/* Makes the file name of a picture, in *path (owned). The place %d, %4d or %04d of `pattern`
- * becomes the number. The name of a single picture is the pattern itself. Errors: STATUS_MEMORY. */
+/* Makes the file name of a picture: replaces %d, %4d or %04d in `pattern` by the picture's number.
+ * The name of a single picture is the pattern itself.
+ *
+ * path    set on success; release it with free.
+ * Errors  STATUS_MEMORY. */
 MUST_CHECK Status animation_path(const Animation *animation, const char *pattern, int number,
                                  char **path, Err *err);
 
@@ -45,19 +58,19 @@ MUST_CHECK Status animation_path(const Animation *animation, const char *pattern
 MUST_CHECK Status animation_frame_turn(const PictureOptions *options, const PictureSource *source,
                                        Scene *scene, Err *err);
 
-/* What is animated; all borrowed. */
+/* The tree and the options of an animation. All pointers are borrowed. */
 typedef struct AnimationSubject {
     const PictureOptions *options;
     const Common *common;
     const PictureSource *source;
-    const Scene *whole; /* of a grown tree */
+    const Scene *whole; /* the scene of the fully grown tree */
 } AnimationSubject;
 
 /* Makes the scene of picture `number`.
  *
  * shown   borrows from the whole scene and from *grown.
- * grown   of growth: geometry and colors of this picture; zeroed before; release it with
- *         scene_release. Other kinds leave it as it is.
+ * grown   for growth, receives the geometry and colors of this picture; zeroed before; release
+ *         it with scene_release. Other kinds leave it unchanged.
  * Errors  as picture_geometry; STATUS_MEMORY. */
 MUST_CHECK Status animation_scene(const Animation *animation, const AnimationSubject *subject,
                                   int number, Scene *shown, Scene *grown, Err *err);

@@ -1,4 +1,15 @@
-/* Frames as files or in memory: the picture, and the planes beside it. */
+/* Writes frames to files, or stores them in memory. A frame is a picture and its planes: linear
+ * color, depth, normals and ids.
+ *
+ * A FramesForm describes the files. A FramesWriter receives the rows from the top, band by band, so
+ * that a file needs the memory of one band. A page (.pdf, .svg) is different: its whole picture is
+ * stored until frames_commit.
+ *
+ * Use:
+ *
+ *     TRY(frames_open(&writer, &form, err));
+ *     status = frames_rows(writer, &band, err); (once per band)
+ *     if (status == STATUS_OK) status = frames_commit(writer, err); else frames_discard(writer); */
 #ifndef CORCAST_JOB_PICTURE_FRAMES_H
 #define CORCAST_JOB_PICTURE_FRAMES_H
 
@@ -7,62 +18,73 @@
 #include "image/image.h"
 #include "options/files.h"
 
-/* Returns true if the file is a page that holds a picture: .pdf or .svg. */
+/* Returns true if the extension of `path` is that of a page: .pdf or .svg. */
 bool frames_is_page(const char *path);
-/* Writes such a page. Errors: as figure_write_pdf and figure_put_svg; STATUS_IO. */
+/* Writes a page as PDF if `path` ends in .pdf, otherwise as SVG. Errors: as figure_write_pdf and
+ * figure_put_svg; STATUS_IO. */
 MUST_CHECK Status frames_write_page(const FigurePage *page, const FigureNotes *notes,
                                     const char *path, Err *err);
-/* Errors: STATUS_USAGE if `path` has not the extension of an image, or if it is standard output
- * although planes are wanted, which need a name. */
+/* Checks the path of a picture. "-" is standard output. Errors: STATUS_USAGE if `path` does not
+ * have the extension of an image format, or if it is standard output and `planes` is true: the
+ * names of the planes are formed from the name of the picture. */
 MUST_CHECK Status frames_check_output(const char *path, bool planes, Err *err);
 
-/* Range of --bits; only its two ends are accepted. */
+/* Range of --bits. Only the two ends of the range, 8 and 16, are accepted. */
 extern const Range bits_range;
-/* Errors: STATUS_USAGE unless `bits` is 8 or 16. */
+/* Checks the bits per channel of a picture. Errors: STATUS_USAGE unless `bits` is 8 or 16. */
 MUST_CHECK Status bits_check(int bits, Err *err);
 
-/* The form of a frame that is written or kept. All pointers are borrowed. */
+/* Describes a frame that is written to files or stored in memory. All pointers are borrowed. */
 typedef struct FramesForm {
-    int width, height; /* of the file's picture */
-    int first;         /* row of the page that is its first */
-    const char *path;  /* of the picture; the planes of P.png are P.color.pfm, P.depth.pfm,
-                        * P.normal.pfm and P.id.ppm, those of P.exr its channels Z, N.X, N.Y, N.Z
-                        * and id */
-    int bits;          /* of a picture of codes: 8 or 16 */
-    Encoding encoding; /* of its codes; .pfm and .exr are linear */
+    int width, height; /* size of the file's picture in pixels */
+    int first;         /* row of the page at which the picture begins */
+    const char *path;  /* file of the picture; the planes of P.png are P.color.pfm, P.depth.pfm,
+                        * P.normal.pfm and P.id.ppm; the planes of P.exr are the channels Z, N.X,
+                        * N.Y, N.Z and id of P.exr */
+    int bits;          /* bits per channel of a picture of integer codes: 8 or 16 */
+    Encoding encoding; /* encoding of the codes; .pfm and .exr are linear */
     ImagePacking packing;
-    double dpi; /* pixels an inch on paper; 0: not known */
+    double dpi; /* pixels per inch on paper; 0: not known */
     bool picture, color, depth, normal, id;
-    bool alpha; /* the picture is transparent; of PNG and TIFF, with nothing drawn over it */
-    const char *provenance;   /* the command line; of the picture */
-    const char *colors;       /* what they mean; of the picture; NULL: nothing */
-    const char *shard;        /* the note that says what part of what it is; NULL: none */
-    FigurePage *page;         /* drawn over the picture, and what holds it if the file is a page;
-                               * NULL: nothing, and it is none */
-    const FigureNotes *notes; /* of a page */
-    Frame *kept; /* receives the picture, as `codes` or, if it has floats, as `color` and `alpha`,
-                  * and the planes, and no file is written; zeroed before; the caller releases it
-                  * even after an error; NULL: files are written */
+    bool alpha;             /* the picture is transparent; only PNG and TIFF, and only if nothing is
+                             * drawn over the picture */
+    const char *provenance; /* the command line, stored in the picture */
+    const char *colors;     /* the meaning of the colors, stored in the picture; NULL: not stored */
+    const char *shard;      /* the note of a tile [job/picture/shard.h]; NULL: none */
+    FigurePage *page;       /* drawn over the picture; if the file is a page, the page that
+                             * contains the picture; NULL: nothing is drawn over the picture,
+                             * and the file is not a page */
+    const FigureNotes *notes; /* notes of a page */
+    Frame *kept; /* receives the picture and the planes; no file is written. The picture is
+                  * `codes`, or, if it has floats, `color` and `alpha`. Zeroed before; the caller
+                  * releases it even after an error. NULL: files are written */
 } FramesForm;
 
-/* Notes the files of the planes, whose names follow from form->path. Errors: as files_write. */
+/* Records the files of the planes in `files`. The names are formed from form->path. Errors: as
+ * files_write; STATUS_MEMORY. */
 MUST_CHECK Status frames_note_planes(const FramesForm *form, Files *files, Err *err);
 
-/* A frame that is written or kept band by band. Its files get their final names only in
- * frames_commit. */
+/* Receives a frame band by band. The files get their final names only in frames_commit: first the
+ * planes, then the picture. */
 typedef struct FramesWriter FramesWriter;
 
-/* Opens the files, or allocates form->kept. `form` is borrowed until the end. Follow with exactly
- * one of frames_commit and frames_discard, which free the writer, also on failure. Errors: as
- * imagewriter_open; STATUS_MEMORY. */
+/* Opens the files, or allocates form->kept. `form` is borrowed until the writer is freed.
+ *
+ * out     set on success; call frames_commit or frames_discard exactly once, which free the writer.
+ * Errors  as imagewriter_open; STATUS_MEMORY. */
 MUST_CHECK Status frames_open(FramesWriter **out, const FramesForm *form, Err *err);
-/* Takes the next rows, which have all planes of the form. Errors: STATUS_IO, STATUS_MEMORY. */
+/* Writes the next rows, in order from the top. `rows` must have all planes of the form. Errors:
+ * STATUS_IO, STATUS_MEMORY; the caller then calls frames_discard. */
 MUST_CHECK Status frames_rows(FramesWriter *writer, const Frame *rows, Err *err);
+/* Completes the files and gives them their final names. Frees the writer, also on failure. Errors:
+ * STATUS_IO, STATUS_MEMORY; for a page, as frames_write_page. */
 MUST_CHECK Status frames_commit(FramesWriter *writer, Err *err);
+/* Discards the unfinished files and frees the writer. NULL is allowed. */
 void frames_discard(FramesWriter *writer);
 
-/* Writes a whole frame. Size and planes are those of the frame, not those of the form, except for
- * `color`. Errors: as frames_open and frames_rows. */
+/* Writes a whole frame. The size, and which of depth, normal and id are written, come from the
+ * frame, not from the form. form->color decides whether the color plane is written. Errors: as
+ * frames_open, frames_rows and frames_commit. */
 MUST_CHECK Status frames_write(const Frame *frame, const FramesForm *form, Err *err);
 
 #endif

@@ -1,4 +1,14 @@
-/* The job `render`: draws pictures of a tree into memory, or into files band by band. */
+/* The operation `render`: draws pictures of a tree into memory, or into files band by band.
+ *
+ * render_run does the whole operation with files. render_make draws one picture into memory, and
+ * render_write writes the picture to a file. A caller that draws the same scene several times opens
+ * a Rendering.
+ *
+ * Use, with the parsed options of `render`:
+ *
+ *     TRY(render_make(parsed->options, parsed, &result, err));
+ *     status = render_write(parsed->options, parsed, &result, err);
+ *     render_release(&result); */
 #ifndef CORCAST_JOB_PICTURE_RENDER_H
 #define CORCAST_JOB_PICTURE_RENDER_H
 
@@ -19,7 +29,7 @@ typedef struct RenderResult {
 /* Draws one picture into memory. `options` are parsed->options.
  *
  * options  Without `output`, --bits chooses the form: 8 or 16 bit codes, or 32 bit floats. Of an
- *          animation, --only says which picture is drawn.
+ *          animation, --only selects the picture.
  * result   set on success only.
  * Errors   STATUS_USAGE if options exclude each other, have no effect, or need files; STATUS_INPUT
  *          if the tree, a template or a values file is bad; STATUS_MEMORY. Errors of the tree's
@@ -33,15 +43,18 @@ MUST_CHECK Status render_write(const RenderOptions *options, const Parsed *parse
                                const RenderResult *result, Err *err);
 void render_release(RenderResult *result);
 
-/* Draws all pictures that the options ask for and writes each band before it draws the next, so
- * that a picture needs the memory of one band. With --json writes a report. All errors of the user
- * are found before the first ray. `options` are the
- * RenderOptions of `parsed`. Errors: as render_make; STATUS_IO. */
+/* Draws all pictures that the options select. Writes each band before it draws the next, so that a
+ * picture needs the memory of one band. With --json, also writes a report. All user errors are
+ * detected before rendering starts.
+ *
+ * options  the RenderOptions of `parsed`.
+ * Errors   as render_make; STATUS_IO. */
 MUST_CHECK Status render_run(void *options, Parsed *parsed, Err *err);
 
 /* ---- a scene that is drawn several times ---------------------------------------------------- */
 
-/* A scene with all that is needed to draw it. Must not be moved: `params` points into it. */
+/* A scene with everything that is needed to draw it. A Rendering must not be copied or moved:
+ * `params` points into the Rendering. */
 typedef struct Rendering {
     RenderOptions *options; /* borrowed, as is `parsed` */
     Parsed *parsed;
@@ -51,36 +64,36 @@ typedef struct Rendering {
     Press press;
     FramesForm form; /* of all pictures */
     Animation animation;
-    Shard shard; /* the rows that are drawn; its hash is not made */
+    Shard shard; /* the rows that are drawn; shard.made_from is not set */
     PictureSource source;
     Scene scene; /* of the first picture */
     PictureReport report;
-    Sheet sheet;        /* what is drawn over the pictures; its page is empty until it is filled */
-    char *provenance;   /* the command line; owned */
-    Renderer *renderer; /* of the scene's geometry; NULL: nothing is drawn yet; owned */
-    RenderStats stats;  /* sums over pictures with renderers of their own */
-    const char *name;   /* of the picture in sentences; NULL: that of its file; borrowed */
-    bool has_sheet;     /* something lies over the pictures, or a page holds them */
+    Sheet sheet;      /* the annotations drawn over the pictures; empty until rendering_describe */
+    char *provenance; /* the command line; owned */
+    Renderer *renderer; /* prepared for the scene's geometry; NULL: nothing is drawn yet; owned */
+    RenderStats stats;  /* sums over pictures that have renderers of their own */
+    const char *name;   /* name of the picture in messages; NULL: the name of its file; borrowed */
+    bool has_sheet;     /* annotations are drawn over the pictures, or the file is a page */
     bool in_memory;     /* no file is written */
 } Rendering;
 
 /* Checks the options, reads look and tree, and makes the scene.
  *
- * fonts   of the page that the picture is put on: the caller then draws legend, scale bar and
- *         letter, and lines (--ink) are allowed without an output. NULL: they are drawn over the
- *         picture.
- * out     owned; rendering_close. On failure there is nothing to close.
+ * fonts   fonts of the page on which the caller puts the picture. The caller then draws legend,
+ * scale bar and letter, and lines (--ink) are allowed without an output. NULL: legend, scale bar
+ *         and letter are drawn over the picture.
+ * out     set on success; release it with rendering_close. On failure there is nothing to close.
  * Errors  as render_make. */
 MUST_CHECK Status rendering_open(RenderOptions *options, Parsed *parsed, const FigureFonts *fonts,
                                  Rendering *out, Err *err);
 void rendering_close(Rendering *rendering);
 
-/* Makes the command line for provenance, puts annotations on the sheet, and tells what the scene
- * shows and what it has lost of its tree. Call it once, before anything is drawn. Errors:
+/* Makes the command line for provenance and puts annotations on the sheet. Reports what the scene
+ * shows, and what parts of the tree it does not show. Call this once, before drawing. Errors:
  * STATUS_USAGE if an annotation does not fit, STATUS_MEMORY. */
 MUST_CHECK Status rendering_describe(Rendering *rendering, Err *err);
 /* Draws the single picture of the options into *made, zeroed before; the caller releases it even
- * after an error. Errors: STATUS_USAGE if the options are of several pictures; as rendering_draw.
+ * after an error. Errors: STATUS_USAGE if the options select several pictures; as rendering_draw.
  */
 MUST_CHECK Status rendering_draw_result(Rendering *rendering, RenderResult *made, Err *err);
 /* Returns what --json reports of the pictures drawn so far. New reference, or NULL if memory runs
@@ -91,7 +104,7 @@ json_t *rendering_json(const Rendering *rendering);
  * share what the renderer has prepared.
  *
  * kept    receives the picture and its planes, zeroed before; the caller releases it even after an
- *         error. NULL: they are written to files.
+ *         error. NULL: the picture and its planes are written to files.
  * Errors  STATUS_MEMORY; STATUS_IO; STATUS_USAGE if the method cannot draw the view. */
 MUST_CHECK Status rendering_draw(Rendering *rendering, int number, Frame *kept, Err *err);
 /* Draws the same scene in another view into memory, without a warning if the picture is empty. */

@@ -1,6 +1,12 @@
-/* Tiles of a picture in separate files. A tile is a range of whole rows. Its file has a note that
- * states which rows of which picture it contains, and a hash of everything that it was made from.
- */
+/* Tiles of a picture in separate files. A Shard describes a tile: a range of whole rows. The tile's
+ * file has a note that states which rows of which picture the file contains, and a hash of
+ * everything that the tile was made from. The hash decides whether an existing file can be reused.
+ *
+ * Use:
+ *
+ *     TRY(shard_of_tile(options->tile, height, &shard, err));
+ *     TRY(shard_hash(&shard, parsed, &source, 1, err));
+ *     TRY(shard_is_there(path, &shard, &there, err)); (draw the tile if `there` is false) */
 #ifndef CORCAST_JOB_PICTURE_SHARD_H
 #define CORCAST_JOB_PICTURE_SHARD_H
 
@@ -12,11 +18,11 @@
 
 typedef struct ShardOptions {
     const char *tile; /* "I/N"; NULL: the whole picture */
-    int tiles;        /* number of tiles that commands are made for; 0: none */
-    int only;         /* number of the picture of an animation that is drawn; 0: all */
-    bool commands;    /* nothing is drawn; a command is made for each part */
-    bool resume;      /* a file that exists and is valid is not drawn again */
-    Text *lines;      /* receives the commands; set by the caller; borrowed; NULL: none are made */
+    int tiles;        /* number of tiles that commands are written for; 0: none */
+    int only;         /* picture of an animation that is drawn, counted from 1; 0: all pictures */
+    bool commands;    /* nothing is drawn; a command is written for each tile or picture */
+    bool resume;      /* a tile whose file exists and is valid is not drawn again */
+    Text *lines;      /* receives the commands; set by the caller; borrowed; NULL: no commands */
 } ShardOptions;
 
 extern const OptionTable shard_table; /* sets a ShardOptions */
@@ -25,8 +31,8 @@ extern const OptionTable shard_table; /* sets a ShardOptions */
 typedef struct Shard {
     int number, count;       /* tile `number`, from 1 on, of `count` tiles */
     int first, rows, height; /* the rows first .. first + rows - 1 of the picture's `height` rows */
-    char kernels[16];        /* the instructions that it was drawn with: "avx2" */
-    HashText made_from;
+    char kernels[16];        /* the instruction set that the tile was drawn with: "avx2" */
+    HashText made_from;      /* hash of everything that the tile was made from */
 } Shard;
 
 /* Whether the file is a part of a picture, or may be kept as one. */
@@ -60,17 +66,18 @@ typedef struct ShardSource {
 MUST_CHECK Status shard_hash(Shard *shard, const Parsed *parsed, const ShardSource *source,
                              int number, Err *err);
 
-/* Appends the text of the note, which files call "Shard". */
+/* Appends the text of the tile's note. Image files store the note under the name "Shard". */
 void shard_put(const Shard *shard, Text *text);
-/* Reads the text of a note. Returns false, and leaves *shard alone, if it is not one. */
+/* Reads the text of a tile's note into *shard. Returns false, and leaves *shard unchanged, if
+ * `note` is not the text of such a note. */
 bool shard_parse(const char *note, Shard *shard);
 
-/* Sets *there to whether the file `path` contains this tile, sound to its last row. Errors:
- * STATUS_MEMORY. */
+/* Sets *there to true if the file `path` contains this tile and is valid to its last row, otherwise
+ * to false. Errors: STATUS_MEMORY. */
 MUST_CHECK Status shard_is_there(const char *path, const Shard *shard, bool *there, Err *err);
 
 /* Appends a command line for each tile, or for each picture first .. last of an animation, to
- * options->lines. Errors: STATUS_USAGE if there is no such text, STATUS_MEMORY, STATUS_IO. */
+ * options->lines. Errors: STATUS_USAGE if options->lines is NULL, STATUS_MEMORY, STATUS_IO. */
 MUST_CHECK Status shard_put_commands(const ShardOptions *options, const Parsed *parsed,
                                      const char *output, int first, int last, Err *err);
 

@@ -1,5 +1,8 @@
-/* The operation `certify`: proves a lower bound of a tree's target, and tells apart what the target
- * is above the bound by. */
+/* The operation `certify`: proves a lower bound of a tree's target. Divides the distance between
+ * target and bound into parts.
+ *
+ * Use: certify_make(parsed->options, parsed, &found, err), then certified_json(&found), then
+ * certified_release(&found), the last even after an error. */
 #ifndef CORCAST_JOB_TREE_CERTIFY_H
 #define CORCAST_JOB_TREE_CERTIFY_H
 
@@ -8,10 +11,10 @@
 
 extern const Command command_certify;
 
-/* The parts that a target is above the bound by, in the target's unit. */
+/* The parts of the distance between target and bound, in the target's unit. */
 enum { PART_SEARCH, PART_RULES, PART_RADII, PART_UNPROVED, PARTS };
 
-/* By part: its key in JSON, and what it is, for people. */
+/* Per part: its key in JSON, and its meaning as a text for users. */
 extern const struct PartRow {
     const char *key, *meaning;
 } part_rows[PARTS];
@@ -20,7 +23,7 @@ typedef struct Certified {
     Bound bound;        /* owned */
     Text certificate;   /* the proof; owned; empty if the option certificate was not given */
     double refined;     /* target of the tree with its geometry refined; NAN without --parts */
-    double part[PARTS]; /* NAN: not told apart from the next part */
+    double part[PARTS]; /* per part; NAN: not separated from the next part */
     double seconds;     /* wall clock time of the bound */
 } Certified;
 

@@ -8,9 +8,9 @@
 
 extern const Command command_info;
 
-/* What was found. Release it with inforeport_release. */
+/* The facts about a tree. Release with inforeport_release. */
 typedef struct InfoReport {
-    const char *name; /* of the tree, for people; borrowed from the Parsed */
+    const char *name; /* name of the tree in messages; borrowed from the Parsed */
     Tree tree;
     TreeReading reading;
     TreeSummary summary;
