@@ -34,9 +34,11 @@ typedef struct BoxTree {
 
 /* Builds the tree of `n` boxes, 1 <= n < 2^31. Walks return the indices 0 to n - 1 of the boxes.
  *
- * boxes    are not needed after the call. Each is widened by 1e-12 of its distance from the origin,
- * a few rounding errors, so that objects that touch are found. out      receives the tree; release
- * it with boxtree_release. Errors   STATUS_MEMORY. Cost     O(n log n). */
+ * boxes   are not needed after the call. Each is widened by 1e-12 of its distance from the origin,
+ *         a few rounding errors, so that objects that touch are found.
+ * out     receives the tree; release it with boxtree_release.
+ * Errors  STATUS_MEMORY.
+ * Cost    O(n log n). */
 MUST_CHECK Status boxtree_build(const Box *boxes, size_t n, BoxTree *out, Err *err);
 void boxtree_release(BoxTree *tree);
 

@@ -33,8 +33,8 @@ MUST_CHECK Status command_line_text(const Parsed *parsed, char **out, Err *err);
  * setting_differs from the default, quoted for a shell. The command repeats the run from any
  * folder, and more options may be appended.
  *
- * without  names of options to leave out, which NULL ends. --output and --recipe are always left
- * out. Errors   STATUS_IO if the working folder cannot be found. STATUS_MEMORY. */
+ * without  names of options to leave out, ended by NULL. --output and --recipe are always left out.
+ * Errors   STATUS_IO if the working folder cannot be found. STATUS_MEMORY. */
 MUST_CHECK Status command_again(const Parsed *parsed, const char *const *without, Text *text,
                                 Err *err);
 

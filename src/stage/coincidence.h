@@ -2,9 +2,9 @@
  * make pictures undefined, so one of them is left out.
  *
  * A junction is a set of nodes at the same position: nodes that segments without length connect.
- * One node of the set represents the junction. A twin of a segment is another segment between the
- * same two junctions that is at least as thick. A segment with a twin is not drawn. Private to the
- * module stage.
+ * One node of the set represents the junction. Of the segments between the same two junctions, the
+ * thickest is drawn, and of equally thick ones the first. It is the twin of the others, which are
+ * not drawn. Private to the module stage.
  *
  *     Coincidence found;
  *     TRY(coincidence_find(&tree, &found, err));
@@ -21,7 +21,7 @@
 /* POV-Ray rejects cylinders shorter than this, mm [docs/POVRAY.md]. */
 #define SHORTEST_MM 1e-9
 
-/* Values of Coincidence.cover that are not the index of a sister. */
+/* Values of Coincidence.twin that are not the index of a segment. */
 enum { NO_TWIN = -1, CANNOT_DRAW = -2, BACKWARD_TWIN = -3 };
 
 typedef struct Coincidence {

@@ -225,8 +225,9 @@ Box stage_box(const ViewParams *params, const Geometry *geometry);
  * ground from lights more than 10 degrees above it. If only look_at is specified, this point is in
  * the middle of the picture instead.
  *
- * Errors  STATUS_USAGE if the vectors in `params` do not define a camera, STATUS_INPUT if the
- * camera is too far away. Cost    O(size of the geometry and the tree). */
+ * Errors  STATUS_USAGE if the vectors in `params` do not define a camera. STATUS_INPUT if the
+ *         camera is too far away.
+ * Cost    O(size of the geometry and the tree). */
 MUST_CHECK Status stage_view(const Look *look, const ViewParams *params, const Geometry *geometry,
                              View *view, Err *err);
 

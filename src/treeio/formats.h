@@ -1,18 +1,20 @@
 /* The functions that implement the file formats, and the helpers that text formats share. Private
  * to the module treeio.
  *
- * To add a format, write a source file in a submodule and add a row to the table in treeio.c. A
- * format consists of up to four functions:
+ * To add a format, write a source file in a submodule and add a row to the table in treeio.c. The
+ * row names the functions of the format:
  *
  *     TreeDetect   recognizes a file by its first bytes: needed if several formats share the
  *                  extension, and for standard input.
  *     TreeRead     reads a file of nodes with ids and parents into a TreeBuilder [tree/builder.h].
- *     GraphRead    reads a file of points and lines into a Graph [tree/graph.h]. treeio.c then
- * makes a tree of the graph. A format has either a TreeRead or a GraphRead. TreeWrite    writes a
- * tree.
+ *     GraphRead    reads a file of points and lines into a Graph [tree/graph.h]; treeio.c then
+ *                  makes a tree of the graph. A format has a TreeRead or a GraphRead, not both.
+ *     TreeWrite    writes a tree; NULL if the format is only read.
+ *     TreeStores   tells which columns a format that loses columns still writes; NULL if none.
+ *     TreeKeywords lists the keywords of the reader for the fuzzer; NULL if there are none.
  *
  * Readers do not scale lengths: treeio.c converts units and applies the user's options. A few
- * options only the reader can apply (radius_array, columns, ...): it finds them in graph->options,
+ * options only a GraphRead can apply (radius_array, columns, ...): it finds them in graph->options,
  * and the format's row lists them in `takes`. Readers record every assumption with reading_note.
  *
  * Helpers: treeio/xml.h parses XML; treeio/cursor.h cuts text into lines and words;
@@ -27,9 +29,9 @@
 typedef bool TreeDetect(const char *start);
 /* Reads a file into the builder.
  *
- * bytes    the file, with a zero after its `size` bytes. The reader may change them. In text
- * formats all line ends were converted to LF. Errors   STATUS_INPUT, with file and line;
- * STATUS_MEMORY. */
+ * bytes   the file, with a zero after its `size` bytes. The reader may change the bytes. In text
+ *         formats all line ends were converted to LF.
+ * Errors  STATUS_INPUT, with file and line; STATUS_MEMORY. */
 typedef Status TreeRead(TreeBuilder *builder, char *bytes, size_t size, Err *err);
 /* Reads a file into the graph, in the file's own unit of length. Otherwise like TreeRead. */
 typedef Status GraphRead(Graph *graph, char *bytes, size_t size, Err *err);
@@ -98,8 +100,8 @@ const char *decimal_comma_hint(const char *text);
  *     field_integer   an integer in [minimum, maximum]
  *     field_value     a finite number; or an empty field, NA or NaN, which give NAN
  *     field_radius    a radius or diameter, finite and 0 or more. If the options repair radii
- *                     [reading_radius], one that is negative, infinite or NaN gives NAN. `options`
- * may be NULL */
+ *                     [reading_radius], one that is negative, infinite or NaN gives NAN.
+ *                     `options` may be NULL */
 MUST_CHECK Status field_number(const char *what, const char *text, double minimum, double *out,
                                Err *err);
 MUST_CHECK Status field_integer(const char *what, const char *text, int32_t minimum,
