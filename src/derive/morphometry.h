@@ -16,8 +16,8 @@ typedef struct MorphometryRow {
     Spread diameter_mm, length_mm; /* of the elements */
     double elements;
     Spread vessels_per_element;
-    double
-        daughters[DAUGHTER_ORDERS]; /* [k]: elements k orders lower that branch off one element */
+    /* [k]: elements k orders lower that branch off one element. */
+    double daughters[DAUGHTER_ORDERS];
 } MorphometryRow;
 
 /* A published table: row[k] is order k + 1. */

@@ -27,8 +27,7 @@ typedef struct StatisticsRow {
 } StatisticsRow;
 
 typedef struct StatisticsTable {
-    StatisticsRow
-        *row; /* owned; by rising number, without levels and orders that have no vessels */
+    StatisticsRow *row; /* by rising number; only levels and orders with vessels; owned */
     size_t n;
 } StatisticsTable;
 

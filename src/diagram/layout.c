@@ -58,8 +58,8 @@ typedef struct TreeLayout {
      * leave first. The roots begin at index 0. */
     int32_t *leaving;
     size_t *begin;
-    ContourStep
-        *step; /* at most 4 per branch: two of its own, one where it is attached, one at its end */
+    /* At most 4 per branch: two of its own, one where it is attached, one at its end. */
+    ContourStep *step;
     size_t n_steps;
 } TreeLayout;
 

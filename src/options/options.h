@@ -116,14 +116,13 @@ typedef struct Option {
                          * output file. */
     OptionKind kind;
     OptionGroup group;
-    const MetaRow
-        *meta; /* metadata key of a tree that the option sets; gives range and unit; NULL: none */
+    /* Metadata key of a tree that the option sets. It gives range and unit. NULL: none. */
+    const MetaRow *meta;
     const Range *range;         /* NULL: any number. Must not be NULL for OPTION_WHOLE, COUNT,
                                  * CURVE and SIZE. */
     const char *const *choices; /* OPTION_CHOICE only: the accepted words; NULL ends the list */
     const char *unit;           /* "mm"; a number may have it as a suffix; NULL: none */
-    const char
-        *argument; /* placeholder of the value in the help: "T.swc"; NULL: from unit or kind */
+    const char *argument;       /* the value in the help, such as "T.swc"; NULL: by unit or kind */
     const char *otherwise; /* what applies if the option is not given. NULL: the default value; "":
                             * nothing; else a phrase for the help: "from the tree" */
     const char *list;  /* name of the command that lists the accepted names: "looks"; NULL: none */
@@ -132,8 +131,7 @@ typedef struct Option {
                         * them is on. Names that the command does not have are ignored; if it
                         * has none of them, nothing is needed. NULL: none */
     const char *excludes; /* option names separated by blanks, which must all be off; NULL: none */
-    const char
-        *clash; /* end of the error sentence "--NAME and --OTHER"; NULL: " exclude each other" */
+    const char *clash;    /* end of the error "--NAME and --OTHER"; NULL: " exclude each other" */
     const char *help;
 } Option;
 
@@ -278,8 +276,7 @@ struct Parsed {
     int n_operands;
     const Tree *given;      /* tree in memory from parsed_give; borrowed; NULL: none */
     const char *given_name; /* operand or value that stands for the tree; borrowed; NULL: none */
-    bool
-        in_memory; /* the caller takes the result in memory: --output and operands may be missing */
+    bool in_memory; /* the caller takes the result in memory: no --output or operand is required */
 };
 
 /* Initializes *parsed with the command's options and their default values. The caller sets

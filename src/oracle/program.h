@@ -10,10 +10,9 @@
 
 /* Which executable to run, and how long to wait for it. All strings are borrowed. */
 typedef struct ProgramChoice {
-    const char
-        *path; /* executable; without a slash it is searched in PATH; NULL: the default name */
-    double patience_s;    /* the program is ended after this many seconds without output, and after
-                           * five times as many seconds without progress; 0: never */
+    const char *path;  /* executable, searched in PATH if it has no slash; NULL: the default name */
+    double patience_s; /* the program is ended after this many seconds without output, and after
+                        * five times as many seconds without progress; 0: never */
     const char *patience; /* name of patience_s in error messages: the name of a setting that users
                            * can change; NULL: "patience" */
 } ProgramChoice;

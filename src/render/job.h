@@ -62,8 +62,7 @@ typedef struct RenderParams {
      * hit or miss thin vessels, too. The planes of depth, normal and id show what centre samples
      * hit in either case. */
     bool cover_thin;
-    double
-        min_width_px; /* minimum drawn width of thin vessels, pixels, 0..64; 0: their true width */
+    double min_width_px; /* minimum drawn width of vessels, pixels, 0..64; 0: true widths */
     const CellParams *povray_cells; /* an isosurface is drawn where POV-Ray's root finder finds it
                                      * in these cells; NULL: the isosurface is drawn at its proven
                                      * position */

@@ -70,9 +70,7 @@ extern const MetaRow meta_rows[META_KEYS];
  * or a remark. */
 typedef struct MetaLine {
     MetaKey key; /* META_KEYS: a remark */
-    char
-        *text; /* the remark, or the value of a META_LINES; without line ends; otherwise NULL; owned
-                */
+    char *text;  /* the remark, or a META_LINES's value, without line ends; else NULL; owned */
 } MetaLine;
 
 /* The metadata of one tree. Zeroed: none. A caller may set numbers directly, together with `known`;

@@ -25,8 +25,7 @@ typedef struct Check {
     int n_rules;
     CheckMeasure measures[MEASURES_MAX]; /* measures of one table are adjacent */
     int n_measures;
-    const Settled
-        *settled; /* check of the settled pixels: lists the first of them; else NULL. Borrowed */
+    const Settled *settled; /* lists the first settled pixels, or NULL; borrowed */
 } Check;
 
 enum { CHECKS_MAX = PLANE_KINDS + 4 + WITNESS_PAIRS };

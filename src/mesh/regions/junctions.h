@@ -70,9 +70,8 @@ typedef struct BranchStub {
 
 /* One region as the lattice needs it. Release it with junctionplan_release. */
 typedef struct JunctionPlan {
-    JunctionField
-        field;         /* owned; a stub's term continues STUB_TAIL radii beyond the stub's plane */
-    BranchStub *stubs; /* owned */
+    JunctionField field; /* owned; a stub's term continues STUB_TAIL radii beyond its plane */
+    BranchStub *stubs;   /* owned */
     size_t n_stubs;
 } JunctionPlan;
 

@@ -21,9 +21,9 @@ typedef struct ShadingInput {
     Vec3 normal;    /* unit, facing the viewer */
     Vec3 direction; /* unit, of the camera ray that hits the point */
     double ambient; /* ambient visibility, in [0, 1] */
-    const float
-        *light_visibility; /* per light of the view: its visibility, in [0, 1], or a negative number
-                            * if it is not known; NULL: not known for any light */
+    /* Per light of the view: its visibility, in [0, 1], or a negative number if it is not known.
+     * NULL: not known for any light. */
+    const float *light_visibility;
 } ShadingInput;
 
 /* Returns the linear color of a point: the ambient light, and the diffuse and specular light of

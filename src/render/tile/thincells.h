@@ -25,8 +25,7 @@ typedef struct ThinLayer {
     ThinStrip *strips; /* in ascending order of vessels */
     size_t n, n_pieces;
     float (*colors)[3]; /* per piece: linear color */
-    IndexLists
-        tiles; /* per tile of the picture, row by row: the strips that may touch it, ascending */
+    IndexLists tiles;   /* per tile, row by row: the strips that may touch it, ascending */
     int tile_columns, tile_rows;
     bool perspective;
 } ThinLayer;
