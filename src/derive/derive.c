@@ -22,18 +22,29 @@ static Status field_length(const Tree *tree, const TreeMeta *overrides, double *
     return STATUS_OK;
 }
 
+/* A field: its name, unit ("" for pure numbers), title in legends (NULL: the name), description in
+ * lists, and the function that computes it. */
 typedef struct FieldRule {
-    const char *name, *unit;
+    const char *name, *unit, *title, *description;
     FieldFunction *fill;
 } FieldRule;
 
 static const FieldRule rules[] = {
-    {"radius", "mm", field_radius},       {"length", "mm", field_length},
-    {"flow", "ml/min", field_flow},       {"velocity", "mm/s", field_velocity},
-    {"pressure", "mmHg", field_pressure}, {"wss", "Pa", field_wss},
-    {"reynolds", "", field_reynolds},     {"level", "", field_level},
-    {"strahler", "", field_strahler},     {"diameter-strahler", "", field_diameter_strahler},
-    {"branch", "", field_branch},         {"tree", "", field_tree},
+    {"radius", "mm", NULL, "radius of the segment", field_radius},
+    {"length", "mm", NULL, "length of the segment", field_length},
+    {"flow", "ml/min", NULL, "blood flow through the segment", field_flow},
+    {"velocity", "mm/s", NULL, "mean velocity of the blood", field_velocity},
+    {"pressure", "mmHg", NULL, "pressure at the downstream end of the segment", field_pressure},
+    {"wss", "Pa", "wall shear stress", "wall shear stress", field_wss},
+    {"reynolds", "", "Reynolds number", "Reynolds number", field_reynolds},
+    {"level", "", "bifurcation level", "number of bifurcations between the root and the segment",
+     field_level},
+    {"strahler", "", "Strahler order", "Strahler order; terminals have order 1", field_strahler},
+    {"diameter-strahler", "", "diameter-defined order", "diameter-defined Strahler order",
+     field_diameter_strahler},
+    {"branch", "", "main branch", "number of the branch; a branch follows the thickest daughter",
+     field_branch},
+    {"tree", "", NULL, "number of the tree in a forest", field_tree},
 };
 
 enum { N_RULES = sizeof rules / sizeof *rules };
@@ -55,6 +66,19 @@ const char *derive_field_name(size_t i)
 const char *derive_field_unit(size_t i)
 {
     return i < N_RULES ? rules[i].unit : NULL;
+}
+
+const char *derive_field_description(size_t i)
+{
+    return i < N_RULES ? rules[i].description : NULL;
+}
+
+const char *derive_field_title(const char *name)
+{
+    for (size_t i = 0; i < N_RULES; i++)
+        if (rules[i].title && strcmp(name, rules[i].name) == 0)
+            return rules[i].title;
+    return name;
 }
 
 static void suggest_field(const Tree *tree, const char *name, Err *err)

@@ -79,9 +79,14 @@ MUST_CHECK Status derive_series(const Tree *tree, const TreeMeta *overrides, con
                                 FieldSeries *series, Err *err);
 void fieldseries_release(FieldSeries *series);
 
-/* Return the name and the unit ("" for pure numbers) of field `i`, from 0; NULL after the last. */
+/* Return the name, the unit ("" for pure numbers) and the description of field `i`, from 0; NULL
+ * after the last. */
 const char *derive_field_name(size_t i);
 const char *derive_field_unit(size_t i);
+const char *derive_field_description(size_t i);
+/* Returns the title of a field in legends: "wall shear stress" for "wss". The title of a field that
+ * is not in the list, such as a column of the tree, is its name. */
+const char *derive_field_title(const char *name);
 
 typedef struct TreeSummary {
     struct {

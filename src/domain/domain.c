@@ -34,6 +34,11 @@ const char *domain_shape_parameters(size_t i)
     return i < KINDS ? kinds[i]->parameters : NULL;
 }
 
+const char *domain_shape_description(size_t i)
+{
+    return i < KINDS ? kinds[i]->description : NULL;
+}
+
 static Status refuse_shape(const char *spec, Err *err)
 {
     Text shapes = TEXT_INIT;

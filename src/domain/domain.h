@@ -139,9 +139,10 @@ double domain_distance(const Domain *domain, Vec3 point, double most);
  * probability is e^-100. */
 Vec3 domain_sample(const Domain *domain, Random *random);
 
-/* Return the name of shape `i`, "disc", and the parameters after its colon, "R"; NULL if `i` is the
- * number of shapes or larger. */
+/* Return the name of shape `i`, "disc", the parameters after its colon, "R", and its description;
+ * NULL if `i` is the number of shapes or larger. */
 const char *domain_shape_name(size_t i);
 const char *domain_shape_parameters(size_t i);
+const char *domain_shape_description(size_t i);
 
 #endif

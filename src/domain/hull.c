@@ -315,6 +315,7 @@ static Status hull_load(Domain *domain, const char *values, Err *err)
 const DomainOps hull_ops = {
     .name = "hull",
     .parameters = "[FILE,]MM",
+    .description = "everything within MM mm of the tree of --from, or of the tree in a file",
     .load = hull_load,
     .inside = hull_inside,
     .holds_segment = hull_holds_segment,

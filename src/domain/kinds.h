@@ -6,8 +6,9 @@
 #include "domain/domain.h"
 
 typedef struct DomainOps {
-    const char *name;       /* "disc" */
-    const char *parameters; /* "R" */
+    const char *name;        /* "disc" */
+    const char *parameters;  /* "R" */
+    const char *description; /* "ball of radius R mm around the origin" */
     bool is_convex;
     /* Reads the text after the colon. Before the call only domain->ops is set, and all else is
      * zero. Sets sizes, file, dimension, bounds, volume and inlet. The sentence of a STATUS_USAGE

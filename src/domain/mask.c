@@ -326,6 +326,7 @@ static void mask_release(Domain *domain)
 const DomainOps mask_ops = {
     .name = "mask",
     .parameters = "FILE[,MM]",
+    .description = "image whose pixels that are not black are tissue, MM mm wide; or a NIfTI file",
     .load = mask_load,
     .inside = mask_inside,
     .holds_segment = mask_holds_segment,

@@ -325,6 +325,7 @@ void mesh_release(Domain *domain)
 const DomainOps mesh_ops = {
     .name = "mesh",
     .parameters = "FILE[,MM]",
+    .description = "inside of a closed surface (.stl, .obj), in units of MM mm",
     .load = mesh_load,
     .inside = mesh_inside,
     .holds_segment = mesh_holds_segment,

@@ -164,6 +164,7 @@ static void polygon_release(Domain *domain)
 const DomainOps polygon_ops = {
     .name = "polygon",
     .parameters = "FILE[,MM]",
+    .description = "inside of the rings in a text file, in units of MM mm",
     .load = polygon_load,
     .inside = polygon_inside,
     .holds_segment = polygon_holds_segment,

@@ -75,6 +75,7 @@ static Status disc_load(Domain *domain, const char *values, Err *err)
 const DomainOps disc_ops = {
     .name = "disc",
     .parameters = "R",
+    .description = "flat disc of radius R mm around the origin",
     .is_convex = true,
     .load = disc_load,
     .inside = round_inside,
@@ -91,6 +92,7 @@ static Status ball_load(Domain *domain, const char *values, Err *err)
 const DomainOps ball_ops = {
     .name = "ball",
     .parameters = "R",
+    .description = "ball of radius R mm around the origin",
     .is_convex = true,
     .load = ball_load,
     .inside = round_inside,
@@ -114,6 +116,7 @@ static Status rect_load(Domain *domain, const char *values, Err *err)
 const DomainOps rect_ops = {
     .name = "rect",
     .parameters = "W,H",
+    .description = "flat rectangle, sides W and H mm, centered on the origin",
     .is_convex = true,
     .load = rect_load,
     .inside = box_inside,
@@ -130,6 +133,7 @@ static Status box_load(Domain *domain, const char *values, Err *err)
 const DomainOps box_ops = {
     .name = "box",
     .parameters = "A,B,C",
+    .description = "box, sides A, B and C mm, centered on the origin",
     .is_convex = true,
     .load = box_load,
     .inside = box_inside,
@@ -159,6 +163,7 @@ static Status ellipsoid_load(Domain *domain, const char *values, Err *err)
 const DomainOps ellipsoid_ops = {
     .name = "ellipsoid",
     .parameters = "A,B,C",
+    .description = "ellipsoid, semi-axes A, B and C mm, centered on the origin",
     .is_convex = true,
     .load = ellipsoid_load,
     .inside = ellipsoid_inside,
@@ -242,6 +247,7 @@ static bool shell_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
 const DomainOps shell_ops = {
     .name = "shell",
     .parameters = "A,B,C,THICKNESS[,BASE]",
+    .description = "wall of a left ventricle: ellipsoid with a cavity, cut off at the height BASE",
     .load = shell_load,
     .inside = shell_inside,
     .holds_segment = shell_holds_segment,

@@ -198,6 +198,7 @@ static void surface_release(Domain *domain)
 const DomainOps surface_ops = {
     .name = "surface",
     .parameters = "FILE[,OFFSET[,MM]]",
+    .description = "layer along a closed surface (.stl, .obj), OFFSET mm inside it",
     .load = surface_load,
     .inside = surface_inside,
     .holds_segment = surface_holds_segment,

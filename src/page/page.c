@@ -59,10 +59,12 @@ static json_t *fields_json(const PageParams *params)
         for (size_t k = 0; series->time && k < series->frames; k++)
             times = json_with_item(times, json_number(series->time[k]));
         const JsonMember members[] = {{"name", json_text(series->field.name)},
+                                      {"title", json_text(derive_field_title(series->field.name))},
                                       {"unit", json_text(series->field.unit)},
                                       {"whole", json_boolean(field_is_whole(series))},
                                       {"times", times}};
-        fields = json_with_item(fields, json_with_members(json_object(), members, 4));
+        fields = json_with_item(
+            fields, json_with_members(json_object(), members, sizeof members / sizeof *members));
     }
     return fields;
 }

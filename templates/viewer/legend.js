@@ -10,20 +10,9 @@ function style(context, ink) {
   context.strokeStyle = ink;
 }
 
-// The words for fields, as the legends of pictures have them. A field of the user's keeps its name.
-const FIELD_WORDS = {
-  wss: "wall shear stress", reynolds: "Reynolds number", strahler: "Strahler order",
-  "diameter-strahler": "diameter-defined order", level: "bifurcation level", branch: "main branch",
-};
-
-// Returns the words for the field of this name.
-export function fieldWords(name) {
-  return Object.hasOwn(FIELD_WORDS, name) ? FIELD_WORDS[name] : name;
-}
-
 function scaleTitle(scale) {
-  const { name, unit } = scale.field;
-  return fieldWords(name) + (unit ? ` (${unit})` : "") + (scale.log ? ", logarithmic" : "");
+  const { title, unit } = scale.field;
+  return title + (unit ? ` (${unit})` : "") + (scale.log ? ", logarithmic" : "");
 }
 
 // Draws a patch of color for each integer of the range, at most one for each color of the map.

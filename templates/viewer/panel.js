@@ -1,6 +1,6 @@
 // The panels beside the picture: the selected field, the legend, and the values of a segment.
 import { number } from "./colors.js";
-import { drawLegend, drawScaleBar, fieldWords, LEGEND_HEIGHT, sized } from "./legend.js";
+import { drawLegend, drawScaleBar, LEGEND_HEIGHT, sized } from "./legend.js";
 
 const find = (id) => document.getElementById(id);
 
@@ -41,7 +41,7 @@ export class Panel {
     find("name").textContent = properties.name;
     const sides = low.map((l, c) => number(high[c] - l, 3)).join(" × ");
     find("summary").textContent = `${segments.length.toLocaleString("en")} segments, ${sides}\u00a0mm`;
-    const words = ({ name, unit }) => fieldWords(name) + (unit ? ` (${unit})` : "");
+    const words = ({ title, unit }) => title + (unit ? ` (${unit})` : "");
     const fields = tree.fields.map((field) => option(field.name, words(field)));
     find("field").append(option("", "one color"), ...fields);
     find("map").append(...tree.maps.map(({ name }) => option(name, name)));
@@ -65,8 +65,8 @@ export class Panel {
     const canvas = find("legend"), width = Math.round(canvas.parentElement.clientWidth);
     if (!this.scale || width === 0) return;
     drawLegend(sized(canvas, width, LEGEND_HEIGHT), this.scale, width, ink(), false);
-    const [low, high] = this.scale.range, { name, unit } = this.scale.field;
-    canvas.setAttribute("aria-label", `${fieldWords(name)} from ${number(low)} to ${number(high)} ${unit}`);
+    const [low, high] = this.scale.range, { title, unit } = this.scale.field;
+    canvas.setAttribute("aria-label", `${title} from ${number(low)} to ${number(high)} ${unit}`);
   }
 
   drawScaleBar(mmPerPixel) {
@@ -96,9 +96,9 @@ export class Panel {
     if (i < 0) return;
     if (document.activeElement !== find("segment")) find("segment").value = tree.id[i];
     find("readout").classList.toggle("pinned", pinned);
-    find("values").replaceChildren(...tree.fields.map(({ name, unit, values, times }) => {
+    find("values").replaceChildren(...tree.fields.map(({ name, title, unit, values, times }) => {
       const at = times.length > 1 ? Math.min(moment, times.length - 1) * tree.n : 0;
-      const line = row(fieldWords(name), number(values[at + i], 5), unit);
+      const line = row(title, number(values[at + i], 5), unit);
       line.dataset.field = name;
       return line;
     }));

@@ -28,56 +28,12 @@ static Status list(ListNames *names, Err *err)
     return status;
 }
 
-/* A description of a name that another module defines. */
-typedef struct Description {
-    const char *name, *text;
-} Description;
-
-static const Description fields[] = {
-    {"radius", "radius of the segment"},
-    {"length", "length of the segment"},
-    {"flow", "blood flow through the segment"},
-    {"velocity", "mean velocity of the blood"},
-    {"pressure", "pressure at the downstream end of the segment"},
-    {"wss", "wall shear stress"},
-    {"reynolds", "Reynolds number"},
-    {"level", "number of bifurcations between the root and the segment"},
-    {"strahler", "Strahler order; terminals have order 1"},
-    {"diameter-strahler", "diameter-defined Strahler order"},
-    {"branch", "number of the branch; a branch follows the thickest daughter"},
-    {"tree", "number of the tree in a forest"},
-    {0},
-};
-
-static const Description shapes[] = {
-    {"disc", "flat disc of radius R mm around the origin"},
-    {"ball", "ball of radius R mm around the origin"},
-    {"rect", "flat rectangle, sides W and H mm, centered on the origin"},
-    {"box", "box, sides A, B and C mm, centered on the origin"},
-    {"ellipsoid", "ellipsoid, semi-axes A, B and C mm, centered on the origin"},
-    {"shell", "wall of a left ventricle: ellipsoid with a cavity, cut off at the height BASE"},
-    {"polygon", "inside of the rings in a text file, in units of MM mm"},
-    {"mask", "image whose pixels that are not black are tissue, MM mm wide; or a NIfTI file"},
-    {"mesh", "inside of a closed surface (.stl, .obj), in units of MM mm"},
-    {"hull", "everything within MM mm of the tree of --from, or of the tree in a file"},
-    {"surface", "layer along a closed surface (.stl, .obj), OFFSET mm inside it"},
-    {0},
-};
-
-/* Returns the description of a name; "" if the table has none. */
-static const char *describe(const Description *table, const char *name)
-{
-    while (table->name && strcmp(table->name, name) != 0)
-        table++;
-    return table->name ? table->text : "";
-}
-
 static Status list_fields(Text *lines, Err *err)
 {
     for (size_t i = 0; derive_field_name(i); i++)
         text_printf(lines, "%s\t%s\t%s\n", derive_field_name(i),
                     *derive_field_unit(i) ? derive_field_unit(i) : "-",
-                    describe(fields, derive_field_name(i)));
+                    derive_field_description(i));
     return text_check(lines, err);
 }
 
@@ -85,7 +41,7 @@ static Status list_domains(Text *lines, Err *err)
 {
     for (size_t i = 0; domain_shape_name(i); i++)
         text_printf(lines, "%s:%s\t%s\n", domain_shape_name(i), domain_shape_parameters(i),
-                    describe(shapes, domain_shape_name(i)));
+                    domain_shape_description(i));
     return text_check(lines, err);
 }
 

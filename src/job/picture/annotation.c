@@ -3,6 +3,7 @@
  * distances follow from the size of the text. */
 #include "job/picture/annotation.h"
 
+#include "derive/derive.h"
 #include <math.h>
 #include <string.h>
 
@@ -98,23 +99,6 @@ FigureColor annotation_ink(Rgb background)
 
 /* ---- words ----------------------------------------------------------------------------------- */
 
-/* What fields are called in print; others have their own name. */
-static const struct {
-    const char *field, *name;
-} field_names[] = {
-    {"wss", "wall shear stress"},   {"reynolds", "Reynolds number"},
-    {"strahler", "Strahler order"}, {"diameter-strahler", "diameter-defined order"},
-    {"level", "bifurcation level"}, {"branch", "main branch"},
-};
-
-static const char *printed_name(const char *field)
-{
-    for (size_t i = 0; i < sizeof field_names / sizeof *field_names; i++)
-        if (strcmp(field_names[i].field, field) == 0)
-            return field_names[i].name;
-    return field;
-}
-
 /* "mm3/s" with its exponent raised, and "um" with its Greek letter. */
 static void put_unit(const char *unit, Text *text)
 {
@@ -133,7 +117,7 @@ static void put_title(const Annotation *annotation, const ColorScale *scale, Tex
         text_puts(text, annotation->title);
         return;
     }
-    text_puts(text, printed_name(scale->name));
+    text_puts(text, derive_field_title(scale->name));
     if (*scale->unit) {
         text_puts(text, " (");
         put_unit(scale->unit, text);
