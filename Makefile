@@ -5,6 +5,7 @@
 # V=1      print the commands that run
 # JOBS     number of parallel jobs where the Makefile calls itself (default: all processors)
 # PREFIX   folder that `make install` installs into (default: /usr/local); DESTDIR goes in front of it
+# WERROR=1 treat warnings as errors; the checks do
 # CFLAGS, CPPFLAGS, LDFLAGS   additional flags, from the environment or the command line; they follow the Makefile's own
 
 MODE ?= release
@@ -51,8 +52,10 @@ WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion 
 	-Wpointer-arith -Wundef -Wwrite-strings
 # clang reports the standard's INFINITY and NAN, which are floats, as promotions to double.
 WARNINGS += $(if $(findstring clang,$(CC)),-Wno-double-promotion)
-# Other levels of optimisation give other warnings, so a warning is an error only with the project's own flags.
-WARNINGS += $(if $(strip $(CFLAGS)),,-Werror)
+# Only the checks treat a warning as an error, and only with the project's own flags: other compilers and other levels of
+# optimisation give other warnings, and a package must build with them.
+check check-all check-quick asan tsan: export WERROR := yes
+WARNINGS += $(if $(WERROR),$(if $(strip $(CFLAGS)),,-Werror))
 OPTIMISE_release := -O2 -g
 OPTIMISE_debug := -O0 -g3
 OPTIMISE_asan := -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
@@ -67,10 +70,12 @@ PACKAGES := libpng libdeflate libisal zlib libtiff-4 libjpeg libwebp lcms2 janss
 # `view` loads SDL 2 when it opens a window; only its header is needed here.
 HEADERS := sdl2
 PACKAGE_LIBS := $(shell pkg-config --exists $(HEADERS) && pkg-config --libs $(PACKAGES) 2>/dev/null)
-# libnifti2-dev has no pkg-config file, and OpenEXR's links its C++ libraries as well.
-NIFTI := /usr/include/nifti
-EXR := /usr/include/OpenEXR
-PLAIN_HEADERS := $(and $(wildcard $(NIFTI)/nifti2_io.h),$(wildcard $(EXR)/openexr.h))
+# libnifti2-dev has no pkg-config file, and OpenEXR's links its C++ libraries as well. The headers of NIfTI are in a folder
+# `nifti` on the compiler's path, and include each other as if that folder were on the path, too.
+PLAIN_LIBS := -lOpenEXRCore -lnifti2 -lznz -lpthread -lm
+PLAIN_HEADERS := $(shell printf '\043include <nifti/znzlib.h>\n\043include <OpenEXR/openexr.h>\n' | \
+	$(CC) $(CPPFLAGS) $(CFLAGS) -M -x c - 2>/dev/null)
+NIFTI := $(patsubst %/znzlib.h,%,$(filter %/nifti/znzlib.h,$(PLAIN_HEADERS)))
 # Hardening of the release: checks of the stack and of the C library's buffers, and tables of addresses that are read-only
 # before main runs. _FORTIFY_SOURCE needs optimisation. A level of _FORTIFY_SOURCE given by the caller is kept.
 HARDEN_release = -fstack-protector-strong $(if $(filter -O0,$(OPTIMISE_$(MODE)) $(CFLAGS))$(findstring _FORTIFY_SOURCE,$(CPPFLAGS) $(CFLAGS)),, \
@@ -86,12 +91,12 @@ endif
 # The Makefile's own flags; the caller's CFLAGS, CPPFLAGS and LDFLAGS follow them.
 VECTORS :=
 OWN_CFLAGS := -std=c11 $(OPTIMISE_$(MODE)) -fPIC -fvisibility=hidden $(WARNINGS)
-OWN_CPPFLAGS := -Isrc $(FIND_FREED) -D_GNU_SOURCE -isystem $(NIFTI) -isystem $(EXR) $(shell pkg-config --cflags $(PACKAGES) $(HEADERS) 2>/dev/null)
+OWN_CPPFLAGS := -Isrc $(FIND_FREED) -D_GNU_SOURCE $(NIFTI:%=-isystem %) $(shell pkg-config --cflags $(PACKAGES) $(HEADERS) 2>/dev/null)
 OWN_LDFLAGS := $(filter -fsanitize%,$(OPTIMISE_$(MODE))) -pie -Wl,-z,relro,-z,now,-z,noexecstack
 COMPILE = $(CC) $(OWN_CPPFLAGS) $(CPPFLAGS) $(OWN_CFLAGS) $(HARDEN_$(MODE)) $(VECTORS) $(CFLAGS) $(EXACT)
 LINK = $(CC) $(OWN_LDFLAGS) $(LDFLAGS)
 VIEWER := build/viewer/viewer.js
-LIBS := $(PACKAGE_LIBS) -lOpenEXRCore -lnifti2 -lznz -lpthread -lm
+LIBS := $(PACKAGE_LIBS) $(PLAIN_LIBS)
 
 .PHONY: all lib abi api-programs deps demo figures gallery validate bench bench-grow bench-render bench-view bench-compare bench-mesh bench-trees bench-large export-all verify-all coronary power power-program fit-blob optima check check-all check-quick program unit \
 	unit-programs layers format format-check asan tsan \
@@ -344,7 +349,7 @@ $(filter %kernels.o %kernels.avx2.o %kernels.avx512.o,$(ROOM_OBJECTS)): HARDEN_r
 -include $(ROOM_OBJECTS:.o=.d) $(CLI_OBJECTS:.o=.d) $(TEST_OBJECTS:.o=.d) $(POWER_OBJECTS:.o=.d) $(EMBREE).d $(FRAMES).d $(MESHES).d $(FIT).d $(FUZZ_SOURCES:%.c=$(BUILD)/%.d)
 
 packages:
-ifeq ($(and $(strip $(PACKAGE_LIBS)),$(PLAIN_HEADERS)),)
+ifeq ($(and $(strip $(PACKAGE_LIBS)),$(NIFTI)),)
 	@echo 'corcast needs $(PACKAGES) $(HEADERS), OpenEXR, libnifti2 and pkg-config to build: run "make deps" first' >&2; exit 1
 endif
 
@@ -408,7 +413,7 @@ install: build/corcast lib build/share ## install program, library, manual pages
 	ln -sf $(SONAME) $(LIBRARIES)/libcorcast.so
 	install -Dm644 build/libcorcast.a $(LIBRARIES)/libcorcast.a
 	install -d $(LIBRARIES)/pkgconfig
-	sed 's|@PREFIX@|$(PREFIX)|; s|@VERSION@|$(VERSION)|; s|@PACKAGES@|$(PACKAGES)|; s|@LIBS@|-lOpenEXRCore -lnifti2 -lznz -lpthread -lm|' \
+	sed 's|@PREFIX@|$(PREFIX)|; s|@VERSION@|$(VERSION)|; s|@PACKAGES@|$(PACKAGES)|; s|@LIBS@|$(PLAIN_LIBS)|' \
 		src/api/corcast.pc.in > $(LIBRARIES)/pkgconfig/corcast.pc
 	install -Dm644 src/corcast.h $(DESTDIR)$(PREFIX)/include/corcast.h
 	install -Dm644 src/python/corcast.py $(LIBRARIES)/python3/dist-packages/corcast.py

@@ -1,6 +1,8 @@
 /* A window on a tree. What it shows is the picture that `render` draws with the options that key o
  * prints: the same scene, the same renderer, the same camera, moved by moving its options. */
 #include "cli/commands.h"
+
+#include "base/system.h"
 #include "cli/screen.h"
 #include "cli/window/display.h"
 #include "cli/window/window.h"
@@ -454,7 +456,7 @@ Status run_view(void *options, Parsed *parsed, Err *err)
                      .common = &parsed->common,
                      .tree = parsed->operands[0],
                      .recipe = own_options->recipe};
-    mem_keep();
+    system_keep_memory();
     Status status = open_viewer(&viewer, err);
     if (status == STATUS_OK)
         status =
