@@ -46,8 +46,9 @@ typedef struct Effects {
     Xray xray;
 } Effects;
 
-/* Appends the names of the effects that are on: "outlines and halos"; nothing if none is. */
-void effects_list(const Effects *effects, Text *out);
+/* Appends the names of what corcast draws and POV-Ray does not: "outlines and halos". Appends
+ * nothing if a picture with these effects, and with ambient occlusion if `occlusion`, has none. */
+void effects_list(const Effects *effects, bool occlusion, Text *out);
 
 /* Returns true if any effect is on. */
 static inline bool effects_present(const Effects *effects)

@@ -62,10 +62,19 @@ typedef struct LookEffects {
     double xray_per_mm;       /* absorption per mm; both 0: no x-ray */
 } LookEffects;
 
-enum { LOOK_MAX_ABOUT = 160 };
+/* Values that a look proposes for options of a picture. An option that is specified overrules the
+ * look. */
+typedef struct LookOptions {
+    int occlusion; /* ambient occlusion: number of occlusion directions per pixel; 0: none */
+    bool shadows;
+    Projection projection;
+} LookOptions;
+
+enum { LOOK_MAX_OCCLUSION = 4096, LOOK_MAX_ABOUT = 160 };
 
 typedef struct Look {
     char about[LOOK_MAX_ABOUT + 1]; /* a description in one line, or "" */
+    LookOptions options;
     Finish finish;
     Rgb color; /* of vessels that are not colored by a field */
     Rgb background;
@@ -83,6 +92,7 @@ Effects look_effects(const Look *look, double thousandth_px, double diameter_mm)
 /* Reads a look from an INI file. Its sections and keys:
  *
  *     [look]        about
+ *     [options]     ao, shadows, projection
  *     [vessel]      color
  *     [background]  color
  *     [finish]      ambient, diffuse, brilliance, phong, phong_size, specular, roughness
@@ -93,7 +103,8 @@ Effects look_effects(const Look *look, double thousandth_px, double diameter_mm)
  *     [fade]        nearest, farthest
  *     [xray]        per_diameter or per_mm
  *
- * Errors: STATUS_INPUT for an unknown section or key and for a bad value, naming file and line. */
+ * Errors: STATUS_INPUT for an unknown section or key and for a bad value, naming file and line. An
+ * unknown name is reported with the most similar known name. */
 MUST_CHECK Status look_read(Look *look, const char *path, Err *err);
 
 typedef enum NamedView {

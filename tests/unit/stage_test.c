@@ -954,7 +954,8 @@ static void a_look_is_read(void **state)
         "[light c]\nposition = 1 2 -3\nsize = 0.75\nsamples = 8\n"
         "[ground]\naxis = 0 2 0\ngap = 0.5\ncolor = 1 0.5 0\ndiffuse = 0.25\n"
         "[look]\nabout = red, and shining\n[outline]\nwidth = 2.5\ncrease = 60\n"
-        "color = 0 0.5 0\n[halo]\nradii = 3\n[fade]\nnearest = 0.25\n[xray]\nper_mm = 0.75\n",
+        "color = 0 0.5 0\n[halo]\nradii = 3\n[fade]\nnearest = 0.25\n[xray]\nper_mm = 0.75\n"
+        "[options]\nao = 24\nshadows = on\nprojection = perspective\n",
         &read, &err);
     assert_string_equal(err.text, "");
     assert_int_equal(status, STATUS_OK);
@@ -973,6 +974,9 @@ static void a_look_is_read(void **state)
     assert_true(read.ground.gap == 0.5 && read.ground.color.g == 0.5f);
     assert_true(read.ground.ambient == 0.1 && read.ground.diffuse == 0.25);
     assert_string_equal(read.about, "red, and shining");
+    assert_int_equal(read.options.occlusion, 24);
+    assert_true(read.options.shadows);
+    assert_int_equal(read.options.projection, PROJECTION_PERSPECTIVE);
     const Effects effects = look_effects(&read, 2, 1);
     assert_true(effects.outline.width_px == 5 && effects.outline.color.g == 0.5f);
     assert_true(fabs(effects.outline.crease_cosine - 0.5) < 1e-15);
@@ -983,6 +987,9 @@ static void a_look_is_read(void **state)
     const Effects none = look_effects(&read, 2, 1);
     assert_false(effects_present(&none));
     assert_false(read.ground.present);
+    assert_false(read.options.shadows);
+    assert_int_equal(read.options.occlusion, 0);
+    assert_int_equal(read.options.projection, PROJECTION_ORTHOGRAPHIC);
 }
 
 static void a_bad_look_names_its_line(void **state)
@@ -994,6 +1001,13 @@ static void a_bad_look_names_its_line(void **state)
         {"[vessel]\ncolor = 1 2 3\n", ":2:", "from 0 to 1"},
         {"[vessel]\ncolor = 1 1\n", ":2:", "three numbers"},
         {"[finish]\nambient = 0.1\nshine = 3\n", ":3:", "ambient"},
+        {"[finish]\ndifuse = 1\n", ":2:", "; did you mean diffuse?"},
+        {"[backgrund]\n", ":1:", "; did you mean background?"},
+        {"[options]\nao = 2.5\n", ":2:", "an integer from 0 to 4096"},
+        {"[options]\nao = 5000\n", ":2:", "an integer from 0 to 4096"},
+        {"[options]\nshadows = yes\n", ":2:", "on or off"},
+        {"[options]\nprojection = fisheye\n", ":2:", "orthographic or perspective"},
+        {"[options]\nshadow = on\n", ":2:", "; did you mean shadows?"},
         {"[finish]\ndiffuse = much\n", ":2:", "from 0 to 1"},
         {"[table]\ncolor = 1 1 1\n", ":1:", "sections"},
         {"[light a]\ndirection = 0 0 0\n", ":2:", "not all zero"},
