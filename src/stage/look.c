@@ -21,6 +21,7 @@ typedef enum LookType {
     TYPE_SWITCH,
     TYPE_PROJECTION,
     TYPE_COLOR,
+    TYPE_OPTIONAL_COLOR,
     TYPE_VECTOR,
     TYPE_LINE
 } LookType;
@@ -35,8 +36,8 @@ static const struct LookSection {
 } sections[] = {
     {"look", "about, a line of at most 160 bytes", 0, 0},
     {"options", "ao, shadows or projection", 0, 0},
-    {"vessel", "color", 0, 0},
-    {"background", "color", 0, 0},
+    {"vessel", "color or tips", 0, 0},
+    {"background", "color or corners", 0, 0},
     {"finish", "one of ambient, diffuse, brilliance, phong, phong_size, specular, roughness", 0, 0},
     {LIGHT, "direction, position, color, size or samples", 0, 0},
     {"ground", "normal, axis, gap, color, ambient or diffuse", 0, 0},
@@ -66,7 +67,9 @@ static const struct LookKey {
     {"options", "projection", TYPE_PROJECTION, offsetof(Look, options.projection), 0, 0,
      "orthographic or perspective"},
     {"vessel", "color", TYPE_COLOR, offsetof(Look, color), A_COLOR},
+    {"vessel", "tips", TYPE_OPTIONAL_COLOR, offsetof(Look, tips), A_COLOR},
     {"background", "color", TYPE_COLOR, offsetof(Look, background), A_COLOR},
+    {"background", "corners", TYPE_OPTIONAL_COLOR, offsetof(Look, corners), A_COLOR},
     {"finish", "ambient", IN_FINISH(ambient), 0, 1, NULL},
     {"finish", "diffuse", IN_FINISH(diffuse), 0, 1, NULL},
     {"finish", "brilliance", IN_FINISH(brilliance), 0.1, 10, NULL},
@@ -137,7 +140,9 @@ static bool parse_numbers(const struct LookKey *key, const char *text, double nu
 {
     if (key->type == TYPE_SWITCH || key->type == TYPE_PROJECTION)
         return parse_word(key->type, text, number);
-    size_t count = key->type == TYPE_COLOR || key->type == TYPE_VECTOR ? 3 : 1;
+    const bool triple =
+        key->type == TYPE_COLOR || key->type == TYPE_OPTIONAL_COLOR || key->type == TYPE_VECTOR;
+    const size_t count = triple ? 3 : 1;
     bool fits = numbers_parse(text, count, number);
     for (size_t i = 0; fits && i < count; i++)
         fits = number[i] >= key->low && number[i] <= key->high;
@@ -152,6 +157,7 @@ static bool store(const struct LookKey *key, const char *text, char *at)
         key->type == TYPE_LINE ? strlen(text) <= LOOK_MAX_ABOUT : parse_numbers(key, text, number);
     if (!fits)
         return false;
+    const Rgb color = {(float)number[0], (float)number[1], (float)number[2]};
     switch (key->type) {
     case TYPE_FLOAT:
         *(float *)(void *)at = (float)number[0];
@@ -173,7 +179,10 @@ static bool store(const struct LookKey *key, const char *text, char *at)
             number[0] == 1 ? PROJECTION_PERSPECTIVE : PROJECTION_ORTHOGRAPHIC;
         break;
     case TYPE_COLOR:
-        *(Rgb *)(void *)at = (Rgb){(float)number[0], (float)number[1], (float)number[2]};
+        *(Rgb *)(void *)at = color;
+        break;
+    case TYPE_OPTIONAL_COLOR:
+        *(OptionalRgb *)(void *)at = (OptionalRgb){true, color};
         break;
     case TYPE_VECTOR:
         *(Vec3 *)(void *)at = vec3(number[0], number[1], number[2]);
@@ -302,6 +311,7 @@ Effects look_effects(const Look *look, double thousandth_px, double diameter_mm)
                               .radii = effects->halo_radii,
                               .deeper = effects->halo_deeper},
                      .fade = {effects->fade_nearest, effects->fade_farthest, 0, 1},
+                     .grade = {look->corners.present, look->background, look->corners.color},
                      .xray = {.per_mm = effects->xray_per_diameter > 0
                                             ? effects->xray_per_diameter / diameter_mm
                                             : effects->xray_per_mm,

@@ -59,6 +59,44 @@ test_a_command_line_that_overrules_the_look_is_told_in_the_picture() {
     ! grep -aq -- '--shadows' plain.png || fail "expected no option that was not given"
 }
 
+# The corners are the corners' color, up to half a code of noise; the center is the background's. A background that is
+# given has one color.
+test_a_background_is_graded_towards_its_corners() {
+    make_crossing
+    printf '[background]\ncolor = 0.8 0.8 0.8\ncorners = 0.1 0.2 0.4\n' >graded.ini
+    sed '/corners/d' graded.ini >plain.ini
+    run_ok corcast render tree.swc --quiet --size 201x101 --location 0,0,-90 --look-at 0,0,-99 --look ./graded.ini -o graded.pfm
+    [ "$(tail -c $((201 * 101 * 12)) graded.pfm | od -An -v -tf4 -w12 | awk '
+        function near(a, b) { return a > b - 0.012 && a < b + 0.012 }
+        NR == 1 || NR == 201 || NR == 20301 { corners += near($1, 0.1) && near($2, 0.2) && near($3, 0.4) }
+        NR == 10151 { center = near($1, 0.8) && near($3, 0.8) }
+        END { print corners, center }')" = "3 1" ] || fail "expected the colors of the corners and of the center"
+    run_ok corcast render tree.swc --quiet --size 60x60 --view iso --look ./graded.ini --background white -o given.ppm
+    run_ok corcast render tree.swc --quiet --size 60x60 --view iso --look ./plain.ini --background white --antialias 3 -o plain.ppm
+    expect_same plain.ppm given.ppm
+    run_ok corcast render tree.swc --quiet --size 60x90 --look ./graded.ini -o whole.ppm
+    run_ok corcast render tree.swc --quiet --size 60x90 --look ./graded.ini --memory 0.01 --threads 1 -o bands.ppm
+    expect_same whole.ppm bands.ppm
+}
+
+# The colors are those of the field radius from the tips' color to the vessels', but no field is told or wanted.
+test_colors_run_with_the_radius_from_the_color_of_the_tips() {
+    run_ok corcast grow --terminals 30 --seed 2 --quiet -o tree.swc
+    printf '[vessel]\ncolor = 0 0 0\ntips = 1 1 1\n' >tips.ini
+    printf '[vessel]\ncolor = 0 0 0\n' >plain.ini
+    printf '1 1 1\n0 0 0\n' >map.txt
+    run_ok corcast render tree.swc --size 60x60 --look ./tips.ini -o tips.ppm
+    [ ! -s stderr ] || fail "expected no word of a field"
+    run_ok corcast render tree.swc --quiet --size 60x60 --look ./plain.ini --color-by radius --log --range 2%,100% --colormap ./map.txt -o field.ppm
+    expect_same field.ppm tips.ppm
+    run_ok corcast render tree.swc --quiet --size 60x60 --look ./tips.ini --color-by level -o level.ppm
+    run_ok corcast render tree.swc --quiet --size 60x60 --look ./plain.ini --color-by level -o plain.ppm
+    expect_same plain.ppm level.ppm
+    run corcast render tree.swc --quiet --look ./tips.ini --legend -o no.png
+    expect_status 2
+    run_ok corcast verify tree.swc --quiet --size 120x90 --look ./tips.ini -o report
+}
+
 # What POV-Ray does not draw is left out, and said; what was asked for by an option is refused.
 test_povray_does_without_the_occlusion_of_a_look() {
     make_crossing

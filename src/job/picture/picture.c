@@ -444,6 +444,8 @@ static Status take_look(const PictureOptions *options, const Parsed *parsed, Loo
     *look = options->look_file;
     if (options->omits_effects)
         look->effects = (LookEffects){0};
+    if (options->omits_effects || options->has_background)
+        look->corners.present = false;
     if (xray && options->coloring.field)
         return err_set(err, STATUS_USAGE,
                        "--color-by has no effect: --look %s uses two fixed colors", options->look);
@@ -612,7 +614,10 @@ Status picture_appearance(const PictureOptions *options, const PictureSource *so
 {
     const ColoredTree tree = picture_colored_tree(&source->of);
     Appearance made;
-    TRY(coloring_appearance(&options->coloring, &tree, &source->look, &made, err));
+    if (options->coloring.field || !source->look.tips.present)
+        TRY(coloring_appearance(&options->coloring, &tree, &source->look, &made, err));
+    else
+        TRY(coloring_by_radius(&tree, &source->look, &made, err));
     Status status = blend(options, &made, err);
     if (status == STATUS_OK)
         *appearance = made;
