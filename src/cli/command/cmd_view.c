@@ -280,10 +280,12 @@ static Status on_key(Viewer *viewer, int key, Err *err)
         return use_projection(viewer, err);
     case 's':
         options->stage.shadows = !options->stage.shadows;
+        options->has_shadows = true;
         TRY(aim(viewer, err));
         return make_display(viewer, err);
     case 'a':
         options->occlusion = options->occlusion ? 0 : 16;
+        options->has_occlusion = true;
         return make_display(viewer, err);
     case 'r':
         return go_home(viewer, err);

@@ -68,6 +68,9 @@ Status panel_draw(Parsed *parsed, Panel *panel, Err *err)
     RenderOptions *options = parsed->options;
     Rendering r;
     panel->in_lines = options->ink_mm > 0;
+    TRY(options_settle(parsed, err));
+    if (panel->n_insets > 0 && !options->picture.has_projection)
+        options->picture.projection = PROJECTION_ORTHOGRAPHIC;
     if (panel->n_insets > 0 && options->picture.projection == PROJECTION_PERSPECTIVE)
         return err_set(err, STATUS_USAGE, "an inset needs an orthographic panel");
     TRY(rendering_open(options, parsed, panel->fonts, &r, err));
