@@ -36,6 +36,9 @@ typedef struct PageParams {
     const char *look_name;   /* name of the look, as `render --look` takes it */
     const ColorScale *scale; /* initial scale, of the field with its name; NULL: no field */
     const char *map;         /* name of the scale's map, which need not be in `maps` */
+    /* Options specify the ends of the scale, or that it is logarithmic. False: the viewer selects
+     * the scale by the field's values. */
+    bool is_scale_chosen;
 } PageParams;
 
 /* Appends the page to `out`.

@@ -3,14 +3,45 @@
 // and repeats its colors cyclically.
 
 const NO_DATA = [128, 128, 128];
+const MIDDLE = 0.8; // a field is skewed if this part of its values, in the middle of their order, ...
+const CROWDED = 0.25; // ... has less than this part of the colors of a linear scale
+const TAIL = 0.02; // the part of the values that a scale of percentiles cuts off at either end
+
+// The kinds of scales, in the order in which they are tried for a field.
+export const KINDS = { linear: "linear", log: "logarithmic", percentiles: "2nd to 98th percentile" };
+
+// Returns the value below which a part of the ascending values lies, as colorscale_percentiles does.
+function quantile(sorted, part) {
+  const place = part * (sorted.length - 1), from = Math.floor(place);
+  return sorted[from] + (place - from) * (sorted[Math.min(from + 1, sorted.length - 1)] - sorted[from]);
+}
+
+// Returns the ends of a field's scale of this kind. A logarithmic scale begins at the smallest value above 0.
+export function rangeOf({ sorted }, kind) {
+  if (kind === "percentiles") return [quantile(sorted, TAIL), quantile(sorted, 1 - TAIL)];
+  return [kind === "log" ? sorted.find((value) => value > 0) : sorted[0], sorted[sorted.length - 1]];
+}
+
+// Returns true if a field can have a scale of this kind.
+export function hasKind({ sorted, whole }, kind) {
+  return kind === "linear" || (kind === "log" ? sorted[sorted.length - 1] > 0 : !whole);
+}
 
 export class Scale {
-  constructor(field, map, log, range) {
+  constructor(field, map, kind, range) {
     this.field = field;
     this.map = map;
-    this.log = log;
+    this.kind = kind;
+    this.log = kind === "log";
     this.range = range;
     this.counts = map.separate && field.whole;
+  }
+
+  // Returns the part of the colors that the middle of the field's values has.
+  get spread() {
+    const { sorted } = this.field, ends = [(1 - MIDDLE) / 2, (1 + MIDDLE) / 2];
+    const [from, to] = ends.map((part) => Math.min(1, Math.max(0, this.position(quantile(sorted, part)))));
+    return to - from;
   }
 
   // Returns the position of a value: 0 and 1 at the ends of the range, NaN for a value that cannot be shown.
@@ -80,6 +111,27 @@ function logTicks(low, high) {
 function thinned(ticks) {
   const every = Math.ceil(ticks.length / 6);
   return ticks.filter((tick, k) => k % every === 0);
+}
+
+// Returns the kind of scale for a field: the first that is not crowded, or if all are crowded the least crowded.
+// Integers have a linear scale. Values of 0, which a logarithmic scale cannot show, rule it out.
+export function chooseKind(field, map) {
+  if (field.whole) return "linear";
+  const spread = (kind) => new Scale(field, map, kind, rangeOf(field, kind)).spread;
+  const kinds = Object.keys(KINDS).filter((kind) => kind !== "log" || field.sorted[0] > 0);
+  return kinds.find((kind) => spread(kind) >= CROWDED) ||
+    kinds.reduce((best, kind) => (spread(kind) > spread(best) ? kind : best));
+}
+
+const percent = (part) => `${number(100 * part, part < 0.1 ? 1 : 2)}\u00a0%`;
+
+// Returns the sentence that says why a field has its scale, or "" if the field is not skewed.
+export function reason(scale) {
+  const { field, map, kind, counts } = scale;
+  const linear = new Scale(field, map, "linear", rangeOf(field, "linear"));
+  if (counts || field.whole || !(linear.spread < CROWDED)) return "";
+  const most = `${percent(MIDDLE)} of the values fill ${percent(linear.spread)} of`;
+  return kind === "linear" ? `Skewed: ${most} this scale.` : `${KINDS[kind]}, because ${most} a linear scale.`;
 }
 
 // Returns a number as text with `digits` significant digits, and an exponent only for very large or small numbers.

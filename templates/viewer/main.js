@@ -2,7 +2,7 @@
 // when the user presses keys, uses the mouse or the touch screen, or changes the address. A picture is drawn only after
 // a change.
 import { Color, SRGBColorSpace, WebGLRenderer } from "three";
-import { Scale } from "./colors.js";
+import { chooseKind, hasKind, KINDS, rangeOf, Scale } from "./colors.js";
 import { drawLegend, drawScaleBar, LEGEND_HEIGHT, TITLE_HEIGHT } from "./legend.js";
 import { ink, Panel } from "./panel.js";
 import { Shade } from "./shade.js";
@@ -11,15 +11,13 @@ import { Vessels } from "./vessels.js";
 import { View, VIEWS } from "./view.js";
 
 const find = (id) => document.getElementById(id);
-const DECADES = 2.5; // a range of at least this many powers of 10 gets a logarithmic scale by default
 const SHADE = 0.75;
-const LOW = 544; // CSS pixels: in a window less high, the tree is drawn below the tools
 const HIT = 4; // CSS pixels: minimum width of a vessel for picking with the pointer
 
 const tree = new Tree();
 const start = tree.properties.start;
 const state = {
-  field: null, map: null, log: null, moment: 0, grown: 1, haze: true, shade: true, panels: true,
+  field: null, map: null, kind: null, moment: 0, grown: 1, haze: true, shade: true, panels: true,
   hovered: -1, pinned: -1, // indices of segments, or -1
 };
 let scale = null, wanted = false, playing = 0, written = 0, known = location.hash;
@@ -66,9 +64,8 @@ function mmPerPixel() {
 function freeBox() {
   const { innerWidth: width, innerHeight: height } = window, side = find("side").getBoundingClientRect();
   if (side.width === 0) return { left: 0, top: 0, width, height };
-  const below = find("tools").getBoundingClientRect().bottom;
-  if (side.width >= width / 2) return { left: 0, top: below, width, height: side.top - below };
-  const top = height < LOW ? below : 0;
+  const top = find("tools").getBoundingClientRect().bottom;
+  if (side.width >= width / 2) return { left: 0, top, width, height: side.top - top };
   return { left: side.right, top, width: width - side.right, height: height - top };
 }
 
@@ -99,25 +96,17 @@ function haze() { return dark.matches ? 0.25 : 0.45; }
 
 const named = (list, name) => list.find((item) => item.name === name);
 
-// Returns the range of a field's scale: the range that the page was made with, for the same field and the same kind of
-// scale; else the range of the values.
-function rangeFor(field, log) {
-  if (start && start.field === field.name && start.log === log) return [start.low, start.high];
-  return log ? field.logRange : field.range;
-}
-
-function isWide(field) {
-  const range = field.logRange;
-  return !field.whole && !!range && field.range[0] >= 0 && Math.log10(range[1] / range[0]) >= DECADES;
-}
-
+// Returns the field's scale of the kind that was selected, else of the kind that shows the field best. The scale with
+// which the page was made has its own range.
 function makeScale() {
   const field = named(tree.fields, state.field);
   if (!field) return null;
   let map = named(tree.maps, state.map) || named(tree.maps, "viridis") || tree.maps[0];
   if (map.separate && !field.whole) map = tree.maps.find(({ separate }) => !separate);
-  const log = !!field.logRange && !(map.separate && field.whole) && (state.log === null ? isWide(field) : state.log);
-  return new Scale(field, map, log, rangeFor(field, log));
+  const made = start && start.field === field.name && start.kind;
+  const asked = [state.kind, made].find((kind) => kind in KINDS && hasKind(field, kind));
+  const kind = map.separate && field.whole ? "linear" : asked || chooseKind(field, map);
+  return new Scale(field, map, kind, made === kind ? [start.low, start.high] : rangeOf(field, kind));
 }
 
 function shownMoment() {
@@ -169,8 +158,8 @@ function change(what) {
   show();
 }
 
-// Selects a field. `log: null` chooses between a linear and a logarithmic scale by the field's range.
-function setField(name) { change({ field: named(tree.fields, name) ? name : null, log: null }); }
+// Selects a field. `kind: null` selects the kind of scale by the field's values.
+function setField(name) { change({ field: named(tree.fields, name) ? name : null, kind: null }); }
 
 function pin(i) {
   Object.assign(state, { pinned: i, hovered: -1 });
@@ -201,7 +190,7 @@ function writeAddress() {
   written = 0;
   if (location.hash !== known) return;
   const parts = viewOptions();
-  if (state.field) parts.push(["field", state.field], ["map", scale.map.name], ["log", scale.log ? "on" : "off"]);
+  if (state.field) parts.push(["field", state.field], ["map", scale.map.name], ["scale", scale.kind]);
   else if (start) parts.push(["field", "none"]);
   if (shownMoment()) parts.push(["moment", shownMoment() + 1]);
   if (state.grown < 1) parts.push(["grown", state.grown]);
@@ -233,11 +222,10 @@ function readAddress() {
   const get = new URLSearchParams(location.hash.slice(1));
   const field = get.get("field") ?? (start && start.field);
   view.project(get.get("projection") === "orthographic");
-  const log = get.get("log");
   change({
     field: named(tree.fields, field) ? field : null,
     map: get.get("map") ?? (start && start.map),
-    log: log === null ? (start && start.field === field ? start.log : null) : log === "on",
+    kind: get.get("scale"),
     moment: Math.round(clamped(get.get("moment"), 1, 1e6, 1)) - 1,
     grown: clamped(get.get("grown"), 0, 1, 1),
     haze: get.get("haze") !== "off",
@@ -399,7 +387,7 @@ function listen() {
   const on = (id, type, action) => find(id).addEventListener(type, action);
   on("field", "change", (e) => setField(e.target.value));
   on("map", "change", (e) => change({ map: e.target.value }));
-  on("log", "change", (e) => change({ log: e.target.checked }));
+  on("kind", "change", (e) => change({ kind: e.target.value }));
   on("moment", "input", (e) => change({ moment: Number(e.target.value) }));
   on("grown", "input", (e) => change({ grown: Number(e.target.value) }));
   on("haze", "change", (e) => change({ haze: e.target.checked }));

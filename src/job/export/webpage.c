@@ -302,7 +302,8 @@ static Status put_page(const void *job, const char *command, FileSlot files[], E
                                .look = &page->look,
                                .look_name = page->look_name,
                                .scale = page->appearance.colors ? &page->appearance.scale : NULL,
-                               .map = file_name(page->coloring->colormap)};
+                               .map = file_name(page->coloring->colormap),
+                               .is_scale_chosen = page->coloring->has_range || page->coloring->log};
     return page_put(&params, &files[0].text, err);
 }
 
