@@ -37,6 +37,7 @@ static json_t *look_json(const PageParams *params)
     const Finish *finish = &look->finish;
     const JsonMember members[] = {
         {"name", json_text(params->look_name)},
+        {"isChosen", json_boolean(params->is_look_chosen)},
         {"color", color_json(look->color)},
         {"ambient", json_number((double)finish->ambient)},
         {"diffuse", json_number((double)finish->diffuse)},

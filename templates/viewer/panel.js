@@ -81,6 +81,16 @@ export class Panel {
     drawScaleBar(context, mmPerPixel, 150, ink());
   }
 
+  // Shows the ring around the selected segment, or hides it if `ring` is null.
+  showRing(ring) {
+    const element = find("ring");
+    element.hidden = !ring;
+    if (!ring) return;
+    const { x, y, radius } = ring;
+    Object.assign(element.style, { left: `${x - radius}px`, top: `${y - radius}px`,
+      width: `${2 * radius}px`, height: `${2 * radius}px` });
+  }
+
   // Shows the slider of times for a field that changes with time, and hides it for any other field.
   showTime(field, moment) {
     const times = field ? field.times : [];

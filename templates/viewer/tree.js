@@ -80,6 +80,10 @@ export class Tree {
     }
   }
 
+  // Returns the coordinates of node i, and of the middle of segment i.
+  point(i) { return this.position.subarray(3 * i, 3 * i + 3); }
+  middle(i) { return Array.from(this.point(i), (v, c) => (v + this.point(this.parent[i])[c]) / 2); }
+
   length(i) {
     const a = 3 * this.parent[i], b = 3 * i, p = this.position;
     return Math.hypot(p[b] - p[a], p[b + 1] - p[a + 1], p[b + 2] - p[a + 2]);

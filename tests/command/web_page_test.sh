@@ -163,4 +163,30 @@ END
     run_ok node scale.mjs
 }
 
+# On the dark background #131417.
+test_each_color_of_each_map_is_visible_on_a_dark_page() {
+    command -v node >node.path || skip "nodejs is not installed"
+    cp "$REPO/templates/viewer/colors.js" colors.mjs
+    cat >lifted.mjs <<'END'
+import fs from "fs";
+import { contrast, lifted, luminance } from "./colors.mjs";
+const linear = (v) => (v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4);
+const ground = luminance([0x13, 0x14, 0x17].map((v) => linear(v / 255)));
+const lights = (bytes) => Array.from({ length: bytes.length / 3 }, (_, k) =>
+  luminance([0, 1, 2].map((c) => linear(bytes[3 * k + c] / 255))));
+const fall = (values) => values.reduce(([most, drop], v) => [Math.max(most, v), Math.max(drop, most - v)], [0, 0])[1];
+let n = 0;
+for (const file of process.argv.slice(2)) {
+  const rows = fs.readFileSync(file, "utf8").split("\n").filter((line) => /^[0-9]/.test(line));
+  const bytes = Uint8Array.from(rows.flatMap((line) => line.trim().split(/\s+/).map((v) => Math.round(255 * v))));
+  const before = lights(bytes), after = lights(lifted(bytes, ground)), lowest = Math.min(...after.map((v) => contrast(v, ground)));
+  if (!(lowest >= 3 && lowest < 3.2 || after.join() === before.join())) throw new Error(`${file}: contrast ${lowest}`);
+  if (fall(after) > fall(before) + 0.01) throw new Error(`${file}: not as light as colors before by ${fall(after)}`);
+  n++;
+}
+if (n < 12) throw new Error("expected all maps");
+END
+    run_ok node lifted.mjs "$REPO"/templates/colormaps/[A-Za-z]*.txt
+}
+
 run_tests "$@"
