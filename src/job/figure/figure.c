@@ -19,7 +19,7 @@ static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, FigureOptions, output),
      .argument = "F",
-     .help = "figure: .pdf or .svg with live text, or .png, .tif or .jpg"},
+     .help = "figure: .pdf, .eps or .svg with live text, or .png, .tif or .jpg"},
     {.name = "size",
      SETS(SIZE, FigureOptions, size),
      FROM_TO(1, IMAGE_MAX_SIDE),
@@ -399,10 +399,12 @@ static Status open_press(Figure *figure, Err *err)
 
 static Status check_output(const FigureOptions *options, Err *err)
 {
-    static const char *const known[] = {"pdf", "svg", "png", "tif", "tiff", "jpg", "jpeg", NULL};
+    static const char *const known[] = {"pdf",  "eps", "svg",  "png", "tif",
+                                        "tiff", "jpg", "jpeg", NULL};
     if (is_one_of(file_extension(options->output), known))
         return STATUS_OK;
-    return err_set(err, STATUS_USAGE, "-o: '%s' does not end in .pdf, .svg, .png, .tif or .jpg",
+    return err_set(err, STATUS_USAGE,
+                   "-o: '%s' does not end in .pdf, .eps, .svg, .png, .tif or .jpg",
                    options->output);
 }
 

@@ -52,7 +52,8 @@ typedef struct Figure {
  * render_make; STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status figure_make(const FigureOptions *options, Parsed *parsed, Figure *figure,
                               Err *err);
-/* Writes the page to the output: .pdf, .svg, .png, .tif or .jpg. Errors: STATUS_IO, STATUS_MEMORY.
+/* Writes the page to the output: .pdf, .eps, .svg, .png, .tif or .jpg. Errors: STATUS_IO,
+ * STATUS_MEMORY.
  */
 MUST_CHECK Status figure_write(Figure *figure, Err *err);
 void figure_done(Figure *figure);
