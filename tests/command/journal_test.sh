@@ -75,4 +75,25 @@ test_an_eps_shows_what_the_pdf_shows() {
     run_ok corcast render t.swc --quiet --preset springer --dpi 20 -o s.eps
     run_ok corcast check-figure s.eps --preset springer
 }
+# One tree in a high panel and in a flat one with a legend: the trees are equally wide, and neither
+# lies under the legend.
+test_panels_of_one_scale_show_a_tree_in_one_size() {
+    run_ok corcast grow --terminals 30 --seed 3 --quiet -o t.swc
+    printf '[figure]\nsize = 120mmx60mm\ndpi = 100\ncolumns = 2\nletters = none\n[panels]\ntree = t.swc\n' >f.ini
+    printf 'look = data\ncolor-by = radius\n[panel a]\n[panel b]\nlegend = on\n' >>f.ini
+    for scale in off on; do
+        run_ok corcast figure f.ini --quiet --same-scale $scale -o $scale.png
+        for column in 0 236; do
+            pngtopnm $scale.png | pamcut -left $column -width $((column ? 168 : 236)) |
+                pnmcrop -white 2>/dev/null | pnmfile | sed 's/.* \([0-9]*\) by.*/\1/'
+        done >$scale.widths
+    done
+    awk '{ w[NR] = $1 } END { exit !(w[1] > 1.2 * w[2]) }' off.widths || fail "expected two scales, got $(xargs <off.widths)"
+    awk '{ w[NR] = $1 } END { exit !((w[1] - w[2]) ^ 2 <= 4) }' on.widths || fail "expected one scale, got $(xargs <on.widths)"
+    printf 'height = 90\n' >>f.ini
+    run corcast figure f.ini --same-scale on -o x.png
+    expect_status 2
+    expect_sentence '\[panel b\]: height has no effect beside same-scale'
+}
+
 run_tests "$@"

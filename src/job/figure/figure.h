@@ -15,6 +15,7 @@ typedef struct FigureOptions {
     PictureSize size;
     int columns;
     double gap_mm, margin_mm, text_pt;
+    bool same_scale; /* all panels show their trees at one scale */
     Letters letters;
     Vec3 background; /* sRGB in [0, 1] */
 } FigureOptions;
@@ -23,6 +24,7 @@ typedef struct FigureOptions {
 typedef struct Place {
     int left, top, width, height;
     double title_mm; /* height of the line above the panel */
+    char *tree;      /* path of the panel's tree; NULL: the recipe makes the tree; owned */
 } Place;
 
 /* A figure on its page. Zero it before use; release it with figure_done. */
