@@ -39,6 +39,16 @@ agrees() {
 }
 
 # Outlines, cuts and equally near surfaces of these lie exactly at pixel centres of a picture whose frame is theirs.
+test_smooth_vessels_agree_in_every_model() {
+    local model
+    tree_3d 12
+    for model in $(corcast models | cut -f 1); do
+        agrees "$model" --smooth
+        grep -q 'smooth: 23 segments are drawn as' stderr || fail "expected the pieces of $model"
+    done
+    agrees isosurface --smooth --potential graph
+}
+
 test_tubes_tees_and_crosses_on_integers_agree() {
     local case
     printf '1 1 0 0 0 1 -1\n2 3 0 10 0 1 1\n' >tube.swc
