@@ -20,9 +20,9 @@ extern const struct PartRow {
 } part_rows[PARTS];
 
 typedef struct Certified {
-    Bound bound;        /* owned */
-    Text certificate;   /* the proof; owned; empty if the option certificate was not given */
-    double refined;     /* target of the tree with its geometry refined; NAN without --explain-gap */
+    Bound bound;      /* owned */
+    Text certificate; /* the proof; owned; empty if the option certificate was not given */
+    double refined;   /* target of the tree with its geometry refined; NAN without --explain-gap */
     double part[PARTS]; /* per part; NAN: not separated from the next part */
     double seconds;     /* wall clock time of the bound */
 } Certified;
