@@ -116,7 +116,7 @@ test_depth_and_normal_of_one_tube_are_what_geometry_says() {
     local model how
     printf '1 1 -10 0 0 2 -1\n2 3 10 0 0 2 1\n' >tube.swc
     for model in $MODELS; do
-        [ $model = mesh ] && how='--tolerance 0.002' || how=''
+        [ $model = mesh ] && how='--mesh-tolerance 0.002' || how=''
         run_ok corcast render --exact tube.swc --model $model $how --size 11x11 --location 0,0,30 --look-at 0,0,0 \
             --height 11 --planes depth,normal -o picture.ppm
         pfm_value picture.depth.pfm 60 1 >value

@@ -352,7 +352,7 @@ const Command command_render = {
                 "  corcast render tree.swc --model isosurface --shadows on -o tree.ppm\n"
                 "  corcast render tree.swc --planes depth,normal,id -o tree.png\n"
                 "  corcast render tree.swc --turntable 120 -o turn%03d.png\n"
-                "  corcast render tree.swc --color-by pulse.csv --frames all -o f%04d.png\n",
+                "  corcast render tree.swc --color-by pulse.csv --moments all -o f%04d.png\n",
     .min_operands = 1,
     .max_operands = 1,
     .needs_output = true,
