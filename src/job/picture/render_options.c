@@ -18,7 +18,8 @@ static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, RenderOptions, output),
      .argument = "P",
-     .help = "image: .png, .ppm, .tif, .jpg, .exr or .pfm, or a page with the image: .pdf or .svg"},
+     .help = "image: .png, .ppm, .tif, .jpg, .exr or .pfm, or a page with the image: .pdf, .eps "
+             "or .svg"},
     {.name = "planes",
      SETS(TEXT, RenderOptions, planes),
      .argument = "LIST",
@@ -53,7 +54,7 @@ static const Option own[] = {
      .unit = "mm",
      .otherwise = "",
      .help = "draw outlines of this width on paper instead of shaded vessels, without hidden "
-             "lines; .svg or .pdf only"},
+             "lines; .svg, .pdf or .eps only"},
     {.name = "hits",
      SETS(CHOICE, RenderOptions, hits),
      .choices = hits_names,

@@ -63,6 +63,18 @@ static Status draw_views(Rendering *r, Panel *panel, Err *err)
     return STATUS_OK;
 }
 
+Status panel_scale(Parsed *parsed, const FigureFonts *fonts, double *mm_per_pixel, Err *err)
+{
+    RenderOptions *options = parsed->options;
+    Rendering r;
+    if (options->picture.projection == PROJECTION_PERSPECTIVE)
+        return err_set(err, STATUS_USAGE, "same-scale needs orthographic panels");
+    TRY(rendering_open(options, parsed, fonts, &r, err));
+    *mm_per_pixel = vec3_length(r.scene.view.camera.up) / r.scene.view.camera.height;
+    rendering_close(&r);
+    return STATUS_OK;
+}
+
 Status panel_draw(Parsed *parsed, Panel *panel, Err *err)
 {
     RenderOptions *options = parsed->options;
