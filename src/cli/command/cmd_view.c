@@ -2,6 +2,7 @@
  * prints: the same scene, the same renderer, the same camera, moved by moving its options. */
 #include "cli/command/view_overlay.h"
 #include "cli/commands.h"
+
 #include "cli/screen.h"
 #include "cli/window/display.h"
 #include "cli/window/window.h"
@@ -348,10 +349,12 @@ static Status on_key(Viewer *viewer, int key, Err *err)
         return use_projection(viewer, err);
     case 's':
         options->stage.shadows = !options->stage.shadows;
+        options->has_shadows = true;
         TRY(aim(viewer, err));
         return make_display(viewer, err);
     case 'a':
         options->occlusion = options->occlusion ? 0 : 16;
+        options->has_occlusion = true;
         return make_display(viewer, err);
     case 'r':
         return go_home(viewer, err);
@@ -528,7 +531,7 @@ Status run_view(void *options, Parsed *parsed, Err *err)
                      .common = &parsed->common,
                      .tree = parsed->operands[0],
                      .recipe = own_options->recipe};
-    mem_keep();
+    system_keep_memory();
     Status status = open_viewer(&viewer, err);
     if (status == STATUS_OK)
         status =
