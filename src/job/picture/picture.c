@@ -200,6 +200,7 @@ static const Option rows[] = {
      SETS(LOOKUP, PictureOptions, look),
      .group = GROUP_LIGHT,
      .list = "looks",
+     .otherwise = "cast; with --color-by data, whose colors are those of the legend",
      .when = WHEN(VESSELS),
      .help = "colors, finish and lights: the name of a look, or the path of a file of your own "
              "(with a '/')"},
@@ -246,7 +247,17 @@ static ConditionSet unmet(const void *set, const Parsed *parsed)
            UNLESS(field, FIELD_IDS);
 }
 
-const OptionTable picture_table = {OPTION_ROWS(rows), .unmet = unmet};
+/* Colors that mean something must be those of the legend, so a field has a look of its own. */
+static Status settle(void *set, const Parsed *parsed, Err *err)
+{
+    PictureOptions *options = set;
+    (void)err;
+    if (options->coloring.field && !options_said(parsed, "look"))
+        options->look = "data";
+    return STATUS_OK;
+}
+
+const OptionTable picture_table = {OPTION_ROWS(rows), .settle = settle, .unmet = unmet};
 
 void picture_set_defaults(PictureOptions *picture)
 {
