@@ -167,9 +167,10 @@ static Status draw_ramp(PixelRows *target, const FigureItem *item, Err *err)
 
 /* The outline belongs to FreeType until the next glyph is loaded. Its points are moved to their
  * positions in place. */
-static Status draw_glyph(PixelRows *target, FT_Face face, const Glyph *glyph, FigurePoint at,
-                         double size, Err *err)
+static Status draw_glyph(PixelRows *target, const Glyph *glyph, FigurePoint at, double size,
+                         Err *err)
 {
+    FT_Face face = fonts_face(target->page->fonts, glyph->face);
     if (FT_Load_Glyph(face, glyph->index, FT_LOAD_NO_SCALE))
         return mem_out_of("for", "letters", err);
     FT_Outline *outline = &face->glyph->outline;
@@ -191,7 +192,7 @@ static Status draw_text(PixelRows *target, const FigureItem *item, Err *err)
     TRY(fonts_shape(fonts, item->text, item->bold, &glyphs, err));
     Status status = STATUS_OK;
     for (size_t i = 0; i < glyphs.n && status == STATUS_OK; i++)
-        status = draw_glyph(target, fonts_face(fonts, item->bold), &glyphs.glyph[i], at, size, err);
+        status = draw_glyph(target, &glyphs.glyph[i], at, size, err);
     glyphs_release(&glyphs);
     return status;
 }

@@ -133,10 +133,12 @@ static void add_line_of_text(FigurePage *page, const FigureText *text, char *cha
     const double size = text->size_pt * MM_PER_POINT, width = glyphs->width * size;
     const double before[] = {[ALIGN_LEFT] = 0, [ALIGN_CENTER] = width / 2, [ALIGN_RIGHT] = width};
     const double left = text->x - before[text->align];
-    letters_add(&page->replaced, &glyphs->replaced);
+    letters_add(&page->missing, &glyphs->missing);
+    if (glyphs->unclosed && !page->unclosed)
+        page->unclosed = chars;
     if (!add(page, (FigureItem){.kind = FIGURE_TEXT,
-                                .box = {left, text->y - FONT_CAPITALS * size, left + width,
-                                        text->y + FONT_DESCENT * size},
+                                .box = {left, text->y - glyphs->ascent * size, left + width,
+                                        text->y + glyphs->descent * size},
                                 .color = text->color,
                                 .at = {{text->x, text->y}},
                                 .n = 1,
@@ -200,18 +202,20 @@ Status figure_check(const FigurePage *page, Err *err)
     return page->failed ? mem_out_of("for", "the page", err) : STATUS_OK;
 }
 
-void figure_put_missing(const FigurePage *page, bool substituted, Text *out)
+void figure_put_missing(const FigurePage *page, bool boxed, Text *out)
 {
-    const FigureLetters *replaced = &page->replaced;
-    const uint32_t *letters = substituted ? replaced->substituted : replaced->boxed;
-    const int n = substituted ? replaced->n_substituted : replaced->n_boxed;
+    const FigureLetters *missing = &page->missing;
+    const uint32_t *letters = boxed ? missing->boxed : missing->fallback;
+    const int n = boxed ? missing->n_boxed : missing->n_fallback;
     if (n == 0)
         return;
-    text_puts(out, "the font Liberation Sans lacks");
-    for (int i = 0; i < n; i++)
-        text_printf(out, "%s U+%04X", i ? "," : "", (unsigned)letters[i]);
-    text_puts(out, substituted ? "; ordinary letters are drawn, small and raised or lowered"
-                               : "; a box is drawn in place of each");
+    text_puts(out, boxed ? "no font has" : "Liberation Sans lacks");
+    for (int i = 0; i < n; i++) {
+        text_puts(out, i ? ", " : " ");
+        text_put_character(out, letters[i]);
+        text_printf(out, " (U+%04X)", (unsigned)letters[i]);
+    }
+    text_puts(out, boxed ? "; a box is drawn in place of each" : "; DejaVu Sans is used for these");
 }
 
 FigureBox figure_bounds(const FigurePage *page, size_t first)

@@ -137,20 +137,38 @@ test_an_inset_shows_the_part_of_its_frame_larger() {
     expect_differing 0 60 expected.ppm inset.ppm
 }
 
-# The letters are in the text of the page, whatever is drawn for them.
-test_a_letter_that_the_font_lacks_is_drawn_by_another_and_told() {
+# The words are in the text of the page, with Unicode's superscripts, whatever is drawn for them.
+test_markup_and_missing_letters_in_every_output() {
     run_ok corcast grow --terminals 3 --quiet -o t.swc
-    printf '[panel a]\ntree = t.swc\nantialias = 1\ntitle = %s\n[figure]\ndpi = 60\n' 'flow 10⁻³ m⁻² 日 ₚ' >letters.ini
+    printf '[panel a]\ntree = t.swc\nantialias = 1\ntitle = %s\n[figure]\ndpi = 60\n' \
+        '*τ_{w}* of 10⁻³ mm^{-2} \*\_{ ∝ 日 ₚ' >letters.ini
     for form in pdf svg png; do
         run_ok corcast figure letters.ini --quiet -o letters.$form
-        expect_sentence 'the font Liberation Sans lacks U\+65E5; a box'
+        expect_sentence 'no font has 日 \(U\+65E5\); a box is drawn in place of each'
         run_ok corcast figure letters.ini -o letters.$form
-        grep -q 'lacks U+207B, U+209A; ordinary letters' stderr || fail "expected a warning, got $(cat stderr)"
+        grep -q 'Liberation Sans lacks ∝ (U+221D); DejaVu Sans is used for these' stderr ||
+            fail "expected a note, got $(cat stderr)"
     done
-    pdftotext letters.pdf - | grep -q '10⁻³ m⁻² 日 ₚ' || fail "expected the letters, got $(pdftotext letters.pdf -)"
-    grep -q '10⁻³ m⁻² 日 ₚ' letters.svg || fail "expected the letters in the SVG"
+    pdftotext letters.pdf - | grep -qF 'τw of 10⁻³ mm⁻² *_{ ∝ 日 ₚ' ||
+        fail "expected the words, got $(pdftotext letters.pdf -)"
+    pdffonts letters.pdf >fonts.txt
+    for font in LiberationSans LiberationSans-Italic DejaVuSans; do
+        grep -q "+$font " fonts.txt || fail "expected $font, got $(cat fonts.txt)"
+    done
+    awk 'NR > 2 && $(NF - 4) != "yes" { exit 1 }' fonts.txt || fail "a font is not embedded"
+    sed 's/<[^>]*>//g' letters.svg | grep -qF 'τw of 10−3 mm−2 *_{ ∝ 日 p' ||
+        fail "expected the words in the SVG, got $(grep '<text' letters.svg)"
     run_ok corcast render t.swc --size 40x40 --letter '⁻日' --text-size 3 -o r.pdf
-    grep -q 'corcast: .* lacks U+65E5; a box' stderr || fail "expected a warning of render, got $(cat stderr)"
+    grep -q 'corcast: no font has 日' stderr || fail "expected a warning of render, got $(cat stderr)"
+}
+
+test_a_group_that_is_not_closed_is_drawn_and_told() {
+    run_ok corcast grow --terminals 3 --quiet -o t.swc
+    run_ok corcast render t.swc --quiet --size 60x60 --letter '*τ*_{w' --text-size 4 -o open.pdf
+    expect_sentence "the text '\*τ\*_\{w' has a group _\{ or \^\{ without \}: the group ends with the text"
+    pdftotext open.pdf - | grep -q '^τw$' || fail "expected τw, got $(pdftotext open.pdf -)"
+    run_ok corcast render t.swc --quiet --size 60x60 --letter "$(printf 'a\302_{}b\377')" --text-size 4 -o bytes.pdf
+    pdftotext bytes.pdf - | grep -q '^a�b�$' || fail "expected replacements, got $(pdftotext bytes.pdf -)"
 }
 
 test_controls_of_bidirectional_text_are_blanks() {

@@ -28,6 +28,15 @@ test_a_page_has_searchable_text_embedded_fonts_and_the_picture_at_its_resolution
     grep -q 'Subject: .*corcast render tree.swc' info.txt || fail "expected the command, got $(cat info.txt)"
 }
 
+test_a_title_has_italics_and_a_subscript() {
+    grow
+    run_ok corcast render tree.swc --size 61mmx47mm --color-by wss --legend --legend-title '*τ*_{w} (Pa)' --quiet -o w.pdf
+    pdftotext w.pdf w.txt
+    grep -qF 'τw (Pa)' w.txt || fail "expected the title, got $(cat w.txt)"
+    pdffonts w.pdf >fonts.txt
+    grep -q '+LiberationSans-Italic ' fonts.txt || fail "expected italics, got $(cat fonts.txt)"
+}
+
 test_an_svg_is_sound_and_its_text_is_text() {
     grow
     # shellcheck disable=SC2086
