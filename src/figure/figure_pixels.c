@@ -293,11 +293,13 @@ static Status draw_bars(PixelRows *target, const FigureItem *item, Err *err)
     return STATUS_OK;
 }
 
-/* Returns true if the item may have a pixel in the rows. Snapping moves it by at most one. */
+/* Returns true if the item may have a pixel in the rows. Snapping moves it by at most one. Accents
+ * and tall letters of DejaVu Sans reach beyond the box of a text, by less than its size. */
 static bool meets(const PixelRows *target, const FigureItem *item)
 {
-    return pixels_of(target, item->box.bottom) + 2 > target->first &&
-           pixels_of(target, item->box.top) - 2 < target->first + target->rows->height;
+    const double beyond = 2 + pixels_of(target, item->size_pt * MM_PER_POINT);
+    return pixels_of(target, item->box.bottom) + beyond > target->first &&
+           pixels_of(target, item->box.top) - beyond < target->first + target->rows->height;
 }
 
 /* A FigurePut. */

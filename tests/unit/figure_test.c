@@ -261,7 +261,8 @@ static void fill(FigurePage *page, const Picture *picture)
     figure_add_shape(page, arrow, 3, (FigureColor){{200, 20, 10}});
     figure_add_line(page, frame, 4, true, 0.18, (FigureColor){{0, 0, 0}});
     figure_add_line(page, tie, 2, false, 0.31, (FigureColor){{0, 0, 0}});
-    figure_add_text(page, &(FigureText){.text = "Ag\xC2\xB5", .x = 4, .y = 5.5, .size_pt = 8});
+    figure_add_text(
+        page, &(FigureText){.text = "\xC3\x85g\xC2\xB5_{*f*^{2}}", .x = 4, .y = 5.15, .size_pt = 14});
 }
 
 static void init_picture(Picture *picture, int width, int height, int bits)
