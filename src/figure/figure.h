@@ -17,6 +17,7 @@
 #include "base/base.h"
 #include "image/image.h"
 #include "scene/scene.h"
+#include <math.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -57,6 +58,13 @@ typedef struct FigurePoint {
 typedef struct FigureBox {
     double left, top, right, bottom;
 } FigureBox;
+
+/* Returns true if two boxes share more than `slack` in both directions. */
+static inline bool figure_boxes_overlap(const FigureBox *a, const FigureBox *b, double slack)
+{
+    return fmin(a->right, b->right) - fmax(a->left, b->left) > slack &&
+           fmin(a->bottom, b->bottom) - fmax(a->top, b->top) > slack;
+}
 
 /* Codes of sRGB. */
 typedef struct FigureColor {
@@ -104,10 +112,14 @@ typedef struct FigureItem {
     FigureColor color;
     int n; /* number of points in `at` */
     bool closed, upwards, bold;
+    bool solid;        /* a bar or swatch: no text is to be over it */
     FigureAlign align; /* of a text at at[0], which is on its baseline */
     FigurePoint at[FIGURE_CORNERS];
     double width_mm;        /* of a line */
     double size_pt;         /* of a text */
+    double outline_mm;      /* of a text: its letters are filled, and outlined this wide */
+    double halo_mm;         /* width of the halo around the item; 0: none */
+    FigureColor halo;       /* color of the halo */
     char *text;             /* owned */
     FigureColor *ramp;      /* owned; FIGURE_STOPS colors at equal distances */
     const Strokes *strokes; /* borrowed; their paper's corner is at at[0] */
@@ -181,10 +193,20 @@ MUST_CHECK Status figure_check(const FigurePage *page, Err *err);
  * none. */
 void figure_put_missing(const FigurePage *page, bool boxed, Text *out);
 
+/* Appends a sentence that lists the texts that overlap each other, a scale bar or a legend, or that
+ * extend beyond the page. Appends nothing if there are none. Cost: O(n^2) for n texts. */
+void figure_put_collisions(const FigurePage *page, Text *out);
+
 /* Returns the bounds of the items from index `first` on. */
 FigureBox figure_bounds(const FigurePage *page, size_t first);
 /* Moves the items from index `first` on. None may be a picture. */
 void figure_move(FigurePage *page, size_t first, double dx, double dy);
+/* Marks the items from index `first` on that are no text as solid. */
+void figure_mark_solid(FigurePage *page, size_t first);
+
+/* Gives an item a halo, which is drawn below the item: around the letters of a text, or around the
+ * box of any other item. */
+void figure_set_halo(FigurePage *page, size_t item, double width_mm, FigureColor color);
 
 /* ---- legends --------------------------------------------------------------------------------- */
 

@@ -115,6 +115,17 @@ static Status fill_run(const FigureItem *item, const Glyph *from, size_t n, Glyp
     return text_check(&run->text, err);
 }
 
+/* Draws letters as paths, so that a halo is no text. */
+static void fill_outlined(cairo_t *cairo, const GlyphRun *run, int n, double width_mm)
+{
+    cairo_set_line_width(cairo, width_mm);
+    cairo_set_line_join(cairo, CAIRO_LINE_JOIN_ROUND);
+    cairo_glyph_path(cairo, run->glyph, n);
+    cairo_stroke_preserve(cairo);
+    cairo_fill(cairo);
+    cairo_set_line_join(cairo, CAIRO_LINE_JOIN_MITER);
+}
+
 static Status show_run(const PdfPage *pdf, const FigureItem *item, const Glyph *from, size_t n,
                        Err *err)
 {
@@ -123,8 +134,11 @@ static Status show_run(const PdfPage *pdf, const FigureItem *item, const Glyph *
     TRY_GOTO(fill_run(item, from, n, &run, err));
     cairo_set_font_face(pdf->cairo, pdf->face[from->face]);
     cairo_set_font_size(pdf->cairo, item->size_pt * MM_PER_POINT * from->scale);
-    cairo_show_text_glyphs(pdf->cairo, text_chars(&run.text), (int)run.text.length, run.glyph,
-                           (int)n, run.cluster, (int)n, 0);
+    if (item->outline_mm > 0)
+        fill_outlined(pdf->cairo, &run, (int)n, item->outline_mm);
+    else
+        cairo_show_text_glyphs(pdf->cairo, text_chars(&run.text), (int)run.text.length, run.glyph,
+                               (int)n, run.cluster, (int)n, 0);
 done:
     free(run.glyph);
     free(run.cluster);

@@ -104,7 +104,11 @@ static Status put_text(void *context, const FigureItem *item, Err *err)
     text_puts(markup_text(&parts, "anchor"), anchors[item->align]);
     put_color(item->color, markup_text(&parts, "color"));
     TRY_GOTO(put_runs(svg, item, markup_raw(&parts, "text"), err));
-    status = markup_put(&parts, svg->templates, "figure/text.svg", svg->out, err);
+    if (item->outline_mm > 0)
+        put_mm(item->outline_mm, markup_text(&parts, "outline"));
+    status =
+        markup_put(&parts, svg->templates,
+                   item->outline_mm > 0 ? "figure/halo.svg" : "figure/text.svg", svg->out, err);
 done:
     markup_release(&parts);
     return status;

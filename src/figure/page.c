@@ -185,15 +185,50 @@ FigureItem figure_bar(const FigureItem *item, size_t i)
                         .at = {{left, top}, {right, top}, {right, bottom}, {left, bottom}}};
 }
 
+void figure_set_halo(FigurePage *page, size_t item, double width_mm, FigureColor color)
+{
+    page->items[item].halo_mm = width_mm;
+    page->items[item].halo = color;
+}
+
+/* Returns the halo of an item as an item of its own: the text outlined, or a larger box. */
+static FigureItem halo_of(const FigureItem *item)
+{
+    FigureItem halo = *item;
+    const FigureBox *box = &item->box;
+    const double wide = item->halo_mm;
+    halo.color = item->halo;
+    halo.outline_mm = 2 * wide;
+    if (item->kind == FIGURE_TEXT)
+        return halo;
+    halo.kind = FIGURE_SHAPE;
+    halo.n = 4;
+    halo.box =
+        (FigureBox){box->left - wide, box->top - wide, box->right + wide, box->bottom + wide};
+    halo.at[0] = (FigurePoint){halo.box.left, halo.box.top};
+    halo.at[1] = (FigurePoint){halo.box.right, halo.box.top};
+    halo.at[2] = (FigurePoint){halo.box.right, halo.box.bottom};
+    halo.at[3] = (FigurePoint){halo.box.left, halo.box.bottom};
+    return halo;
+}
+
+static Status put_item(const FigureItem *item, FigurePut *const put[FIGURE_KINDS], void *context,
+                       Err *err)
+{
+    if (item->halo_mm > 0) {
+        const FigureItem halo = halo_of(item);
+        TRY(put[halo.kind](context, &halo, err));
+    }
+    return put[item->kind](context, item, err);
+}
+
 Status figure_put_items(const FigurePage *page, FigurePut *const put[FIGURE_KINDS], void *context,
                         Err *err)
 {
     for (int pictures = 1; pictures >= 0; pictures--)
-        for (size_t i = 0; i < page->n; i++) {
-            const FigureItem *item = &page->items[i];
-            if ((item->kind == FIGURE_PICTURE) == pictures)
-                TRY(put[item->kind](context, item, err));
-        }
+        for (size_t i = 0; i < page->n; i++)
+            if ((page->items[i].kind == FIGURE_PICTURE) == pictures)
+                TRY(put_item(&page->items[i], put, context, err));
     return STATUS_OK;
 }
 
@@ -244,4 +279,10 @@ void figure_move(FigurePage *page, size_t first, double dx, double dy)
             item->at[k].y += dy;
         }
     }
+}
+
+void figure_mark_solid(FigurePage *page, size_t first)
+{
+    for (size_t i = first; i < page->n; i++)
+        page->items[i].solid = page->items[i].kind != FIGURE_TEXT;
 }

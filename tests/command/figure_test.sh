@@ -162,6 +162,61 @@ test_markup_and_missing_letters_in_every_output() {
     grep -q 'corcast: no font has 日' stderr || fail "expected a warning of render, got $(cat stderr)"
 }
 
+test_texts_that_overlap_are_named() {
+    run_ok corcast grow --terminals 3 --quiet -o t.swc
+    cat >over.ini <<'END'
+[figure]
+size = 60mmx70mm
+dpi = 60
+[panel a]
+tree = t.swc
+antialias = 1
+scale-bar = 10
+scale-bar-at = bottom-left
+[text one]
+text = over the bar
+at = 3,68
+[text two]
+text = out of the page
+at = 50,30
+[text three]
+text = beside
+at = 3,40
+END
+    run_ok corcast figure over.ini --quiet -o over.pdf
+    expect_sentence "texts overlap: '10 mm' and 'over the bar'; 'over the bar' and a bar; 'out of the page' and the edge of the page\$"
+    sed -i 's/3,68/3,20/; s/50,30/5,30/' over.ini
+    run_ok corcast figure over.ini --quiet -o over.pdf
+    [ ! -s stderr ] || fail "expected no warning, got $(cat stderr)"
+}
+
+# The panel is covered by vessels but for one corner, which is its inset's.
+test_a_scale_bar_avoids_insets() {
+    printf '1 1 0 0 0 2 -1\n2 1 40 40 0 2 1\n' >up.swc
+    cat >inset.ini <<'END'
+[figure]
+size = 60mmx60mm
+dpi = 60
+letters = none
+[panel a]
+tree = up.swc
+antialias = 1
+scale-bar = 5
+[inset i]
+of = a
+at = 0.5,0.5
+place = 0.85,0.85
+magnify = 2
+width = 14
+scale-bar = 1
+scale-bar-at = top-left
+END
+    run_ok corcast figure inset.ini --quiet -o inset.svg
+    sed -n 's/^<text x="\([0-9.]*\)" y="\([0-9.]*\)".*>\([15]\) mm<.*/\3 \1 \2/p' inset.svg | sort -u >texts
+    awk '($1 == 5 && ($2 > 30 || $3 > 30)) || ($1 == 1 && ($2 < 44 || $3 > 50)) { bad = 1 } END { exit bad || NR != 2 }' texts ||
+        fail "expected 5 mm at the upper left, 1 mm in the inset, got $(cat texts)"
+}
+
 test_a_group_that_is_not_closed_is_drawn_and_told() {
     run_ok corcast grow --terminals 3 --quiet -o t.swc
     run_ok corcast render t.swc --quiet --size 60x60 --letter '*τ*_{w' --text-size 4 -o open.pdf

@@ -262,7 +262,8 @@ static void fill(FigurePage *page, const Picture *picture)
     figure_add_line(page, frame, 4, true, 0.18, (FigureColor){{0, 0, 0}});
     figure_add_line(page, tie, 2, false, 0.31, (FigureColor){{0, 0, 0}});
     figure_add_text(
-        page, &(FigureText){.text = "\xC3\x85g\xC2\xB5_{*f*^{2}}", .x = 4, .y = 5.15, .size_pt = 14});
+        page,
+        &(FigureText){.text = "\xC3\x85g\xC2\xB5_{*f*^{2}}", .x = 4, .y = 5.15, .size_pt = 14});
 }
 
 static void init_picture(Picture *picture, int width, int height, int bits)
@@ -282,6 +283,8 @@ static void rows_are_the_same_whatever_parts_the_page_is_drawn_in(void **state)
     init_picture(&photo, 40, 30, 8);
     init_picture(&whole, 61, 47, 8);
     fill(&page, &photo);
+    for (size_t i = page.n - 2; i < page.n; i++)
+        figure_set_halo(&page, i, 0.3, (FigureColor){{250, 240, 30}});
     Picture parts = whole;
     size_t bytes = picture_stride(&whole) * 47;
     uint8_t *copy = malloc(bytes);

@@ -61,6 +61,11 @@ static const Option inset_rows[] = {
      FROM_TO(1e-6, 1e7),
      .unit = "mm",
      .help = "draw a scale bar in the inset that represents this length of the tree"},
+    {.name = "scale-bar-at",
+     SETS(CHOICE, InsetOptions, scale_bar_at),
+     .choices = corner_names,
+     .help = "corner of the inset's scale bar; emptiest selects the corner where it covers the "
+             "least vessels"},
 };
 
 static const char *const aligns[] = {

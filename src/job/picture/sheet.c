@@ -30,9 +30,10 @@ Status sheet_describe(Sheet *sheet, Text *description, const char *command, Err 
 
 void sheet_say(const Sheet *sheet, const Talk *talk)
 {
-    Text boxed = TEXT_INIT, fallback = TEXT_INIT;
+    Text boxed = TEXT_INIT, fallback = TEXT_INIT, collisions = TEXT_INIT;
     figure_put_missing(&sheet->page, true, &boxed);
     figure_put_missing(&sheet->page, false, &fallback);
+    figure_put_collisions(&sheet->page, &collisions);
     if (boxed.length)
         talk_warn(talk, "%s", text_chars(&boxed));
     if (fallback.length)
@@ -41,6 +42,9 @@ void sheet_say(const Sheet *sheet, const Talk *talk)
         talk_warn(talk,
                   "the text '%.60s' has a group _{ or ^{ without }: the group ends with the text",
                   sheet->page.unclosed);
+    if (collisions.length)
+        talk_warn(talk, "%s", text_chars(&collisions));
+    text_release(&collisions);
     text_release(&boxed);
     text_release(&fallback);
 }

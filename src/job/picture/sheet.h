@@ -30,7 +30,8 @@ void sheet_begin(Sheet *sheet, const int pixels[2], double dpi);
  * STATUS_MEMORY. */
 MUST_CHECK Status sheet_describe(Sheet *sheet, Text *description, const char *command, Err *err);
 /* Reports what is wrong with the texts of the page: a warning for characters that are drawn as
- * boxes and for markup that is not closed, a note for characters that another font draws. */
+ * boxes, for markup that is not closed, and for texts that overlap; a note for characters that
+ * another font draws. */
 void sheet_say(const Sheet *sheet, const Talk *talk);
 void sheet_release(Sheet *sheet);
 
