@@ -142,7 +142,7 @@ test_markup_and_missing_letters_in_every_output() {
     run_ok corcast grow --terminals 3 --quiet -o t.swc
     printf '[panel a]\ntree = t.swc\nantialias = 1\ntitle = %s\n[figure]\ndpi = 60\n' \
         '*τ_{w}* of 10⁻³ mm^{-2} \*\_{ ∝ 日 ₚ' >letters.ini
-    for form in pdf svg png; do
+    for form in pdf eps svg png; do
         run_ok corcast figure letters.ini --quiet -o letters.$form
         expect_sentence 'no font has 日 \(U\+65E5\); a box is drawn in place of each'
         run_ok corcast figure letters.ini -o letters.$form
@@ -158,8 +158,37 @@ test_markup_and_missing_letters_in_every_output() {
     awk 'NR > 2 && $(NF - 4) != "yes" { exit 1 }' fonts.txt || fail "a font is not embedded"
     sed 's/<[^>]*>//g' letters.svg | grep -qF 'τw of 10−3 mm−2 *_{ ∝ 日 p' ||
         fail "expected the words in the SVG, got $(grep '<text' letters.svg)"
+    for font in LiberationSans LiberationSans-Italic DejaVuSans; do
+        grep -aq "^/FontName /$font def" letters.eps || fail "expected $font in the EPS"
+    done
     run_ok corcast render t.swc --size 40x40 --letter '⁻日' --text-size 3 -o r.pdf
     grep -q 'corcast: no font has 日' stderr || fail "expected a warning of render, got $(cat stderr)"
+}
+
+# The first text is on a vessel, the second is not, the third is beside the panel, whose vessel goes on there.
+test_a_text_on_a_vessel_has_a_halo() {
+    printf '1 1 0 0 0 2 -1\n2 1 40 0 0 2 1\n' >line.swc
+    cat >halo.ini <<'END'
+[figure]
+size = 60mmx40mm
+dpi = 60
+columns = 2
+[panel a]
+tree = line.swc
+antialias = 1
+height = 20
+[text on]
+text = on
+at = 5,21
+[text off]
+text = off
+at = 5,35
+[text beside]
+text = beside
+at = 40,21
+END
+    run_ok corcast figure halo.ini --quiet -o halo.svg
+    [ "$(grep aria-hidden halo.svg | sed 's/<[^>]*>//g')" = on ] || fail "expected one halo, got $(grep '<text' halo.svg)"
 }
 
 test_texts_that_overlap_are_named() {

@@ -321,7 +321,15 @@ static Status put_text(Figure *figure, const Section *section, Err *err)
                              .bold = options->bold,
                              .align = options->align,
                              .color = color_of(options->color)};
-    figure_add_text(&figure->sheet.page, &text);
+    FigurePage *page = &figure->sheet.page;
+    figure_add_text(page, &text);
+    TRY(figure_check(page, err));
+    for (size_t i = 0; i < figure->plan.n; i++) {
+        const PlacedPicture picture = {&figure->panels[i].scene, figure_panel_box(figure, i)};
+        if (figure_is_panel(figure, i))
+            TRY(placing_add_halos(page, page->n - 1, &picture, annotation_halo_width(text.size_pt),
+                                  err));
+    }
     return STATUS_OK;
 }
 

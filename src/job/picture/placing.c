@@ -61,6 +61,8 @@ static bool contains(const Capsule *capsule, double x, double y, double least)
 static void mark_cells(const FigureBox *box, const Capsule *capsule, bool *cells)
 {
     const double wide = (box->right - box->left) / CELLS, high = (box->bottom - box->top) / CELLS;
+    if (!(wide > 0 && high > 0))
+        return;
     const double least = fmax(wide, high) / 2;
     const double reach = fmax(fmax(capsule->radius[0], capsule->radius[1]), least);
     if (fmin(capsule->x[0], capsule->x[1]) - reach > box->right ||
@@ -153,6 +155,14 @@ Status placing_move(FigurePage *page, size_t first, const PlacedPicture *picture
 
 /* ---- halos ----------------------------------------------------------------------------------- */
 
+/* Returns the part of a box that is in the picture. Its width or height is negative if there is
+ * none. */
+static FigureBox part_in(const FigureBox *where, const FigureBox *box)
+{
+    return (FigureBox){fmax(where->left, box->left), fmax(where->top, box->top),
+                       fmin(where->right, box->right), fmin(where->bottom, box->bottom)};
+}
+
 Status placing_add_halos(FigurePage *page, size_t first, const PlacedPicture *picture,
                          double width_mm, Err *err)
 {
@@ -164,7 +174,7 @@ Status placing_add_halos(FigurePage *page, size_t first, const PlacedPicture *pi
     TRY_GOTO(mem_calloc(&boxes, n, sizeof *boxes, "annotations", err));
     TRY_GOTO(mem_calloc(&covered, n, sizeof *covered, "annotations", err));
     for (size_t i = 0; i < n; i++)
-        boxes[i] = page->items[first + i].box;
+        boxes[i] = part_in(&picture->where, &page->items[first + i].box);
     TRY_GOTO(measure(picture, boxes, n, covered, err));
     for (size_t i = 0; i < n; i++)
         if (covered[i] > 0)
