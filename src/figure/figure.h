@@ -171,8 +171,8 @@ void figure_add_bars(FigurePage *page, const FigureBars *bars, FigurePoint at, d
 /* A line of text. It may have markup, which every text of a page has in the same form:
  *
  *     *r*            italic. A star that no other star matches, or beside a blank, is a star
- *     _{w}  ^{-3}    subscript and superscript; groups may be nested. A hyphen that begins a group
- *                    is drawn as a minus. A group that is not closed ends with the text
+ *     _{w}  ^{-3}    subscript and superscript; groups may be nested. A hyphen at either end of a
+ *                    group is drawn as a minus. A group that is not closed ends with the text
  *     \*  \_  \^  \}  \\    the character itself
  *
  * Unicode's superscripts and subscripts, such as U+207B, are drawn as groups are. */

@@ -163,7 +163,7 @@ bool markup_next(MarkupReader *reader, StyledLetter *out)
                          .italic = reader->italic,
                          .scale = group.scale,
                          .rise = group.rise};
-    if (reader->begins && made.drawn == '-')
+    if (made.drawn == '-' && (reader->begins || (reader->depth > 0 && *reader->at == '}')))
         made.drawn = MINUS;
     reader->begins = false;
     made.letter = reader->depth == 1 ? script_of(made.drawn, made.rise > 0) : made.drawn;

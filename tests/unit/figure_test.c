@@ -167,6 +167,7 @@ static void superscripts_of_unicode_are_drawn_as_groups(void **state)
 {
     (void)state;
     expect_same_drawing("m\xE2\x81\xBB\xC2\xB2 4\xE2\x81\xB0", "m^{-2} 4^{0}");
+    expect_same_drawing("O^{2-}_{a-b}", "O^{2\xE2\x88\x92}_{a-b}");
     expect_same_drawing("H\xE2\x82\x82\xE2\x82\x99", "H_{2n}");
     assert_true(fabs(width_of("^{44}") - 0.7 * width_of("44")) < 1e-9);
     assert_true(fabs(width_of("x_{i_{j}}") - width_of("x") - 0.7 * width_of("i") -
