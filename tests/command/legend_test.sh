@@ -102,6 +102,27 @@ test_the_legend_leaves_the_tree_alone() {
     done
 }
 
+# With a field and no look, and trees of many values and of one.
+test_nine_tenths_of_a_vessel_have_the_color_of_the_legend() {
+    local model turn
+    run_ok corcast grow --terminals 150 --domain ball:30 --seed 4 --quiet -o tree.swc
+    awk '/^[0-9]/ { print $1 "," ($1 * 7) % 41 + 0.5 }' tree.swc >many
+    awk '/^[0-9]/ { print $1 ",2.5" }' tree.swc >one
+    for model in rounded isosurface; do
+        for turn in 0,0 70,-35; do
+            for values in "many 0.5 40.5" "one 2.5 2.5"; do
+                sed '1i id,load' "${values%% *}" >load.csv
+                # shellcheck disable=SC2086
+                run_ok corcast render tree.swc --quiet --model $model --turn $turn --color-by load.csv:load --legend \
+                    --antialias 1 --size 700x700 --planes color,id -o p.ppm
+                # shellcheck disable=SC2086
+                run_ok "$REPO/tests/oracle/legend_distance.py" p.ppm p.id.ppm $values
+                awk '{ exit !($1 >= 0.9 && $3 > 20000) }' stdout || fail "expected 0.9 as $model, got $(cat stdout)"
+            done
+        done
+    done
+}
+
 test_a_scale_bar_is_as_long_as_it_says() {
     grow
     run_ok corcast render tree.swc --quiet --size 600x500 --height 100 --scale-bar 25mm --background white -o bar.png

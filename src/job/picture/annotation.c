@@ -29,7 +29,7 @@ static const Option rows[] = {
      .argument = "TEXT",
      .otherwise = "name and unit of the field",
      .needs = "legend",
-     .help = "text above the legend"},
+     .help = "with --legend on: text above the legend"},
     {.name = "scale-bar",
      SETS(NUMBER, Annotation, scale_bar_mm),
      GIVEN(Annotation, has_scale_bar),
@@ -99,18 +99,6 @@ FigureColor annotation_ink(Rgb background)
 
 /* ---- words ----------------------------------------------------------------------------------- */
 
-/* "mm3/s" with its exponent raised, and "um" with its Greek letter. */
-static void put_unit(const char *unit, Text *text)
-{
-    for (const char *c = unit; *c; c++)
-        if (c > unit && (*c == '2' || *c == '3') && c[-1] >= 'a' && c[-1] <= 'z')
-            text_puts(text, *c == '2' ? "\xC2\xB2" : "\xC2\xB3");
-        else if (*c == 'u' && c[1] == 'm')
-            text_puts(text, "\xC2\xB5");
-        else
-            text_append(text, c, 1);
-}
-
 static void put_title(const Annotation *annotation, const ColorScale *scale, Text *text)
 {
     if (annotation->title) {
@@ -120,7 +108,7 @@ static void put_title(const Annotation *annotation, const ColorScale *scale, Tex
     text_puts(text, derive_field_title(scale->name));
     if (*scale->unit) {
         text_puts(text, " (");
-        put_unit(scale->unit, text);
+        text_unit(text, scale->unit);
         text_puts(text, ")");
     }
 }
