@@ -29,7 +29,8 @@ static const Option rows[] = {
      .argument = "TEXT",
      .otherwise = "name and unit of the field",
      .needs = "legend",
-     .help = "text above the legend; *r* is italic, _{w} a subscript, ^{-3} a superscript"},
+     .help = "with --legend on: text above the legend; *r* is italic, _{w} a subscript, ^{-3} a "
+             "superscript"},
     {.name = "scale-bar",
      SETS(NUMBER, Annotation, scale_bar_mm),
      GIVEN(Annotation, has_scale_bar),
