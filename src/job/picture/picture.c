@@ -689,7 +689,8 @@ Status picture_say_effects(const PictureOptions *options, const char *what, cons
                            Err *err)
 {
     Text names = TEXT_INIT;
-    const Effects effects = look_effects(&options->look_file, 1, 1);
+    Effects effects = look_effects(&options->look_file, 1, 1);
+    effects.grade.present &= options->omits_effects; /* a scene has it */
     if (effects.xray.per_mm > 0)
         return err_set(err, STATUS_USAGE, "--look %s: POV-Ray cannot draw an x-ray; use render",
                        options->look);
