@@ -80,7 +80,7 @@ static void an_anatomy_tells_trees_orders_and_the_way_along_the_thickest_branch(
     static const Vec3 path[] = {{-10, 19, 0.5}, {-10, 9, 1.5}, {-15, 3, 2.5}};
     Tree tree = make_forest();
     Anatomy anatomy = {0};
-    assert_int_equal(stage_anatomy(&tree, vec3(10, 1, -0.5), &anatomy, NULL), STATUS_OK);
+    assert_int_equal(stage_anatomy(&tree, NULL, vec3(10, 1, -0.5), &anatomy, NULL), STATUS_OK);
     assert_int_equal(anatomy.n_trees, 2);
     assert_near(anatomy.root[0], path[0], 0);
     assert_near(anatomy.root[1], vec3(60, -1, 0.5), 0);
@@ -107,7 +107,7 @@ static void the_path_of_a_tree_without_segments_is_its_root(void **state)
     tree.parent[0] = -1;
     tree.radius_mm[0] = 2.385;
     tree.position[0] = vec3(3, 4, 5);
-    assert_int_equal(stage_anatomy(&tree, vec3(0, 0, 0), &anatomy, NULL), STATUS_OK);
+    assert_int_equal(stage_anatomy(&tree, NULL, vec3(0, 0, 0), &anatomy, NULL), STATUS_OK);
     assert_int_equal(anatomy.n_path, 1);
     assert_near(anatomy.path[0], vec3(3, 4, 5), 0);
     anatomy_release(&anatomy);

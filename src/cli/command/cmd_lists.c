@@ -205,5 +205,5 @@ const Command command_formats = {.name = "formats",
                                  .operands = ""};
 const Command command_morphometries = {
     .name = "morphometries",
-    .summary = "list the published data sets, the values of --morphometry",
+    .summary = "list the published data sets, the values of `info --morphometry`",
     .operands = ""};
