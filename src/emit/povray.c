@@ -131,9 +131,12 @@ static void put_color_map(Text *text, const Appearance *appearance)
 /* Appends a name for a string of POV-Ray, which may hold printable ASCII. */
 static void put_quoted(Text *text, const char *name)
 {
-    for (; name && *name; name++)
-        text_printf(text, "%c",
-                    *name >= ' ' && *name <= '~' && !strchr("\"\\", *name) ? *name : '_');
+    Text plain = TEXT_INIT;
+    text_plain(&plain, name ? name : "");
+    text_puts(text, text_chars(&plain) ? "" : NULL);
+    for (const char *at = text_chars(&plain); at && *at; at++)
+        text_printf(text, "%c", *at >= ' ' && *at <= '~' && !strchr("\"\\", *at) ? *at : '_');
+    text_release(&plain);
 }
 
 static void add_scale(Values *values, const Appearance *appearance)
