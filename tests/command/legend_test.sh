@@ -203,7 +203,7 @@ test_what_cannot_be_drawn_is_refused_in_one_sentence_and_nothing_is_written() {
     refused 'needs --legend, --scale-bar or --letter' --text-size 6 -o x.png
     refused '\-\-legend needs .* mm, but the picture has 9 mm' --color-by flow --legend --size 9mm -o x.png
     refused '\.pfm stores measured values' --scale-bar 10 -o x.pfm
-    refused 'a page holds one of 8 bits' --bits 16 -o x.svg
+    refused 'stores its image with 8 bits' --bits 16 -o x.svg
     expect_only tree.swc
 }
 
