@@ -284,10 +284,10 @@ static Status put_camera(Text *out, void *context, Err *err)
 }
 
 /* Appends a line of the header that names the effects of `render`, which POV-Ray does not draw. */
-static void put_effects(Text *text, const Effects *effects)
+static void put_effects(Text *text, const EmitParams *params)
 {
     Text names = TEXT_INIT;
-    effects_list(effects, &names);
+    effects_list(&params->scene->view.effects, params->occlusion, &names);
     if (names.length || names.failed) {
         text_puts(text, "// Not in this scene, but in what corcast render draws: ");
         text_add(text, &names);
@@ -307,7 +307,7 @@ static Status put_scene(Text *out, PovrayGeometry *geometry, Err *err)
     text_put_line(add_value(&values, "geometry_file"),
                   params->second_file ? params->second_file : "the last part of this file");
     add_about(&values, params, scene->geometry.bounds, scene->geometry.origin);
-    put_effects(add_value(&values, "effects"), &scene->view.effects);
+    put_effects(add_value(&values, "effects"), params);
     add_count(&values, "width", (size_t)scene->view.camera.width);
     add_count(&values, "height", (size_t)scene->view.camera.height);
     add_part(&values, "camera", put_camera, geometry);

@@ -1,11 +1,11 @@
 /* The public header of the module figure: lays out a page of pictures, diagrams, color bars, scale
- * bars and text, and writes it as PDF, SVG or pixels.
+ * bars and text, and writes it as PDF, EPS, SVG or pixels.
  *
  *     figure_init(&page, 89, 60, 300, fonts);
  *     figure_add_picture(&page, &picture, 0, 0);
  *     figure_add_text(&page, &(FigureText){.text = "a", .x = 2, .y = 5, .size_pt = 8});
  *     TRY_GOTO(figure_check(&page, err));
- *     TRY_GOTO(figure_write_pdf(&page, &notes, "figure.pdf", err));
+ *     TRY_GOTO(figure_write_pdf(&page, &notes, false, "figure.pdf", err));
  *     figure_release(&page);
  *
  * Lengths are mm from the page's upper left corner, x to the right and y down. Sizes of text are
@@ -120,7 +120,7 @@ typedef struct FigurePage {
     double width_mm, height_mm, dpi; /* 0 < dpi */
     bool exact;                      /* an SVG states the size with all digits, else to 0.001 mm */
     FigureColor background;
-    const FigureFonts *fonts; /* borrowed; NULL: the page has no text and becomes an SVG only */
+    const FigureFonts *fonts; /* borrowed; NULL: the page has no text */
     FigureItem *items;        /* owned */
     size_t n, capacity;
     bool failed;            /* memory ran out while an item was added */
@@ -219,11 +219,11 @@ typedef struct FigureNotes {
  * STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status figure_put_svg(const FigurePage *page, const FigureNotes *notes, Text *out,
                                  Err *err);
-/* Writes the page as PDF 1.5. Text stays text, in embedded fonts. Equal pages give equal bytes.
- * Errors: STATUS_USAGE if a picture has a side of more than FIGURE_PDF_SIDE pixels, a limit of the
- * library cairo; STATUS_IO; STATUS_MEMORY. */
+/* Writes the page as PDF 1.5, or if `eps` as encapsulated PostScript of level 3. Text stays text,
+ * in embedded fonts. Equal pages give equal bytes. Errors: STATUS_USAGE if a picture has a side of
+ * more than FIGURE_PDF_SIDE pixels, a limit of the library cairo; STATUS_IO; STATUS_MEMORY. */
 enum { FIGURE_PDF_SIDE = 32767 };
-MUST_CHECK Status figure_write_pdf(const FigurePage *page, const FigureNotes *notes,
+MUST_CHECK Status figure_write_pdf(const FigurePage *page, const FigureNotes *notes, bool eps,
                                    const char *path, Err *err);
 
 /* Draws a band of the page over `rows`, a picture of 3 channels at the page's resolution. The band

@@ -1,5 +1,5 @@
-/* A page as PDF, through cairo: text as text, in subsets of the two fonts, and no date but one that
- * is always the same.
+/* A page as PDF or EPS, through cairo: text as text, in subsets of the two fonts, and no date but
+ * one that is always the same.
  *
  * cairo 1.16 ignores some failed allocations and crashes by others, and it keeps the fonts for as
  * long as the process lives. It therefore runs in a process of its own. An allocation that cairo
@@ -9,6 +9,7 @@
 
 #include <cairo-ft.h>
 #include <cairo-pdf.h>
+#include <cairo-ps.h>
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -254,6 +255,8 @@ static Status put_page(PdfPage *pdf, Err *err)
     return figure_put_items(pdf->page, put, pdf, err);
 }
 
+/* ---- files ----------------------------------------------------------------------------------- */
+
 static cairo_status_t take_bytes(void *bytes, const unsigned char *from, unsigned int n)
 {
     text_append(bytes, (const char *)from, n);
@@ -261,7 +264,7 @@ static cairo_status_t take_bytes(void *bytes, const unsigned char *from, unsigne
 }
 
 /* cairo would write the current date. */
-static void set_notes(cairo_surface_t *pdf, const FigureNotes *notes)
+static void set_pdf_notes(cairo_surface_t *pdf, const FigureNotes *notes)
 {
     static const char date[] = "2000-01-01T00:00:00Z";
     cairo_pdf_surface_set_metadata(pdf, CAIRO_PDF_METADATA_TITLE, notes->description);
@@ -271,11 +274,47 @@ static void set_notes(cairo_surface_t *pdf, const FigureNotes *notes)
     cairo_pdf_surface_set_metadata(pdf, CAIRO_PDF_METADATA_MOD_DATE, date);
 }
 
+/* Adds a comment of one line to an EPS. cairo refuses lines of more than 255 bytes. */
+static void set_eps_note(cairo_surface_t *eps, const char *key, const char *value)
+{
+    char line[256];
+    snprintf(line, sizeof line, "%%%%%s: %s", key, value);
+    cairo_ps_surface_dsc_comment(eps, line);
+}
+
+static void set_eps_notes(cairo_surface_t *eps, const FigureNotes *notes)
+{
+    cairo_ps_surface_set_eps(eps, 1);
+    set_eps_note(eps, "Title", notes->description);
+    set_eps_note(eps, "For", notes->generator);
+}
+
+/* Replaces the current date, which cairo writes into the header of an EPS. */
+static void remove_date(Text *bytes)
+{
+    static const char key[] = "%%CreationDate: ", date[] = "Sat Jan  1 00:00:00 2000";
+    char *at = text_chars(bytes) ? strstr(bytes->chars, key) : NULL;
+    if (at && strcspn(at + strlen(key), "\n") == strlen(date))
+        memcpy(at + strlen(key), date, strlen(date));
+}
+
 /* What the child process draws. */
 typedef struct PdfWork {
     const FigurePage *page;
     const FigureNotes *notes;
+    bool eps;
 } PdfWork;
+
+static cairo_surface_t *make_page(const PdfWork *work, Text *bytes)
+{
+    const double width = work->page->width_mm / MM_PER_POINT;
+    const double height = work->page->height_mm / MM_PER_POINT;
+    cairo_surface_t *page =
+        work->eps ? cairo_ps_surface_create_for_stream(take_bytes, bytes, width, height)
+                  : cairo_pdf_surface_create_for_stream(take_bytes, bytes, width, height);
+    (work->eps ? set_eps_notes : set_pdf_notes)(page, work->notes);
+    return page;
+}
 
 /* Ends the page and the file, and returns the first error of both. */
 static cairo_status_t finish(cairo_t *cairo, cairo_surface_t *pdf)
@@ -292,21 +331,22 @@ static Status put_pdf(const void *context, Text *bytes, Err *err)
     const PdfWork *work = context;
     const FigurePage *page = work->page;
     errno = 0;
-    cairo_surface_t *pdf = cairo_pdf_surface_create_for_stream(
-        take_bytes, bytes, page->width_mm / MM_PER_POINT, page->height_mm / MM_PER_POINT);
-    PdfPage self = {.cairo = cairo_create(pdf), .page = page};
-    set_notes(pdf, work->notes);
+    cairo_surface_t *surface = make_page(work, bytes);
+    PdfPage self = {.cairo = cairo_create(surface), .page = page};
     cairo_scale(self.cairo, 1 / MM_PER_POINT, 1 / MM_PER_POINT);
-    TRY(set_fonts(&self, err));
+    if (page->fonts)
+        TRY(set_fonts(&self, err));
     TRY(put_page(&self, err));
-    TRY(check(finish(self.cairo, pdf), err));
+    TRY(check(finish(self.cairo, surface), err));
+    if (work->eps)
+        remove_date(bytes);
     return errno == ENOMEM ? mem_out_of("for", "the page", err) : STATUS_OK;
 }
 
-Status figure_write_pdf(const FigurePage *page, const FigureNotes *notes, const char *path,
-                        Err *err)
+Status figure_write_pdf(const FigurePage *page, const FigureNotes *notes, bool eps,
+                        const char *path, Err *err)
 {
-    const PdfWork work = {page, notes};
+    const PdfWork work = {page, notes, eps};
     Text bytes = TEXT_INIT;
     Status status;
     TRY_GOTO(isolated_run(put_pdf, &work, "the page", &bytes, err));

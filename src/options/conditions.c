@@ -27,7 +27,8 @@ static const ConditionRow rows[] = {
     [WHEN_FREE_ANGLES] = {.sentence = "has no effect beside --angles"},
     [WHEN_OWN_SEED] = {.sentence = "is the plan's to say"},
     [WHEN_PICTURE] = {.sentence = "is for pictures", .groups = GROUP(PRESS)},
-    [WHEN_PIXELS] = {.sentence = "is for pixels; an .svg is true to size", .groups = GROUP(PRESS)},
+    [WHEN_PIXELS] = {.sentence = "is for pixels; a page (.svg, .pdf, .eps) is true to size",
+                     .groups = GROUP(PRESS)},
     [WHEN_PACKED] = {.sentence = "is for pictures; a page holds one of 8 bits"},
     [WHEN_TIFF] = {.sentence = "is for .tif"},
     [WHEN_JPEG] = {.sentence = "is for .jpg"},
@@ -35,7 +36,7 @@ static const ConditionRow rows[] = {
     [WHEN_ON_PAPER] = {.sentence = "needs a --size on paper, as 89mm"},
     [WHEN_ON_PAPER_OR_KEPT] =
         {.sentence = "needs a --size on paper, as 89mm, or a file that keeps it (.png, "
-                     ".tif, .jpg, .pdf, .svg)"},
+                     ".tif, .jpg, .pdf, .eps, .svg)"},
     [WHEN_KEEPS_DPI] = {.sentence = "is for .png, .tif and .jpg"},
     [WHEN_POTENTIAL] = {.sentence = "", .model = MODEL_POTENTIAL},
     [WHEN_JOINTS] = {.sentence = "", .model = MODEL_JOINTS},

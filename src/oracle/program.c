@@ -19,12 +19,12 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <poll.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/prctl.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -113,7 +113,7 @@ static void become_program(char *const *arguments, const char *folder, int priva
 {
     int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
     setpgid(0, 0);
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    system_die_with_parent();
     signal(SIGPIPE, SIG_DFL);
     dup2(log, STDERR_FILENO);
     dup2(log, STDOUT_FILENO);
@@ -211,13 +211,11 @@ static Status end_program(pid_t child, Status status)
 /* Returns true if the process is the program itself, not a script, and has only to exit. */
 static bool is_done(const Program *program, pid_t child, const Text *printed, const char *picture)
 {
-    char link[40], path[4096];
+    char path[PATH_MAX];
     if (!program->is_done || !program->is_done(program->context, printed, picture))
         return false;
-    snprintf(link, sizeof link, "/proc/%d/exe", (int)child);
-    ssize_t length = readlink(link, path, sizeof path - 1);
-    path[length > 0 ? length : 0] = '\0';
-    return strcmp(file_name(path), program->process) == 0;
+    return system_program_of(child, path, sizeof path) &&
+           strcmp(file_name(path), program->process) == 0;
 }
 
 /* Returns an error for a program that has printed too much, has printed nothing for too long, or
@@ -293,7 +291,7 @@ static Status not_started(const Program *program, Err *err)
 static Status run_program(ProgramProcess *process, Err *err)
 {
     int pipe_ends[2];
-    if (pipe2(pipe_ends, O_CLOEXEC) != 0)
+    if (!system_pipe(pipe_ends))
         return not_started(process->program, err);
     const pid_t child = process->child = fork();
     if (child == 0)

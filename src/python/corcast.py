@@ -676,7 +676,7 @@ class Page:
 
 
 def figure(recipe, path, **options):
-    """Makes a figure of several panels: `recipe` describes them, `path` is the output (.pdf, .svg,
+    """Makes a figure of several panels: `recipe` describes them, `path` is the output (.pdf, .eps, .svg,
     .png, .tif or .jpg); options are those of `corcast figure`."""
     options = _Options("figure", options)
     options.run("figure", _text(recipe), options._handle, _text(path))

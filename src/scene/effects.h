@@ -32,6 +32,13 @@ typedef struct Fade {
     double near_mm, far_mm;   /* near_mm < far_mm if there is fading */
 } Fade;
 
+/* A background whose color changes from the center of the picture to its corners, linearly with the
+ * square of the distance from the center. Colors of a ground plane change by the same factors. */
+typedef struct Grade {
+    bool present;
+    Rgb center, corners;
+} Grade;
+
 /* Absorption of light by the vessels [Beer and Lambert]. After L mm in vessels a fraction
  * exp(-per_mm L) of the background's color remains; the rest is `color`. */
 typedef struct Xray {
@@ -43,23 +50,35 @@ typedef struct Effects {
     Outline outline;
     Halo halo;
     Fade fade;
+    Grade grade;
     Xray xray;
 } Effects;
 
-/* Appends the names of the effects that are on: "outlines and halos"; nothing if none is. */
-void effects_list(const Effects *effects, Text *out);
+/* Appends the names of what corcast draws and POV-Ray does not: "outlines and halos". Appends
+ * nothing if a picture with these effects, and with ambient occlusion if `occlusion`, has none. */
+void effects_list(const Effects *effects, bool occlusion, Text *out);
 
 /* Returns true if any effect is on. */
 static inline bool effects_present(const Effects *effects)
 {
     return effects->outline.width_px > 0 || effects->halo.width_px > 0 ||
-           effects->fade.nearest > 0 || effects->fade.farthest > 0 || effects->xray.per_mm > 0;
+           effects->fade.nearest > 0 || effects->fade.farthest > 0 || effects->grade.present ||
+           effects->xray.per_mm > 0;
 }
 
 /* Returns true if an effect is on that needs the vessel of each sample. */
 static inline bool effects_have_shape(const Effects *effects)
 {
     return effects->outline.width_px > 0 || effects->halo.width_px > 0 || effects->xray.per_mm > 0;
+}
+
+/* Returns the background's color at a position, in pixels from the upper left corner of a picture
+ * of width x height pixels. */
+static inline Rgb grade_at(const Grade *grade, double x, double y, double width, double height)
+{
+    const double from_x = 2 * x - width, from_y = 2 * y - height;
+    const double part = (from_x * from_x + from_y * from_y) / (width * width + height * height);
+    return rgb_mixed(grade->center, grade->corners, part);
 }
 
 /* Returns the fraction of the background's color at a depth. */

@@ -25,6 +25,11 @@
  * ground and effects. Lengths are relative to the tree's size, and directions are mostly in the
  * camera's axes. Colors are linear RGB. */
 
+typedef struct OptionalRgb {
+    bool present;
+    Rgb color;
+} OptionalRgb;
+
 typedef struct LookLight {
     bool is_point;
     /* In the camera's axes: x right, y up, z towards the viewer. Parallel light: direction towards
@@ -62,13 +67,24 @@ typedef struct LookEffects {
     double xray_per_mm;       /* absorption per mm; both 0: no x-ray */
 } LookEffects;
 
-enum { LOOK_MAX_ABOUT = 160 };
+/* Values that a look proposes for options of a picture. An option that is specified overrules the
+ * look. */
+typedef struct LookOptions {
+    int occlusion; /* ambient occlusion: number of occlusion directions per pixel; 0: none */
+    bool shadows;
+    Projection projection;
+} LookOptions;
+
+enum { LOOK_MAX_OCCLUSION = 4096, LOOK_MAX_ABOUT = 160 };
 
 typedef struct Look {
     char about[LOOK_MAX_ABOUT + 1]; /* a description in one line, or "" */
+    LookOptions options;
     Finish finish;
-    Rgb color; /* of vessels that are not colored by a field */
-    Rgb background;
+    Rgb color;        /* of vessels that are not colored by a field; with `tips`, of the thickest */
+    Rgb background;   /* with `corners`, the color at the center of the picture */
+    OptionalRgb tips; /* the color of the thinnest vessels */
+    OptionalRgb corners; /* the color of the background at the corners of the picture */
     LookLight lights[LOOK_MAX_LIGHTS];
     int n_lights;
     LookGround ground;
@@ -83,8 +99,9 @@ Effects look_effects(const Look *look, double thousandth_px, double diameter_mm)
 /* Reads a look from an INI file. Its sections and keys:
  *
  *     [look]        about
- *     [vessel]      color
- *     [background]  color
+ *     [options]     ao, shadows, projection
+ *     [vessel]      color, tips
+ *     [background]  color, corners
  *     [finish]      ambient, diffuse, brilliance, phong, phong_size, specular, roughness
  *     [light NAME]  direction or position; color, size, samples
  *     [ground]      normal or axis; gap, color, ambient, diffuse
@@ -93,7 +110,8 @@ Effects look_effects(const Look *look, double thousandth_px, double diameter_mm)
  *     [fade]        nearest, farthest
  *     [xray]        per_diameter or per_mm
  *
- * Errors: STATUS_INPUT for an unknown section or key and for a bad value, naming file and line. */
+ * Errors: STATUS_INPUT for an unknown section or key and for a bad value, naming file and line. An
+ * unknown name is reported with the most similar known name. */
 MUST_CHECK Status look_read(Look *look, const char *path, Err *err);
 
 typedef enum NamedView {
@@ -221,9 +239,8 @@ Box stage_box(const ViewParams *params, const Geometry *geometry);
 /* Makes the view of a geometry: the camera of `params`, and lights, ground, background and effects
  * of the look.
  *
- * A camera without a specified location or height frames the tree, and the shadows that fall on the
- * ground from lights more than 10 degrees above it. If only look_at is specified, this point is in
- * the middle of the picture instead.
+ * A camera without a specified location or height frames the tree. If only look_at is specified,
+ * this point is in the middle of the picture instead.
  *
  * Errors  STATUS_USAGE if the vectors in `params` do not define a camera. STATUS_INPUT if the
  *         camera is too far away.
@@ -249,8 +266,8 @@ void view_axes(const ViewParams *params, Vec3 *direction, Vec3 *up);
  * nearest to the middle of the geometry. */
 void orbit_begin(ViewParams *params, const Camera *camera, const Geometry *geometry);
 
-/* Sets the camera of a turntable: the named view shows all that is framed, except its shadows, at
- * any angle of rotation around its up vector through the middle of the geometry. */
+/* Sets the camera of a turntable: the named view shows all that is framed at any angle of rotation
+ * around its up vector through the middle of the geometry. */
 void orbit_frame_turn(ViewParams *params, const Geometry *geometry);
 
 /* Rotates the picture's content to the right and up, by angles in radians. */

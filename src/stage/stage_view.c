@@ -1,9 +1,8 @@
-/* A camera that frames a subject shows exactly the balls around the ends of its vessels, and their
- * shadows. The distance of an orthographic camera changes only the depths that it reports, so the
- * camera is placed one diagonal of the framed box in front of its middle.
+/* A camera that frames a subject shows exactly the balls around the ends of its vessels. The
+ * distance of an orthographic camera changes only the depths that it reports, so the camera is
+ * placed one diagonal of the framed box in front of its middle.
  *
- * The look defines ground and lights in the camera's axes and in sizes of the tree. They are placed
- * around the subject before the camera's position is known, so that shadows can be framed. */
+ * The look defines ground and lights in the camera's axes and in sizes of the tree. */
 #include "stage/subject.h"
 
 ViewParams view_defaults(void)
@@ -345,7 +344,7 @@ Status stage_view(const Look *look, const ViewParams *params, const Geometry *ge
     near.look_at = vec3_sub(params->look_at, geometry->origin);
     TRY(aim_camera(&near, box_center(subject.box), &made.camera, err));
     place_surroundings(look, params, &subject, &made);
-    const Framed framed = framed_of(&subject, params, &made);
+    const Framed framed = framed_of(&subject, params->domain);
     if (params->projection == PROJECTION_ORTHOGRAPHIC)
         place_orthographic(&near, &framed, &made.camera);
     else

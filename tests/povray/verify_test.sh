@@ -703,7 +703,7 @@ test_every_look_agrees_but_for_what_is_said_to_be_left_out() {
         if grep -q "also in POV-Ray" <(corcast looks | grep "^$look	"); then
             [ ! -s stderr ] || fail "expected nothing to be left out of $look, got: $(cat stderr)"
         else
-            expect_sentence "^corcast: --look $look: .* are corcast's own, and omitted on both sides"
+            expect_sentence "^corcast: --look $look: only corcast draws .*; both pictures omit them"
         fi
     done
 }

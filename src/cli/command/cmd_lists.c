@@ -64,7 +64,7 @@ static Status describe_look(const char *name, Text *lines, Err *err)
     free(path);
     TRY(status);
     const Effects effects = look_effects(&look, 1, 1);
-    effects_list(&effects, &names);
+    effects_list(&effects, look.options.occlusion > 0, &names);
     text_printf(lines, "%s\t", name);
     if (effects.xray.per_mm > 0)
         text_puts(lines, "not in POV-Ray");

@@ -19,7 +19,7 @@ static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, FigureOptions, output),
      .argument = "F",
-     .help = "figure: .pdf or .svg with live text, or .png, .tif or .jpg"},
+     .help = "figure: .pdf, .eps or .svg with live text, or .png, .tif or .jpg"},
     {.name = "size",
      SETS(SIZE, FigureOptions, size),
      FROM_TO(1, IMAGE_MAX_SIDE),
@@ -45,6 +45,11 @@ static const Option own[] = {
      .group = GROUP_PAGE,
      .unit = "mm",
      .help = "space between the panels and the edge of the page"},
+    {.name = "same-scale",
+     SETS(SWITCH, FigureOptions, same_scale),
+     .group = GROUP_PAGE,
+     .help = "show the trees of all panels at one scale, the largest at which every panel holds "
+             "its tree"},
     {.name = "letters",
      SETS(CHOICE, FigureOptions, letters),
      .choices = letter_names,
@@ -109,11 +114,12 @@ static Status prepare_panels(const Figure *figure, Err *err)
     return STATUS_OK;
 }
 
-/* Makes the tree of a panel the first operand. *path is owned by the caller. */
-static Status set_tree(const Figure *figure, size_t i, char **path, Err *err)
+/* Makes the tree of a panel the first operand. */
+static Status set_tree(const Figure *figure, size_t i, Err *err)
 {
     Section *section = figure->plan.sections[i];
     const PanelOptions *panel = section->own.options;
+    char **path = &figure->places[i].tree;
     if (section->maker) {
         parsed_give(&section->render, madetrees_tree(&figure->plan, &figure->trees, i),
                     section->tree_name);
@@ -125,29 +131,67 @@ static Status set_tree(const Figure *figure, size_t i, char **path, Err *err)
     return STATUS_OK;
 }
 
-static Status draw_panel(const Figure *figure, size_t i, Panel *panel, Err *err)
+static Status in_panel(Section *section, Status status, Err *err)
 {
-    Section *section = figure->plan.sections[i];
-    char name[80], *path = NULL;
-    snprintf(name, sizeof name, "[panel %.60s]", section->name);
-    panel->name = name;
-    Status status = set_tree(figure, i, &path, err);
-    if (status == STATUS_OK)
-        status = figure_rebase(&section->render, figure->folder, NULL, err);
-    if (status == STATUS_OK)
-        status = panel_draw(&section->render, panel, err);
     if (status != STATUS_OK) {
         options_name_fields(&section->render, err);
         err_prefix(err, "[panel %s]: ", section->name);
     }
-    panel->name = NULL;
-    free(path);
     return status;
+}
+
+static Status set_paths(const Figure *figure, size_t i, Err *err)
+{
+    TRY(set_tree(figure, i, err));
+    return figure_rebase(&figure->plan.sections[i]->render, figure->folder, NULL, err);
+}
+
+static Status draw_panel(const Figure *figure, size_t i, Panel *panel, Err *err)
+{
+    Section *section = figure->plan.sections[i];
+    char name[80];
+    snprintf(name, sizeof name, "[panel %.60s]", section->name);
+    panel->name = name;
+    const Status status = panel_draw(&section->render, panel, err);
+    panel->name = NULL;
+    return in_panel(section, status, err);
+}
+
+/* Raises *scale, millimetres of a tree per pixel, to the panel's own scale. */
+static Status measure_panel(const Figure *figure, size_t i, double *scale, Err *err)
+{
+    Section *section = figure->plan.sections[i];
+    double own_scale;
+    if (options_said(&section->render, "height"))
+        return err_set(err, STATUS_USAGE, "height has no effect beside same-scale");
+    TRY(panel_scale(&section->render, figure->sheet.fonts, &own_scale, err));
+    *scale = fmax(*scale, own_scale);
+    return STATUS_OK;
+}
+
+/* Gives all panels the scale of the panel whose tree is the largest for its place. */
+static Status set_scale(const Figure *figure, Err *err)
+{
+    double scale = 0;
+    char height[NUMBER_TEXT_SIZE];
+    for (size_t i = 0; i < figure->plan.n; i++)
+        if (figure_is_panel(figure, i))
+            TRY(in_panel(figure->plan.sections[i], measure_panel(figure, i, &scale, err), err));
+    for (size_t i = 0; i < figure->plan.n; i++)
+        if (figure_is_panel(figure, i))
+            TRY(set_key(&figure->plan.sections[i]->render, "height",
+                        number_text(scale * figure->places[i].height, height), err));
+    return STATUS_OK;
 }
 
 static Status draw_panels(Figure *figure, Err *err)
 {
     size_t first = 0;
+    for (size_t i = 0; i < figure->plan.n; i++)
+        if (figure_is_panel(figure, i))
+            TRY(in_panel(figure->plan.sections[i], set_paths(figure, i, err), err));
+    if (figure->options->same_scale)
+        TRY(set_scale(figure, err));
     for (size_t i = 0; i < figure->plan.n; i++) {
         Panel *panel = &figure->panels[i];
         if (!figure_is_panel(figure, i))
@@ -399,10 +443,12 @@ static Status open_press(Figure *figure, Err *err)
 
 static Status check_output(const FigureOptions *options, Err *err)
 {
-    static const char *const known[] = {"pdf", "svg", "png", "tif", "tiff", "jpg", "jpeg", NULL};
+    static const char *const known[] = {"pdf",  "eps", "svg",  "png", "tif",
+                                        "tiff", "jpg", "jpeg", NULL};
     if (is_one_of(file_extension(options->output), known))
         return STATUS_OK;
-    return err_set(err, STATUS_USAGE, "-o: '%s' does not end in .pdf, .svg, .png, .tif or .jpg",
+    return err_set(err, STATUS_USAGE,
+                   "-o: '%s' does not end in .pdf, .eps, .svg, .png, .tif or .jpg",
                    options->output);
 }
 
@@ -445,6 +491,8 @@ void figure_done(Figure *figure)
 {
     for (size_t i = 0; figure->panels && i < figure->plan.n; i++)
         panel_release(&figure->panels[i]);
+    for (size_t i = 0; figure->places && i < figure->plan.n; i++)
+        free(figure->places[i].tree);
     madetrees_release(&figure->trees);
     figureplan_release(&figure->plan);
     sheet_release(&figure->sheet);

@@ -243,6 +243,49 @@ Status coloring_appearance(const Coloring *coloring, const ColoredTree *tree, co
     return status;
 }
 
+static Status map_of_look(const Look *look, Colormap *map, Err *err)
+{
+    const Rgb ends[] = {look->tips.color, look->color};
+    TRY(mem_calloc(&map->srgb, 2, sizeof *map->srgb, "colors", err));
+    map->n = 2;
+    for (int i = 0; i < 2; i++) {
+        map->srgb[i][0] = srgb_encode(ends[i].r);
+        map->srgb[i][1] = srgb_encode(ends[i].g);
+        map->srgb[i][2] = srgb_encode(ends[i].b);
+    }
+    return STATUS_OK;
+}
+
+Status coloring_by_radius(const ColoredTree *tree, const Look *look, Appearance *appearance,
+                          Err *err)
+{
+    const double one_class = 1;
+    const FieldScaleParams params = {.look = look,
+                                     .has_ends = true,
+                                     .ends = {2, 100},
+                                     .percent = {true, true},
+                                     .log = true,
+                                     .classes = &one_class,
+                                     .n_classes = 1};
+    const TreeMeta meta = {0};
+    FieldSeries series = {0};
+    FieldValues radii = {0};
+    Colormap map = {0};
+    Status status;
+    TRY_GOTO(map_of_look(look, &map, err));
+    TRY_GOTO(derive_series(tree->drawn, &meta, "radius", &series, err));
+    TRY_GOTO(fieldvalues_take(tree->drawn, &series, NULL, &radii, err));
+    TRY_GOTO(fieldscale_color(&params, &map, &radii, &radii, appearance, err));
+    free(appearance->meaning);
+    appearance->meaning = NULL;
+done:
+    if (status == STATUS_INPUT)
+        err_prefix(err, "%s: ", tree->path);
+    fieldvalues_release(&radii);
+    colormap_release(&map);
+    return status;
+}
+
 /* ---- reports --------------------------------------------------------------------------------- */
 
 void coloring_say(const Appearance *appearance, const Talk *talk)

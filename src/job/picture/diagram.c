@@ -1,4 +1,4 @@
-/* One layout, drawn as SVG or as pixels: the output's extension says which. */
+/* One layout, drawn on a page or as pixels: the output's extension says which. */
 #include "job/picture/diagram.h"
 
 #include "options/output.h"
@@ -19,7 +19,7 @@ static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, DiagramOptions, output),
      .argument = "D.svg",
-     .help = "diagram: .svg, true to size, or .png, .tif, .jpg or .ppm"},
+     .help = "diagram: .svg, .pdf or .eps, true to size, or .png, .tif, .jpg or .ppm"},
     {.name = "gap",
      SETS(NUMBER, DiagramOptions, gap_mm),
      FROM_TO(0, 1e7),
@@ -62,10 +62,11 @@ static const Option own[] = {
      .help = "background color: a CSS name, #RRGGBB, or R,G,B each 0..1"},
 };
 
-/* Returns true if the diagram is a page: for an .svg, and in memory, where there is no file. */
+/* Returns true if the diagram is a page: in a file of a page, and in memory, where there is no
+ * file. */
 static bool is_page(const DiagramOptions *options)
 {
-    return !options->output || strcmp(file_extension(options->output), "svg") == 0;
+    return !options->output || frames_is_page(options->output);
 }
 
 static ConditionSet unmet(const void *set, const Parsed *parsed)

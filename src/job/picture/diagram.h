@@ -26,8 +26,8 @@ typedef struct MadeDiagram {
     float (*color)[3]; /* per node: linear RGB */
 } MadeDiagram;
 
-/* Draws the tree that is the first operand. The result is a page if the option `output` is an .svg
- * file or not specified, else an image.
+/* Draws the tree that is the first operand. The result is a page if the option `output` is an .svg,
+ * .pdf or .eps file or not specified, else an image.
  *
  * options   parsed->options.
  * made      must not be moved or copied, because it points to itself. The caller releases it with

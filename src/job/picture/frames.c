@@ -10,7 +10,7 @@
 
 bool frames_is_page(const char *path)
 {
-    static const char *const known[] = {"pdf", "svg", NULL};
+    static const char *const known[] = {"pdf", "eps", "svg", NULL};
     return is_one_of(file_extension(path), known);
 }
 
@@ -286,8 +286,9 @@ static Status write_picture(FramesWriter *writer, const Frame *rows, Err *err)
 Status frames_write_page(const FigurePage *page, const FigureNotes *notes, const char *path,
                          Err *err)
 {
-    if (strcmp(file_extension(path), "pdf") == 0)
-        return figure_write_pdf(page, notes, path, err);
+    const bool eps = strcmp(file_extension(path), "eps") == 0;
+    if (eps || strcmp(file_extension(path), "pdf") == 0)
+        return figure_write_pdf(page, notes, eps, path, err);
     OutFile file;
     TRY(outfile_open(&file, path, err));
     Text svg = TEXT_TO(file.stream);

@@ -103,8 +103,10 @@ static const Option rows[] = {
      .help = "resolution in pixels per inch; stored in .png, .tif and .jpg"},
     {.name = "projection",
      SETS(CHOICE, PictureOptions, projection),
+     GIVEN(PictureOptions, has_projection),
      .choices = projections,
      .group = GROUP_CAMERA,
+     .otherwise = "the look's: orthographic in most looks",
      .when = WHEN(CAMERA),
      .help = "projection of the camera"},
     {.name = "view",
@@ -191,11 +193,14 @@ static const Option rows[] = {
      .help = "draw N x N samples per pixel; 1 turns antialiasing off"},
     {.name = "ao",
      SETS(WHOLE, PictureOptions, occlusion),
-     FROM_TO(0, 4096),
+     GIVEN(PictureOptions, has_occlusion),
+     FROM_TO(0, LOOK_MAX_OCCLUSION),
      .group = GROUP_LIGHT,
+     .otherwise = "the look's: 0 in most looks",
      .when = WHEN(LIT),
-     .help = "ambient occlusion with N rays per pixel (with --exact: N rays per sample); suits "
-             "--look print; 0 turns it off"},
+     .help =
+         "ambient occlusion with N rays per pixel (with --exact: N rays per sample); 0 turns it "
+         "off"},
     {.name = "look",
      SETS(LOOKUP, PictureOptions, look),
      .group = GROUP_LIGHT,
@@ -221,7 +226,9 @@ static const Option rows[] = {
              "radius in the cell"},
     {.name = "shadows",
      SETS(SWITCH, PictureOptions, stage.shadows),
+     GIVEN(PictureOptions, has_shadows),
      .group = GROUP_LIGHT,
+     .otherwise = "the look's: off in most looks",
      .when = WHEN(CAMERA) | WHEN(LIGHTS),
      .help = "cast shadows"},
     {.name = "background",
@@ -247,13 +254,22 @@ static ConditionSet unmet(const void *set, const Parsed *parsed)
            UNLESS(field, FIELD_IDS);
 }
 
-/* Colors that mean something must be those of the legend, so a field has a look of its own. */
+/* Reads the look, and takes from it what no option specifies. A height needs an orthographic
+ * picture, so it overrules the look as well. Colors that mean something must be those of the
+ * legend, so a field has a look of its own. */
 static Status settle(void *set, const Parsed *parsed, Err *err)
 {
     PictureOptions *options = set;
-    (void)err;
     if (options->coloring.field && !options_said(parsed, "look"))
         options->look = "data";
+    TRY(coloring_read_look(options->look, &options->look_file, err));
+    const LookOptions *proposed = &options->look_file.options;
+    if (!options->has_shadows)
+        options->stage.shadows = proposed->shadows;
+    if (!options->has_occlusion)
+        options->occlusion = proposed->occlusion;
+    if (!options->has_projection && !options->has_height)
+        options->projection = (int)proposed->projection;
     return STATUS_OK;
 }
 
@@ -306,7 +322,7 @@ ConditionSet picture_unmet_dpi(const PictureSize *size, const char *output)
 
 Status picture_check_povray(const PictureOptions *options, Err *err)
 {
-    if (options->occlusion == 0)
+    if (options->occlusion == 0 || !options->has_occlusion)
         return STATUS_OK;
     return err_set(err, STATUS_USAGE, "--ao cannot be verified: POV-Ray has no ambient occlusion");
 }
@@ -425,13 +441,18 @@ static bool is_xray(const Look *look)
     return look_effects(look, 1, 1).xray.per_mm > 0;
 }
 
-static Status read_look(const PictureOptions *options, const Parsed *parsed, Look *look, Err *err)
+static Status take_look(const PictureOptions *options, const Parsed *parsed, Look *look, Err *err)
 {
-    TRY(coloring_read_look(options->look, look, err));
-    if (is_xray(look) && options->coloring.field)
+    const bool xray = is_xray(&options->look_file);
+    *look = options->look_file;
+    if (options->omits_effects)
+        look->effects = (LookEffects){0};
+    if (options->omits_effects || options->has_background)
+        look->corners.present = false;
+    if (xray && options->coloring.field)
         return err_set(err, STATUS_USAGE,
                        "--color-by has no effect: --look %s uses two fixed colors", options->look);
-    if (is_xray(look))
+    if (xray)
         TRY(options_refuse(parsed, WHEN(LIT) | WHEN(LIGHTS), err));
     if (options->has_background && !color_is_none(options->background))
         look->background = rgb_of_option(options->background);
@@ -514,7 +535,7 @@ Status picture_read_source(const PictureOptions *options, const Parsed *parsed,
 {
     PictureSource made = {0};
     TRY(check_camera(options, err));
-    TRY(read_look(options, parsed, &made.look, err));
+    TRY(take_look(options, parsed, &made.look, err));
     TRY(picture_read_tree(&options->coloring, options->prune_radius_mm, parsed, &made.of, err));
     Status status = STATUS_OK;
     if (options->frame == PICTURE_DOMAIN)
@@ -596,7 +617,10 @@ Status picture_appearance(const PictureOptions *options, const PictureSource *so
 {
     const ColoredTree tree = picture_colored_tree(&source->of);
     Appearance made;
-    TRY(coloring_appearance(&options->coloring, &tree, &source->look, &made, err));
+    if (options->coloring.field || !source->look.tips.present)
+        TRY(coloring_appearance(&options->coloring, &tree, &source->look, &made, err));
+    else
+        TRY(coloring_by_radius(&tree, &source->look, &made, err));
     Status status = blend(options, &made, err);
     if (status == STATUS_OK)
         *appearance = made;
@@ -664,18 +688,19 @@ Status picture_say(const Scene *scene, const PictureReport *report, const Talk *
     return STATUS_OK;
 }
 
-Status picture_say_effects(const PictureOptions *options, const View *view, const char *what,
-                           const Talk *talk, Err *err)
+Status picture_say_effects(const PictureOptions *options, const char *what, const Talk *talk,
+                           Err *err)
 {
     Text names = TEXT_INIT;
-    if (view->effects.xray.per_mm > 0)
+    const Effects effects = look_effects(&options->look_file, 1, 1);
+    if (effects.xray.per_mm > 0)
         return err_set(err, STATUS_USAGE, "--look %s: POV-Ray cannot draw an x-ray; use render",
                        options->look);
-    effects_list(&view->effects, &names);
+    effects_list(&effects, options->occlusion > 0, &names);
     Status status = text_check(&names, err);
     if (status == STATUS_OK && names.length)
-        talk_note(talk, "--look %s: %s are corcast's own, and %s", options->look,
-                  text_chars(&names), what);
+        talk_note(talk, "--look %s: only corcast draws %s; %s", options->look, text_chars(&names),
+                  what);
     text_release(&names);
     return status;
 }

@@ -44,14 +44,17 @@ typedef struct PictureOptions {
                          * connected */
     bool as_mesh;       /* options are checked as if `model` were the mesh; set for output
                          * formats that hold triangles */
+    bool omits_effects; /* leaves out the effects of the look, which POV-Ray does not draw */
     bool by_tiles;      /* the geometry is only rendered tile by tile; saves memory, see
                          * GeometryParams.implied_ends */
     double prune_radius_mm; /* segments thinner than this radius are removed; 0: none */
     const char *look;       /* name in templates/looks, or path of a look file */
+    Look look_file;         /* the look, without `background`; set by picture_table.settle */
     Vec3 background;        /* sRGB in [0, 1], or transparent (picture_is_transparent) */
     bool has_background;    /* `background` is specified; else the look's background applies */
     /* The option of this name is specified: */
-    bool has_height, has_angle, has_view, has_turn, has_joints, has_antialias;
+    bool has_height, has_angle, has_view, has_turn, has_joints, has_antialias, has_projection,
+        has_shadows, has_occlusion;
     int erf;          /* choice: ErfForm; POV-Ray's isosurface */
     double cell_beta; /* POV-Ray's isosurface: a cell is split while its side / the smallest radius
                        * that matters in the cell is larger than this; 0: CELL_BETA */
@@ -68,7 +71,9 @@ enum { PICTURE_ANTIALIAS = 3 };
 
 /* Accepted ranges of --antialias, --prune-radius (mm) and --tolerance, for all commands. */
 extern const Range antialias_range, prune_range, tolerance_range;
-/* Sets a PictureOptions, except its member `coloring`. */
+/* Sets a PictureOptions, except its member `coloring`. Its function `settle` reads the look, whose
+ * errors are those of coloring_read_look, and takes shadows, ambient occlusion and projection from
+ * the look where no option specifies them. */
 extern const OptionTable picture_table;
 /* Lists the option tables that set a PictureOptions, including `coloring`. The PictureOptions is
  * the member `path` of the command's options struct `Type`. */
@@ -124,13 +129,12 @@ typedef struct PictureSource {
                  * tree; only set if the options frame the domain */
 } PictureSource;
 
-/* Checks the options, and reads the look and the tree, which is the first operand.
+/* Checks the options, and reads the tree, which is the first operand.
  *
  * source   release it with picture_source_release. It borrows from `parsed`.
  * Errors   STATUS_USAGE if options exclude each other, or have no effect with this look or this
  *          law of blood viscosity; STATUS_INPUT if the domain is to be framed, and the tree's file
- *          does not state it; the errors of coloring_read_look, picture_read_tree and
- *          tree_domain_box. */
+ *          does not state it; the errors of picture_read_tree and tree_domain_box. */
 MUST_CHECK Status picture_read_source(const PictureOptions *options, const Parsed *parsed,
                                       PictureSource *source, Err *err);
 void picture_source_release(PictureSource *source);
@@ -171,7 +175,7 @@ typedef struct PictureReport {
     bool shadows; /* lights cast shadows */
 } PictureReport;
 
-/* Reads the tree and the look, and makes geometry, appearance and view.
+/* Reads the tree, and makes geometry, appearance and view.
  *
  * scene    release it with scene_release.
  * report   must not be NULL.
@@ -200,13 +204,13 @@ MUST_CHECK Status picture_scene_of(const PictureOptions *options, const PictureS
 MUST_CHECK Status picture_say(const Scene *scene, const PictureReport *report, const Talk *talk,
                               Err *err);
 
-/* Prints a note that lists the effects of the look that POV-Ray does not draw, if there are any.
+/* Prints a note that lists what POV-Ray does not draw of the look, if there is any.
  *
- * what     the end of the sentence, about these effects: "omitted on both sides".
+ * what     the end of the sentence, about these effects: "both pictures omit them".
  * Errors   STATUS_USAGE if the look is an x-ray, because nothing of the picture would be left;
  *          STATUS_MEMORY. */
-MUST_CHECK Status picture_say_effects(const PictureOptions *options, const View *view,
-                                      const char *what, const Talk *talk, Err *err);
+MUST_CHECK Status picture_say_effects(const PictureOptions *options, const char *what,
+                                      const Talk *talk, Err *err);
 
 /* Checks that an image of this size fits into the memory of this machine.
  *

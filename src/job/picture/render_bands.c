@@ -88,7 +88,7 @@ static Status draw_bands(const Rendering *r, Renderer *renderer, const Scene *sc
     const int end = form->first + form->height;
     const int step = render_band_rows(form, &r->params, &scene->view, r->options->memory_mb);
     if (step < form->height)
-        mem_keep();
+        system_keep_memory();
     *empty = true;
     for (int first = form->first; first < end; first += step) {
         Frame band;

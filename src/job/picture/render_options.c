@@ -18,7 +18,8 @@ static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, RenderOptions, output),
      .argument = "P",
-     .help = "image: .png, .ppm, .tif, .jpg, .exr or .pfm, or a page with the image: .pdf or .svg"},
+     .help = "image: .png, .ppm, .tif, .jpg, .exr or .pfm, or a page with the image: .pdf, .eps "
+             "or .svg"},
     {.name = "planes",
      SETS(TEXT, RenderOptions, planes),
      .argument = "LIST",
@@ -53,7 +54,7 @@ static const Option own[] = {
      .unit = "mm",
      .otherwise = "",
      .help = "draw outlines of this width on paper instead of shaded vessels, without hidden "
-             "lines; .svg or .pdf only"},
+             "lines; .svg, .pdf or .eps only"},
     {.name = "hits",
      SETS(CHOICE, RenderOptions, hits),
      .choices = hits_names,
@@ -149,8 +150,16 @@ void render_settle(RenderOptions *options)
     PictureOptions *picture = &options->picture;
     if (options->exact && !options->has_method)
         options->method = RENDER_TRACE;
-    if (!picture->has_antialias && (options->exact || options->method == RENDER_ZBUFFER))
+    picture->omits_effects = options->exact;
+    const bool bare = options->exact || options->method == RENDER_ZBUFFER;
+    if (!picture->has_antialias && bare)
         picture->antialias = 1;
+    if (!picture->has_occlusion && bare)
+        picture->occlusion = 0;
+    if (!picture->has_shadows && options->method == RENDER_ZBUFFER)
+        picture->stage.shadows = false;
+    if (!picture->has_projection && options->annotation.has_scale_bar)
+        picture->projection = PROJECTION_ORTHOGRAPHIC;
 }
 
 /* Whether vessels thinner than a pixel are drawn by their coverage: not where a method is asked
@@ -264,10 +273,6 @@ static Status check_effects(const RenderOptions *options, const View *view, Err 
 {
     if (!effects_present(&view->effects))
         return STATUS_OK;
-    if (options->exact)
-        return err_set(err, STATUS_USAGE,
-                       "--exact draws the picture of verify, which omits the effects of --look %s",
-                       options->picture.look);
     if (options->threshold > 0)
         return err_set(err, STATUS_USAGE,
                        "--antialias-threshold: --look %s needs all samples of every pixel",
@@ -296,5 +301,8 @@ Status render_make_scene(RenderOptions *options, Parsed *parsed, const PictureSo
     }
     if (animation->kind == ANIMATION_TURN)
         TRY(animation_frame_turn(picture, source, scene, err));
-    return check_effects(options, &scene->view, err);
+    TRY(check_effects(options, &scene->view, err));
+    return options->exact
+               ? picture_say_effects(picture, "--exact omits them", parsed->common.talk, err)
+               : STATUS_OK;
 }

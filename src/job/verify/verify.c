@@ -105,13 +105,12 @@ static Status verify(Verification *v, VerifyFolder *folder, Parsed *parsed, Err 
     PictureOptions all_moments = *picture; /* POV-Ray's scene contains all moments */
     PictureReport made;
     all_moments.coloring.frame = 0;
+    all_moments.omits_effects = true;
     TRY(verifyfolder_claim(folder, &parsed->files, err));
     TRY(picture_scene(&all_moments, parsed, &v->scene, &made, err));
     TRY(picture_check_ids(&v->scene.geometry, v->tree, err));
     TRY(picture_say(&v->scene, &made, parsed->common.talk, err));
-    TRY(picture_say_effects(picture, &v->scene.view, "omitted on both sides", parsed->common.talk,
-                            err));
-    v->scene.view.effects = (Effects){0};
+    TRY(picture_say_effects(picture, "both pictures omit them", parsed->common.talk, err));
     if (!picture->stage.has_location)
         move_off_ties(&v->scene.view.camera);
     v->has_alpha = v->scene.view.transparent;

@@ -468,8 +468,12 @@ static Rgb piece_color(const Drawing *drawing, const ThinVessels *thin, size_t p
     Rgb color = wall_color(drawing, thin, &wall, piece);
     if (!effects_present(&view->effects))
         return color;
-    double depth = camera_point(&thin->camera, wall.middle).depth_mm - wall.radius;
-    return rgb_mixed(color, view->background, fade_at(&view->effects.fade, depth));
+    const CameraPoint at = camera_point(&thin->camera, wall.middle);
+    const Grade *grade = &view->effects.grade;
+    const Rgb paper = grade->present
+                          ? grade_at(grade, at.x, at.y, thin->camera.width, thin->camera.height)
+                          : view->background;
+    return rgb_mixed(color, paper, fade_at(&view->effects.fade, at.depth_mm - wall.radius));
 }
 
 typedef struct ThinJob {
