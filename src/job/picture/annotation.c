@@ -20,6 +20,7 @@ static const Option rows[] = {
      GIVEN(Annotation, has_side),
      .choices = sides,
      .group = GROUP_PAGE,
+     .otherwise = "right; bottom if an upright picture then has a larger tree",
      .needs = "legend",
      .help = "position of the legend"},
     {.name = "legend-title",
@@ -132,18 +133,56 @@ static bool are_whole(const Appearance *appearance)
     return true;
 }
 
+enum { MOST_SWATCHES = 12 };
+
+/* Lists the different values that the scale can show, ascending. Returns their number, at most
+ * MOST_SWATCHES + 1. */
+static int list_values(const Appearance *appearance, double list[MOST_SWATCHES + 1])
+{
+    int n = 0;
+    for (size_t i = 0; i < appearance->n_values && n <= MOST_SWATCHES; i++) {
+        const double value = appearance->values[i];
+        int at = n;
+        if (isnan(colorscale_position(&appearance->scale, value)))
+            continue;
+        while (at > 0 && list[at - 1] >= value)
+            at--;
+        if (at < n && list[at] == value)
+            continue;
+        memmove(&list[at + 1], &list[at], (size_t)(n - at) * sizeof *list);
+        list[at] = value;
+        n++;
+    }
+    return n;
+}
+
+/* Lists the values that have swatches: integers, if they are few and have the color of no class,
+ * and the value of a field that has only one. Returns their number; 0: the legend has a bar. */
+static int list_swatches(const Appearance *appearance, double ems, double list[MOST_SWATCHES + 1])
+{
+    const ColorScale *scale = &appearance->scale;
+    const int n = list_values(appearance, list);
+    const bool divided = scale->n_bounds || scale->classes > 1;
+    const bool few = n <= MOST_SWATCHES && n <= ems && are_whole(appearance);
+    return !divided && (n == 1 || (few && !appearance->positions)) ? n : 0;
+}
+
 /* Appends the legend of a picture of this size, anywhere. */
 static Status add_legend(const Annotation *annotation, const Appearance *appearance, double width,
                          double height, FigureColor ink, FigurePage *page, Err *err)
 {
     const double em = annotation->text_pt * MM_PER_POINT;
     const bool across = annotation->legend_at == LEGEND_BOTTOM;
+    const double room = across ? width / em / 2.2 - 1 : height / em / 1.35 - 4;
+    double swatches[MOST_SWATCHES + 1];
     Text title = TEXT_INIT;
     put_title(annotation, &appearance->scale, &title);
     Status status = text_check(&title, err);
     const FigureLegend legend = {.scale = &appearance->scale,
                                  .outside = appearance->outside,
                                  .integers = are_whole(appearance),
+                                 .swatches = swatches,
+                                 .n_swatches = list_swatches(appearance, room, swatches),
                                  .title = text_chars(&title),
                                  .horizontal = across,
                                  .length_mm =
@@ -161,18 +200,38 @@ static double gap_of(const Annotation *annotation)
     return 0.9 * annotation->text_pt * MM_PER_POINT;
 }
 
-static Status measure(const Annotation *annotation, const Appearance *appearance, FigurePage *page,
-                      double size[2], Err *err)
+/* Measures the legend of a picture that is as large as the page `like`. */
+static Status measure(const Annotation *annotation, const Appearance *appearance,
+                      const FigurePage *like, double size[2], Err *err)
 {
-    TRY(add_legend(annotation, appearance, page->width_mm, page->height_mm, page->background, page,
-                   err));
-    FigureBox box = figure_bounds(page, 0);
+    FigurePage page;
+    figure_init(&page, like->width_mm, like->height_mm, like->dpi, like->fonts);
+    Status status = add_legend(annotation, appearance, page.width_mm, page.height_mm,
+                               page.background, &page, err);
+    const FigureBox box = figure_bounds(&page, 0);
     size[0] = box.right - box.left;
     size[1] = box.bottom - box.top;
-    return STATUS_OK;
+    figure_release(&page);
+    return status;
 }
 
-Status annotation_make_room(const Annotation *annotation, const FigureFonts *fonts,
+/* Chooses the side of an upright picture on which the legend leaves the tree more space. */
+static Status choose_side(Annotation *annotation, const Appearance *appearance,
+                          const FigurePage *page, double size[2], Err *err)
+{
+    TRY(measure(annotation, appearance, page, size, err));
+    if (annotation->has_side || page->height_mm <= page->width_mm)
+        return STATUS_OK;
+    const double beside = fmin(page->width_mm - size[0], page->height_mm);
+    annotation->legend_at = LEGEND_BOTTOM;
+    TRY(measure(annotation, appearance, page, size, err));
+    if (fmin(page->width_mm, page->height_mm - size[1]) > beside)
+        return STATUS_OK;
+    annotation->legend_at = LEGEND_RIGHT;
+    return measure(annotation, appearance, page, size, err);
+}
+
+Status annotation_make_room(Annotation *annotation, const FigureFonts *fonts,
                             const Appearance *appearance, PictureOptions *picture, Err *err)
 {
     const double pixel = MM_PER_INCH / annotation_dpi(picture);
@@ -182,7 +241,7 @@ Status annotation_make_room(const Annotation *annotation, const FigureFonts *fon
     if (!annotation->legend)
         return STATUS_OK;
     figure_init(&page, pixels[0] * pixel, pixels[1] * pixel, annotation_dpi(picture), fonts);
-    Status status = measure(annotation, appearance, &page, size, err);
+    Status status = choose_side(annotation, appearance, &page, size, err);
     figure_release(&page);
     TRY(status);
     int side = annotation->legend_at == LEGEND_RIGHT ? 0 : 1;

@@ -48,9 +48,10 @@ double annotation_dpi(const PictureOptions *picture);
 
 /* Reserves space for the legend, so that a camera that frames the tree leaves this space empty.
  *
+ * annotation  receives the side of the legend, if no option specifies it.
  * picture  receives the reserved space, in its view parameters.
  * Errors   STATUS_USAGE if the legend leaves no space for the tree; STATUS_MEMORY. */
-MUST_CHECK Status annotation_make_room(const Annotation *annotation, const FigureFonts *fonts,
+MUST_CHECK Status annotation_make_room(Annotation *annotation, const FigureFonts *fonts,
                                        const Appearance *appearance, PictureOptions *picture,
                                        Err *err);
 
