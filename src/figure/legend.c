@@ -326,7 +326,7 @@ static double put_listed(const LegendLayout *layout)
                                                 number_readable(legend->swatches[i], 6, label),
                                                 legend->size_pt, false));
     const double pitch =
-        legend->horizontal ? fmax(2.2 * layout->em, widest + 0.6 * layout->em) : 1.35 * layout->em;
+        legend->horizontal ? fmax(1.7 * layout->em, widest + 0.6 * layout->em) : 1.35 * layout->em;
     for (int i = 0; i < n; i++) {
         float color[3];
         colorscale_linear(legend->scale, legend->swatches[i], color);
