@@ -63,7 +63,6 @@ typedef struct LookEffects {
                         * separates them; 180: never */
     Rgb outline_color;
     double halo_width, halo_radii, halo_deeper; /* width 0: no halos */
-    double fade_nearest, fade_farthest;         /* fractions of the background's color; 0: none */
     double xray_per_diameter; /* absorption per diameter of the thickest vessel, or */
     double xray_per_mm;       /* absorption per mm; both 0: no x-ray */
 } LookEffects;
@@ -89,12 +88,12 @@ typedef struct Look {
     LookLight lights[LOOK_MAX_LIGHTS];
     int n_lights;
     LookGround ground;
+    double fade_nearest, fade_farthest; /* as in Fade */
     LookEffects effects;
 } Look;
 
 /* Returns the effects of a look for one picture. The picture's shorter side has 1000 thousandth_px
- * pixels, and the thickest vessel has this diameter. The fade is over 0 to 1 mm; stage_view
- * replaces these depths. */
+ * pixels, and the thickest vessel has this diameter. */
 Effects look_effects(const Look *look, double thousandth_px, double diameter_mm);
 
 /* Reads a look from an INI file. Its sections and keys:

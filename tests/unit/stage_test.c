@@ -979,7 +979,7 @@ static void a_look_is_read(void **state)
     assert_true(effects.outline.width_px == 5 && effects.outline.color.g == 0.5f);
     assert_true(fabs(effects.outline.crease_cosine - 0.5) < 1e-15);
     assert_true(effects.halo.width_px == 4 && effects.halo.radii == 3);
-    assert_true(effects.fade.nearest == 0.25 && effects.fade.farthest == 0.8);
+    assert_true(read.fade_nearest == 0.25 && read.fade_farthest == 0.8);
     assert_true(effects.xray.per_mm == 0.75);
     assert_int_equal(read_look_text("[vessel]\ncolor = 1 1 1\n", &read, &err), STATUS_OK);
     const Effects none = look_effects(&read, 2, 1);

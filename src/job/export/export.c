@@ -23,7 +23,8 @@ static const Option own[] = {
      .when = WHEN(MESH) | OF_SURFACE,
      .help = "surface of the vessels: isosurface (blends vessels smoothly where they meet), "
              "rounded (cylinders with spheres at their ends)"},
-    {.name = "tolerance",
+    {.name = "mesh-tolerance",
+     .former = "tolerance",
      SETS(NUMBER, ExportOptions, meshing.tolerance),
      .group = GROUP_VESSELS,
      .range = &tolerance_range,
@@ -308,10 +309,10 @@ const Command command_export = {
     .operands = "T.swc -o M.stl",
     .examples = "  corcast export tree.swc -o tree.stl\n"
                 "  corcast export tree.swc --color-by strahler -o tree.glb\n"
-                "  corcast export tree.swc --tolerance 0.05 -o tree.ply\n"
+                "  corcast export tree.swc --mesh-tolerance 0.05 -o tree.ply\n"
                 "  corcast export tree.swc --parts -o tree.stl\n"
                 "  corcast export tree.swc --color-by flow -o tree.py\n"
-                "  corcast export tree.swc --voxel 0.1 --labels segment -o tree.nii.gz\n"
+                "  corcast export tree.swc --spacing 0.1 --labels segment -o tree.nii.gz\n"
                 "  corcast export tree.swc --color-by flow -o tree.html\n",
     .min_operands = 1,
     .max_operands = 1,

@@ -43,11 +43,11 @@ static const Option rows[] = {
      .choices = model_names,
      .group = GROUP_VESSELS,
      .when = WHEN(MODELS),
-     .help = "vessel geometry: cylinders (one closed cylinder per segment), joined (cylinders with "
-             "ruled surfaces at "
-             "junctions), rounded (cylinders with spheres where they meet or end), isosurface "
-             "(smoothly blended surface), blob (POV-Ray's approximation of that surface), mesh "
-             "(triangles of that surface, cut flat at free ends)"},
+     .help =
+         "vessel geometry: cylinders (one closed cylinder per segment), joined (cylinders "
+         "connected by straight-sided transitions), rounded (cylinders with spheres where they "
+         "meet or end), isosurface (smoothly blended surface), blob (POV-Ray's quick approximation "
+         "of the isosurface), mesh (the isosurface as triangles, open ends cut flat)"},
     {.name = "potential",
      SETS(CHOICE, PictureOptions, potential),
      .choices = potentials,
@@ -64,7 +64,8 @@ static const Option rows[] = {
      .help = "joined only: what to draw where a junction cannot be built because vessels are too "
              "short or turn too sharply: robust (as with rounded), paper (the junction as it "
              "comes, with faults)"},
-    {.name = "tolerance",
+    {.name = "mesh-tolerance",
+     .former = "tolerance",
      SETS(NUMBER, PictureOptions, tolerance),
      .range = &tolerance_range,
      .group = GROUP_VESSELS,
@@ -90,9 +91,9 @@ static const Option rows[] = {
      .group = GROUP_COLOR,
      .when = WHEN(FIELD_MODEL),
      .needs = "color-by",
-     .help = "isosurface and blob only: color of a point where segments blend: segment (color of "
-             "the segment that contributes most), blended (color of the mean value, weighted by "
-             "contribution)"},
+     .help = "isosurface and blob only: color where segments merge: segment (the value of the "
+             "segment that contributes most), blended (the mean of the segments' values, weighted "
+             "by contribution)"},
     {.name = "size",
      SETS(SIZE, PictureOptions, size),
      FROM_TO(1, IMAGE_MAX_SIDE),
@@ -102,7 +103,8 @@ static const Option rows[] = {
              "(89mm)"},
     {DPI_OF_SIZE(PictureOptions, size), .group = GROUP_CAMERA,
      .when = WHEN(ON_PAPER) | WHEN(ON_PAPER_OR_KEPT),
-     .help = "resolution in pixels per inch; stored in .png, .tif and .jpg"},
+     .help = "pixels per inch: sets the number of pixels of a --size on paper; with a --size in "
+             "pixels it is only stored in the file (.png, .tif, .jpg)"},
     {.name = "projection",
      SETS(CHOICE, PictureOptions, projection),
      GIVEN(PictureOptions, has_projection),
@@ -126,7 +128,8 @@ static const Option rows[] = {
      .argument = "AZ,EL",
      .otherwise = "",
      .when = WHEN(CAMERA),
-     .help = "then rotate the camera AZ degrees to the right and EL degrees up"},
+     .help =
+         "rotate the camera of --view AZ degrees to the right and EL degrees up around the tree"},
     {.name = "up-axis",
      SETS(CHOICE, PictureOptions, stage.up_axis),
      .choices = up_axes,
@@ -138,8 +141,9 @@ static const Option rows[] = {
      .choices = framings,
      .group = GROUP_CAMERA,
      .when = WHEN(CAMERA),
-     .help = "what to fit in the image: tree (the same for all models), domain (the tissue shape "
-             "it was grown in), drawing (everything that is drawn)"},
+     .help = "what to fit in the image: tree (axes and radii of the segments, so that images of "
+             "all models match), domain (the tissue shape that the tree was grown in; an error if "
+             "its header states none), drawing (the geometry as drawn)"},
     {.name = "location",
      SETS(VECTOR, PictureOptions, stage.location),
      GIVEN(PictureOptions, stage.has_location),
@@ -159,9 +163,9 @@ static const Option rows[] = {
      SETS(VECTOR, PictureOptions, stage.up),
      GIVEN(PictureOptions, stage.has_up),
      .group = GROUP_CAMERA,
-     .otherwise = "",
+     .otherwise = "the axis of --up-axis",
      .when = WHEN(CAMERA),
-     .help = "direction that points up in the image"},
+     .help = "direction in the coordinates of the tree that points up in the image"},
     {.name = "angle",
      SETS(NUMBER, PictureOptions, stage.angle_deg),
      GIVEN(PictureOptions, has_angle),
@@ -207,6 +211,7 @@ static const Option rows[] = {
      SETS(LOOKUP, PictureOptions, look),
      .group = GROUP_LIGHT,
      .list = "looks",
+     .otherwise = "cast; with --color-by data, whose colors are those of the legend",
      .when = WHEN(VESSELS),
      .help = "colors, finish and lights: the name of a look, or the path of a file of your own "
              "(with a '/')"},
@@ -256,11 +261,13 @@ static ConditionSet unmet(const void *set, const Parsed *parsed)
 }
 
 /* Reads the look, and takes from it what no option specifies. A height needs an orthographic
- * picture, so it overrules the look as well. */
+ * picture, so it overrules the look as well. Colors that mean something must be those of the
+ * legend, so a field has a look of its own. */
 static Status settle(void *set, const Parsed *parsed, Err *err)
 {
     PictureOptions *options = set;
-    (void)parsed;
+    if (options->coloring.field && !options_said(parsed, "look"))
+        options->look = "data";
     TRY(coloring_read_look(options->look, &options->look_file, err));
     const LookOptions *proposed = &options->look_file.options;
     if (!options->has_smooth)
@@ -723,7 +730,8 @@ Status picture_say_effects(const PictureOptions *options, const char *what, cons
                            Err *err)
 {
     Text names = TEXT_INIT;
-    const Effects effects = look_effects(&options->look_file, 1, 1);
+    Effects effects = look_effects(&options->look_file, 1, 1);
+    effects.grade.present &= options->omits_effects; /* a scene has it */
     if (effects.xray.per_mm > 0)
         return err_set(err, STATUS_USAGE, "--look %s: POV-Ray cannot draw an x-ray; use render",
                        options->look);

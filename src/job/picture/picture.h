@@ -67,10 +67,10 @@ typedef struct PictureOptions {
 void picture_set_defaults(PictureOptions *options);
 /* Default of --antialias for pictures that are not compared with POV-Ray's. */
 enum { PICTURE_ANTIALIAS = 3 };
-/* Default of --tolerance: maximum distance of triangles from the surface / the local radius. */
+/* Default of --mesh-tolerance: maximum distance of triangles from the surface / the local radius. */
 #define MESHING_TOLERANCE 0.02
 
-/* Accepted ranges of --antialias, --prune-radius (mm) and --tolerance, for all commands. */
+/* Accepted ranges of --antialias, --prune-radius (mm) and --mesh-tolerance, for all commands. */
 extern const Range antialias_range, prune_range, tolerance_range;
 /* Sets a PictureOptions, except its member `coloring`. Its function `settle` reads the look, whose
  * errors are those of coloring_read_look, and takes shadows, ambient occlusion and projection from
