@@ -2,8 +2,6 @@
  * the library that holds this code is: beside the build folder, or where `make install` puts it. */
 #include "options/templates.h"
 
-#include "base/system.h"
-
 #include <dirent.h>
 #include <errno.h>
 #include <limits.h>

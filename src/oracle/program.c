@@ -17,8 +17,6 @@
  * the program itself. */
 #include "oracle/program.h"
 
-#include "base/system.h"
-
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>

@@ -123,14 +123,13 @@ typedef struct Volumes {
 static Status take_geometry(Volumes *made, const Talk *talk, Err *err)
 {
     StageReport report;
-    const GeometryParams rounded = {.model = model_with(MODEL_VOXELS)};
+    const GeometryParams rounded = {.model = model_with(MODEL_VOXELS),
+                                    .smooth = picture_pieces(made->of)};
     TRY(stage_geometry(&made->of->tree, &rounded, &made->geometry, &report, err));
     if (report.dropped)
         talk_warn(talk, "segments that are left out, as they have no length or no radius: %zu",
                   report.dropped);
-    made->within = made->geometry.drawn;
-    for (size_t i = 0; i < made->geometry.n_primitives; i++)
-        made->within -= made->geometry.primitives[i].kind == PRIMITIVE_CYLINDER;
+    made->within = report.covered;
     if (made->within)
         talk_warn(
             talk,
@@ -239,8 +238,8 @@ static void say_result(const Volumes *made, const Talk *talk)
         talk_warn(talk, "%zu label%s no voxel; each was given a voxel that it touches",
                   report->n_given_voxels,
                   report->n_given_voxels == 1 ? " dominates" : "s dominate");
-    talk_note(talk, "%lld voxels contain vessels, %.6g mm^3", (long long)report->filled,
-              report->volume_mm3);
+    talk_note(talk, "%lld voxels contain vessels, %s mm\xC2\xB3", (long long)report->filled,
+              READABLE(report->volume_mm3, 6));
 }
 
 static json_t *json_vector(Vec3 v)

@@ -161,13 +161,21 @@ static Status grow_to(const AnimationSubject *subject, double part, Scene *grown
 {
     const Scene *whole = subject->whole;
     const Tree *tree = &subject->source->of.tree;
+    const SmoothTree *smooth = picture_pieces(&subject->source->of);
     PictureSource young = *subject->source;
-    TRY(tree_proximal_part(tree, part, &young.of.tree, err));
-    Status status =
+    Status status;
+    if (smooth) /* the pieces have the indices of the whole tree's segments */
+        TRY(smoothtree_part(smooth, part, &young.of.smooth, err));
+    else
+        TRY(tree_proximal_part(tree, part, &young.of.tree, err));
+    status =
         picture_geometry(subject->options, &young, subject->common, &grown->geometry, NULL, err);
     if (status == STATUS_OK)
         status = part_appearance(&whole->appearance, tree, &young.of.tree, &grown->appearance, err);
-    tree_release(&young.of.tree);
+    if (smooth)
+        smoothtree_release(&young.of.smooth);
+    else
+        tree_release(&young.of.tree);
     Vec3 moved = vec3_sub(whole->geometry.origin, grown->geometry.origin);
     grown->view = view_moved(&whole->view, moved);
     return status;

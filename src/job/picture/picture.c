@@ -77,6 +77,7 @@ static const Option rows[] = {
      .group = GROUP_VESSELS,
      .when = WHEN(TRIANGLES) | WHEN(SURFACES),
      .help = "mesh only: shrink unconnected vessels that overlap until they no longer touch"},
+    {SMOOTH_OPTION(PictureOptions, smooth), .when = WHEN(VESSELS)},
     {.name = "prune-radius",
      SETS(NUMBER, PictureOptions, prune_radius_mm),
      .range = &prune_range,
@@ -209,6 +210,7 @@ static const Option rows[] = {
      SETS(LOOKUP, PictureOptions, look),
      .group = GROUP_LIGHT,
      .list = "looks",
+     .otherwise = "cast; with --color-by data, whose colors are those of the legend",
      .when = WHEN(VESSELS),
      .help = "colors, finish and lights: the name of a look, or the path of a file of your own "
              "(with a '/')"},
@@ -257,12 +259,14 @@ static ConditionSet unmet(const void *set, const Parsed *parsed)
            UNLESS(field, FIELD_IDS);
 }
 
-/* Reads the look, and takes from it what no option specifies. A height needs an orthographic
- * picture, so it overrules the look as well. */
+/* Takes from the look what no option specifies. A field has a look of its own, because colors that
+ * mean something must be those of the legend. A height needs an orthographic picture, so it
+ * overrules the look as well. */
 static Status settle(void *set, const Parsed *parsed, Err *err)
 {
     PictureOptions *options = set;
-    (void)parsed;
+    if (options->coloring.field && !options_said(parsed, "look"))
+        options->look = "data";
     TRY(coloring_read_look(options->look, &options->look_file, err));
     const LookOptions *proposed = &options->look_file.options;
     if (!options->has_shadows)
@@ -508,7 +512,29 @@ void picture_tree_release(PictureTree *tree)
 {
     tree_release(&tree->tree);
     tree_release(&tree->whole);
+    smoothtree_release(&tree->smooth);
     free(tree->joined);
+}
+
+Status picture_smooth_tree(PictureTree *of, Err *err)
+{
+    return stage_smooth(&of->tree, &of->smooth, err);
+}
+
+const SmoothTree *picture_pieces(const PictureTree *of)
+{
+    return of->smooth.tree.n ? &of->smooth : NULL;
+}
+
+void picture_say_smooth(const SmoothReport *report, const Talk *talk)
+{
+    if (report->pieces == 0)
+        return;
+    talk_note(talk,
+              "smooth: %zu segments are drawn as %zu pieces, at most %.3g mm (%.3g radii) from the "
+              "straight segments; radii change by at most %.3g %%",
+              report->segments, report->pieces, report->distance_mm, report->distance_radii,
+              100 * report->radius_change);
 }
 
 ColoredTree picture_colored_tree(const PictureTree *tree)
@@ -538,8 +564,8 @@ Status picture_read_source(const PictureOptions *options, const Parsed *parsed,
     TRY(check_camera(options, err));
     TRY(take_look(options, parsed, &made.look, err));
     TRY(picture_read_tree(&options->coloring, options->prune_radius_mm, parsed, &made.of, err));
-    Status status = STATUS_OK;
-    if (options->frame == PICTURE_DOMAIN)
+    Status status = options->smooth ? picture_smooth_tree(&made.of, err) : STATUS_OK;
+    if (status == STATUS_OK && options->frame == PICTURE_DOMAIN)
         status = find_domain(&made.of, &made.domain, err);
     if (status == STATUS_OK)
         *source = made;
@@ -561,7 +587,10 @@ bool picture_is_transparent(const PictureOptions *options)
 ViewParams picture_view_params(const PictureOptions *options, const PictureSource *source)
 {
     ViewParams params = options->stage;
-    params.tree = options->frame == PICTURE_DRAWING ? NULL : &source->of.tree;
+    const SmoothTree *smooth = picture_pieces(&source->of);
+    params.tree = smooth ? &smooth->tree : &source->of.tree;
+    if (options->frame == PICTURE_DRAWING)
+        params.tree = NULL;
     params.domain = options->frame == PICTURE_DOMAIN ? &source->domain : NULL;
     params.transparent = picture_is_transparent(options);
     params.turn_deg = options->turn.at[0];
@@ -579,6 +608,7 @@ Status picture_geometry(const PictureOptions *options, const PictureSource *sour
     const SceneModel model = (SceneModel)options->model;
     Progress progress;
     const GeometryParams params = {.model = model,
+                                   .smooth = picture_pieces(&source->of),
                                    .joints = (JointForm)options->joints,
                                    .implied_ends = options->by_tiles && !is_xray(&source->look),
                                    .graph =
@@ -664,6 +694,7 @@ Status picture_scene_of(const PictureOptions *options, const PictureSource *sour
                         Err *err)
 {
     PictureReport told = {.pruned = source->of.pruned,
+                          .smooth = source->of.smooth.report,
                           .joints = (JointForm)options->joints,
                           .shadows = options->stage.shadows};
     Scene made = {0};
@@ -671,7 +702,8 @@ Status picture_scene_of(const PictureOptions *options, const PictureSource *sour
     if (status == STATUS_OK)
         status = check_distance(&made, err);
     if (status == STATUS_OK && anatomy)
-        status = stage_anatomy(&source->of.tree, made.geometry.origin, anatomy, err);
+        status = stage_anatomy(&source->of.tree, picture_pieces(&source->of), made.geometry.origin,
+                               anatomy, err);
     if (status != STATUS_OK) {
         scene_release(&made);
         return status;
@@ -684,6 +716,7 @@ Status picture_scene_of(const PictureOptions *options, const PictureSource *sour
 Status picture_say(const Scene *scene, const PictureReport *report, const Talk *talk, Err *err)
 {
     say_limits(scene, report->shadows, talk);
+    picture_say_smooth(&report->smooth, talk);
     TRY(say_losses(&scene->geometry, report, talk, err));
     coloring_say(&scene->appearance, talk);
     return STATUS_OK;
@@ -693,7 +726,8 @@ Status picture_say_effects(const PictureOptions *options, const char *what, cons
                            Err *err)
 {
     Text names = TEXT_INIT;
-    const Effects effects = look_effects(&options->look_file, 1, 1);
+    Effects effects = look_effects(&options->look_file, 1, 1);
+    effects.grade.present &= options->omits_effects; /* a scene has it */
     if (effects.xray.per_mm > 0)
         return err_set(err, STATUS_USAGE, "--look %s: POV-Ray cannot draw an x-ray; use render",
                        options->look);

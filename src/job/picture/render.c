@@ -182,6 +182,14 @@ Status rendering_describe(Rendering *r, Err *err)
     return picture_say(&r->scene, &r->report, r->parsed->common.talk, err);
 }
 
+static json_t *smooth_json(const SmoothReport *smooth)
+{
+    return json_pack("{s:I, s:I, s:f, s:f, s:f, s:f}", "segments", (json_int_t)smooth->segments,
+                     "pieces", (json_int_t)smooth->pieces, "distance_mm", smooth->distance_mm,
+                     "distance_radii", smooth->distance_radii, "radius_change",
+                     smooth->radius_change, "tolerance", smooth->tolerance);
+}
+
 json_t *rendering_json(const Rendering *r)
 {
     const Scene *scene = &r->scene;
@@ -203,6 +211,8 @@ json_t *rendering_json(const Rendering *r)
         };
         report = json_with_members(report, of_joints, sizeof of_joints / sizeof *of_joints);
     }
+    if (r->report.smooth.pieces)
+        report = json_with(report, "smooth", smooth_json(&r->report.smooth));
     if (scene->appearance.meaning)
         report = json_with(report, "color", coloring_json(&scene->appearance));
     return report;

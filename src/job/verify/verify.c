@@ -112,7 +112,7 @@ static Status verify(Verification *v, VerifyFolder *folder, Parsed *parsed, Err 
     TRY(picture_scene(&all_moments, parsed, &v->scene, &made, err));
     TRY(picture_check_ids(&v->scene.geometry, v->tree, err));
     TRY(picture_say(&v->scene, &made, parsed->common.talk, err));
-    TRY(picture_say_effects(picture, "both pictures omit them", parsed->common.talk, err));
+    TRY(picture_say_effects(&all_moments, "both pictures omit them", parsed->common.talk, err));
     if (!picture->stage.has_location)
         move_off_ties(&v->scene.view.camera);
     v->has_alpha = v->scene.view.transparent;
