@@ -32,7 +32,7 @@ typedef struct Witness {
 /* Compares A, B and the witness, in this order.
  *
  * depth_step_mm   smallest difference of two stored depths, mm.
- * witness         name, version and seconds are set by the caller; release it with witness_release.
+ * witness         version and seconds are set by the caller; release it with witness_release.
  * Errors          STATUS_INPUT if sizes differ; STATUS_MEMORY. */
 MUST_CHECK Status witness_compare(const Testimony three[3], double depth_step_mm, Witness *witness,
                                   Err *err);
