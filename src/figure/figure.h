@@ -212,18 +212,22 @@ void figure_set_halo(FigurePage *page, size_t item, double width_mm, FigureColor
 
 typedef struct FigureLegend {
     const ColorScale *scale;
-    ScaleOutside outside; /* numbers of visible values that are outside the range */
-    bool integers;        /* all values are integers, so ticks are integers as well */
-    const char *title;    /* UTF-8; a quantity with its unit in parentheses, if it has one */
-    bool horizontal;      /* the bar runs from left to right; false: from bottom to top */
-    double length_mm;     /* of the bar */
+    ScaleOutside outside;   /* numbers of visible values that are outside the range */
+    bool integers;          /* all values are integers, so ticks are integers as well */
+    const double *swatches; /* values that have a swatch each instead of a bar; borrowed */
+    int n_swatches;         /* 0: there is a bar */
+    const char *title;      /* UTF-8; a quantity with its unit in parentheses, if it has one */
+    bool horizontal;        /* the bar runs from left to right; false: from bottom to top */
+    double length_mm;       /* of the bar */
     double size_pt;
     FigureColor ink;
 } FigureLegend;
 
 /* Appends a color bar with title, ticks at round numbers, pointed ends where values are outside
- * the range, and a swatch for vessels without a value. If integers select separate colors, appends
- * one swatch per color instead. The position is arbitrary: use figure_bounds and figure_move. */
+ * the range, and a swatch for vessels without a value. A logarithmic bar has numbers at its ends
+ * and minor ticks. Large and small numbers have a common power of ten. If integers select separate
+ * colors, appends one swatch per color instead. The position is arbitrary: use figure_bounds and
+ * figure_move. */
 void figure_add_legend(FigurePage *page, const FigureLegend *legend);
 
 /* Appends a scale bar of this length, with its label above the middle, at an arbitrary position. */

@@ -218,8 +218,8 @@ test_classes_may_have_bounds() {
     refuses '--classes: bounds ascend, but 5 comes before 2' --color-by radius --classes 1,5,2
     refuses "--classes: '2.5' is not a whole number from 1 to 256, nor a list of bounds" \
         --color-by radius --classes 2.5
-    refuses '--log has no effect on classes that have bounds' --color-by radius --classes 1,2 --log
-    refuses '--range has no effect on classes that have bounds' --color-by radius --classes 1,2 --range 1,2
+    refuses '--log has no effect if --classes gives bounds' --color-by radius --classes 1,2 --log
+    refuses '--range has no effect if --classes gives bounds' --color-by radius --classes 1,2 --range 1,2
 }
 
 # Of 1.37, 2.74, 5.48, 10.96 and 21.92, 25 % are below 2.74, 75 % below 10.96.
@@ -246,7 +246,7 @@ test_a_pruned_picture_may_keep_the_range_of_the_tree() {
     run_ok corcast render --exact tree.swc --input-unit mm --size 60x80 --color-by radius --prune-radius 5 -o p.ppm
     grep -qx 'corcast: radius 5.48 to 21.9 mm, of the 3 segments drawn' stderr ||
         fail "expected the range of what is drawn$(said)"
-    refuses '--range-of has no effect on a --range of two values' --color-by radius --range-of tree --range 1,2
+    refuses '--range-of has no effect if --range gives two values' --color-by radius --range-of tree --range 1,2
 }
 
 test_values_outside_the_range_and_segments_without_one_have_their_colors() {

@@ -132,6 +132,42 @@ test_nine_tenths_of_a_vessel_have_the_color_of_the_legend() {
     done
 }
 
+# shows OPTION... -- LINE...: the texts of the page, from the top.
+shows() {
+    local options=()
+    while [ "$1" != -- ]; do
+        options+=("$1")
+        shift
+    done
+    shift
+    run_ok corcast render tree.swc --quiet --legend "${options[@]}" -o page.svg
+    xmllint --xpath '//*[local-name()="text"]/text()' page.svg | tr '\n' ' ' >texts
+    [ "$(cat texts)" = "$* " ] || fail "expected the texts '$*', got '$(cat texts)', from: $command_line"
+}
+
+test_few_whole_numbers_have_swatches_and_logarithms_have_their_ends() {
+    run_ok corcast grow --domain ball:30 --terminals 300 --seed 4 --quiet -o tree.swc
+    shows --size 60mm --color-by strahler -- 1 2 3 4 5 6 Strahler order
+    [ "$(grep -c linearGradient page.svg)" = 0 ] || fail "expected no bar of orders"
+    shows --size 60mm --color-by strahler --classes 3 -- 1.00 2.67 4.33 6.00 Strahler order
+    shows --size 60mm --color-by level --range 0,30 -- 0 10 20 30 bifurcation level
+    shows --size 60mm --color-by flow --log -- 1.67 10 100 500 'flow (ml/min)'
+}
+
+test_the_legend_of_an_upright_picture_is_below_it() {
+    local size
+    grow
+    for size in 45mmx60mm 60mmx45mm 60mm; do
+        run_ok corcast render tree.swc --quiet --legend --color-by strahler --size $size -o auto.png
+        run_ok corcast render tree.swc --quiet --legend --color-by strahler --size $size \
+            --legend-at "$([ $size = 45mmx60mm ] && echo bottom || echo right)" -o side.png
+        cmp <(pngtopnm auto.png) <(pngtopnm side.png) || fail "expected another side at $size"
+    done
+    run_ok corcast render tree.swc --quiet --legend --color-by strahler --size 45mmx60mm --legend-at right -o right.png
+    run_ok corcast render tree.swc --quiet --legend --color-by strahler --size 45mmx60mm -o auto.png
+    ! cmp -s <(pngtopnm auto.png) <(pngtopnm right.png) || fail "expected --legend-at to be heeded"
+}
+
 test_a_scale_bar_is_as_long_as_it_says() {
     grow
     run_ok corcast render tree.swc --quiet --size 600x500 --height 100 --scale-bar 25mm --background white -o bar.png
@@ -203,7 +239,7 @@ test_what_cannot_be_drawn_is_refused_in_one_sentence_and_nothing_is_written() {
     refused 'needs --legend, --scale-bar or --letter' --text-size 6 -o x.png
     refused '\-\-legend needs .* mm, but the picture has 9 mm' --color-by flow --legend --size 9mm -o x.png
     refused '\.pfm stores measured values' --scale-bar 10 -o x.pfm
-    refused 'a page holds one of 8 bits' --bits 16 -o x.svg
+    refused 'stores its image with 8 bits' --bits 16 -o x.svg
     expect_only tree.swc
 }
 

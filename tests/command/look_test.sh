@@ -141,10 +141,10 @@ test_an_xray_shows_lengths_alone() {
     expect_sentence '--color-by has no effect: --look xray uses two fixed colors'
     run corcast render tree.swc --look xray --ao 3 -o no.png
     expect_status 2
-    expect_sentence '^corcast render: --ao is of lit walls, and an x-ray has none$'
+    expect_sentence '^corcast render: --ao has no effect on an x-ray, which has no light$'
     run corcast render tree.swc --look xray --shadows -o no.png
     expect_status 2
-    expect_sentence '^corcast render: --shadows are of lights, and an x-ray has none$'
+    expect_sentence '^corcast render: --shadows has no effect on an x-ray, which has no light$'
     run corcast scene tree.swc --quiet --look xray -o no.pov
     expect_status 2
     expect_sentence '--look xray: POV-Ray cannot draw an x-ray; use render'

@@ -278,4 +278,19 @@ test_former_names_of_options_work_and_are_not_in_the_help() {
     done
 }
 
+test_a_mistyped_extension_of_an_output_is_corrected() {
+    local command written meant
+    while read -r command written meant; do
+        run corcast "$command" "$DATA/bifurcation.swc" -o "x.$written"
+        expect_status 2
+        expect_sentence "did you mean \\.$meant\\?\$"
+    done <<<'render pgn png
+export stll stl
+scene pvo pov
+diagram svgg svg'
+    run corcast convert "$DATA/bifurcation.swc" x.vtpp
+    expect_status 2
+    expect_sentence 'did you mean \.vtp\?$'
+}
+
 run_tests "$@"

@@ -278,6 +278,8 @@ async function checkContrast() {
     for (let x = 2; x < expected.width - 2; x++) if (lonelyId(ids, x, y, 1) > 0) inside.push([x, y]);
   await browser.send("Emulation.setEmulatedMedia", { features: [{ name: "prefers-color-scheme", value: "dark" }] });
   await browser.open(expected.page, "field=wss&shade=off&panels=off&" + expected.address);
+  // A computer with much to do shows the page late.
+  for (let patience = 40; patience > 0 && luminance(at(await picture(), 2, 2)) > 0.5; patience--) await settled();
   const names = await evaluate("[...document.getElementById('map').options].filter((o) => !o.disabled).map((o) => o.value)");
   for (const name of names) {
     await evaluate(`location.hash = ${JSON.stringify("#field=wss&shade=off&panels=off&map=" + name + "&" + expected.address)}`);

@@ -424,7 +424,7 @@ typedef struct Tick {
     double along_mm;
 } Tick;
 
-/* Each tick is a line followed by its label. */
+/* Each tick is a line followed by its label. Minor ticks have none; the title is q. */
 static void expect_labels(const ColorScale *scale, bool across, const Tick *expected, size_t n)
 {
     const FigureLegend legend = {
@@ -434,7 +434,8 @@ static void expect_labels(const ColorScale *scale, bool across, const Tick *expe
     figure_init(&page, 80, 60, 300, fonts);
     figure_add_legend(&page, &legend);
     for (size_t i = 0; i + 1 < page.n; i++) {
-        if (page.items[i].kind != FIGURE_LINE)
+        if (page.items[i].kind != FIGURE_LINE || page.items[i + 1].kind != FIGURE_TEXT ||
+            page.items[i + 1].text[0] == 'q')
             continue;
         const FigurePoint *at = page.items[i].at;
         assert_true(found < n);
@@ -465,8 +466,11 @@ static void a_bar_has_the_right_numbers_at_the_right_places(void **state)
 {
     (void)state;
     const ColorScale linear = plain_scale(-1, 2, false, 1), log = plain_scale(1, 1000, true, 1),
-                     near = plain_scale(2, 50, true, 1);
-    const double decade = 30 / log10(25);
+                     near = plain_scale(2, 50, true, 1), ends = plain_scale(1.667, 500, true, 1),
+                     wide = plain_scale(1e-8, 1e8, true, 1),
+                     large = plain_scale(-2e9, 6e9, false, 1),
+                     small = plain_scale(0, 4e-6, false, 1);
+    const double decade = 30 / log10(25), decades = 30 / log10(500 / 1.667);
     EXPECT_LABELS(linear,
                   {"\xE2\x88\x92"
                    "1",
@@ -475,6 +479,53 @@ static void a_bar_has_the_right_numbers_at_the_right_places(void **state)
     EXPECT_LABELS(log, {"1", 0}, {"10", 10}, {"100", 20}, {"1000", 30});
     EXPECT_LABELS(near, {"2", 0}, {"5", decade * log10(2.5)}, {"10", decade * log10(5)},
                   {"20", decade}, {"50", 30});
+    EXPECT_LABELS(ends, {"1.67", 0}, {"10", decades * log10(10 / 1.667)},
+                  {"100", decades * log10(100 / 1.667)}, {"500", 30});
+    EXPECT_LABELS(wide, {"10⁻⁸", 0}, {"10⁻⁴", 7.5}, {"1", 15}, {"10⁴", 22.5}, {"10⁸", 30});
+    EXPECT_LABELS(large, {"\u22122", 0}, {"0", 7.5}, {"2", 15}, {"4", 22.5}, {"6", 30});
+    EXPECT_LABELS(small, {"0", 0}, {"1", 7.5}, {"2", 15}, {"3", 22.5}, {"4", 30});
+}
+
+/* A legend of a scale has so many ticks, and one text `text`. */
+static void expect_items(const ColorScale *scale, size_t lines, const char *text)
+{
+    FigureLegend legend = {.scale = scale, .title = "q", .length_mm = 30, .size_pt = 7};
+    FigurePage page;
+    size_t found = 0;
+    figure_init(&page, 80, 60, 300, fonts);
+    figure_add_legend(&page, &legend);
+    for (size_t i = 0; i < page.n; i++)
+        found += page.items[i].kind == FIGURE_TEXT && strcmp(page.items[i].text, text) == 0;
+    assert_int_equal(found, 1);
+    figure_release(&page);
+    assert_int_equal(count_items(&legend, FIGURE_LINE), lines);
+}
+
+static void bars_have_minor_ticks_and_a_common_power_of_ten(void **state)
+{
+    (void)state;
+    const ColorScale log = plain_scale(1.667, 500, true, 1),
+                     large = plain_scale(-2e9, 6e9, false, 1),
+                     small = plain_scale(0, 4e-6, false, 1);
+    expect_items(&log, 4 + 8 + 9 + 4, "500"); /* minor ticks: 2 .. 9, 10 .. 90, 100 .. 400 */
+    expect_items(&large, 5, "\u00d710\u2079");
+    expect_items(&small, 5, "\u00d710\u207b\u2076");
+}
+
+static void listed_values_have_a_swatch_each(void **state)
+{
+    static const double values[] = {1, 2, 5};
+    const ColorScale scale = plain_scale(1, 5, false, 1);
+    const FigureLegend legend = {.scale = &scale,
+                                 .swatches = values,
+                                 .n_swatches = 3,
+                                 .title = "q",
+                                 .length_mm = 30,
+                                 .size_pt = 7};
+    (void)state;
+    assert_int_equal(count_items(&legend, FIGURE_RAMP), 0);
+    assert_int_equal(count_items(&legend, FIGURE_SHAPE), 3);
+    assert_int_equal(count_items(&legend, FIGURE_TEXT), 4);
 }
 
 static void classes_have_the_right_numbers_between_them(void **state)
@@ -641,6 +692,8 @@ int main(void)
         cmocka_unit_test(a_legend_has_points_and_a_swatch_only_for_values_that_need_them),
         cmocka_unit_test(a_legend_of_classes_has_a_box_each),
         cmocka_unit_test(a_bar_has_the_right_numbers_at_the_right_places),
+        cmocka_unit_test(bars_have_minor_ticks_and_a_common_power_of_ten),
+        cmocka_unit_test(listed_values_have_a_swatch_each),
         cmocka_unit_test(classes_have_the_right_numbers_between_them),
         cmocka_unit_test(what_is_outside_has_its_color_at_its_end),
         cmocka_unit_test(swatches_have_the_colors_of_their_numbers),

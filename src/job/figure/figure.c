@@ -461,9 +461,10 @@ static Status check_output(const FigureOptions *options, Err *err)
                                         "tiff", "jpg", "jpeg", NULL};
     if (is_one_of(file_extension(options->output), known))
         return STATUS_OK;
-    return err_set(err, STATUS_USAGE,
-                   "-o: '%s' does not end in .pdf, .eps, .svg, .png, .tif or .jpg",
-                   options->output);
+    (void)err_set(err, STATUS_USAGE,
+                  "-o: '%s' does not end in .pdf, .eps, .svg, .png, .tif or .jpg", options->output);
+    suggestion_add_extension(file_extension(options->output), err);
+    return STATUS_USAGE;
 }
 
 static Status make_figure(Figure *figure, const char *recipe, Err *err)

@@ -259,9 +259,9 @@ static ConditionSet unmet(const void *set, const Parsed *parsed)
            UNLESS(field, FIELD_IDS);
 }
 
-/* Takes from the look what no option specifies. A field has a look of its own, because colors that
- * mean something must be those of the legend. A height needs an orthographic picture, so it
- * overrules the look as well. */
+/* Reads the look, and takes from it what no option specifies. A height needs an orthographic
+ * picture, so it overrules the look as well. Colors that mean something must be those of the
+ * legend, so a field has a look of its own. */
 static Status settle(void *set, const Parsed *parsed, Err *err)
 {
     PictureOptions *options = set;
