@@ -383,6 +383,7 @@ void figure_add_legend(FigurePage *page, const FigureLegend *legend)
         put_ramp(&layout);
     put_none(&layout);
     put_title(&layout, first);
+    figure_mark_solid(page, first);
 }
 
 void figure_add_scale_bar(FigurePage *page, double length_mm, const char *label, double size_pt,
@@ -395,6 +396,8 @@ void figure_add_scale_bar(FigurePage *page, double length_mm, const char *label,
                              .size_pt = size_pt,
                              .align = ALIGN_CENTER,
                              .color = ink};
+    const size_t first = page->n;
     figure_add_box(page, (FigureBox){0, 0, length_mm, thick}, ink);
     figure_add_text(page, &text);
+    figure_mark_solid(page, first);
 }

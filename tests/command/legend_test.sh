@@ -28,6 +28,15 @@ test_a_page_has_searchable_text_embedded_fonts_and_the_picture_at_its_resolution
     grep -q 'Subject: .*corcast render tree.swc' info.txt || fail "expected the command, got $(cat info.txt)"
 }
 
+test_a_title_has_italics_and_a_subscript() {
+    grow
+    run_ok corcast render tree.swc --size 61mmx47mm --color-by wss --legend --legend-title '*τ*_{w} (Pa)' --quiet -o w.pdf
+    pdftotext w.pdf w.txt
+    grep -qF 'τw (Pa)' w.txt || fail "expected the title, got $(cat w.txt)"
+    pdffonts w.pdf >fonts.txt
+    grep -q '+LiberationSans-Italic ' fonts.txt || fail "expected italics, got $(cat fonts.txt)"
+}
+
 test_an_svg_is_sound_and_its_text_is_text() {
     grow
     # shellcheck disable=SC2086
@@ -170,6 +179,50 @@ test_a_scale_bar_is_as_long_as_it_says() {
     [ "$longest" = 125 ] || fail "expected a bar of 125 pixels, got $longest"
 }
 
+# corner_of SVG: the corner of a page of 60 x 60 mm that its text "5 mm" is in.
+corner_of() {
+    sed -n '/aria-hidden/d; s/^<text x="\([0-9.]*\)" y="\([0-9.]*\)".*>5 mm<.*/\1 \2/p' "$1" |
+        awk '{ print ($2 > 30 ? "bottom" : "top") "-" ($1 > 30 ? "right" : "left") }'
+}
+
+test_a_scale_bar_is_in_the_emptiest_corner_or_where_it_is_told() {
+    local corner
+    printf '1 1 0 0 0 2 -1\n2 1 40 40 0 2 1\n' >up.swc
+    printf '1 1 0 40 0 2 -1\n2 1 40 0 0 2 1\n' >down.swc
+    for model in rounded cylinders isosurface; do
+        run_ok corcast render up.swc --quiet --model $model --size 60mm --scale-bar 5 -o up.svg
+        [ "$(corner_of up.svg)" = bottom-right ] || fail "$model: expected bottom-right, got $(corner_of up.svg)"
+    done
+    run_ok corcast render down.swc --quiet --size 60mm --scale-bar 5 -o down.svg
+    [ "$(corner_of down.svg)" = bottom-left ] || fail "expected bottom-left, got $(corner_of down.svg)"
+    for corner in bottom-left bottom-right top-left top-right; do
+        run_ok corcast render up.swc --quiet --size 60mm --scale-bar 5 --scale-bar-at $corner -o at.svg
+        [ "$(corner_of at.svg)" = $corner ] || fail "expected $corner, got $(corner_of at.svg)"
+    done
+    ! grep -q aria-hidden down.svg || fail "expected no halo where there is no vessel"
+}
+
+# The vessel fills the picture, so that white is the halo's alone: around bar and text, in all outputs.
+test_what_lies_on_vessels_has_a_halo() {
+    local white
+    printf '1 1 0 0 0 90 -1\n2 1 40 40 0 90 1\n' >wide.swc
+    for form in png pdf svg; do
+        run_ok corcast render wide.swc --quiet --look data --background white --height 20 --size 30mm \
+            --scale-bar 5 --letter a --dpi 150 -o wide.$form
+    done
+    pdftoppm -r 150 wide.pdf page
+    rsvg-convert -d 150 -p 150 wide.svg | pngtopnm >svg.ppm
+    pngtopnm wide.png >png.ppm
+    for picture in page-1 svg png; do
+        white=$(pnmtoplainpnm $picture.ppm | tail -n +4 | tr -s ' \n' '\n\n' |
+            awk 'NF { n++; low = n % 3 == 1 || $1 < low ? $1 : low; if (n % 3 == 0 && low > 250) w++ } END { print w + 0 }')
+        # The bar's frame has 54 x 2 x 2 pixels, the letters a little less.
+        [ "$white" -gt 200 ] && [ "$white" -lt 900 ] || fail "$picture: $white white pixels"
+    done
+    pdftotext wide.pdf wide.txt
+    [ "$(grep -c '5 mm' wide.txt)" = 1 ] || fail "expected the label once, got $(cat wide.txt)"
+}
+
 test_what_cannot_be_drawn_is_refused_in_one_sentence_and_nothing_is_written() {
     grow
     refused() {
@@ -182,6 +235,7 @@ test_what_cannot_be_drawn_is_refused_in_one_sentence_and_nothing_is_written() {
     refused 'scale-bar.*0.*not a number from' --scale-bar 0 -o x.png
     refused '700 mm is longer than the width of the picture' --scale-bar 700 -o x.png
     refused '\-\-legend-at needs --legend' --legend-at bottom -o x.png
+    refused '\-\-scale-bar-at needs --scale-bar' --scale-bar-at top-left -o x.png
     refused 'needs --legend, --scale-bar or --letter' --text-size 6 -o x.png
     refused '\-\-legend needs .* mm, but the picture has 9 mm' --color-by flow --legend --size 9mm -o x.png
     refused '\.pfm stores measured values' --scale-bar 10 -o x.pfm

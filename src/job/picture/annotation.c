@@ -1,6 +1,6 @@
 /* The legend stands at the right of the picture or below it, and a camera that frames the tree
- * leaves that room free; scale bar and letter stand in corners, which trees hardly ever fill. All
- * distances follow from the size of the text. */
+ * leaves that room free. The letter stands in the upper left corner, where publishers want it, and
+ * the scale bar in the emptiest corner. All distances follow from the size of the text. */
 #include "job/picture/annotation.h"
 
 #include "derive/derive.h"
@@ -30,7 +30,8 @@ static const Option legend_rows[] = {
      .argument = "TEXT",
      .otherwise = "name and unit of the field",
      .needs = "legend",
-     .help = "text above the legend"},
+     .help = "with --legend on: text above the legend; *r* is italic, _{w} a subscript, ^{-3} a "
+             "superscript"},
     {.name = "text-size",
      SETS(NUMBER, Annotation, text_pt),
      FROM_TO(1, 1000),
@@ -52,6 +53,13 @@ static const Option rows[] = {
      .otherwise = "",
      .help =
          "draw a scale bar that represents this length of the tree; orthographic projection only"},
+    {.name = "scale-bar-at",
+     SETS(CHOICE, Annotation, scale_bar_at),
+     .choices = corner_names,
+     .group = GROUP_PAGE,
+     .needs = "scale-bar",
+     .help =
+         "corner of the scale bar; emptiest selects the corner where it covers the least vessels"},
     {.name = "letter",
      SETS(TEXT, Annotation, letter),
      .group = GROUP_PAGE,
@@ -324,9 +332,8 @@ static Status put_scale_bar(const Annotation *annotation, const Scene *scene, Fi
                              annotation->text_pt, annotation_ink(scene->view.background));
     text_release(&label);
     TRY(status);
-    FigureBox box = figure_bounds(page, first);
-    figure_move(page, first, where.left + gap - box.left, where.bottom - gap - box.bottom);
-    return STATUS_OK;
+    const PlacedPicture picture = {scene, where};
+    return placing_move(page, first, &picture, annotation->scale_bar_at, gap, err);
 }
 
 static void put_letter(const Annotation *annotation, const Scene *scene, FigureBox where,
@@ -342,15 +349,24 @@ static void put_letter(const Annotation *annotation, const Scene *scene, FigureB
     figure_add_text(page, &letter);
 }
 
+double annotation_halo_width(double text_pt)
+{
+    return 0.12 * text_pt * MM_PER_POINT;
+}
+
 Status annotation_put(const Annotation *annotation, const Scene *scene, FigureBox where,
                       FigurePage *page, Err *err)
 {
+    const size_t first = page->n;
+    const PlacedPicture picture = {scene, where};
     if (annotation->legend)
         TRY(annotation_put_legend(annotation, &scene->appearance,
                                   annotation_ink(scene->view.background), where, page, err));
-    if (annotation->has_scale_bar)
-        TRY(put_scale_bar(annotation, scene, where, page, err));
     if (annotation->letter)
         put_letter(annotation, scene, where, page);
-    return figure_check(page, err);
+    if (annotation->has_scale_bar)
+        TRY(put_scale_bar(annotation, scene, where, page, err));
+    TRY(figure_check(page, err));
+    return placing_add_halos(page, first, &picture, annotation_halo_width(annotation->text_pt),
+                             err);
 }

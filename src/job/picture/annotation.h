@@ -12,6 +12,7 @@
 
 #include "figure/figure.h"
 #include "job/picture/picture.h"
+#include "job/picture/placing.h"
 #include "options/options.h"
 
 /* The side of the picture on which the legend is drawn. */
@@ -27,6 +28,7 @@ typedef struct Annotation {
     const char *letter;  /* NULL: no letter */
     double scale_bar_mm; /* length in the tree that the scale bar stands for */
     bool has_scale_bar;  /* a scale bar is drawn */
+    Corner scale_bar_at; /* corner of the picture that the scale bar is in */
     double text_pt;      /* font size of legend and scale bar, points */
 } Annotation;
 
@@ -78,13 +80,17 @@ MUST_CHECK Status annotation_put_legend(const Annotation *annotation, const Appe
                                         FigureColor ink, FigureBox where, FigurePage *page,
                                         Err *err);
 
-/* Appends legend, scale bar and letter to a page.
+/* Appends legend, scale bar and letter to a page. What lies on vessels gets a halo of the
+ * background's color.
  *
  * where   the rectangle of the page that the picture of `scene` covers.
  * Errors  STATUS_USAGE if the scale bar is longer than the width of the picture; the errors of
  *         figure_check; STATUS_MEMORY. */
 MUST_CHECK Status annotation_put(const Annotation *annotation, const Scene *scene, FigureBox where,
                                  FigurePage *page, Err *err);
+
+/* Returns the width in mm of halos around text of this size. */
+double annotation_halo_width(double text_pt);
 
 /* Converts a linear RGB color to the color type of pages. */
 FigureColor annotation_color(Rgb linear);
