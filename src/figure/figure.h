@@ -193,6 +193,10 @@ MUST_CHECK Status figure_check(const FigurePage *page, Err *err);
  * none. */
 void figure_put_missing(const FigurePage *page, bool boxed, Text *out);
 
+/* Appends a sentence about the first text with a group that is not closed. Appends nothing if there
+ * is none. */
+void figure_put_unclosed(const FigurePage *page, Text *out);
+
 /* Appends a sentence that lists the texts that overlap each other, a scale bar or a legend, or that
  * extend beyond the page. Appends nothing if there are none. Cost: O(n^2) for n texts. */
 void figure_put_collisions(const FigurePage *page, Text *out);

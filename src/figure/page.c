@@ -253,6 +253,15 @@ void figure_put_missing(const FigurePage *page, bool boxed, Text *out)
     text_puts(out, boxed ? "; a box is drawn in place of each" : "; DejaVu Sans is used for these");
 }
 
+void figure_put_unclosed(const FigurePage *page, Text *out)
+{
+    if (!page->unclosed)
+        return;
+    text_puts(out, "the text '");
+    text_put_start(out, page->unclosed, 60);
+    text_puts(out, "' has a group _{ or ^{ without }: the group ends with the text");
+}
+
 FigureBox figure_bounds(const FigurePage *page, size_t first)
 {
     FigureBox bounds = {INFINITY, INFINITY, -INFINITY, -INFINITY};
