@@ -100,7 +100,7 @@ test_colors_run_with_the_radius_from_the_color_of_the_tips() {
 # What POV-Ray does not draw is left out, and said; what was asked for by an option is refused.
 test_povray_does_without_the_occlusion_of_a_look() {
     make_crossing
-    run_ok corcast scene tree.swc --input-unit mm --look atlas -o tree.pov
+    run_ok corcast scene tree.swc --input-unit mm --smooth off --look atlas -o tree.pov
     expect_sentence '--look atlas: only corcast draws ambient occlusion; the scene omits them$'
     grep -q '^// Not in this scene, .*: ambient occlusion$' tree.pov || fail "expected the header to say what is not in the scene"
     grep -q 'Fade_Farthest = 0.6' tree.pov || fail "expected the fade of the look"
