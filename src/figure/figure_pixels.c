@@ -3,6 +3,7 @@
  * rows are. Boxes and lines along the pixel grid are rounded to whole pixels, so that they are
  * sharp. A ramp has the color at the centre of each pixel. Each part of a polyline is a polygon of
  * its own. */
+#include "figure/artwork.h"
 #include "figure/fonts.h"
 #include "figure/items.h"
 
@@ -282,6 +283,24 @@ static Status draw_picture(PixelRows *target, const FigureItem *item, Err *err)
     return STATUS_OK;
 }
 
+/* Snaps the artwork to pixels, and draws them as a picture. */
+static Status draw_artwork(PixelRows *target, const FigureItem *item, Err *err)
+{
+    const FigureBox *box = &item->box;
+    const int left = figure_pixels(target->page, box->left);
+    const int top = figure_pixels(target->page, box->top);
+    const int width = figure_pixels(target->page, box->right) - left;
+    const int height = figure_pixels(target->page, box->bottom) - top;
+    Picture picture;
+    if (width < 1 || height < 1)
+        return STATUS_OK;
+    TRY(artwork_rasterize(item->artwork, width, height, target->page->background, &picture, err));
+    const FigureItem pixels = {.picture = &picture, .column = left, .row = top};
+    Status status = draw_picture(target, &pixels, err);
+    picture_release(&picture);
+    return status;
+}
+
 static Status draw_bars(PixelRows *target, const FigureItem *item, Err *err)
 {
     for (size_t i = 0; i < item->bars->n; i++) {
@@ -303,9 +322,9 @@ static bool meets(const PixelRows *target, const FigureItem *item)
 static Status draw_item(void *context, const FigureItem *item, Err *err)
 {
     static Status (*const draw[FIGURE_KINDS])(PixelRows *, const FigureItem *, Err *) = {
-        [FIGURE_PICTURE] = draw_picture, [FIGURE_SHAPE] = draw_shape, [FIGURE_LINE] = draw_line,
-        [FIGURE_RAMP] = draw_ramp,       [FIGURE_TEXT] = draw_text,   [FIGURE_BARS] = draw_bars,
-        [FIGURE_STROKES] = draw_strokes};
+        [FIGURE_PICTURE] = draw_picture, [FIGURE_SHAPE] = draw_shape,    [FIGURE_LINE] = draw_line,
+        [FIGURE_RAMP] = draw_ramp,       [FIGURE_TEXT] = draw_text,      [FIGURE_BARS] = draw_bars,
+        [FIGURE_STROKES] = draw_strokes, [FIGURE_ARTWORK] = draw_artwork};
     PixelRows *target = context;
     if (!meets(target, item))
         return STATUS_OK;
@@ -318,7 +337,7 @@ static Status draw_item(void *context, const FigureItem *item, Err *err)
 Status figure_draw(const FigurePage *page, int first, Picture *rows, Err *err)
 {
     static FigurePut *const put[FIGURE_KINDS] = {draw_item, draw_item, draw_item, draw_item,
-                                                 draw_item, draw_item, draw_item};
+                                                 draw_item, draw_item, draw_item, draw_item};
     PixelRows target = {.page = page, .rows = rows, .first = first};
     return figure_put_items(page, put, &target, err);
 }

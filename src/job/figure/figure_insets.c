@@ -25,6 +25,11 @@ static Status check_inset(const FigurePlan *plan, const Section *section, Err *e
     if (!inset->of || find_section(plan, SECTION_PANEL, inset->of) == plan->n)
         return err_set(err, STATUS_USAGE, "[inset %s]: of: %s%s is not the name of a panel",
                        section->name, inset->of ? "" : "nothing", inset->of ? inset->of : "");
+    const Section *panel = plan->sections[find_section(plan, SECTION_PANEL, inset->of)];
+    if (((const PanelOptions *)panel->own.options)->image)
+        return err_set(err, STATUS_USAGE,
+                       "[inset %s]: of: %s shows an image; an inset needs a tree", section->name,
+                       inset->of);
     if (!inset->has_at || !inset->has_place)
         return err_set(
             err, STATUS_USAGE,

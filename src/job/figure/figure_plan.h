@@ -10,7 +10,9 @@
 /* The options that a panel has in addition to the options of `render`. Strings are borrowed from
  * FigurePlan.text, like the strings of the next two structs. */
 typedef struct PanelOptions {
-    const char *tree, *title; /* `tree`: the tree's file; NULL: Section.maker makes the tree */
+    const char *tree, *title; /* `tree`: the tree's file; NULL: Section.maker makes the tree, or the
+                               * panel has an image */
+    const char *image;        /* file of a picture that another program made; NULL: none */
     int span;                 /* number of columns that the panel covers */
     double aspect;            /* width / height of the panel; 0: the aspect of its cell */
 } PanelOptions;
