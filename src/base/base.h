@@ -27,6 +27,7 @@
 #include "base/sort.h"       // IWYU pragma: export
 #include "base/status.h"     // IWYU pragma: export
 #include "base/suggest.h"    // IWYU pragma: export
+#include "base/system.h"     // IWYU pragma: export
 #include "base/text.h"       // IWYU pragma: export
 #include "base/threads.h"    // IWYU pragma: export
 #include "base/units.h"      // IWYU pragma: export

@@ -15,7 +15,7 @@ enum {
     ALL = COLOR | GEOMETRY | IDS
 };
 
-#define SHOWN(in, order, name, of) .table = TABLE_##in, .rank = (order), .words = name, .unit = of
+#define SHOWN(in, order, name, of) .table = TABLE_##in, .rank = (order), .label = name, .unit = of
 /* A rule about the measure itself; one about parts per million of a count; and one whose name ends
  * with a setting. */
 #define JUDGED(by, text, of, place, what)                                                          \

@@ -284,13 +284,44 @@ static Status put_camera(Text *out, void *context, Err *err)
 static void put_effects(Text *text, const EmitParams *params)
 {
     Text names = TEXT_INIT;
-    effects_list(&params->scene->view.effects, params->occlusion, &names);
+    Effects omitted = params->scene->view.effects;
+    omitted.grade.present = false;
+    effects_list(&omitted, params->occlusion, &names);
     if (names.length || names.failed) {
         text_puts(text, "// Not in this scene, but in what corcast render draws: ");
         text_add(text, &names);
         text_puts(text, "\n");
     }
     text_release(&names);
+}
+
+/* The plane of the background lies twice as far away as the farthest vessel. */
+static Status put_graded(Text *out, void *context, Err *err)
+{
+    const PovrayGeometry *geometry = context;
+    const View *view = &geometry->scene->view;
+    Values values = {0};
+    double near_mm, far_mm;
+    if (!view->effects.grade.present)
+        return STATUS_OK;
+    camera_depth_range(&view->camera, geometry->scene->geometry.bounds, &near_mm, &far_mm);
+    put_text(add_value(&values, "corners"), "rgb <%c>", view->effects.grade.corners);
+    add_number(&values, "distance", 2 * far_mm);
+    return values_expand(&values, geometry->params, "povray/graded.inc", out, err);
+}
+
+static Status put_fade(Text *out, void *context, Err *err)
+{
+    const PovrayGeometry *geometry = context;
+    const Fade *fade = &geometry->scene->view.fade;
+    Values values = {0};
+    if (!fade_is_on(fade))
+        return STATUS_OK;
+    add_number(&values, "fade_nearest", fade->nearest);
+    add_number(&values, "fade_farthest", fade->farthest);
+    add_number(&values, "fade_near", fade->near_mm);
+    add_number(&values, "fade_far", fade->far_mm);
+    return values_expand(&values, geometry->params, "povray/fade.inc", out, err);
 }
 
 static Status put_scene(Text *out, PovrayGeometry *geometry, Err *err)
@@ -316,6 +347,8 @@ static Status put_scene(Text *out, PovrayGeometry *geometry, Err *err)
     add_number(&values, "depth_near", near_mm);
     add_number(&values, "depth_far", far_mm);
     add_part(&values, "lights", put_lights, geometry);
+    add_part(&values, "graded", put_graded, geometry);
+    add_part(&values, "fade", put_fade, geometry);
     add_part(&values, "geometry", put_vessels, geometry);
     return values_expand(&values, params, "povray/scene.pov", out, err);
 }

@@ -6,7 +6,6 @@
 #define ZLIB_CONST
 #include "emit/zip.h"
 
-#include "base/system.h"
 #include "emit/record.h"
 #include <stdio.h>
 #include <zlib.h>

@@ -7,7 +7,6 @@
  * that every test of the finished mesh is exact in integers. */
 #include "mesh/assemble.h"
 
-#include "base/system.h"
 #include "mesh/precision.h"
 #include "mesh/regions/nearpairs.h"
 #include <stdlib.h>

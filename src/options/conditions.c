@@ -16,7 +16,7 @@ typedef struct ConditionRow {
 static const ConditionRow rows[] = {
     [WHEN_PRIES] = {.sentence = "is for --viscosity-law pries"},
     [WHEN_CONSTANT_VISCOSITY] = {.sentence = "is for --viscosity-law constant"},
-    [WHEN_MURRAY] = {.sentence = "is for --terminal-flow murray"},
+    [WHEN_MURRAY] = {.sentence = "is for --flow-split murray"},
     [WHEN_USES_FLOW] = {.sentence = "needs --color-by"},
     [WHEN_USES_BLOOD] = {.sentence = "needs --color-by"},
     [WHEN_GROWS_ON] = {.sentence = "needs --from", .groups = GROUP(INPUT)},

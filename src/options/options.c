@@ -17,7 +17,8 @@ static const Option common_options[] = {
      SETS(INPUT, Common, recipe),
      .group = GROUP_RUN,
      .aside = true,
-     .help = "read options from an INI file, one `name = value` per line"},
+     .help = "read options from FILE, one per line, without dashes: `lambda = 1`, `log = on`; "
+             "options on the command line take precedence. --dump-recipe prints such a file"},
     {.name = "dump-recipe",
      SETS(FLAG, Common, dump),
      .group = GROUP_RUN,
@@ -119,13 +120,21 @@ void parsed_give(Parsed *parsed, const Tree *tree, const char *name)
     }
 }
 
+static bool is_text(const char *known, const char *name, size_t length)
+{
+    return known && strlen(known) == length && strncmp(known, name, length) == 0;
+}
+
+bool option_is_named(const Option *option, const char *name, size_t length)
+{
+    return is_text(option->name, name, length) || is_text(option->former, name, length);
+}
+
 static Setting *find(const Parsed *parsed, const char *name, size_t length)
 {
-    for (size_t i = 0; i < parsed->n_settings; i++) {
-        const char *known = parsed->settings[i].option->name;
-        if (strlen(known) == length && strncmp(known, name, length) == 0)
+    for (size_t i = 0; i < parsed->n_settings; i++)
+        if (option_is_named(parsed->settings[i].option, name, length))
             return &parsed->settings[i];
-    }
     return NULL;
 }
 

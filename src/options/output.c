@@ -3,7 +3,6 @@
  * and what does not matter leave no trace; names for people; JSON. */
 #include "options/output.h"
 
-#include "base/system.h"
 #include "options/templates.h"
 
 #include <errno.h>

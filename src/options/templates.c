@@ -2,8 +2,6 @@
  * the library that holds this code is: beside the build folder, or where `make install` puts it. */
 #include "options/templates.h"
 
-#include "base/system.h"
-
 #include <dirent.h>
 #include <errno.h>
 #include <limits.h>
@@ -60,7 +58,8 @@ Status templates_folder(char **folder, Err *err)
     char self[PATH_MAX];
     if (chosen && *chosen)
         return take_chosen(folder, err);
-    for (size_t i = 0; i < sizeof places / sizeof *places && (i > 0 || system_own_file(self, sizeof self)); i++) {
+    for (size_t i = 0;
+         i < sizeof places / sizeof *places && (i > 0 || system_own_file(self, sizeof self)); i++) {
         char *path = NULL;
         cut_components(self, places[i].up);
         TRY(file_join(self, places[i].path, &path, err));

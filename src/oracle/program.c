@@ -17,8 +17,6 @@
  * the program itself. */
 #include "oracle/program.h"
 
-#include "base/system.h"
-
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
@@ -217,7 +215,7 @@ static bool is_done(const Program *program, pid_t child, const Text *printed, co
     if (!program->is_done || !program->is_done(program->context, printed, picture))
         return false;
     return system_program_of(child, path, sizeof path) &&
-           strcmp(file_name(path), program->process) == 0;
+           strcmp(file_name(path), program->executable) == 0;
 }
 
 /* Returns an error for a program that has printed too much, has printed nothing for too long, or
@@ -226,21 +224,22 @@ static Status check_life(const Program *program, const Log *log, Err *err)
 {
     enum { PATIENCE_WITHOUT_PROGRESS = 5 }; /* POV-Ray reports no progress while it parses */
     double now_s = clock_seconds(), patience_s = program->choice.patience_s;
-    const char *patience = program->choice.patience ? program->choice.patience : "patience";
+    const char *patience =
+        program->choice.patience_name ? program->choice.patience_name : "patience";
     if (log->cancelled)
         return err_cancelled(err);
     if (log->bytes > max_output_bytes)
-        return err_set(err, STATUS_TOOL, "%s was ended: it has said more than %.0f MB about %s",
+        return err_set(err, STATUS_TOOL, "%s was ended: it printed more than %.0f MB about %s",
                        program->name, max_output_bytes * 1e-6, program->scene);
     if (patience_s > 0 && now_s - log->heard_s > patience_s)
         return err_set(err, STATUS_TOOL,
-                       "%s was ended: it has said nothing for %g s about %s; "
-                       "%s=SECONDS gives it longer, 0 for ever",
+                       "%s was ended: it printed nothing for %g s about %s; %s=SECONDS sets the "
+                       "limit, 0 removes it",
                        program->name, patience_s, program->scene, patience);
     if (patience_s > 0 && now_s - log->progress_s > PATIENCE_WITHOUT_PROGRESS * patience_s)
         return err_set(err, STATUS_TOOL,
-                       "%s was ended: it has reported no progress for %g s on %s, although it goes "
-                       "on to write; %s=SECONDS gives it %d times as many seconds, 0 for ever",
+                       "%s was ended: it printed, but reported no progress for %g s on %s; "
+                       "%s=SECONDS sets the limit to %d times as many seconds, 0 removes it",
                        program->name, PATIENCE_WITHOUT_PROGRESS * patience_s, program->scene,
                        patience, PATIENCE_WITHOUT_PROGRESS);
     return STATUS_OK;
@@ -318,7 +317,8 @@ static Status find_output(const Program *program, char **output, Err *err)
     struct stat about;
     TRY(outfile_check(program->output, err));
     if (stat(program->output, &about) == 0 && !S_ISREG(about.st_mode))
-        return err_set(err, STATUS_IO, "%s: cannot be written: it is no file", program->output);
+        return err_set(err, STATUS_IO, "%s: cannot be written: it is not a regular file",
+                       program->output);
     return file_resolve(program->output, output, err);
 }
 

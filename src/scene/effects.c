@@ -8,7 +8,6 @@ void effects_list(const Effects *effects, bool occlusion, Text *out)
         const char *name;
     } all[] = {{effects->outline.width_px > 0, "outlines"},
                {effects->halo.width_px > 0, "halos"},
-               {effects->fade.nearest > 0 || effects->fade.farthest > 0, "fading with depth"},
                {effects->grade.present, "a graded background"},
                {occlusion, "ambient occlusion"},
                {effects->xray.per_mm > 0, "x-ray"}};

@@ -43,7 +43,7 @@ static const struct LookSection {
     {"ground", "normal, axis, gap, color, ambient or diffuse", 0, 0},
     {"outline", "width, radii, deeper, crease or color", offsetof(Look, effects.outline_width), 1},
     {"halo", "width, radii or deeper", offsetof(Look, effects.halo_width), 2},
-    {"fade", "nearest or farthest", offsetof(Look, effects.fade_farthest), 0.8},
+    {"fade", "nearest or farthest", offsetof(Look, fade_farthest), 0.8},
     {"xray", "per_diameter or per_mm", offsetof(Look, effects.xray_per_diameter), 1},
 };
 
@@ -97,8 +97,8 @@ static const struct LookKey {
     {"halo", "width", IN_EFFECTS(halo_width), 0.1, 50, NULL},
     {"halo", "radii", IN_EFFECTS(halo_radii), 0.01, 10, NULL},
     {"halo", "deeper", IN_EFFECTS(halo_deeper), 0, 1000, NULL},
-    {"fade", "nearest", IN_EFFECTS(fade_nearest), 0, 1, NULL},
-    {"fade", "farthest", IN_EFFECTS(fade_farthest), 0, 1, NULL},
+    {"fade", "nearest", TYPE_DOUBLE, offsetof(Look, fade_nearest), 0, 1, NULL},
+    {"fade", "farthest", TYPE_DOUBLE, offsetof(Look, fade_farthest), 0, 1, NULL},
     {"xray", "per_diameter", IN_EFFECTS(xray_per_diameter), 0.001, 1000, NULL},
     {"xray", "per_mm", IN_EFFECTS(xray_per_mm), 1e-6, 1e6, "a number from 1e-6 to 1e6"},
 };
@@ -310,7 +310,6 @@ Effects look_effects(const Look *look, double thousandth_px, double diameter_mm)
                      .halo = {.width_px = effects->halo_width * thousandth_px,
                               .radii = effects->halo_radii,
                               .deeper = effects->halo_deeper},
-                     .fade = {effects->fade_nearest, effects->fade_farthest, 0, 1},
                      .grade = {look->corners.present, look->background, look->corners.color},
                      .xray = {.per_mm = effects->xray_per_diameter > 0
                                             ? effects->xray_per_diameter / diameter_mm

@@ -17,6 +17,7 @@
 #include "mesh/mesh.h"
 #include "scene/scene.h"
 #include "stage/fieldscale.h"
+#include "stage/smooth.h" // IWYU pragma: export
 #include "tree/tree.h"
 
 /* ---- looks ------------------------------------------------------------------------------------
@@ -62,7 +63,6 @@ typedef struct LookEffects {
                         * separates them; 180: never */
     Rgb outline_color;
     double halo_width, halo_radii, halo_deeper; /* width 0: no halos */
-    double fade_nearest, fade_farthest;         /* fractions of the background's color; 0: none */
     double xray_per_diameter; /* absorption per diameter of the thickest vessel, or */
     double xray_per_mm;       /* absorption per mm; both 0: no x-ray */
 } LookEffects;
@@ -88,12 +88,12 @@ typedef struct Look {
     LookLight lights[LOOK_MAX_LIGHTS];
     int n_lights;
     LookGround ground;
+    double fade_nearest, fade_farthest; /* as in Fade */
     LookEffects effects;
 } Look;
 
 /* Returns the effects of a look for one picture. The picture's shorter side has 1000 thousandth_px
- * pixels, and the thickest vessel has this diameter. The fade is over 0 to 1 mm; stage_view
- * replaces these depths. */
+ * pixels, and the thickest vessel has this diameter. */
 Effects look_effects(const Look *look, double thousandth_px, double diameter_mm);
 
 /* Reads a look from an INI file. Its sections and keys:
@@ -137,7 +137,9 @@ typedef enum JointForm {
 /* Parameters of stage_geometry. */
 typedef struct GeometryParams {
     SceneModel model;
-    JointForm joints;   /* models with joints */
+    const SmoothTree *smooth; /* the pieces that are drawn instead of the tree's segments; NULL: the
+                               * segments; borrowed */
+    JointForm joints;         /* models with joints */
     bool implied_ends;  /* models with round ends: sets Geometry.implied_ends, which halves the
                          * memory of pictures that are drawn tile by tile */
     bool graph;         /* models of the potential: segments blend only where they are connected
@@ -152,7 +154,8 @@ typedef struct ViewParams {
     int width, height; /* pixels, >= 1 */
     Projection projection;
     const Tree *tree; /* ground and lights are placed around this tree, and the camera frames it, so
-                       * that all its models have one view; NULL: the geometry; borrowed */
+                       * that all its models have one view; NULL: the geometry; borrowed. The
+                       * pieces of a smooth tree are such a tree */
     const Box *box;   /* the result of stage_box, which saves time; NULL: unknown; borrowed */
     const Box *domain; /* the camera frames this box instead; NULL: none; borrowed */
     UpAxis up_axis;
@@ -203,15 +206,18 @@ MUST_CHECK Status stage_geometry(const Tree *tree, const GeometryParams *params,
 /* Lists the vessels of a tree: its segments that can be drawn and do not lie within a twin
  * [StageReport.covered]. Nodes at the same position are one node. Coordinates are the tree's.
  *
+ * smooth   the pieces of the tree, which are listed instead of its segments; NULL: the segments.
  * vessels  is released with vesseltree_release.
  * report   receives `drawn`, `dropped` and `covered`; may be NULL.
  * Errors   STATUS_INPUT if no segment can be drawn, STATUS_MEMORY. */
-MUST_CHECK Status stage_vessels(const Tree *tree, VesselTree *vessels, StageReport *report,
-                                Err *err);
+MUST_CHECK Status stage_vessels(const Tree *tree, const SmoothTree *smooth, VesselTree *vessels,
+                                StageReport *report, Err *err);
 
-/* Finds how the vessels of a tree are connected. `origin` is Geometry.origin. Release *anatomy with
- * anatomy_release. Errors: STATUS_MEMORY. O(n) for n nodes. */
-MUST_CHECK Status stage_anatomy(const Tree *tree, Vec3 origin, Anatomy *anatomy, Err *err);
+/* Finds how the vessels of a tree are connected. `origin` is Geometry.origin. The main branch
+ * follows the pieces of `smooth` unless that is NULL. Release *anatomy with anatomy_release.
+ * Errors: STATUS_MEMORY. O(n) for n nodes. */
+MUST_CHECK Status stage_anatomy(const Tree *tree, const SmoothTree *smooth, Vec3 origin,
+                                Anatomy *anatomy, Err *err);
 
 /* Returns true if segment i has a radius and a length that can be drawn. Returns false for a root.
  */

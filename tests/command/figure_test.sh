@@ -12,7 +12,7 @@ write_recipe() {
 [figure]
 size = 80mmx60mm
 dpi = 150
-columns = 2
+panel-columns = 2
 gap = 3
 letters = upper
 text-size = 6
@@ -185,7 +185,7 @@ test_mistakes_are_named_with_file_and_line() {
     refused '[panel a]\ntree = t.swc\nmodel = joined\nmodel = blob\n' "r\.ini:4: 'model' is given twice"
     refused '[panel a]\ntree = t.swc\ngrow = --terminals 9\n' 'r\.ini:3: the tree is given twice'
     refused '[panel a]\ntree = t.swc\nmodel = jined\n' 'r\.ini:3: .*jined.* is not one of'
-    refused '[panel a]\ntree = t.swc\n[figure]\ncolumns = 0\n' 'r\.ini:4: .*columns.*0'
+    refused '[panel a]\ntree = t.swc\n[figure]\npanel-columns = 0\n' 'r\.ini:4: .*columns.*0'
     refused '[panel a]\ntree = t.swc\n[panels]\n' 'r\.ini:3: \[panels\] must come before all panels'
     refused '[panels]\nmodle = joined\n' "r\.ini:2: unknown key 'modle'"
     refused '[boxes]\n' 'r\.ini:1: \[boxes\] is not \[figure\]'
@@ -262,7 +262,7 @@ test_paths_start_at_the_folder_of_the_recipe() {
     cat >f/all.ini <<'END'
 [figure]
 size = 200x200
-columns = 2
+panel-columns = 2
 letters = none
 [panel values]
 tree = sub/t.swc

@@ -116,7 +116,7 @@ test_depth_and_normal_of_one_tube_are_what_geometry_says() {
     local model how
     printf '1 1 -10 0 0 2 -1\n2 3 10 0 0 2 1\n' >tube.swc
     for model in $MODELS; do
-        [ $model = mesh ] && how='--tolerance 0.002' || how=''
+        [ $model = mesh ] && how='--mesh-tolerance 0.002' || how=''
         run_ok corcast render --exact tube.swc --model $model $how --size 11x11 --location 0,0,30 --look-at 0,0,0 \
             --height 11 --planes depth,normal -o picture.ppm
         pfm_value picture.depth.pfm 60 1 >value
@@ -276,6 +276,26 @@ test_ambient_occlusion_darkens_every_model_alike_for_any_number_of_threads() {
 # brightness FILE.ppm: the sum of all levels.
 brightness() {
     pnmtoplainpnm "$1" | tail -n +4 | awk '{ for (i = 1; i <= NF; i++) sum += $i } END { print sum }'
+}
+
+test_smooth_vessels_are_curves_whose_distance_is_said() {
+    local model
+    grow_tree 20
+    for model in $MODELS; do
+        run_ok corcast render tree.swc --model $model --size 83x61 -o straight.png --json straight.json
+        run_ok corcast render tree.swc --model $model --size 83x61 --smooth off -o off.png
+        run_ok corcast render tree.swc --model $model --size 83x61 --smooth --planes id -o smooth.png \
+            --json smooth.json
+        grep -qE 'smooth: 39 segments are drawn as [0-9]+ pieces, at most [0-9.]+ mm \([0-9.]+ radii\) from' stderr ||
+            fail "expected the distance from the straight segments of $model"
+        expect_same straight.png off.png
+        expect_json straight.json '.smooth == null'
+        expect_json smooth.json '.smooth.segments == 39 and .smooth.pieces > 200 and .smooth.distance_mm > 0.1'
+        cmp -s straight.png smooth.png && fail "expected another picture of $model"
+    done
+    run_ok corcast render tree.swc --size 83x61 --smooth --threads 1 -o one.png
+    run_ok corcast render tree.swc --size 83x61 --smooth --threads 5 -o five.png
+    expect_same_pixels one.png five.png
 }
 
 # What --model joined says of trees where joints cannot be; odd_trees_test.sh draws them in every way.

@@ -94,7 +94,7 @@ test_values_of_more_moments_than_a_browser_opens_are_refused_with_their_size() {
 
 test_options_without_effect_on_a_page_are_refused() {
     run_ok corcast grow --terminals 5 --quiet -o tree.swc
-    for option in "--tolerance 0.05" "--color-by flow --classes 3" "--color-by flow --moment 1" "--colormap magma" "--voxel 0.1"; do
+    for option in "--mesh-tolerance 0.05" "--color-by flow --classes 3" "--color-by flow --moment 1" "--colormap magma" "--spacing 0.1"; do
         # shellcheck disable=SC2086
         run corcast export tree.swc $option -o page.html
         expect_status 2

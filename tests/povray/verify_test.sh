@@ -136,7 +136,7 @@ test_meshes_agree() {
     tree_3d 12
     agrees mesh --color-by radius --view iso --antialias 2
     rm -r report
-    agrees mesh --tolerance 0.1 --projection perspective --location 12,25,9 --look-at 1,16,2 --angle 30
+    agrees mesh --mesh-tolerance 0.1 --projection perspective --location 12,25,9 --look-at 1,16,2 --angle 30
     run_ok corcast verify tree.swc --model mesh --color-by radius --view iso --shadows on --size 160x120 -o shadows
     expect_json shadows/report.json '.verdict == "agree" and .planes.color.edge_mismatch_fraction == 0'
 }
@@ -205,7 +205,7 @@ test_linear_codes_of_16_bits_agree_within_one_in_every_model() {
     local options
     tree_3d 30
     for options in 'cylinders --shadows on' 'joined --shadows on' 'rounded --shadows on' 'isosurface --shadows on' \
-        'blob --shadows on' 'rounded --projection perspective --antialias 3' 'mesh --tolerance 0.1 --shadows on'; do
+        'blob --shadows on' 'rounded --projection perspective --antialias 3' 'mesh --mesh-tolerance 0.1 --shadows on'; do
         # shellcheck disable=SC2086
         run_ok corcast verify tree.swc --bits 16 --view iso --size 160x120 -o report --model $options
         expect_json report/report.json '.verdict == "agree" and .planes.color.bits == 16 and

@@ -80,7 +80,7 @@ static void an_anatomy_tells_trees_orders_and_the_way_along_the_thickest_branch(
     static const Vec3 path[] = {{-10, 19, 0.5}, {-10, 9, 1.5}, {-15, 3, 2.5}};
     Tree tree = make_forest();
     Anatomy anatomy = {0};
-    assert_int_equal(stage_anatomy(&tree, vec3(10, 1, -0.5), &anatomy, NULL), STATUS_OK);
+    assert_int_equal(stage_anatomy(&tree, NULL, vec3(10, 1, -0.5), &anatomy, NULL), STATUS_OK);
     assert_int_equal(anatomy.n_trees, 2);
     assert_near(anatomy.root[0], path[0], 0);
     assert_near(anatomy.root[1], vec3(60, -1, 0.5), 0);
@@ -107,7 +107,7 @@ static void the_path_of_a_tree_without_segments_is_its_root(void **state)
     tree.parent[0] = -1;
     tree.radius_mm[0] = 2.385;
     tree.position[0] = vec3(3, 4, 5);
-    assert_int_equal(stage_anatomy(&tree, vec3(0, 0, 0), &anatomy, NULL), STATUS_OK);
+    assert_int_equal(stage_anatomy(&tree, NULL, vec3(0, 0, 0), &anatomy, NULL), STATUS_OK);
     assert_int_equal(anatomy.n_path, 1);
     assert_near(anatomy.path[0], vec3(3, 4, 5), 0);
     anatomy_release(&anatomy);
@@ -979,7 +979,7 @@ static void a_look_is_read(void **state)
     assert_true(effects.outline.width_px == 5 && effects.outline.color.g == 0.5f);
     assert_true(fabs(effects.outline.crease_cosine - 0.5) < 1e-15);
     assert_true(effects.halo.width_px == 4 && effects.halo.radii == 3);
-    assert_true(effects.fade.nearest == 0.25 && effects.fade.farthest == 0.8);
+    assert_true(read.fade_nearest == 0.25 && read.fade_farthest == 0.8);
     assert_true(effects.xray.per_mm == 0.75);
     assert_int_equal(read_look_text("[vessel]\ncolor = 1 1 1\n", &read, &err), STATUS_OK);
     const Effects none = look_effects(&read, 2, 1);

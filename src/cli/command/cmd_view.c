@@ -3,7 +3,6 @@
 #include "cli/command/view_overlay.h"
 #include "cli/commands.h"
 
-#include "base/system.h"
 #include "cli/screen.h"
 #include "cli/window/display.h"
 #include "cli/window/window.h"

@@ -168,12 +168,12 @@ static int clamp(int i, int low, int high)
 
 /* Row `y` from `x` on, SPAN pixels, in YCxCz and lightness (Y scaled to [0, 1]); the pixels at the
  * image's edges are repeated beyond them. */
-static void load_inputs(const Flip *flip, int side, int exposure, int x, int y, Workspace *work)
+static void load_inputs(const Flip *flip, int image, int exposure, int x, int y, Workspace *work)
 {
     const FlipPair *pair = flip->pair;
     int left = clamp(x, 0, pair->width - 1), right = clamp(x + SPAN, left + 1, pair->width);
     int first = left - x, count = right - left;
-    const FlipSpan span = {side, exposure, left, clamp(y, 0, pair->height - 1), count};
+    const FlipSpan span = {image, exposure, left, clamp(y, 0, pair->height - 1), count};
     pair->colors(pair, &span, work->colors[0] + first, SPAN);
     for (int i = first; i < first + count; i++) {
         Triple xyz =
@@ -393,7 +393,7 @@ typedef struct Pictures {
 static void picture_colors(const FlipPair *pair, const FlipSpan *span, float *out, size_t stride)
 {
     const Pictures *self = pair->context;
-    const Picture *picture = self->pictures[span->side];
+    const Picture *picture = self->pictures[span->image];
     size_t channels = (size_t)picture->channels;
     size_t first = (size_t)span->y * picture_stride(picture) + (size_t)span->x * channels;
     for (size_t i = 0; i < (size_t)span->n; i++)

@@ -14,7 +14,7 @@ const char *const vessel_body_names[] = {
 static Status take_vessels(MeshResult *made, VesselBody body, const Talk *talk, Err *err)
 {
     StageReport report;
-    TRY(stage_vessels(&made->of.tree, &made->vessels, &report, err));
+    TRY(stage_vessels(&made->of.tree, picture_pieces(&made->of), &made->vessels, &report, err));
     made->vessels.body = body;
     if (report.dropped)
         talk_warn(talk, "segments that are left out, as they have no length or no radius: %zu",
@@ -36,7 +36,7 @@ static Status color_vessels(const MeshingOptions *options, const Talk *talk, Mes
     TRY(coloring_read_look(options->look, &look, err));
     TRY(coloring_appearance(&options->coloring, &tree, &look, &made->appearance, err));
     coloring_say(&made->appearance, talk);
-    TRY(stage_anatomy(tree.drawn, vec3(0, 0, 0), &made->anatomy, err));
+    TRY(stage_anatomy(tree.drawn, picture_pieces(&made->of), vec3(0, 0, 0), &made->anatomy, err));
     return derive_rule(tree.drawn, &(TreeMeta){0}, "strahler", &made->orders, err);
 }
 

@@ -27,8 +27,10 @@ static const Option own[] = {
      .help = "size of the page on paper (183mmx120mm) or in pixels (2000x1300); one length gives a "
              "square"},
     {DPI_OF_SIZE(FigureOptions, size), .group = GROUP_PAGE,
-     .help = "resolution in pixels per inch"},
-    {.name = "columns",
+     .help = "pixels per inch: sets the number of pixels of a --size on paper; with a --size in "
+             "pixels it is only stored in the file (.png, .tif, .jpg)"},
+    {.name = "panel-columns",
+     .former = "columns",
      SETS(WHOLE, FigureOptions, columns),
      FROM_TO(1, 64),
      .group = GROUP_PAGE,

@@ -140,7 +140,7 @@ static Setting *find_key(const Parsed *parsed, OptionIsKey *is_key, const char *
 {
     for (size_t i = 0; parsed->settings && i < parsed->n_settings; i++)
         if (is_key(parsed->settings[i].option) &&
-            strcmp(parsed->settings[i].option->name, name) == 0)
+            option_is_named(parsed->settings[i].option, name, strlen(name)))
             return &parsed->settings[i];
     return NULL;
 }

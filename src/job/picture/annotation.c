@@ -29,7 +29,7 @@ static const Option rows[] = {
      .argument = "TEXT",
      .otherwise = "name and unit of the field",
      .needs = "legend",
-     .help = "text above the legend"},
+     .help = "with --legend on: text above the legend"},
     {.name = "scale-bar",
      SETS(NUMBER, Annotation, scale_bar_mm),
      GIVEN(Annotation, has_scale_bar),

@@ -64,15 +64,16 @@ static const Option rows[] = {
      .group = GROUP_COLOR,
      .when = WHEN(NO_BOUNDS),
      .needs = "color-by",
-     .help = "use a logarithmic color scale"},
+     .help =
+         "logarithmic color scale; segments with values of 0 or less get the color of --no-data"},
     {.name = "classes",
      SETS(NUMBERS, Coloring, classes),
      .group = GROUP_COLOR,
      .argument = "N|A,B,...",
      .when = WHEN(STEPS),
      .needs = "color-by",
-     .help = "divide the range into N classes of one color each, or at the bounds A,B,...; 1 draws "
-             "continuous colors"},
+     .help = "number of classes, each of one color, or the bounds between classes: 0,5,10 makes "
+             "the classes 0 to 5 and 5 to 10; 1: continuous colors"},
     {.name = "under",
      SETS(COLOR, Coloring, under),
      GIVEN(Coloring, has_under),

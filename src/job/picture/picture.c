@@ -43,11 +43,11 @@ static const Option rows[] = {
      .choices = model_names,
      .group = GROUP_VESSELS,
      .when = WHEN(MODELS),
-     .help = "vessel geometry: cylinders (one closed cylinder per segment), joined (cylinders with "
-             "ruled surfaces at "
-             "junctions), rounded (cylinders with spheres where they meet or end), isosurface "
-             "(smoothly blended surface), blob (POV-Ray's approximation of that surface), mesh "
-             "(triangles of that surface, cut flat at free ends)"},
+     .help =
+         "vessel geometry: cylinders (one closed cylinder per segment), joined (cylinders "
+         "connected by straight-sided transitions), rounded (cylinders with spheres where they "
+         "meet or end), isosurface (smoothly blended surface), blob (POV-Ray's quick approximation "
+         "of the isosurface), mesh (the isosurface as triangles, open ends cut flat)"},
     {.name = "potential",
      SETS(CHOICE, PictureOptions, potential),
      .choices = potentials,
@@ -64,7 +64,8 @@ static const Option rows[] = {
      .help = "joined only: what to draw where a junction cannot be built because vessels are too "
              "short or turn too sharply: robust (as with rounded), paper (the junction as it "
              "comes, with faults)"},
-    {.name = "tolerance",
+    {.name = "mesh-tolerance",
+     .former = "tolerance",
      SETS(NUMBER, PictureOptions, tolerance),
      .range = &tolerance_range,
      .group = GROUP_VESSELS,
@@ -76,6 +77,7 @@ static const Option rows[] = {
      .group = GROUP_VESSELS,
      .when = WHEN(TRIANGLES) | WHEN(SURFACES),
      .help = "mesh only: shrink unconnected vessels that overlap until they no longer touch"},
+    {SMOOTH_OPTION(PictureOptions, smooth), .when = WHEN(VESSELS)},
     {.name = "prune-radius",
      SETS(NUMBER, PictureOptions, prune_radius_mm),
      .range = &prune_range,
@@ -88,9 +90,9 @@ static const Option rows[] = {
      .group = GROUP_COLOR,
      .when = WHEN(FIELD_MODEL),
      .needs = "color-by",
-     .help = "isosurface and blob only: color of a point where segments blend: segment (color of "
-             "the segment that contributes most), blended (color of the mean value, weighted by "
-             "contribution)"},
+     .help = "isosurface and blob only: color where segments merge: segment (the value of the "
+             "segment that contributes most), blended (the mean of the segments' values, weighted "
+             "by contribution)"},
     {.name = "size",
      SETS(SIZE, PictureOptions, size),
      FROM_TO(1, IMAGE_MAX_SIDE),
@@ -100,7 +102,8 @@ static const Option rows[] = {
              "(89mm)"},
     {DPI_OF_SIZE(PictureOptions, size), .group = GROUP_CAMERA,
      .when = WHEN(ON_PAPER) | WHEN(ON_PAPER_OR_KEPT),
-     .help = "resolution in pixels per inch; stored in .png, .tif and .jpg"},
+     .help = "pixels per inch: sets the number of pixels of a --size on paper; with a --size in "
+             "pixels it is only stored in the file (.png, .tif, .jpg)"},
     {.name = "projection",
      SETS(CHOICE, PictureOptions, projection),
      GIVEN(PictureOptions, has_projection),
@@ -124,7 +127,8 @@ static const Option rows[] = {
      .argument = "AZ,EL",
      .otherwise = "",
      .when = WHEN(CAMERA),
-     .help = "then rotate the camera AZ degrees to the right and EL degrees up"},
+     .help =
+         "rotate the camera of --view AZ degrees to the right and EL degrees up around the tree"},
     {.name = "up-axis",
      SETS(CHOICE, PictureOptions, stage.up_axis),
      .choices = up_axes,
@@ -136,8 +140,9 @@ static const Option rows[] = {
      .choices = framings,
      .group = GROUP_CAMERA,
      .when = WHEN(CAMERA),
-     .help = "what to fit in the image: tree (the same for all models), domain (the tissue shape "
-             "it was grown in), drawing (everything that is drawn)"},
+     .help = "what to fit in the image: tree (axes and radii of the segments, so that images of "
+             "all models match), domain (the tissue shape that the tree was grown in; an error if "
+             "its header states none), drawing (the geometry as drawn)"},
     {.name = "location",
      SETS(VECTOR, PictureOptions, stage.location),
      GIVEN(PictureOptions, stage.has_location),
@@ -157,9 +162,9 @@ static const Option rows[] = {
      SETS(VECTOR, PictureOptions, stage.up),
      GIVEN(PictureOptions, stage.has_up),
      .group = GROUP_CAMERA,
-     .otherwise = "",
+     .otherwise = "the axis of --up-axis",
      .when = WHEN(CAMERA),
-     .help = "direction that points up in the image"},
+     .help = "direction in the coordinates of the tree that points up in the image"},
     {.name = "angle",
      SETS(NUMBER, PictureOptions, stage.angle_deg),
      GIVEN(PictureOptions, has_angle),
@@ -504,7 +509,29 @@ void picture_tree_release(PictureTree *tree)
 {
     tree_release(&tree->tree);
     tree_release(&tree->whole);
+    smoothtree_release(&tree->smooth);
     free(tree->joined);
+}
+
+Status picture_smooth_tree(PictureTree *of, Err *err)
+{
+    return stage_smooth(&of->tree, &of->smooth, err);
+}
+
+const SmoothTree *picture_pieces(const PictureTree *of)
+{
+    return of->smooth.tree.n ? &of->smooth : NULL;
+}
+
+void picture_say_smooth(const SmoothReport *report, const Talk *talk)
+{
+    if (report->pieces == 0)
+        return;
+    talk_note(talk,
+              "smooth: %zu segments are drawn as %zu pieces, at most %.3g mm (%.3g radii) from the "
+              "straight segments; radii change by at most %.3g %%",
+              report->segments, report->pieces, report->distance_mm, report->distance_radii,
+              100 * report->radius_change);
 }
 
 ColoredTree picture_colored_tree(const PictureTree *tree)
@@ -534,8 +561,8 @@ Status picture_read_source(const PictureOptions *options, const Parsed *parsed,
     TRY(check_camera(options, err));
     TRY(take_look(options, parsed, &made.look, err));
     TRY(picture_read_tree(&options->coloring, options->prune_radius_mm, parsed, &made.of, err));
-    Status status = STATUS_OK;
-    if (options->frame == PICTURE_DOMAIN)
+    Status status = options->smooth ? picture_smooth_tree(&made.of, err) : STATUS_OK;
+    if (status == STATUS_OK && options->frame == PICTURE_DOMAIN)
         status = find_domain(&made.of, &made.domain, err);
     if (status == STATUS_OK)
         *source = made;
@@ -557,7 +584,10 @@ bool picture_is_transparent(const PictureOptions *options)
 ViewParams picture_view_params(const PictureOptions *options, const PictureSource *source)
 {
     ViewParams params = options->stage;
-    params.tree = options->frame == PICTURE_DRAWING ? NULL : &source->of.tree;
+    const SmoothTree *smooth = picture_pieces(&source->of);
+    params.tree = smooth ? &smooth->tree : &source->of.tree;
+    if (options->frame == PICTURE_DRAWING)
+        params.tree = NULL;
     params.domain = options->frame == PICTURE_DOMAIN ? &source->domain : NULL;
     params.transparent = picture_is_transparent(options);
     params.turn_deg = options->turn.at[0];
@@ -575,6 +605,7 @@ Status picture_geometry(const PictureOptions *options, const PictureSource *sour
     const SceneModel model = (SceneModel)options->model;
     Progress progress;
     const GeometryParams params = {.model = model,
+                                   .smooth = picture_pieces(&source->of),
                                    .joints = (JointForm)options->joints,
                                    .implied_ends = options->by_tiles && !is_xray(&source->look),
                                    .graph =
@@ -660,6 +691,7 @@ Status picture_scene_of(const PictureOptions *options, const PictureSource *sour
                         Err *err)
 {
     PictureReport told = {.pruned = source->of.pruned,
+                          .smooth = source->of.smooth.report,
                           .joints = (JointForm)options->joints,
                           .shadows = options->stage.shadows};
     Scene made = {0};
@@ -667,7 +699,8 @@ Status picture_scene_of(const PictureOptions *options, const PictureSource *sour
     if (status == STATUS_OK)
         status = check_distance(&made, err);
     if (status == STATUS_OK && anatomy)
-        status = stage_anatomy(&source->of.tree, made.geometry.origin, anatomy, err);
+        status = stage_anatomy(&source->of.tree, picture_pieces(&source->of), made.geometry.origin,
+                               anatomy, err);
     if (status != STATUS_OK) {
         scene_release(&made);
         return status;
@@ -680,6 +713,7 @@ Status picture_scene_of(const PictureOptions *options, const PictureSource *sour
 Status picture_say(const Scene *scene, const PictureReport *report, const Talk *talk, Err *err)
 {
     say_limits(scene, report->shadows, talk);
+    picture_say_smooth(&report->smooth, talk);
     TRY(say_losses(&scene->geometry, report, talk, err));
     coloring_say(&scene->appearance, talk);
     return STATUS_OK;
@@ -689,7 +723,8 @@ Status picture_say_effects(const PictureOptions *options, const char *what, cons
                            Err *err)
 {
     Text names = TEXT_INIT;
-    const Effects effects = look_effects(&options->look_file, 1, 1);
+    Effects effects = look_effects(&options->look_file, 1, 1);
+    effects.grade.present &= options->omits_effects; /* a scene has it */
     if (effects.xray.per_mm > 0)
         return err_set(err, STATUS_USAGE, "--look %s: POV-Ray cannot draw an x-ray; use render",
                        options->look);

@@ -40,6 +40,7 @@ typedef struct PictureOptions {
                          * render's --exact number of rays per sample; 0: no ambient occlusion */
     double tolerance;   /* mesh: maximum distance of the triangles from the surface / the local
                          * vessel radius */
+    bool smooth;        /* vessels follow smooth curves through the nodes of the tree */
     bool part_overlaps; /* mesh: makes vessels thinner that overlap vessels to which they are not
                          * connected */
     bool as_mesh;       /* options are checked as if `model` were the mesh; set for output
@@ -66,10 +67,10 @@ typedef struct PictureOptions {
 void picture_set_defaults(PictureOptions *options);
 /* Default of --antialias for pictures that are not compared with POV-Ray's. */
 enum { PICTURE_ANTIALIAS = 3 };
-/* Default of --tolerance: maximum distance of triangles from the surface / the local radius. */
+/* Default of --mesh-tolerance: maximum distance of triangles from the surface / the local radius. */
 #define MESHING_TOLERANCE 0.02
 
-/* Accepted ranges of --antialias, --prune-radius (mm) and --tolerance, for all commands. */
+/* Accepted ranges of --antialias, --prune-radius (mm) and --mesh-tolerance, for all commands. */
 extern const Range antialias_range, prune_range, tolerance_range;
 /* Sets a PictureOptions, except its member `coloring`. Its function `settle` reads the look, whose
  * errors are those of coloring_read_look, and takes shadows, ambient occlusion and projection from
@@ -96,15 +97,23 @@ ConditionSet picture_unmet_dpi(const PictureSize *size, const char *output);
  * Errors   STATUS_USAGE if ambient occlusion is specified. */
 MUST_CHECK Status picture_check_povray(const PictureOptions *options, Err *err);
 
+/* Fills the option --smooth, which sets the bool at `path`. */
+#define SMOOTH_OPTION(Type, path)                                                                  \
+    .name = "smooth", SETS(SWITCH, Type, path), .group = GROUP_VESSELS,                            \
+    .help = "draw vessels as smooth curves through the nodes, with radii that taper from node to " \
+            "node, instead of straight segments"
+
 /* A tree that has been read for drawing. Release it with picture_tree_release. */
 typedef struct PictureTree {
-    const char *path; /* the tree's file, for messages; borrowed from the Parsed */
-    Tree tree;        /* without pruned segments; owned */
-    Tree whole;       /* with pruned segments; owned. Only stored if the range of colors is that of
-                       * the whole tree (RANGE_OF_TREE); else zeroed, and n is 0 */
-    char *joined;     /* if --color-by names a file of values: the name of the tree's column that
-                       * the values were read into; else NULL. Owned */
-    size_t pruned;    /* number of segments that were pruned */
+    const char *path;  /* the tree's file, for messages; borrowed from the Parsed */
+    Tree tree;         /* without pruned segments; owned */
+    Tree whole;        /* with pruned segments; owned. Only stored if the range of colors is that of
+                        * the whole tree (RANGE_OF_TREE); else zeroed, and n is 0 */
+    char *joined;      /* if --color-by names a file of values: the name of the tree's column that
+                        * the values were read into; else NULL. Owned */
+    size_t pruned;     /* number of segments that were pruned */
+    SmoothTree smooth; /* the pieces of `tree` that are drawn; zeroed, and tree.n is 0, if the
+                        * segments are drawn. Owned */
 } PictureTree;
 
 /* Reads the tree that is the first operand, and the flows and values that options add to it. Then
@@ -117,6 +126,13 @@ typedef struct PictureTree {
 MUST_CHECK Status picture_read_tree(const Coloring *coloring, double prune_radius_mm,
                                     const Parsed *parsed, PictureTree *out, Err *err);
 void picture_tree_release(PictureTree *tree);
+/* Divides the segments of of->tree into smooth curves, and stores the pieces in of->smooth. Errors:
+ * STATUS_MEMORY. */
+MUST_CHECK Status picture_smooth_tree(PictureTree *of, Err *err);
+/* Returns the pieces of a tree, or NULL if its segments are drawn. Borrowed. */
+const SmoothTree *picture_pieces(const PictureTree *of);
+/* Prints a note about how far the pieces are from the tree, if there are any. */
+void picture_say_smooth(const SmoothReport *report, const Talk *talk);
 /* Returns the tree as coloring_appearance takes it. The result borrows from `tree` and owns
  * nothing. */
 ColoredTree picture_colored_tree(const PictureTree *tree);
@@ -170,7 +186,8 @@ MUST_CHECK Status picture_view(const PictureOptions *options, const PictureSourc
 /* What a user should know about a scene: which parts of the tree it does not show. */
 typedef struct PictureReport {
     StageReport staged;
-    size_t pruned; /* number of segments that were pruned */
+    SmoothReport smooth; /* zeroed if segments are straight */
+    size_t pruned;       /* number of segments that were pruned */
     JointForm joints;
     bool shadows; /* lights cast shadows */
 } PictureReport;

@@ -3,7 +3,6 @@
  * beside its own. */
 #include "job/picture/render_bands.h"
 
-#include "base/system.h"
 #include "options/talk.h"
 #include <stdio.h>
 #include <stdlib.h>

@@ -260,9 +260,12 @@ static void draw_row(size_t number, int worker, void *context)
                 grade(samples, paper, dither_at(samples, x, row), color);
             continue;
         }
-        Rgb seen =
-            rgb_mixed((Rgb){color[0], color[1], color[2]}, effects->outline.color, (double)line[x]);
-        seen = rgb_mixed(seen, paper, fade_at(&effects->fade, (double)frame->depth.values[at]));
+        const double faded = fade_at(samples->fade, (double)frame->depth.values[at]);
+        const Rgb drawn = {color[0] + (float)faded * (paper.r - samples->paper.r),
+                           color[1] + (float)faded * (paper.g - samples->paper.g),
+                           color[2] + (float)faded * (paper.b - samples->paper.b)};
+        const Rgb outline = rgb_mixed(effects->outline.color, paper, faded);
+        Rgb seen = rgb_mixed(drawn, outline, (double)line[x]);
         seen = rgb_mixed(seen, paper, (double)gap[x]);
         color[0] = seen.r;
         color[1] = seen.g;

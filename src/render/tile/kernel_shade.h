@@ -104,6 +104,14 @@ LANE_FN void add_light(Shading *shading, size_t number)
     }
 }
 
+LANE_FN void fade(Shading *shading)
+{
+    const Lanes part = lanes_load(&shading->surface->fade[shading->first]);
+    for (int c = 0; c < 3; c++)
+        shading->color[c] = lanes_fma(lanes_set(shading->look->paper[c]) - shading->color[c], part,
+                                      shading->color[c]);
+}
+
 LANE_TARGET static void LANES_NAME(shade)(const TileLook *look, const TileSurface *surface,
                                           float color[3][TILE_SAMPLES])
 {
@@ -127,6 +135,8 @@ LANE_TARGET static void LANES_NAME(shade)(const TileLook *look, const TileSurfac
             shading.normal[c] = lanes_select(away > 0.0f, -shading.normal[c], shading.normal[c]);
         for (size_t i = 0; i < look->n_lights; i++)
             add_light(&shading, i);
+        if (surface->fade)
+            fade(&shading);
         for (int c = 0; c < 3; c++)
             lanes_store(&color[c][first], shading.color[c]);
     }
