@@ -248,12 +248,18 @@ static void set_eps_notes(cairo_surface_t *eps, const FigureNotes *notes, double
 }
 
 /* Replaces the current date, which cairo writes into the header of an EPS. */
-static void remove_date(Text *bytes)
+static Status remove_date(Text *bytes, Err *err)
 {
     static const char key[] = "%%CreationDate: ", date[] = "Sat Jan  1 00:00:00 2000";
-    char *at = text_chars(bytes) ? strstr(bytes->chars, key) : NULL;
+    const size_t length = bytes->length;
+    char *chars = NULL;
+    TRY(text_take(bytes, &chars, err));
+    char *at = strstr(chars, key);
     if (at && strcspn(at + strlen(key), "\n") == strlen(date))
         memcpy(at + strlen(key), date, strlen(date));
+    text_append(bytes, chars, length);
+    free(chars);
+    return STATUS_OK;
 }
 
 /* What the child process draws. */
@@ -300,7 +306,7 @@ static Status put_pdf(const void *context, Text *bytes, Err *err)
     TRY(put_page(&self, err));
     TRY(artwork_check_cairo(finish(self.cairo, surface), err));
     if (work->eps)
-        remove_date(bytes);
+        TRY(remove_date(bytes, err));
     return errno == ENOMEM ? mem_out_of("for", "the page", err) : STATUS_OK;
 }
 

@@ -205,4 +205,20 @@ test_images_that_cannot_be_shown_are_named() {
         $'[panel b]\ntree = t.swc\n[inset i]\nof = a\nat = 0,0\nplace = 1,1\n'
 }
 
+test_leaders_lie_on_paper_and_can_be_left_out() {
+    local drawn
+    run_ok corcast grow --terminals 300 --seed 4 --quiet -o t.swc
+    for look in 'look = journal' 'model = isosurface'; do
+        printf '[figure]\nsize = 600x600\n[panel a]\ntree = t.swc\n%s\n[inset i]\nof = a\nat = 0.4,0.45\nplace = 0.85,0.85\nwidth = 12\n' "$look" >on.ini
+        { cat on.ini; echo 'leaders = off'; } >off.ini
+        run_ok corcast figure on.ini --quiet -o on.png
+        run_ok corcast figure off.ini --quiet -o off.png
+        pngtopnm on.png | ppmtopgm | pnmnoraw | tail -n +4 | tr -s ' ' '\n' | grep . >on.codes
+        pngtopnm off.png | ppmtopgm | pnmnoraw | tail -n +4 | tr -s ' ' '\n' | grep . >off.codes
+        drawn=$(paste -d' ' on.codes off.codes | awk '$1 != $2 { n++; over += $2 < 250 } END { print n + 0, over + 0 }')
+        [ "${drawn% *}" -gt 300 ] && [ "${drawn#* }" -le 16 ] || # the corners of the two frames
+             fail "expected leaders on paper alone, got $drawn pixels, and over vessels"
+    done
+}
+
 run_tests "$@"

@@ -65,6 +65,9 @@ static const Option inset_rows[] = {
      FROM_TO(1e-6, 1e7),
      .unit = "mm",
      .help = "draw a scale bar in the inset that represents this length of the tree"},
+    {.name = "leaders",
+     SETS(SWITCH, InsetOptions, leaders),
+     .help = "draw two lines from the magnified part to the inset; they pass behind vessels"},
 };
 
 static const char *const aligns[] = {
@@ -102,7 +105,7 @@ static void panel_defaults(void *options)
 
 static void inset_defaults(void *options)
 {
-    *(InsetOptions *)options = (InsetOptions){.magnify = 4, .width_mm = 20};
+    *(InsetOptions *)options = (InsetOptions){.magnify = 4, .width_mm = 20, .leaders = true};
 }
 
 static const Command kinds[] = {

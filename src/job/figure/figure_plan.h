@@ -28,6 +28,7 @@ typedef struct InsetOptions {
     double width_mm, height_mm; /* size of the inset on the page; height 0: equal to the width */
     double scale_bar_mm;        /* length in the tree that the inset's scale bar stands for */
     bool has_at, has_place, has_scale_bar;
+    bool leaders; /* two lines lead from the magnified part to the inset */
 } InsetOptions;
 
 /* The options of a line of text on the page. */
