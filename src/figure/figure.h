@@ -144,6 +144,7 @@ typedef struct FigurePage {
     double width_mm, height_mm, dpi; /* 0 < dpi */
     bool exact;                      /* an SVG states the size with all digits, else to 0.001 mm */
     FigureColor background;
+    const Inks *inks;         /* borrowed; of 8 bits; converts the colors of a PDF; NULL: sRGB */
     const FigureFonts *fonts; /* borrowed; NULL: the page has no text */
     FigureItem *items;        /* owned */
     size_t n, capacity;
@@ -254,7 +255,8 @@ enum { FIGURE_PDF_SIDE = 32767 };
 MUST_CHECK Status figure_write_pdf(const FigurePage *page, const FigureNotes *notes, bool eps,
                                    const char *path, Err *err);
 
-/* Draws a band of the page over `rows`, a picture of 3 channels at the page's resolution. The band
+/* Draws a band of the page over `rows`, a picture of 3 channels at the page's resolution. A fourth
+ * channel, 0 at first, receives the black ink of black items instead of the colors. The band
  * begins at row `first` of the page. Items other than pictures are antialiased. The pixels do not
  * depend on how the page is divided into bands. Errors: STATUS_MEMORY. */
 MUST_CHECK Status figure_draw(const FigurePage *page, int first, Picture *rows, Err *err);

@@ -7,6 +7,7 @@
 #include "figure/artwork.h"
 #include "figure/fonts.h"
 #include "figure/items.h"
+#include "figure/pdf_inks.h"
 
 #include <cairo-ft.h>
 #include <cairo-pdf.h>
@@ -307,6 +308,8 @@ static Status put_pdf(const void *context, Text *bytes, Err *err)
     TRY(artwork_check_cairo(finish(self.cairo, surface), err));
     if (work->eps)
         TRY(remove_date(bytes, err));
+    else if (page->inks)
+        TRY(pdf_to_inks(page->inks, bytes, err));
     return errno == ENOMEM ? mem_out_of("for", "the page", err) : STATUS_OK;
 }
 

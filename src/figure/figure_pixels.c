@@ -27,14 +27,18 @@ static double pixels_of(const PixelRows *target, double mm)
     return mm / MM_PER_INCH * target->page->dpi;
 }
 
-/* Blends an 8-bit color over a pixel that it covers by `alpha` / 255. */
+/* Blends an 8-bit color over a pixel that it covers by `alpha` / 255. Black goes to the channel of
+ * black ink, if there is one, and any other color takes black ink away. */
 static void blend(Picture *rows, size_t pixel, const uint8_t color[3], unsigned alpha)
 {
+    const size_t channels = (size_t)rows->channels;
     const unsigned scale = rows->bits == 8 ? 1 : 257;
-    for (size_t c = 0; c < 3; c++) {
-        unsigned below = picture_code(rows, 3 * pixel + c);
-        unsigned sum = color[c] * scale * alpha + below * (255 - alpha);
-        picture_set(rows, 3 * pixel + c, (uint16_t)((sum + 127) / 255));
+    const bool black = channels == 4 && color[0] + color[1] + color[2] == 0;
+    for (size_t c = black ? 3 : 0; c < channels; c++) {
+        const unsigned above = c < 3 ? color[c] : black ? 255 : 0;
+        unsigned below = picture_code(rows, channels * pixel + c);
+        unsigned sum = above * scale * alpha + below * (255 - alpha);
+        picture_set(rows, channels * pixel + c, (uint16_t)((sum + 127) / 255));
     }
 }
 
@@ -274,10 +278,12 @@ static Status draw_picture(PixelRows *target, const FigureItem *item, Err *err)
         int row = item->row + y - target->first;
         if (row < 0 || row >= rows->height)
             continue;
-        size_t to = (size_t)row * picture_stride(rows) + 3 * (size_t)item->column;
+        const size_t channels = (size_t)rows->channels;
+        size_t to = (size_t)row * picture_stride(rows) + channels * (size_t)item->column;
         for (size_t i = 0; i < 3 * (size_t)columns; i++) {
             uint16_t code = picture_code(picture, (size_t)y * picture_stride(picture) + i);
-            picture_set(rows, to + i, rows->bits == 8 ? code : (uint16_t)(code * 257));
+            picture_set(rows, to + i / 3 * channels + i % 3,
+                        rows->bits == 8 ? code : (uint16_t)(code * 257));
         }
     }
     return STATUS_OK;

@@ -221,4 +221,41 @@ test_leaders_lie_on_paper_and_can_be_left_out() {
     done
 }
 
+# expect_inks PLANE LEAST GREATEST: the codes of the lower left corner, which holds a scale bar alone.
+expect_inks() {
+    pamcut -left 0 -top 196 -width 60 -height 40 "$1" | pnmnoraw | tail -n +4 | tr -s ' ' '\n' | grep . | sort -n >codes
+    [ "$(head -1 codes) $(tail -1 codes)" = "$2 $3" ] ||
+        fail "expected codes from $2 to $3 in $1, got $(head -1 codes) to $(tail -1 codes)"
+}
+
+# Ghostscript separates the PDF into inks; paper has the code 255.
+test_black_type_is_black_ink_alone() {
+    local ink
+    run_ok corcast grow --terminals 30 --seed 3 --quiet -o t.swc
+    printf '[figure]\nsize = 60mmx40mm\ndpi = 150\n[panel a]\ntree = t.swc\ncolor-by = radius\nlegend = on\nscale-bar = 10\n' >f.ini
+    run_ok corcast figure f.ini --quiet --cmyk-profile $CMYK -o f.pdf
+    cp f.pdf again.pdf
+    run_ok corcast figure f.ini --quiet --threads 1 --cmyk-profile $CMYK -o f.pdf
+    expect_same f.pdf again.pdf
+    pdfimages -list f.pdf | awk 'NR > 2 && $6 != "cmyk" { exit 1 }' || fail "expected CMYK, got $(pdfimages -list f.pdf)"
+    pdftotext f.pdf - | grep -q '10 mm' || fail "expected text, got $(pdftotext f.pdf -)"
+    gs -q -dSAFER -dBATCH -dNOPAUSE -sDEVICE=tiffsep -r150 -sOutputFile=f.%d.tif f.pdf || fail "ghostscript cannot read f.pdf"
+    for ink in Cyan Magenta Yellow Black; do
+        tifftopnm "f.1($ink).tif" >plane.pgm 2>/dev/null
+        expect_inks plane.pgm "$([ $ink = Black ] && echo 0 || echo 255)" 255
+        [ "$(pnmnoraw plane.pgm | tail -n +4 | tr -s ' ' '\n' | sort -u | wc -l)" -gt 20 ] || fail "expected shades of $ink"
+    done
+    run_ok corcast figure f.ini --quiet --cmyk-profile $CMYK -o f.tif
+    run_ok corcast render t.swc --quiet --size 60mmx40mm --dpi 150 --scale-bar 10 --cmyk-profile $CMYK --bits 16 -o r.tif
+    for file in f.tif r.tif; do
+        for ink in 0 1 2 3; do
+            oiiotool -iconfig oiio:RawColor 1 $file --ch $ink --invert -d uint8 -o plane.pgm
+            expect_inks plane.pgm "$([ $ink = 3 ] && echo 0 || echo 255)" 255
+        done
+    done
+    run corcast figure f.ini --cmyk-profile $CMYK -o f.svg
+    expect_status 2
+    expect_sentence 'is for .tif, .jpg and .pdf'
+}
+
 run_tests "$@"

@@ -417,11 +417,13 @@ static Status write_pixels(const Figure *figure, Err *err)
     const FigurePage *page = &figure->sheet.page;
     const int bits = figure->press.bits;
     const unsigned scale = bits == 8 ? 1 : 257;
+    const size_t channels = figure->press.inks ? 4 : 3; /* the fourth is black ink */
     Picture picture;
     TRY(picture_init(&picture, figure_pixels(page, page->width_mm),
-                     figure_pixels(page, page->height_mm), 3, bits, err));
+                     figure_pixels(page, page->height_mm), (int)channels, bits, err));
     for (size_t i = 0; i < picture_stride(&picture) * (size_t)picture.height; i++)
-        picture_set(&picture, i, (uint16_t)(page->background.rgb[i % 3] * scale));
+        if (i % channels < 3)
+            picture_set(&picture, i, (uint16_t)(page->background.rgb[i % channels] * scale));
     Status status = figure_draw(page, 0, &picture, err);
     if (status == STATUS_OK)
         status = write_picture(figure, &picture, err);
@@ -486,10 +488,10 @@ static Status open_press(Figure *figure, Err *err)
 {
     const FigureOptions *options = figure->options;
     TRY(figure_rebase(figure->parsed, figure->folder, is_typed, err));
-    return frames_is_page(options->output)
-               ? STATUS_OK
-               : press_open(&options->press, options->output, figure->parsed->common.threads,
-                            &figure->press, err);
+    TRY(press_open(&options->press, options->output, figure->parsed->common.threads, &figure->press,
+                   err));
+    figure->sheet.page.inks = figure->press.inks;
+    return STATUS_OK;
 }
 
 /* ---- the command ----------------------------------------------------------------------------- */
