@@ -107,7 +107,7 @@ LIBS := $(PACKAGE_LIBS) $(PLAIN_LIBS)
 
 .PHONY: all lib abi api-programs deps demo figures gallery validate bench bench-grow bench-render bench-view bench-compare bench-mesh bench-trees bench-large export-all verify-all coronary power power-program fit-blob optima check check-all check-quick program unit \
 	unit-programs layers format format-check asan tsan \
-	fuzz fuzz-programs golden-update reference install uninstall dist clean help packages
+	fuzz fuzz-programs golden-update reference install uninstall dist clean help packages libraries
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -280,11 +280,11 @@ define COMPILE_OBJECT
 endef
 $(BUILD)/%.avx2.o: LANES := -DLANES_AVX2
 $(BUILD)/%.avx512.o: LANES := -DLANES_AVX512
-$(BUILD)/%.avx2.o: %.c Makefile | packages
+$(BUILD)/%.avx2.o: %.c Makefile | libraries
 	$(COMPILE_OBJECT)
-$(BUILD)/%.avx512.o: %.c Makefile | packages
+$(BUILD)/%.avx512.o: %.c Makefile | libraries
 	$(COMPILE_OBJECT)
-$(BUILD)/%.o: %.c Makefile | packages
+$(BUILD)/%.o: %.c Makefile | libraries
 	$(COMPILE_OBJECT)
 
 $(BUILD)/tests/%_test: $(BUILD)/tests/unit/%_test.o $(BUILD)/cli.a $(BUILD)/rooms.a
@@ -355,7 +355,7 @@ $(filter %kernels.o %kernels.avx2.o %kernels.avx512.o,$(ROOM_OBJECTS)): HARDEN_r
 
 -include $(ROOM_OBJECTS:.o=.d) $(CLI_OBJECTS:.o=.d) $(TEST_OBJECTS:.o=.d) $(POWER_OBJECTS:.o=.d) $(EMBREE).d $(FRAMES).d $(MESHES).d $(FIT).d $(FUZZ_SOURCES:%.c=$(BUILD)/%.d)
 
-packages:
+libraries:
 ifeq ($(and $(strip $(PACKAGE_LIBS)),$(NIFTI)),)
 	@echo 'corcast needs $(PACKAGES) $(HEADERS), OpenEXR, libnifti2 and pkg-config to build: run "make deps" first' >&2; exit 1
 endif
@@ -455,9 +455,13 @@ RELEASED := LICENSE package.json build/three.core.js build/three.module.js examp
 dist: $(VIEWER) ## pack the sources of the last commit, and the viewer, into build/corcast-VERSION.tar.gz, with the same bytes each time
 	$(Q)mkdir -p build
 	$(Q)git archive --format=tar -o build/corcast-$(VERSION).tar --prefix=corcast-$(VERSION)/templates/page/ --add-file=$(VIEWER) \
-		$(foreach file,$(RELEASED),--prefix=corcast-$(VERSION)/templates/viewer/node_modules/three/$(dir $(file)) --add-file=build/viewer/node_modules/three/$(file)) \
+		$(foreach file,$(RELEASED),--prefix=corcast-$(VERSION)/templates/viewer/node_modules/three/$(filter-out ./,$(dir $(file))) --add-file=build/viewer/node_modules/three/$(file)) \
 		--prefix=corcast-$(VERSION)/ HEAD
 	$(Q)gzip -9nf build/corcast-$(VERSION).tar
+
+packages: ## build, lint and test the packages of .ci/packages; PACKAGE=wheel for one; results in build/packages/
+	$(Q).ci/deps build
+	$(Q).ci/packages/run $(PACKAGE)
 
 clean: ## remove build/ and out/
 	rm -rf build out

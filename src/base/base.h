@@ -22,6 +22,7 @@
 #include "base/number.h"     // IWYU pragma: export
 #include "base/random.h"     // IWYU pragma: export
 #include "base/range.h"      // IWYU pragma: export
+#include "base/readable.h"   // IWYU pragma: export
 #include "base/sets.h"       // IWYU pragma: export
 #include "base/slab.h"       // IWYU pragma: export
 #include "base/sort.h"       // IWYU pragma: export

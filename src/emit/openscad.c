@@ -76,7 +76,7 @@ static void put_rest(Text *text, const Scene *scene, const Primitive *primitive,
     put_text(text, ",%n", primitive->radius_mm);
     if (outwards)
         put_text(text, ",[%v]", *outwards);
-    if (scene->appearance.colors)
+    if (scene->appearance.meaning)
         put_text(text, ",[%c]", scene->appearance.colors[primitive->segment]);
     text_puts(text, ");\n");
 }

@@ -131,9 +131,12 @@ static void put_color_map(Text *text, const Appearance *appearance)
 /* Appends a name for a string of POV-Ray, which may hold printable ASCII. */
 static void put_quoted(Text *text, const char *name)
 {
-    for (; name && *name; name++)
-        text_printf(text, "%c",
-                    *name >= ' ' && *name <= '~' && !strchr("\"\\", *name) ? *name : '_');
+    Text plain = TEXT_INIT;
+    text_plain(&plain, name ? name : "");
+    text_puts(text, text_chars(&plain) ? "" : NULL);
+    for (const char *at = text_chars(&plain); at && *at; at++)
+        text_printf(text, "%c", *at >= ' ' && *at <= '~' && !strchr("\"\\", *at) ? *at : '_');
+    text_release(&plain);
 }
 
 static void add_scale(Values *values, const Appearance *appearance)
@@ -194,7 +197,7 @@ static Status put_geometry(Text *out, void *context, Err *err)
     add_float(&values, "green", scene->appearance.color.g);
     add_float(&values, "blue", scene->appearance.color.b);
     add_finish(&values, &scene->appearance.finish);
-    add_flag(&values, "many_colors", scene->appearance.colors != NULL);
+    add_flag(&values, "many_colors", scene->appearance.meaning != NULL);
     add_places(&values, params);
     add_scale(&values, &scene->appearance);
     add_part(&values, "frames", put_frames, geometry);
@@ -324,6 +327,17 @@ static Status put_fade(Text *out, void *context, Err *err)
     return values_expand(&values, geometry->params, "povray/fade.inc", out, err);
 }
 
+/* Colors that do not stand for values give way to a color that the user declares. */
+static Status put_tips(Text *out, void *context, Err *err)
+{
+    const PovrayGeometry *geometry = context;
+    const Appearance *appearance = &geometry->scene->appearance;
+    Values values = {0};
+    return appearance->colors && !appearance->meaning
+               ? values_expand(&values, geometry->params, "povray/tips.inc", out, err)
+               : STATUS_OK;
+}
+
 static Status put_scene(Text *out, PovrayGeometry *geometry, Err *err)
 {
     Values values = {0};
@@ -349,6 +363,7 @@ static Status put_scene(Text *out, PovrayGeometry *geometry, Err *err)
     add_part(&values, "lights", put_lights, geometry);
     add_part(&values, "graded", put_graded, geometry);
     add_part(&values, "fade", put_fade, geometry);
+    add_part(&values, "tips", put_tips, geometry);
     add_part(&values, "geometry", put_vessels, geometry);
     return values_expand(&values, params, "povray/scene.pov", out, err);
 }

@@ -1,5 +1,5 @@
-/* A page as PDF or EPS, through cairo: text as text, in subsets of the two fonts, and no date but
- * one that is always the same.
+/* A page as PDF or EPS, through cairo: text as text, in subsets of the fonts, and no date but one
+ * that is always the same.
  *
  * cairo 1.16 ignores some failed allocations and crashes by others, and it keeps the fonts for as
  * long as the process lives. It therefore runs in a process of its own. An allocation that cairo
@@ -17,8 +17,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum { REGULAR, BOLD, FACES };
 
 /* The page that is being written. The unit of the cairo context is the mm. */
 typedef struct PdfPage {
@@ -88,58 +86,66 @@ static Status put_ramp(void *context, const FigureItem *item, Err *err)
     return artwork_check_cairo(cairo_status(pdf->cairo), err);
 }
 
-/* Glyphs of one size, which cairo draws in one call. */
+/* The arrays of cairo's call for a run of glyphs. A cluster states which bytes of `text` a glyph
+ * stands for, so that viewers can search the text. */
 typedef struct GlyphRun {
-    const Glyph *glyph;
-    size_t n;
-    const char *text; /* the text of the glyphs */
-    int bytes;        /* of the text */
+    cairo_glyph_t *glyph;
+    cairo_text_cluster_t *cluster;
+    Text text;
 } GlyphRun;
 
-/* Returns the run at the beginning of `n` glyphs, whose text begins at `text`. */
-static GlyphRun first_run(const Glyph *glyph, size_t n, const char *text)
-{
-    GlyphRun run = {.glyph = glyph, .text = text};
-    while (run.n < n && glyph[run.n].scale == glyph->scale)
-        run.bytes += glyph[run.n++].bytes;
-    return run;
-}
-
-/* A cluster states which bytes of the text a glyph stands for, so that viewers can search the
- * text. */
-static Status show_run(const PdfPage *pdf, const FigureItem *item, const GlyphRun *run, Err *err)
+static Status fill_run(const FigureItem *item, const Glyph *from, size_t n, GlyphRun *run, Err *err)
 {
     const double size = item->size_pt * MM_PER_POINT;
-    cairo_glyph_t *glyph = NULL;
-    cairo_text_cluster_t *cluster = NULL;
-    Status status = STATUS_OK;
-    TRY_GOTO(mem_calloc(&glyph, run->n, sizeof *glyph, "letters", err));
-    TRY_GOTO(mem_calloc(&cluster, run->n, sizeof *cluster, "letters", err));
-    for (size_t i = 0; i < run->n; i++) {
-        const Glyph *from = &run->glyph[i];
-        glyph[i] = (cairo_glyph_t){from->index, item->box.left + from->x * size,
-                                   item->at[0].y - from->rise * size};
-        cluster[i] = (cairo_text_cluster_t){from->bytes, 1};
+    TRY(mem_calloc(&run->glyph, n, sizeof *run->glyph, "letters", err));
+    TRY(mem_calloc(&run->cluster, n, sizeof *run->cluster, "letters", err));
+    for (size_t i = 0; i < n; i++) {
+        const size_t before = run->text.length;
+        text_put_character(&run->text, from[i].letter);
+        run->glyph[i] = (cairo_glyph_t){from[i].index, item->box.left + from[i].x * size,
+                                        item->at[0].y - from[i].rise * size};
+        run->cluster[i] = (cairo_text_cluster_t){(int)(run->text.length - before), 1};
     }
-    cairo_set_font_face(pdf->cairo, pdf->face[item->bold ? BOLD : REGULAR]);
-    cairo_set_font_size(pdf->cairo, size * run->glyph->scale);
-    cairo_show_text_glyphs(pdf->cairo, run->text, run->bytes, glyph, (int)run->n, cluster,
-                           (int)run->n, 0);
+    return text_check(&run->text, err);
+}
+
+/* Draws letters as paths, so that a halo is no text. */
+static void fill_outlined(cairo_t *cairo, const GlyphRun *run, int n, double width_mm)
+{
+    cairo_set_line_width(cairo, width_mm);
+    cairo_set_line_join(cairo, CAIRO_LINE_JOIN_ROUND);
+    cairo_glyph_path(cairo, run->glyph, n);
+    cairo_stroke_preserve(cairo);
+    cairo_fill(cairo);
+    cairo_set_line_join(cairo, CAIRO_LINE_JOIN_MITER);
+}
+
+static Status show_run(const PdfPage *pdf, const FigureItem *item, const Glyph *from, size_t n,
+                       Err *err)
+{
+    GlyphRun run = {.text = TEXT_INIT};
+    Status status;
+    TRY_GOTO(fill_run(item, from, n, &run, err));
+    cairo_set_font_face(pdf->cairo, pdf->face[from->face]);
+    cairo_set_font_size(pdf->cairo, item->size_pt * MM_PER_POINT * from->scale);
+    if (item->outline_mm > 0)
+        fill_outlined(pdf->cairo, &run, (int)n, item->outline_mm);
+    else
+        cairo_show_text_glyphs(pdf->cairo, text_chars(&run.text), (int)run.text.length, run.glyph,
+                               (int)n, run.cluster, (int)n, 0);
 done:
-    free(glyph);
-    free(cluster);
+    free(run.glyph);
+    free(run.cluster);
+    text_release(&run.text);
     return status;
 }
 
 static Status show_glyphs(const PdfPage *pdf, const FigureItem *item, const Glyphs *glyphs,
                           Err *err)
 {
-    const char *text = item->text;
-    for (size_t i = 0; i < glyphs->n;) {
-        const GlyphRun run = first_run(&glyphs->glyph[i], glyphs->n - i, text);
-        TRY(show_run(pdf, item, &run, err));
-        i += run.n;
-        text += run.bytes;
+    for (size_t i = 0, n; i < glyphs->n; i += n) {
+        n = glyphs_run(glyphs, i);
+        TRY(show_run(pdf, item, &glyphs->glyph[i], n, err));
     }
     return STATUS_OK;
 }
@@ -187,7 +193,7 @@ static Status set_fonts(PdfPage *pdf, Err *err)
     cairo_font_options_destroy(options);
     for (int i = 0; i < FACES; i++) {
         pdf->face[i] = cairo_ft_font_face_create_for_ft_face(
-            fonts_face(pdf->page->fonts, i == BOLD), FT_LOAD_NO_HINTING);
+            fonts_face(pdf->page->fonts, (FontFace)i), FT_LOAD_NO_HINTING);
         if (failed == CAIRO_STATUS_SUCCESS)
             failed = cairo_font_face_status(pdf->face[i]);
     }

@@ -1,4 +1,5 @@
-/* One table of options for all formats; which format takes which is treeio's matter. */
+/* The options of all tree formats are one table; treeio.c refuses an option that the format of the
+ * file does not use. */
 #include "options/reading.h"
 
 #include "treeio/treeio.h"

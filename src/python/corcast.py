@@ -103,6 +103,7 @@ def _library_paths():
         yield pathlib.Path(os.environ["CORCAST_LIBRARY"])
         return
     yield here / name
+    yield here / "lib" / name                      # a wheel
     yield here.parent.parent / name                # PREFIX/lib/python3/dist-packages/corcast.py
     yield here.parent.parent / "build" / name      # src/python/corcast.py of a source tree
     yield pathlib.Path(sys.prefix) / "lib" / name

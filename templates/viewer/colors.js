@@ -157,11 +157,19 @@ export function lifted(bytes, ground) {
 
 // ---- kinds of scales ----------------------------------------------------------------------------
 
-// Returns the kind of scale for a field: the first that is not crowded, or if all are crowded the least crowded.
-// Integers have a linear scale. Values of 0, which a logarithmic scale cannot show, rule it out.
+function spreadOf(field, map, kind) { return new Scale(field, map, kind, rangeOf(field, kind)).spread; }
+
+// Returns true if most values of a field share few of the colors of a linear scale.
+function isSkewed(field, map) {
+  const { sorted, whole } = field;
+  return !whole && sorted[0] < sorted[sorted.length - 1] && spreadOf(field, map, "linear") < CROWDED;
+}
+
+// Returns the kind of scale for a field: if the field is skewed, the first kind that is not crowded, or if all are
+// crowded the least crowded. Values of 0, which a logarithmic scale cannot show, rule it out.
 export function chooseKind(field, map) {
-  if (field.whole) return "linear";
-  const spread = (kind) => new Scale(field, map, kind, rangeOf(field, kind)).spread;
+  if (!isSkewed(field, map)) return "linear";
+  const spread = (kind) => spreadOf(field, map, kind);
   const kinds = Object.keys(KINDS).filter((kind) => kind !== "log" || field.sorted[0] > 0);
   return kinds.find((kind) => spread(kind) >= CROWDED) ||
     kinds.reduce((best, kind) => (spread(kind) > spread(best) ? kind : best));
@@ -170,11 +178,9 @@ export function chooseKind(field, map) {
 const percent = (part) => `${number(100 * part, part < 0.1 ? 1 : 2)}\u00a0%`;
 
 // Returns the sentence that says why a field has its scale, or "" if the field is not skewed.
-export function reason(scale) {
-  const { field, map, kind, counts } = scale;
-  const { spread } = new Scale(field, map, "linear", rangeOf(field, "linear"));
-  if (counts || field.whole || !(spread < CROWDED)) return "";
-  const most = `${percent(MIDDLE)} of the values fill ${percent(spread)} of`;
+export function reason({ field, map, kind }) {
+  if (!isSkewed(field, map)) return "";
+  const most = `${percent(MIDDLE)} of the values fill ${percent(spreadOf(field, map, "linear"))} of`;
   return kind === "linear" ? `Skewed: ${most} this scale.` : `${KINDS[kind]}, because ${most} a linear scale.`;
 }
 

@@ -123,7 +123,7 @@ function makeScale() {
   if (map.separate && !field.whole) map = tree.maps.find(({ separate }) => !separate);
   map = { ...map, bytes: visible(map.bytes) };
   const made = start && start.field === field.name && start.kind;
-  const asked = [state.kind, made].find((kind) => kind in KINDS && hasKind(field, kind));
+  const asked = [state.kind, made].find((kind) => Object.hasOwn(KINDS, kind) && hasKind(field, kind));
   const kind = map.separate && field.whole ? "linear" : asked || chooseKind(field, map);
   return new Scale(field, map, kind, made === kind ? [start.low, start.high] : rangeOf(field, kind));
 }

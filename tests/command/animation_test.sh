@@ -184,7 +184,7 @@ test_a_turn_shows_the_whole_tree_from_all_sides() {
     make_pulse
     for projection in orthographic perspective; do
         # shellcheck disable=SC2086
-        run_ok corcast render --exact tree.swc --turntable 5 --projection $projection $SMALL -o t%d.ppm
+        run_ok corcast render --exact tree.swc --background white --turntable 5 --projection $projection $SMALL -o t%d.ppm
         for k in 1 2 3 4 5; do
             expect_border_free t$k.ppm
         done

@@ -80,7 +80,7 @@ test_an_eps_shows_what_the_pdf_shows() {
 test_panels_of_one_scale_show_a_tree_in_one_size() {
     run_ok corcast grow --terminals 30 --seed 3 --quiet -o t.swc
     printf '[figure]\nsize = 120mmx60mm\ndpi = 100\ncolumns = 2\nletters = none\n[panels]\ntree = t.swc\n' >f.ini
-    printf 'look = data\ncolor-by = radius\n[panel a]\n[panel b]\nlegend = on\n' >>f.ini
+    printf 'look = data\nbackground = white\ncolor-by = radius\n[panel a]\n[panel b]\nlegend = on\nlegend-at = right\n' >>f.ini
     for scale in off on; do
         run_ok corcast figure f.ini --quiet --same-scale $scale -o $scale.png
         for column in 0 236; do
@@ -209,7 +209,7 @@ test_leaders_lie_on_paper_and_can_be_left_out() {
     local drawn
     run_ok corcast grow --terminals 300 --seed 4 --quiet -o t.swc
     for look in 'look = journal' 'model = isosurface'; do
-        printf '[figure]\nsize = 600x600\n[panel a]\ntree = t.swc\n%s\n[inset i]\nof = a\nat = 0.4,0.45\nplace = 0.85,0.85\nwidth = 12\n' "$look" >on.ini
+        printf '[figure]\nsize = 600x600\n[panel a]\ntree = t.swc\nbackground = white\n%s\n[inset i]\nof = a\nat = 0.4,0.45\nplace = 0.85,0.85\nwidth = 12\n' "$look" >on.ini
         { cat on.ini; echo 'leaders = off'; } >off.ini
         run_ok corcast figure on.ini --quiet -o on.png
         run_ok corcast figure off.ini --quiet -o off.png
@@ -232,7 +232,7 @@ expect_inks() {
 test_black_type_is_black_ink_alone() {
     local ink
     run_ok corcast grow --terminals 30 --seed 3 --quiet -o t.swc
-    printf '[figure]\nsize = 60mmx40mm\ndpi = 150\n[panel a]\ntree = t.swc\ncolor-by = radius\nlegend = on\nscale-bar = 10\n' >f.ini
+    printf '[figure]\nsize = 60mmx40mm\ndpi = 150\n[panel a]\ntree = t.swc\nbackground = white\ncolor-by = radius\nlegend = on\nscale-bar = 10\n' >f.ini
     run_ok corcast figure f.ini --quiet --cmyk-profile $CMYK -o f.pdf
     cp f.pdf again.pdf
     run_ok corcast figure f.ini --quiet --threads 1 --cmyk-profile $CMYK -o f.pdf
@@ -246,7 +246,7 @@ test_black_type_is_black_ink_alone() {
         [ "$(pnmnoraw plane.pgm | tail -n +4 | tr -s ' ' '\n' | sort -u | wc -l)" -gt 20 ] || fail "expected shades of $ink"
     done
     run_ok corcast figure f.ini --quiet --cmyk-profile $CMYK -o f.tif
-    run_ok corcast render t.swc --quiet --size 60mmx40mm --dpi 150 --scale-bar 10 --cmyk-profile $CMYK --bits 16 -o r.tif
+    run_ok corcast render t.swc --quiet --size 60mmx40mm --dpi 150 --scale-bar 10 --background white --cmyk-profile $CMYK --bits 16 -o r.tif
     for file in f.tif r.tif; do
         for ink in 0 1 2 3; do
             oiiotool -iconfig oiio:RawColor 1 $file --ch $ink --invert -d uint8 -o plane.pgm

@@ -11,7 +11,7 @@ test_looks_are_listed_with_what_povray_does_not_draw() {
     run_ok corcast looks
     expect_stdout '^clinical	also in POV-Ray	the bright red of textbooks'
     expect_stdout '^journal	in POV-Ray without outlines and halos	true colors'
-    expect_stdout '^depth	in POV-Ray without halos and fading with depth	'
+    expect_stdout '^depth	in POV-Ray without halos	'
     [ "$(corcast looks | wc -l)" = "$(ls "$REPO"/templates/looks | wc -l)" ] || fail "expected every look to be listed"
     ! corcast looks | awk -F '	' 'NF != 3 || $3 == ""' | grep . || fail "expected every look to say what it is"
 }
@@ -101,14 +101,15 @@ test_colors_run_with_the_radius_from_the_color_of_the_tips() {
 test_povray_does_without_the_occlusion_of_a_look() {
     make_crossing
     run_ok corcast scene tree.swc --input-unit mm --look atlas -o tree.pov
-    expect_sentence '--look atlas: only corcast draws .*ambient occlusion; the scene omits them$'
-    grep -q '^// Not in this scene, .*ambient occlusion$' tree.pov || fail "expected the header to say what is not in the scene"
+    expect_sentence '--look atlas: only corcast draws ambient occlusion; the scene omits them$'
+    grep -q '^// Not in this scene, .*: ambient occlusion$' tree.pov || fail "expected the header to say what is not in the scene"
+    grep -q 'Fade_Farthest = 0.6' tree.pov || fail "expected the fade of the look"
     grep -q 'area_light' tree.pov || fail "expected the soft light of the look"
     run corcast verify tree.swc --quiet --look atlas --ao 8 -o report
     expect_status 2
     expect_sentence '--ao cannot be verified'
     run_ok corcast render tree.swc --input-unit mm --size 30x30 --look atlas --exact -o exact.ppm
-    expect_sentence '--look atlas: only corcast draws .*; --exact omits them$'
+    expect_sentence '--look atlas: only corcast draws a graded background; --exact omits them$'
     run corcast render tree.swc --quiet --look xray --exact -o no.png
     expect_status 2
     expect_sentence '--look xray: POV-Ray cannot draw an x-ray'
@@ -118,7 +119,7 @@ test_povray_does_without_the_occlusion_of_a_look() {
 test_halos_part_vessels_whatever_the_model() {
     local model
     make_crossing
-    sed 's/^width = 2.5/width = 40/' "$REPO/templates/looks/journal.ini" >wide.ini
+    sed 's/^width = 2$/width = 40/; s/^radii = 0.8/radii = 1.5/' "$REPO/templates/looks/journal.ini" >wide.ini
     sed '/^\[halo\]/,$d' wide.ini >bare.ini
     for model in $(corcast models | cut -f 1 | grep -v mesh); do
         run_ok corcast render tree.swc --quiet --model "$model" --size 64x64 --background 0,0,1 --look ./wide.ini -o with.ppm
@@ -140,10 +141,10 @@ test_an_xray_shows_lengths_alone() {
     expect_sentence '--color-by has no effect: --look xray uses two fixed colors'
     run corcast render tree.swc --look xray --ao 3 -o no.png
     expect_status 2
-    expect_sentence '^corcast render: --ao is of lit walls, and an x-ray has none$'
+    expect_sentence '^corcast render: --ao has no effect on an x-ray, which has no light$'
     run corcast render tree.swc --look xray --shadows -o no.png
     expect_status 2
-    expect_sentence '^corcast render: --shadows are of lights, and an x-ray has none$'
+    expect_sentence '^corcast render: --shadows has no effect on an x-ray, which has no light$'
     run corcast scene tree.swc --quiet --look xray -o no.pov
     expect_status 2
     expect_sentence '--look xray: POV-Ray cannot draw an x-ray; use render'

@@ -368,7 +368,7 @@ test_options_without_effect_are_refused() {
 --hits is for --model isosurface|render tree.swc -o x.png --hits povray
 --erf is for --model isosurface|scene tree.swc -o x.pov --model blob --erf exact
 --cell-beta is for --model isosurface|verify tree.swc -o x --cell-beta 4
---ids is for --model isosurface and blob; other scenes have ids anyway|scene tree.swc -o x.pov --ids on
+--ids is for --model isosurface and blob; other models need no extra data for ids|scene tree.swc -o x.pov --ids on
 --bits: .16.: a .pfm always stores floats of 32 bits|render tree.swc -o x.pfm --bits 16
 --antialias is for --plane color|povray tree.pov --size 9x9 -o x.png --plane id --antialias 3
 --hematocrit is for --viscosity-law pries|grow --terminals 3 -o x.swc --hematocrit 0.3

@@ -242,7 +242,7 @@ test_a_switch_without_a_value_is_on() {
     run_ok corcast render --exact tree.swc --size 60x45 --shadows off -o off.ppm
     expect_same flag.ppm on.ppm
     expect_same last.ppm on.ppm
-    expect_differing 20 50 on.ppm off.ppm
+    expect_differing 100 300 on.ppm off.ppm
 }
 
 # expect_same_by_former_name COMMAND OPTION FORMER VALUE OUTPUT ARGUMENT...
@@ -276,6 +276,21 @@ test_former_names_of_options_work_and_are_not_in_the_help() {
         run_ok corcast certify grown.swc --$option
         expect_stdout 'rules of length'
     done
+}
+
+test_a_mistyped_extension_of_an_output_is_corrected() {
+    local command written meant
+    while read -r command written meant; do
+        run corcast "$command" "$DATA/bifurcation.swc" -o "x.$written"
+        expect_status 2
+        expect_sentence "did you mean \\.$meant\\?\$"
+    done <<<'render pgn png
+export stll stl
+scene pvo pov
+diagram svgg svg'
+    run corcast convert "$DATA/bifurcation.swc" x.vtpp
+    expect_status 2
+    expect_sentence 'did you mean \.vtp\?$'
 }
 
 run_tests "$@"

@@ -157,6 +157,9 @@ const because = (percent) => `because 80\u00a0% of the values fill ${percent}\u0
 kind(hundred((k) => 3 * 10 ** (k / 10)), "log", "logarithmic, " + because(10));
 kind(hundred((k) => (k ? 3 + k / 1000 : -90)), "percentiles", "2nd to 98th percentile, " + because(0.09));
 kind(field([1, 1, 1, 1, 1, 1, 1, 1, 1, 900], true), "linear", "");
+kind(field([2.5, 2.5, 2.5]), "linear", "");
+kind(field([2.5, 2.5, 2.5, 2.5, 2.5, 2.5, 2.5, 2.5, 2.5, 2.5, 2.5, 9]), "linear",
+  "Skewed: 80\u00a0% of the values fill 0\u00a0% of this scale.");
 expect("percentiles", rangeOf(hundred((k) => 2.5 * k), "percentiles"), [5, 245]);
 expect("log range", rangeOf(field([0, 0, 0.25, 7]), "log"), [0.25, 7]);
 END

@@ -114,7 +114,8 @@ static void say_result(const MeshResult *made, const Talk *talk)
     if (report->n_near)
         talk_note(talk, "%zu pair%s of unconnected vessels almost touch", report->n_near,
                   report->n_near == 1 ? "" : "s");
-    talk_note(talk, "%zu triangles enclose %.6g mm^3", made->mesh.n_triangles, report->volume_mm3);
+    talk_note(talk, "%zu triangles enclose %s mm\xC2\xB3", made->mesh.n_triangles,
+              READABLE(report->volume_mm3, 6));
     if (made->print && !made->print->params.lids)
         mesh_say_print(made, talk);
 }

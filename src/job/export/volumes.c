@@ -238,8 +238,8 @@ static void say_result(const Volumes *made, const Talk *talk)
         talk_warn(talk, "%zu label%s no voxel; each was given a voxel that it touches",
                   report->n_given_voxels,
                   report->n_given_voxels == 1 ? " dominates" : "s dominate");
-    talk_note(talk, "%lld voxels contain vessels, %.6g mm^3", (long long)report->filled,
-              report->volume_mm3);
+    talk_note(talk, "%lld voxels contain vessels, %s mm\xC2\xB3", (long long)report->filled,
+              READABLE(report->volume_mm3, 6));
 }
 
 static json_t *json_vector(Vec3 v)

@@ -241,7 +241,7 @@ static FigureColor ink_on(FigureColor paper)
 }
 
 /* In the line above the panel, or in its upper left corner: at the edge where nobody sees one. */
-static void put_letter(Figure *figure, size_t i, const char *letter, FigureColor paper)
+static Status put_letter(Figure *figure, size_t i, const char *letter, FigureColor paper, Err *err)
 {
     const FigureOptions *options = figure->options;
     const bool above = figure->places[i].title_mm > 0;
@@ -258,7 +258,12 @@ static void put_letter(Figure *figure, size_t i, const char *letter, FigureColor
                              .size_pt = options->text_pt + 1,
                              .bold = true,
                              .color = above ? ink_on(paper) : annotation_ink(inside)};
-    figure_add_text(&figure->sheet.page, &text);
+    FigurePage *page = &figure->sheet.page;
+    const PlacedPicture picture = {&figure->panels[i].scene, box};
+    figure_add_text(page, &text);
+    TRY(figure_check(page, err));
+    return placing_add_halos(page, page->n - 1, &picture, annotation_halo_width(options->text_pt),
+                             err);
 }
 
 static void put_title(Figure *figure, size_t i, FigureColor ink)
@@ -301,7 +306,7 @@ static void put_image(Figure *figure, size_t i)
         (FigureBox){x - half_width, y - half_height, x + half_width, y + half_height});
 }
 
-/* Draws over the panel, except its letter, which is the page's. */
+/* Adds a panel, its insets, and its annotations. The letter is the page's. */
 static Status put_panel(Figure *figure, size_t i, int number, Err *err)
 {
     Panel *panel = &figure->panels[i];
@@ -323,8 +328,9 @@ static Status put_panel(Figure *figure, size_t i, int number, Err *err)
     const char *shown = annotation.letter ? annotation.letter : letter;
     FigureColor paper = figure->sheet.page.background;
     if (annotation.letter || letters != LETTERS_NONE)
-        put_letter(figure, i, shown, paper);
+        TRY(put_letter(figure, i, shown, paper, err));
     put_title(figure, i, figure->ink);
+    TRY(figure_put_insets(figure, i, err));
     annotation.letter = NULL;
     return annotation_put(&annotation, &panel->scene, box, &figure->sheet.page, err);
 }
@@ -354,7 +360,15 @@ static Status put_text(Figure *figure, const Section *section, Err *err)
                              .bold = options->bold,
                              .align = options->align,
                              .color = color_of(options->color)};
-    figure_add_text(&figure->sheet.page, &text);
+    FigurePage *page = &figure->sheet.page;
+    figure_add_text(page, &text);
+    TRY(figure_check(page, err));
+    for (size_t i = 0; i < figure->plan.n; i++) {
+        const PlacedPicture picture = {&figure->panels[i].scene, figure_panel_box(figure, i)};
+        if (figure_is_panel(figure, i))
+            TRY(placing_add_halos(page, page->n - 1, &picture, annotation_halo_width(text.size_pt),
+                                  err));
+    }
     return STATUS_OK;
 }
 
@@ -388,10 +402,8 @@ static Status fill_page(Figure *figure, Err *err)
     figure->sheet.page.background = color_of(figure->options->background);
     figure->ink = ink_on(figure->sheet.page.background);
     for (size_t i = 0; i < figure->plan.n; i++)
-        if (figure_is_panel(figure, i)) {
+        if (figure_is_panel(figure, i))
             TRY(put_panel(figure, i, number++, err));
-            TRY(figure_put_insets(figure, i, err));
-        }
     for (size_t i = 0; i < figure->plan.n; i++)
         if (figure->plan.sections[i]->kind == SECTION_TEXT)
             TRY(put_text(figure, figure->plan.sections[i], err));
@@ -502,9 +514,10 @@ static Status check_output(const FigureOptions *options, Err *err)
                                         "tiff", "jpg", "jpeg", NULL};
     if (is_one_of(file_extension(options->output), known))
         return STATUS_OK;
-    return err_set(err, STATUS_USAGE,
-                   "-o: '%s' does not end in .pdf, .eps, .svg, .png, .tif or .jpg",
-                   options->output);
+    (void)err_set(err, STATUS_USAGE,
+                  "-o: '%s' does not end in .pdf, .eps, .svg, .png, .tif or .jpg", options->output);
+    suggestion_add_extension(file_extension(options->output), err);
+    return STATUS_USAGE;
 }
 
 static Status make_figure(Figure *figure, const char *recipe, Err *err)

@@ -15,7 +15,9 @@ static const Option panel_rows[] = {
      .otherwise = "",
      .argument = "T.swc",
      .help = "tree file that the panel shows"},
-    {.name = "title", SETS(TEXT, PanelOptions, title), .help = "line of text above the panel"},
+    {.name = "title",
+     SETS(TEXT, PanelOptions, title),
+     .help = "line of text above the panel; *r* is italic, _{w} a subscript, ^{-3} a superscript"},
     {.name = "image",
      SETS(TEXT, PanelOptions, image),
      .otherwise = "",
@@ -65,6 +67,11 @@ static const Option inset_rows[] = {
      FROM_TO(1e-6, 1e7),
      .unit = "mm",
      .help = "draw a scale bar in the inset that represents this length of the tree"},
+    {.name = "scale-bar-at",
+     SETS(CHOICE, InsetOptions, scale_bar_at),
+     .choices = corner_names,
+     .help = "corner of the inset's scale bar; emptiest selects the corner where it covers the "
+             "least vessels"},
     {.name = "leaders",
      SETS(SWITCH, InsetOptions, leaders),
      .help = "draw two lines from the magnified part to the inset; they pass behind vessels"},
@@ -74,7 +81,9 @@ static const char *const aligns[] = {
     [ALIGN_LEFT] = "left", [ALIGN_CENTER] = "center", [ALIGN_RIGHT] = "right", NULL};
 
 static const Option text_rows[] = {
-    {.name = "text", SETS(TEXT, TextOptions, text), .help = "one line of text"},
+    {.name = "text",
+     SETS(TEXT, TextOptions, text),
+     .help = "one line of text; *r* is italic, _{w} a subscript, ^{-3} a superscript"},
     {.name = "at",
      SETS(VECTOR, TextOptions, at),
      GIVEN(TextOptions, has_at),

@@ -280,8 +280,8 @@ Status coloring_by_radius(const ColoredTree *tree, const Look *look, Appearance 
     free(appearance->meaning);
     appearance->meaning = NULL;
 done:
-    if (status == STATUS_INPUT)
-        err_prefix(err, "%s: ", tree->path);
+    if (status == STATUS_INPUT) /* no segment has a radius, so that there is no geometry either */
+        status = stage_appearance(look, NULL, NULL, appearance, err);
     fieldvalues_release(&radii);
     colormap_release(&map);
     return status;

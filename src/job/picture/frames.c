@@ -26,8 +26,10 @@ Status frames_check_output(const char *path, bool planes, Err *err)
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
         if (strcmp(file_extension(path), known[i]) == 0)
             return STATUS_OK;
-    return err_set(err, STATUS_USAGE,
-                   "-o: '%s' does not end in .png, .ppm, .tif, .jpg, .exr or .pfm", path);
+    (void)err_set(err, STATUS_USAGE,
+                  "-o: '%s' does not end in .png, .ppm, .tif, .jpg, .exr or .pfm", path);
+    suggestion_add_extension(file_extension(path), err);
+    return STATUS_USAGE;
 }
 
 const Range bits_range = {8, 16};

@@ -210,6 +210,7 @@ static const Option rows[] = {
      SETS(LOOKUP, PictureOptions, look),
      .group = GROUP_LIGHT,
      .list = "looks",
+     .otherwise = "cast; with --color-by data, whose colors are those of the legend",
      .when = WHEN(VESSELS),
      .help = "colors, finish and lights: the name of a look, or the path of a file of your own "
              "(with a '/')"},
@@ -259,11 +260,13 @@ static ConditionSet unmet(const void *set, const Parsed *parsed)
 }
 
 /* Reads the look, and takes from it what no option specifies. A height needs an orthographic
- * picture, so it overrules the look as well. */
+ * picture, so it overrules the look as well. Colors that mean something must be those of the
+ * legend, so a field has a look of its own. */
 static Status settle(void *set, const Parsed *parsed, Err *err)
 {
     PictureOptions *options = set;
-    (void)parsed;
+    if (options->coloring.field && !options_said(parsed, "look"))
+        options->look = "data";
     TRY(coloring_read_look(options->look, &options->look_file, err));
     const LookOptions *proposed = &options->look_file.options;
     if (!options->has_shadows)

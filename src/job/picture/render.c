@@ -157,7 +157,7 @@ static Status fill_sheet(Rendering *r, Err *err)
     const PictureOptions *picture = &r->options->picture;
     FigurePage *page = &r->sheet.page;
     Text description = TEXT_INIT;
-    sheet_begin(&r->sheet, picture->size.pixels, annotation_dpi(picture));
+    sheet_begin(&r->sheet, picture->size.pixels, annotation_dpi(&picture->size));
     picture_description(&r->scene.geometry, r->source.of.path, &description);
     Status status = sheet_describe(&r->sheet, &description, r->provenance, err);
     text_release(&description);
@@ -372,6 +372,7 @@ const Command command_render = {
     .set_defaults = render_set_defaults,
     .tables = {{&render_table, 0},
                {&shard_table, offsetof(RenderOptions, shard)},
+               {&legend_table, offsetof(RenderOptions, annotation)},
                {&annotation_table, offsetof(RenderOptions, annotation)},
                PICTURE_TABLES(RenderOptions, picture),
                {&press_table, offsetof(RenderOptions, press)}},

@@ -186,11 +186,7 @@ static Status check_method(const RenderOptions *options, Err *err)
 /* What the file holds: 8 bits of a page, and nothing over floats. */
 static Status check_file(const RenderOptions *options, Err *err)
 {
-    if (image_traits(options->output).floats && annotation_is_any(&options->annotation))
-        return err_set(
-            err, STATUS_USAGE,
-            "-o: %s stores measured values and cannot have a legend, scale bar or letter",
-            strcmp(file_extension(options->output), "exr") ? "a .pfm" : "an .exr");
+    TRY(annotation_check_file(&options->annotation, options->output, err));
     return press_check(&options->press, options->output, err);
 }
 
@@ -297,7 +293,8 @@ Status render_make_scene(RenderOptions *options, Parsed *parsed, const PictureSo
     TRY(animation_count(animation, &scene->appearance, err));
     TRY(pick_only(options->shard.only, animation, err));
     if (options->annotation.legend) {
-        TRY(annotation_make_room(&options->annotation, fonts, &scene->appearance, picture, err));
+        TRY(annotation_make_room(&options->annotation, fonts, &scene->appearance, &picture->size,
+                                 picture->stage.room, err));
         TRY(picture_view(picture, source, &scene->geometry, &scene->view, err));
     }
     if (animation->kind == ANIMATION_TURN)

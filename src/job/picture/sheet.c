@@ -30,15 +30,23 @@ Status sheet_describe(Sheet *sheet, Text *description, const char *command, Err 
 
 void sheet_say(const Sheet *sheet, const Talk *talk)
 {
-    Text boxed = TEXT_INIT, substituted = TEXT_INIT;
-    figure_put_missing(&sheet->page, false, &boxed);
-    figure_put_missing(&sheet->page, true, &substituted);
+    Text boxed = TEXT_INIT, fallback = TEXT_INIT, collisions = TEXT_INIT;
+    figure_put_missing(&sheet->page, true, &boxed);
+    figure_put_missing(&sheet->page, false, &fallback);
+    figure_put_collisions(&sheet->page, &collisions);
     if (boxed.length)
         talk_warn(talk, "%s", text_chars(&boxed));
-    if (substituted.length)
-        talk_note(talk, "%s", text_chars(&substituted));
+    if (fallback.length)
+        talk_note(talk, "%s", text_chars(&fallback));
+    if (sheet->page.unclosed)
+        talk_warn(talk,
+                  "the text '%.60s' has a group _{ or ^{ without }: the group ends with the text",
+                  sheet->page.unclosed);
+    if (collisions.length)
+        talk_warn(talk, "%s", text_chars(&collisions));
+    text_release(&collisions);
     text_release(&boxed);
-    text_release(&substituted);
+    text_release(&fallback);
 }
 
 void sheet_release(Sheet *sheet)

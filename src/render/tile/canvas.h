@@ -4,8 +4,8 @@
  *     TRY(canvas_init(&drawing, frame, &eye, &canvas, err));
  *     TRY(canvas_pass(&canvas, false, 1, draw_rows, context, err));  calls draw_rows per row of
  * tiles, which calls canvas_shade and canvas_draw per tile canvas_release(&canvas); */
-#ifndef CORCAST_RENDER_CANVAS_H
-#define CORCAST_RENDER_CANVAS_H
+#ifndef CORCAST_RENDER_TILE_CANVAS_H
+#define CORCAST_RENDER_TILE_CANVAS_H
 
 #include "render/light/resample.h"
 #include "render/planes.h"

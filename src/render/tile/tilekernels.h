@@ -1,8 +1,8 @@
 /* Kernels that process several samples of a tile at once, compiled once for each kind of processor.
  * A kernel reads and writes whole blocks of as many samples as the processor has lanes, at most 16.
  * Array elements of samples that hit nothing are undefined and may be overwritten. */
-#ifndef CORCAST_RENDER_TILEKERNELS_H
-#define CORCAST_RENDER_TILEKERNELS_H
+#ifndef CORCAST_RENDER_TILE_TILEKERNELS_H
+#define CORCAST_RENDER_TILE_TILEKERNELS_H
 
 #include "image/image.h"
 #include "render/job.h"
