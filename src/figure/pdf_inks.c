@@ -14,7 +14,7 @@
 /* The file that is converted. */
 typedef struct PdfFile {
     const Inks *inks;
-    const char *chars; /* followed by a zero byte, as all bytes below */
+    const char *pdf; /* followed by a zero byte, as all bytes below */
     size_t length;
     Text out;
 } PdfFile;
@@ -246,12 +246,12 @@ typedef struct PdfObject {
 static Status put_objects(PdfFile *file, PdfObject *object, size_t n, Err *err)
 {
     for (size_t i = 1; i < n; i++) {
-        const char *at = file->chars + object[i].from, *body = strstr(at, " obj\n");
+        const char *at = file->pdf + object[i].from, *body = strstr(at, " obj\n");
         size_t next = file->length;
         for (size_t k = 1; k < n; k++)
             if (object[k].from > object[i].from && object[k].from < next)
                 next = object[k].from;
-        const char *end = file->chars + next;
+        const char *end = file->pdf + next;
         while (body && end > body && strncmp(end, "endobj", strlen("endobj")) != 0)
             end--;
         if (!body || end <= body)
@@ -289,18 +289,18 @@ static Status convert(PdfFile *file, Err *err)
     const char *table = NULL, *first, *trailer;
     size_t n = 0, at = 0;
     Status status;
-    for (const char *c = file->chars + file->length; c > file->chars && !table; c--)
+    for (const char *c = file->pdf + file->length; c > file->pdf && !table; c--)
         table = strncmp(c, "startxref\n", strlen("startxref\n")) == 0 ? c : NULL;
     if (!table || sscanf(table, "startxref %zu", &at) != 1 || at >= file->length ||
-        sscanf(file->chars + at, "xref 0 %zu", &n) != 1 || n < 2 || n > file->length)
+        sscanf(file->pdf + at, "xref 0 %zu", &n) != 1 || n < 2 || n > file->length)
         return broken("it has no table", err);
-    first = strchr(strchr(file->chars + at, '\n') + 1, '\n') + 1;
+    first = strchr(strchr(file->pdf + at, '\n') + 1, '\n') + 1;
     trailer = strstr(first, "trailer");
     TRY(mem_calloc(&object, n + 1, sizeof *object, "the page", err));
     for (size_t i = 0; i < n; i++) /* a line of the table has 20 bytes */
         object[i].from = strtoul(first + 20 * i, NULL, 10);
-    text_append(&file->out, file->chars,
-                (size_t)(strchr(strchr(file->chars, '\n') + 1, '\n') + 1 - file->chars));
+    text_append(&file->out, file->pdf,
+                (size_t)(strchr(strchr(file->pdf, '\n') + 1, '\n') + 1 - file->pdf));
     TRY_GOTO(put_objects(file, object, n, err));
     put_table(file, object, n, trailer ? trailer : "");
     status = text_check(&file->out, err);
@@ -311,8 +311,7 @@ done:
 
 Status pdf_to_inks(const Inks *inks, Text *pdf, Err *err)
 {
-    PdfFile file = {
-        .inks = inks, .chars = text_chars(pdf), .length = pdf->length, .out = TEXT_INIT};
+    PdfFile file = {.inks = inks, .pdf = text_chars(pdf), .length = pdf->length, .out = TEXT_INIT};
     Status status = convert(&file, err);
     if (status == STATUS_OK) {
         text_clear(pdf);
