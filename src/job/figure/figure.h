@@ -28,7 +28,7 @@ typedef struct FigureOptions {
 typedef struct Place {
     int left, top, width, height;
     double title_mm; /* height of the line above the panel */
-    char *tree;      /* path of the panel's tree; NULL: the recipe makes the tree; owned */
+    char *path;      /* of the panel's tree or image; NULL: the recipe makes the tree; owned */
 } Place;
 
 /* A figure on its page. Zero it before use; release it with figure_done. */
@@ -46,7 +46,8 @@ typedef struct Figure {
     Place *places;
     Panel *panels;
     PanelInset *insets;
-    FigureColor ink; /* black or white, whichever contrasts with the background */
+    FigureArtwork *artworks; /* the images of panels that show no tree */
+    FigureColor ink;         /* black or white, whichever contrasts with the background */
 } Figure;
 
 /* Reads the recipe that is the first operand, draws its panels, and fills the page. The recipe is a
@@ -69,6 +70,13 @@ void figure_done(Figure *figure);
 static inline bool figure_is_panel(const Figure *figure, size_t i)
 {
     return figure->plan.sections[i]->kind == SECTION_PANEL;
+}
+
+/* Returns true if section `i` is a panel that shows a tree. */
+static inline bool figure_has_tree(const Figure *figure, size_t i)
+{
+    const Section *section = figure->plan.sections[i];
+    return section->kind == SECTION_PANEL && !((const PanelOptions *)section->own.options)->image;
 }
 
 /* Places the panels in the cells of the grid, and allocates panels and insets. Errors:
