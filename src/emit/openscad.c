@@ -117,7 +117,7 @@ Status openscad_write(const EmitParams *params, EmitOutput *to, Err *err)
 {
     const Scene *scene = params->scene;
     Parametric made = {.scene = scene};
-    Values values = {0};
+    Values values = {.digits = params->digits};
     TRY(find_ends(&made, err));
     const Geometry *shape = &scene->geometry;
     const Box bounds = {vec3_add(shape->bounds.low, shape->origin),

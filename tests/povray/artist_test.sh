@@ -41,13 +41,16 @@ test_no_model_makes_povray_warn() {
 
 # A colored and pruned forest in the shadows of every look, and the planes that `verify` asks for.
 test_no_look_and_no_plane_makes_povray_warn() {
-    local model look plane=0
+    local model look plane=0 header
+    cp "$REPO"/templates/povray/planes.inc corcast_planes.inc
     run_ok corcast grow --quiet --terminals 40 --inlet 0,50 --inlet 0,-50 -o tree.swc
     for model in $MODELS; do
         for look in $(corcast looks | grep -v 'not in POV-Ray' | cut -f 1); do
             run_ok corcast scene tree.swc --quiet --model "$model" --look "$look" --shadows on --size 24x18 --view iso \
                 --projection perspective --color-by flow --log --classes 5 --prune-radius 0.3 -o "$model.pov"
-            draw "$model" +W24 +H18 Declare=Corcast_Plane=$((plane++ % 5))
+            header=+HIcorcast_planes.inc
+            [ $((plane % 5)) != 0 ] || header=
+            draw "$model" +W24 +H18 $header Declare=Corcast_Plane=$((plane++ % 5))
             expect_no_warning "$model"
         done
     done
