@@ -5,12 +5,18 @@
 # V=1      print the commands that run
 # JOBS     number of parallel jobs where the Makefile calls itself (default: all processors)
 # PREFIX   folder that `make install` installs into (default: /usr/local); DESTDIR goes in front of it
+# LIBDIR, PYTHONDIR   folders for the library (default: PREFIX/lib) and for corcast.py (default: PREFIX/lib/python3/dist-packages)
+# FONTS    folder that has the Liberation fonts: install links to them instead of copies
+# WERROR=1 treat warnings as errors; the checks do
 # CFLAGS, CPPFLAGS, LDFLAGS   additional flags, from the environment or the command line; they follow the Makefile's own
 
 MODE ?= release
 comma := ,
 PREFIX ?= /usr/local
 CC ?= cc
+PKG_CONFIG ?= pkg-config
+LIBDIR ?= $(PREFIX)/lib
+PYTHONDIR ?= $(PREFIX)/lib/python3/dist-packages
 JOBS ?= $(shell nproc)
 BUILD := build/$(MODE)
 Q := $(if $(V),,@)
@@ -51,8 +57,10 @@ WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion 
 	-Wpointer-arith -Wundef -Wwrite-strings
 # clang reports the standard's INFINITY and NAN, which are floats, as promotions to double.
 WARNINGS += $(if $(findstring clang,$(CC)),-Wno-double-promotion)
-# Other levels of optimisation give other warnings, so a warning is an error only with the project's own flags.
-WARNINGS += $(if $(strip $(CFLAGS)),,-Werror)
+# Only the checks treat a warning as an error, and only with the project's own flags: other compilers and other levels of
+# optimisation give other warnings, and a package must build with them.
+check check-all check-quick asan tsan: export WERROR := yes
+WARNINGS += $(if $(WERROR),$(if $(strip $(CFLAGS)),,-Werror))
 OPTIMISE_release := -O2 -g
 OPTIMISE_debug := -O0 -g3
 OPTIMISE_asan := -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
@@ -66,11 +74,13 @@ VECTORS_release := -O3 -fno-math-errno -fno-trapping-math
 PACKAGES := libpng libdeflate libisal zlib libtiff-4 libjpeg libwebp lcms2 jansson expat libmd cairo-ft freetype2 liblz4
 # `view` loads SDL 2 when it opens a window; only its header is needed here.
 HEADERS := sdl2
-PACKAGE_LIBS := $(shell pkg-config --exists $(HEADERS) && pkg-config --libs $(PACKAGES) 2>/dev/null)
-# libnifti2-dev has no pkg-config file, and OpenEXR's links its C++ libraries as well.
-NIFTI := /usr/include/nifti
-EXR := /usr/include/OpenEXR
-PLAIN_HEADERS := $(and $(wildcard $(NIFTI)/nifti2_io.h),$(wildcard $(EXR)/openexr.h))
+PACKAGE_LIBS := $(shell $(PKG_CONFIG) --exists $(HEADERS) && $(PKG_CONFIG) --libs $(PACKAGES) 2>/dev/null)
+# libnifti2-dev has no pkg-config file, and OpenEXR's links its C++ libraries as well. The headers of NIfTI are in a folder
+# `nifti` on the compiler's path, and include each other as if that folder were on the path, too.
+PLAIN_LIBS := -lOpenEXRCore -lnifti2 -lznz -lpthread -lm
+PLAIN_HEADERS := $(shell printf '\043include <nifti/znzlib.h>\n\043include <OpenEXR/openexr.h>\n' | \
+	$(CC) $(CPPFLAGS) $(CFLAGS) -M -x c - 2>/dev/null)
+NIFTI := $(patsubst %/znzlib.h,%,$(filter %/nifti/znzlib.h,$(PLAIN_HEADERS)))
 # Hardening of the release: checks of the stack and of the C library's buffers, and tables of addresses that are read-only
 # before main runs. _FORTIFY_SOURCE needs optimisation. A level of _FORTIFY_SOURCE given by the caller is kept.
 HARDEN_release = -fstack-protector-strong $(if $(filter -O0,$(OPTIMISE_$(MODE)) $(CFLAGS))$(findstring _FORTIFY_SOURCE,$(CPPFLAGS) $(CFLAGS)),, \
@@ -85,17 +95,19 @@ $(error $(INEXACT) changes results, which are to be the same bytes everywhere: l
 endif
 # The Makefile's own flags; the caller's CFLAGS, CPPFLAGS and LDFLAGS follow them.
 VECTORS :=
-OWN_CFLAGS := -std=c11 $(OPTIMISE_$(MODE)) -fPIC -fvisibility=hidden $(WARNINGS)
-OWN_CPPFLAGS := -Isrc $(FIND_FREED) -D_GNU_SOURCE -isystem $(NIFTI) -isystem $(EXR) $(shell pkg-config --cflags $(PACKAGES) $(HEADERS) 2>/dev/null)
+# The folder of the build is left out of what the compiler writes, so that two builds have the same bytes.
+OWN_CFLAGS := -std=c11 $(OPTIMISE_$(MODE)) -ffile-prefix-map=$(CURDIR)=. -fPIC -fvisibility=hidden $(WARNINGS)
+OWN_CPPFLAGS := -Isrc $(FIND_FREED) -D_GNU_SOURCE $(NIFTI:%=-isystem %) $(shell $(PKG_CONFIG) --cflags $(PACKAGES) $(HEADERS) 2>/dev/null)
 OWN_LDFLAGS := $(filter -fsanitize%,$(OPTIMISE_$(MODE))) -pie -Wl,-z,relro,-z,now,-z,noexecstack
 COMPILE = $(CC) $(OWN_CPPFLAGS) $(CPPFLAGS) $(OWN_CFLAGS) $(HARDEN_$(MODE)) $(VECTORS) $(CFLAGS) $(EXACT)
 LINK = $(CC) $(OWN_LDFLAGS) $(LDFLAGS)
-VIEWER := build/viewer/viewer.js
-LIBS := $(PACKAGE_LIBS) -lOpenEXRCore -lnifti2 -lznz -lpthread -lm
+# A release has the viewer already, so that its build needs no network.
+VIEWER := $(or $(wildcard templates/page/viewer.js),build/viewer/viewer.js)
+LIBS := $(PACKAGE_LIBS) $(PLAIN_LIBS)
 
 .PHONY: all lib abi api-programs deps demo figures gallery hero validate bench bench-grow bench-render bench-view bench-compare bench-mesh bench-trees bench-large export-all verify-all coronary power power-program fit-blob optima check check-all check-quick program unit \
 	unit-programs layers format format-check asan tsan \
-	fuzz fuzz-programs golden-update reference install uninstall dist clean help packages
+	fuzz fuzz-programs golden-update reference install uninstall dist clean help packages libraries
 .DELETE_ON_ERROR:
 .SECONDARY:
 
@@ -220,7 +232,7 @@ build/corcast:
 endif
 
 # The viewer in pages of `export T -o P.html`. The program is complete without it.
-$(VIEWER): $(wildcard templates/viewer/*)
+build/viewer/viewer.js: $(wildcard templates/viewer/*)
 	$(call say,MADE,$@)
 	$(Q)templates/viewer/bundle $(@D) || :
 
@@ -272,11 +284,11 @@ define COMPILE_OBJECT
 endef
 $(BUILD)/%.avx2.o: LANES := -DLANES_AVX2
 $(BUILD)/%.avx512.o: LANES := -DLANES_AVX512
-$(BUILD)/%.avx2.o: %.c Makefile | packages
+$(BUILD)/%.avx2.o: %.c Makefile | libraries
 	$(COMPILE_OBJECT)
-$(BUILD)/%.avx512.o: %.c Makefile | packages
+$(BUILD)/%.avx512.o: %.c Makefile | libraries
 	$(COMPILE_OBJECT)
-$(BUILD)/%.o: %.c Makefile | packages
+$(BUILD)/%.o: %.c Makefile | libraries
 	$(COMPILE_OBJECT)
 
 $(BUILD)/tests/%_test: $(BUILD)/tests/unit/%_test.o $(BUILD)/cli.a $(BUILD)/rooms.a
@@ -347,8 +359,8 @@ $(filter %kernels.o %kernels.avx2.o %kernels.avx512.o,$(ROOM_OBJECTS)): HARDEN_r
 
 -include $(ROOM_OBJECTS:.o=.d) $(CLI_OBJECTS:.o=.d) $(TEST_OBJECTS:.o=.d) $(POWER_OBJECTS:.o=.d) $(EMBREE).d $(FRAMES).d $(MESHES).d $(FIT).d $(FUZZ_SOURCES:%.c=$(BUILD)/%.d)
 
-packages:
-ifeq ($(and $(strip $(PACKAGE_LIBS)),$(PLAIN_HEADERS)),)
+libraries:
+ifeq ($(and $(strip $(PACKAGE_LIBS)),$(NIFTI)),)
 	@echo 'corcast needs $(PACKAGES) $(HEADERS), OpenEXR, libnifti2 and pkg-config to build: run "make deps" first' >&2; exit 1
 endif
 
@@ -404,43 +416,56 @@ build/share: build/corcast src/corcast.h src/api/manual.awk
 reference: build/corcast ## generate docs/REFERENCE.md
 	$(Q)build/corcast help --as markdown > build/REFERENCE.md && mv build/REFERENCE.md docs/
 
-SHARE = $(DESTDIR)$(PREFIX)/share
-LIBRARIES = $(DESTDIR)$(PREFIX)/lib
+# Folders may have blanks in their names.
+BIN = "$(DESTDIR)$(PREFIX)/bin
+INCLUDE = "$(DESTDIR)$(PREFIX)/include
+SHARE = "$(DESTDIR)$(PREFIX)/share
+LIBRARIES = "$(DESTDIR)$(LIBDIR)
+PYTHON = "$(DESTDIR)$(PYTHONDIR)
 install: build/corcast lib build/share ## install program, library, manual pages and completions under $(DESTDIR)$(PREFIX)
-	install -Dm755 build/corcast $(DESTDIR)$(PREFIX)/bin/corcast
-	install -Dm755 build/$(SONAME) $(LIBRARIES)/$(SONAME)
-	ln -sf $(SONAME) $(LIBRARIES)/libcorcast.so
-	install -Dm644 build/libcorcast.a $(LIBRARIES)/libcorcast.a
-	install -d $(LIBRARIES)/pkgconfig
-	sed 's|@PREFIX@|$(PREFIX)|; s|@VERSION@|$(VERSION)|; s|@PACKAGES@|$(PACKAGES)|; s|@LIBS@|-lOpenEXRCore -lnifti2 -lznz -lpthread -lm|' \
-		src/api/corcast.pc.in > $(LIBRARIES)/pkgconfig/corcast.pc
-	install -Dm644 src/corcast.h $(DESTDIR)$(PREFIX)/include/corcast.h
-	install -Dm644 src/python/corcast.py $(LIBRARIES)/python3/dist-packages/corcast.py
-	install -d $(SHARE)/corcast
-	cp -R templates $(SHARE)/corcast
-	test ! -e $(VIEWER) || install -Dm644 -t $(SHARE)/corcast/templates/page $(VIEWER)
-	cd build/share && find . -type f -exec install -Dm644 {} $(abspath $(SHARE))/{} \;
-	install -Dm644 -t $(SHARE)/doc/corcast README.md CHANGELOG.md LICENSE CITATION.cff
-	install -Dm644 -t $(SHARE)/doc/corcast/docs docs/*.md
-	install -Dm644 -t $(SHARE)/doc/corcast/docs/decisions docs/decisions/*.md
-	install -Dm644 -t $(SHARE)/doc/corcast/docs/images docs/images/*.png
-	install -Dm644 -t $(SHARE)/doc/corcast/docs/images/looks docs/images/looks/*.png
-	install -Dm644 -t $(SHARE)/doc/corcast/docs/images/gallery docs/images/gallery/*.png
+	install -d $(BIN)" $(INCLUDE)" $(SHARE)/corcast" $(LIBRARIES)/pkgconfig" $(PYTHON)"
+	install -m755 build/corcast $(BIN)/corcast"
+	install -m755 build/$(SONAME) $(LIBRARIES)/$(SONAME)"
+	ln -sf $(SONAME) $(LIBRARIES)/libcorcast.so"
+	install -m644 build/libcorcast.a $(LIBRARIES)/libcorcast.a"
+	sed 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(VERSION)|; s|@PACKAGES@|$(PACKAGES)|; s|@LIBS@|$(PLAIN_LIBS)|' \
+		src/api/corcast.pc.in > $(LIBRARIES)/pkgconfig/corcast.pc"
+	install -m644 src/corcast.h $(INCLUDE)/corcast.h"
+	install -m644 src/python/corcast.py $(PYTHON)/corcast.py"
+	cp -R templates $(SHARE)/corcast"
+	rm -rf $(SHARE)/corcast/templates/viewer/node_modules"
+	$(if $(FONTS),cd $(SHARE)/corcast/templates/fonts" && for font in Liberation*.ttf; do ln -sf "$(FONTS)/$$font" .; done)
+	test ! -e build/viewer/viewer.js || install -m644 build/viewer/viewer.js $(SHARE)/corcast/templates/page/viewer.js"
+	for folder in $$(cd build/share && find . -type d); do install -d $(SHARE)/$$folder"; done
+	for file in $$(cd build/share && find . -type f); do install -m644 build/share/$$file $(SHARE)/$$file"; done
+	for folder in . docs docs/decisions docs/images docs/images/looks docs/images/gallery; do install -d $(SHARE)/doc/corcast/$$folder"; done
+	install -m644 README.md CHANGELOG.md LICENSE CITATION.cff $(SHARE)/doc/corcast"
+	install -m644 docs/*.md $(SHARE)/doc/corcast/docs"
+	install -m644 docs/decisions/*.md $(SHARE)/doc/corcast/docs/decisions"
+	for folder in images images/looks images/gallery; do install -m644 docs/$$folder/*.png $(SHARE)/doc/corcast/docs/$$folder" || exit; done
 
 uninstall: ## remove the files of `make install`
-	rm -f $(DESTDIR)$(PREFIX)/bin/corcast $(SHARE)/man/man1/corcast.1 $(SHARE)/man/man1/corcast-*.1
-	rm -f $(SHARE)/bash-completion/completions/corcast $(SHARE)/zsh/site-functions/_corcast
-	rm -f $(SHARE)/fish/vendor_completions.d/corcast.fish
-	rm -f $(LIBRARIES)/$(SONAME) $(LIBRARIES)/libcorcast.so $(LIBRARIES)/libcorcast.a $(LIBRARIES)/pkgconfig/corcast.pc
-	rm -f $(LIBRARIES)/python3/dist-packages/corcast.py
-	rm -f $(DESTDIR)$(PREFIX)/include/corcast.h $(SHARE)/man/man3/corcast.h.3
-	rm -rf $(SHARE)/corcast $(SHARE)/doc/corcast
+	rm -f $(BIN)/corcast" $(SHARE)/man/man1/corcast.1" $(SHARE)"/man/man1/corcast-*.1
+	rm -f $(SHARE)/bash-completion/completions/corcast" $(SHARE)/zsh/site-functions/_corcast"
+	rm -f $(SHARE)/fish/vendor_completions.d/corcast.fish"
+	rm -f $(LIBRARIES)/$(SONAME)" $(LIBRARIES)/libcorcast.so" $(LIBRARIES)/libcorcast.a" $(LIBRARIES)/pkgconfig/corcast.pc"
+	rm -f $(PYTHON)/corcast.py"
+	rm -f $(INCLUDE)/corcast.h" $(SHARE)/man/man3/corcast.h.3"
+	rm -rf $(SHARE)/corcast" $(SHARE)/doc/corcast"
 
 VERSION := $(shell sed -n 's/^.define CORCAST_VERSION "\(.*\)"/\1/p' src/base/version.h)
-dist: ## pack the sources of the last commit into build/corcast-VERSION.tar.gz, with the same bytes each time
+# What a release has beside the commit: the viewer, and the parts of three.js that it is made of, so that it can be made again.
+RELEASED := LICENSE package.json build/three.core.js build/three.module.js examples/jsm/controls/OrbitControls.js
+dist: $(VIEWER) ## pack the sources of the last commit, and the viewer, into build/corcast-VERSION.tar.gz, with the same bytes each time
 	$(Q)mkdir -p build
-	$(Q)git archive --format=tar --prefix=corcast-$(VERSION)/ -o build/corcast-$(VERSION).tar HEAD
+	$(Q)git archive --format=tar -o build/corcast-$(VERSION).tar --prefix=corcast-$(VERSION)/templates/page/ --add-file=$(VIEWER) \
+		$(foreach file,$(RELEASED),--prefix=corcast-$(VERSION)/templates/viewer/node_modules/three/$(filter-out ./,$(dir $(file))) --add-file=build/viewer/node_modules/three/$(file)) \
+		--prefix=corcast-$(VERSION)/ HEAD
 	$(Q)gzip -9nf build/corcast-$(VERSION).tar
+
+packages: ## build, lint and test the packages of .ci/packages; PACKAGE=wheel for one; results in build/packages/
+	$(Q).ci/deps build
+	$(Q).ci/packages/run $(PACKAGE)
 
 clean: ## remove build/ and out/
 	rm -rf build out

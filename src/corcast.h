@@ -531,8 +531,8 @@ CORCAST_API int corcast_verify(const corcast_tree *tree, const corcast_options *
                                const char *folder, corcast_report **report, corcast_error *error);
 
 /* Makes a figure of several panels. `options` is NULL or options of "figure", `recipe` the path of
- * the recipe that describes the panels (docs/FORMATS.md), and `path` the output: .pdf, .svg, .png,
- * .tif or .jpg.
+ * the recipe that describes the panels (docs/FORMATS.md), and `path` the output: .pdf, .eps, .svg,
+ * .png, .tif or .jpg.
  * Stability: provisional. */
 CORCAST_API int corcast_figure(const char *recipe, const corcast_options *options, const char *path,
                                corcast_error *error);

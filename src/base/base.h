@@ -22,11 +22,13 @@
 #include "base/number.h"     // IWYU pragma: export
 #include "base/random.h"     // IWYU pragma: export
 #include "base/range.h"      // IWYU pragma: export
+#include "base/readable.h"   // IWYU pragma: export
 #include "base/sets.h"       // IWYU pragma: export
 #include "base/slab.h"       // IWYU pragma: export
 #include "base/sort.h"       // IWYU pragma: export
 #include "base/status.h"     // IWYU pragma: export
 #include "base/suggest.h"    // IWYU pragma: export
+#include "base/system.h"     // IWYU pragma: export
 #include "base/text.h"       // IWYU pragma: export
 #include "base/threads.h"    // IWYU pragma: export
 #include "base/units.h"      // IWYU pragma: export

@@ -12,6 +12,7 @@
 
 #include "base/memory.h"
 #include "base/number.h"
+#include "base/system.h"
 #include "base/threads.h"
 #include <assert.h>
 #include <dirent.h>
@@ -24,7 +25,6 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
-#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -52,20 +52,13 @@ static void give_up(char *name)
 }
 
 /* Removes a temporary folder and the files in it: a program that was given the folder may have
- * written more files than expected. Calls only functions that a signal handler may call; readdir is
- * not one of them. */
+ * written more files than expected. Calls only functions that a signal handler may call. */
 static void remove_folder(const char *name)
 {
-    char block[4096] __attribute__((aligned(8)));
     int folder = open(name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
     if (folder < 0)
         return;
-    for (long size; (size = syscall(SYS_getdents64, folder, block, sizeof block)) > 0;)
-        for (long at = 0; at < size;) {
-            const struct dirent64 *entry = (const struct dirent64 *)(block + at);
-            unlinkat(folder, entry->d_name, 0);
-            at += entry->d_reclen;
-        }
+    system_unlink_files(folder);
     close(folder);
     rmdir(name);
 }

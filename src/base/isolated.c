@@ -2,6 +2,7 @@
 #include "base/isolated.h"
 
 #include "base/memory.h"
+#include "base/system.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -99,7 +100,7 @@ Status isolated_run(IsolatedWork *work, const void *context, const char *subject
                     Err *err)
 {
     int pipe_ends[2];
-    if (pipe2(pipe_ends, O_CLOEXEC) != 0)
+    if (!system_pipe(pipe_ends))
         return err_set(err, STATUS_IO, "no process for %s: %s", subject, strerror(errno));
     pid_t child = fork();
     if (child == 0)

@@ -4,13 +4,12 @@
 #include "base/memory.h"
 
 #include "base/number.h"
-#include <malloc.h>
+#include "base/system.h"
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
 #include <unistd.h>
 
 static Status out_of_memory(size_t count, size_t size, const char *what, Err *err)
@@ -19,13 +18,12 @@ static Status out_of_memory(size_t count, size_t size, const char *what, Err *er
                    what, size);
 }
 
-/* Large blocks are touched all over soon: huge pages save most of the page faults. Advice only. */
+/* Large blocks are touched all over soon: huge pages save most of the page faults. */
 static void prefer_huge_pages(void *memory, size_t size)
 {
     const size_t huge = (size_t)1 << 21;
-    uintptr_t page = (uintptr_t)sysconf(_SC_PAGESIZE), skip = (uintptr_t)memory % page;
     if (size >= huge)
-        (void)madvise((char *)memory - skip, size + skip, MADV_HUGEPAGE);
+        system_prefer_huge_pages(memory, size);
 }
 
 double mem_of_machine(void)
@@ -82,17 +80,6 @@ Status mem_grow(void *items, size_t *capacity, size_t needed, size_t size, const
     memcpy(items, &memory, sizeof memory);
     *capacity = wanted;
     return STATUS_OK;
-}
-
-void mem_keep(void)
-{
-    mallopt(M_MMAP_MAX, 0);
-    mallopt(M_TRIM_THRESHOLD, -1);
-}
-
-void mem_trim(void)
-{
-    (void)malloc_trim(0);
 }
 
 Status mem_out_of(const char *purpose, const char *subject, Err *err)

@@ -38,15 +38,6 @@ MUST_CHECK static inline Status mem_reserve(void *items, size_t *capacity, size_
     return needed <= *capacity ? STATUS_OK : mem_grow(items, capacity, needed, size, what, err);
 }
 
-/* Returns freed memory to the system. Without this call, the C library keeps freed pages that lie
- * between small blocks in use. Costs milliseconds. */
-void mem_trim(void);
-
-/* Makes the C library keep all freed memory from now on, also large blocks. For programs that draw
- * picture after picture: buffers that are allocated for each picture then need no new pages,
- * which the system would clear. */
-void mem_keep(void);
-
 /* Returns STATUS_MEMORY with the sentence "out of memory: no room PURPOSE SUBJECT": mem_out_of("to
  * read", "t.png", err). For failed allocations inside a library: a library that does not report
  * why it failed leaves ENOMEM in errno if memory was the reason. */

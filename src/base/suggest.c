@@ -67,3 +67,16 @@ void suggestion_add(const Suggestion *suggestion, const char *prefix, Err *err)
         snprintf(err->text + length, sizeof err->text - length, "; did you mean %s%s?", prefix,
                  suggestion->name);
 }
+
+void suggestion_add_extension(const char *extension, Err *err)
+{
+    static const char between[] = " ,;";
+    char listed[sizeof err->text];
+    Suggestion suggestion = suggestion_for(extension, strlen(extension));
+    snprintf(listed, sizeof listed, "%s", err ? err->text : "");
+    char *rest = NULL;
+    for (char *word = strtok_r(listed, between, &rest); word; word = strtok_r(NULL, between, &rest))
+        if (*word == '.')
+            suggestion_offer(&suggestion, word + 1);
+    suggestion_add(&suggestion, ".", err);
+}

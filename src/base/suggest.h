@@ -29,5 +29,8 @@ void suggestion_offer(Suggestion *suggestion, const char *name);
 /* Appends "; did you mean PREFIXname?" to the error sentence if a similar name was offered. `err`
  * may be NULL. */
 void suggestion_add(const Suggestion *suggestion, const char *prefix, Err *err);
+/* Appends "; did you mean .vtp?" to an error sentence that lists extensions (".swc, .vtp or .csv")
+ * if one of them is similar to `extension`, which has no dot. `err` may be NULL. */
+void suggestion_add_extension(const char *extension, Err *err);
 
 #endif

@@ -138,6 +138,27 @@ size_t utf8_length(const char *bytes)
     return 0;
 }
 
+void text_put_start(Text *text, const char *chars, int most)
+{
+    const char *end = chars;
+    for (int i = 0; i < most && *end; i++) {
+        const size_t length = utf8_length(end);
+        end += length ? length : 1;
+    }
+    text_append(text, chars, (size_t)(end - chars));
+    text_puts(text, *end ? "\xE2\x80\xA6" : "");
+}
+
+void text_put_character(Text *text, uint32_t code)
+{
+    static const unsigned char leads[] = {0, 0xc0, 0xe0, 0xf0};
+    const int more = code < 0x80 ? 0 : code < 0x800 ? 1 : code < 0x10000 ? 2 : 3;
+    char bytes[4] = {(char)(leads[more] | code >> 6 * more)};
+    for (int i = 1; i <= more; i++)
+        bytes[i] = (char)(0x80 | (code >> 6 * (more - i) & 0x3f));
+    text_append(text, bytes, (size_t)more + 1);
+}
+
 /* Returns true if the UTF-8 character of this length controls how text is laid out instead of being
  * part of it: C0 and C1 controls, and the controls of bidirectional text, by which a name could be
  * shown as another one. */

@@ -13,10 +13,12 @@
 enum { HELP_INDENT = 27, HELP_WIDTH = 90 };
 
 /* Appends words, wrapped to HELP_WIDTH columns. The first word begins in column `column`, all other
- * lines in column `indent`. */
+ * lines in column `indent`. NULL, from a Text that failed, makes `text` fail. */
 static void put_wrapped(const char *words, size_t column, size_t indent, Text *text)
 {
-    while (*words) {
+    if (!words)
+        text_puts(text, words);
+    while (words && *words) {
         size_t length = strcspn(words, " ");
         if (column > indent && column + 1 + length > HELP_WIDTH) {
             text_printf(text, "\n%*s", (int)indent, "");
@@ -125,10 +127,7 @@ static void put_option(const Setting *plain, Text *text)
         column = 0;
     }
     text_printf(text, "%*s", (int)(HELP_INDENT - column), "");
-    if (text_chars(&meaning))
-        put_wrapped(text_chars(&meaning), HELP_INDENT, HELP_INDENT, text);
-    else
-        text_add(text, &meaning);
+    put_wrapped(text_chars(&meaning), HELP_INDENT, HELP_INDENT, text);
     text_release(&left);
     text_release(&meaning);
 }
@@ -192,9 +191,36 @@ const char help_exit_status[] =
     "0 success, 1 a comparison found a difference, 2 wrong usage or input, 3 a file, another "
     "program or memory failed.";
 
-const char help_json_rule[] =
-    "`--json FILE` of grow, refine and render writes a summary of the run to FILE. `--json` of "
-    "all other commands prints their result as JSON.";
+static bool has_json(const Command *command, OptionKind kind)
+{
+    for (int t = 0; t < MAX_TABLES && command->tables[t].table; t++)
+        for (size_t i = 0; i < command->tables[t].table->n; i++) {
+            const Option *option = &command->tables[t].table->options[i];
+            if (strcmp(option->name, "json") == 0 && option->kind == kind)
+                return true;
+        }
+    return false;
+}
+
+/* Appends the names of the commands whose option --json has this kind. */
+static void put_json_commands(OptionKind kind, Text *text)
+{
+    const char *comma = "";
+    for (const CommandRow *row = command_rows; row->command; row++)
+        if (has_json(row->command, kind)) {
+            text_printf(text, "%s%s", comma, row->command->name);
+            comma = ", ";
+        }
+}
+
+void help_put_json_rule(Text *text)
+{
+    text_puts(text, "`--json FILE` (");
+    put_json_commands(OPTION_OUTPUT, text);
+    text_puts(text, ") writes a summary of the run to FILE. `--json` (");
+    put_json_commands(OPTION_FLAG, text);
+    text_puts(text, ") prints the result on standard output. Other commands have no --json.");
+}
 
 const char help_first_steps[] = "  corcast grow --terminals 1000 -o tree.swc   # grow a tree\n"
                                 "  corcast render tree.swc -o tree.png         # draw it\n"
@@ -202,6 +228,7 @@ const char help_first_steps[] = "  corcast grow --terminals 1000 -o tree.swc   #
 
 static void put_usage(Text *text)
 {
+    Text json_rule = TEXT_INIT;
     text_printf(text,
                 GENERATOR ": grow, draw and verify arterial trees\n\n"
                           "usage: corcast COMMAND [options] [files]\n\nfirst steps:\n%s",
@@ -218,9 +245,11 @@ static void put_usage(Text *text)
         "`corcast COMMAND --help` shows the options of a command. A file name '-' stands for "
         "standard input or output.",
         0, 0, text);
-    put_wrapped(help_json_rule, 0, 0, text);
-    text_puts(text, "exit status: ");
-    put_wrapped(help_exit_status, strlen("exit status: "), 0, text);
+    help_put_json_rule(&json_rule);
+    put_wrapped(text_chars(&json_rule), 0, 0, text);
+    text_release(&json_rule);
+    text_puts(text, "exit status:");
+    put_wrapped(help_exit_status, strlen("exit status:"), 0, text);
 }
 
 Status help_print(const Command *command, Err *err)

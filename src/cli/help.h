@@ -10,11 +10,12 @@ MUST_CHECK Status help_print(const Command *command, Err *err);
 
 /* The meanings of the exit codes as one line, without the words "Exit status:". */
 extern const char help_exit_status[];
-/* Which commands take `--json FILE`, and which take `--json` without a value; one line. */
-extern const char help_json_rule[];
 /* Three commands for a new user, each with a comment and a newline. */
 extern const char help_first_steps[];
 
+/* Appends one line: the commands that take `--json FILE`, and those that take `--json` without a
+ * value. `text` fails if memory runs out. */
+void help_put_json_rule(Text *text);
 /* Appends the option's help, the accepted values, and the value or phrase that applies if the
  * option is not given. `plain` has the default value. `text` fails if memory runs out. */
 void help_put_meaning(const Setting *plain, Text *text);

@@ -196,11 +196,11 @@ Status reference_put(Text *text, Err *err)
                     "range and the default of an option are in square brackets.\n\nEvery command "
                     "accepts these options:\n");
     TRY(help_put(put_common, command_rows[0].command, text, err));
-    text_printf(
+    text_puts(
         text,
         "\nA recipe contains options, one `name = value` per line; options below `[COMMAND]` apply "
-        "to that\ncommand only. A file name `-` stands for standard input or output.\n\n%s\n\nExit "
-        "status: %s\n",
-        help_json_rule, help_exit_status);
+        "to that\ncommand only. A file name `-` stands for standard input or output.\n\n");
+    help_put_json_rule(text);
+    text_printf(text, "\n\nExit status: %s\n", help_exit_status);
     return help_put_all(put_markdown, text, err);
 }

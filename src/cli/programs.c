@@ -9,7 +9,7 @@ static Status choose(const char *variable, ProgramChoice *choice, Err *err)
     static const char patience[] = "CORCAST_POVRAY_PATIENCE";
     const char *seconds = getenv(patience);
     *choice = (ProgramChoice){
-        .path = getenv(variable), .patience_s = PROGRAM_PATIENCE_S, .patience = patience};
+        .path = getenv(variable), .patience_s = PROGRAM_PATIENCE_S, .patience_name = patience};
     if (!seconds || (number_parse(seconds, &choice->patience_s) && isfinite(choice->patience_s) &&
                      choice->patience_s >= 0))
         return STATUS_OK;

@@ -1,7 +1,6 @@
-/* The table of measures. The order of the rows is the order of the keys in JSON, on which programs
- * may rely. Tables of reports are sorted by rank. Limits are judged in the order of the type Limit:
- * values that are not numbers, missing or extra pixels, wrong segments, then sizes of differences.
- */
+/* The order of the rows is the order of the keys in JSON, on which programs may rely. Tables of
+ * reports are sorted by rank. Limits are judged in the order of the enum Limit: values that are not
+ * numbers, missing or extra pixels, wrong segments, then sizes of differences. */
 #include "compare/measure.h"
 
 #include "compare/measures/perception.h"
@@ -15,9 +14,9 @@ enum {
     ALL = COLOR | GEOMETRY | IDS
 };
 
-#define SHOWN(in, order, name, of) .table = TABLE_##in, .rank = (order), .words = name, .unit = of
-/* A rule about the measure itself; one about parts per million of a count; and one whose name ends
- * with a setting. */
+#define SHOWN(in, order, name, of) .table = TABLE_##in, .rank = (order), .label = name, .unit = of
+/* JUDGED is a rule about the measure itself, JUDGED_PPM about parts per million of a count.
+ * JUDGED_BEYOND also appends the value of a setting to the rule's name. */
 #define JUDGED(by, text, of, place, what)                                                          \
     .rule = {.limit = LIMIT_##by, .name = text, .unit = of, .at = PLACE_##place, .at_what = what}
 #define JUDGED_PPM(by, of, text, place, what)                                                      \

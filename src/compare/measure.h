@@ -1,59 +1,69 @@
-/* The table of measures: one row for each use of a measure by a kind of plane.
+/* The table of measures. A row states for which kinds of planes it is used, the measure's key in
+ * JSON, its label in texts and pages, and the limit that judges it. A measure has several rows if
+ * its label or its limit differs between kinds of planes.
  *
- * JSON, texts, pages and rules are made from the rows, so that a new measure is one row, one entry
- * of MeasureId and one function that finds it. Private to the module compare. */
+ * JSON, texts, pages and rules are made from the rows. A new measure is one entry of MeasureId, one
+ * or more rows, and one function that computes it. Private to the module compare. */
 #ifndef CORCAST_COMPARE_MEASURE_H
 #define CORCAST_COMPARE_MEASURE_H
 
 #include "compare/result.h"
 
-/* The tables that texts and pages show measures in, in their order. */
+/* The tables of texts and pages, in the order in which they are shown. */
 typedef enum MeasureTable {
     TABLE_NONE,
-    TABLE_SIZES,      /* how large differences are */
-    TABLE_SIGNS,      /* which way B is off */
+    TABLE_SIZES,      /* magnitudes of differences */
+    TABLE_SIGNS,      /* signed differences B - A */
     TABLE_OUTLINES,   /* outlines and coverage */
-    TABLE_CLASSES,    /* pixels by the cause of their difference */
-    TABLE_PERCEPTION, /* as people see it; reported, never judged */
+    TABLE_CLASSES,    /* number of pixels in each PixelClass */
+    TABLE_PERCEPTION, /* perceptual measures; reported, never judged */
     MEASURE_TABLES
 } MeasureTable;
 
-/* Parts of a result that are no single numbers. */
+/* What a row contributes to the JSON of a result. */
 typedef enum MeasurePart {
-    PART_NUMBER,
-    PART_WORST,
-    PART_RULES,
-    PART_CLASSES,
-    PART_SEGMENTS
+    PART_NUMBER,  /* the number CompareResult.values[id] */
+    PART_WORST,   /* the pixel PLACE_WORST */
+    PART_RULES,   /* the list of rules */
+    PART_CLASSES, /* the number of pixels in each PixelClass */
+    PART_SEGMENTS /* the list of worst segments */
 } MeasurePart;
 
-/* A result that a row is for, beside its kinds of planes. */
-typedef enum MeasureWhen { WHEN_ALWAYS, WHEN_IDS, WHEN_NO_IDS, WHEN_MASK } MeasureWhen;
+/* A condition on the result, in addition to the kind of plane, for a row to be used. */
+typedef enum MeasureWhen {
+    WHEN_ALWAYS,
+    WHEN_IDS,    /* CompareResult.has_ids is true */
+    WHEN_NO_IDS, /* CompareResult.has_ids is false */
+    WHEN_MASK    /* CompareResult.has_mask is true */
+} MeasureWhen;
 
-/* How a measure is judged. */
+/* The rule that judges a measure: the measure must not exceed Tolerance.limits[limit]. */
 typedef struct MeasureRule {
     Limit limit;      /* LIMIT_NONE: not judged */
-    MeasureId ppm_of; /* the rule judges parts per million of this count; 0: the measure itself */
-    const char *name; /* "largest difference away from edges" */
-    Limit threshold;  /* a setting that follows the name; LIMIT_NONE: none does */
-    int digits;       /* significant digits of the threshold */
-    const char *threshold_unit; /* what follows the threshold: " levels" */
-    const char *unit;           /* of the rule: "ppm" */
-    PlaceId at;                 /* a pixel to look at */
-    const char *at_what;        /* what is there; NULL: the largest difference */
+    MeasureId ppm_of; /* the rule judges the measure in parts per million of this measure, a count;
+                       * MEASURE_NONE: the rule judges the measure itself */
+    const char *name; /* name of the rule: "pixels off by more than" */
+    Limit threshold;  /* setting whose value is appended to the name: "2"; LIMIT_NONE: nothing is */
+    int digits;       /* significant digits of that value */
+    const char *threshold_unit; /* text after that value: " levels" */
+    const char *unit;           /* unit of the limit: "ppm" */
+    PlaceId at;                 /* the pixel that a broken rule shows as an example */
+    const char *at_what;        /* description of that pixel: "the first is"; NULL: "the worst" with
+                                 * the largest difference */
 } MeasureRule;
 
 typedef struct Measure {
-    unsigned planes; /* bits 1 << PlaneKind */
+    unsigned planes; /* the kinds of planes that the row is for: bits 1 << PlaneKind */
     MeasureId id;
     MeasurePart part;
     MeasureWhen when;
     const char *key;    /* in JSON, in the order of the rows; NULL: not in JSON */
     MeasureTable table; /* TABLE_NONE: not in texts */
     int rank;           /* tables list lower ranks first, equal ranks in the order of the rows */
-    const char *words, *unit;
-    /* Finds this measure, and others whose rows have the same function, in two pictures of one
-     * shape, taken as sRGB. NULL: the comparison itself finds it. */
+    const char *label, *unit; /* in tables; "": none */
+    /* Computes this measure, and all measures whose rows have the same function, and sets their
+     * elements of `values`; other elements are unchanged. Both pictures have equal size and are
+     * taken as sRGB. NULL: the comparison itself computes the measure. Errors: STATUS_MEMORY. */
     Status (*find)(const Picture *a, const Picture *b, double values[MEASURES], Err *err);
     MeasureRule rule;
 } Measure;
@@ -61,9 +71,10 @@ typedef struct Measure {
 extern const Measure measures[];
 extern const size_t n_measures;
 
-/* Returns true if the row is for this result. */
+/* Returns true if the row is used for this result. */
 bool measure_is_for(const Measure *measure, const CompareResult *result);
-/* Returns the heading of a table for a kind of plane. Tables with one heading are one table. */
+/* Returns the heading of a table for a kind of plane, a static string; NULL for TABLE_NONE of
+ * colors. Tables with equal headings are printed as one. */
 const char *measure_heading(PlaneKind kind, MeasureTable table);
 
 #endif

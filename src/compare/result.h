@@ -2,7 +2,9 @@
  *
  * Terms of the module compare:
  *   A, B       the two images: A is the reference, B is judged. Differences are B - A.
- *   level      1/255 of the range of codes, for images of all bit depths.
+ *   code       the integer that a pixel's channel is stored as, 0 to 255 or 65535.
+ *   level      1/255 of the range of codes, for images of all bit depths. Float colors are in levels
+ *              of the sRGB curve, continued above 1.
  *   label      what a pixel shows: the id of a segment, or 0 for the background.
  *   edge       a pixel is at an edge if one of its 8 neighbours has another label in A or in B. The
  *              pixels at edges form the band; all other pixels are the interior.
@@ -40,8 +42,8 @@ typedef struct Rendering {
 typedef enum Limit {
     LIMIT_NONE,              /* no limit: the measure is reported and not judged */
     LIMIT_NAN,               /* pixels with a value that is not a number; the limit is always 0 */
-    LIMIT_REGION_PIXELS,     /* pixels in the largest 8-connected region of missing, or of extra,
-                              * pixels */
+    LIMIT_REGION_PIXELS,     /* size of the largest 8-connected region of pixels that show a vessel
+                              * only in A, or only in B */
     LIMIT_COVERAGE_PPM,      /* depth and normal: pixels that show a surface in one image only */
     LIMIT_SEGMENTS_MISSING,  /* segments that cover more than 2 pixels, in one image only */
     LIMIT_SILHOUETTE_PX,     /* shift of the outline of all vessels together */
@@ -80,9 +82,10 @@ typedef struct Tolerance {
     const char *tier;      /* name in verdicts: "A", "B", "surface" or "none" for a tier, "given" or
                             * a name from a tolerance file for others; borrowed */
     double limits[LIMITS]; /* INFINITY: not judged */
-    /* If only one pixel is beyond LIMIT_COLOR_LEVELS, and no unsettled pixel differs by more than
-     * this many levels, LIMIT_COLOR_PPM is met in pictures of at least SPARE_OF judged pixels. 0:
-     * no such exception. Tolerance files set it to 0. */
+    /* An exception for small pictures, in which one pixel is already more than LIMIT_COLOR_PPM: one
+     * pixel may be beyond LIMIT_COLOR_LEVELS if no unsettled pixel differs by more than
+     * spare_levels, and at least SPARE_OF pixels are judged. 0: no exception, as in tolerance
+     * files. */
     double spare_levels;
     const char *title;      /* name of what is compared; NULL: the plane's name. Borrowed. */
     const uint8_t *settled; /* per pixel: a SettledCause; limits do not count settled pixels. NULL:
@@ -94,8 +97,7 @@ enum { SPARE_OF = 1000 };
 /* ---- measures -------------------------------------------------------------------------------- */
 
 /* The measures of a comparison. The table in compare/measure.c contains, for each use of a measure,
- * its key in JSON, its name and unit in texts, and its limit. "Differing" means: not equal in some
- * channel. */
+ * its key in JSON, its label and unit in texts, and its limit. */
 typedef enum MeasureId {
     MEASURE_NONE,
     MEASURE_PIXELS,
@@ -111,7 +113,7 @@ typedef enum MeasureId {
     MEASURE_LARGEST_REGION,  /* pixels in the largest 8-connected region of missing, or of extra,
                               * pixels */
     MEASURE_NAN_PIXELS,      /* pixels with a value that is not a number, in A plus in B */
-    MEASURE_NOT_FINITE,      /* MEASURE_NAN_PIXELS of float colors */
+    MEASURE_NOT_FINITE,      /* as MEASURE_NAN_PIXELS, for float colors, infinities included */
     /* Pixels that limits count. */
     MEASURE_JUDGED_PIXELS, /* pixels that limits in ppm refer to */
     MEASURE_BEYOND_PIXELS, /* unsettled pixels that differ by more than the setting for one pixel:
@@ -165,7 +167,7 @@ typedef enum MeasureId {
     MEASURE_P99,
     MEASURE_MAX,
     MEASURE_P99_PART, /* 99th percentile of depth difference / depth in A */
-    MEASURE_MISMATCH_FRACTION,
+    MEASURE_MISMATCH_FRACTION, /* pixels with different ids / all pixels */
     MEASURES
 } MeasureId;
 
@@ -195,7 +197,7 @@ typedef struct Rule {
     char at_what[48]; /* description of `at`: "the worst, 155 levels, is" */
 } Rule;
 
-enum { RULES_MAX = 16 };
+enum { RULES_MAX = 16 }; /* at least the rows with a rule for any one kind of plane */
 
 /* The class of a pixel: the first of these whose condition holds. "Ids agree" means: A and B show
  * the same segment. */
@@ -236,10 +238,12 @@ typedef struct Ledger {
     size_t n;
 } Ledger;
 
-void ledger_release(Ledger *ledger);
-/* Returns the mean difference of the common pixels, in the channel with the largest, in levels. */
+void ledger_release(Ledger *ledger); /* zeroes *ledger */
+/* Returns the signed mean difference of the common pixels, in levels, in the channel in which its
+ * magnitude is largest. */
 double ledger_entry_levels(const LedgerEntry *entry);
-/* Appends the ledger as CSV with a header line: one line per segment. */
+/* Appends the ledger as CSV: a header line and one line per segment. `out` fails if memory runs
+ * out. */
 void ledger_csv(const Ledger *ledger, Text *out);
 
 enum { WORST_SEGMENTS = 6 };

@@ -18,8 +18,11 @@ static void put_label(const void *context, size_t bar, Text *id, Text *title)
         text_puts(title, " not known");
         return;
     }
-    text_printf(title, " %.4g ", style->values[node]);
-    text_escaped(title, style->unit);
+    Text unit = TEXT_INIT;
+    text_unit(&unit, style->unit);
+    text_printf(title, " %s ", READABLE(style->values[node], 4));
+    text_escaped(title, text_chars(&unit));
+    text_release(&unit);
 }
 
 FigureBars diagram_bars(const DiagramStyle *style)
@@ -44,12 +47,13 @@ void diagram_make_page(const DiagramStyle *style, const FigureBars *bars, Figure
 }
 
 Status diagram_draw(const DiagramStyle *style, const FigureBars *bars, int width, int height,
-                    Plane *color, Err *err)
+                    const int room[2], Plane *color, Err *err)
 {
+    const double wide = width - room[0], high = height - room[1];
     const double share = 1 - 2 * style->margin;
     const double width_mm = style->diagram->width_mm, height_mm = style->diagram->height_mm;
-    const double scale = fmin(share * width / width_mm, share * height / height_mm);
-    const double offset[2] = {(width - scale * width_mm) / 2, (height - scale * height_mm) / 2};
+    const double scale = fmin(share * wide / width_mm, share * high / height_mm);
+    const double offset[2] = {(wide - scale * width_mm) / 2, (high - scale * height_mm) / 2};
     Plane made;
     TRY(plane_init(&made, width, height, 3, err));
     Status status = figure_draw_bars(bars, scale, offset, style->background, &made, err);

@@ -63,9 +63,10 @@ FigureBars diagram_bars(const DiagramStyle *style);
 void diagram_make_page(const DiagramStyle *style, const FigureBars *bars, FigurePage *page);
 
 /* Draws the bars as large as the margins allow, centred, into a new plane of linear RGB, `width` x
- * `height` pixels. Release *color with plane_release. Errors: STATUS_MEMORY; STATUS_INPUT for sides
- * that plane_init refuses. */
+ * `height` pixels. Leaves room[0] columns at the right and room[1] rows at the bottom empty.
+ * Release *color with plane_release. Errors: STATUS_MEMORY; STATUS_INPUT for sides that plane_init
+ * refuses. */
 MUST_CHECK Status diagram_draw(const DiagramStyle *style, const FigureBars *bars, int width,
-                               int height, Plane *color, Err *err);
+                               int height, const int room[2], Plane *color, Err *err);
 
 #endif

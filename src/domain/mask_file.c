@@ -6,7 +6,7 @@
 
 #include "image/image.h"
 #include <errno.h>
-#include <nifti2_io.h>
+#include <nifti/nifti2_io.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>

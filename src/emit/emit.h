@@ -43,6 +43,7 @@ typedef struct EmitParams {
     const char *generator; /* name and version of corcast */
     const char *command;   /* the command line that makes the scene */
     bool shadows;
+    bool occlusion;        /* render draws ambient occlusion; the scene only states it */
     bool ids;              /* fields: adds the paint that the id plane needs */
     bool planes;           /* Tachyon: colors encode depth and segment */
     CellParams cells;      /* isosurface */

@@ -136,7 +136,7 @@ static void put_ends(Text *out, const void *context, size_t i)
 /* Appends the color if vessels differ in color, and ends the call. */
 static void put_rest(Text *text, const Scene *scene, const Primitive *primitive)
 {
-    if (scene->appearance.colors)
+    if (scene->appearance.meaning)
         put_text(text, ",[%c]", scene->appearance.colors[primitive->segment]);
     text_puts(text, ");\n");
 }

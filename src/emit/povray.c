@@ -130,9 +130,12 @@ static void put_color_map(Text *text, const ColorScale *scale)
 /* Appends a name for a string of POV-Ray, which may hold printable ASCII. */
 static void put_quoted(Text *text, const char *name)
 {
-    for (; name && *name; name++)
-        text_printf(text, "%c",
-                    *name >= ' ' && *name <= '~' && !strchr("\"\\", *name) ? *name : '_');
+    Text plain = TEXT_INIT;
+    text_plain(&plain, name ? name : "");
+    text_puts(text, text_chars(&plain) ? "" : NULL);
+    for (const char *at = text_chars(&plain); at && *at; at++)
+        text_printf(text, "%c", *at >= ' ' && *at <= '~' && !strchr("\"\\", *at) ? *at : '_');
+    text_release(&plain);
 }
 
 static void add_scale(Values *values, const Appearance *appearance)
@@ -161,7 +164,7 @@ static Status put_values(Text *out, void *context, Err *err)
     const PovrayGeometry *geometry = context;
     const Appearance *appearance = &geometry->scene->appearance;
     Values values = {.digits = out->digits};
-    if (!appearance->colors)
+    if (!appearance->meaning)
         return text_check(out, err);
     add_scale(&values, appearance);
     return values_expand(&values, geometry->params, "povray/values.inc", out, err);
@@ -207,7 +210,7 @@ static Status put_geometry(Text *out, void *context, Err *err)
     add_finish(&values, &scene->appearance.finish);
     add_places(&values, params);
     add_part(&values, "values", put_values, geometry);
-    add_flag(&values, "colors", scene->appearance.colors != NULL);
+    add_flag(&values, "colors", scene->appearance.meaning != NULL);
     add_part(&values, "frames", put_frames, geometry);
     add_part(&values, "blend", put_blend_macros, geometry);
     add_part(&values, "macros", put_macros, geometry);
@@ -315,16 +318,58 @@ static Status put_camera(Text *out, void *context, Err *err)
 }
 
 /* Appends a line of the header that names the effects of `render`, which POV-Ray does not draw. */
-static void put_effects(Text *text, const Effects *effects)
+static void put_effects(Text *text, const EmitParams *params)
 {
     Text names = TEXT_INIT;
-    effects_list(effects, &names);
+    Effects omitted = params->scene->view.effects;
+    omitted.grade.present = false;
+    effects_list(&omitted, params->occlusion, &names);
     if (names.length || names.failed) {
         text_puts(text, "// Not in this scene, but in what corcast render draws: ");
         text_add(text, &names);
         text_puts(text, "\n");
     }
     text_release(&names);
+}
+
+/* The plane of the background lies twice as far away as the farthest vessel. */
+static Status put_graded(Text *out, void *context, Err *err)
+{
+    const PovrayGeometry *geometry = context;
+    const View *view = &geometry->scene->view;
+    Values values = {.digits = out->digits};
+    double near_mm, far_mm;
+    if (!view->effects.grade.present)
+        return STATUS_OK;
+    camera_depth_range(&view->camera, geometry->scene->geometry.bounds, &near_mm, &far_mm);
+    put_text(add_value(&values, "corners"), "rgb <%c>", view->effects.grade.corners);
+    add_number(&values, "distance", 2 * far_mm);
+    return values_expand(&values, geometry->params, "povray/graded.inc", out, err);
+}
+
+static Status put_fade(Text *out, void *context, Err *err)
+{
+    const PovrayGeometry *geometry = context;
+    const Fade *fade = &geometry->scene->view.fade;
+    Values values = {.digits = out->digits};
+    if (!fade_is_on(fade))
+        return STATUS_OK;
+    add_number(&values, "fade_nearest", fade->nearest);
+    add_number(&values, "fade_farthest", fade->farthest);
+    add_number(&values, "fade_near", fade->near_mm);
+    add_number(&values, "fade_far", fade->far_mm);
+    return values_expand(&values, geometry->params, "povray/fade.inc", out, err);
+}
+
+/* Colors that do not stand for values give way to a color that the user declares. */
+static Status put_tips(Text *out, void *context, Err *err)
+{
+    const PovrayGeometry *geometry = context;
+    const Appearance *appearance = &geometry->scene->appearance;
+    Values values = {.digits = out->digits};
+    return appearance->colors && !appearance->meaning
+               ? values_expand(&values, geometry->params, "povray/tips.inc", out, err)
+               : STATUS_OK;
 }
 
 static Status put_scene(Text *out, PovrayGeometry *geometry, Err *err)
@@ -336,7 +381,7 @@ static Status put_scene(Text *out, PovrayGeometry *geometry, Err *err)
     text_put_line(add_value(&values, "geometry_file"),
                   params->second_file ? params->second_file : "the last part of this file");
     add_about(&values, params, scene->geometry.bounds, scene->geometry.origin);
-    put_effects(add_value(&values, "effects"), &scene->view.effects);
+    put_effects(add_value(&values, "effects"), params);
     add_count(&values, "width", (size_t)scene->view.camera.width);
     add_count(&values, "height", (size_t)scene->view.camera.height);
     add_part(&values, "camera", put_camera, geometry);
@@ -345,6 +390,9 @@ static Status put_scene(Text *out, PovrayGeometry *geometry, Err *err)
     add_float(&values, "background_green", scene->view.background.g);
     add_float(&values, "background_blue", scene->view.background.b);
     text_puts(add_value(&values, "background_transmit"), scene->view.transparent ? "1" : "0");
+    add_part(&values, "graded", put_graded, geometry);
+    add_part(&values, "fade", put_fade, geometry);
+    add_part(&values, "tips", put_tips, geometry);
     add_part(&values, "geometry", put_vessels, geometry);
     add_light_kinds(&values, &scene->view);
     add_part(&values, "lights", put_lights, geometry);

@@ -123,7 +123,7 @@ static ssize_t take_bytes(void *cookie, const char *chars, size_t n)
 /* Has the entry made, and deflated piece by piece. */
 static Status pack(const ZipEntry *entry, Packing *packing, Err *err)
 {
-    FILE *stream = fopencookie(packing, "w", (cookie_io_functions_t){.write = take_bytes});
+    FILE *stream = system_stream(packing, take_bytes);
     if (!stream)
         return mem_out_of("to compress", "the mesh", err);
     Text plain = TEXT_TO(stream);

@@ -1,11 +1,11 @@
 /* The public header of the module figure: lays out a page of pictures, diagrams, color bars, scale
- * bars and text, and writes it as PDF, SVG or pixels.
+ * bars and text, and writes it as PDF, EPS, SVG or pixels.
  *
  *     figure_init(&page, 89, 60, 300, fonts);
  *     figure_add_picture(&page, &picture, 0, 0);
  *     figure_add_text(&page, &(FigureText){.text = "a", .x = 2, .y = 5, .size_pt = 8});
  *     TRY_GOTO(figure_check(&page, err));
- *     TRY_GOTO(figure_write_pdf(&page, &notes, "figure.pdf", err));
+ *     TRY_GOTO(figure_write_pdf(&page, &notes, false, "figure.pdf", err));
  *     figure_release(&page);
  *
  * Lengths are mm from the page's upper left corner, x to the right and y down. Sizes of text are
@@ -17,6 +17,7 @@
 #include "base/base.h"
 #include "image/image.h"
 #include "scene/scene.h"
+#include <math.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -24,7 +25,8 @@
 
 /* ---- fonts ----------------------------------------------------------------------------------- */
 
-/* Liberation Sans, regular and bold, from templates/fonts. No other font is used. */
+/* The fonts in templates/fonts: Liberation Sans, regular, bold, italic and bold italic; and DejaVu
+ * Sans for letters that Liberation Sans lacks. No other font is used. */
 typedef struct FigureFonts FigureFonts;
 
 /* The font files, relative to the folder of templates; NULL ends the list. */
@@ -35,17 +37,16 @@ extern const char *const figure_font_files[];
 MUST_CHECK Status figurefonts_load(const char *templates, FigureFonts **out, Err *err);
 void figurefonts_free(FigureFonts *fonts); /* NULL is allowed */
 
-/* Returns the width of a line of UTF-8, in mm; 0 if memory runs out. */
+/* Returns the width of a line of text with markup [FigureText], in mm; 0 if memory runs out. */
 double figure_text_width(const FigureFonts *fonts, const char *text, double size_pt, bool bold);
 
-/* The Unicode characters in texts that the font lacks. Each is listed once, in the order of the
- * texts. Only the first FIGURE_LETTERS of each kind are listed, enough for a message. */
+/* The Unicode characters in texts that Liberation Sans lacks. Each is listed once, in the order of
+ * the texts. Only the first FIGURE_LETTERS of each kind are listed, enough for a message. */
 enum { FIGURE_LETTERS = 8 };
 typedef struct FigureLetters {
-    uint32_t substituted[FIGURE_LETTERS]; /* drawn as other letters: superscripts and subscripts as
-                                             small ones */
-    uint32_t boxed[FIGURE_LETTERS];       /* drawn as a box */
-    int n_substituted, n_boxed;
+    uint32_t fallback[FIGURE_LETTERS]; /* drawn in DejaVu Sans */
+    uint32_t boxed[FIGURE_LETTERS];    /* in no font: drawn as a box */
+    int n_fallback, n_boxed;
 } FigureLetters;
 
 /* ---- a page ---------------------------------------------------------------------------------- */
@@ -57,6 +58,13 @@ typedef struct FigurePoint {
 typedef struct FigureBox {
     double left, top, right, bottom;
 } FigureBox;
+
+/* Returns true if two boxes share more than `slack` in both directions. */
+static inline bool figure_boxes_overlap(const FigureBox *a, const FigureBox *b, double slack)
+{
+    return fmin(a->right, b->right) - fmax(a->left, b->left) > slack &&
+           fmin(a->bottom, b->bottom) - fmax(a->top, b->top) > slack;
+}
 
 /* Codes of sRGB. */
 typedef struct FigureColor {
@@ -104,10 +112,14 @@ typedef struct FigureItem {
     FigureColor color;
     int n; /* number of points in `at` */
     bool closed, upwards, bold;
+    bool solid;        /* a bar or swatch: no text is to be over it */
     FigureAlign align; /* of a text at at[0], which is on its baseline */
     FigurePoint at[FIGURE_CORNERS];
     double width_mm;        /* of a line */
     double size_pt;         /* of a text */
+    double outline_mm;      /* of a text: its letters are filled, and outlined this wide */
+    double halo_mm;         /* width of the halo around the item; 0: none */
+    FigureColor halo;       /* color of the halo */
     char *text;             /* owned */
     FigureColor *ramp;      /* owned; FIGURE_STOPS colors at equal distances */
     const Strokes *strokes; /* borrowed; their paper's corner is at at[0] */
@@ -120,11 +132,13 @@ typedef struct FigurePage {
     double width_mm, height_mm, dpi; /* 0 < dpi */
     bool exact;                      /* an SVG states the size with all digits, else to 0.001 mm */
     FigureColor background;
-    const FigureFonts *fonts; /* borrowed; NULL: the page has no text and becomes an SVG only */
+    const FigureFonts *fonts; /* borrowed; NULL: the page has no text */
     FigureItem *items;        /* owned */
     size_t n, capacity;
-    bool failed;            /* memory ran out while an item was added */
-    FigureLetters replaced; /* characters of all texts that the font lacks */
+    bool failed;           /* memory ran out while an item was added */
+    FigureLetters missing; /* characters of all texts that Liberation Sans lacks */
+    const char *unclosed;  /* the first text with a group that is not closed, borrowed from its
+                              item; NULL: there is none */
 } FigurePage;
 
 /* Makes an empty page with a white background. The fonts are borrowed. */
@@ -154,6 +168,14 @@ void figure_add_strokes(FigurePage *page, const Strokes *strokes, FigurePoint at
 void figure_add_bars(FigurePage *page, const FigureBars *bars, FigurePoint at, double width_mm,
                      double height_mm);
 
+/* A line of text. It may have markup, which every text of a page has in the same form:
+ *
+ *     *r*            italic. A star that no other star matches, or beside a blank, is a star
+ *     _{w}  ^{-3}    subscript and superscript; groups may be nested. A hyphen at either end of a
+ *                    group is drawn as a minus. A group that is not closed ends with the text
+ *     \*  \_  \^  \}  \\    the character itself
+ *
+ * Unicode's superscripts and subscripts, such as U+207B, are drawn as groups are. */
 typedef struct FigureText {
     const char *text; /* one line of UTF-8; copied. Control characters become blanks */
     double x, y;      /* position on the baseline */
@@ -166,32 +188,50 @@ void figure_add_text(FigurePage *page, const FigureText *text);
 
 /* Errors: STATUS_MEMORY if an item could not be added. */
 MUST_CHECK Status figure_check(const FigurePage *page, Err *err);
-/* Appends a sentence that lists the characters that the font lacks: if `substituted`, those that
- * are drawn as other letters, else those that are drawn as a box. Appends nothing if there are
+/* Appends a sentence that lists the characters of the page that Liberation Sans lacks: if `boxed`,
+ * those that no font has, else those that are drawn in DejaVu Sans. Appends nothing if there are
  * none. */
-void figure_put_missing(const FigurePage *page, bool substituted, Text *out);
+void figure_put_missing(const FigurePage *page, bool boxed, Text *out);
+
+/* Appends a sentence about the first text with a group that is not closed. Appends nothing if there
+ * is none. */
+void figure_put_unclosed(const FigurePage *page, Text *out);
+
+/* Appends a sentence that lists the texts that overlap each other, a scale bar or a legend, or that
+ * extend beyond the page. Appends nothing if there are none. Cost: O(n^2) for n texts. */
+void figure_put_collisions(const FigurePage *page, Text *out);
 
 /* Returns the bounds of the items from index `first` on. */
 FigureBox figure_bounds(const FigurePage *page, size_t first);
 /* Moves the items from index `first` on. None may be a picture. */
 void figure_move(FigurePage *page, size_t first, double dx, double dy);
+/* Marks the items from index `first` on that are no text as solid. */
+void figure_mark_solid(FigurePage *page, size_t first);
+
+/* Gives an item a halo, which is drawn below the item: around the letters of a text, or around the
+ * box of any other item. */
+void figure_set_halo(FigurePage *page, size_t item, double width_mm, FigureColor color);
 
 /* ---- legends --------------------------------------------------------------------------------- */
 
 typedef struct FigureLegend {
     const ColorScale *scale;
-    ScaleOutside outside; /* numbers of visible values that are outside the range */
-    bool integers;        /* all values are integers, so ticks are integers as well */
-    const char *title;    /* UTF-8; a quantity with its unit in parentheses, if it has one */
-    bool horizontal;      /* the bar runs from left to right; false: from bottom to top */
-    double length_mm;     /* of the bar */
+    ScaleOutside outside;   /* numbers of visible values that are outside the range */
+    bool integers;          /* all values are integers, so ticks are integers as well */
+    const double *swatches; /* values that have a swatch each instead of a bar; borrowed */
+    int n_swatches;         /* 0: there is a bar */
+    const char *title;      /* UTF-8; a quantity with its unit in parentheses, if it has one */
+    bool horizontal;        /* the bar runs from left to right; false: from bottom to top */
+    double length_mm;       /* of the bar */
     double size_pt;
     FigureColor ink;
 } FigureLegend;
 
 /* Appends a color bar with title, ticks at round numbers, pointed ends where values are outside
- * the range, and a swatch for vessels without a value. If integers select separate colors, appends
- * one swatch per color instead. The position is arbitrary: use figure_bounds and figure_move. */
+ * the range, and a swatch for vessels without a value. A logarithmic bar has numbers at its ends
+ * and minor ticks. Large and small numbers have a common power of ten. If integers select separate
+ * colors, appends one swatch per color instead. The position is arbitrary: use figure_bounds and
+ * figure_move. */
 void figure_add_legend(FigurePage *page, const FigureLegend *legend);
 
 /* Appends a scale bar of this length, with its label above the middle, at an arbitrary position. */
@@ -219,11 +259,11 @@ typedef struct FigureNotes {
  * STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status figure_put_svg(const FigurePage *page, const FigureNotes *notes, Text *out,
                                  Err *err);
-/* Writes the page as PDF 1.5. Text stays text, in embedded fonts. Equal pages give equal bytes.
- * Errors: STATUS_USAGE if a picture has a side of more than FIGURE_PDF_SIDE pixels, a limit of the
- * library cairo; STATUS_IO; STATUS_MEMORY. */
+/* Writes the page as PDF 1.5, or if `eps` as encapsulated PostScript of level 3. Text stays text,
+ * in embedded fonts. Equal pages give equal bytes. Errors: STATUS_USAGE if a picture has a side of
+ * more than FIGURE_PDF_SIDE pixels, a limit of the library cairo; STATUS_IO; STATUS_MEMORY. */
 enum { FIGURE_PDF_SIDE = 32767 };
-MUST_CHECK Status figure_write_pdf(const FigurePage *page, const FigureNotes *notes,
+MUST_CHECK Status figure_write_pdf(const FigurePage *page, const FigureNotes *notes, bool eps,
                                    const char *path, Err *err);
 
 /* Draws a band of the page over `rows`, a picture of 3 channels at the page's resolution. The band

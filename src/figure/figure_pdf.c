@@ -1,5 +1,5 @@
-/* A page as PDF, through cairo: text as text, in subsets of the two fonts, and no date but one that
- * is always the same.
+/* A page as PDF or EPS, through cairo: text as text, in subsets of the fonts, and no date but one
+ * that is always the same.
  *
  * cairo 1.16 ignores some failed allocations and crashes by others, and it keeps the fonts for as
  * long as the process lives. It therefore runs in a process of its own. An allocation that cairo
@@ -9,13 +9,12 @@
 
 #include <cairo-ft.h>
 #include <cairo-pdf.h>
+#include <cairo-ps.h>
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum { REGULAR, BOLD, FACES };
 
 /* The page that is being written. The unit of the cairo context is the mm. */
 typedef struct PdfPage {
@@ -94,58 +93,66 @@ static Status put_ramp(void *context, const FigureItem *item, Err *err)
     return check(cairo_status(pdf->cairo), err);
 }
 
-/* Glyphs of one size, which cairo draws in one call. */
+/* The arrays of cairo's call for a run of glyphs. A cluster states which bytes of `text` a glyph
+ * stands for, so that viewers can search the text. */
 typedef struct GlyphRun {
-    const Glyph *glyph;
-    size_t n;
-    const char *text; /* the text of the glyphs */
-    int bytes;        /* of the text */
+    cairo_glyph_t *glyph;
+    cairo_text_cluster_t *cluster;
+    Text text;
 } GlyphRun;
 
-/* Returns the run at the beginning of `n` glyphs, whose text begins at `text`. */
-static GlyphRun first_run(const Glyph *glyph, size_t n, const char *text)
-{
-    GlyphRun run = {.glyph = glyph, .text = text};
-    while (run.n < n && glyph[run.n].scale == glyph->scale)
-        run.bytes += glyph[run.n++].bytes;
-    return run;
-}
-
-/* A cluster states which bytes of the text a glyph stands for, so that viewers can search the
- * text. */
-static Status show_run(const PdfPage *pdf, const FigureItem *item, const GlyphRun *run, Err *err)
+static Status fill_run(const FigureItem *item, const Glyph *from, size_t n, GlyphRun *run, Err *err)
 {
     const double size = item->size_pt * MM_PER_POINT;
-    cairo_glyph_t *glyph = NULL;
-    cairo_text_cluster_t *cluster = NULL;
-    Status status = STATUS_OK;
-    TRY_GOTO(mem_calloc(&glyph, run->n, sizeof *glyph, "letters", err));
-    TRY_GOTO(mem_calloc(&cluster, run->n, sizeof *cluster, "letters", err));
-    for (size_t i = 0; i < run->n; i++) {
-        const Glyph *from = &run->glyph[i];
-        glyph[i] = (cairo_glyph_t){from->index, item->box.left + from->x * size,
-                                   item->at[0].y - from->rise * size};
-        cluster[i] = (cairo_text_cluster_t){from->bytes, 1};
+    TRY(mem_calloc(&run->glyph, n, sizeof *run->glyph, "letters", err));
+    TRY(mem_calloc(&run->cluster, n, sizeof *run->cluster, "letters", err));
+    for (size_t i = 0; i < n; i++) {
+        const size_t before = run->text.length;
+        text_put_character(&run->text, from[i].letter);
+        run->glyph[i] = (cairo_glyph_t){from[i].index, item->box.left + from[i].x * size,
+                                        item->at[0].y - from[i].rise * size};
+        run->cluster[i] = (cairo_text_cluster_t){(int)(run->text.length - before), 1};
     }
-    cairo_set_font_face(pdf->cairo, pdf->face[item->bold ? BOLD : REGULAR]);
-    cairo_set_font_size(pdf->cairo, size * run->glyph->scale);
-    cairo_show_text_glyphs(pdf->cairo, run->text, run->bytes, glyph, (int)run->n, cluster,
-                           (int)run->n, 0);
+    return text_check(&run->text, err);
+}
+
+/* Draws letters as paths, so that a halo is no text. */
+static void fill_outlined(cairo_t *cairo, const GlyphRun *run, int n, double width_mm)
+{
+    cairo_set_line_width(cairo, width_mm);
+    cairo_set_line_join(cairo, CAIRO_LINE_JOIN_ROUND);
+    cairo_glyph_path(cairo, run->glyph, n);
+    cairo_stroke_preserve(cairo);
+    cairo_fill(cairo);
+    cairo_set_line_join(cairo, CAIRO_LINE_JOIN_MITER);
+}
+
+static Status show_run(const PdfPage *pdf, const FigureItem *item, const Glyph *from, size_t n,
+                       Err *err)
+{
+    GlyphRun run = {.text = TEXT_INIT};
+    Status status;
+    TRY_GOTO(fill_run(item, from, n, &run, err));
+    cairo_set_font_face(pdf->cairo, pdf->face[from->face]);
+    cairo_set_font_size(pdf->cairo, item->size_pt * MM_PER_POINT * from->scale);
+    if (item->outline_mm > 0)
+        fill_outlined(pdf->cairo, &run, (int)n, item->outline_mm);
+    else
+        cairo_show_text_glyphs(pdf->cairo, text_chars(&run.text), (int)run.text.length, run.glyph,
+                               (int)n, run.cluster, (int)n, 0);
 done:
-    free(glyph);
-    free(cluster);
+    free(run.glyph);
+    free(run.cluster);
+    text_release(&run.text);
     return status;
 }
 
 static Status show_glyphs(const PdfPage *pdf, const FigureItem *item, const Glyphs *glyphs,
                           Err *err)
 {
-    const char *text = item->text;
-    for (size_t i = 0; i < glyphs->n;) {
-        const GlyphRun run = first_run(&glyphs->glyph[i], glyphs->n - i, text);
-        TRY(show_run(pdf, item, &run, err));
-        i += run.n;
-        text += run.bytes;
+    for (size_t i = 0, n; i < glyphs->n; i += n) {
+        n = glyphs_run(glyphs, i);
+        TRY(show_run(pdf, item, &glyphs->glyph[i], n, err));
     }
     return STATUS_OK;
 }
@@ -193,7 +200,7 @@ static Status set_fonts(PdfPage *pdf, Err *err)
     cairo_font_options_destroy(options);
     for (int i = 0; i < FACES; i++) {
         pdf->face[i] = cairo_ft_font_face_create_for_ft_face(
-            fonts_face(pdf->page->fonts, i == BOLD), FT_LOAD_NO_HINTING);
+            fonts_face(pdf->page->fonts, (FontFace)i), FT_LOAD_NO_HINTING);
         if (failed == CAIRO_STATUS_SUCCESS)
             failed = cairo_font_face_status(pdf->face[i]);
     }
@@ -254,6 +261,8 @@ static Status put_page(PdfPage *pdf, Err *err)
     return figure_put_items(pdf->page, put, pdf, err);
 }
 
+/* ---- files ----------------------------------------------------------------------------------- */
+
 static cairo_status_t take_bytes(void *bytes, const unsigned char *from, unsigned int n)
 {
     text_append(bytes, (const char *)from, n);
@@ -261,7 +270,7 @@ static cairo_status_t take_bytes(void *bytes, const unsigned char *from, unsigne
 }
 
 /* cairo would write the current date. */
-static void set_notes(cairo_surface_t *pdf, const FigureNotes *notes)
+static void set_pdf_notes(cairo_surface_t *pdf, const FigureNotes *notes)
 {
     static const char date[] = "2000-01-01T00:00:00Z";
     cairo_pdf_surface_set_metadata(pdf, CAIRO_PDF_METADATA_TITLE, notes->description);
@@ -271,11 +280,47 @@ static void set_notes(cairo_surface_t *pdf, const FigureNotes *notes)
     cairo_pdf_surface_set_metadata(pdf, CAIRO_PDF_METADATA_MOD_DATE, date);
 }
 
+/* Adds a comment of one line to an EPS. cairo refuses lines of more than 255 bytes. */
+static void set_eps_note(cairo_surface_t *eps, const char *key, const char *value)
+{
+    char line[256];
+    snprintf(line, sizeof line, "%%%%%s: %s", key, value);
+    cairo_ps_surface_dsc_comment(eps, line);
+}
+
+static void set_eps_notes(cairo_surface_t *eps, const FigureNotes *notes)
+{
+    cairo_ps_surface_set_eps(eps, 1);
+    set_eps_note(eps, "Title", notes->description);
+    set_eps_note(eps, "For", notes->generator);
+}
+
+/* Replaces the current date, which cairo writes into the header of an EPS. */
+static void remove_date(Text *bytes)
+{
+    static const char key[] = "%%CreationDate: ", date[] = "Sat Jan  1 00:00:00 2000";
+    char *at = text_chars(bytes) ? strstr(bytes->chars, key) : NULL;
+    if (at && strcspn(at + strlen(key), "\n") == strlen(date))
+        memcpy(at + strlen(key), date, strlen(date));
+}
+
 /* What the child process draws. */
 typedef struct PdfWork {
     const FigurePage *page;
     const FigureNotes *notes;
+    bool eps;
 } PdfWork;
+
+static cairo_surface_t *make_page(const PdfWork *work, Text *bytes)
+{
+    const double width = work->page->width_mm / MM_PER_POINT;
+    const double height = work->page->height_mm / MM_PER_POINT;
+    cairo_surface_t *page =
+        work->eps ? cairo_ps_surface_create_for_stream(take_bytes, bytes, width, height)
+                  : cairo_pdf_surface_create_for_stream(take_bytes, bytes, width, height);
+    (work->eps ? set_eps_notes : set_pdf_notes)(page, work->notes);
+    return page;
+}
 
 /* Ends the page and the file, and returns the first error of both. */
 static cairo_status_t finish(cairo_t *cairo, cairo_surface_t *pdf)
@@ -292,21 +337,22 @@ static Status put_pdf(const void *context, Text *bytes, Err *err)
     const PdfWork *work = context;
     const FigurePage *page = work->page;
     errno = 0;
-    cairo_surface_t *pdf = cairo_pdf_surface_create_for_stream(
-        take_bytes, bytes, page->width_mm / MM_PER_POINT, page->height_mm / MM_PER_POINT);
-    PdfPage self = {.cairo = cairo_create(pdf), .page = page};
-    set_notes(pdf, work->notes);
+    cairo_surface_t *surface = make_page(work, bytes);
+    PdfPage self = {.cairo = cairo_create(surface), .page = page};
     cairo_scale(self.cairo, 1 / MM_PER_POINT, 1 / MM_PER_POINT);
-    TRY(set_fonts(&self, err));
+    if (page->fonts)
+        TRY(set_fonts(&self, err));
     TRY(put_page(&self, err));
-    TRY(check(finish(self.cairo, pdf), err));
+    TRY(check(finish(self.cairo, surface), err));
+    if (work->eps)
+        remove_date(bytes);
     return errno == ENOMEM ? mem_out_of("for", "the page", err) : STATUS_OK;
 }
 
-Status figure_write_pdf(const FigurePage *page, const FigureNotes *notes, const char *path,
-                        Err *err)
+Status figure_write_pdf(const FigurePage *page, const FigureNotes *notes, bool eps,
+                        const char *path, Err *err)
 {
-    const PdfWork work = {page, notes};
+    const PdfWork work = {page, notes, eps};
     Text bytes = TEXT_INIT;
     Status status;
     TRY_GOTO(isolated_run(put_pdf, &work, "the page", &bytes, err));

@@ -85,6 +85,48 @@ static Status fill_polygon(PixelRows *target, const FigurePoint *corner, int n, 
     return fill(target, &outline, err);
 }
 
+/* ---- outlines around outlines ---------------------------------------------------------------- */
+
+static void set_width(FT_Stroker stroker, double pixels)
+{
+    FT_Stroker_Set(stroker, lround(32 * pixels), FT_STROKER_LINECAP_ROUND,
+                   FT_STROKER_LINEJOIN_ROUND, 0);
+}
+
+/* Makes the outline of what was stroked; release it with FT_Outline_Done. */
+static FT_Error export_outline(const PixelRows *target, FT_Stroker stroker, FT_Outline *outline)
+{
+    FT_UInt points, contours;
+    FT_Error failed = FT_Stroker_GetCounts(stroker, &points, &contours);
+    if (!failed)
+        failed =
+            FT_Outline_New(fonts_library(target->page->fonts), points, (FT_Int)contours, outline);
+    if (failed)
+        return failed;
+    outline->n_points = outline->n_contours = 0;
+    FT_Stroker_Export(stroker, outline);
+    return FT_Err_Ok;
+}
+
+/* Fills a line of `width` pixels along the contours of an outline. */
+static Status fill_around(PixelRows *target, FT_Outline *around, double width, Err *err)
+{
+    FT_Stroker stroker;
+    FT_Outline outline;
+    if (FT_Stroker_New(fonts_library(target->page->fonts), &stroker))
+        return mem_out_of("for", "letters", err);
+    set_width(stroker, width);
+    FT_Error failed = FT_Stroker_ParseOutline(stroker, around, 0);
+    if (!failed)
+        failed = export_outline(target, stroker, &outline);
+    FT_Stroker_Done(stroker);
+    if (failed)
+        return mem_out_of("for", "letters", err);
+    Status status = fill(target, &outline, err);
+    FT_Outline_Done(fonts_library(target->page->fonts), &outline);
+    return status;
+}
+
 /* ---- items ----------------------------------------------------------------------------------- */
 
 static bool is_box(const FigureItem *item)
@@ -167,9 +209,10 @@ static Status draw_ramp(PixelRows *target, const FigureItem *item, Err *err)
 
 /* The outline belongs to FreeType until the next glyph is loaded. Its points are moved to their
  * positions in place. */
-static Status draw_glyph(PixelRows *target, FT_Face face, const Glyph *glyph, FigurePoint at,
-                         double size, Err *err)
+static Status draw_glyph(PixelRows *target, const Glyph *glyph, FigurePoint at, double size,
+                         double outline_px, Err *err)
 {
+    FT_Face face = fonts_face(target->page->fonts, glyph->face);
     if (FT_Load_Glyph(face, glyph->index, FT_LOAD_NO_SCALE))
         return mem_out_of("for", "letters", err);
     FT_Outline *outline = &face->glyph->outline;
@@ -179,6 +222,8 @@ static Status draw_glyph(PixelRows *target, FT_Face face, const Glyph *glyph, Fi
         *point = vector_of(target, at.x + glyph->x * size + (double)point->x * scale,
                            at.y - glyph->rise * size - (double)point->y * scale);
     }
+    if (outline_px > 0)
+        TRY(fill_around(target, outline, outline_px, err));
     return fill(target, outline, err);
 }
 
@@ -187,11 +232,12 @@ static Status draw_text(PixelRows *target, const FigureItem *item, Err *err)
     const FigureFonts *fonts = target->page->fonts;
     const FigurePoint at = {pixels_of(target, item->box.left), pixels_of(target, item->at[0].y)};
     const double size = pixels_of(target, item->size_pt * MM_PER_POINT);
+    const double outline_px = pixels_of(target, item->outline_mm);
     Glyphs glyphs;
     TRY(fonts_shape(fonts, item->text, item->bold, &glyphs, err));
     Status status = STATUS_OK;
     for (size_t i = 0; i < glyphs.n && status == STATUS_OK; i++)
-        status = draw_glyph(target, fonts_face(fonts, item->bold), &glyphs.glyph[i], at, size, err);
+        status = draw_glyph(target, &glyphs.glyph[i], at, size, outline_px, err);
     glyphs_release(&glyphs);
     return status;
 }
@@ -204,7 +250,6 @@ enum { STROKE_POINTS = 256 }; /* per outline: an outline has a 16-bit number of 
 static FT_Error stroke_outline(PixelRows *target, FT_Stroker stroker, FigurePoint at,
                                const double (*point)[2], size_t n, FT_Outline *outline)
 {
-    FT_UInt points, contours;
     FT_Error failed = FT_Err_Ok;
     target->left = (int)floor(pixels_of(target, at.x + point[0][0]));
     target->top = (int)floor(pixels_of(target, at.y + point[0][1]));
@@ -216,16 +261,7 @@ static FT_Error stroke_outline(PixelRows *target, FT_Stroker stroker, FigurePoin
     }
     if (!failed)
         failed = FT_Stroker_EndSubPath(stroker);
-    if (!failed)
-        failed = FT_Stroker_GetCounts(stroker, &points, &contours);
-    if (!failed)
-        failed =
-            FT_Outline_New(fonts_library(target->page->fonts), points, (FT_Int)contours, outline);
-    if (failed)
-        return failed;
-    outline->n_points = outline->n_contours = 0;
-    FT_Stroker_Export(stroker, outline);
-    return FT_Err_Ok;
+    return failed ? failed : export_outline(target, stroker, outline);
 }
 
 static Status draw_stroke_part(PixelRows *target, FT_Stroker stroker, FigurePoint at,
@@ -248,8 +284,7 @@ static Status draw_strokes(PixelRows *target, const FigureItem *item, Err *err)
         return mem_out_of("for", "lines", err);
     for (size_t i = 0; i < all->n && status == STATUS_OK; i++) {
         const Stroke *stroke = &all->strokes[i];
-        FT_Stroker_Set(stroker, lround(32 * pixels_of(target, stroke->width_mm)),
-                       FT_STROKER_LINECAP_ROUND, FT_STROKER_LINEJOIN_ROUND, 0);
+        set_width(stroker, pixels_of(target, stroke->width_mm));
         for (size_t k = 0; k + 1 < stroke->n && status == STATUS_OK; k += STROKE_POINTS - 1) {
             size_t n = stroke->n - k < STROKE_POINTS ? stroke->n - k : STROKE_POINTS;
             status =
@@ -292,11 +327,13 @@ static Status draw_bars(PixelRows *target, const FigureItem *item, Err *err)
     return STATUS_OK;
 }
 
-/* Returns true if the item may have a pixel in the rows. Snapping moves it by at most one. */
+/* Returns true if the item may have a pixel in the rows. Snapping moves it by at most one. Accents
+ * and tall letters of DejaVu Sans reach beyond the box of a text, by less than its size. */
 static bool meets(const PixelRows *target, const FigureItem *item)
 {
-    return pixels_of(target, item->box.bottom) + 2 > target->first &&
-           pixels_of(target, item->box.top) - 2 < target->first + target->rows->height;
+    const double beyond = 2 + pixels_of(target, item->size_pt * MM_PER_POINT);
+    return pixels_of(target, item->box.bottom) + beyond > target->first &&
+           pixels_of(target, item->box.top) - beyond < target->first + target->rows->height;
 }
 
 /* A FigurePut. */

@@ -1,6 +1,7 @@
 /* There is one template for the page, and one for each kind of item. Text stays text, in a font
  * family whose letters are as wide as those of Arial and Helvetica, which replace it where it is
  * not installed. */
+#include "figure/fonts.h"
 #include "figure/items.h"
 #include "tmpl/tmpl.h"
 
@@ -50,20 +51,67 @@ static void put_corners(const FigureItem *item, Text *text)
     }
 }
 
+/* Appends the letters of a run: an upright run of the text's own size as plain text, any other as a
+ * span. `rise` is the height of the run before it. */
+static Status put_run(const SvgPage *svg, const FigureItem *item, const Glyph *glyph, size_t n,
+                      double *rise, Text *out, Err *err)
+{
+    const double size = item->size_pt * MM_PER_POINT, down = size * (*rise - glyph->rise);
+    const bool italic = glyph->face == FACE_ITALIC || glyph->face == FACE_BOLD_ITALIC;
+    Text letters = TEXT_INIT;
+    Markup parts = {0};
+    for (size_t i = 0; i < n; i++)
+        text_put_character(&letters, glyph[i].drawn);
+    text_escaped(markup_raw(&parts, "text"), text_chars(&letters));
+    text_release(&letters);
+    *rise = glyph->rise;
+    if (!italic && glyph->scale == 1 && down == 0) {
+        text_add(out, &parts.parts[0].text);
+        markup_release(&parts);
+        return STATUS_OK;
+    }
+    text_puts(markup_text(&parts, "style"), italic ? "italic" : "normal");
+    put_mm(size * glyph->scale, markup_text(&parts, "size"));
+    put_mm(down, markup_text(&parts, "down"));
+    return markup_put(&parts, svg->templates, "figure/span.svg", out, err);
+}
+
+static Status put_runs(const SvgPage *svg, const FigureItem *item, Text *out, Err *err)
+{
+    Glyphs glyphs;
+    Status status = STATUS_OK;
+    double rise = 0;
+    TRY(fonts_shape(svg->page->fonts, item->text, item->bold, &glyphs, err));
+    for (size_t i = 0, n; i < glyphs.n && status == STATUS_OK; i += n) {
+        n = glyphs_run(&glyphs, i);
+        status = put_run(svg, item, &glyphs.glyph[i], n, &rise, out, err);
+    }
+    glyphs_release(&glyphs);
+    return status;
+}
+
 static Status put_text(void *context, const FigureItem *item, Err *err)
 {
     const SvgPage *svg = context;
     static const char *const anchors[] = {
         [ALIGN_LEFT] = "start", [ALIGN_CENTER] = "middle", [ALIGN_RIGHT] = "end"};
     Markup parts = {0};
+    Status status;
     put_mm(item->at[0].x, markup_text(&parts, "x"));
     put_mm(item->at[0].y, markup_text(&parts, "y"));
     put_mm(item->size_pt * MM_PER_POINT, markup_text(&parts, "size"));
     text_puts(markup_text(&parts, "weight"), item->bold ? "bold" : "normal");
     text_puts(markup_text(&parts, "anchor"), anchors[item->align]);
     put_color(item->color, markup_text(&parts, "color"));
-    text_puts(markup_text(&parts, "text"), item->text);
-    return markup_put(&parts, svg->templates, "figure/text.svg", svg->out, err);
+    TRY_GOTO(put_runs(svg, item, markup_raw(&parts, "text"), err));
+    if (item->outline_mm > 0)
+        put_mm(item->outline_mm, markup_text(&parts, "outline"));
+    status =
+        markup_put(&parts, svg->templates,
+                   item->outline_mm > 0 ? "figure/halo.svg" : "figure/text.svg", svg->out, err);
+done:
+    markup_release(&parts);
+    return status;
 }
 
 static Status put_stops(const SvgPage *svg, const FigureItem *item, Text *out, Err *err)

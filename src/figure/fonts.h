@@ -1,4 +1,4 @@
-/* Lays out lines of text as glyphs of a font. Private to the module figure. */
+/* Lays out lines of text as glyphs of the fonts. Private to the module figure. */
 #ifndef CORCAST_FIGURE_FONTS_H
 #define CORCAST_FIGURE_FONTS_H
 
@@ -6,33 +6,52 @@
 #include <ft2build.h>
 #include FT_FREETYPE_H
 
+/* The fonts of a page. A letter that Liberation Sans lacks is drawn in FACE_FALLBACK, which is
+ * upright and of regular weight. */
+typedef enum FontFace {
+    FACE_REGULAR,
+    FACE_BOLD,
+    FACE_ITALIC,
+    FACE_BOLD_ITALIC,
+    FACE_FALLBACK,
+    FACES
+} FontFace;
+
 /* A character of a line. Lengths are multiples of the font size. */
 typedef struct Glyph {
-    unsigned index; /* of the glyph; 0: the font's box for a character that it lacks */
-    int bytes;      /* number of bytes of the character in the UTF-8 text */
-    double x;       /* distance from the beginning of the line */
-    double scale; /* size of the glyph: 1, or less for a substitute of a superscript or subscript */
-    double rise;  /* height of the glyph's baseline above the line's baseline */
+    FontFace face;
+    unsigned index;  /* of the glyph in its face; 0: a box for a character that no font has */
+    uint32_t drawn;  /* the character that the glyph shows */
+    uint32_t letter; /* the character that it stands for in the text of a PDF */
+    double x;        /* distance from the beginning of the line */
+    double scale;    /* size of the glyph: 1, or less in superscripts and subscripts */
+    double rise;     /* height of the glyph's baseline above the line's baseline */
 } Glyph;
 
 typedef struct Glyphs {
     Glyph *glyph; /* owned */
     size_t n;
     double width;           /* multiple of the font size */
-    FigureLetters replaced; /* characters of the text that the font lacks */
+    double ascent, descent; /* height above and depth below the baseline, as multiples of the size:
+                             * at least those of capitals and small letters */
+    FigureLetters missing;  /* characters of the text that Liberation Sans lacks */
+    bool unclosed;          /* a group of the markup is not closed */
 } Glyphs;
 
 /* Adds the characters of `from` that are not in `to`. */
 void letters_add(FigureLetters *to, const FigureLetters *from);
 
-/* Lays out a line of text. A character that the font lacks becomes a substitute or a box. Release
- * *out with glyphs_release. Errors: STATUS_MEMORY. */
+/* Lays out a line of text with markup. Bytes that are not UTF-8 become U+FFFD. Release *out with
+ * glyphs_release. Errors: STATUS_MEMORY. */
 MUST_CHECK Status fonts_shape(const FigureFonts *fonts, const char *text, bool bold, Glyphs *out,
                               Err *err);
 void glyphs_release(Glyphs *glyphs);
 
+/* Returns the number of glyphs, from index `first` on, that have the same face, size and height. */
+size_t glyphs_run(const Glyphs *glyphs, size_t first);
+
 FT_Library fonts_library(const FigureFonts *fonts);
-FT_Face fonts_face(const FigureFonts *fonts, bool bold);
+FT_Face fonts_face(const FigureFonts *fonts, FontFace face);
 
 /* Height of capitals above the baseline, and depth of letters below it, as multiples of the font
  * size.

@@ -53,21 +53,8 @@ static void put_label(const LegendLayout *layout, double along, double across, c
         put_text(layout, text, at.x, at.y + capitals / 2, ALIGN_LEFT);
 }
 
-/* Appends a number with `decimals` decimals, or, if it is large or small, with its power of ten. */
-static void put_number(double value, int decimals, Text *text)
-{
-    char digits[64];
-    bool plain = value == 0 || (fabs(value) < 1e6 && fabs(value) >= 1e-4);
-    if (plain)
-        snprintf(digits, sizeof digits, "%.*f", decimals, fabs(value));
-    else
-        snprintf(digits, sizeof digits, "%.3g", fabs(value));
-    text_puts(text, value < 0 ? "\xE2\x88\x92" : "");
-    text_puts(text, digits);
-}
-
 /* Returns the number of decimals with which ascending numbers are off by at most a hundredth of the
- * smallest gap, or a single number by a hundredth of its value. */
+ * smallest gap. */
 static int decimals_of(const double *values, int n)
 {
     double gap = n > 1 ? HUGE_VAL : fabs(values[0]) / 100;
@@ -84,28 +71,137 @@ static int decimals_of(const double *values, int n)
     return 6;
 }
 
-static void put_tick(const LegendLayout *layout, double along, const char *label)
+static void put_tick_line(const LegendLayout *layout, double along, double ems)
 {
-    double begin = bar_ems * layout->em, end = begin + tick_ems * layout->em;
+    double begin = bar_ems * layout->em, end = begin + ems * layout->em;
     const FigurePoint line[] = {place(layout, along, begin), place(layout, along, end)};
     figure_add_line(layout->page, line, 2, false, line_mm, layout->legend->ink);
-    put_label(layout, along, end + gap_ems * layout->em, label);
 }
 
-/* Adds a tick for each value. On a logarithmic scale each number has decimals of its own. */
+static void put_tick(const LegendLayout *layout, double along, const char *label)
+{
+    put_tick_line(layout, along, tick_ems);
+    put_label(layout, along, (bar_ems + tick_ems + gap_ems) * layout->em, label);
+}
+
+/* Returns the power of ten that numbers up to `most` share; 0 if they are written in full. */
+static int common_power(double most)
+{
+    return most >= 1e5 || (most > 0 && most < 1e-3) ? (int)floor(elementary_log10(most) + 1e-9) : 0;
+}
+
+/* Adds the power of ten of all numbers above their column, or behind the bar. */
+static void put_power(const LegendLayout *layout, int power)
+{
+    const double em = layout->em, across = (bar_ems + tick_ems + gap_ems) * em;
+    const bool horizontal = layout->legend->horizontal;
+    char digits[READABLE_SIZE], factor[READABLE_SIZE + 2];
+    snprintf(factor, sizeof factor, "\xC3\x97%s", power_readable(power, digits));
+    if (horizontal)
+        put_text(layout, factor, layout->length + (point_ems + 0.5) * em,
+                 (bar_ems + FONT_CAPITALS) / 2 * em, ALIGN_LEFT);
+    else
+        put_text(layout, factor, across, -layout->length - 0.9 * em, ALIGN_LEFT);
+}
+
+/* Adds ticks at ascending values of a linear scale, all with as many decimals. */
+static void put_linear_ticks(const LegendLayout *layout, const double *values, const double *along,
+                             int n)
+{
+    double scaled[FIGURE_TICKS + COLORSCALE_MAX_BOUNDS];
+    const int power = common_power(fmax(fabs(values[0]), fabs(values[n - 1])));
+    for (int i = 0; i < n; i++)
+        scaled[i] = power < 0 ? values[i] * elementary_pow(10, -power)
+                              : values[i] / elementary_pow(10, power);
+    const int decimals = decimals_of(scaled, n);
+    for (int i = 0; i < n; i++) {
+        char label[64];
+        snprintf(label, sizeof label, "%s%.*f", scaled[i] < 0 ? "\xE2\x88\x92" : "", decimals,
+                 fabs(scaled[i]));
+        put_tick(layout, along[i], label);
+    }
+    if (power)
+        put_power(layout, power);
+}
+
+/* Writes a number of a logarithmic scale. Powers of ten are written as such if `powers`. */
+static const char *log_number(double value, int digits, bool powers, char out[READABLE_SIZE])
+{
+    const double power = round(elementary_log10(value));
+    if (powers && fabs(elementary_log10(value) - power) < 1e-9)
+        return power_readable((int)power, out);
+    return number_readable(value, digits, out);
+}
+
+/* Returns true if powers of ten of a scale are not written in full. */
+static bool has_powers(const ColorScale *scale)
+{
+    return scale->range[0] < 0.999e-3 || scale->range[1] > 1.001e4;
+}
+
+/* Adds a tick for each bound between classes. */
 static void put_ticks(const LegendLayout *layout, const double *values, const double *along, int n)
 {
-    int decimals = decimals_of(values, n);
+    const ColorScale *scale = layout->legend->scale;
+    if (!scale->log && n > 0)
+        put_linear_ticks(layout, values, along, n);
+    for (int i = 0; i < n && scale->log; i++)
+        put_tick(layout, along[i],
+                 log_number(values[i], 4, has_powers(scale), (char[READABLE_SIZE]){0}));
+}
+
+/* Adds short ticks: 2 to 9 times each power of ten, or only the powers, or none, as there is space.
+ */
+static void put_minor_ticks(const LegendLayout *layout)
+{
+    const ColorScale *scale = layout->legend->scale;
+    const double low = elementary_log10(scale->range[0]), high = elementary_log10(scale->range[1]);
+    const double decade_ems = layout->length / (high - low) / layout->em;
+    const int digits = decade_ems > 2.5 ? 9 : decade_ems > 0.3 ? 1 : 0;
+    for (int power = (int)floor(low); power < high; power++)
+        for (int digit = 1; digit <= digits; digit++) {
+            const double at = (power + elementary_log10(digit) - low) / (high - low);
+            if (at > 0 && at < 1)
+                put_tick_line(layout, at * layout->length, tick_ems / 2);
+        }
+}
+
+/* Returns half of the length that a number takes along the bar, with the gap to the next. */
+static double half_length(const LegendLayout *layout, const char *label)
+{
+    const FigureLegend *legend = layout->legend;
+    if (!legend->horizontal)
+        return 0.575 * layout->em;
+    return (figure_text_width(layout->page->fonts, label, legend->size_pt, false) +
+            0.5 * layout->em) /
+           2;
+}
+
+/* Adds numbers at both ends of a logarithmic bar, and at round values where they do not touch
+ * other numbers. */
+static void put_log_ticks(const LegendLayout *layout, const double *ticks, int n)
+{
+    const ColorScale *scale = layout->legend->scale;
+    const double slack = 1e-9 * layout->length;
+    const bool powers = has_powers(scale);
+    char label[READABLE_SIZE], end[2][READABLE_SIZE];
+    for (int i = 0; i < 2; i++)
+        log_number(scale->range[i], 3, powers, end[i]);
+    put_tick(layout, 0, end[0]);
+    double taken = half_length(layout, end[0]);
     for (int i = 0; i < n; i++) {
-        Text label = TEXT_INIT;
-        bool own = layout->legend->scale->log;
-        put_number(values[i], own ? decimals_of(&values[i], 1) : decimals, &label);
-        if (text_chars(&label))
-            put_tick(layout, along[i], text_chars(&label));
-        else
-            layout->page->failed = true;
-        text_release(&label);
+        const double along = layout->length * colorscale_position(scale, ticks[i]);
+        const double half = half_length(layout, log_number(ticks[i], 3, powers, label));
+        const bool fits =
+            along >= taken + half && along + half <= layout->length - half_length(layout, end[1]);
+        taken = fits ? along + half : taken;
+        if (fits)
+            put_tick(layout, along, label);
+        else if (along > slack && along < layout->length - slack)
+            put_tick_line(layout, along, tick_ems);
     }
+    put_tick(layout, layout->length, end[1]);
+    put_minor_ticks(layout);
 }
 
 /* Adds the pointed end beyond the bar for values outside the range. */
@@ -143,12 +239,15 @@ static void put_ramp(const LegendLayout *layout)
         stops[i] = figure_color(color);
     }
     figure_add_ramp(layout->page, box_of(layout, 0, layout->length), !legend->horizontal, stops);
-    int most =
-        (int)fmin(fmax(layout->length / (legend->horizontal ? 2.9 : 2.2) / layout->em, 2), 8);
+    const double pitch = legend->horizontal && !legend->scale->log ? 2.9 : 2.2;
+    int most = (int)fmin(fmax(layout->length / pitch / layout->em, 2), 8);
     int n = figure_ticks(legend->scale, most, legend->integers, ticks);
     for (int i = 0; i < n; i++)
         along[i] = layout->length * colorscale_position(legend->scale, ticks[i]);
-    put_ticks(layout, ticks, along, n);
+    if (legend->scale->log && legend->scale->range[0] < legend->scale->range[1])
+        put_log_ticks(layout, ticks, n);
+    else
+        put_ticks(layout, ticks, along, n);
     put_points(layout);
 }
 
@@ -215,6 +314,27 @@ static double put_counts(const LegendLayout *layout)
     return n * pitch;
 }
 
+/* Adds a swatch for each listed value, the highest first. Returns the length of the bar. */
+static double put_listed(const LegendLayout *layout)
+{
+    const FigureLegend *legend = layout->legend;
+    const int n = legend->n_swatches;
+    double widest = 0;
+    char label[READABLE_SIZE];
+    for (int i = 0; i < n; i++)
+        widest = fmax(widest, figure_text_width(layout->page->fonts,
+                                                number_readable(legend->swatches[i], 6, label),
+                                                legend->size_pt, false));
+    const double pitch =
+        legend->horizontal ? fmax(1.7 * layout->em, widest + 0.6 * layout->em) : 1.35 * layout->em;
+    for (int i = 0; i < n; i++) {
+        float color[3];
+        colorscale_linear(legend->scale, legend->swatches[i], color);
+        put_swatch(layout, i * pitch, color, number_readable(legend->swatches[i], 6, label));
+    }
+    return n * pitch;
+}
+
 static void put_none(const LegendLayout *layout)
 {
     const FigureLegend *legend = layout->legend;
@@ -253,7 +373,9 @@ void figure_add_legend(FigurePage *page, const FigureLegend *legend)
                            .legend = legend,
                            .em = legend->size_pt * MM_PER_POINT,
                            .length = legend->length_mm};
-    if (colorscale_selects_by_integer(legend->scale))
+    if (legend->n_swatches > 0)
+        layout.length = put_listed(&layout);
+    else if (colorscale_selects_by_integer(legend->scale))
         layout.length = put_counts(&layout);
     else if (colorscale_steps(legend->scale))
         put_classes(&layout);
@@ -261,6 +383,7 @@ void figure_add_legend(FigurePage *page, const FigureLegend *legend)
         put_ramp(&layout);
     put_none(&layout);
     put_title(&layout, first);
+    figure_mark_solid(page, first);
 }
 
 void figure_add_scale_bar(FigurePage *page, double length_mm, const char *label, double size_pt,
@@ -273,6 +396,8 @@ void figure_add_scale_bar(FigurePage *page, double length_mm, const char *label,
                              .size_pt = size_pt,
                              .align = ALIGN_CENTER,
                              .color = ink};
+    const size_t first = page->n;
     figure_add_box(page, (FigureBox){0, 0, length_mm, thick}, ink);
     figure_add_text(page, &text);
+    figure_mark_solid(page, first);
 }

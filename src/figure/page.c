@@ -133,10 +133,12 @@ static void add_line_of_text(FigurePage *page, const FigureText *text, char *cha
     const double size = text->size_pt * MM_PER_POINT, width = glyphs->width * size;
     const double before[] = {[ALIGN_LEFT] = 0, [ALIGN_CENTER] = width / 2, [ALIGN_RIGHT] = width};
     const double left = text->x - before[text->align];
-    letters_add(&page->replaced, &glyphs->replaced);
+    letters_add(&page->missing, &glyphs->missing);
+    if (glyphs->unclosed && !page->unclosed)
+        page->unclosed = chars;
     if (!add(page, (FigureItem){.kind = FIGURE_TEXT,
-                                .box = {left, text->y - FONT_CAPITALS * size, left + width,
-                                        text->y + FONT_DESCENT * size},
+                                .box = {left, text->y - glyphs->ascent * size, left + width,
+                                        text->y + glyphs->descent * size},
                                 .color = text->color,
                                 .at = {{text->x, text->y}},
                                 .n = 1,
@@ -183,15 +185,50 @@ FigureItem figure_bar(const FigureItem *item, size_t i)
                         .at = {{left, top}, {right, top}, {right, bottom}, {left, bottom}}};
 }
 
+void figure_set_halo(FigurePage *page, size_t item, double width_mm, FigureColor color)
+{
+    page->items[item].halo_mm = width_mm;
+    page->items[item].halo = color;
+}
+
+/* Returns the halo of an item as an item of its own: the text outlined, or a larger box. */
+static FigureItem halo_of(const FigureItem *item)
+{
+    FigureItem halo = *item;
+    const FigureBox *box = &item->box;
+    const double wide = item->halo_mm;
+    halo.color = item->halo;
+    halo.outline_mm = 2 * wide;
+    if (item->kind == FIGURE_TEXT)
+        return halo;
+    halo.kind = FIGURE_SHAPE;
+    halo.n = 4;
+    halo.box =
+        (FigureBox){box->left - wide, box->top - wide, box->right + wide, box->bottom + wide};
+    halo.at[0] = (FigurePoint){halo.box.left, halo.box.top};
+    halo.at[1] = (FigurePoint){halo.box.right, halo.box.top};
+    halo.at[2] = (FigurePoint){halo.box.right, halo.box.bottom};
+    halo.at[3] = (FigurePoint){halo.box.left, halo.box.bottom};
+    return halo;
+}
+
+static Status put_item(const FigureItem *item, FigurePut *const put[FIGURE_KINDS], void *context,
+                       Err *err)
+{
+    if (item->halo_mm > 0) {
+        const FigureItem halo = halo_of(item);
+        TRY(put[halo.kind](context, &halo, err));
+    }
+    return put[item->kind](context, item, err);
+}
+
 Status figure_put_items(const FigurePage *page, FigurePut *const put[FIGURE_KINDS], void *context,
                         Err *err)
 {
     for (int pictures = 1; pictures >= 0; pictures--)
-        for (size_t i = 0; i < page->n; i++) {
-            const FigureItem *item = &page->items[i];
-            if ((item->kind == FIGURE_PICTURE) == pictures)
-                TRY(put[item->kind](context, item, err));
-        }
+        for (size_t i = 0; i < page->n; i++)
+            if ((page->items[i].kind == FIGURE_PICTURE) == pictures)
+                TRY(put_item(&page->items[i], put, context, err));
     return STATUS_OK;
 }
 
@@ -200,18 +237,29 @@ Status figure_check(const FigurePage *page, Err *err)
     return page->failed ? mem_out_of("for", "the page", err) : STATUS_OK;
 }
 
-void figure_put_missing(const FigurePage *page, bool substituted, Text *out)
+void figure_put_missing(const FigurePage *page, bool boxed, Text *out)
 {
-    const FigureLetters *replaced = &page->replaced;
-    const uint32_t *letters = substituted ? replaced->substituted : replaced->boxed;
-    const int n = substituted ? replaced->n_substituted : replaced->n_boxed;
+    const FigureLetters *missing = &page->missing;
+    const uint32_t *letters = boxed ? missing->boxed : missing->fallback;
+    const int n = boxed ? missing->n_boxed : missing->n_fallback;
     if (n == 0)
         return;
-    text_puts(out, "the font Liberation Sans lacks");
-    for (int i = 0; i < n; i++)
-        text_printf(out, "%s U+%04X", i ? "," : "", (unsigned)letters[i]);
-    text_puts(out, substituted ? "; ordinary letters are drawn, small and raised or lowered"
-                               : "; a box is drawn in place of each");
+    text_puts(out, boxed ? "no font has" : "Liberation Sans lacks");
+    for (int i = 0; i < n; i++) {
+        text_puts(out, i ? ", " : " ");
+        text_put_character(out, letters[i]);
+        text_printf(out, " (U+%04X)", (unsigned)letters[i]);
+    }
+    text_puts(out, boxed ? "; a box is drawn in place of each" : "; DejaVu Sans is used for these");
+}
+
+void figure_put_unclosed(const FigurePage *page, Text *out)
+{
+    if (!page->unclosed)
+        return;
+    text_puts(out, "the text '");
+    text_put_start(out, page->unclosed, 60);
+    text_puts(out, "' has a group _{ or ^{ without }: the group ends with the text");
 }
 
 FigureBox figure_bounds(const FigurePage *page, size_t first)
@@ -240,4 +288,10 @@ void figure_move(FigurePage *page, size_t first, double dx, double dy)
             item->at[k].y += dy;
         }
     }
+}
+
+void figure_mark_solid(FigurePage *page, size_t first)
+{
+    for (size_t i = first; i < page->n; i++)
+        page->items[i].solid = page->items[i].kind != FIGURE_TEXT;
 }

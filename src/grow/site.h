@@ -12,14 +12,16 @@
 
 /* Rules that segments keep while a tree grows. */
 typedef struct Rules {
-    double thickness;    /* vessels count at this multiple of their radii, in [0, 1] */
-    double least_length; /* mm; minimum length of a segment, which is also at least its diameter */
-    double gap;          /* mm; minimum distance of two vessels without a common node */
+    double thickness;    /* in [0, 1]; rules take the radius of a vessel times this factor, so that
+                          * a full domain can take more terminals */
+    double least_length; /* mm; a segment is at least this long, and at least as long as wide */
+    double gap;          /* mm; minimum distance of the axes of vessels without a common node */
     double apart;        /* mm; minimum distance of the walls of vessels of different trees */
-    double pair;   /* mm; distance of the ends of paired terminals; 0: no terminals are paired */
-    double widest; /* mm; vessels count as no thicker than this */
+    double pair;         /* mm; distance of the ends of paired terminals; 0: none are paired */
+    double widest;       /* mm; the largest radius that the grid takes for a vessel */
 } Rules;
 
+/* A site; growth owns it and releases its network and grid. */
 typedef struct Site {
     Network net;
     Grid grid;            /* the segments of `net`; zeroed before the first segment is added */
@@ -27,9 +29,13 @@ typedef struct Site {
     Rules rules;
 } Site;
 
-/* Returns the distance, mm, that the centrelines of the vessels of two paired terminals must keep,
- * if vessels without a pair would have to keep `clear` mm. It is at most the distance of the
- * terminals' ends: vessels are thick while a tree has few terminals, and thin in the end. */
+/* Returns the distance, mm, that the axes of two vessels with paired terminals must keep. `clear`
+ * is the distance, mm, that two other vessels of these radii must keep; rules->pair must be above
+ * 0.
+ *
+ * While a tree has few terminals its vessels are so thick that `clear` exceeds the distance of the
+ * paired ends, and no pair could grow. The result is therefore at most 0.99 of that distance. The
+ * vessels get thinner as the tree grows, and `clear` then decides. */
 static inline double clear_of_mate(const Rules *rules, double clear)
 {
     const double most = 0.99 * rules->pair;
@@ -37,8 +43,9 @@ static inline double clear_of_mate(const Rules *rules, double clear)
 }
 
 /* Returns the radius, mm, of the capsule that represents a vessel of `radius` mm in the grid. The
- * capsule is 1.4 times as wide as the vessel, so that the vessel may widen for a while before it
- * has to be entered again. */
+ * vessel's own part is 1.4 times its counted radius, so that the vessel may widen for a while
+ * before it has to be entered again, but at most rules->widest. Both distances of the rules are
+ * added, so that the capsule reaches every segment that a rule may forbid. */
 static inline double site_reach(const Rules *rules, double radius)
 {
     const double reserve = 1.4;
@@ -47,8 +54,9 @@ static inline double site_reach(const Rules *rules, double radius)
 }
 
 /* Enters a segment, with its radius of the last refresh, in every cell that its capsule meets. A
- * segment without length is entered in no cell: other segments begin and end there. No thread may
- * use the grid meanwhile. Errors: STATUS_MEMORY. */
+ * segment of length 0 is entered in no cell: the segments that begin or end at its position stand
+ * for it. This function and the next two change the grid: no other thread may use it meanwhile, and
+ * after an error it is incomplete and growth must end. Errors: STATUS_MEMORY. */
 MUST_CHECK Status site_enter(Site *site, int32_t segment, Err *err);
 
 /* Removes a segment from the grid and enters it again, after its ends moved or it widened.

@@ -224,16 +224,15 @@ void colorscale_linear(const ColorScale *scale, double value, float rgb[3])
         colorscale_at(scale, place, rgb);
 }
 
-/* Appends a value with three digits, or as an integer if it is one. */
+/* Appends a value with three digits, zeros included, or as an integer if it is one. */
 static void put_short(Text *text, double value)
 {
-    char digits[32];
-    bool whole = value == floor(value) && fabs(value) < 1e6;
-    snprintf(digits, sizeof digits, whole ? "%.0f" : "%#.3g", whole ? value + 0 : value);
-    size_t length = strlen(digits);
-    if (digits[length - 1] == '.')
-        digits[length - 1] = '\0';
-    text_puts(text, digits);
+    const double size = fabs(value);
+    const bool whole = value == floor(value);
+    if (whole || size < 1e-4 || size >= 99.95)
+        text_puts(text, READABLE(value, whole ? 6 : 3));
+    else
+        text_printf(text, "%s%#.3g", value < 0 ? "\xE2\x88\x92" : "", size);
 }
 
 void colorscale_put_range(const ColorScale *scale, Text *text)
@@ -242,5 +241,6 @@ void colorscale_put_range(const ColorScale *scale, Text *text)
     put_short(text, scale->range[0]);
     text_puts(text, " to ");
     put_short(text, scale->range[1]);
-    text_printf(text, "%s%s", *scale->unit ? " " : "", scale->unit);
+    text_puts(text, *scale->unit ? " " : "");
+    text_unit(text, scale->unit);
 }

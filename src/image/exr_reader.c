@@ -7,7 +7,7 @@
 
 #define IMATH_HALF_NO_LOOKUP_TABLE /* whose table is in a library of its own */
 #include <Imath/half.h>
-#include <openexr.h>
+#include <OpenEXR/openexr.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -5,7 +5,7 @@
 #include "image/png_fast.h"
 
 #include <errno.h>
-#include <openexr.h>
+#include <OpenEXR/openexr.h>
 #include <string.h>
 
 typedef struct ExrWriter {

@@ -5,7 +5,7 @@
 #include <jpeglib.h>
 #include <lcms2.h>
 #include <libdeflate.h>
-#include <openexr_base.h>
+#include <OpenEXR/openexr_base.h>
 #include <png.h>
 #include <tiffio.h>
 #include <webp/decode.h>

@@ -259,7 +259,7 @@ Status assemble_mesh(const VesselTree *tree, const Junctions *junctions, Junctio
         add_junction(&assembly, &meshes[i]);
         junctionmesh_release(&meshes[i]);
         if (i % JUNCTIONS_PER_TRIM == 0)
-            mem_trim();
+            system_return_memory();
     }
     for (uint32_t i = 0; i < tree->n_segments; i++) {
         if (!junctions->is_tube[i])

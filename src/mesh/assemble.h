@@ -16,13 +16,13 @@ typedef struct TubeParams {
     double grid_mm;   /* coordinates are rounded to integer multiples of it [mesh_grid] */
 } TubeParams;
 
-/* Joins the meshes of all regions, and adds the tubes between them. Every segment that is a tube
- * then has triangles.
+/* Joins the meshes of all regions, and adds the tubes between them and the caps of flat ends.
  *
- * meshes     per region, from junctionmesh_make. Each is released once it is copied. After an error
- *            the caller releases the others.
+ * meshes     per region, from junctionmesh_make. Each is released and zeroed once it is copied. The
+ *            caller releases all of them after an error.
  * mesh       receives the mesh; release it with vesselmesh_release.
- * deviation  is raised to the largest distance of a tube's triangle from its surface.
+ * deviation  initialized by the caller; is raised to the largest distance of a tube's triangle from
+ *            its surface.
  * Errors     STATUS_MEMORY. */
 MUST_CHECK Status assemble_mesh(const VesselTree *tree, const Junctions *junctions,
                                 JunctionMesh *meshes, const TubeParams *params, VesselMesh *mesh,

@@ -68,6 +68,6 @@ Status patchcross_find(const Patch *patch, size_t first_new, double grid_mm,
         return STATUS_OK;
     double fine_mm = mesh_grid(vec3_distance(all.low, all.high));
     TRY(count(patch, near, all.low, fine_mm, &unrounded, err));
-    *crossing = unrounded > 0 ? PATCHCROSS_OWN : PATCHCROSS_ROUNDING;
+    *crossing = unrounded > 0 ? PATCHCROSS_REAL : PATCHCROSS_ROUNDING;
     return STATUS_OK;
 }

@@ -8,17 +8,19 @@
 
 typedef enum PatchCrossing {
     PATCHCROSS_NONE,
-    PATCHCROSS_OWN,     /* triangles cross, also in precise coordinates; finer cells may help */
+    PATCHCROSS_REAL,    /* triangles cross, also in precise coordinates; a finer lattice of the
+                         * region may help */
     PATCHCROSS_ROUNDING /* triangles cross only after their points are rounded to the grid of the
-                         * mesh; finer cells make it worse */
+                         * mesh; a finer lattice makes it worse */
 } PatchCrossing;
 
 /* Tests the triangles near the new points for crossings.
  *
  * patch      stays unchanged; the function rounds copies of its points.
  * first_new  points with this index or a higher one are new.
- * grid_mm    points are rounded to integer multiples of it. If triangles cross then, the test is
- *            repeated on a grid fine enough for coordinates relative to the region.
+ * grid_mm    points are rounded to integer multiples of it. If triangles cross after rounding, the
+ *            test is repeated on a finer grid, which coordinates relative to the region allow. If
+ *            they still cross, the crossing is real.
  * crossing   receives the result.
  * Errors     STATUS_MEMORY.
  * Cost       O(triangles), and O(n log n) for n triangles near the new points. */

@@ -1,10 +1,10 @@
-/* The command line: `--name value`, `--name=value`, `-o value`, `-h`, and operands, in any order;
- * what follows `--` are operands. The recipe is read after it, and sets only options that the
- * command line has not set.
+/* The command line: `--name value`, `--name=value`, `-o value`, `-h`, and operands, in any order.
+ * Words after `--` are operands. The recipe is read after the command line, and sets only options
+ * that the command line has not set.
  *
- * A recipe is an INI file, `name = value` a line, one line for each time that the option would be
- * given. A line before the first [COMMAND] is for whatever command reads it, one below is for that
- * command alone. */
+ * A recipe is an INI file with one `name = value` per line; an option that is given several times
+ * has several lines. Lines before the first [COMMAND] apply to any command; lines below it apply to
+ * that command only. */
 #include "options/options.h"
 
 #include "options/reading.h"
@@ -17,7 +17,8 @@ static const Option common_options[] = {
      SETS(INPUT, Common, recipe),
      .group = GROUP_RUN,
      .aside = true,
-     .help = "read options from an INI file, one `name = value` per line"},
+     .help = "read options from FILE, one per line, without dashes: `lambda = 1`, `log = on`; "
+             "options on the command line take precedence. --dump-recipe prints such a file"},
     {.name = "dump-recipe",
      SETS(FLAG, Common, dump),
      .group = GROUP_RUN,
@@ -119,13 +120,21 @@ void parsed_give(Parsed *parsed, const Tree *tree, const char *name)
     }
 }
 
+static bool is_text(const char *known, const char *name, size_t length)
+{
+    return known && strlen(known) == length && strncmp(known, name, length) == 0;
+}
+
+bool option_is_named(const Option *option, const char *name, size_t length)
+{
+    return is_text(option->name, name, length) || is_text(option->former, name, length);
+}
+
 static Setting *find(const Parsed *parsed, const char *name, size_t length)
 {
-    for (size_t i = 0; i < parsed->n_settings; i++) {
-        const char *known = parsed->settings[i].option->name;
-        if (strlen(known) == length && strncmp(known, name, length) == 0)
+    for (size_t i = 0; i < parsed->n_settings; i++)
+        if (option_is_named(parsed->settings[i].option, name, length))
             return &parsed->settings[i];
-    }
     return NULL;
 }
 
@@ -145,7 +154,8 @@ const char *parsed_text(const Parsed *parsed, const char *name)
     return setting ? *(const char *const *)(setting->base + setting->option->where) : NULL;
 }
 
-/* STATUS_USAGE with the sentence that is there already and the option that may have been meant. */
+/* Appends the most similar option, if one is similar, to the error sentence. Returns
+ * STATUS_USAGE. */
 static Status suggest_option(const Parsed *parsed, const char *name, size_t length,
                              const char *prefix, Err *err)
 {
@@ -158,7 +168,7 @@ static Status suggest_option(const Parsed *parsed, const char *name, size_t leng
 
 /* ---- recipes --------------------------------------------------------------------------------- */
 
-/* A section of another command is passed over; one of no command is an error. */
+/* Skips sections of other commands. A section that names no command is an error. */
 static Status take_recipe_line(void *user, const char *section, const char *name, const char *value,
                                Err *err)
 {
@@ -199,8 +209,8 @@ static void put_key(const Setting *setting, Text *text)
     }
 }
 
-/* Of an option that is not given, its default is what holds, unless it stands for something else.
- */
+/* The default value of an option that is not given applies, and is written, unless Option.otherwise
+ * says that something else applies. */
 void options_put_keys(const Parsed *parsed, OptionIsKey *is_key, Text *text)
 {
     Parsed plain;
@@ -245,7 +255,7 @@ static Role role_of(const Option *option)
     return role;
 }
 
-/* Whether the word after a switch is its value: not if it is another option or a file. */
+/* Returns true if the word after a switch is its value, not another option or a file. */
 static bool is_value_of_switch(const char *word)
 {
     return *word && *word != '-' && !strpbrk(word, "./");
@@ -272,7 +282,7 @@ static Written written(const char *argument)
     return (Written){argument + 2, length, equals ? equals + 1 : NULL, true};
 }
 
-/* The value of an option, which may be the next argument. */
+/* Sets *value to the value of an option, which may be the next argument. */
 static Status take_value(const Option *option, const Written *as, int argc, char **argv, int *at,
                          const char **value, Err *err)
 {
@@ -342,7 +352,7 @@ static Status read_arguments(Parsed *parsed, int argc, char **argv, Err *err)
     return STATUS_OK;
 }
 
-/* Takes note of the file that an option names, if it is written, or else read, as asked for. */
+/* Notes the file that an option names, if the file is written or read as `is_written` says. */
 static Status note_file(const Setting *setting, bool is_written, Files *files, Err *err)
 {
     const Option *option = setting->option;
@@ -357,8 +367,8 @@ static Status note_file(const Setting *setting, bool is_written, Files *files, E
                       : files_read(files, role_of(option).text, path, err);
 }
 
-/* Takes note of all files that are named: what is read first, as errors then name what is
- * written. */
+/* Notes all files of the command. Files to read come first, so that an error about a file that is
+ * both read and written names the output. */
 static Status note_files(Parsed *parsed, Err *err)
 {
     Files *files = &parsed->files;

@@ -105,6 +105,7 @@ extern const char *const option_group_names[OPTION_GROUPS];
 
 typedef struct Option {
     const char *name;   /* without the dashes */
+    const char *former; /* an earlier name, which is still accepted; NULL: none */
     const char *member; /* path of the member that the option sets: "params.gamma" */
     size_t where;       /* offset of that member in the struct */
     size_t given;       /* offset of a bool that is set to true when the option is read */
@@ -379,8 +380,11 @@ MUST_CHECK Status options_refuse(const Parsed *parsed, ConditionSet unmet, Err *
  * *err. Allocates no memory. */
 void options_name_fields(const Parsed *parsed, Err *err);
 
-/* Returns the option whose name is the first `length` bytes of `name`; NULL if there is none.
- * `name` has no dashes and need not end after `length` bytes. Borrowed from *parsed. */
+/* Returns true if the first `length` bytes of `name`, which has no dashes and need not end there,
+ * are the option's name or its former name. */
+bool option_is_named(const Option *option, const char *name, size_t length);
+/* Returns the option for which option_is_named is true; NULL if there is none. Borrowed from
+ * *parsed. */
 const Setting *parsed_find(const Parsed *parsed, const char *name, size_t length);
 
 /* Returns the value of an option of the kinds OPTION_TEXT, INPUT, OUTPUT, FOLDER or LOOKUP. Returns

@@ -6,6 +6,7 @@
 #include "options/templates.h"
 
 #include <errno.h>
+#include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -159,8 +160,8 @@ Status command_line_text(const Parsed *parsed, char **out, Err *err)
 /* `cd` to the working folder, and the program by its own path. */
 static Status put_program(Text *text, Err *err)
 {
-    char program[4096];
-    ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+    char program[PATH_MAX];
+    const bool found = system_program(program, sizeof program);
     char *here = getcwd(NULL, 0);
     if (!here)
         return errno == ENOMEM
@@ -169,9 +170,8 @@ static Status put_program(Text *text, Err *err)
     text_puts(text, "cd ");
     text_put_shell_word(text, here);
     free(here);
-    program[length > 0 ? length : 0] = '\0';
     text_puts(text, " && ");
-    text_put_shell_word(text, length > 0 ? program : "corcast");
+    text_put_shell_word(text, found ? program : "corcast");
     return STATUS_OK;
 }
 

@@ -1,4 +1,5 @@
-/* One table of options for all formats; which format takes which is treeio's matter. */
+/* The options of all tree formats are one table; treeio.c refuses an option that the format of the
+ * file does not use. */
 #include "options/reading.h"
 
 #include "treeio/treeio.h"
@@ -16,27 +17,28 @@ static const Option rows[] = {
      GIVEN(ReadOptions, has_unit),
      .choices = length_unit_names,
      .group = GROUP_INPUT,
-     .otherwise = "the unit of the format",
+     .otherwise = "the unit of the file format",
      .help = "unit of the coordinates and radii in the file"},
     {.name = "voxel-size",
      SETS(VECTOR, ReadOptions, voxel_size),
      GIVEN(ReadOptions, has_voxel_size),
      .group = GROUP_INPUT,
      .otherwise = "",
-     .help = "factors that convert voxel coordinates to the input unit, for files whose "
-             "coordinates are voxel indices"},
+     .help =
+         "edge lengths of a voxel in the input unit, for a file whose coordinates are counted in "
+         "voxels; each coordinate is multiplied by its length, radii only with --voxel-radii"},
     {.name = "voxel-radii",
      SETS(FLAG, ReadOptions, voxel_radii),
      .group = GROUP_INPUT,
-     .help = "also convert radii from voxels, by the geometric mean of the three factors of "
-             "--voxel-size"},
+     .help = "with --voxel-size: radii are in voxels as well; multiply them by the geometric mean "
+             "of the three edge lengths"},
     {.name = "merge-tolerance",
      SETS(NUMBER, ReadOptions, merge_tolerance_mm),
      FROM_TO(0, 1e3),
      .group = GROUP_INPUT,
      .unit = "mm",
-     .help = "join points of a network that are at most MM apart; 0 joins only points at the same "
-             "position"},
+     .help = "for a file of separate lines: treat points that are at most MM apart as one; 0 joins "
+             "only points at the same position"},
     {.name = "break-loops",
      SETS(FLAG, ReadOptions, break_loops),
      .group = GROUP_INPUT,
@@ -47,8 +49,8 @@ static const Option rows[] = {
      FROM_TO(0, 1e3),
      .group = GROUP_INPUT,
      .unit = "mm",
-     .help = "radius of vessels whose radius in the file is missing or 0; 0 requires radii in the "
-             "file"},
+     .help = "radius of vessels whose radius is missing or 0 in the file; by default a file with "
+             "missing radii is refused"},
     {.name = "repair-radii",
      SETS(FLAG, ReadOptions, repair_radii),
      .group = GROUP_INPUT,

@@ -3,10 +3,8 @@
 #include "options/templates.h"
 
 #include <dirent.h>
-#include <dlfcn.h>
 #include <errno.h>
 #include <limits.h>
-#include <link.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -48,20 +46,6 @@ static Status take_chosen(char **folder, Err *err)
                    chosen);
 }
 
-/* Finds the file that holds this code: the library, or the program, whose name the loader does not
- * know. Returns false if there is none. */
-static bool find_self(char path[PATH_MAX])
-{
-    Dl_info info;
-    struct link_map *map = NULL;
-    if (dladdr1((const void *)(uintptr_t)&find_self, &info, (void **)&map, RTLD_DL_LINKMAP) &&
-        map && map->l_name[0] == '/')
-        return realpath(map->l_name, path) != NULL;
-    ssize_t length = readlink("/proc/self/exe", path, PATH_MAX - 1);
-    path[length > 0 ? length : 0] = '\0';
-    return length > 0;
-}
-
 Status templates_folder(char **folder, Err *err)
 {
     static const struct {
@@ -74,7 +58,8 @@ Status templates_folder(char **folder, Err *err)
     char self[PATH_MAX];
     if (chosen && *chosen)
         return take_chosen(folder, err);
-    for (size_t i = 0; i < sizeof places / sizeof *places && (i > 0 || find_self(self)); i++) {
+    for (size_t i = 0;
+         i < sizeof places / sizeof *places && (i > 0 || system_own_file(self, sizeof self)); i++) {
         char *path = NULL;
         cut_components(self, places[i].up);
         TRY(file_join(self, places[i].path, &path, err));

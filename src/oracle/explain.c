@@ -252,7 +252,10 @@ static Rgb lit(Examiner *examiner, const VisiblePoint *seen, size_t brighter, in
     if (seen->t == HUGE_VAL)
         return examiner->input->scene->view.background;
     set_lights(examiner, brighter, more);
-    return shade(&examiner->view, &seen->at, NULL, NULL);
+    const View *view = &examiner->view;
+    const Rgb color = shade(view, &seen->at, NULL, NULL);
+    const double part = seen->id ? fade_at(&view->fade, seen->t) : 0;
+    return rgb_mixed(color, view->background, part);
 }
 
 /* Returns the hit of the surface at `t`, without its color. */

@@ -217,11 +217,12 @@ static Status judge(const void *context, const Text *printed, int exit_status, c
     if (exit_status == 0 && is_whole_picture(picture, params))
         return STATUS_OK;
     if (exit_status == 0)
-        return err_set(err, STATUS_TOOL,
-                       "POV-Ray ended without a picture of %s: no whole PNG of %d x %d pixels of "
-                       "%d x %d bits",
-                       params->scene, params->width, params->height, has_alpha(params) ? 4 : 3,
-                       bits_of(params));
+        return err_set(
+            err, STATUS_TOOL,
+            "POV-Ray ended without a complete picture of %s: expected a PNG of %d x %d pixels with "
+            "%d x %d bits",
+            params->scene, params->width, params->height, has_alpha(params) ? 4 : 3,
+            bits_of(params));
     reason_of_failure(printed, file_name(params->scene), reason, sizeof reason);
     return err_set(err, STATUS_TOOL, "POV-Ray failed on %s (exit status %d): %s", params->scene,
                    exit_status, reason[0] ? reason : "it gave no reason");
@@ -242,7 +243,7 @@ Status povray_draw(const PovrayParams *params, PovrayRun *run, Err *err)
                              .add_arguments = add_arguments,
                              .judge = judge,
                              .is_done = is_done,
-                             .process = "povray",
+                             .executable = "povray",
                              .context = params};
     Status status = program_draw(&program, &printed, &seconds, err);
     if (status == STATUS_OK && run) {
@@ -315,7 +316,8 @@ Status povray_take_plane(PovrayPlane plane, Picture *picture, const Scene *scene
     const bool deep = plane == POVRAY_DEPTH || plane == POVRAY_NORMAL || plane == POVRAY_DEPTH_ID;
     Frame *frame = &planes->frame;
     if (deep && (picture->channels != 3 || picture->bits != 16))
-        return err_set(err, STATUS_INPUT, "is not a plane of POV-Ray's: it has not 3 x 16 bits");
+        return err_set(err, STATUS_INPUT,
+                       "is not a plane that POV-Ray wrote: it must have 3 channels of 16 bits");
     switch (plane) {
     case POVRAY_COLOR:
         planes->picture = *picture;

@@ -169,17 +169,17 @@ static Status check_tiles(const PovrayTilesParams *params, const SceneTiles *til
         if (tile->load > 1)
             return err_set(
                 err, STATUS_INFEASIBLE,
-                "what may be seen in %d x %d pixels at (%d, %d) is %.0f %% of what POV-Ray "
-                "reads in good time, and tiles are no smaller; draw a larger picture, or "
-                "leave out thin vessels (`prune_radius`)",
+                "the vessels in the smallest tile, %d x %d pixels at (%d, %d), are %.0f %% of "
+                "what POV-Ray can parse in reasonable time; draw a larger picture, or drop thin "
+                "vessels (`prune_radius`)",
                 tile->rect.width, tile->rect.height, tile->rect.left, tile->rect.top,
                 100 * tile->load);
     }
     const Camera *camera = &params->emit.scene->view.camera;
     if (tiles->n < (size_t)params->min_tiles)
         return err_set(err, STATUS_USAGE,
-                       "--tiles: a picture of %d x %d pixels has at most %zu tiles, none of them "
-                       "narrower than %d pixels; not %d",
+                       "--tiles: a picture of %d x %d pixels can have at most %zu tiles, each at "
+                       "least %d pixels wide; %d is too many",
                        camera->width, camera->height, tiles->n, MIN_TILE_SIDE, params->min_tiles);
     return STATUS_OK;
 }

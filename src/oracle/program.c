@@ -20,12 +20,12 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <poll.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/prctl.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -120,7 +120,7 @@ static void become_program(char *const *arguments, const char *folder, int priva
 {
     int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
     setpgid(0, 0);
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    system_die_with_parent();
     signal(SIGPIPE, SIG_DFL);
     dup2(log, STDERR_FILENO);
     dup2(log, STDOUT_FILENO);
@@ -218,13 +218,11 @@ static Status end_program(pid_t child, Status status)
 /* Returns true if the process is the program itself, not a script, and has only to exit. */
 static bool is_done(const Program *program, pid_t child, const Text *printed, const char *picture)
 {
-    char link[40], path[4096];
+    char path[PATH_MAX];
     if (!program->is_done || !program->is_done(program->context, printed, picture))
         return false;
-    snprintf(link, sizeof link, "/proc/%d/exe", (int)child);
-    ssize_t length = readlink(link, path, sizeof path - 1);
-    path[length > 0 ? length : 0] = '\0';
-    return strcmp(file_name(path), program->process) == 0;
+    return system_program_of(child, path, sizeof path) &&
+           strcmp(file_name(path), program->executable) == 0;
 }
 
 /* Returns an error for a program that has printed too much, has printed nothing for too long, or
@@ -233,21 +231,22 @@ static Status check_life(const Program *program, const Log *log, Err *err)
 {
     enum { PATIENCE_WITHOUT_PROGRESS = 5 }; /* POV-Ray reports no progress while it parses */
     double now_s = clock_seconds(), patience_s = program->choice.patience_s;
-    const char *patience = program->choice.patience ? program->choice.patience : "patience";
+    const char *patience =
+        program->choice.patience_name ? program->choice.patience_name : "patience";
     if (log->cancelled)
         return err_cancelled(err);
     if (log->bytes > max_output_bytes)
-        return err_set(err, STATUS_TOOL, "%s was ended: it has said more than %.0f MB about %s",
+        return err_set(err, STATUS_TOOL, "%s was ended: it printed more than %.0f MB about %s",
                        program->name, max_output_bytes * 1e-6, program->scene);
     if (patience_s > 0 && now_s - log->heard_s > patience_s)
         return err_set(err, STATUS_TOOL,
-                       "%s was ended: it has said nothing for %g s about %s; "
-                       "%s=SECONDS gives it longer, 0 for ever",
+                       "%s was ended: it printed nothing for %g s about %s; %s=SECONDS sets the "
+                       "limit, 0 removes it",
                        program->name, patience_s, program->scene, patience);
     if (patience_s > 0 && now_s - log->progress_s > PATIENCE_WITHOUT_PROGRESS * patience_s)
         return err_set(err, STATUS_TOOL,
-                       "%s was ended: it has reported no progress for %g s on %s, although it goes "
-                       "on to write; %s=SECONDS gives it %d times as many seconds, 0 for ever",
+                       "%s was ended: it printed, but reported no progress for %g s on %s; "
+                       "%s=SECONDS sets the limit to %d times as many seconds, 0 removes it",
                        program->name, PATIENCE_WITHOUT_PROGRESS * patience_s, program->scene,
                        patience, PATIENCE_WITHOUT_PROGRESS);
     return STATUS_OK;
@@ -300,7 +299,7 @@ static Status not_started(const Program *program, Err *err)
 static Status run_program(ProgramProcess *process, Err *err)
 {
     int pipe_ends[2];
-    if (pipe2(pipe_ends, O_CLOEXEC) != 0)
+    if (!system_pipe(pipe_ends))
         return not_started(process->program, err);
     const pid_t child = process->child = fork();
     if (child == 0)
@@ -325,7 +324,8 @@ static Status find_output(const Program *program, char **output, Err *err)
     struct stat about;
     TRY(outfile_check(program->output, err));
     if (stat(program->output, &about) == 0 && !S_ISREG(about.st_mode))
-        return err_set(err, STATUS_IO, "%s: cannot be written: it is no file", program->output);
+        return err_set(err, STATUS_IO, "%s: cannot be written: it is not a regular file",
+                       program->output);
     return file_resolve(program->output, output, err);
 }
 

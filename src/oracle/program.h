@@ -1,8 +1,9 @@
-/* Runs another program that draws a scene into a picture, without a window, and ends the program if
- * it makes no progress. Private to the module oracle, except ProgramChoice.
+/* Runs an external renderer, such as POV-Ray, on a scene file. The renderer opens no window. It is
+ * ended if it makes no progress, and its picture is accepted only if it is complete.
  *
  * A Program describes the executable, its arguments, and how to decide whether its picture is
- * complete. Use: fill a Program, then program_draw(&program, &output, &seconds, err). */
+ * complete. Use: fill a Program, then program_draw(&program, &output, &seconds, err). Needs Linux
+ * (/proc). Private to the module oracle, except ProgramChoice. */
 #ifndef CORCAST_ORACLE_PROGRAM_H
 #define CORCAST_ORACLE_PROGRAM_H
 
@@ -10,22 +11,25 @@
 
 /* Which executable to run, and how long to wait for it. All strings are borrowed. */
 typedef struct ProgramChoice {
-    const char *path;  /* executable, searched in PATH if it has no slash; NULL: the default name */
+    const char *path;  /* executable, searched in PATH if it has no slash; NULL: the function that
+                        * takes the choice has a default, such as "povray" */
     double patience_s; /* the program is ended after this many seconds without output, and after
                         * five times as many seconds without progress; 0: never */
-    const char *patience; /* name of patience_s in error messages: the name of a setting that users
-                           * can change; NULL: "patience" */
+    const char *patience_name; /* the setting that a user changes to set patience_s, for error
+                                * messages; NULL: "patience" */
 } ProgramChoice;
 
 /* Default of patience_s, in seconds. POV-Ray prints nothing while it parses a large scene, which
  * takes minutes; a smaller value would end such runs. */
 #define PROGRAM_PATIENCE_S 600
 
-/* Receives the fraction of the picture that is drawn, in [0, 1]. Returns false to end the program,
- * whose run then fails with STATUS_CANCELLED. */
+/* Receives the fraction of the picture that is drawn, in [0, 1]. If it returns false, the program
+ * is ended, and program_draw fails with STATUS_CANCELLED. */
 typedef bool ProgramProgress(double fraction, void *context);
 
-/* The folder in which the program finds the scene, as the program must name it. */
+/* A private folder with a link to the scene, by the name that arguments of the program use:
+ * program_draw opens this folder as file descriptor 3. The name of the scene in it is
+ * PROGRAM_SCENE. */
 #define PROGRAM_FOLDER "/proc/self/fd/3/"
 /* The names of the scene and of its header in that folder. */
 #define PROGRAM_SCENE "scene.pov"
@@ -36,7 +40,7 @@ typedef struct ProgramPaths {
     const char *scene, *header, *picture; /* header: only if the program has one */
 } ProgramPaths;
 
-enum { MAX_ARGUMENTS = 28 };
+enum { MAX_ARGUMENTS = 28 }; /* POV-Ray with all options has fewer */
 
 /* The words of a command line. The first is the executable. Zeroed: none. */
 typedef struct Arguments {
@@ -44,7 +48,8 @@ typedef struct Arguments {
     int n;
 } Arguments;
 
-/* Appends one formatted word; there must be fewer than MAX_ARGUMENTS. Errors: STATUS_MEMORY. */
+/* Appends one formatted word; `arguments` must have fewer than MAX_ARGUMENTS. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status arguments_add(Arguments *arguments, Err *err, const char *format, ...)
     PRINTF_LIKE(3, 4);
 void arguments_release(Arguments *arguments);
@@ -59,28 +64,31 @@ typedef struct Program {
     const char *output;        /* path of the picture, with any name */
     ProgramProgress *progress; /* called for each "(30%)" in the output; may be NULL */
     void *progress_context;
-    /* Appends the executable and its arguments. `paths` has the paths that the program is given. */
+    /* Appends the executable and its arguments. `paths` has the paths by which the program finds
+     * its files. An error ends program_draw with the same status. */
     Status (*add_arguments)(const void *context, const ProgramPaths *paths, Arguments *arguments,
                             Err *err);
     /* Decides, after the program has ended, whether the file `picture` is the whole picture.
      * Errors: STATUS_TOOL, with the reason found in `output`, if it is not. */
     Status (*judge)(const void *context, const Text *output, int exit_status, const char *picture,
                     Err *err);
-    /* Returns true if the picture is whole and the program has only to exit. A process whose
-     * executable is called `process` is then killed; a script is waited for. May be NULL. */
+    /* Returns true if the picture is whole and the program has only to exit. The program is then
+     * killed if the file name of its executable is `executable`. Any other executable is a script,
+     * which may have more to do and is waited for. May be NULL. */
     bool (*is_done)(const void *context, const Text *output, const char *picture);
-    const char *process;
-    const void *context; /* passed to the three functions */
+    const char *executable; /* "povray"; not read if is_done is NULL */
+    const void *context;    /* passed to the three functions */
 } Program;
 
-/* Runs the program in the folder of the scene. The picture gets its final name only if `judge`
- * accepts it.
+/* Runs the program with the scene's folder as working folder, where it finds files that the scene
+ * includes. The picture gets its final name only if `judge` accepts it.
  *
  * output   what the program printed is appended, with line feeds as line ends.
- * seconds  receives the wall-clock time, parsing included.
+ * seconds  receives the wall-clock time of the run, s; unchanged after an error.
  * Errors   STATUS_TOOL if the program is not installed, fails, prints nothing or makes no progress
  *          for too long, or prints more than 1 GB. STATUS_INPUT if the scene is not a regular file.
- *          STATUS_IO if the picture cannot be written. STATUS_MEMORY. */
+ *          STATUS_IO if the picture cannot be written. STATUS_CANCELLED if `progress` returns
+ * false. STATUS_MEMORY. The errors of add_arguments. */
 MUST_CHECK Status program_draw(const Program *program, Text *output, double *seconds, Err *err);
 
 #endif

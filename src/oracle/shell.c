@@ -37,7 +37,7 @@ Status shell_run(const char *command, bool heard, int *exit_status, Err *err)
     if (child == 0)
         become_command(command, heard);
     if (child < 0)
-        return err_set(err, STATUS_TOOL, "no command can be started: %s", strerror(errno));
+        return err_set(err, STATUS_TOOL, "a shell cannot be started: %s", strerror(errno));
     setpgid(child, child); /* in both processes, because either may run first */
     file_kill_on_signal(child);
     while (waitpid(child, &ended, 0) < 0 && errno == EINTR)
@@ -46,6 +46,6 @@ Status shell_run(const char *command, bool heard, int *exit_status, Err *err)
     *exit_status = WIFEXITED(ended) ? WEXITSTATUS(ended) : 127;
     if (*exit_status < 126)
         return STATUS_OK;
-    return err_set(err, STATUS_TOOL, "the command cannot be run, or was ended by a signal: %s",
+    return err_set(err, STATUS_TOOL, "the command could not be run, or a signal ended it: %s",
                    command);
 }

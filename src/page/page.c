@@ -37,6 +37,7 @@ static json_t *look_json(const PageParams *params)
     const Finish *finish = &look->finish;
     const JsonMember members[] = {
         {"name", json_text(params->look_name)},
+        {"isChosen", json_boolean(params->is_look_chosen)},
         {"color", color_json(look->color)},
         {"ambient", json_number((double)finish->ambient)},
         {"diffuse", json_number((double)finish->diffuse)},
@@ -86,11 +87,12 @@ static json_t *start_json(const PageParams *params)
     const ColorScale *scale = params->scale;
     if (!scale)
         return json_null();
-    const JsonMember members[] = {{"field", json_text(scale->name)},
-                                  {"map", json_text(params->map)},
-                                  {"log", json_boolean(scale->log)},
-                                  {"low", json_number(scale->range[0])},
-                                  {"high", json_number(scale->range[1])}};
+    const JsonMember members[] = {
+        {"field", json_text(scale->name)},
+        {"map", json_text(params->map)},
+        {"kind", params->is_scale_chosen ? json_text(scale->log ? "log" : "linear") : json_null()},
+        {"low", json_number(scale->range[0])},
+        {"high", json_number(scale->range[1])}};
     return json_with_members(json_object(), members, sizeof members / sizeof *members);
 }
 

@@ -34,8 +34,12 @@ typedef struct PageParams {
     size_t n_maps;
     const Look *look;
     const char *look_name;   /* name of the look, as `render --look` takes it */
+    bool is_look_chosen;     /* an option specifies the look; else the viewer has its own light */
     const ColorScale *scale; /* initial scale, of the field with its name; NULL: no field */
     const char *map;         /* name of the scale's map, which need not be in `maps` */
+    /* Options specify the ends of the scale, or that it is logarithmic. False: the viewer selects
+     * the scale by the field's values. */
+    bool is_scale_chosen;
 } PageParams;
 
 /* Appends the page to `out`.

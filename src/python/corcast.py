@@ -103,6 +103,7 @@ def _library_paths():
         yield pathlib.Path(os.environ["CORCAST_LIBRARY"])
         return
     yield here / name
+    yield here / "lib" / name                      # a wheel
     yield here.parent.parent / name                # PREFIX/lib/python3/dist-packages/corcast.py
     yield here.parent.parent / "build" / name      # src/python/corcast.py of a source tree
     yield pathlib.Path(sys.prefix) / "lib" / name
@@ -676,7 +677,7 @@ class Page:
 
 
 def figure(recipe, path, **options):
-    """Makes a figure of several panels: `recipe` describes them, `path` is the output (.pdf, .svg,
+    """Makes a figure of several panels: `recipe` describes them, `path` is the output (.pdf, .eps, .svg,
     .png, .tif or .jpg); options are those of `corcast figure`."""
     options = _Options("figure", options)
     options.run("figure", _text(recipe), options._handle, _text(path))

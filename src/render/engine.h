@@ -3,11 +3,13 @@
  * it draw the image band by band:
  *
  *     void *prepared = NULL;
- *     if (engine->supports(&drawing)) {
- *         TRY(engine->prepare(&drawing, &prepared, err));     once per view
- *         TRY(engine->rows(&drawing, prepared, frame, err));  once per band
+ *     Status status = STATUS_OK;
+ *     if (engine->prepare)                                                  once per view
+ *         status = engine->prepare(&drawing, &prepared, err);
+ *     if (status == STATUS_OK)
+ *         status = engine->rows(&drawing, prepared, frame, err);            once per band
+ *     if (prepared)
  *         engine->free(prepared);
- *     }
  *
  * All engines are constants. The caller may use one engine for several drawings at once. */
 #ifndef CORCAST_RENDER_ENGINE_H
@@ -19,8 +21,9 @@ typedef struct Engine {
     const char *name;  /* name for statistics and messages, such as "raster" */
     bool writes_codes; /* can write 8-bit sRGB codes instead of linear float colors
                         * [RenderParams.codes_suffice] */
-    bool draws_thin;   /* leaves out the vessels of Drawing.hidden, and draws Drawing.thin over its
-                        * samples */
+    bool draws_thin;   /* leaves out the vessels of Drawing.hidden, which are thinner than a pixel,
+                        * and blends Drawing.thin, which stands for them, over the samples. If
+                        * false, render.c sets neither */
     /* Returns true if the engine supports the drawing's geometry and view, and the parameters
      * select it. Does not read band, caster or appearance. */
     bool (*supports)(const Drawing *drawing);
@@ -31,13 +34,15 @@ typedef struct Engine {
      * the appearance. NULL: the engine needs no preparation.
      *
      * prepared  receives the data; release it with `free`. Unchanged on failure.
-     * Errors    STATUS_MEMORY; STATUS_USAGE if the engine cannot draw this view after all. */
+     * Errors    STATUS_MEMORY; STATUS_USAGE if the view has a fault that `supports` does not look
+     *           for. No other engine is then tried. */
     Status (*prepare)(const Drawing *drawing, void **prepared, Err *err);
     /* Draws the drawing's band into the planes that `frame` has. `prepared` is the result of
-     * `prepare` for the same view, or NULL. Errors: STATUS_MEMORY; STATUS_CANCELLED if the progress
-     * callback asks to stop. */
+     * `prepare` for the same view, or NULL if `prepare` is NULL. After an error the planes are
+     * incomplete. Errors: STATUS_MEMORY; STATUS_CANCELLED if the progress callback returns
+     * false. */
     Status (*rows)(const Drawing *drawing, void *prepared, Frame *frame, Err *err);
-    /* Frees the result of `prepare`; NULL if the engine has no `prepare`. */
+    /* Frees the result of `prepare`, which is not NULL. The member is NULL if `prepare` is. */
     void (*free)(void *prepared);
     /* Answers shadow queries [render/light/shadowengine.h]; NULL: shadow rays are traced
      * instead. */

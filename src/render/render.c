@@ -454,6 +454,7 @@ static Status draw_samples(Renderer *renderer, const Drawing *fine, int row, int
     const EffectSamples samples = {.effects = &view->effects,
                                    .camera = &view->camera,
                                    .radii = &renderer->radii,
+                                   .fade = &view->fade,
                                    .paper = view->background,
                                    .side = renderer->params.antialias,
                                    .threads = fine->params->threads,

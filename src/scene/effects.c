@@ -1,14 +1,15 @@
 /* The names of effects are the words of their options. */
 #include "scene/effects.h"
 
-void effects_list(const Effects *effects, Text *out)
+void effects_list(const Effects *effects, bool occlusion, Text *out)
 {
     const struct {
         bool present;
         const char *name;
     } all[] = {{effects->outline.width_px > 0, "outlines"},
                {effects->halo.width_px > 0, "halos"},
-               {effects->fade.nearest > 0 || effects->fade.farthest > 0, "fading with depth"},
+               {effects->grade.present, "a graded background"},
+               {occlusion, "ambient occlusion"},
                {effects->xray.per_mm > 0, "x-ray"}};
     int left = 0;
     for (size_t i = 0; i < sizeof all / sizeof *all; i++)

@@ -1,6 +1,6 @@
-/* Image effects: outlines, halos, fading and x-ray. `render` adds them to the shaded picture or,
- * for an x-ray, draws them in its place. POV-Ray has none of them. Widths are in pixels, radii are
- * those of the nearer vessel, colors are linear RGB. */
+/* Image effects: outlines, halos, a graded background and x-ray. `render` adds them to the shaded
+ * picture or, for an x-ray, draws them in its place. POV-Ray has none of them. Widths are in
+ * pixels, radii are those of the nearer vessel, colors are linear RGB. */
 #ifndef CORCAST_SCENE_EFFECTS_H
 #define CORCAST_SCENE_EFFECTS_H
 
@@ -25,12 +25,12 @@ typedef struct Halo {
     double deeper;   /* another vessel is behind if it lies this many radii deeper */
 } Halo;
 
-/* The fraction of the background's color that is mixed into the vessels. It changes linearly with
- * the depth along the ray, from `nearest` at near_mm to `farthest` at far_mm. */
-typedef struct Fade {
-    double nearest, farthest; /* in [0, 1]; both 0: no fading */
-    double near_mm, far_mm;   /* near_mm < far_mm if there is fading */
-} Fade;
+/* A background whose color changes from the center of the picture to its corners, linearly with the
+ * square of the distance from the center. Colors of a ground plane change by the same factors. */
+typedef struct Grade {
+    bool present;
+    Rgb center, corners;
+} Grade;
 
 /* Absorption of light by the vessels [Beer and Lambert]. After L mm in vessels a fraction
  * exp(-per_mm L) of the background's color remains; the rest is `color`. */
@@ -42,18 +42,19 @@ typedef struct Xray {
 typedef struct Effects {
     Outline outline;
     Halo halo;
-    Fade fade;
+    Grade grade;
     Xray xray;
 } Effects;
 
-/* Appends the names of the effects that are on: "outlines and halos"; nothing if none is. */
-void effects_list(const Effects *effects, Text *out);
+/* Appends the names of the effects that are on, which POV-Ray does not draw: "outlines and halos". Appends
+ * nothing if a picture with these effects, and with ambient occlusion if `occlusion`, has none. */
+void effects_list(const Effects *effects, bool occlusion, Text *out);
 
 /* Returns true if any effect is on. */
 static inline bool effects_present(const Effects *effects)
 {
-    return effects->outline.width_px > 0 || effects->halo.width_px > 0 ||
-           effects->fade.nearest > 0 || effects->fade.farthest > 0 || effects->xray.per_mm > 0;
+    return effects->outline.width_px > 0 || effects->halo.width_px > 0 || effects->grade.present ||
+           effects->xray.per_mm > 0;
 }
 
 /* Returns true if an effect is on that needs the vessel of each sample. */
@@ -62,12 +63,13 @@ static inline bool effects_have_shape(const Effects *effects)
     return effects->outline.width_px > 0 || effects->halo.width_px > 0 || effects->xray.per_mm > 0;
 }
 
-/* Returns the fraction of the background's color at a depth. */
-static inline double fade_at(const Fade *fade, double depth_mm)
+/* Returns the background's color at a position, in pixels from the upper left corner of a picture
+ * of width x height pixels. */
+static inline Rgb grade_at(const Grade *grade, double x, double y, double width, double height)
 {
-    double part = (depth_mm - fade->near_mm) / (fade->far_mm - fade->near_mm);
-    part = part < 0 ? 0 : part > 1 ? 1 : part;
-    return fade->nearest + (fade->farthest - fade->nearest) * part;
+    const double from_x = 2 * x - width, from_y = 2 * y - height;
+    const double part = (from_x * from_x + from_y * from_y) / (width * width + height * height);
+    return rgb_mixed(grade->center, grade->corners, part);
 }
 
 #endif

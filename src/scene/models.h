@@ -38,15 +38,17 @@ typedef enum ModelProof {
 /* SCENE_..., name, description, properties, PROOF_... The keys of `view` and all lists of models
  * follow this order. Outside this table no source names a SCENE_... */
 #define MODEL_TABLE(X)                                                                             \
-    X(CYLINDERS, "cylinders", "a closed cylinder for each segment", MODEL_CYLINDERS, IDENTITY)     \
-    X(JOINED, "joined", "cylinders, cut back and joined by ruled surfaces", MODEL_PRIMITIVES,      \
+    X(CYLINDERS, "cylinders",                                                                      \
+      "one closed cylinder per segment; cylinders overlap where they meet", MODEL_CYLINDERS,       \
       IDENTITY)                                                                                    \
-    X(ROUNDED, "rounded", "cylinders, and a ball where they meet or end",                          \
+    X(JOINED, "joined", "cylinders, shortened and connected by straight-sided transitions",        \
+      MODEL_PRIMITIVES, IDENTITY)                                                                  \
+    X(ROUNDED, "rounded", "cylinders, with a sphere where they meet or end",                       \
       MODEL_CYLINDERS | MODEL_BALLS | MODEL_ROUND_ENDS | MODEL_VOXELS | MODEL_DEFAULT, IDENTITY)   \
-    X(ISOSURFACE, "isosurface", "the level set of a sum of Gaussian line potentials",              \
-      MODEL_POTENTIAL, STEPS)                                                                      \
-    X(BLOB, "blob", "nearly that surface, as a blob of POV-Ray", MODEL_BLOB, FIELD)                \
-    X(MESH, "mesh", "triangles of that surface, cut off flat at free ends", MODEL_TRIANGLES,       \
+    X(ISOSURFACE, "isosurface",                                                                    \
+      "smoothly blended surface: a level set of Gaussian line potentials", MODEL_POTENTIAL, STEPS) \
+    X(BLOB, "blob", "POV-Ray's quick approximation of the isosurface", MODEL_BLOB, FIELD)          \
+    X(MESH, "mesh", "the isosurface as triangles, with free ends cut flat", MODEL_TRIANGLES,       \
       IDENTITY)
 
 typedef enum SceneModel {

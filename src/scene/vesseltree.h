@@ -13,8 +13,8 @@ typedef enum VesselBody {
 } VesselBody;
 
 /* Segments, each with its ends a and b, and the nodes at these ends. The segments form any number
- * of trees: a segment connects two different nodes, and there are no loops. All arrays are
- * owned. */
+ * of trees: a segment connects two different nodes, and there are no loops, which is not checked.
+ * Coordinates are in mm. All arrays are owned. */
 typedef struct VesselTree {
     FieldSegment *segments;
     uint32_t (*nodes)[2]; /* per segment: the nodes at a and b, each below n_nodes */
@@ -33,7 +33,7 @@ static inline int segment_end_at(const VesselTree *tree, uint32_t segment, uint3
 }
 
 /* Reach of a segment's blend, in units of its radius. A segment blends at its two nodes, and at
- * every node that a path along other segments reaches from them within BLEND_REACH radii. A finely
+ * every node that a path of at most BLEND_REACH of its radii along other segments reaches. A finely
  * sampled centreline needs this reach, or the vessel gets thinner [METHODS section 2.5]. */
 #define BLEND_REACH 2
 
@@ -52,7 +52,7 @@ MUST_CHECK Status vesseltree_blending(const VesselTree *tree, const IndexLists *
  * exceeds FIELD_LEVEL. There is one group per node; a node whose segments are a subset of another
  * node's segments has none.
  *
- * out      is owned; it is released with the geometry that holds it.
+ * out      receives the groups; a Geometry that takes them releases them. Unchanged on error.
  * Errors   STATUS_MEMORY.
  * Cost     O(n) if few segments blend at each node. */
 MUST_CHECK Status vesseltree_blend(const VesselTree *tree, Blend *out, Err *err);

@@ -1,5 +1,5 @@
-/* A View: camera, lights, ground, background and effects. The image has its origin at the upper
- * left: pixel (i, j) is in column i and row j, and integers are the centres of pixels. World
+/* A View: camera, lights, ground, background, fade and effects. The image has its origin at the
+ * upper left: pixel (i, j) is in column i and row j, and integers are the centres of pixels. World
  * coordinates are right-handed and in mm, colors are linear RGB. */
 #ifndef CORCAST_SCENE_VIEW_H
 #define CORCAST_SCENE_VIEW_H
@@ -105,6 +105,28 @@ typedef struct Ground {
  * 3.7.0.10). */
 bool ground_hit(const Ground *ground, Ray ray, double near_mm, double far_mm, double *t);
 
+/* The fraction of the background's color that is mixed into the vessels. It changes linearly with
+ * the depth along the ray, from `nearest` at near_mm to `farthest` at far_mm. */
+typedef struct Fade {
+    double nearest, farthest; /* in [0, 1]; both 0: no fading */
+    double near_mm, far_mm;   /* near_mm < far_mm if there is fading */
+} Fade;
+
+static inline bool fade_is_on(const Fade *fade)
+{
+    return fade->nearest > 0 || fade->farthest > 0;
+}
+
+/* Returns the fraction of the background's color at a depth. */
+static inline double fade_at(const Fade *fade, double depth_mm)
+{
+    if (!fade_is_on(fade))
+        return 0;
+    double part = (depth_mm - fade->near_mm) / (fade->far_mm - fade->near_mm);
+    part = part < 0 ? 0 : part > 1 ? 1 : part;
+    return fade->nearest + (fade->farthest - fade->nearest) * part;
+}
+
 enum { VIEW_MAX_LIGHTS = 64 };
 
 /* A value that owns nothing. Immutable once made [stage_view]. */
@@ -114,6 +136,7 @@ typedef struct View {
     size_t n_lights;
     Ground ground;
     Rgb background;
+    Fade fade;
     bool transparent; /* the picture has no background; `background` is for outputs without alpha */
     Effects effects;
 } View;

@@ -45,30 +45,37 @@ static size_t first_of_path(const Tree *tree)
     return thickest;
 }
 
-static Status set_path(const Tree *tree, Vec3 origin, Anatomy *anatomy, Err *err)
+/* Follows the main branch along the segments of the tree, or along the pieces of `smooth`. */
+static Status set_path(const Tree *tree, const SmoothTree *smooth, Vec3 origin, Anatomy *anatomy,
+                       Err *err)
 {
+    const Tree *points = smooth ? &smooth->tree : tree;
     Field branch = {0};
     TRY(derive_rule(tree, &(TreeMeta){0}, "branch", &branch, err));
     size_t first = first_of_path(tree);
     add_to_path(anatomy, anatomy->root[0]);
-    for (size_t i = first; first > 0 && i < tree->n; i++)
-        if (branch.value[i] == branch.value[first])
-            add_to_path(anatomy, vec3_sub(tree->position[i], origin));
+    for (size_t i = 1; first > 0 && i < points->n; i++) {
+        size_t segment = smooth ? smooth->segment[i] : i;
+        if (segment >= first && branch.value[segment] == branch.value[first])
+            add_to_path(anatomy, vec3_sub(points->position[i], origin));
+    }
     field_release(&branch);
     return STATUS_OK;
 }
 
-Status stage_anatomy(const Tree *tree, Vec3 origin, Anatomy *anatomy, Err *err)
+Status stage_anatomy(const Tree *tree, const SmoothTree *smooth, Vec3 origin, Anatomy *anatomy,
+                     Err *err)
 {
     Anatomy made = {0};
     Status status;
     TRY_GOTO(mem_calloc(&made.order, tree->n, sizeof *made.order, "orders", err));
     TRY_GOTO(mem_calloc(&made.tree, tree->n, sizeof *made.tree, "trees", err));
     TRY_GOTO(mem_calloc(&made.root, tree->n, sizeof *made.root, "roots", err));
-    TRY_GOTO(mem_calloc(&made.path, tree->n, sizeof *made.path, "main branch", err));
+    TRY_GOTO(mem_calloc(&made.path, smooth ? smooth->tree.n : tree->n, sizeof *made.path,
+                        "main branch", err));
     TRY_GOTO(set_orders(tree, made.order, err));
     set_trees(tree, origin, &made);
-    TRY_GOTO(set_path(tree, origin, &made, err));
+    TRY_GOTO(set_path(tree, smooth, origin, &made, err));
     *anatomy = made;
     made = (Anatomy){0};
 done:

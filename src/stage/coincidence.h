@@ -39,6 +39,11 @@ typedef struct Coincidence {
  * many nodes lie close together. */
 MUST_CHECK Status coincidence_find(const Tree *tree, Coincidence *coincidence, Err *err);
 void coincidence_release(Coincidence *coincidence);
+/* Returns the twins and junctions of the pieces of a smooth tree, borrowed from it. */
+static inline Coincidence coincidence_of_smooth(const SmoothTree *smooth)
+{
+    return (Coincidence){.twin = smooth->twin, .junction = smooth->junction};
+}
 /* Returns a report in which only `drawn`, `dropped` and `covered` are set. */
 StageReport coincidence_count(const Tree *tree, const Coincidence *coincidence);
 

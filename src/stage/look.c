@@ -9,14 +9,19 @@
 
 typedef struct LookReading {
     Look look;
-    char problem[160]; /* what the line should have contained */
+    char problem[160];  /* what the line should have contained */
+    Suggestion similar; /* the known name that is most similar to an unknown one */
 } LookReading;
 
 typedef enum LookType {
     TYPE_FLOAT,
     TYPE_DOUBLE,
+    TYPE_WHOLE,
     TYPE_SAMPLES,
+    TYPE_SWITCH,
+    TYPE_PROJECTION,
     TYPE_COLOR,
+    TYPE_OPTIONAL_COLOR,
     TYPE_VECTOR,
     TYPE_LINE
 } LookType;
@@ -30,14 +35,15 @@ static const struct LookSection {
     double value;
 } sections[] = {
     {"look", "about, a line of at most 160 bytes", 0, 0},
-    {"vessel", "color", 0, 0},
-    {"background", "color", 0, 0},
+    {"options", "ao, shadows, projection or smooth", 0, 0},
+    {"vessel", "color or tips", 0, 0},
+    {"background", "color or corners", 0, 0},
     {"finish", "one of ambient, diffuse, brilliance, phong, phong_size, specular, roughness", 0, 0},
     {LIGHT, "direction, position, color, size or samples", 0, 0},
     {"ground", "normal, axis, gap, color, ambient or diffuse", 0, 0},
     {"outline", "width, radii, deeper, crease or color", offsetof(Look, effects.outline_width), 1},
     {"halo", "width, radii or deeper", offsetof(Look, effects.halo_width), 2},
-    {"fade", "nearest or farthest", offsetof(Look, effects.fade_farthest), 0.8},
+    {"fade", "nearest or farthest", offsetof(Look, fade_farthest), 0.8},
     {"xray", "per_diameter or per_mm", offsetof(Look, effects.xray_per_diameter), 1},
 };
 
@@ -55,8 +61,16 @@ static const struct LookKey {
     const char *allowed; /* for the message about a bad value; NULL: "a number from LOW to HIGH" */
 } keys[] = {
     {"look", "about", TYPE_LINE, offsetof(Look, about), 0, 0, "about, a line of at most 160 bytes"},
+    {"options", "ao", TYPE_WHOLE, offsetof(Look, options.occlusion), 0, LOOK_MAX_OCCLUSION,
+     "an integer from 0 to 4096"},
+    {"options", "shadows", TYPE_SWITCH, offsetof(Look, options.shadows), 0, 0, "on or off"},
+    {"options", "projection", TYPE_PROJECTION, offsetof(Look, options.projection), 0, 0,
+     "orthographic or perspective"},
+    {"options", "smooth", TYPE_SWITCH, offsetof(Look, options.smooth), 0, 0, "on or off"},
     {"vessel", "color", TYPE_COLOR, offsetof(Look, color), A_COLOR},
+    {"vessel", "tips", TYPE_OPTIONAL_COLOR, offsetof(Look, tips), A_COLOR},
     {"background", "color", TYPE_COLOR, offsetof(Look, background), A_COLOR},
+    {"background", "corners", TYPE_OPTIONAL_COLOR, offsetof(Look, corners), A_COLOR},
     {"finish", "ambient", IN_FINISH(ambient), 0, 1, NULL},
     {"finish", "diffuse", IN_FINISH(diffuse), 0, 1, NULL},
     {"finish", "brilliance", IN_FINISH(brilliance), 0.1, 10, NULL},
@@ -64,7 +78,8 @@ static const struct LookKey {
     {"finish", "phong_size", IN_FINISH(phong_size), 1, 1000, NULL},
     {"finish", "specular", IN_FINISH(specular), 0, 1, NULL},
     {"finish", "roughness", IN_FINISH(roughness), 0.0005, 1, NULL},
-    {LIGHT, "color", TYPE_COLOR, offsetof(LookLight, color), A_COLOR},
+    {LIGHT, "color", TYPE_COLOR, offsetof(LookLight, color), -1, 1,
+     "three numbers from -1 to 1, red green blue"},
     {LIGHT, "direction", TYPE_VECTOR, offsetof(LookLight, direction), A_VECTOR},
     {LIGHT, "position", TYPE_VECTOR, offsetof(LookLight, direction), A_VECTOR},
     {LIGHT, "samples", TYPE_SAMPLES, offsetof(LookLight, samples), 2, 16, "2, 4, 8 or 16"},
@@ -84,8 +99,8 @@ static const struct LookKey {
     {"halo", "width", IN_EFFECTS(halo_width), 0.1, 50, NULL},
     {"halo", "radii", IN_EFFECTS(halo_radii), 0.01, 10, NULL},
     {"halo", "deeper", IN_EFFECTS(halo_deeper), 0, 1000, NULL},
-    {"fade", "nearest", IN_EFFECTS(fade_nearest), 0, 1, NULL},
-    {"fade", "farthest", IN_EFFECTS(fade_farthest), 0, 1, NULL},
+    {"fade", "nearest", TYPE_DOUBLE, offsetof(Look, fade_nearest), 0, 1, NULL},
+    {"fade", "farthest", TYPE_DOUBLE, offsetof(Look, fade_farthest), 0, 1, NULL},
     {"xray", "per_diameter", IN_EFFECTS(xray_per_diameter), 0.001, 1000, NULL},
     {"xray", "per_mm", IN_EFFECTS(xray_per_mm), 1e-6, 1e6, "a number from 1e-6 to 1e6"},
 };
@@ -111,17 +126,40 @@ static const struct LookSection *find_section(const char *name)
     return NULL;
 }
 
-/* Stores a value of one or three numbers, or a line. Returns false if it is out of range. */
+/* Sets *number to the index of a word in the words of the type. Returns false for any other text.
+ */
+static bool parse_word(LookType type, const char *text, double *number)
+{
+    static const char *const words[][2] = {
+        [TYPE_SWITCH] = {"off", "on"}, [TYPE_PROJECTION] = {"orthographic", "perspective"}};
+    *number = strcmp(text, words[type][1]) == 0;
+    return *number == 1 || strcmp(text, words[type][0]) == 0;
+}
+
+/* Parses the numbers of a value, of any type except TYPE_LINE. Returns false if they are not in
+ * range. */
+static bool parse_numbers(const struct LookKey *key, const char *text, double number[3])
+{
+    if (key->type == TYPE_SWITCH || key->type == TYPE_PROJECTION)
+        return parse_word(key->type, text, number);
+    const bool triple =
+        key->type == TYPE_COLOR || key->type == TYPE_OPTIONAL_COLOR || key->type == TYPE_VECTOR;
+    const size_t count = triple ? 3 : 1;
+    bool fits = numbers_parse(text, count, number);
+    for (size_t i = 0; fits && i < count; i++)
+        fits = number[i] >= key->low && number[i] <= key->high;
+    return fits;
+}
+
+/* Stores a value at its place in the look. Returns false if it is out of range. */
 static bool store(const struct LookKey *key, const char *text, char *at)
 {
     double number[3] = {0};
-    size_t count = key->type == TYPE_COLOR || key->type == TYPE_VECTOR ? 3 : 1;
-    bool fits = key->type == TYPE_LINE ? strlen(text) <= LOOK_MAX_ABOUT
-                                       : numbers_parse(text, count, number);
-    for (size_t i = 0; fits && key->type != TYPE_LINE && i < count; i++)
-        fits = number[i] >= key->low && number[i] <= key->high;
+    bool fits =
+        key->type == TYPE_LINE ? strlen(text) <= LOOK_MAX_ABOUT : parse_numbers(key, text, number);
     if (!fits)
         return false;
+    const Rgb color = {(float)number[0], (float)number[1], (float)number[2]};
     switch (key->type) {
     case TYPE_FLOAT:
         *(float *)(void *)at = (float)number[0];
@@ -129,11 +167,24 @@ static bool store(const struct LookKey *key, const char *text, char *at)
     case TYPE_DOUBLE:
         *(double *)(void *)at = number[0];
         break;
+    case TYPE_WHOLE:
+        *(int *)(void *)at = (int)number[0];
+        return number[0] == floor(number[0]);
     case TYPE_SAMPLES:
         *(int *)(void *)at = (int)number[0];
         return number[0] == 2 || number[0] == 4 || number[0] == 8 || number[0] == 16;
+    case TYPE_SWITCH:
+        *(bool *)(void *)at = number[0] == 1;
+        break;
+    case TYPE_PROJECTION:
+        *(Projection *)(void *)at =
+            number[0] == 1 ? PROJECTION_PERSPECTIVE : PROJECTION_ORTHOGRAPHIC;
+        break;
     case TYPE_COLOR:
-        *(Rgb *)(void *)at = (Rgb){(float)number[0], (float)number[1], (float)number[2]};
+        *(Rgb *)(void *)at = color;
+        break;
+    case TYPE_OPTIONAL_COLOR:
+        *(OptionalRgb *)(void *)at = (OptionalRgb){true, color};
         break;
     case TYPE_VECTOR:
         *(Vec3 *)(void *)at = vec3(number[0], number[1], number[2]);
@@ -178,6 +229,10 @@ static bool read_pair(LookReading *reading, const char *section, const char *nam
     for (size_t i = 0; i < sizeof keys / sizeof *keys; i++)
         if (strcmp(found->name, keys[i].section) == 0 && strcmp(name, keys[i].name) == 0)
             return read_key(reading, &keys[i], value);
+    reading->similar = suggestion_for(name, strlen(name));
+    for (size_t i = 0; i < sizeof keys / sizeof *keys; i++)
+        if (strcmp(found->name, keys[i].section) == 0)
+            suggestion_offer(&reading->similar, keys[i].name);
     return expected(reading, found->keys);
 }
 
@@ -186,8 +241,11 @@ static bool read_head(LookReading *reading, const char *section)
 {
     Look *look = &reading->look;
     const struct LookSection *found = find_section(section);
+    reading->similar = suggestion_for(section, strlen(section));
+    for (size_t i = 0; !found && i < sizeof sections / sizeof *sections; i++)
+        suggestion_offer(&reading->similar, sections[i].name);
     if (!found)
-        return expected(reading, "one of the sections look, vessel, background, finish, "
+        return expected(reading, "one of the sections look, options, vessel, background, finish, "
                                  "light NAME, ground, outline, halo, fade, xray");
     if (found->preset)
         *(double *)(void *)((char *)look + found->preset) = found->value;
@@ -207,10 +265,13 @@ static Status take_line(void *user, const char *section, const char *name, const
     if (name ? read_pair(reading, section, name, value) : read_head(reading, section))
         return STATUS_OK;
     if (!name)
-        return err_set(err, STATUS_INPUT, "not a look: expected %s, not [%.80s]", reading->problem,
-                       section);
-    return err_set(err, STATUS_INPUT, "not a look: expected %s, not '%.80s = %.80s'",
-                   reading->problem, name, value);
+        (void)err_set(err, STATUS_INPUT, "not a look: expected %s, not [%.80s]", reading->problem,
+                      section);
+    else
+        (void)err_set(err, STATUS_INPUT, "not a look: expected %s, not '%.80s = %.80s'",
+                      reading->problem, name, value);
+    suggestion_add(&reading->similar, "", err);
+    return STATUS_INPUT;
 }
 
 Status look_read(Look *look, const char *path, Err *err)
@@ -251,7 +312,7 @@ Effects look_effects(const Look *look, double thousandth_px, double diameter_mm)
                      .halo = {.width_px = effects->halo_width * thousandth_px,
                               .radii = effects->halo_radii,
                               .deeper = effects->halo_deeper},
-                     .fade = {effects->fade_nearest, effects->fade_farthest, 0, 1},
+                     .grade = {look->corners.present, look->background, look->corners.color},
                      .xray = {.per_mm = effects->xray_per_diameter > 0
                                             ? effects->xray_per_diameter / diameter_mm
                                             : effects->xray_per_mm,

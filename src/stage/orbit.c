@@ -110,7 +110,7 @@ void orbit_project(ViewParams *params, Projection projection, const Geometry *ge
 void orbit_frame_turn(ViewParams *params, const Geometry *geometry)
 {
     const Subject subject = subject_of(params, geometry);
-    const Framed framed = framed_of(&subject, params, &(const View){.n_lights = 0});
+    const Framed framed = framed_of(&subject, params->domain);
     Vec3 center = box_center(geometry->bounds), direction, up;
     bool perspective = params->projection == PROJECTION_PERSPECTIVE;
     view_axes(params, &direction, &up);

@@ -25,10 +25,10 @@ static Status add_field(const Tree *tree, const Coincidence *coincidence, Geomet
 
 /* Adds the field whose segments blend only where they are connected: the vessels of
  * stage_vessels. */
-static Status add_graph(const Tree *tree, Geometry *geometry, Err *err)
+static Status add_graph(const Tree *tree, const SmoothTree *smooth, Geometry *geometry, Err *err)
 {
     VesselTree vessels;
-    TRY(stage_vessels(tree, &vessels, NULL, err));
+    TRY(stage_vessels(tree, smooth, &vessels, NULL, err));
     Status status = vesseltree_blend(&vessels, &geometry->blend, err);
     geometry->segments = vessels.segments;
     geometry->n_segments = vessels.n_segments;
@@ -57,7 +57,7 @@ static Status add_mesh(const Tree *tree, const GeometryParams *params, Geometry 
                        StageReport *counted, Err *err)
 {
     VesselTree vessels;
-    TRY(stage_vessels(tree, &vessels, NULL, err));
+    TRY(stage_vessels(tree, params->smooth, &vessels, NULL, err));
     free(vessels.segments);
     vessels.segments = geometry->segments;
     Status status = wall_vessels(&vessels, params, &geometry->mesh, counted, err);
@@ -66,20 +66,42 @@ static Status add_mesh(const Tree *tree, const GeometryParams *params, Geometry 
     return status;
 }
 
-static Status add_model(const Tree *tree, const Coincidence *coincidence,
+/* Adds what the model draws of a tree or of the pieces of a smooth tree. */
+static Status add_items(const Tree *tree, const Coincidence *coincidence,
                         const GeometryParams *params, Geometry *geometry, StageReport *report,
                         Err *err)
 {
-    if (model_has(geometry->model, MODEL_TRIANGLES))
-        return add_graph(tree, geometry, err);
     if (model_has(geometry->model, MODEL_FIELD))
-        return params->graph ? add_graph(tree, geometry, err)
-                             : add_field(tree, coincidence, geometry, err);
+        return add_field(tree, coincidence, geometry, err);
     TRY(mem_calloc(&geometry->primitives, 2 * tree->n, sizeof *geometry->primitives, "primitives",
                    err));
     return model_has(geometry->model, MODEL_JOINTS)
                ? joints_add(tree, coincidence, params->joints, geometry, report, err)
                : solids_add(tree, coincidence, params, geometry, err);
+}
+
+/* Adds the pieces of a smooth tree, each with the index of its segment. */
+static Status add_pieces(const SmoothTree *smooth, const GeometryParams *params, Geometry *geometry,
+                         StageReport *report, Err *err)
+{
+    const Coincidence coincidence = coincidence_of_smooth(smooth);
+    TRY(add_items(&smooth->tree, &coincidence, params, geometry, report, err));
+    for (size_t i = 0; i < geometry->n_primitives; i++)
+        geometry->primitives[i].segment = smooth->segment[geometry->primitives[i].segment];
+    for (size_t i = 0; i < geometry->n_segments; i++)
+        geometry->segments[i].segment = smooth->segment[geometry->segments[i].segment];
+    return STATUS_OK;
+}
+
+static Status add_model(const Tree *tree, const Coincidence *coincidence,
+                        const GeometryParams *params, Geometry *geometry, StageReport *report,
+                        Err *err)
+{
+    if (model_has(geometry->model, MODEL_TRIANGLES) ||
+        (params->graph && model_has(geometry->model, MODEL_FIELD)))
+        return add_graph(tree, params->smooth, geometry, err);
+    return params->smooth ? add_pieces(params->smooth, params, geometry, report, err)
+                          : add_items(tree, coincidence, params, geometry, report, err);
 }
 
 /* ---- what all models have -------------------------------------------------------------------- */

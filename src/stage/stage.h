@@ -17,6 +17,7 @@
 #include "mesh/mesh.h"
 #include "scene/scene.h"
 #include "stage/fieldscale.h"
+#include "stage/smooth.h" // IWYU pragma: export
 #include "tree/tree.h"
 
 /* ---- looks ------------------------------------------------------------------------------------
@@ -24,6 +25,11 @@
  * A look holds the properties that pictures of different trees share: finish, colors, lights,
  * ground and effects. Lengths are relative to the tree's size, and directions are mostly in the
  * camera's axes. Colors are linear RGB. */
+
+typedef struct OptionalRgb {
+    bool present;
+    Rgb color;
+} OptionalRgb;
 
 typedef struct LookLight {
     bool is_point;
@@ -57,34 +63,45 @@ typedef struct LookEffects {
                         * separates them; 180: never */
     Rgb outline_color;
     double halo_width, halo_radii, halo_deeper; /* width 0: no halos */
-    double fade_nearest, fade_farthest;         /* fractions of the background's color; 0: none */
     double xray_per_diameter; /* absorption per diameter of the thickest vessel, or */
     double xray_per_mm;       /* absorption per mm; both 0: no x-ray */
 } LookEffects;
 
-enum { LOOK_MAX_ABOUT = 160 };
+/* Values that a look proposes for options of a picture. An option that is specified overrules the
+ * look. */
+typedef struct LookOptions {
+    int occlusion; /* ambient occlusion: number of occlusion directions per pixel; 0: none */
+    bool shadows, smooth;
+    Projection projection;
+} LookOptions;
+
+enum { LOOK_MAX_OCCLUSION = 4096, LOOK_MAX_ABOUT = 160 };
 
 typedef struct Look {
     char about[LOOK_MAX_ABOUT + 1]; /* a description in one line, or "" */
+    LookOptions options;
     Finish finish;
-    Rgb color; /* of vessels that are not colored by a field */
-    Rgb background;
+    Rgb color;        /* of vessels that are not colored by a field; with `tips`, of the thickest */
+    Rgb background;   /* with `corners`, the color at the center of the picture */
+    OptionalRgb tips; /* the color of the thinnest vessels */
+    OptionalRgb corners; /* the color of the background at the corners of the picture */
     LookLight lights[LOOK_MAX_LIGHTS];
     int n_lights;
     LookGround ground;
+    double fade_nearest, fade_farthest; /* as in Fade */
     LookEffects effects;
 } Look;
 
 /* Returns the effects of a look for one picture. The picture's shorter side has 1000 thousandth_px
- * pixels, and the thickest vessel has this diameter. The fade is over 0 to 1 mm; stage_view
- * replaces these depths. */
+ * pixels, and the thickest vessel has this diameter. */
 Effects look_effects(const Look *look, double thousandth_px, double diameter_mm);
 
 /* Reads a look from an INI file. Its sections and keys:
  *
  *     [look]        about
- *     [vessel]      color
- *     [background]  color
+ *     [options]     ao, shadows, projection, smooth
+ *     [vessel]      color, tips
+ *     [background]  color, corners
  *     [finish]      ambient, diffuse, brilliance, phong, phong_size, specular, roughness
  *     [light NAME]  direction or position; color, size, samples
  *     [ground]      normal or axis; gap, color, ambient, diffuse
@@ -93,7 +110,8 @@ Effects look_effects(const Look *look, double thousandth_px, double diameter_mm)
  *     [fade]        nearest, farthest
  *     [xray]        per_diameter or per_mm
  *
- * Errors: STATUS_INPUT for an unknown section or key and for a bad value, naming file and line. */
+ * Errors: STATUS_INPUT for an unknown section or key and for a bad value, naming file and line. An
+ * unknown name is reported with the most similar known name. */
 MUST_CHECK Status look_read(Look *look, const char *path, Err *err);
 
 typedef enum NamedView {
@@ -119,7 +137,9 @@ typedef enum JointForm {
 /* Parameters of stage_geometry. */
 typedef struct GeometryParams {
     SceneModel model;
-    JointForm joints;   /* models with joints */
+    const SmoothTree *smooth; /* the pieces that are drawn instead of the tree's segments; NULL: the
+                               * segments; borrowed */
+    JointForm joints;         /* models with joints */
     bool implied_ends;  /* models with round ends: sets Geometry.implied_ends, which halves the
                          * memory of pictures that are drawn tile by tile */
     bool graph;         /* models of the potential: segments blend only where they are connected
@@ -134,7 +154,8 @@ typedef struct ViewParams {
     int width, height; /* pixels, >= 1 */
     Projection projection;
     const Tree *tree; /* ground and lights are placed around this tree, and the camera frames it, so
-                       * that all its models have one view; NULL: the geometry; borrowed */
+                       * that all its models have one view; NULL: the geometry; borrowed. The
+                       * pieces of a smooth tree are such a tree */
     const Box *box;   /* the result of stage_box, which saves time; NULL: unknown; borrowed */
     const Box *domain; /* the camera frames this box instead; NULL: none; borrowed */
     UpAxis up_axis;
@@ -185,15 +206,18 @@ MUST_CHECK Status stage_geometry(const Tree *tree, const GeometryParams *params,
 /* Lists the vessels of a tree: its segments that can be drawn and do not lie within a twin
  * [StageReport.covered]. Nodes at the same position are one node. Coordinates are the tree's.
  *
+ * smooth   the pieces of the tree, which are listed instead of its segments; NULL: the segments.
  * vessels  is released with vesseltree_release.
  * report   receives `drawn`, `dropped` and `covered`; may be NULL.
  * Errors   STATUS_INPUT if no segment can be drawn, STATUS_MEMORY. */
-MUST_CHECK Status stage_vessels(const Tree *tree, VesselTree *vessels, StageReport *report,
-                                Err *err);
+MUST_CHECK Status stage_vessels(const Tree *tree, const SmoothTree *smooth, VesselTree *vessels,
+                                StageReport *report, Err *err);
 
-/* Finds how the vessels of a tree are connected. `origin` is Geometry.origin. Release *anatomy with
- * anatomy_release. Errors: STATUS_MEMORY. O(n) for n nodes. */
-MUST_CHECK Status stage_anatomy(const Tree *tree, Vec3 origin, Anatomy *anatomy, Err *err);
+/* Finds how the vessels of a tree are connected. `origin` is Geometry.origin. The main branch
+ * follows the pieces of `smooth` unless that is NULL. Release *anatomy with anatomy_release.
+ * Errors: STATUS_MEMORY. O(n) for n nodes. */
+MUST_CHECK Status stage_anatomy(const Tree *tree, const SmoothTree *smooth, Vec3 origin,
+                                Anatomy *anatomy, Err *err);
 
 /* Returns true if segment i has a radius and a length that can be drawn. Returns false for a root.
  */
@@ -221,9 +245,8 @@ Box stage_box(const ViewParams *params, const Geometry *geometry);
 /* Makes the view of a geometry: the camera of `params`, and lights, ground, background and effects
  * of the look.
  *
- * A camera without a specified location or height frames the tree, and the shadows that fall on the
- * ground from lights more than 10 degrees above it. If only look_at is specified, this point is in
- * the middle of the picture instead.
+ * A camera without a specified location or height frames the tree. If only look_at is specified,
+ * this point is in the middle of the picture instead.
  *
  * Errors  STATUS_USAGE if the vectors in `params` do not define a camera. STATUS_INPUT if the
  *         camera is too far away.
@@ -249,8 +272,8 @@ void view_axes(const ViewParams *params, Vec3 *direction, Vec3 *up);
  * nearest to the middle of the geometry. */
 void orbit_begin(ViewParams *params, const Camera *camera, const Geometry *geometry);
 
-/* Sets the camera of a turntable: the named view shows all that is framed, except its shadows, at
- * any angle of rotation around its up vector through the middle of the geometry. */
+/* Sets the camera of a turntable: the named view shows all that is framed at any angle of rotation
+ * around its up vector through the middle of the geometry. */
 void orbit_frame_turn(ViewParams *params, const Geometry *geometry);
 
 /* Rotates the picture's content to the right and up, by angles in radians. */

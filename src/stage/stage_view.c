@@ -1,9 +1,8 @@
-/* A camera that frames a subject shows exactly the balls around the ends of its vessels, and their
- * shadows. The distance of an orthographic camera changes only the depths that it reports, so the
- * camera is placed one diagonal of the framed box in front of its middle.
+/* A camera that frames a subject shows exactly the balls around the ends of its vessels. The
+ * distance of an orthographic camera changes only the depths that it reports, so the camera is
+ * placed one diagonal of the framed box in front of its middle.
  *
- * The look defines ground and lights in the camera's axes and in sizes of the tree. They are placed
- * around the subject before the camera's position is known, so that shadows can be framed. */
+ * The look defines ground and lights in the camera's axes and in sizes of the tree. */
 #include "stage/subject.h"
 
 ViewParams view_defaults(void)
@@ -274,11 +273,12 @@ static Light place_light(const LookLight *light, const Camera *camera, Box bound
  * length instead: a flat tree viewed face-on then does not fade. */
 static const double least_fade = 1.0 / 3;
 
-static void place_fade(const Camera *camera, const Subject *subject, Fade *fade)
+static Fade place_fade(const Look *look, const Camera *camera, const Subject *subject)
 {
     double diagonal = vec3_distance(subject->box.low, subject->box.high);
-    fade->near_mm = INFINITY;
-    fade->far_mm = -INFINITY;
+    Fade fade = {look->fade_nearest, look->fade_farthest, INFINITY, -INFINITY};
+    if (!fade_is_on(&fade))
+        return (Fade){0};
     for (size_t i = 0; i < subject_segments(subject); i++) {
         Ball ends[2];
         for (int k = subject_ends(subject, i, ends); k-- > 0;) {
@@ -286,11 +286,12 @@ static void place_fade(const Camera *camera, const Subject *subject, Fade *fade)
             double depth = camera->projection == PROJECTION_PERSPECTIVE
                                ? vec3_length(from)
                                : vec3_dot(from, camera->direction);
-            fade->near_mm = fmin(fade->near_mm, depth);
-            fade->far_mm = fmax(fade->far_mm, depth);
+            fade.near_mm = fmin(fade.near_mm, depth);
+            fade.far_mm = fmax(fade.far_mm, depth);
         }
     }
-    fade->far_mm = fmax(fade->far_mm, fade->near_mm + least_fade * diagonal);
+    fade.far_mm = fmax(fade.far_mm, fade.near_mm + least_fade * diagonal);
+    return fade;
 }
 
 static double thickest_mm(const Geometry *geometry)
@@ -307,10 +308,7 @@ static Effects place_effects(const Look *look, const Camera *camera, const Subje
 {
     double thousandth_px = fmin(camera->width, camera->height) / 1000;
     double diameter = look->effects.xray_per_diameter > 0 ? thickest_mm(subject->geometry) : 0;
-    Effects effects = look_effects(look, thousandth_px, diameter);
-    if (effects.fade.nearest > 0 || effects.fade.farthest > 0)
-        place_fade(camera, subject, &effects.fade);
-    return effects;
+    return look_effects(look, thousandth_px, diameter);
 }
 
 /* Places ground and lights around the subject, in the axes of the camera. */
@@ -345,11 +343,12 @@ Status stage_view(const Look *look, const ViewParams *params, const Geometry *ge
     near.look_at = vec3_sub(params->look_at, geometry->origin);
     TRY(aim_camera(&near, box_center(subject.box), &made.camera, err));
     place_surroundings(look, params, &subject, &made);
-    const Framed framed = framed_of(&subject, params, &made);
+    const Framed framed = framed_of(&subject, params->domain);
     if (params->projection == PROJECTION_ORTHOGRAPHIC)
         place_orthographic(&near, &framed, &made.camera);
     else
         place_perspective(&near, &framed, &made.camera);
+    made.fade = place_fade(look, &made.camera, &subject);
     made.effects = place_effects(look, &made.camera, &subject);
     TRY(view_check(&made, err));
     *view = made;

@@ -24,18 +24,35 @@ static void add_segment(const Tree *tree, const Coincidence *coincidence, size_t
     vessels->ids[n] = (uint32_t)tree->id[i];
 }
 
-Status stage_vessels(const Tree *tree, VesselTree *vessels, StageReport *report, Err *err)
+/* Adds the segments that are drawn of a tree, or of the pieces of a smooth tree. */
+static Status add_segments(const Tree *tree, const Coincidence *coincidence, const uint32_t *owner,
+                           VesselTree *made, Err *err)
 {
-    VesselTree made = {.n_nodes = tree->n};
+    made->n_nodes = tree->n;
+    TRY(reserve(tree, made, err));
+    for (size_t i = 0; i < tree->n; i++)
+        if (coincidence_draws(coincidence, i))
+            add_segment(tree, coincidence, i, made);
+    for (size_t i = 0; owner && i < made->n_segments; i++)
+        made->segments[i].segment = owner[made->segments[i].segment];
+    return STATUS_OK;
+}
+
+Status stage_vessels(const Tree *tree, const SmoothTree *smooth, VesselTree *vessels,
+                     StageReport *report, Err *err)
+{
+    VesselTree made = {0};
     Coincidence coincidence = {0};
     StageReport counted;
     Status status;
     TRY_GOTO(coincidence_find(tree, &coincidence, err));
-    TRY_GOTO(reserve(tree, &made, err));
     counted = coincidence_count(tree, &coincidence);
-    for (size_t i = 0; i < tree->n; i++)
-        if (coincidence_draws(&coincidence, i))
-            add_segment(tree, &coincidence, i, &made);
+    if (smooth) {
+        const Coincidence of_pieces = coincidence_of_smooth(smooth);
+        TRY_GOTO(add_segments(&smooth->tree, &of_pieces, smooth->segment, &made, err));
+    } else {
+        TRY_GOTO(add_segments(tree, &coincidence, NULL, &made, err));
+    }
     if (made.n_segments == 0)
         TRY_GOTO(
             err_set(err, STATUS_INPUT,

@@ -40,7 +40,7 @@ Status merge_run(const MergeOptions *options, Parsed *parsed, Err *err)
 
 const Command command_merge = {
     .name = "merge",
-    .summary = "join the strips of an image, or the runs of a study",
+    .summary = "join the strips of one image, or the results of a study's runs",
     .operands = "DIR|FILE... -o P.tif|T.csv",
     .examples = "  corcast render tree.swc --size 30000x30000 -o poster.tif --tiles 64 --commands "
                 "> plan.txt\n"

@@ -116,8 +116,8 @@ static Status grow_runs(StudyRuns *runs, const Common *common, Err *err)
         return err_cancelled(err);
     if (runs->failed > 0)
         return err_set(err, runs->status, "%s%s", runs->err.text,
-                       runs->failed > 1 ? "; others failed, too" : "");
-    talk_note(common->talk, "%zu run%s: %zu grown, %zu there already", runs->n,
+                       runs->failed > 1 ? "; other runs failed as well" : "");
+    talk_note(common->talk, "%zu run%s: %zu grown, %zu found from before", runs->n,
               runs->n == 1 ? "" : "s", runs->n - runs->kept, runs->kept);
     return STATUS_OK;
 }
@@ -173,8 +173,8 @@ static Status grow_plan(const StudyOptions *options, const Parsed *parsed, const
                         Err *err)
 {
     if ((size_t)options->only > plan->runs)
-        return err_set(err, STATUS_USAGE, "--only: %d is not a run from 1 to %zu", options->only,
-                       plan->runs);
+        return err_set(err, STATUS_USAGE, "--only: %d is not the number of a run, 1 to %zu",
+                       options->only, plan->runs);
     StudyRuns runs = {.params = {plan, options->output, options->trees, 1},
                       .first = options->only ? (size_t)options->only - 1 : 0,
                       .n = options->only ? 1 : plan->runs,
@@ -208,11 +208,11 @@ static Status check(const StudyOptions *options, const Parsed *parsed, Err *err)
         return err_set(err, STATUS_USAGE,
                        "-o DIR is missing; usage: corcast study PLAN.ini -o DIR");
     if (grows && parsed->n_operands > 1)
-        return err_set(err, STATUS_USAGE, "unexpected argument '%s'; a study has one plan",
+        return err_set(err, STATUS_USAGE, "unexpected argument '%s'; give one plan",
                        parsed->operands[1]);
     if (options->commands && strcmp(parsed->operands[0], "-") == 0)
         return err_set(err, STATUS_USAGE,
-                       "--commands reads the plan often, not from standard input");
+                       "--commands needs a plan in a file: each command reads the plan again");
     return STATUS_OK;
 }
 

@@ -91,7 +91,8 @@ static bool is_range(const Option *option, const char *value, long long *from, l
 static Status add_range(StudyKey *key, const char *range, long long from, long long to, Err *err)
 {
     if (to < from)
-        return err_set(err, STATUS_INPUT, "%s: the range %s is empty: it runs backwards", key->name,
+        return err_set(err, STATUS_INPUT,
+                       "%s: the range %s is empty: its first value is above its last", key->name,
                        range);
     if (to - from >= STUDY_MOST_RUNS)
         return err_set(err, STATUS_INPUT, "%s: the range %s has more than %d values", key->name,
@@ -157,7 +158,8 @@ static Status check_different(const StudyKey *key, Err *err)
     Status status = STATUS_OK;
     for (size_t i = 1; i < key->n; i++)
         if (strcmp(sorted[i - 1], sorted[i]) == 0)
-            TRY_GOTO(err_set(err, STATUS_INPUT, "%s: %s stands twice", key->name, sorted[i]));
+            TRY_GOTO(err_set(err, STATUS_INPUT, "%s: the value %s is given twice", key->name,
+                             sorted[i]));
 done:
     free(sorted);
     return status;
@@ -186,8 +188,10 @@ static Status find_option(const PlanReading *reading, const char *name, const Op
     for (size_t i = 0; i < reading->options->n_settings; i++)
         if (!is_one_of(reading->options->settings[i].option->name, others))
             suggestion_offer(&suggestion, reading->options->settings[i].option->name);
-    Status status = err_set(err, STATUS_USAGE, "'%.40s' is not an option of grow that a plan %s",
-                            name, setting ? "may set" : "could set");
+    Status status = err_set(err, STATUS_USAGE,
+                            setting ? "a plan cannot set the option '%.40s' of grow"
+                                    : "'%.40s' is not an option of grow",
+                            name);
     suggestion_add(&suggestion, "", err);
     return status;
 }
@@ -196,8 +200,8 @@ static Status add_key(StudyPlan *plan, const char *name, StudyKey **key, Err *er
 {
     for (size_t k = 0; k < plan->n; k++)
         if (strcmp(plan->key[k].name, name) == 0)
-            return err_set(err, STATUS_INPUT, "'%s' stands twice; give all its values in one line",
-                           name);
+            return err_set(err, STATUS_INPUT,
+                           "'%s' is given twice; give all its values in one line", name);
     TRY(mem_reserve(&plan->key, &plan->capacity, plan->n + 1, sizeof *plan->key, "keys", err));
     *key = &plan->key[plan->n];
     **key = (StudyKey){0};
@@ -214,11 +218,11 @@ static Status take_line(void *user, const char *section, const char *name, const
     const Option *option = NULL;
     StudyKey *key = NULL;
     if (strcmp(section, "grow") != 0)
-        return err_set(err, STATUS_INPUT, "%s%.40s%s; a plan has the section [grow] alone",
+        return err_set(err, STATUS_INPUT, "%s%.40s%s; a plan has one section, [grow]",
                        *section ? "[" : "'", *section ? section : name,
-                       *section ? "] is no section of a plan" : "' stands above [grow]");
+                       *section ? "] is not a section of a plan" : "' is above [grow]");
     if (!name && reading->in_section)
-        return err_set(err, STATUS_INPUT, "[grow] stands twice");
+        return err_set(err, STATUS_INPUT, "the section [grow] is given twice");
     reading->in_section = true;
     if (!name)
         return STATUS_OK;
@@ -227,7 +231,7 @@ static Status take_line(void *user, const char *section, const char *name, const
     TRY(add_list(key, option, value, err));
     TRY(check_different(key, err));
     if (key->n > STUDY_MOST_RUNS / plan->runs)
-        return err_set(err, STATUS_INPUT, "%s: these are more than %d combinations", name,
+        return err_set(err, STATUS_INPUT, "%s: the plan has more than %d combinations", name,
                        STUDY_MOST_RUNS);
     plan->runs *= key->n;
     return STATUS_OK;

@@ -53,7 +53,7 @@ static Status take_object(StudyTable *table, const char *path, bool named, json_
     if (taken)
         return add_row(table, path, json, err);
     json_decref(json);
-    return named ? err_set(err, STATUS_INPUT, "%s: holds no %s", path,
+    return named ? err_set(err, STATUS_INPUT, "%s: contains no %s", path,
                            table->shards ? "run of a study" : "JSON object")
                  : STATUS_OK;
 }
@@ -69,7 +69,7 @@ static Status add_objects(StudyTable *table, const char *path, bool named, const
         if (no_memory)
             return mem_out_of("to read", path, err);
         if (!json)
-            return err_set(err, STATUS_INPUT, "%s: is not sound JSON: line %d: %s", path,
+            return err_set(err, STATUS_INPUT, "%s: is not valid JSON: line %d: %s", path,
                            error.line, error.text);
         TRY(take_object(table, path, named, json, err));
         text += error.position;
@@ -115,13 +115,13 @@ static const char *plan_of(const StudyRow *row)
 Status study_table_check(StudyTable *table, Err *err)
 {
     if (table->n == 0)
-        return err_set(err, STATUS_INPUT, "there is no run to merge");
+        return err_set(err, STATUS_INPUT, "no run to merge was found");
     const StudyRow *first = &table->row[0];
     for (size_t i = 1; i < table->n; i++)
         if (strcmp(plan_of(first), plan_of(&table->row[i])) != 0)
             return err_set(err, STATUS_INPUT,
-                           "%s: is no run of the study that %s is of: its plan "
-                           "is another, or the program",
+                           "%s and %s are runs of different studies: their plans or "
+                           "versions of corcast differ",
                            table->row[i].path, first->path);
     qsort(table->row, table->n, sizeof *table->row, by_run);
     const long long runs = member(json_object_get(table->row[0].json, "shard"), "runs");
@@ -131,7 +131,7 @@ Status study_table_check(StudyTable *table, Err *err)
             return err_set(err, STATUS_INPUT, "%s and %s are both run %lld of %lld", row[-1].path,
                            row->path, i, runs);
         if (i >= (long long)table->n || member(row->json, "run") != i + 1)
-            return err_set(err, STATUS_INPUT, "run %lld of %lld is missing; there are %zu", i + 1,
+            return err_set(err, STATUS_INPUT, "run %lld of %lld is missing; found %zu runs", i + 1,
                            runs, table->n);
     }
     return STATUS_OK;

@@ -25,7 +25,7 @@
 
 #include "tree/tree.h"
 
-/* Returns true if a file that begins with the zero-terminated bytes `start` has the format. */
+/* Returns true if a file whose bytes are `start`, up to the first zero, has the format. */
 typedef bool TreeDetect(const char *start);
 /* Reads a file into the builder.
  *
@@ -81,8 +81,8 @@ MUST_CHECK Status check_unpacked(double bytes, size_t size, Err *err);
 
 /* ---- fields ---- */
 
-/* Returns the first character that is not blank and not in a '#' comment; the final zero if there
- * is none. */
+/* Returns the first character that is not a blank or line end, and not in a '#' comment; the final
+ * zero if there is none. */
 const char *text_first_row(const char *start);
 
 /* Checks that a line has no number with a decimal comma, such as "10,5" between blanks or
@@ -116,8 +116,8 @@ MUST_CHECK Status field_radius(const ReadOptions *options, const char *what, con
  *
  * at         in and out: the rest of the line; NULL after the last field.
  * separator  the character between fields. If it is a blank, several blanks count as one.
- * field      receives the field, without blanks around it, borrowed from the line. In a quoted
- *            field two quotes stand for one, and a single quote ends the field.
+ * field      receives the field, without blanks around it, borrowed from the line. In a field in
+ *            "double quotes", "" stands for one quote character.
  * Errors     STATUS_INPUT, without file and line, if a quoted field has no closing quote, or is not
  *            followed by a separator. */
 MUST_CHECK Status csv_field(char **at, char separator, char **field, Err *err);

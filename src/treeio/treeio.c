@@ -401,16 +401,6 @@ void tree_format_list(Text *text)
     list_extensions(text, false);
 }
 
-static void suggest_extension(const char *path, Err *err)
-{
-    const char *given = file_extension(path);
-    Suggestion suggestion = suggestion_for(given, strlen(given));
-    for (size_t i = 0; i < N_FORMATS; i++)
-        for (const char *const *extension = formats[i].extensions; *extension; extension++)
-            suggestion_offer(&suggestion, *extension);
-    suggestion_add(&suggestion, ".", err);
-}
-
 static Status refuse_extension(const char *path, bool written, Err *err)
 {
     Text known = TEXT_INIT;
@@ -427,7 +417,7 @@ static Status refuse_extension(const char *path, bool written, Err *err)
                   err, STATUS_USAGE,
                   "%s: unknown extension of a tree file; use %s, or - for standard input or output",
                   path, text_chars(&known));
-    suggest_extension(path, err);
+    suggestion_add_extension(file_extension(path), err);
 done:
     text_release(&known);
     return status;

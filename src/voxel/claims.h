@@ -18,8 +18,8 @@ typedef struct Claim {
 typedef struct Claims {
     Claim *claim; /* owned */
     size_t n;
-    size_t n_taken; /* number of labels that fill most of no voxel on or next to their axes, and
-                     * so got another voxel */
+    size_t n_taken; /* number of labels whose segments are not the largest part of any voxel on or
+                     * next to their axes; they got a voxel of another label */
 } Claims;
 
 /* Finds a voxel for each label, among the voxels that the label's segments touch. No two labels get

@@ -10,7 +10,7 @@
 #include "voxel/volume.h"
 
 #include <errno.h>
-#include <nifti1.h>
+#include <nifti/nifti1.h>
 #include <stdlib.h>
 #include <string.h>
 #include <zlib.h>

@@ -61,7 +61,7 @@ camera {
 #end
 background { color Background_Color }
 
-// ---- animation ------------------------------------------------------------------------------
+${graded}${fade}${tips}// ---- animation ------------------------------------------------------------------------------
 // With Turn_Clock = 1 the tree turns once about the vertical axis of the picture while clock goes from 0 to 1.
 // With Growth_Clock = 1 the tree grows from its root.
 #ifndef (Turn_Clock)   #declare Turn_Clock   = 0; #end

@@ -1,5 +1,5 @@
 // Draws the color scale with its unit, and the scale bar, on the page and into screenshots.
-import { number } from "./colors.js";
+import { KINDS, number } from "./colors.js";
 
 const BAR = 12, GAP = 5;
 
@@ -12,7 +12,7 @@ function style(context, ink) {
 
 function scaleTitle(scale) {
   const { title, unit } = scale.field;
-  return title + (unit ? ` (${unit})` : "") + (scale.log ? ", logarithmic" : "");
+  return title + (unit ? ` (${unit})` : "") + (scale.kind === "linear" ? "" : ", " + KINDS[scale.kind]);
 }
 
 // Draws a patch of color for each integer of the range, at most one for each color of the map.

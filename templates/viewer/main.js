@@ -2,7 +2,7 @@
 // when the user presses keys, uses the mouse or the touch screen, or changes the address. A picture is drawn only after
 // a change.
 import { Color, SRGBColorSpace, WebGLRenderer } from "three";
-import { Scale } from "./colors.js";
+import { chooseKind, hasKind, KINDS, lifted, luminance, rangeOf, Scale } from "./colors.js";
 import { drawLegend, drawScaleBar, LEGEND_HEIGHT, TITLE_HEIGHT } from "./legend.js";
 import { ink, Panel } from "./panel.js";
 import { Shade } from "./shade.js";
@@ -11,18 +11,23 @@ import { Vessels } from "./vessels.js";
 import { View, VIEWS } from "./view.js";
 
 const find = (id) => document.getElementById(id);
-const DECADES = 2.5; // a range of at least this many powers of 10 gets a logarithmic scale by default
 const SHADE = 0.75;
-const LOW = 544; // CSS pixels: in a window less high, the tree is drawn below the tools
+const EDGE = 0.35; // darkness at the outlines of vessels on a light background in soft light
+const FORM = 0.5; // strength of light and dark on vessels whose color shows a value
+const RING = 18; // CSS pixels: smallest radius of the ring around the selected segment
 const HIT = 4; // CSS pixels: minimum width of a vessel for picking with the pointer
 
 const tree = new Tree();
 const start = tree.properties.start;
+// Soft light replaces the light of the default look, not of one that the page was made with.
+const SWITCHES = { soft: !tree.properties.look.isChosen, shade: true, haze: true, panels: true };
+const CHECKS = ["soft", "shade", "haze"];
 const state = {
-  field: null, map: null, log: null, moment: 0, grown: 1, haze: true, shade: true, panels: true,
+  field: null, map: null, kind: null, moment: 0, grown: 1, ...SWITCHES,
   hovered: -1, pinned: -1, // indices of segments, or -1
 };
 let scale = null, wanted = false, playing = 0, written = 0, known = location.hash;
+let ground = null; // luminance of a dark background, or null
 
 const dark = matchMedia("(prefers-color-scheme: dark)");
 const canvas = find("stage");
@@ -55,7 +60,17 @@ function wantPicture() {
     wanted = false;
     draw();
     panel.drawScaleBar(mmPerPixel());
+    panel.showRing(ring());
   });
+}
+
+// Returns the circle around the selected segment in CSS pixels, {x, y, radius}, or null.
+function ring() {
+  const i = state.pinned;
+  if (i < 0) return null;
+  const [[x, y], ...ends] = [tree.middle(i), tree.point(i), tree.point(tree.parent[i])].map((at) => view.onScreen(at));
+  const reach = Math.max(...ends.map((end) => Math.hypot(end[0] - x, end[1] - y)));
+  return { x, y, radius: Math.min(Math.max(RING, reach + 10), 0.4 * canvas.clientHeight) };
 }
 
 function mmPerPixel() {
@@ -66,9 +81,8 @@ function mmPerPixel() {
 function freeBox() {
   const { innerWidth: width, innerHeight: height } = window, side = find("side").getBoundingClientRect();
   if (side.width === 0) return { left: 0, top: 0, width, height };
-  const below = find("tools").getBoundingClientRect().bottom;
-  if (side.width >= width / 2) return { left: 0, top: below, width, height: side.top - below };
-  const top = height < LOW ? below : 0;
+  const top = find("tools").getBoundingClientRect().bottom;
+  if (side.width >= width / 2) return { left: 0, top, width, height: side.top - top };
   return { left: side.right, top, width: width - side.right, height: height - top };
 }
 
@@ -86,10 +100,8 @@ function takeScheme() {
   renderer.setClearColor(color("--paper"));
   vessels.set("paper", color("--paper").convertLinearToSRGB());
   vessels.set("accent", color("--accent"));
-  vessels.set("fade", state.haze ? haze() : 0);
-  vessels.set("rim", dark.matches ? 0.12 : 0);
-  panel.drawLegend();
-  wantPicture();
+  ground = dark.matches ? luminance(color("--paper").toArray()) : null;
+  show();
 }
 
 // Returns how strongly the farthest vessels fade. On a dark background they must fade less to stay visible.
@@ -99,25 +111,21 @@ function haze() { return dark.matches ? 0.25 : 0.45; }
 
 const named = (list, name) => list.find((item) => item.name === name);
 
-// Returns the range of a field's scale: the range that the page was made with, for the same field and the same kind of
-// scale; else the range of the values.
-function rangeFor(field, log) {
-  if (start && start.field === field.name && start.log === log) return [start.low, start.high];
-  return log ? field.logRange : field.range;
-}
+// Returns colors as they are shown: on a dark background lighter.
+function visible(bytes) { return ground === null ? bytes : lifted(bytes, ground); }
 
-function isWide(field) {
-  const range = field.logRange;
-  return !field.whole && !!range && field.range[0] >= 0 && Math.log10(range[1] / range[0]) >= DECADES;
-}
-
+// Returns the field's scale of the kind that was selected, else of the kind that shows the field best. The scale with
+// which the page was made has its own range.
 function makeScale() {
   const field = named(tree.fields, state.field);
   if (!field) return null;
   let map = named(tree.maps, state.map) || named(tree.maps, "viridis") || tree.maps[0];
   if (map.separate && !field.whole) map = tree.maps.find(({ separate }) => !separate);
-  const log = !!field.logRange && !(map.separate && field.whole) && (state.log === null ? isWide(field) : state.log);
-  return new Scale(field, map, log, rangeFor(field, log));
+  map = { ...map, bytes: visible(map.bytes) };
+  const made = start && start.field === field.name && start.kind;
+  const asked = [state.kind, made].find((kind) => Object.hasOwn(KINDS, kind) && hasKind(field, kind));
+  const kind = map.separate && field.whole ? "linear" : asked || chooseKind(field, map);
+  return new Scale(field, map, kind, made === kind ? [start.low, start.high] : rangeOf(field, kind));
 }
 
 function shownMoment() {
@@ -127,14 +135,17 @@ function shownMoment() {
 function show() {
   scale = makeScale();
   const moment = shownMoment(), shown = state.pinned >= 0 ? state.pinned : state.hovered;
-  vessels.paint(scale, moment);
+  vessels.paint(scale, visible(vessels.plain), moment);
   vessels.set("grown", state.grown);
   vessels.set("fade", state.haze ? haze() : 0);
+  vessels.set("isSoft", state.soft);
+  vessels.set("form", scale ? FORM : 1);
+  vessels.set("rim", dark.matches ? 0.12 : 0);
+  vessels.set("edge", state.soft && !dark.matches ? EDGE : 0);
   vessels.set("shade", state.shade && shade.isDone ? SHADE : 0);
   document.body.classList.toggle("bare", !state.panels);
   find("project").setAttribute("aria-pressed", view.isOrthographic);
-  find("haze").checked = state.haze;
-  find("shade").checked = state.shade;
+  for (const name of CHECKS) find(name).checked = state[name];
   if (state.shade && !shade.isDone) findShade();
   find("grown").value = state.grown;
   panel.showScale(scale, scale && scale.field);
@@ -169,11 +180,12 @@ function change(what) {
   show();
 }
 
-// Selects a field. `log: null` chooses between a linear and a logarithmic scale by the field's range.
-function setField(name) { change({ field: named(tree.fields, name) ? name : null, log: null }); }
+// Selects a field. `kind: null` selects the kind of scale by the field's values.
+function setField(name) { change({ field: named(tree.fields, name) ? name : null, kind: null }); }
 
 function pin(i) {
   Object.assign(state, { pinned: i, hovered: -1 });
+  if (i >= 0) view.center(tree.middle(i));
   showSegment(i);
   wantAddress();
 }
@@ -201,11 +213,12 @@ function writeAddress() {
   written = 0;
   if (location.hash !== known) return;
   const parts = viewOptions();
-  if (state.field) parts.push(["field", state.field], ["map", scale.map.name], ["log", scale.log ? "on" : "off"]);
+  if (state.field) parts.push(["field", state.field], ["map", scale.map.name], ["scale", scale.kind]);
   else if (start) parts.push(["field", "none"]);
   if (shownMoment()) parts.push(["moment", shownMoment() + 1]);
   if (state.grown < 1) parts.push(["grown", state.grown]);
-  for (const name of ["haze", "shade", "panels"]) if (!state[name]) parts.push([name, "off"]);
+  for (const [name, usual] of Object.entries(SWITCHES))
+    if (state[name] !== usual) parts.push([name, state[name] ? "on" : "off"]);
   if (state.pinned >= 0) parts.push(["segment", tree.id[state.pinned]]);
   const text = parts.map(([key, value]) => `${key}=${encodeURIComponent(value).replaceAll("%2C", ",")}`).join("&");
   history.replaceState(null, "", "#" + text);
@@ -233,27 +246,27 @@ function readAddress() {
   const get = new URLSearchParams(location.hash.slice(1));
   const field = get.get("field") ?? (start && start.field);
   view.project(get.get("projection") === "orthographic");
-  const log = get.get("log");
   change({
     field: named(tree.fields, field) ? field : null,
     map: get.get("map") ?? (start && start.map),
-    log: log === null ? (start && start.field === field ? start.log : null) : log === "on",
+    kind: get.get("scale"),
     moment: Math.round(clamped(get.get("moment"), 1, 1e6, 1)) - 1,
     grown: clamped(get.get("grown"), 0, 1, 1),
-    haze: get.get("haze") !== "off",
-    shade: get.get("shade") !== "off",
-    panels: get.get("panels") !== "off",
+    ...Object.fromEntries(Object.entries(SWITCHES).map(([name, usual]) =>
+      [name, get.has(name) ? get.get(name) !== "off" : usual])),
     pinned: tree.numberOf.get(Number(get.get("segment"))) ?? -1,
     hovered: -1,
   });
   readPose(get);
 }
 
-// Sets the view from the address. Without a view there, shows all of the tree.
+// Sets the view from the address. Without a view there, shows all of the tree, or the selected
+// segment in the middle of its surroundings.
 function readPose(get) {
   const target = numbers(get.get("look-at"), 3), height = Number(get.get("height"));
   view.frame(...(numbers(get.get("turn"), 2) || [0, 0]));
   if (target) view.change({ target: fromOrigin(target, -1) });
+  else if (state.pinned >= 0) view.change({ target: tree.middle(state.pinned), height: view.pose.height / 2 });
   if (height > 0 && Number.isFinite(height)) view.change({ height });
 }
 
@@ -263,7 +276,7 @@ function renderCommand() {
   const words = isOrthographic ? viewOptions() : [["projection", "perspective"], ["location", list(view.eye)],
     ["look-at", list(view.pose.target)], ["angle", rounded(view.angleAcross)]];
   words.push(["size", `${canvas.clientWidth}x${canvas.clientHeight}`]);
-  if (tree.properties.look.name !== "cast") words.push(["look", tree.properties.look.name]);
+  words.push(["look", tree.properties.look.name]);
   if (scale) words.push(["color-by", scale.field.name], ["colormap", scale.map.name]);
   if (scale) words.push(["range", scale.range.map((v) => Number(v.toPrecision(6))).join(",")]);
   if (shownMoment()) words.push(["moment", shownMoment() + 1]);
@@ -304,6 +317,18 @@ function release(event) {
   pin(pickAt(event.clientX, event.clientY));
 }
 
+function drawRing(context, circle) {
+  if (!circle) return;
+  const styles = getComputedStyle(document.documentElement);
+  context.beginPath();
+  context.arc(circle.x, circle.y, circle.radius, 0, 2 * Math.PI);
+  for (const [name, width] of [["--paper", 6], ["--accent", 2]]) {
+    context.strokeStyle = styles.getPropertyValue(name);
+    context.lineWidth = width;
+    context.stroke();
+  }
+}
+
 function save() {
   draw();
   const page = document.createElement("canvas"), ratio = canvas.width / canvas.clientWidth;
@@ -312,6 +337,7 @@ function save() {
   const context = page.getContext("2d"), margin = 24;
   context.drawImage(canvas, 0, 0);
   context.scale(ratio, ratio);
+  drawRing(context, ring());
   if (scale) {
     context.save();
     context.translate(margin, canvas.clientHeight - margin - LEGEND_HEIGHT - TITLE_HEIGHT);
@@ -399,11 +425,10 @@ function listen() {
   const on = (id, type, action) => find(id).addEventListener(type, action);
   on("field", "change", (e) => setField(e.target.value));
   on("map", "change", (e) => change({ map: e.target.value }));
-  on("log", "change", (e) => change({ log: e.target.checked }));
+  on("kind", "change", (e) => change({ kind: e.target.value }));
   on("moment", "input", (e) => change({ moment: Number(e.target.value) }));
   on("grown", "input", (e) => change({ grown: Number(e.target.value) }));
-  on("haze", "change", (e) => change({ haze: e.target.checked }));
-  on("shade", "change", (e) => change({ shade: e.target.checked }));
+  for (const name of CHECKS) on(name, "change", (e) => change({ [name]: e.target.checked }));
   on("play", "click", play);
   on("view", "change", (e) => { view.frame(...VIEWS[e.target.value]); e.target.value = ""; });
   on("project", "click", project);

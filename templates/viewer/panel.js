@@ -1,5 +1,5 @@
 // The panels beside the picture: the selected field, the legend, and the values of a segment.
-import { number } from "./colors.js";
+import { hasKind, KINDS, number, reason } from "./colors.js";
 import { drawLegend, drawScaleBar, LEGEND_HEIGHT, sized } from "./legend.js";
 
 const find = (id) => document.getElementById(id);
@@ -45,18 +45,21 @@ export class Panel {
     const fields = tree.fields.map((field) => option(field.name, words(field)));
     find("field").append(option("", "one color"), ...fields);
     find("map").append(...tree.maps.map(({ name }) => option(name, name)));
+    find("kind").append(...Object.entries(KINDS).map(([kind, words]) => option(kind, words)));
     find("made").textContent = `${properties.generator}: ${properties.command}`;
   }
 
   showScale(scale, field) {
     find("field").value = field ? field.name : "";
     find("scale").hidden = !scale;
-    find("log").disabled = !field || !field.logRange || (scale && scale.counts);
-    find("log").checked = !!scale && scale.log;
+    for (const choice of find("kind").options)
+      choice.disabled = !field || !hasKind(field, choice.value) || (scale.counts && choice.value !== "linear");
     for (const choice of find("map").options)
       choice.disabled = !!field && !field.whole && this.tree.maps.find(({ name }) => name === choice.value).separate;
     if (!scale) return;
     find("map").value = scale.map.name;
+    find("kind").value = scale.kind;
+    find("reason").textContent = reason(scale);
     this.scale = scale;
     this.drawLegend();
   }
@@ -76,6 +79,16 @@ export class Panel {
     const context = sized(canvas, 160, 22);
     context.translate(160, 0);
     drawScaleBar(context, mmPerPixel, 150, ink());
+  }
+
+  // Shows the ring around the selected segment, or hides it if `ring` is null.
+  showRing(ring) {
+    const element = find("ring");
+    element.hidden = !ring;
+    if (!ring) return;
+    const { x, y, radius } = ring;
+    Object.assign(element.style, { left: `${x - radius}px`, top: `${y - radius}px`,
+      width: `${2 * radius}px`, height: `${2 * radius}px` });
   }
 
   // Shows the slider of times for a field that changes with time, and hides it for any other field.

@@ -15,24 +15,21 @@ function block(id, Numbers) {
   return new Numbers(bytes.buffer);
 }
 
-function readField(field, k) {
-  const packed = block("field-" + k, field.whole ? Uint16Array : Float32Array);
-  const values = field.whole ? Float32Array.from(packed, (v) => (v === NONE ? NaN : v)) : packed;
-  return { ...field, values };
-}
+class Field {
+  constructor(properties, k, { n, segments }) {
+    const packed = block("field-" + k, properties.whole ? Uint16Array : Float32Array);
+    Object.assign(this, properties);
+    this.values = properties.whole ? Float32Array.from(packed, (v) => (v === NONE ? NaN : v)) : packed;
+    const isShown = new Uint8Array(n);
+    for (const i of segments) isShown[i] = 1;
+    this.finite = this.values.filter((value, at) => isShown[at % n] && Number.isFinite(value)); // at all times
+  }
 
-// Returns the minimum and maximum of the finite values at all times; with `log`, of the values above 0. Returns null if
-// there is none.
-function rangeOf(values, n, segments, log) {
-  let low = Infinity, high = -Infinity;
-  for (let at = 0; at < values.length; at += n)
-    for (const i of segments) {
-      const v = values[at + i];
-      if (!Number.isFinite(v) || (log && v <= 0)) continue;
-      if (v < low) low = v;
-      if (v > high) high = v;
-    }
-  return low <= high ? [low, high] : null;
+  // The finite values of all segments at all times, ascending.
+  get sorted() {
+    this.ascending ||= this.finite.sort();
+    return this.ascending;
+  }
 }
 
 export class Tree {
@@ -45,11 +42,8 @@ export class Tree {
     this.n = this.radius.length;
     this.findSegments();
     this.measure();
-    this.fields = this.properties.fields.map((field, k) => {
-      const read = readField(field, k);
-      const range = rangeOf(read.values, this.n, this.segments, false);
-      return { ...read, range, logRange: rangeOf(read.values, this.n, this.segments, true) };
-    }).filter((field) => field.range);
+    this.fields = this.properties.fields.map((properties, k) => new Field(properties, k, this))
+      .filter((field) => field.finite.length > 0);
     this.maps = this.properties.maps.map((map, k) => ({ ...map, bytes: block("map-" + k, Uint8Array) }));
   }
 
@@ -85,6 +79,10 @@ export class Tree {
       if (this.pathLength[i] > this.longest) this.longest = this.pathLength[i];
     }
   }
+
+  // Returns the coordinates of node i, and of the middle of segment i.
+  point(i) { return this.position.subarray(3 * i, 3 * i + 3); }
+  middle(i) { return Array.from(this.point(i), (v, c) => (v + this.point(this.parent[i])[c]) / 2); }
 
   length(i) {
     const a = 3 * this.parent[i], b = 3 * i, p = this.position;

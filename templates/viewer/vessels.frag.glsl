@@ -1,5 +1,5 @@
-// Intersects a ray with a cylinder with round ends, and shades the hit by POV-Ray's light model as corcast's pictures
-// do (METHODS section 3). Floats are too coarse for distances from the ray's start, which may be 10^4 radii away. So
+// Intersects a ray with a cylinder with round ends, and shades the hit in soft light, or by POV-Ray's light model as
+// corcast's pictures do (METHODS section 3). Floats are too coarse for distances from the ray's start, which may be 10^4 radii away. So
 // all distances are measured from a point on the box, and by cross products. The fraction of the pixel that the vessel
 // covers becomes the coverage of the pixel's samples.
 precision highp float;
@@ -23,7 +23,9 @@ uniform float halfDiagonal;
 uniform vec3 paper, accent; // the paper's color is sRGB
 uniform float fade;
 uniform highp sampler2D open; // sums of the light that arrives, and of the light without other vessels [shade.js]
-uniform float shade, rim;
+uniform bool isSoft;
+uniform float form; // soft light: strength of light and dark, from 0 (the plain color) to 1
+uniform float shade, rim, edge; // strengths of the ambient occlusion, of light and of darkness at outlines, 0..1
 
 out vec4 seen;
 
@@ -55,6 +57,16 @@ vec3 lit(vec3 point, vec3 normal, vec3 view, vec3 color) {
     sum += lightColor[i] * light;
   }
   return sum;
+}
+
+// Soft light: a hemisphere, brighter above, and a wide lamp at the upper left, whose light wraps around the vessel.
+// `visible` is the ambient visibility. A surface that faces the lamp and sees all of the hemisphere has the color itself.
+vec3 softlyLit(vec3 normal, vec3 view, float visible, vec3 color) {
+  const vec3 LAMP = vec3(-0.37, 0.5, 0.783);
+  float wrapped = max(0.0, dot(normal, LAMP) + 0.35) / 1.35;
+  float light = mix(0.16, 0.4, 0.5 + 0.5 * normal.y) * visible + 0.75 * wrapped * mix(0.4, 1.0, visible);
+  float gleam = pow(max(0.0, dot(normalize(LAMP - view), normal)), 30.0) * visible;
+  return color * mix(1.0, light, form) + 0.16 * form * form * gleam;
 }
 
 float openTexel(int around, int along) {
@@ -106,10 +118,12 @@ void main() {
   seen = vec4(0);
 #ifndef DEPTHS
   mat3 toView = mat3(viewMatrix) * axes;
-  vec3 color = lit(point.xyz, toView * normal, toView * d, pigment);
+  float visible = shade > 0.0 ? mix(1.0, openness(normal, hit.x / max(len, 1e-9)), shade) : 1.0;
+  float slope = 1.0 - abs(dot(normal, d)); // 1 at the outline
+  vec3 inEye = toView * normal, view = toView * d;
+  vec3 color = isSoft ? softlyLit(inEye, view, visible, pigment) : lit(point.xyz, inEye, view, pigment) * visible;
   color = mix(color, accent, 0.8 * isPicked);
-  if (shade > 0.0 && isPicked == 0.0) color *= mix(1.0, openness(normal, hit.x / max(len, 1e-9)), shade);
-  color += rim * pow(1.0 - abs(dot(normal, d)), 3.0); // separates dark vessels from a dark background
+  color = color * (1.0 - edge * slope * slope) + rim * slope * slope * slope; // separates vessels from the background
   float middle = (viewMatrix * vec4(0, 0, 0, 1)).z;
   float depth = clamp(0.5 + 0.5 * (middle - point.z) / halfDiagonal, 0.0, 1.0);
   seen = vec4(mix(encoded(color), paper, fade * depth * (1.0 - isPicked)), cover);

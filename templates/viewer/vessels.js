@@ -61,7 +61,10 @@ function uniforms(look) {
     accent: value(new Color()),
     open: value(null), // texture of the ambient occlusion [shade.js]
     shade: value(0), // strength of the ambient occlusion, 0..1
-    rim: value(0), // light from behind, linear
+    rim: value(0), // light at outlines, linear
+    edge: value(0), // darkness at outlines, 0..1
+    isSoft: value(false),
+    form: value(1), // strength of light and dark of the soft light, 0..1
   };
 }
 
@@ -97,7 +100,7 @@ export class Vessels {
     this.scene.add(this.mesh);
     this.mesh.frustumCulled = false;
     this.set("halfDiagonal", Math.hypot(...tree.high.map((h, c) => h - tree.low[c])) / 2);
-    this.plain = encoded(look.color);
+    this.plain = Uint8Array.from(encoded(look.color));
   }
 
   set(name, value) {
@@ -117,12 +120,12 @@ export class Vessels {
     this.mesh.material = this.material;
   }
 
-  // Colors all segments by a scale and the values at one time. If `scale` is null, uses the look's color.
-  paint(scale, moment) {
+  // Colors all segments by a scale and the values at one time. If `scale` is null, uses the color `plain`.
+  paint(scale, plain, moment) {
     const attribute = this.mesh.geometry.getAttribute("color"), { segments, n } = this.tree;
     segments.forEach((i, k) => {
       if (scale) scale.put(scale.field.values[moment * n + i], attribute.array, 4 * k);
-      else attribute.array.set(this.plain, 4 * k);
+      else attribute.array.set(plain, 4 * k);
     });
     attribute.needsUpdate = true;
   }

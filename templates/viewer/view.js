@@ -7,6 +7,7 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 const ANGLE = 26; // vertical angle of view of a perspective picture, degrees
 const MARGIN = 0.05; // fraction of the window that is left free on each side of the whole tree
 const STEEPEST = 89.9;
+const GLIDE = 300; // duration of a movement to another target, ms
 const radians = (degrees) => (degrees * Math.PI) / 180;
 const degrees = (radian) => (radian * 180) / Math.PI;
 
@@ -34,6 +35,7 @@ export class View {
     this.controls.minPolarAngle = radians(90 - STEEPEST);
     this.controls.maxPolarAngle = radians(90 + STEEPEST);
     this.controls.addEventListener("change", changed);
+    this.controls.addEventListener("start", () => { this.goal = null; });
     const still = matchMedia("(prefers-reduced-motion: reduce)");
     const settle = () => { this.controls.enableDamping = !still.matches; };
     still.addEventListener("change", settle);
@@ -79,6 +81,25 @@ export class View {
     this.pose = pose;
   }
 
+  // Moves the camera within GLIDE so that a point comes to the middle; at once if the user wants no motion.
+  center(point) {
+    const duration = this.controls.enableDamping ? GLIDE : 0;
+    this.goal = { from: this.controls.target.clone(), to: new Vector3(...point), end: performance.now() + duration };
+    this.changed();
+  }
+
+  glide() {
+    const { from, to, end } = this.goal, time = 1 - Math.max(0, end - performance.now()) / GLIDE;
+    if (time === 1) this.goal = null;
+    this.change({ target: from.clone().lerp(to, time * time * (3 - 2 * time)).toArray() });
+  }
+
+  // Returns the position of a point in the window, in CSS pixels.
+  onScreen(point) {
+    const { x, y } = new Vector3(...point).project(this.camera), box = this.canvas.getBoundingClientRect();
+    return [box.left + (0.5 + x / 2) * box.width, box.top + (0.5 - y / 2) * box.height];
+  }
+
   // Shows the whole tree from a direction.
   frame(turn, rise) {
     const back = towardsEye(turn, rise), right = new Vector3(0, 1, 0).cross(back).normalize();
@@ -117,6 +138,7 @@ export class View {
 
   // To be called before each picture: continues a movement, and sets the depth range to hold the whole tree.
   step() {
+    if (this.goal) this.glide();
     this.controls.update();
     const { camera } = this, away = camera.position.length();
     const near = this.isOrthographic ? 0 : Math.max(away - 1.1 * this.half, this.pose.height / 200);

@@ -6,7 +6,7 @@
 test_gmsh_fills_the_parts_of_an_stl_with_tetrahedra() {
     command -v gmsh >/dev/null || skip "gmsh is not installed"
     run_ok corcast grow --terminals 9 --domain ball:41 --seed 7 -o t.swc --quiet
-    run_ok corcast export t.swc --parts --tolerance 0.05 -o t.stl --quiet
+    run_ok corcast export t.swc --parts --mesh-tolerance 0.05 -o t.stl --quiet
     run_ok timeout 300 gmsh -3 -format msh2 t.geo -o t.msh
     /usr/bin/python3 - >said <<'END' || fail "$(cat said)"
 import csv, json, sys

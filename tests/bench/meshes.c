@@ -35,7 +35,7 @@ static Status measure(const char *path, Err *err)
     struct rusage used;
     const MeshParams params = {.tolerance = 0.02};
     TRY(tree_read(&tree, path, err));
-    TRY(stage_vessels(&tree, &vessels, NULL, err));
+    TRY(stage_vessels(&tree, NULL, &vessels, NULL, err));
     double start = seconds();
     TRY(vesselmesh_build(&vessels, &params, &mesh, &report, err));
     double end = seconds();

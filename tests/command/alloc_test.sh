@@ -52,7 +52,7 @@ test_failed_allocations_in_info() {
 test_failed_allocations_in_certify() {
     inputs
     fail_each 1 one certify ../tree.swc --certificate o.cert --json
-    fail_each 1 one certify ../tree.swc --parts
+    fail_each 1 one certify ../tree.swc --explain-gap
 }
 
 test_failed_allocations_in_power() {
@@ -116,36 +116,36 @@ test_failed_allocations_in_scene() {
     fail_each 3 one scene ../tree.swc --size 21x15 --model rounded --color-by radius -o o.tachyon
     fail_each 3 many scene ../tree.swc --size 21x15 --model blob --ids on --color-by radius -o o.pov
     fail_each 3 many scene "$DATA/bifurcation.swc" --size 21x15 --model isosurface --ids on -o o.pov
-    fail_each 5 many scene "$DATA/bifurcation.swc" --size 21x15 --model mesh --tolerance 0.2 --part-overlaps -o o.pov
+    fail_each 5 many scene "$DATA/bifurcation.swc" --size 21x15 --model mesh --mesh-tolerance 0.2 --part-overlaps -o o.pov
     fail_each 5 many scene "$DATA/bifurcation.swc" --size 21x15 --model blob --color-by radius --color-blend blended -o o.pov
 }
 
 test_failed_allocations_in_export() {
     local extension
-    fail_each 1 many export "$DATA/bifurcation.swc" --tolerance 0.2 -o o.ply
-    fail_each 3 many export "$REPO/tests/golden/strangers.swc" --part-overlaps --tolerance 0.2 -o o.stl
-    fail_each 7 many export "$DATA/bifurcation.swc" --model rounded --tolerance 0.2 -o o.stl
+    fail_each 1 many export "$DATA/bifurcation.swc" --mesh-tolerance 0.2 -o o.ply
+    fail_each 3 many export "$REPO/tests/golden/strangers.swc" --part-overlaps --mesh-tolerance 0.2 -o o.stl
+    fail_each 7 many export "$DATA/bifurcation.swc" --model rounded --mesh-tolerance 0.2 -o o.stl
     for extension in stl obj 3mf inc; do
-        fail_each 7 many export "$DATA/bifurcation.swc" --tolerance 0.2 -o "o.$extension"
+        fail_each 7 many export "$DATA/bifurcation.swc" --mesh-tolerance 0.2 -o "o.$extension"
     done
-    fail_each 7 many export "$DATA/bifurcation.swc" --tolerance 0.2 --color-by flow -o o.glb
-    fail_each 7 many export "$DATA/bifurcation.swc" --tolerance 0.2 --color-by flow -o o.3mf
+    fail_each 7 many export "$DATA/bifurcation.swc" --mesh-tolerance 0.2 --color-by flow -o o.glb
+    fail_each 7 many export "$DATA/bifurcation.swc" --mesh-tolerance 0.2 --color-by flow -o o.3mf
     [ ! -e "$REPO/build/viewer/viewer.js" ] || fail_each 17 one export "$DATA/bifurcation.swc" --color-by radius -o o.html
 }
 
 test_failed_allocations_in_export_of_parts_and_curves() {
-    fail_each 7 many export "$DATA/bifurcation.swc" --tolerance 0.2 -o o.vtp
-    fail_each 9 many export "$DATA/bifurcation.swc" --tolerance 0.2 --wall 0.2 --tube-edge 1.5 --parts -o o.stl
-    fail_each 9 many export "$DATA/bifurcation.swc" --print block=box,ports --tolerance 0.2 -o o.stl
-    fail_each 9 many export "$DATA/bifurcation.swc" --print wall=0.3,base --tolerance 0.2 -o o.stl
+    fail_each 7 many export "$DATA/bifurcation.swc" --mesh-tolerance 0.2 -o o.vtp
+    fail_each 9 many export "$DATA/bifurcation.swc" --mesh-tolerance 0.2 --wall 0.2 --tube-edge 1.5 --parts -o o.stl
+    fail_each 9 many export "$DATA/bifurcation.swc" --print block=box,ports --mesh-tolerance 0.2 -o o.stl
+    fail_each 9 many export "$DATA/bifurcation.swc" --print wall=0.3,base --mesh-tolerance 0.2 -o o.stl
     fail_each 1 many export "$DATA/bifurcation.swc" --color-by flow -o o.py
     fail_each 3 many export "$DATA/bifurcation.swc" --color-by flow -o o.usda
     fail_each 3 many export "$DATA/bifurcation.swc" --lattice -o o.3mf
 }
 
 test_failed_allocations_in_volumes() {
-    fail_each 1 many export "$DATA/bifurcation.swc" --voxel 6 --labels segment --centreline c.nii.gz -o o.nii.gz
-    fail_each 7 many export "$DATA/bifurcation.swc" --voxel 6 --depth 16 -o o.df3
+    fail_each 1 many export "$DATA/bifurcation.swc" --spacing 6 --labels segment --centreline c.nii.gz -o o.nii.gz
+    fail_each 7 many export "$DATA/bifurcation.swc" --spacing 6 --depth 16 -o o.df3
 }
 
 test_failed_allocations_in_render() {
@@ -220,7 +220,7 @@ test_failed_allocations_in_animations() {
     printf 'name,time,q,p\n2,0,1,2\n2,1,1,2\n3,0,4,5\n3,1,6,7\n' >rows.csv
     printf 'id,flow\n3,25\n' >flows.csv
     run_ok corcast convert tree.swc moments.pvd --values frames.csv
-    fail_each 1 many render ../tree.swc --size 9x8 --color-by ../frames.csv --frames all -o o%d.ppm
+    fail_each 1 many render ../tree.swc --size 9x8 --color-by ../frames.csv --moments all -o o%d.ppm
     fail_each 3 many render ../tree.swc --size 9x8 --color-by ../rows.csv:q --turntable 2 -o o%d.png
     fail_each 3 many render ../tree.swc --size 9x8 --color-by flow --terminal-flow ../flows.csv --growth 2 -o o%d.png
     fail_each 3 one render ../moments.pvd --size 9x8 --color-by frames -o o.png
@@ -229,7 +229,7 @@ test_failed_allocations_in_animations() {
     echo 1 2 >steps/segment2_flow.dat
     fail_each 1 one render ../tree.swc --size 9x8 --color-by ../steps:flow -o o.png
     fail_each 3 many scene ../tree.swc --size 21x15 --color-by ../frames.csv -o o.pov
-    fail_each 1 one info ../tree.swc --terminal-flow murray
+    fail_each 1 one info ../tree.swc --flow-split murray
 }
 
 test_failed_allocations_in_compare() {

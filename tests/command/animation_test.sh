@@ -19,7 +19,7 @@ make_pulse() {
 test_each_frame_is_the_picture_of_its_moment() {
     make_pulse
     # shellcheck disable=SC2086
-    run_ok corcast render --exact tree.swc --color-by pulse.csv --frames all $SMALL --planes id -o f%02d.ppm
+    run_ok corcast render --exact tree.swc --color-by pulse.csv --moments all $SMALL --planes id -o f%02d.ppm
     [ "$(echo f*.ppm)" = "$(echo f0{1..8}{.id,}.ppm)" ] || fail "expected 8 pictures and planes, got $(echo f*)"
     for k in 1 3 8; do
         # shellcheck disable=SC2086
@@ -39,7 +39,7 @@ test_each_frame_is_the_picture_of_its_moment() {
 test_a_range_of_frames_keeps_their_numbers() {
     make_pulse
     # shellcheck disable=SC2086
-    run_ok corcast render --exact tree.swc --color-by pulse.csv --frames 3..4 $SMALL -o f%d.png
+    run_ok corcast render --exact tree.swc --color-by pulse.csv --moments 3..4 $SMALL -o f%d.png
     expect_only f3.png f4.png pulse.csv tree.swc
 }
 
@@ -184,7 +184,7 @@ test_a_turn_shows_the_whole_tree_from_all_sides() {
     make_pulse
     for projection in orthographic perspective; do
         # shellcheck disable=SC2086
-        run_ok corcast render --exact tree.swc --turntable 5 --projection $projection $SMALL -o t%d.ppm
+        run_ok corcast render --exact tree.swc --background white --turntable 5 --projection $projection $SMALL -o t%d.ppm
         for k in 1 2 3 4 5; do
             expect_border_free t$k.ppm
         done
@@ -214,7 +214,7 @@ test_ffmpeg_makes_a_film_of_them() {
     command -v ffmpeg >/dev/null || skip "ffmpeg is not installed"
     make_pulse
     # shellcheck disable=SC2086
-    run_ok corcast render --exact tree.swc --color-by pulse.csv --frames all $SMALL -o f%04d.png
+    run_ok corcast render --exact tree.swc --color-by pulse.csv --moments all $SMALL -o f%04d.png
     run_ok ffmpeg -nostdin -loglevel error -framerate 24 -i f%04d.png -pix_fmt yuv420p pulse.mp4
     expect_file pulse.mp4
 }
@@ -233,11 +233,11 @@ test_animations_that_cannot_be_are_refused() {
     refused "'x%d%d.png' must contain the picture number" --turntable 3 -o x%d%d.png
     refused "'-' must contain the picture number" --turntable 3 -o -
     refused "exclude each other" --turntable 3 --growth 3 -o x%d.png
-    refused "does not change with time" --frames all -o x%d.png
-    refused "flow does not change with time" --color-by flow --frames all -o x%d.png
-    refused "pulse has 8 frames, not 9" --color-by pulse.csv --frames 2..9 -o x%d.png
+    refused "does not change with time" --moments all -o x%d.png
+    refused "flow does not change with time" --color-by flow --moments all -o x%d.png
+    refused "pulse has 8 frames, not 9" --color-by pulse.csv --moments 2..9 -o x%d.png
     refused "--moment 9: pulse has 8 frames" --color-by pulse.csv --moment 9 -o x.png
-    refused "'4..3' is not valid; use all or A..B" --color-by pulse.csv --frames 4..3 -o x%d.png
+    refused "'4..3' is not valid; use all or A..B" --color-by pulse.csv --moments 4..3 -o x%d.png
     refused "pulse.csv:1: no column is called 'x'" --color-by pulse.csv:x -o x.png
     sed -i '4s/^[0-9]*/4711/' pulse.csv
     refused "pulse.csv:4: the tree has no segment with the id 4711" --color-by pulse.csv -o x.png
@@ -250,19 +250,19 @@ test_animations_that_cannot_be_are_refused() {
 }
 
 test_flow_of_measured_trees_parts_as_is_asked_for() {
-    run_ok corcast info "$DATA/coronary.swc" --q-perf 60 --p-perf 90 --viscosity 3.5 --terminal-flow murray
+    run_ok corcast info "$DATA/coronary.swc" --q-perf 60 --p-perf 90 --viscosity 3.5 --flow-split murray
     expect_stdout 'terminals at'
-    run corcast info "$DATA/coronary.swc" --terminal-flow half
+    run corcast info "$DATA/coronary.swc" --flow-split half
     expect_status 2
-    expect_sentence "--terminal-flow: 'half' is not equal, murray or a FILE.csv"
-    run corcast info "$DATA/coronary.swc" --gamma 2.5
+    expect_sentence "--flow-split: 'half' is not equal, murray or a FILE.csv"
+    run corcast info "$DATA/coronary.swc" --flow-exponent 2.5
     expect_status 2
-    expect_sentence '--gamma is for --terminal-flow murray'
-    run corcast render "$DATA/coronary.swc" --terminal-flow murray --color-by flow -o x.png
+    expect_sentence '--flow-exponent is for --flow-split murray'
+    run corcast render "$DATA/coronary.swc" --flow-split murray --color-by flow -o x.png
     expect_status 2
     expect_sentence 'coronary.swc: the field flow needs the flow through the inlet'
     printf 'id,flow\n4711,3\n' >flows.csv
-    run corcast info "$DATA/coronary.swc" --terminal-flow flows.csv
+    run corcast info "$DATA/coronary.swc" --flow-split flows.csv
     expect_status 2
     expect_sentence 'flows.csv:2: the tree has no segment with the id 4711'
 }

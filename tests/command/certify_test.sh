@@ -46,7 +46,7 @@ test_a_refined_tree_is_nearer_to_its_bound() {
 
 test_the_parts_of_the_distance_add_up() {
     run_ok corcast grow --terminals 285 --seed 23 -o tree.swc
-    run_ok corcast certify tree.swc --parts --json
+    run_ok corcast certify tree.swc --explain-gap --json
     expect_json stdout '(.parts | add) as $sum | .target - .bound - $sum | fabs < 1e-9'
     expect_json stdout '.parts.search > 0 and .parts.rules > 0 and .parts.radii > 0 and .refined < .target'
     run_ok corcast certify tree.swc
@@ -59,7 +59,7 @@ test_forests_forks_polylines_and_measured_trees_are_bounded() {
     expect_proved forest.swc
     expect_proved "$DATA/trifurcation.swc" --lambda 2
     expect_proved "$DATA/coronary.swc" --lambda 2
-    expect_proved "$DATA/coronary.swc" --lambda 2 --terminal-flow murray --gamma 2.7
+    expect_proved "$DATA/coronary.swc" --lambda 2 --flow-split murray --flow-exponent 2.7
     expect_proved "$DATA/collinear.swc" --lambda 2.3
 }
 
@@ -117,9 +117,9 @@ test_says_what_has_no_bound() {
     run corcast certify thin.swc --lambda 2
     expect_status 2
     expect_sentence 'thin.swc: node 2: blood flows to it through a radius of 0'
-    run corcast certify "$DATA/coronary.swc" --lambda 2 --parts
+    run corcast certify "$DATA/coronary.swc" --lambda 2 --explain-gap
     expect_status 2
-    expect_sentence '--parts: .*coronary.swc: the tree cannot be refined'
+    expect_sentence '--explain-gap: .*coronary.swc: the tree cannot be refined'
     [ ! -e none.cert ] || fail "expected no certificate of a tree without a bound"
 }
 

@@ -51,17 +51,17 @@ END
 
 test_a_preset_says_what_nobody_else_does() {
     grow_tree 3
-    run_ok corcast render tree.swc --preset plos --column double --dpi 30 -o p.tif
+    run_ok corcast render tree.swc --preset plos --preset-width double --dpi 30 -o p.tif
     oiiotool --info p.tif | grep -q ' 225 x  *225,' || fail "expected 190.5 mm at 30 dpi: $(oiiotool --info p.tif)"
-    run_ok corcast render tree.swc --preset nature --column double --dpi 30 -o n.tif
+    run_ok corcast render tree.swc --preset nature --preset-width double --dpi 30 -o n.tif
     oiiotool --info n.tif | grep -q ' 216 x  *201,' || fail "expected the height of a page: $(oiiotool --info n.tif)"
     printf 'size = 30x20\n' >r.ini
     run_ok corcast render tree.swc --preset nature --recipe r.ini -o r.png
     oiiotool --info -v r.png | grep -q 'XResolution: 450' || fail "expected 450 dpi"
     oiiotool --info r.png | grep -q ' 30 x  *20,' || fail "expected the recipe's size"
-    run corcast render tree.swc --column double -o x.png
+    run corcast render tree.swc --preset-width double -o x.png
     expect_status 2
-    expect_sentence '--column needs --preset'
+    expect_sentence '--preset-width needs --preset'
     run corcast render tree.swc --preset sience -o x.png
     expect_status 2
     expect_sentence "--preset: 'sience' is unknown; available: elsevier, nature, plos, poster-a0 or springer"
@@ -95,7 +95,7 @@ test_what_is_given_wins_over_a_preset_in_every_order() {
     drawn '72 by 35' 'preset = nature' --size 183mmx90mm --dpi 10
     drawn '72 by 35' 'preset = nature\nsize = 20mmx20mm\ndpi = 90' --size 183mmx90mm --dpi 10
     drawn '35 by 35' 'preset = nature\ndpi = 10' --quiet
-    drawn '72 by 67' 'preset = nature\ndpi = 10' --column double
+    drawn '72 by 67' 'preset = nature\ndpi = 10' --preset-width double
     drawn '72 by 67' 'column = double\ndpi = 10' --preset nature
     drawn '72 by 35' 'size = 183mmx90mm\npreset = plos\ndpi = 10\ncompression = none'
     run_ok corcast figure given.ini -o given.tif

@@ -320,7 +320,10 @@ test_the_cause_is_said_where_it_is_certain() {
     oiiotool a.exr --mulc 0.731 -d float -o b.exr
     run corcast compare a.exr b.exr --html page.html
     expect_stdout '; B is A made darker: its linear colors are 0\.731 times those of A$'
-    grep -q 'The pictures: B is A made darker' page.html || fail "expected the cause in the page"
+    grep -q 'Likely cause: B is A made darker' page.html || fail "expected the cause in the page"
+    mkdir before && cp a.exr before/b.exr
+    run corcast compare before/b.exr b.exr --html page.html
+    grep -q '<h1>before/b.exr and b.exr ' page.html || fail "expected names that differ, got $(grep '<h1>' page.html)"
 }
 
 test_other_shades_within_the_same_outlines_are_told_from_other_shapes() {

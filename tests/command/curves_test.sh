@@ -160,9 +160,9 @@ test_a_disk_that_is_full_leaves_no_file() {
 }
 
 test_refuses_options_of_triangles_and_a_lattice_elsewhere() {
-    run corcast export "$DATA/bifurcation.swc" --tolerance 0.1 -o m.py
+    run corcast export "$DATA/bifurcation.swc" --mesh-tolerance 0.1 -o m.py
     expect_status 2
-    expect_sentence '--tolerance is for formats of triangles'
+    expect_sentence '--mesh-tolerance is for formats of triangles'
     run corcast export "$DATA/bifurcation.swc" --lattice --lod 0.5 -o m.3mf
     expect_status 2
     expect_sentence '--lod is for formats of triangles'

@@ -51,6 +51,33 @@ test_a_diagram_takes_the_colors_of_a_picture() {
     expect_same corner expected
 }
 
+test_a_legend_stands_beside_the_diagram() {
+    local form
+    grow_tree 40
+    run_ok corcast diagram tree.swc --color-by strahler -o plain.svg
+    run_ok corcast diagram tree.swc --color-by strahler --legend --legend-at bottom -o tree.svg
+    xmllint --xpath '//*[local-name()="text"]/text()' tree.svg | tr '\n' ' ' >texts
+    grep -q '^1 2 3.* Strahler order $' texts || fail "expected a legend of orders, got $(cat texts)"
+    [ "$(grep -c 'rect id' tree.svg)" = "$(grep -c 'rect id' plain.svg)" ] || fail "expected the same bars"
+    run_ok corcast diagram tree.swc --color-by wss --legend --log --legend-title stress -o tree.pdf
+    pdftotext tree.pdf text.txt
+    grep -qx stress text.txt || fail "expected the title in the PDF, got $(cat text.txt)"
+    for form in plain legend; do
+        # shellcheck disable=SC2046
+        run_ok corcast diagram tree.swc --color-by strahler $([ $form = plain ] || echo --legend --legend-at right) \
+            --size 600x400 -o $form.ppm
+        pnmcut -left 400 -top 0 -width 200 -height 400 $form.ppm | ppmhist -noheader 2>/dev/null | wc -l >$form.colors
+    done
+    cmp -s plain.ppm legend.ppm && fail "expected a legend in the pixels"
+    [ "$(cat legend.colors)" -gt 20 ] || fail "expected letters at the right, got $(cat legend.colors) colors"
+    run corcast diagram tree.swc --legend -o no.svg
+    expect_status 2
+    expect_sentence '--legend needs --color-by'
+    run corcast diagram tree.swc --legend --color-by wss -o no.exr
+    expect_status 2
+    expect_sentence 'an .exr stores measured values and cannot have a legend'
+}
+
 test_options_that_do_nothing_are_refused() {
     grow_tree 5
     run corcast diagram tree.swc --size 40x40 -o tree.svg

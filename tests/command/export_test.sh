@@ -71,13 +71,30 @@ test_the_rounded_model_is_one_closed_mesh_too() {
     expect_sentence "--model: 'joined' is not one of isosurface, rounded"
 }
 
+test_smooth_vessels_are_in_every_kind_of_file() {
+    local file
+    run_ok corcast grow --terminals 8 --domain ball:12 --seed 4 -o tree.swc
+    for file in tree.stl tree.vtp tree.py tree.nii.gz; do
+        run_ok corcast export tree.swc -o $file
+        mv $file straight
+        run_ok corcast export tree.swc --smooth -o $file
+        grep -q 'smooth: 15 segments are drawn as' stderr || fail "expected the number of pieces of $file"
+        ! cmp -s $file straight || fail "expected other vessels in $file"
+    done
+    run_ok corcast info tree.centreline.vtp
+    expect_stdout '8 terminals, 7 bifurcations, 1 root'
+    run corcast export tree.swc --smooth -o page.html
+    expect_status 2
+    expect_sentence '--smooth is for the surface; a page shows cylinders and balls'
+}
+
 test_same_bytes_for_any_number_of_threads() {
     corcast grow --terminals 23 --domain ball:41 --seed 7 -o t.swc --quiet
     run_ok corcast export t.swc -o one.ply --threads 1 --quiet
     run_ok corcast export t.swc -o three.ply --threads 3 --quiet
     expect_same one.ply three.ply
-    run_ok corcast export t.swc --model rounded --tolerance 0.1 -o one.ply --threads 1 --quiet
-    run_ok corcast export t.swc --model rounded --tolerance 0.1 -o three.ply --threads 3 --quiet
+    run_ok corcast export t.swc --model rounded --mesh-tolerance 0.1 -o one.ply --threads 1 --quiet
+    run_ok corcast export t.swc --model rounded --mesh-tolerance 0.1 -o three.ply --threads 3 --quiet
     expect_same one.ply three.ply
     expect_same one.ply.json three.ply.json
 }
@@ -180,7 +197,7 @@ test_obj_and_its_materials_are_both_written_or_neither() {
 
 # But for the box about it, which the scene has wider.
 test_the_inc_that_is_exported_is_that_of_a_scene() {
-    local options='--tolerance 0.1 --color-by flow --quiet'
+    local options='--mesh-tolerance 0.1 --color-by flow --quiet'
     run_ok corcast grow --terminals 9 --domain ball:41 --inlet 0,41,0 --inlet 0,-41,0 --seed 7 --quiet -o t.swc
     # shellcheck disable=SC2086
     run_ok corcast scene t.swc --model mesh $options -o mesh.pov
@@ -265,7 +282,7 @@ test_refuses_vessels_that_overlap_by_name() {
 test_refuses_vessels_that_leave_one_node_and_overlap_by_name() {
     printf '%s\n' '1 3 0 0 0 1 -1' '2 3 7.9 0 0 1 1' '3 3 9.7 -0.3 0 0.91 2' '4 3 8.3 0.5 0 0.63 2' \
         '5 3 10.5 -0.6 0 0.91 3' '6 3 10.3 0.9 0 0.59 4' '7 3 11.3 -0.1 0 0.47 5' '8 3 11.8 0.6 0 0.46 6' >t.swc
-    run corcast export t.swc --tolerance 0.05 -o m.stl --quiet
+    run corcast export t.swc --mesh-tolerance 0.05 -o m.stl --quiet
     expect_status 2
     expect_sentence 'the vessels of segments [0-9]+ and [0-9]+ overlap where they are unconnected'
     expect_only t.swc
@@ -285,7 +302,7 @@ test_counts_no_segment_as_present_whose_wall_has_no_triangle() {
     for model in rounded,0.92 isosurface,1.02; do
         mm=${model#*,}
         printf '1 3 0 0 0 1 -1\n2 3 5 0 0 1 1\n3 3 10 0 0 1 2\n4 3 5 %s 0 0.1 2\n' "$mm" >twig.swc
-        run_ok corcast export twig.swc --model "${model%,*}" --tolerance 0.1 -o m.stl --quiet
+        run_ok corcast export twig.swc --model "${model%,*}" --mesh-tolerance 0.1 -o m.stl --quiet
         expect_json m.stl.json '.segments == 3 and .segments_present == 2 and .segments_slivers == [4]'
         expect_json m.stl.json '.segments_missing == [] and .segments_swallowed == []'
     done
@@ -301,9 +318,9 @@ test_a_tree_too_far_from_the_origin_for_its_radii_is_refused_by_its_distance() {
     run_ok corcast grow --domain ball:20 --terminals 9 --seed 3 -o t.swc --quiet
     for model in rounded isosurface; do
         moved_by 1000
-        run_ok corcast export moved.swc --model $model --tolerance 0.1 -o m.stl --quiet
+        run_ok corcast export moved.swc --model $model --mesh-tolerance 0.1 -o m.stl --quiet
         moved_by 1e6
-        run timeout 10 "$CORCAST" export moved.swc --model $model --tolerance 0.1 -o m.stl --quiet
+        run timeout 10 "$CORCAST" export moved.swc --model $model --mesh-tolerance 0.1 -o m.stl --quiet
         expect_status 2
         expect_sentence 'reaches 10000[0-9.]+ mm from the origin, where neighbouring coordinates in single precision are 0\.062 mm apart'
         expect_sentence 'too coarse for the radius of segment [0-9]+, 0\.[0-9]+ mm; move the tree nearer'
@@ -334,7 +351,7 @@ test_says_before_what_the_work_takes() {
     local terminals told
     for terminals in 3 17 60; do
         corcast grow --terminals "$terminals" --domain ball:41 --seed 7 -o t.swc --quiet
-        run_ok corcast export t.swc -o t.stl --tolerance 0.067
+        run_ok corcast export t.swc -o t.stl --mesh-tolerance 0.067
         told=$(sed -n 's/.*about \([0-9.e+]*\) triangles, [0-9.e-]* s and [0-9.]* [kM]B of memory/\1/p' stderr)
         awk -v a="$told" -v b="$(jq .triangles t.stl.json)" 'BEGIN { exit !(a > b / 2 && a < 2 * b) }' ||
             fail "$(jq .triangles t.stl.json) triangles, but it says: $(cat stderr)"
@@ -343,7 +360,7 @@ test_says_before_what_the_work_takes() {
 
 test_refuses_before_the_work_what_needs_more_memory_than_there_is() {
     awk 'BEGIN { for (i = 1; i <= 400000; i++) print i, 3, i * 2.385, 0, 0, 0.31, (i > 1 ? i - 1 : -1) }' >long.swc
-    run timeout 20 "$CORCAST" export long.swc --tolerance 0.002 -o m.stl --quiet
+    run timeout 20 "$CORCAST" export long.swc --mesh-tolerance 0.002 -o m.stl --quiet
     expect_status 3
     expect_sentence 'the mesh: out of memory: needs [0-9.]* [GT]B, and this machine has'
     expect_only long.swc

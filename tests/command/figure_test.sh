@@ -12,7 +12,7 @@ write_recipe() {
 [figure]
 size = 80mmx60mm
 dpi = 150
-columns = 2
+panel-columns = 2
 gap = 3
 letters = upper
 text-size = 6
@@ -137,20 +137,124 @@ test_an_inset_shows_the_part_of_its_frame_larger() {
     expect_differing 0 60 expected.ppm inset.ppm
 }
 
-# The letters are in the text of the page, whatever is drawn for them.
-test_a_letter_that_the_font_lacks_is_drawn_by_another_and_told() {
+# The words are in the text of the page, with Unicode's superscripts, whatever is drawn for them.
+test_markup_and_missing_letters_in_every_output() {
     run_ok corcast grow --terminals 3 --quiet -o t.swc
-    printf '[panel a]\ntree = t.swc\nantialias = 1\ntitle = %s\n[figure]\ndpi = 60\n' 'flow 10⁻³ m⁻² 日 ₚ' >letters.ini
-    for form in pdf svg png; do
+    printf '[panel a]\ntree = t.swc\nantialias = 1\ntitle = %s\n[figure]\ndpi = 60\n' \
+        '*τ_{w}* of 10⁻³ mm^{-2} \*\_{ ∝ 日 ₚ' >letters.ini
+    for form in pdf eps svg png; do
         run_ok corcast figure letters.ini --quiet -o letters.$form
-        expect_sentence 'the font Liberation Sans lacks U\+65E5; a box'
+        expect_sentence 'no font has 日 \(U\+65E5\); a box is drawn in place of each'
         run_ok corcast figure letters.ini -o letters.$form
-        grep -q 'lacks U+207B, U+209A; ordinary letters' stderr || fail "expected a warning, got $(cat stderr)"
+        grep -q 'Liberation Sans lacks ∝ (U+221D); DejaVu Sans is used for these' stderr ||
+            fail "expected a note, got $(cat stderr)"
     done
-    pdftotext letters.pdf - | grep -q '10⁻³ m⁻² 日 ₚ' || fail "expected the letters, got $(pdftotext letters.pdf -)"
-    grep -q '10⁻³ m⁻² 日 ₚ' letters.svg || fail "expected the letters in the SVG"
+    pdftotext letters.pdf - | grep -qF 'τw of 10⁻³ mm⁻² *_{ ∝ 日 ₚ' ||
+        fail "expected the words, got $(pdftotext letters.pdf -)"
+    pdffonts letters.pdf >fonts.txt
+    for font in LiberationSans LiberationSans-Italic DejaVuSans; do
+        grep -q "+$font " fonts.txt || fail "expected $font, got $(cat fonts.txt)"
+    done
+    awk 'NR > 2 && $(NF - 4) != "yes" { exit 1 }' fonts.txt || fail "a font is not embedded"
+    sed 's/<[^>]*>//g' letters.svg | grep -qF 'τw of 10−3 mm−2 *_{ ∝ 日 p' ||
+        fail "expected the words in the SVG, got $(grep '<text' letters.svg)"
+    for font in LiberationSans LiberationSans-Italic DejaVuSans; do
+        grep -aq "^/FontName /$font def" letters.eps || fail "expected $font in the EPS"
+    done
     run_ok corcast render t.swc --size 40x40 --letter '⁻日' --text-size 3 -o r.pdf
-    grep -q 'corcast: .* lacks U+65E5; a box' stderr || fail "expected a warning of render, got $(cat stderr)"
+    grep -q 'corcast: no font has 日' stderr || fail "expected a warning of render, got $(cat stderr)"
+}
+
+# The first text is on a vessel, the second is not, the third is beside the panel, whose vessel goes on there.
+test_a_text_on_a_vessel_has_a_halo() {
+    printf '1 1 0 0 0 2 -1\n2 1 40 0 0 2 1\n' >line.swc
+    cat >halo.ini <<'END'
+[figure]
+size = 60mmx40mm
+dpi = 60
+columns = 2
+[panel a]
+tree = line.swc
+antialias = 1
+height = 20
+[text on]
+text = on
+at = 5,21
+[text off]
+text = off
+at = 5,35
+[text beside]
+text = beside
+at = 40,21
+END
+    run_ok corcast figure halo.ini --quiet -o halo.svg
+    [ "$(grep aria-hidden halo.svg | sed 's/<[^>]*>//g')" = on ] || fail "expected one halo, got $(grep '<text' halo.svg)"
+}
+
+test_texts_that_overlap_are_named() {
+    run_ok corcast grow --terminals 3 --quiet -o t.swc
+    cat >over.ini <<'END'
+[figure]
+size = 60mmx70mm
+dpi = 60
+[panel a]
+tree = t.swc
+antialias = 1
+scale-bar = 10
+scale-bar-at = bottom-left
+[text one]
+text = over the bar
+at = 3,68
+[text two]
+text = out of the page
+at = 50,30
+[text three]
+text = beside
+at = 3,40
+END
+    run_ok corcast figure over.ini --quiet -o over.pdf
+    expect_sentence "texts overlap: '10 mm' and 'over the bar'; 'over the bar' and a bar; 'out of the page' and the edge of the page\$"
+    sed -i 's/3,68/3,20/; s/50,30/5,30/' over.ini
+    run_ok corcast figure over.ini --quiet -o over.pdf
+    [ ! -s stderr ] || fail "expected no warning, got $(cat stderr)"
+}
+
+# The panel is covered by vessels but for one corner, which is its inset's.
+test_a_scale_bar_avoids_insets() {
+    printf '1 1 0 0 0 2 -1\n2 1 40 40 0 2 1\n' >up.swc
+    cat >inset.ini <<'END'
+[figure]
+size = 60mmx60mm
+dpi = 60
+letters = none
+[panel a]
+tree = up.swc
+antialias = 1
+scale-bar = 5
+[inset i]
+of = a
+at = 0.5,0.5
+place = 0.85,0.85
+magnify = 2
+width = 14
+scale-bar = 1
+scale-bar-at = top-left
+END
+    run_ok corcast figure inset.ini --quiet -o inset.svg
+    sed -n 's/^<text x="\([0-9.]*\)" y="\([0-9.]*\)".*>\([15]\) mm<.*/\3 \1 \2/p' inset.svg | sort -u >texts
+    awk '($1 == 5 && ($2 > 30 || $3 > 30)) || ($1 == 1 && ($2 < 44 || $3 > 50)) { bad = 1 } END { exit bad || NR != 2 }' texts ||
+        fail "expected 5 mm at the upper left, 1 mm in the inset, got $(cat texts)"
+}
+
+test_a_group_that_is_not_closed_is_drawn_and_told() {
+    run_ok corcast grow --terminals 3 --quiet -o t.swc
+    run_ok corcast render t.swc --quiet --size 60x60 --letter '*τ*_{w' --text-size 4 -o open.pdf
+    expect_sentence "the text '\*τ\*_\{w' has a group _\{ or \^\{ without \}: the group ends with the text"
+    pdftotext open.pdf - | grep -q '^τw$' || fail "expected τw, got $(pdftotext open.pdf -)"
+    run_ok corcast render t.swc --quiet --size 900x60 --letter "a$(printf 'τ%.0s' {1..70})_{" --text-size 4 -o long.pdf
+    expect_sentence "the text 'a(τ){59}…' has a group"
+    run_ok corcast render t.swc --quiet --size 60x60 --letter "$(printf 'a\302_{}b\377')" --text-size 4 -o bytes.pdf
+    pdftotext bytes.pdf - | grep -q '^a�b�$' || fail "expected replacements, got $(pdftotext bytes.pdf -)"
 }
 
 test_controls_of_bidirectional_text_are_blanks() {
@@ -185,7 +289,7 @@ test_mistakes_are_named_with_file_and_line() {
     refused '[panel a]\ntree = t.swc\nmodel = joined\nmodel = blob\n' "r\.ini:4: 'model' is given twice"
     refused '[panel a]\ntree = t.swc\ngrow = --terminals 9\n' 'r\.ini:3: the tree is given twice'
     refused '[panel a]\ntree = t.swc\nmodel = jined\n' 'r\.ini:3: .*jined.* is not one of'
-    refused '[panel a]\ntree = t.swc\n[figure]\ncolumns = 0\n' 'r\.ini:4: .*columns.*0'
+    refused '[panel a]\ntree = t.swc\n[figure]\npanel-columns = 0\n' 'r\.ini:4: .*columns.*0'
     refused '[panel a]\ntree = t.swc\n[panels]\n' 'r\.ini:3: \[panels\] must come before all panels'
     refused '[panels]\nmodle = joined\n' "r\.ini:2: unknown key 'modle'"
     refused '[boxes]\n' 'r\.ini:1: \[boxes\] is not \[figure\]'
@@ -262,7 +366,7 @@ test_paths_start_at_the_folder_of_the_recipe() {
     cat >f/all.ini <<'END'
 [figure]
 size = 200x200
-columns = 2
+panel-columns = 2
 letters = none
 [panel values]
 tree = sub/t.swc

@@ -77,9 +77,9 @@ test_every_field_of_volumes() {
     local extension
     /usr/bin/python3 -c 'import nibabel' 2>/dev/null || skip "python3-nibabel is not installed"
     fields tree .
-    exported v.nii.gz --voxel 0.5,0.75,0.625 --labels segment
+    exported v.nii.gz --spacing 0.5,0.75,0.625 --labels segment
     for extension in nrrd mha df3; do
-        exported "v.$extension" --voxel 0.5,0.75,0.625
+        exported "v.$extension" --spacing 0.5,0.75,0.625
     done
     reads volumes v v.nii.gz.json
 }

@@ -128,9 +128,9 @@ test_the_exponent_may_follow_the_radius() {
     expect_stdout 'gamma         3 at a radius of 0.05 mm of the parent'
     run_ok corcast grow --from tree.swc --terminals 200 -o larger.swc
     check_tree larger.swc
-    run corcast info tree.swc --stats --terminal-flow murray
+    run corcast info tree.swc --stats --flow-split murray
     expect_status 2
-    expect_sentence '--terminal-flow murray: the exponent of tree.swc varies with radius; give one number with --gamma'
+    expect_sentence '--flow-split murray: the exponent of tree.swc varies with radius; give one number with --flow-exponent'
 }
 
 # Where all exponents are one, the tree is that of this one.

@@ -90,7 +90,7 @@ print(inside * step.prod())
 END
     within 0.005 "$(awk -v v8="$(volume fork8.stl)" -v v12="$(volume fork12.stl)" \
         'BEGIN { print (144 * v12 - 64 * v8) / 80 }')" "$(cat integral)"
-    run_ok corcast export fork.swc --model rounded --tolerance 0.01 -o rounded.stl --quiet
+    run_ok corcast export fork.swc --model rounded --mesh-tolerance 0.01 -o rounded.stl --quiet
     within 0.005 "$(volume rounded.stl)" "$(cat integral)"
 }
 
@@ -294,8 +294,8 @@ test_a_model_of_many_vessels_is_one_closed_surface_unless_modules_are_asked_for(
 # The mesh is the one of the model of that name.
 test_the_model_mesh_is_one_closed_surface() {
     cp "$DATA/bifurcation.swc" .
-    run_ok corcast scene bifurcation.swc --quiet --model mesh --tolerance 0.1 -o mesh.scad
-    run_ok corcast scene bifurcation.swc --quiet --scad polyhedron --tolerance 0.1 -o form.scad
+    run_ok corcast scene bifurcation.swc --quiet --model mesh --mesh-tolerance 0.1 -o mesh.scad
+    run_ok corcast scene bifurcation.swc --quiet --scad polyhedron --mesh-tolerance 0.1 -o form.scad
     diff <(grep -v '^//' mesh.scad) <(grep -v '^//' form.scad) || fail "expected the same surface"
     run corcast scene bifurcation.swc --scad parametric --model mesh -o none.scad
     expect_status 2

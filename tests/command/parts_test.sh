@@ -213,8 +213,8 @@ test_resume_draws_anew_what_was_made_from_a_file_that_has_changed() {
     printf '[render]\nmodel = joined\n' >recipe.ini
     drawn_anew 'echo 4,9 >>values.csv' --color-by values.csv:a -o kept.png
     drawn_anew 'echo 4,9,9 >>frames.csv' --color-by frames.csv --moment 1 -o kept.png
-    drawn_anew 'echo 5,9,8 >>frames.csv' --color-by frames.csv --frames all --only 2 -o kept%d.png
-    drawn_anew 'sed -i "\$s/1\$/7/" flows.csv' --color-by flow --terminal-flow flows.csv -o kept.png
+    drawn_anew 'echo 5,9,8 >>frames.csv' --color-by frames.csv --moments all --only 2 -o kept%d.png
+    drawn_anew 'sed -i "\$s/1\$/7/" flows.csv' --color-by flow --flow-split flows.csv -o kept.png
     drawn_anew 'echo 3 >steps/segment2_flow.dat' --color-by steps:flow --moment 1 -o kept.png
     drawn_anew 'sed -i "s/^ambient = .*/ambient = 0.5/" look.ini' --look ./look.ini -o kept.png
     drawn_anew 'sed -i "s/^ambient = .*/ambient = 0.5/" own/looks/journal.ini' --look journal -o kept.png

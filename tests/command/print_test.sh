@@ -25,7 +25,7 @@ test_a_wall_is_one_closed_solid_with_a_hole_for_each_end() {
     expect_json m.stl.json '.components == 1 and .genus == 2 and .euler == -2 and .self_intersections == 0'
     expect_json m.stl.json '.print | .openings == 3 and .rings == 3 and .closed_ends == []'
     grown 23
-    run_ok corcast export t.swc --print wall=0.3r --tolerance 0.07 -o t.stl --quiet
+    run_ok corcast export t.swc --print wall=0.3r --mesh-tolerance 0.07 -o t.stl --quiet
     expect_solid t.stl 1
     expect_json t.stl.json '.genus == 23 and .print.openings == 24'
 }
@@ -39,7 +39,7 @@ volume() {
 # `export` makes of a tree of such radii.
 test_a_wall_has_the_volume_between_its_sides() {
     printf '%s\n' '1 3 0.4 0 0 1.3 -1' '2 3 9.7 3.1 -5.3 1.3 1' >t.swc
-    run_ok corcast export t.swc --print wall=0.617 --tolerance 0.005 -o t.stl --quiet
+    run_ok corcast export t.swc --print wall=0.617 --mesh-tolerance 0.005 -o t.stl --quiet
     awk -v v="$(jq .volume_mm3 t.stl.json)" 'BEGIN { pi = atan2(0, -1)
         length_mm = sqrt(9.3 ^ 2 + 3.1 ^ 2 + 5.3 ^ 2); exit !((v / (pi * (1.917 ^ 2 - 1.3 ^ 2) * length_mm) - 1) ^ 2 < 0.005 ^ 2) }' ||
         fail "a tube of $(jq .volume_mm3 t.stl.json) mm^3"
@@ -64,10 +64,10 @@ test_refuses_walls_that_meet_or_parts_them() {
 
 test_thin_vessels_are_thickened_or_pruned_and_counted() {
     grown 23
-    run_ok corcast export t.swc --print scale=2,min-diameter=1.9 -o m.stl --tolerance 0.1
+    run_ok corcast export t.swc --print scale=2,min-diameter=1.9 -o m.stl --mesh-tolerance 0.1
     expect_json m.stl.json '.print.segments_thickened == 23 and .print.thinnest_diameter_mm == 1.9 and .segments == 45'
     grep -q '23 segments are thickened to 1.9 mm' stderr || fail "it does not say so: $(cat stderr)"
-    run_ok corcast export t.swc --print scale=2,min-diameter=1.9,thin=prune -o p.stl --tolerance 0.1
+    run_ok corcast export t.swc --print scale=2,min-diameter=1.9,thin=prune -o p.stl --mesh-tolerance 0.1
     grep -q '^corcast: 23 thin segments are pruned$' stderr || fail "expected the pruned to be counted$(said)"
     expect_json p.stl.json '.print.segments_pruned == 23 and .print.segments_thickened == 0 and .segments == 22'
     expect_json p.stl.json '.print.thinnest_diameter_mm > 1.9'
@@ -104,7 +104,7 @@ END
 # The print is 21.306 x 32.330 x 4.763 mm; it may be turned about z, and not otherwise.
 test_a_print_fits_its_bed_to_a_hundredth_either_way_round() {
     local bed
-    run_ok corcast export "$DATA/bifurcation.swc" --print bed=99x99x99 --tolerance 0.02 -o m.stl --quiet
+    run_ok corcast export "$DATA/bifurcation.swc" --print bed=99x99x99 --mesh-tolerance 0.02 -o m.stl --quiet
     expect_json m.stl.json '.print.size_mm | .[0] > 21.30 and .[0] < 21.31 and .[1] > 32.32 and .[1] < 32.34 and .[2] > 4.76 and .[2] < 4.77'
     for bed in 21.31x32.34x4.77 32.34x21.31x4.77 21.31x99x4.77 99x21.31x4.77 32.34x99x4.77; do
         run_ok corcast export "$DATA/bifurcation.swc" --print bed=$bed -o m.stl --quiet
@@ -153,7 +153,7 @@ test_ports_lead_vessels_out_of_a_block() {
     run_ok corcast export "$DATA/bifurcation.swc" --print block=box,ports=inlet -o m.stl --quiet
     expect_json m.stl.json '.genus == 0 and .print.openings == 1 and .print.closed_ends == [3, 4]'
     grown 40
-    run_ok corcast export t.swc --print block=box,ports --tolerance 0.07 -o t.stl --quiet
+    run_ok corcast export t.swc --print block=box,ports --mesh-tolerance 0.07 -o t.stl --quiet
     expect_solid t.stl 1
     expect_json t.stl.json '.genus == .print.openings - 1 and .print.openings > 36'
     expect_json t.stl.json '.print.openings + (.print.closed_ends | length) == 41'
@@ -195,18 +195,18 @@ test_a_base_holds_vessels_by_pins() {
 # Two ends hang down, at different heights; a third points up, and the trunk goes down to its fork.
 test_pins_leave_the_places_that_nothing_leads_down_from_and_no_others() {
     printf '%s\n' '1 3 0 0 20 1 -1' '2 3 0 0 10 1 1' '3 3 10 0 5 .8 2' '4 3 -10 0 8 .8 2' '5 3 0 12 15 .8 2' >t.swc
-    run_ok corcast export t.swc --print base --tolerance 0.1 -o m.stl --quiet
+    run_ok corcast export t.swc --print base --mesh-tolerance 0.1 -o m.stl --quiet
     expect_json m.stl.json '.print.pins == 2 and .print.hanging == 0'
     # The same from below: the trunk alone stands.
     awk '{ print $1, $2, $3, $4, -$5, $6, $7 }' t.swc >u.swc
-    run_ok corcast export u.swc --print base --tolerance 0.1 -o m.stl --quiet
+    run_ok corcast export u.swc --print base --mesh-tolerance 0.1 -o m.stl --quiet
     expect_json m.stl.json '.print.pins == 2 and .print.hanging == 0'
 }
 
 # Flat, so that a pin leaves every node, and many are near others.
 test_a_flat_tree_stands_on_the_pins_that_have_room() {
     run_ok corcast grow --terminals 60 --seed 3 -o t.swc --quiet
-    run_ok corcast export t.swc --print base,wall=0.2r --tolerance 0.1 -o t.stl --quiet
+    run_ok corcast export t.swc --print base,wall=0.2r --mesh-tolerance 0.1 -o t.stl --quiet
     expect_solid t.stl 1
     expect_json t.stl.json '.print | .pins > 80 and .hanging > 0 and .openings + (.closed_ends | length) == 61'
 }
@@ -221,8 +221,8 @@ test_says_how_near_strangers_come() {
 
 test_a_wall_has_the_same_bytes_for_any_number_of_threads() {
     grown 9
-    run_ok corcast export t.swc --print wall=0.4 --tolerance 0.1 -o one.ply --threads 1 --quiet
-    run_ok corcast export t.swc --print wall=0.4 --tolerance 0.1 -o three.ply --threads 3 --quiet
+    run_ok corcast export t.swc --print wall=0.4 --mesh-tolerance 0.1 -o one.ply --threads 1 --quiet
+    run_ok corcast export t.swc --print wall=0.4 --mesh-tolerance 0.1 -o three.ply --threads 3 --quiet
     expect_same one.ply three.ply
     expect_same one.ply.json three.ply.json
 }

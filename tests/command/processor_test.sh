@@ -57,7 +57,7 @@ test_reports_scenes_meshes_voxels_and_pictures_are_the_same_bytes() {
     expect_file_alike scene.pov scene tree.swc --model joined --look journal -o scene.pov
     expect_file_alike mesh.stl export tree.swc --model rounded -o mesh.stl
     expect_file_alike mesh.glb export tree.swc --model isosurface -o mesh.glb
-    expect_file_alike voxels.nii export tree.swc -o voxels.nii --voxel 1
+    expect_file_alike voxels.nii export tree.swc -o voxels.nii --spacing 1
     expect_file_alike tree.svg diagram tree.swc -o tree.svg
     expect_file_alike picture.ppm render tree.swc --model joined --exact --size 97x61 -o picture.ppm
     expect_file_alike picture.ppm render tree.swc --model isosurface --hits povray --size 97x61 -o picture.ppm

@@ -116,7 +116,7 @@ test_depth_and_normal_of_one_tube_are_what_geometry_says() {
     local model how
     printf '1 1 -10 0 0 2 -1\n2 3 10 0 0 2 1\n' >tube.swc
     for model in $MODELS; do
-        [ $model = mesh ] && how='--tolerance 0.002' || how=''
+        [ $model = mesh ] && how='--mesh-tolerance 0.002' || how=''
         run_ok corcast render --exact tube.swc --model $model $how --size 11x11 --location 0,0,30 --look-at 0,0,0 \
             --height 11 --planes depth,normal -o picture.ppm
         pfm_value picture.depth.pfm 60 1 >value
@@ -278,6 +278,26 @@ brightness() {
     pnmtoplainpnm "$1" | tail -n +4 | awk '{ for (i = 1; i <= NF; i++) sum += $i } END { print sum }'
 }
 
+test_smooth_vessels_are_curves_whose_distance_is_said() {
+    local model
+    grow_tree 20
+    for model in $MODELS; do
+        run_ok corcast render tree.swc --model $model --size 83x61 -o straight.png --json straight.json
+        run_ok corcast render tree.swc --model $model --size 83x61 --smooth off -o off.png
+        run_ok corcast render tree.swc --model $model --size 83x61 --smooth --planes id -o smooth.png \
+            --json smooth.json
+        grep -qE 'smooth: 39 segments are drawn as [0-9]+ pieces, at most [0-9.]+ mm \([0-9.]+ radii\) from' stderr ||
+            fail "expected the distance from the straight segments of $model"
+        expect_same straight.png off.png
+        expect_json straight.json '.smooth == null'
+        expect_json smooth.json '.smooth.segments == 39 and .smooth.pieces > 200 and .smooth.distance_mm > 0.1'
+        cmp -s straight.png smooth.png && fail "expected another picture of $model"
+    done
+    run_ok corcast render tree.swc --size 83x61 --smooth --threads 1 -o one.png
+    run_ok corcast render tree.swc --size 83x61 --smooth --threads 5 -o five.png
+    expect_same_pixels one.png five.png
+}
+
 # What --model joined says of trees where joints cannot be; odd_trees_test.sh draws them in every way.
 test_places_of_odd_trees_that_have_no_joints_are_counted() {
     run_ok corcast render --exact "$DATA/star.swc" --model joined --size 100x100 --json report.json -o picture.png
@@ -416,7 +436,7 @@ test_tiles_agree_with_rays_to_tier_b_and_to_the_measured_floor() {
         for model in $(corcast models --of primitives | cut -f 1) blob; do
             for projection in orthographic perspective; do
                 for method in trace raster; do
-                    run_ok corcast render "$REPO/tests/golden/$tree.swc" --model $model --projection $projection \
+                    run_ok corcast render "$REPO/tests/golden/$tree.swc" --look "$REPO/tests/golden/red.ini" --model $model --projection $projection \
                         --view iso --shadows on --antialias 2 --size 400x400 --method $method \
                         --planes color,depth,normal,id -o $method.png
                 done
@@ -503,8 +523,8 @@ END
 test_pictures_are_by_default_antialiased_and_within_tier_b_of_exact_ones() {
     local model tree=$REPO/tests/golden/ball60.swc
     for model in $MODELS; do
-        run_ok corcast render "$tree" --model $model --view iso --shadows on --size 240x180 --planes id -o plain.png
-        run_ok corcast render "$tree" --model $model --view iso --shadows on --size 240x180 --planes id \
+        run_ok corcast render "$tree" --look "$REPO/tests/golden/red.ini" --model $model --view iso --shadows on --size 240x180 --planes id -o plain.png
+        run_ok corcast render "$tree" --look "$REPO/tests/golden/red.ini" --model $model --view iso --shadows on --size 240x180 --planes id \
             --exact --antialias 3 -o exact.png
         run_ok corcast compare exact.png plain.png --ids-a exact.id.ppm --ids-b plain.id.ppm --tier B
     done
@@ -665,7 +685,7 @@ test_a_pfm_that_fits_into_memory_goes_to_a_pipe() {
 test_a_picture_that_shows_nothing_is_warned_of() {
     local options away='--location 0,0,-5 --look-at 0,0,-9 --up 0,1,0 --height 10'
     printf '1 1 0 0 0 1 -1\n2 3 0 4 0 1 1\n' >tree.swc
-    for options in '' '--antialias 1' --exact '--background none' '--bits 16' '--planes id' '--look wax'; do
+    for options in '' '--antialias 1' --exact '--background none' '--bits 16' '--planes id' '--look wax' '--look atlas'; do
         run_ok corcast render tree.swc --size 20x20 $away $options -o a.png
         expect_sentence '^corcast: a\.png shows no vessel: the camera misses the tree, or the vessels are too small'
         run_ok corcast render tree.swc --size 20x20 $options -o a.png
@@ -692,9 +712,9 @@ test_a_vessel_outside_the_picture_does_not_change_it() {
     local radius
     for radius in .8 .015625; do
         rows "1 3 -40 -10 0 $radius -1" "2 3 30 20 0 $radius 1"
-        run_ok corcast render tree.swc --location 0,0,300 --look-at 0,0,0 --up 0,1,0 --height 128 --size 64x64 -o alone.ppm
+        run_ok corcast render tree.swc --look "$REPO/tests/golden/red.ini" --location 0,0,300 --look-at 0,0,0 --up 0,1,0 --height 128 --size 64x64 -o alone.ppm
         rows "1 3 -40 -10 0 $radius -1" "2 3 30 20 0 $radius 1" '3 3 500 0 0 2 -1' '4 3 501 0 0 2 3'
-        run_ok corcast render tree.swc --location 0,0,300 --look-at 0,0,0 --up 0,1,0 --height 128 --size 64x64 -o with.ppm
+        run_ok corcast render tree.swc --look "$REPO/tests/golden/red.ini" --location 0,0,300 --look-at 0,0,0 --up 0,1,0 --height 128 --size 64x64 -o with.ppm
         expect_same alone.ppm with.ppm
     done
 }

@@ -102,7 +102,7 @@ test_a_povray_that_falls_silent_is_ended() {
     seconds=$SECONDS
     run env CORCAST_POVRAY_PATIENCE=0.3 "$CORCAST" povray scene.pov -o picture.png
     expect_status 3
-    expect_sentence 'POV-Ray was ended: it has said nothing for 0.3 s about scene.pov; CORCAST_POVRAY_PATIENCE'
+    expect_sentence 'POV-Ray was ended: it printed nothing for 0.3 s about scene.pov; CORCAST_POVRAY_PATIENCE'
     [ $((SECONDS - seconds)) -lt 5 ] || fail "expected it to be ended at once"
     wait_for 5 is_gone "$(cat running)" || fail "expected what the script runs to be ended, too"
     rm running
@@ -120,11 +120,11 @@ test_a_povray_that_talks_without_progress_is_ended() {
     stand_in 'while :; do echo "Rendered 5 of 200 pixels (2%)"; sleep 0.1; done'
     run env CORCAST_POVRAY_PATIENCE=0.3 timeout 30 "$CORCAST" povray scene.pov -o picture.png
     expect_status 3
-    expect_sentence 'POV-Ray was ended: it has reported no progress for 1.5 s on scene.pov'
+    expect_sentence 'POV-Ray was ended: it printed, but reported no progress for 1.5 s on scene.pov'
     stand_in 'for i in {1..300}; do echo "warning $i"; sleep 0.1; done'
     run env CORCAST_POVRAY_PATIENCE=0.3 timeout 30 "$CORCAST" povray scene.pov -o picture.png
     expect_status 3
-    expect_sentence 'POV-Ray was ended: it has reported no progress for 1.5 s on scene.pov'
+    expect_sentence 'POV-Ray was ended: it printed, but reported no progress for 1.5 s on scene.pov'
     [ $((SECONDS - seconds)) -lt 12 ] || fail "expected it to be ended soon"
     good_picture
     stand_in 'for i in {1..22}; do echo "Rendered $i of 200 pixels (0%)"; sleep 0.1; done; cp good.png "$picture"'
@@ -180,7 +180,7 @@ test_a_broken_picture_is_povrays_failure() {
         stand_in "$body"
         run corcast povray scene.pov -o picture.png
         [ "$status" -eq 3 ] || fail "expected exit status 3, got $status from $body$(said)"
-        expect_sentence 'POV-Ray ended without a picture of scene.pov: no whole PNG of 20 x 10 pixels'
+        expect_sentence 'POV-Ray ended without a complete picture of scene.pov: expected a PNG of 20 x 10 pixels'
         run corcast verify "$DATA/bifurcation.swc" --size 20x10 -o report
         [ "$status" -eq 3 ] || fail "expected exit status 3, got $status from verify and $body$(said)"
         [ "$(find . -name '.*' ! -name .)" = "" ] || fail "expected nothing hidden to be left by $body"
@@ -209,7 +209,7 @@ test_a_picture_cannot_be_put_in_the_place_of_a_pipe() {
     mkfifo pipe.png
     run timeout 5 "$CORCAST" povray scene.pov -o pipe.png
     expect_status 3
-    expect_sentence 'pipe.png: cannot be written: it is no file'
+    expect_sentence 'pipe.png: cannot be written: it is not a regular file'
     [ -p pipe.png ] || fail "expected the pipe to stay"
 }
 
@@ -368,7 +368,7 @@ test_options_without_effect_are_refused() {
 --hits is for --model isosurface|render tree.swc -o x.png --hits povray
 --erf is for --model isosurface|scene tree.swc -o x.pov --model blob --erf exact
 --cell-beta is for --model isosurface|verify tree.swc -o x --cell-beta 4
---ids is for --model isosurface and blob; other scenes have ids anyway|scene tree.swc -o x.pov --ids on
+--ids is for --model isosurface and blob; other models need no extra data for ids|scene tree.swc -o x.pov --ids on
 --bits: .16.: a .pfm always stores floats of 32 bits|render tree.swc -o x.pfm --bits 16
 --antialias is for --plane color|povray tree.pov --size 9x9 -o x.png --plane id --antialias 3
 --hematocrit is for --viscosity-law pries|grow --terminals 3 -o x.swc --hematocrit 0.3

@@ -110,8 +110,8 @@ test_tetgen_fills_the_surface_as_it_is() {
 test_a_wall_is_a_second_surface_and_tetgen_fills_wall_and_lumen() {
     command -v tetgen >/dev/null || skip "tetgen is not installed"
     run_ok corcast grow --terminals 7 --domain ball:41 --seed 7 -o t.swc --quiet
-    run_ok corcast export t.swc --tolerance 0.06 --parts -o plain.stl --quiet
-    run_ok corcast export t.swc --tolerance 0.06 --parts --wall 0.285 -o t.stl --quiet
+    run_ok corcast export t.swc --mesh-tolerance 0.06 --parts -o plain.stl --quiet
+    run_ok corcast export t.swc --mesh-tolerance 0.06 --parts --wall 0.285 -o t.stl --quiet
     [ "$(sed -n 's/^solid //p' t.stl | head -3 | tr '\n' ' ')" = "outer lumen inlet " ] || fail "$(grep ^solid t.stl)"
     sed 1d plain.ends.csv | sed 's/^\([^,]*\),[0-9]*,/\1,/' >discs
     expect_same discs <(sed '1d; /_ring/d' t.ends.csv | sed 's/^\([^,]*\),[0-9]*,/\1,/')
@@ -139,7 +139,7 @@ test_refuses_a_wall_without_named_parts_and_beside_a_print() {
 
 test_the_flow_of_ends_parts_as_it_is_told() {
     grown
-    run_ok corcast export t.swc --terminal-flow murray --gamma 2.27 -o t.vtp --quiet
+    run_ok corcast export t.swc --flow-split murray --flow-exponent 2.27 -o t.vtp --quiet
     awk -F , 'NR > 2 { r[NR] = $10 ^ 2.27; sum += r[NR]; part[NR] = $12 }
         END { for (i in r) if ((part[i] - r[i] / sum) ^ 2 > 1e-24) exit 1; exit !(NR == 25) }' t.ends.csv ||
         fail "expected parts as the radii to the power of 2.27: $(cat t.ends.csv)"
@@ -171,12 +171,12 @@ test_an_end_that_cannot_be_cut_off_flat_is_lengthened_until_it_can() {
 # the bifurcation, are those of discs.
 test_tubes_have_triangles_as_short_as_asked() {
     printf '%s\n' '1 3 0 0 0 1.2 -1' '2 3 0.3 21 -0.7 1.2 1' '3 3 -9.1 32.2 1.1 0.87 2' '4 3 7.4 33.9 0.6 0.71 2' >t.swc
-    run_ok corcast export t.swc --parts --tolerance 0.05 -o long.stl --quiet
-    run_ok corcast export t.swc --parts --tolerance 0.05 --tube-edge 0.45 -o t.stl --quiet
+    run_ok corcast export t.swc --parts --mesh-tolerance 0.05 -o long.stl --quiet
+    run_ok corcast export t.swc --parts --mesh-tolerance 0.05 --tube-edge 0.45 -o t.stl --quiet
     expect_json t.stl.json '.watertight and .components == 1 and .genus == 0 and .self_intersections == 0'
     expect_json t.stl.json ".triangles > 4 * $(jq .triangles long.stl.json)"
     expect_json t.stl.json ".volume_mm3 / $(jq .volume_mm3 long.stl.json) - 1 | . * . < 0.01 * 0.01"
-    run_ok corcast export t.swc --parts --tolerance 0.05 --tube-edge 0.45 --threads 3 -o again.stl --quiet
+    run_ok corcast export t.swc --parts --mesh-tolerance 0.05 --tube-edge 0.45 --threads 3 -o again.stl --quiet
     expect_same t.stl again.stl
     local name longest
     for name in long t; do
@@ -222,19 +222,19 @@ test_refuses_parts_where_a_format_has_no_names_of_parts() {
 test_the_geometry_for_gmsh_names_every_surface_and_volume() {
     local n
     grown
-    run_ok corcast export t.swc --parts --tolerance 0.1 -o 'a "b.stl' --quiet
+    run_ok corcast export t.swc --parts --mesh-tolerance 0.1 -o 'a "b.stl' --quiet
     n=$(grep -c '^solid ' 'a "b.stl')
     expect_same <(sed -n 's/^solid //p' 'a "b.stl' | nl -w1 -s ' ') \
         <(sed -nE 's/^Physical Surface\("(.*)"\) = \{([0-9]+)\};$/\2 \1/p' 'a "b.geo')
     expect_same <(printf '%s\n' "Surface Loop(1) = {$(seq -s ', ' "$n")};" 'Volume(1) = {1};' 'Physical Volume("blood") = {1};') \
         <(tail -3 'a "b.geo')
     [ "$(head -1 'a "b.geo')" = 'Merge "a \"b.stl";' ] || fail "$(head -1 'a "b.geo')"
-    run_ok corcast export t.swc --parts --wall 0.3 --part-overlaps --tolerance 0.1 -o h.stl --quiet
+    run_ok corcast export t.swc --parts --wall 0.3 --part-overlaps --mesh-tolerance 0.1 -o h.stl --quiet
     expect_same <(grep -n '^solid ' h.stl | cat -n | awk '!/_ring$|outer$/ { printf "%s%s", separator, $1; separator = ", " }') \
         <(sed -nE 's/^Surface Loop\(1\) = \{(.*)\};$/\1/p' h.geo | tr -d '\n')
     expect_same <(grep -n '^solid ' h.stl | cat -n | awk '/_ring$|outer$|lumen$/ { printf "%s%s", separator, $1; separator = ", " }') \
         <(sed -nE 's/^Surface Loop\(2\) = \{(.*)\};$/\1/p' h.geo | tr -d '\n')
-    run_ok corcast export t.swc -o v.vtp --tolerance 0.1 --quiet
+    run_ok corcast export t.swc -o v.vtp --mesh-tolerance 0.1 --quiet
     [ ! -e v.geo ] || fail "expected no geometry for gmsh beside a VTP"
 }
 

@@ -176,7 +176,7 @@ test_the_coronary_artery_says_when_there_is_no_heart() {
 test_the_coronary_artery_grows_in_its_stages() {
     cp "$REPO"/docs/coronary/{trunk.swc,stages.ini} .
     awk '/^#/ { next } { $6 = 32; print }' trunk.swc >territory.swc
-    run_ok corcast export territory.swc -o lad.nii.gz --voxel 4
+    run_ok corcast export territory.swc -o lad.nii.gz --spacing 4
     sed -i -e 's/^domain = .*/domain = hull:20/' -e 's/^terminals = \([0-9]*\)000/terminals = \1/' stages.ini
     run_ok corcast grow --from trunk.swc --domain hull:20 --stages stages.ini --seed 2 -o tree.swc
     run_ok corcast info tree.swc --json

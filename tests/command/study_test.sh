@@ -59,13 +59,13 @@ test_what_is_there_and_right_is_kept() {
     : >"$(run_of 7).json"
     cp -r runs broken
     run_ok corcast study plan.ini -o runs --trees
-    grep -qx 'corcast: 8 runs: 3 grown, 5 there already' stderr || fail "expected 3 to be grown, got: $(cat stderr)"
+    grep -qx 'corcast: 8 runs: 3 grown, 5 found from before' stderr || fail "expected 3 to be grown, got: $(cat stderr)"
     [ "$(stat -c '%n %i' runs/*.swc | comm -13 before - | wc -l)" -eq 3 ] || fail "expected 3 new trees"
     run_ok corcast study plan.ini -o fresh --trees --quiet
     diff -r runs fresh >&2 || fail "expected the files of a study that was not broken"
     run corcast merge broken -o all.csv
     expect_status 2
-    expect_sentence 'broken/[0-9a-f]*.json: is not sound JSON'
+    expect_sentence 'broken/[0-9a-f]*.json: is not valid JSON'
     [ ! -e all.csv ] || fail "expected no table"
 }
 
@@ -77,10 +77,10 @@ grown_anew() {
     { printf '[grow]\nterminals = 12\n'; printf '%s\n' "$@"; } >anew.ini
     run_ok corcast study anew.ini -o anew
     run_ok corcast study anew.ini -o anew
-    grep -qx 'corcast: 1 run: 0 grown, 1 there already' stderr || fail "expected the run to be kept before: $change"
+    grep -qx 'corcast: 1 run: 0 grown, 1 found from before' stderr || fail "expected the run to be kept before: $change"
     eval "$change"
     run_ok corcast study anew.ini -o anew
-    grep -qx 'corcast: 1 run: 1 grown, 0 there already' stderr || fail "expected a new run after: $change"
+    grep -qx 'corcast: 1 run: 1 grown, 0 found from before' stderr || fail "expected a new run after: $change"
 }
 
 test_a_run_is_grown_anew_when_a_file_has_changed() {
@@ -102,7 +102,7 @@ test_a_plan_may_grow() {
     mv runs/study.csv small.csv
     sed -i 's/^seed.*/seed = 0..3, 7/' plan.ini
     run_ok corcast study plan.ini -o runs
-    grep -qx 'corcast: 10 runs: 2 grown, 8 there already' stderr || fail "expected 2 to be grown, got: $(cat stderr)"
+    grep -qx 'corcast: 10 runs: 2 grown, 8 found from before' stderr || fail "expected 2 to be grown, got: $(cat stderr)"
     diff <(tail -n +2 small.csv | cut -d, -f2-) <(tail -n +4 runs/study.csv | cut -d, -f2-) >&2 ||
         fail "expected the old rows below the new"
 }
@@ -114,7 +114,7 @@ test_a_tree_that_finds_no_room_is_a_row_that_says_so() {
     expect_json "$(run_of 2).json" '(.error | test("gave up placing terminal 2")) and .terminals == null'
     grep -q '^2,50,100,0.05,.*gave up placing terminal 2' runs/study.csv || fail "expected the reason, got: $(cat runs/study.csv)"
     run_ok corcast study plan.ini -o runs --trees
-    grep -qx 'corcast: 2 runs: 0 grown, 2 there already' stderr || fail "expected both to be kept, got: $(cat stderr)"
+    grep -qx 'corcast: 2 runs: 0 grown, 2 found from before' stderr || fail "expected both to be kept, got: $(cat stderr)"
 }
 
 # refuses PLAN SENTENCE: a study of the plan fails so, and writes nothing.
@@ -128,19 +128,19 @@ refuses() {
 }
 
 test_refuses_what_is_wrong_in_a_plan_with_file_and_line() {
-    refuses '[grow]\nseed = 1\n[grow]\n' 'plan.ini:3: \[grow\] stands twice'
-    refuses '[grow]\nseed = 1\n\nseed = 2\n' "plan.ini:4: 'seed' stands twice; give all its values in one line"
-    refuses '[grow]\nsed = 1\n' "plan.ini:2: 'sed' is not an option of grow that a plan could set; did you mean seed"
-    refuses '[grow]\nthreads = 2\n' "plan.ini:2: 'threads' is not an option of grow that a plan may set"
-    refuses '[tree]\nseed = 1\n' 'plan.ini:1: \[tree\] is no section of a plan'
-    refuses 'seed = 1\n' "plan.ini:1: 'seed' stands above \[grow\]"
+    refuses '[grow]\nseed = 1\n[grow]\n' 'plan.ini:3: the section \[grow\] is given twice'
+    refuses '[grow]\nseed = 1\n\nseed = 2\n' "plan.ini:4: 'seed' is given twice; give all its values in one line"
+    refuses '[grow]\nsed = 1\n' "plan.ini:2: 'sed' is not an option of grow; did you mean seed"
+    refuses '[grow]\nthreads = 2\n' "plan.ini:2: a plan cannot set the option 'threads' of grow"
+    refuses '[tree]\nseed = 1\n' 'plan.ini:1: \[tree\] is not a section of a plan'
+    refuses 'seed = 1\n' "plan.ini:1: 'seed' is above \[grow\]"
     refuses '[grow]\n' 'plan.ini: sets no option of grow'
-    refuses '[grow]\nseed = 20..1\n' 'plan.ini:2: seed: the range 20..1 is empty: it runs backwards'
+    refuses '[grow]\nseed = 20..1\n' 'plan.ini:2: seed: the range 20..1 is empty: its first value is above its last'
     refuses '[grow]\nseed = 1..2000000\n' 'plan.ini:2: seed: the range 1..2000000 has more than 1000000 values'
-    refuses '[grow]\nseed = 1..2000\nterminals = 1..2000\n' 'plan.ini:3: terminals: these are more than 1000000'
+    refuses '[grow]\nseed = 1..2000\nterminals = 1..2000\n' 'plan.ini:3: terminals: the plan has more than 1000000'
     refuses '[grow]\ngamma = 2.5, -3\n' "plan.ini:2: --gamma: '-3' is not a number"
     refuses '[grow]\ngamma = 2.5, , 3\n' 'plan.ini:2: gamma: a value is missing'
-    refuses '[grow]\ngamma = 2.5, 3, 2.50\n' 'plan.ini:2: gamma: 2.5 stands twice'
+    refuses '[grow]\ngamma = 2.5, 3, 2.50\n' 'plan.ini:2: gamma: the value 2.5 is given twice'
     refuses '[grow]\nseed = 1,2\n' "plan.ini:2: --seed: '1,2' is not"
     run corcast study plan.ini
     expect_status 2
@@ -169,20 +169,20 @@ test_merge_names_the_run_that_is_missing_doubled_or_another() {
     rm "$(run_of 4).json"
     run corcast merge runs -o all.csv
     expect_status 2
-    expect_sentence 'run 4 of 8 is missing; there are 7'
+    expect_sentence 'run 4 of 8 is missing; found 7 runs'
     sed -i 's/^seed.*/seed = 4..6, 8/' plan.ini
     run_ok corcast study plan.ini -o others --quiet --only 4
     run corcast merge runs others -o all.csv
     expect_status 2
-    expect_sentence 'is no run of the study that runs/[0-9a-f]*.json is of: its plan is another'
+    expect_sentence ' and runs/[0-9a-f]*.json are runs of different studies'
     echo '{"segments": 3}' >plain.json
     run corcast merge plain.json -o all.csv
     expect_status 2
-    expect_sentence 'plain.json: holds no run of a study'
+    expect_sentence 'plain.json: contains no run of a study'
     [ ! -e all.csv ] || fail "expected no table"
     run corcast study plan.ini -o others --only 9
     expect_status 2
-    expect_sentence '--only: 9 is not a run from 1 to 8'
+    expect_sentence '--only: 9 is not the number of a run, 1 to 8'
 }
 
 test_tables_of_info_have_a_row_a_file() {
@@ -194,7 +194,7 @@ test_tables_of_info_have_a_row_a_file() {
     echo '[1' >broken.json
     run corcast study --table broken.json
     expect_status 2
-    expect_sentence 'broken.json: is not sound JSON: line'
+    expect_sentence 'broken.json: is not valid JSON: line'
 }
 
 test_parallel_grows_a_study_on_after_a_worker_was_killed() {

@@ -26,7 +26,9 @@ expect_corner() {
 test_a_transparent_picture_over_a_color_is_the_picture_on_it() {
     local how
     run_ok corcast grow --terminals 60 --domain ball:20 -o tree.swc
-    for how in '--model joined --shadows on' '--model isosurface' '--model blob --exact --antialias 2' '--look journal' '--look depth'; do
+    local even="--look $REPO/tests/golden/red.ini" # a look that fades is transparent in part all over
+    for how in "--model joined --shadows on $even" "--model isosurface $even" "--model blob --exact --antialias 2 $even" \
+        '--look journal' '--look depth'; do
         run_ok corcast render tree.swc --quiet $how --size 70x60 --background none -o none.png
         rgba none.png >none
         awk '{ seen[$4 == 0 ? 0 : $4 == 255 ? 2 : 1]++ } END { exit !(seen[0] > 999 && seen[1] > 99) }' none ||
@@ -45,7 +47,7 @@ END
 
 # A pixel has ten samples: alpha is a tenth of 255, a half of a code rounded up as POV-Ray rounds it.
 test_alpha_of_ten_samples_is_rounded_as_povray_rounds_it() {
-    run_ok corcast render "$DATA/coronary.swc" --quiet --size 120x120 --background none --antialias 3 -o none.png
+    run_ok corcast render "$DATA/coronary.swc" --quiet --look "$REPO/tests/golden/red.ini" --size 120x120 --background none --antialias 3 -o none.png
     rgba none.png | awk '{ print $4 }' | sort -nu | xargs >alphas
     [ "$(cat alphas)" = '0 26 51 77 102 128 153 179 204 230 255' ] || fail "expected tenths of 255, got $(cat alphas)"
 }

@@ -242,7 +242,55 @@ test_a_switch_without_a_value_is_on() {
     run_ok corcast render --exact tree.swc --size 60x45 --shadows off -o off.ppm
     expect_same flag.ppm on.ppm
     expect_same last.ppm on.ppm
-    expect_differing 20 50 on.ppm off.ppm
+    expect_differing 100 300 on.ppm off.ppm
+}
+
+# expect_same_by_former_name COMMAND OPTION FORMER VALUE OUTPUT ARGUMENT...
+expect_same_by_former_name() {
+    local command=$1 name=$2 former=$3 value=$4 output=$5
+    shift 5
+    run_ok corcast "$command" "$@" "--$name=$value" -o "new.$output"
+    run_ok corcast "$command" "$@" "--$former=$value" -o "old.$output"
+    [ ! -s stderr ] || fail "expected no word about --$former$(said)"
+    expect_same "new.$output" "old.$output"
+    run_ok corcast "$command" "$@" -o "none.$output"
+    ! cmp -s "new.$output" "none.$output" || fail "--$name has no effect"
+    corcast "$command" --help | grep -q -- "--$name " || fail "the help lacks --$name"
+    ! corcast "$command" --help | grep -q -- "--$former " || fail "the help has --$former"
+}
+
+test_former_names_of_options_work_and_are_not_in_the_help() {
+    local option tree=$DATA/bifurcation.swc
+    expect_same_by_former_name export mesh-tolerance tolerance 0.15 stl "$tree" --quiet
+    expect_same_by_former_name export spacing voxel 2 nii "$tree" --quiet
+    expect_same_by_former_name render preset-width column double png "$tree" --preset plos --dpi 20 --quiet
+    expect_same_by_former_name render flow-split terminal-flow murray ppm "$DATA/coronary.swc" --size 60x45 --q-perf 60 --color-by flow --quiet
+    expect_same_by_former_name render flow-exponent gamma 2 ppm "$DATA/coronary.swc" --size 60x45 --q-perf 60 --color-by flow --flow-split murray --quiet
+    printf '[figure]\nsize = 60x30\n%s = 2\n[panel a]\ntree = %s\n[panel b]\ntree = %s\n' panel-columns "$tree" "$tree" >r.ini
+    run_ok corcast figure r.ini -o new.png
+    sed -i 's/panel-columns/columns/' r.ini
+    run_ok corcast figure r.ini -o old.png
+    expect_same new.png old.png
+    run_ok corcast grow --terminals 10 --quiet -o grown.swc
+    for option in explain-gap parts; do
+        run_ok corcast certify grown.swc --$option
+        expect_stdout 'rules of length'
+    done
+}
+
+test_a_mistyped_extension_of_an_output_is_corrected() {
+    local command written meant
+    while read -r command written meant; do
+        run corcast "$command" "$DATA/bifurcation.swc" -o "x.$written"
+        expect_status 2
+        expect_sentence "did you mean \\.$meant\\?\$"
+    done <<<'render pgn png
+export stll stl
+scene pvo pov
+diagram svgg svg'
+    run corcast convert "$DATA/bifurcation.swc" x.vtpp
+    expect_status 2
+    expect_sentence 'did you mean \.vtp\?$'
 }
 
 run_tests "$@"

@@ -26,6 +26,7 @@ open_view() {
     view_pid=$!
     wait_for 30 find_window || fail "expected a window: $(cat view.err)"
     xdotool mousemove --window "$window" 150 120
+    [ -n "${WITH_TEXT-}" ] || press i
 }
 
 find_window() {
@@ -48,12 +49,16 @@ last_options() {
     tail -1 view.out | sed 's/^corcast render tree.swc //; s/ -o P\.png$//'
 }
 
-# window_shows PICTURE.ppm: within 2 levels, on all but 2 % of its values.
-window_shows() {
+window_levels() {
     local X Y WIDTH HEIGHT
     eval "$(xdotool getwindowgeometry --shell "$window")"
     xwd -silent -root | xwdtopnm 2>/dev/null | pamcut -left "$X" -top "$Y" -width "$WIDTH" -height "$HEIGHT" |
-        pamdepth 255 | levels >window.levels
+        pamdepth 255 | levels
+}
+
+# window_shows PICTURE.ppm: within 2 levels, on all but 2 % of its values.
+window_shows() {
+    window_levels >window.levels
     levels <"$1" >drawn.levels
     [ "$(wc -l <window.levels)" -eq "$(wc -l <drawn.levels)" ] || return 1
     paste window.levels drawn.levels | awk '{ d = $1 - $2; if (d > 2 || d < -2) off++ } END { exit !(off <= 0.02 * NR) }'
@@ -147,6 +152,51 @@ test_keys_switch_model_color_projection_and_shadows() {
     press o 4
     last_options | grep -q -e '--model joined.*--ao 16' || fail "expected ambient occlusion: $(last_options)"
     shows_what_render_draws
+    close_view
+}
+
+# code_pixels R G B: the number of pixels of the window that have these codes, each within 8.
+code_pixels() {
+    window_levels | awk -v r="$1" -v g="$2" -v b="$3" 'function near(x) { return $1 >= x - 8 && $1 <= x + 8 }
+        NR % 3 == 1 { is = near(r) } NR % 3 == 2 { is = is && near(g) } NR % 3 == 0 { n += is && near(b) } END { print n + 0 }'
+}
+
+bar_is_shown() {
+    [ "$(code_pixels 253 231 37)" -ge 10 ]
+}
+
+more_pixels() {
+    [ "$(code_pixels 0 0 0)" -ge "$1" ]
+}
+
+fewer_pixels() {
+    [ "$(code_pixels 0 0 0)" -le "$1" ]
+}
+
+# No vessel is black, or has the color of the upper end of the range.
+test_the_window_has_a_legend_a_status_line_and_a_list_of_keys() {
+    cp "$DATA/bifurcation.swc" tree.swc
+    WITH_TEXT=yes open_view --size 400x300 --color-by wss --colormap viridis --range 0.001,100 --look data
+    wait_for 20 bar_is_shown || fail "expected the upper end of the bar"
+    more_pixels 60 || fail "expected a title and a status line, got $(code_pixels 0 0 0) black pixels"
+    xdotool getwindowname "$window" | grep -q 'tree.swc: 3 segments, rounded, wall shear stress$' ||
+        fail "expected the field in words: $(xdotool getwindowname "$window")"
+    local before
+    before=$(code_pixels 0 0 0)
+    press h
+    wait_for 20 more_pixels $((before + 300)) || fail "expected a list of keys, got $(code_pixels 0 0 0) black pixels"
+    press Escape
+    wait_for 20 fewer_pixels "$before" || fail "expected Escape to close the list"
+    press question
+    wait_for 20 more_pixels $((before + 300)) || fail "expected a list of keys after the question mark"
+    press h
+    press i
+    wait_for 20 fewer_pixels 0 || fail "expected no text, got $(code_pixels 0 0 0) black pixels"
+    press o 1
+    shows_what_render_draws
+    press i
+    xdotool windowsize --sync "$window" 360 280
+    wait_for 20 bar_is_shown || fail "expected text in a window of another size"
     close_view
 }
 

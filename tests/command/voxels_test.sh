@@ -29,7 +29,7 @@ test_a_vessel_with_round_ends_has_its_volume() {
     printf '1 3 0.13 -0.4 7.1 1.385 -1\n2 3 9.71 3.2 2.9 1.385 1\n' >one.swc
     for voxel in 0.21 1.9 0.3,0.7,0.2; do
         for depth in 8 16 float; do
-            run_ok corcast export one.swc -o one.nii.gz --voxel $voxel --depth $depth --quiet
+            run_ok corcast export one.swc -o one.nii.gz --spacing $voxel --depth $depth --quiet
             jq '[.volume_mm3, .union_mm3] | @tsv' -r one.nii.gz.json | awk -v depth=$depth '{
                 r = 1.385; pi = atan2(0, -1)
                 volume = pi * r^2 * sqrt(9.58^2 + 3.6^2 + 4.2^2) + 4 / 3 * pi * r^3
@@ -42,7 +42,7 @@ test_a_vessel_with_round_ends_has_its_volume() {
 
 test_the_voxels_of_a_tree_have_the_volume_of_the_union() {
     grown
-    run_ok corcast export t.swc -o t.nii.gz --voxel 0.4 --quiet
+    run_ok corcast export t.swc -o t.nii.gz --spacing 0.4 --quiet
     /usr/bin/python3 -c 'import numpy' 2>python.error || skip "python3-numpy is not installed"
     run_ok "$REPO/tests/oracle/tree_volume.py" t.swc 0.05
     jq --argjson volume "$(cat stdout)" '.volume_mm3 / $volume, .union_mm3 / $volume' t.nii.gz.json | tr '\n' ' ' >both
@@ -66,10 +66,10 @@ END
 
 test_other_readers_see_the_same_voxels_at_the_same_place() {
     grown
-    run_ok corcast export t.swc -o t.nii.gz --voxel 0.9 --depth 16 --quiet
-    run_ok corcast export t.swc -o t.nii --voxel 0.9 --depth 16 --quiet
-    run_ok corcast export t.swc -o t.nrrd --voxel 0.9 --depth 16 --quiet
-    run_ok corcast export t.swc -o t.mha --voxel 0.9 --depth 16 --quiet
+    run_ok corcast export t.swc -o t.nii.gz --spacing 0.9 --depth 16 --quiet
+    run_ok corcast export t.swc -o t.nii --spacing 0.9 --depth 16 --quiet
+    run_ok corcast export t.swc -o t.nrrd --spacing 0.9 --depth 16 --quiet
+    run_ok corcast export t.swc -o t.mha --spacing 0.9 --depth 16 --quiet
     gzip -t t.nii.gz || fail "gzip finds t.nii.gz broken"
     gzip -dc t.nii.gz >plain.nii
     expect_same plain.nii t.nii
@@ -99,9 +99,9 @@ END
 test_vessels_thinner_than_a_voxel_do_not_break_up() {
     grown
     awk '!/^#/ { $6 *= 0.01 } 1' t.swc >thin.swc
-    run_ok corcast export thin.swc -o v.nii.gz --voxel 0.8 --labels segment --centreline c.nii.gz
+    run_ok corcast export thin.swc -o v.nii.gz --spacing 0.8 --labels segment --centreline c.nii.gz
     grep -qE 'rounded to 8 bits, voxels hold .* more than the vessels' stderr || fail "expected a word on the rounding: $(cat stderr)"
-    run_ok corcast export thin.swc -o w.nii.gz --voxel 0.8 --depth float --quiet
+    run_ok corcast export thin.swc -o w.nii.gz --spacing 0.8 --depth float --quiet
     expect_json w.nii.gz.json '(.volume_mm3 / .union_mm3 - 1) * 1e6 | . > -1 and . < 1'
     python <<'END'
 v, c = volume("v.nii.gz")[0], volume("c.nii.gz")[0]
@@ -123,7 +123,7 @@ END
 test_every_id_has_a_voxel_also_where_vessels_share_all_of_theirs() {
     grown
     for voxel in 0.5 4; do
-        run_ok corcast export t.swc -o v.nii.gz --voxel $voxel --labels segment --quiet
+        run_ok corcast export t.swc -o v.nii.gz --spacing $voxel --labels segment --quiet
         python <<'END'
 labels, v = volume("v.labels.nii.gz")[0], volume("v.nii.gz")[0]
 ids = {int(line.split()[0]) for line in open("t.swc") if line[0] != "#" and line.split()[6] != "-1"}
@@ -133,9 +133,9 @@ assert ((labels > 0) == (v > 0)).all()
 END
     done
     expect_json v.nii.gz.json '.labels == "segment" and .labels_given_a_voxel > 0'
-    run corcast export t.swc -o x.nii.gz --voxel 30 --labels segment
+    run corcast export t.swc -o x.nii.gz --spacing 30 --labels segment
     expect_status 2
-    grep -qE -- '--voxel 30 x 30 x 30 mm: segment [0-9]+, .* mm long, has no voxel for its label' stderr || fail "$(cat stderr)"
+    grep -qE -- '--spacing 30 x 30 x 30 mm: segment [0-9]+, .* mm long, has no voxel for its label' stderr || fail "$(cat stderr)"
     [ ! -e x.nii.gz ] || fail "expected no volume"
 }
 
@@ -151,23 +151,23 @@ chain() {
 
 test_labels_move_on_up_to_64_times_to_make_room() {
     chain 64
-    run_ok corcast export chain.swc -o c.nii --voxel 1 --labels segment --quiet
+    run_ok corcast export chain.swc -o c.nii --spacing 1 --labels segment --quiet
     expect_json c.nii.json '.labels_given_a_voxel == 65'
     python <<'END'
 labels = volume("c.labels.nii")[0]
 assert set(numpy.unique(labels)) == {0, 2, 901} | set(range(101, 229, 2)), numpy.unique(labels)
 END
     chain 65
-    run corcast export chain.swc -o d.nii --voxel 1 --labels segment --quiet
+    run corcast export chain.swc -o d.nii --spacing 1 --labels segment --quiet
     expect_status 2
     grep -q 'segment 901, 0.5 mm long, has no voxel for its label' stderr || fail "$(cat stderr)"
 }
 
 test_a_voxel_is_labelled_by_what_fills_the_most_of_it() {
     printf '1 3 0 0 0 0.9 -1\n2 3 10 0 0 0.9 1\n3 3 20 0 0 0.6 2\n4 3 17 6 0 0.4 2\n' >y.swc
-    run_ok corcast export y.swc -o y.nii.gz --voxel 0.5 --labels segment --quiet
-    run_ok corcast export y.swc -o o.nii.gz --voxel 0.5 --labels strahler --quiet
-    run_ok corcast export y.swc -o f.nii.gz --voxel 0.5 --labels tree --quiet
+    run_ok corcast export y.swc -o y.nii.gz --spacing 0.5 --labels segment --quiet
+    run_ok corcast export y.swc -o o.nii.gz --spacing 0.5 --labels strahler --quiet
+    run_ok corcast export y.swc -o f.nii.gz --spacing 0.5 --labels tree --quiet
     python <<'END'
 import json
 labels, first = volume("y.labels.nii.gz")[0], json.load(open("y.nii.gz.json"))["first_voxel_mm"]
@@ -184,8 +184,8 @@ END
 test_of_equal_shares_the_lowest_id_labels_the_voxel() {
     printf '7 3 0 0 0 2 -1\n5 3 12 8 0 2 7\n4 3 12 -8 0 2 7\n' >a.swc
     printf '7 3 0 0 0 2 -1\n4 3 12 8 0 2 7\n5 3 12 -8 0 2 7\n' >b.swc
-    run_ok corcast export a.swc -o a.nii --voxel 0.5 --labels segment --quiet
-    run_ok corcast export b.swc -o b.nii --voxel 0.5 --labels segment --quiet
+    run_ok corcast export a.swc -o a.nii --spacing 0.5 --labels segment --quiet
+    run_ok corcast export b.swc -o b.nii --spacing 0.5 --labels segment --quiet
     python <<'END'
 import json
 for name, side in (("a", 1), ("b", -1)):
@@ -205,7 +205,7 @@ test_labels_do_not_depend_on_the_order_of_rows() {
     # The ids do not rise from the root on.
     printf '5 3 17 0 0 0.9 -1\n2 3 10 0 0 0.9 5\n3 3 17 6 0 0.9 2\n1 3 0 0 0 0.9 2\n' >c.swc
     printf '5 3 17 0 0 0.9 -1\n2 3 10 0 0 0.9 5\n1 3 0 0 0 0.9 2\n3 3 17 6 0 0.9 2\n' >d.swc
-    for file in a b c d; do run_ok corcast export $file.swc -o $file.nii --voxel 0.5 --labels segment --quiet; done
+    for file in a b c d; do run_ok corcast export $file.swc -o $file.nii --spacing 0.5 --labels segment --quiet; done
     expect_same a.labels.nii b.labels.nii
     expect_same c.labels.nii d.labels.nii
 }
@@ -213,7 +213,7 @@ test_labels_do_not_depend_on_the_order_of_rows() {
 test_memory_is_that_of_the_estimate() {
     local said peak
     run_ok corcast grow --terminals 8000 --domain ball:50 -o many.swc --quiet
-    /usr/bin/time -f '%M' -o peak "$CORCAST" export many.swc -o m.nii --voxel 40 --threads 1 2>said || fail "$(cat said)"
+    /usr/bin/time -f '%M' -o peak "$CORCAST" export many.swc -o m.nii --spacing 40 --threads 1 2>said || fail "$(cat said)"
     said=$(sed -nE 's/.* s, ([0-9.]+) MB of memory.*/\1/p' said)
     awk -v said="$said" -v peak="$(cat peak)" 'BEGIN { exit !(peak / 1000 < 1.3 * said && said < 1.5 * peak / 1000) }' ||
         fail "said $said MB, took $(cat peak) kB"
@@ -221,14 +221,14 @@ test_memory_is_that_of_the_estimate() {
 
 test_says_that_a_segment_with_the_ends_of_a_thicker_one_has_no_voxels() {
     printf '1 3 0 0 0 0.9 -1\n2 3 10 0 0 0.9 1\n3 3 10 0 0 0.4 1\n' >s.swc
-    run_ok corcast export s.swc -o s.nii.gz --voxel 0.5 --labels segment --quiet
+    run_ok corcast export s.swc -o s.nii.gz --spacing 0.5 --labels segment --quiet
     expect_sentence 'segments that have both ends of a thicker segment and no voxels of their own: 1'
     expect_json s.nii.gz.json '.segments == 2 and .segments_within_others == 1'
 }
 
 test_ids_beyond_16_bits_take_32() {
     printf '65535 3 0 0 0 0.9 -1\n65537 3 10 0 0 0.9 65535\n' >big.swc
-    run_ok corcast export big.swc -o b.nii.gz --voxel 0.5 --labels segment --quiet
+    run_ok corcast export big.swc -o b.nii.gz --spacing 0.5 --labels segment --quiet
     python <<'END'
 labels = volume("b.labels.nii.gz")[0]
 assert labels.dtype == numpy.uint32 and set(numpy.unique(labels)) == {0, 65537}
@@ -238,8 +238,8 @@ END
 test_same_bytes_for_any_number_of_threads() {
     local file
     grown
-    run_ok corcast export t.swc -o one.nii.gz --voxel 0.3 --labels segment --centreline c1.nii.gz --threads 1 --quiet
-    run_ok corcast export t.swc -o six.nii.gz --voxel 0.3 --labels segment --centreline c6.nii.gz --threads 6 --quiet
+    run_ok corcast export t.swc -o one.nii.gz --spacing 0.3 --labels segment --centreline c1.nii.gz --threads 1 --quiet
+    run_ok corcast export t.swc -o six.nii.gz --spacing 0.3 --labels segment --centreline c6.nii.gz --threads 6 --quiet
     expect_same c1.nii.gz c6.nii.gz
     for file in nii.gz labels.nii.gz csv; do
         expect_same one.$file six.$file
@@ -250,14 +250,14 @@ test_same_bytes_for_any_number_of_threads() {
 test_memory_does_not_grow_with_the_volume() {
     grown
     # 400 million voxels.
-    (ulimit -v 300000 && "$CORCAST" export t.swc -o t.nii.gz --voxel 0.1 --threads 2 --quiet) 2>stderr || fail "$(cat stderr)"
+    (ulimit -v 300000 && "$CORCAST" export t.swc -o t.nii.gz --spacing 0.1 --threads 2 --quiet) 2>stderr || fail "$(cat stderr)"
     expect_json t.nii.gz.json '.voxels | .[0] * .[1] * .[2] > 3.9e8'
 }
 
 test_volumes_of_parts_of_a_tree_fit_together() {
     grown
-    run_ok corcast export t.swc -o t.nii.gz --voxel 0.7 --quiet
-    run_ok corcast export t.swc -o p.nii.gz --voxel 0.7 --prune-radius 0.5 --quiet
+    run_ok corcast export t.swc -o t.nii.gz --spacing 0.7 --quiet
+    run_ok corcast export t.swc -o p.nii.gz --spacing 0.7 --prune-radius 0.5 --quiet
     python <<'END'
 import json
 a, b = (numpy.array(json.load(open(name + ".nii.gz.json"))["first_voxel_mm"]) / 0.7 for name in "tp")
@@ -279,7 +279,7 @@ test_the_tree_stands_beside_as_csv() {
 
 test_the_manifest_has_integers_for_counts_and_the_shortest_numbers() {
     grown
-    run_ok corcast export t.swc -o t.nii.gz --voxel 4,4.1,4.4 --quiet
+    run_ok corcast export t.swc -o t.nii.gz --spacing 4,4.1,4.4 --quiet
     tr -d ' \n' <t.nii.gz.json >line
     grep -qE '"voxels":\[[0-9]+,[0-9]+,[0-9]+\],"voxel_mm":\[4\.0,4\.1,4\.4\]' line || fail "$(cat line)"
 }
@@ -292,19 +292,19 @@ test_refuses_what_cannot_be() {
         expect_status 2
         expect_sentence "$sentence"
     done <<'END'
--o x.nii.gz --voxel 0@--voxel: 0 is not above 0
--o x.nii.gz --voxel 1,2@--voxel takes one number or three, not 2
--o x.nii.gz --voxel 1e-3@--voxel: [0-9]+ x [0-9]+ x [0-9]+ voxels; .nii.gz holds at most 32767 along an axis
--o x.nrrd --voxel 1e-12@--voxel: 1e-12 mm would make .* voxels along an axis
+-o x.nii.gz --spacing 0@--spacing: 0 is not above 0
+-o x.nii.gz --spacing 1,2@--spacing takes one number or three, not 2
+-o x.nii.gz --spacing 1e-3@--spacing: [0-9]+ x [0-9]+ x [0-9]+ voxels; .nii.gz holds at most 32767 along an axis
+-o x.nrrd --spacing 1e-12@--spacing: 1e-12 mm would make .* voxels along an axis
 -o x.df3 --depth float@\.df3 has no samples of float
 -o x.df3 --labels tree@\.df3 holds no labels and no centrelines
 -o x.nii.gz --centreline c.stl@--centreline: 'c.stl' does not end as a volume does
--o x.nii.gz --model isosurface@--model is for the surface; volumes are of cylinders and balls
+-o x.nii.gz --model isosurface@--model is for surfaces; a volume always contains cylinders and balls
 -o x.nii.gz --color-by flow@--color-by is for formats with colors
 -o x.stl --labels tree@--labels is for volumes
 -o x.tif@does not end in .*, or for volumes in .nii.gz, .nii, .nrrd, .mha, .df3
 END
-    run corcast export t.swc -o x.nii --voxel 0.003 --quiet
+    run corcast export t.swc -o x.nii --spacing 0.003 --quiet
     expect_status 3
     expect_sentence 'x.nii: needs .* TB, and its disk has .* left'
     expect_only t.swc

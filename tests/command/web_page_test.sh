@@ -58,7 +58,7 @@ test_a_page_of_2000_segments_is_small_complete_and_the_same_each_time() {
     grep -q 'Copyright (c) 2021 Fabio Crameri' a.html || fail "expected the licences of the color maps"
     grep -q '<title>tree.swc, an arterial tree</title>' a.html || fail "expected a title"
     sed -n 's/^<script type="application\/json" id="properties">\(.*\)<\/script>$/\1/p' a.html >properties.json
-    expect_json properties.json '(.start | .field == "flow" and .map == "magma" and .log and (.low - 0.5 | fabs) < 1e-9 and (.high - 500 | fabs) < 1e-9)
+    expect_json properties.json '(.start | .field == "flow" and .map == "magma" and .kind == "log" and (.low - 0.5 | fabs) < 1e-9 and (.high - 500 | fabs) < 1e-9)
         and .command == "corcast export tree.swc --color-by flow --colormap magma --log -o M.html"
         and ([.fields[].name] | index("wss") and index("radius") and (index("tree") | not))'
 }
@@ -94,7 +94,7 @@ test_values_of_more_moments_than_a_browser_opens_are_refused_with_their_size() {
 
 test_options_without_effect_on_a_page_are_refused() {
     run_ok corcast grow --terminals 5 --quiet -o tree.swc
-    for option in "--tolerance 0.05" "--color-by flow --classes 3" "--color-by flow --moment 1" "--colormap magma" "--voxel 0.1"; do
+    for option in "--mesh-tolerance 0.05" "--color-by flow --classes 3" "--color-by flow --moment 1" "--colormap magma" "--spacing 0.1"; do
         # shellcheck disable=SC2086
         run corcast export tree.swc $option -o page.html
         expect_status 2
@@ -116,9 +116,9 @@ test_the_scale_of_a_page_has_the_right_numbers() {
     command -v node >node.path || skip "nodejs is not installed"
     cp "$REPO/templates/viewer/colors.js" colors.mjs
     cat >scale.mjs <<'END'
-import { Scale } from "./colors.mjs";
+import { chooseKind, rangeOf, reason, Scale } from "./colors.mjs";
 const blue_to_yellow = { bytes: [0, 0, 255, 255, 255, 0], separate: false };
-const scale = (low, high, log, whole = false) => new Scale({ whole }, blue_to_yellow, log, [low, high]);
+const scale = (low, high, log, whole = false) => new Scale({ whole }, blue_to_yellow, log ? "log" : "linear", [low, high]);
 const expect = (what, found, expected) => {
   const near = found.length === expected.length &&
     found.every((value, k) => Math.abs(value - expected[k]) <= 1e-9 * Math.max(1e-9, Math.abs(expected[k])));
@@ -145,8 +145,51 @@ scale(1, 1000, true).put(10, color, 0);
 expect("color", color, [85, 85, 170]);
 scale(0, 100, false).put(20, color, 0);
 expect("color", color, [51, 51, 204]);
+const field = (values, whole = false) => ({ whole, sorted: Float64Array.from(values).sort() });
+const hundred = (value) => field(Array.from({ length: 101 }, (_, k) => value(k)));
+const kind = (shown, wanted, words) => {
+  const chosen = chooseKind(shown, blue_to_yellow);
+  const said = reason(new Scale(shown, blue_to_yellow, chosen, rangeOf(shown, chosen)));
+  if (chosen !== wanted || said !== words) throw new Error(`expected ${wanted} (${words}), got ${chosen} (${said})`);
+};
+kind(hundred((k) => 3 + k), "linear", "");
+const because = (percent) => `because 80\u00a0% of the values fill ${percent}\u00a0% of a linear scale.`;
+kind(hundred((k) => 3 * 10 ** (k / 10)), "log", "logarithmic, " + because(10));
+kind(hundred((k) => (k ? 3 + k / 1000 : -90)), "percentiles", "2nd to 98th percentile, " + because(0.09));
+kind(field([1, 1, 1, 1, 1, 1, 1, 1, 1, 900], true), "linear", "");
+kind(field([2.5, 2.5, 2.5]), "linear", "");
+kind(field([2.5, 2.5, 2.5, 2.5, 2.5, 2.5, 2.5, 2.5, 2.5, 2.5, 2.5, 9]), "linear",
+  "Skewed: 80\u00a0% of the values fill 0\u00a0% of this scale.");
+expect("percentiles", rangeOf(hundred((k) => 2.5 * k), "percentiles"), [5, 245]);
+expect("log range", rangeOf(field([0, 0, 0.25, 7]), "log"), [0.25, 7]);
 END
     run_ok node scale.mjs
+}
+
+# On the dark background #131417.
+test_each_color_of_each_map_is_visible_on_a_dark_page() {
+    command -v node >node.path || skip "nodejs is not installed"
+    cp "$REPO/templates/viewer/colors.js" colors.mjs
+    cat >lifted.mjs <<'END'
+import fs from "fs";
+import { contrast, lifted, luminance } from "./colors.mjs";
+const linear = (v) => (v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4);
+const ground = luminance([0x13, 0x14, 0x17].map((v) => linear(v / 255)));
+const lights = (bytes) => Array.from({ length: bytes.length / 3 }, (_, k) =>
+  luminance([0, 1, 2].map((c) => linear(bytes[3 * k + c] / 255))));
+const fall = (values) => values.reduce(([most, drop], v) => [Math.max(most, v), Math.max(drop, most - v)], [0, 0])[1];
+let n = 0;
+for (const file of process.argv.slice(2)) {
+  const rows = fs.readFileSync(file, "utf8").split("\n").filter((line) => /^[0-9]/.test(line));
+  const bytes = Uint8Array.from(rows.flatMap((line) => line.trim().split(/\s+/).map((v) => Math.round(255 * v))));
+  const before = lights(bytes), after = lights(lifted(bytes, ground)), lowest = Math.min(...after.map((v) => contrast(v, ground)));
+  if (!(lowest >= 3 && lowest < 3.2 || after.join() === before.join())) throw new Error(`${file}: contrast ${lowest}`);
+  if (fall(after) > fall(before) + 0.01) throw new Error(`${file}: not as light as colors before by ${fall(after)}`);
+  n++;
+}
+if (n < 12) throw new Error("expected all maps");
+END
+    run_ok node lifted.mjs "$REPO"/templates/colormaps/[A-Za-z]*.txt
 }
 
 run_tests "$@"

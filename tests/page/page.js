@@ -108,7 +108,7 @@ async function checkZoomAndValues() {
     check(cells[1].includes(w.a.join(" ") + ", segment " + w.segment), "expected A to be " + w.a + ", got " + cells[1]);
     check(cells[2].includes(w.b.join(" ")), "expected B to be " + w.b + ", got " + cells[2]);
     const d = w.b.map(function (v, i) { return v - w.a[i]; }).join(" ");
-    check(cells[3].includes("B less A" + d), "expected the difference " + d + ", got " + cells[3]);
+    check(cells[3].includes("B − A" + d), "expected the difference " + d + ", got " + cells[3]);
     const depths = [1, 2].map(function (i) { return Number(/depth ([-0-9.]+) mm/.exec(cells[i])[1]); });
     depths.forEach(function (depth, i) {
       check(Math.abs(depth - w.depth) < 0.004, "expected a depth of " + w.depth + " mm, got " + depth + " of side " + i);

@@ -13,7 +13,7 @@ const { runIn } = require("./browser.js");
 const [chromium, expectedFile] = process.argv.slice(2);
 const expected = JSON.parse(fs.readFileSync(expectedFile, "utf8"));
 const PAPER = [0xfb, 0xfa, 0xf7];
-const LIGHT_OF_NOBODY = "haze=off&shade=off&panels=off"; // as corcast's pictures are
+const LIGHT_OF_NOBODY = "haze=off&soft=off&shade=off&panels=off"; // as corcast's pictures are
 let browser;
 const evaluate = (expression) => browser.evaluate(expression);
 const check = (ok, what) => browser.check(ok, what);
@@ -90,7 +90,8 @@ async function checkPicture() {
   check(lacking === 0, `expected all vessels of corcast's picture, lacking ${lacking} pixels`);
   check(off / inside < 4, `expected corcast's colors within 4 levels, got ${off / inside}`);
   await browser.key("?");
-  check(await text("figure") === `corcast render tree.swc ${expected.options} --size ${expected.width}x${expected.height} -o figure.png`,
+  const look = await evaluate("JSON.parse(document.getElementById('properties').textContent).look.name");
+  check(await text("figure") === `corcast render tree.swc ${expected.options} --size ${expected.width}x${expected.height} --look ${look} -o figure.png`,
     "expected the command that draws the view, got " + await text("figure"));
   await evaluate("document.getElementById('help').close()");
   await checkPicking(ids);
@@ -134,7 +135,7 @@ async function checkPicking(ids) {
 // Each field has a picture of its own, a legend and colors; the address brings it back.
 async function checkFields() {
   const addresses = new Map(), hashes = new Set();
-  await browser.open(expected.page, "haze=off&shade=off");
+  await browser.open(expected.page, "haze=off&soft=off&shade=off");
   for (const field of ["", "flow", "pressure"]) {
     await evaluate("document.activeElement.blur()");
     await evaluate(`(() => { const s = document.getElementById("field"); s.value = "${field}"; s.dispatchEvent(new Event("change")); })()`);
@@ -156,8 +157,22 @@ async function checkFields() {
   }
 }
 
+// A skewed field has a scale that the page gives a reason for; another can be selected; nonsense in the address has no effect.
+async function checkScales() {
+  await browser.open(expected.page, "field=flow&scale=constructor&map=nowhere&segment=4711&soft=off&shade=off");
+  const kind = () => evaluate("document.getElementById('kind').value");
+  check(await kind() === "log", "expected flow on a logarithmic scale, got " + await kind());
+  check(/^logarithmic, because 80.% of the values fill \d+.% of a linear scale\.$/.test(await text("reason")), "expected a reason, got " + await text("reason"));
+  check(await evaluate("document.getElementById('readout').hidden"), "expected no segment 4711");
+  await evaluate("(() => { const s = document.getElementById('kind'); s.value = 'percentiles'; s.dispatchEvent(new Event('change')); })()");
+  await settled();
+  check((await evaluate("location.hash")).includes("scale=percentiles"), "expected the scale in the address");
+  await evaluate("(() => { const s = document.getElementById('field'); s.value = 'pressure'; s.dispatchEvent(new Event('change')); })()");
+  check(await kind() === "linear" && await text("reason") === "", "expected pressure on a linear scale, got " + await kind());
+}
+
 async function checkKeys() {
-  await browser.open(expected.page, "shade=off&segment=40");
+  await browser.open(expected.page, "soft=off&shade=off&segment=40");
   check(await evaluate("(document.getElementById('stage').focus(), document.activeElement.id)") === "stage", "expected the picture to take the focus");
   checkValues(40, await values());
   await browser.key("ArrowRight");
@@ -201,7 +216,7 @@ async function checkSaving() {
 }
 
 async function checkTime() {
-  await browser.open(expected.series, "field=p&shade=off");
+  await browser.open(expected.series, "field=p&soft=off&shade=off");
   const pictures = new Set(), clocks = [];
   for (const moment of [0, 1, 2]) {
     await evaluate(`(() => { const s = document.getElementById("moment"); s.value = ${moment}; s.dispatchEvent(new Event("input")); })()`);
@@ -217,9 +232,9 @@ async function checkTime() {
 // Walls that little of the sky reaches are darker, and none is lighter.
 async function checkShade() {
   const shown = [];
-  await browser.open(expected.page, "shade=off");
+  await browser.open(expected.page, "soft=off&shade=off");
   for (const shade of ["off", "on"]) {
-    await evaluate(`location.hash = "#haze=off&panels=off&shade=${shade}"`);
+    await evaluate(`location.hash = "#haze=off&panels=off&soft=off&shade=${shade}"`);
     await settled();
     for (let patience = 40; shade === "on" && patience > 0 && difference(await picture(), shown[0]) === 0; patience--) await settled();
     shown.push(await picture());
@@ -227,6 +242,55 @@ async function checkShade() {
   const darker = shown[0].data.filter((v, i) => v > shown[1].data[i] + 12).length;
   const lighter = shown[0].data.filter((v, i) => v + 2 < shown[1].data[i]).length;
   check(darker > 300 && lighter === 0, `expected shade, got ${darker} values darker and ${lighter} lighter`);
+}
+
+// The segment of the address, and the one that the user goes to, are ringed in the middle of the window.
+async function checkRing() {
+  const middle = [expected.width / 2, expected.height / 2], options = "soft=off&shade=off&panels=off";
+  for (const address of ["segment=77&", "segment=120&projection=orthographic&"]) {
+    await browser.open(expected.page, address + options);
+    await checkRingAt(middle);
+    check(at(await picture(), ...middle)[2] > 150, "expected the blue of a selected segment in the middle of " + address);
+  }
+  await browser.key("u");
+  await evaluate("new Promise((r) => setTimeout(r, 600))"); // the camera glides
+  await settled();
+  await checkRingAt(middle);
+  check((await evaluate("location.hash")).includes("segment=119"), "expected the parent to be selected");
+  await browser.key("Escape");
+  await settled();
+  check(await evaluate("document.getElementById('ring').hidden"), "expected no ring without a selected segment");
+}
+
+async function checkRingAt(middle) {
+  const ring = await evaluate("(() => { const b = document.getElementById('ring').getBoundingClientRect();" +
+    " return [b.left + b.width / 2, b.top + b.height / 2, b.width]; })()");
+  check(levels(ring.slice(0, 2), middle) <= 1 && ring[2] >= 36, `expected a ring at ${middle}, got ${ring}`);
+}
+
+const luminance = (color) => color.map((v) => v / 255).map((v) => (v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4))
+  .reduce((sum, v, c) => sum + v * [0.2126, 0.7152, 0.0722][c], 0);
+
+// On the dark background, the pixels inside vessels have a contrast that can be seen, in the colors of each map.
+async function checkContrast() {
+  const ids = readPpm(expected.ids), inside = [];
+  for (let y = 2; y < expected.height - 2; y++)
+    for (let x = 2; x < expected.width - 2; x++) if (lonelyId(ids, x, y, 1) > 0) inside.push([x, y]);
+  await browser.send("Emulation.setEmulatedMedia", { features: [{ name: "prefers-color-scheme", value: "dark" }] });
+  await browser.open(expected.page, "field=wss&shade=off&panels=off&" + expected.address);
+  // A computer with much to do shows the page late.
+  for (let patience = 40; patience > 0 && luminance(at(await picture(), 2, 2)) > 0.5; patience--) await settled();
+  const names = await evaluate("[...document.getElementById('map').options].filter((o) => !o.disabled).map((o) => o.value)");
+  for (const name of names) {
+    await evaluate(`location.hash = ${JSON.stringify("#field=wss&shade=off&panels=off&map=" + name + "&" + expected.address)}`);
+    await settled();
+    const shown = await picture(), paper = luminance(at(shown, 2, 2));
+    const contrasts = inside.map(([x, y]) => (luminance(at(shown, x, y)) + 0.05) / (paper + 0.05)).sort((a, b) => a - b);
+    const [lowest, low] = [contrasts[0], contrasts[Math.floor(contrasts.length / 20)]];
+    check(lowest > 2 && low > 2.8, `expected contrast on dark with ${name}, got ${lowest}, and below ${low} on 5 %`);
+  }
+  check(names.length >= 8, "expected maps, got " + names);
+  await browser.send("Emulation.setEmulatedMedia", { features: [] });
 }
 
 async function checkSchemes() {
@@ -241,7 +305,7 @@ async function checkSchemes() {
 
 async function checkPhone() {
   await browser.send("Emulation.setDeviceMetricsOverride", { width: 390, height: 844, deviceScaleFactor: 1, mobile: true });
-  await browser.open(expected.page, "field=flow&segment=40&shade=off");
+  await browser.open(expected.page, "field=flow&segment=40&soft=off&shade=off");
   check(await evaluate("document.documentElement.scrollWidth") <= 390, "expected the page to fit a phone");
   check((await cards()).join() === "tools,readout", "expected the values of a segment in place of the controls, got " + await cards());
   await browser.key("Escape");
@@ -279,7 +343,7 @@ runIn(chromium, ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-s
   browser = opened;
   await browser.send("Emulation.setDeviceMetricsOverride",
     { width: expected.width, height: expected.height, deviceScaleFactor: 1, mobile: false });
-  for (const part of [checkPicture, checkFields, checkKeys, checkHands, checkSaving, checkTime, checkShade, checkSchemes, checkPhone]) await part();
+  for (const part of [checkPicture, checkFields, checkScales, checkKeys, checkHands, checkSaving, checkTime, checkShade, checkRing, checkContrast, checkSchemes, checkPhone]) await part();
   browser.checkSilence();
   await checkWithoutGraphics();
 });

@@ -18,7 +18,7 @@ test_the_clock_of_povray_picks_the_frames_of_corcast() {
     run_ok corcast scene tree.swc --color-by four.csv $SIZE --ini -o tree.pov
     grep -qx ';Final_Frame=4' tree.ini || fail "expected the frames in tree.ini: $(cat tree.ini)"
     # shellcheck disable=SC2086
-    run_ok corcast render --exact tree.swc --color-by four.csv $SIZE --frames all -o ours%d.png
+    run_ok corcast render --exact tree.swc --color-by four.csv $SIZE --moments all -o ours%d.png
     run_ok povray +Itree.pov +Otheirs.png +W40 +H36 -D -A +KFI1 +KFF4 File_Gamma=srgb
     for k in 1 2 3 4; do
         run_ok corcast compare theirs$k.png ours$k.png

@@ -6,7 +6,7 @@
 # Each pixel is held against that, and the whole against the volume in the manifest.
 test_the_light_of_a_medium_is_the_way_through_vessels() {
     run_ok corcast grow --terminals 12 --domain ball:30 --seed 5 -o t.swc --quiet
-    run_ok corcast export t.swc -o t.df3 --voxel 0.9,0.8,1.1 --depth 16 --quiet
+    run_ok corcast export t.swc -o t.df3 --spacing 0.9,0.8,1.1 --depth 16 --quiet
     expect_only t.swc t.csv t.df3 t.df3.json t.pov
     read -r width height depth < <(jq -r '.voxels | @tsv' t.df3.json)
     printf '#declare %s;\n' 'Background_Color = rgb 0' 'Glow_Color = rgb <1, 0.5, 0.25>' 'Glow_Emission = 0.07' \

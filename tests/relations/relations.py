@@ -551,7 +551,7 @@ def check_export(pairs, seed):
 
 
 def voxels(rows, side, *options):
-    data = export(rows, "--voxel", repr(side), "--depth", "float", *options, name="v.nrrd")
+    data = export(rows, "--spacing", repr(side), "--depth", "float", *options, name="v.nrrd")
     head, _, body = data.partition(b"\n\n")
     fields = dict(line.split(": ", 1) for line in head.decode().splitlines() if ": " in line)
     if fields["encoding"].startswith("gz"):

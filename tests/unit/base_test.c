@@ -409,6 +409,58 @@ static void units_of_users_and_of_calculation_are_related_as_defined(void **stat
     assert_true(fabs(pa_s_from_cp(3.6) - 0.0036) < 1e-18);
 }
 
+static void numbers_and_units_are_written_as_people_write_them(void **state)
+{
+    (void)state;
+    static const struct {
+        double value;
+        int digits;
+        const char *text;
+    } numbers[] = {{1402.9, 3, "1400"},
+                   {0.50004, 4, "0.5"},
+                   {0, 3, "0"},
+                   {-2.385, 3, "\u22122.38"},
+                   {999999, 6, "999999"},
+                   {999999, 3, "10\u2076"},
+                   {0.0001234, 2, "0.00012"},
+                   {0.00001234, 2, "1.2\u00d710\u207b\u2075"},
+                   {9.9996, 4, "10"},
+                   {-6.0221e23, 3, "\u22126.02\u00d710\u00b2\u00b3"},
+                   {(double)INFINITY, 3, "inf"}};
+    static const struct {
+        const char *unit, *text;
+    } units[] = {{"um", "\u00b5m"},
+                 {"mm3/s", "mm\u00b3/s"},
+                 {"mm^-3", "mm\u207b\u00b3"},
+                 {"ul/min", "\u00b5l/min"},
+                 {"dyn/cm2", "dyn/cm\u00b2"},
+                 {"cmH2O", "cmH2O"},
+                 {"unit", "unit"},
+                 {"m-2 um-1", "m\u207b\u00b2 \u00b5m\u207b\u00b9"},
+                 {"a^b", "a^b"},
+                 {"", ""}};
+    static const struct {
+        int exponent;
+        const char *text;
+    } powers[] = {{0, "1"}, {1, "10"}, {-6, "10\u207b\u2076"}, {12, "10\u00b9\u00b2"}};
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+        assert_string_equal(READABLE(numbers[i].value, numbers[i].digits), numbers[i].text);
+    for (size_t i = 0; i < sizeof powers / sizeof *powers; i++)
+        assert_string_equal(power_readable(powers[i].exponent, (char[READABLE_SIZE]){0}),
+                            powers[i].text);
+    Text plain = TEXT_INIT;
+    text_plain(&plain, "\u22122 \u00d7 10\u207b\u00b2\u2070 \u00b5m\u00b3 \u00e9");
+    assert_string_equal(text_chars(&plain), "-2 x 10^-20 um^3 \u00e9");
+    text_release(&plain);
+    for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
+        Text text = TEXT_INIT;
+        text_puts(&text, "");
+        text_unit(&text, units[i].unit);
+        assert_string_equal(text_chars(&text), units[i].text);
+        text_release(&text);
+    }
+}
+
 static void units_have_names_and_ratios_to_those_of_their_kind(void **state)
 {
     (void)state;
@@ -720,6 +772,7 @@ int main(void)
         cmocka_unit_test(a_text_has_one_kind_of_line_ends),
         cmocka_unit_test(a_file_of_many_slices_is_read_whole),
         cmocka_unit_test(units_of_users_and_of_calculation_are_related_as_defined),
+        cmocka_unit_test(numbers_and_units_are_written_as_people_write_them),
         cmocka_unit_test(units_have_names_and_ratios_to_those_of_their_kind),
         cmocka_unit_test(sizes_are_said_in_units_that_suit_them),
         cmocka_unit_test(numbers_stand_between_blanks),

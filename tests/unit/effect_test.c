@@ -218,8 +218,8 @@ static void vessels_fade_from_the_nearest_to_the_farthest(void **state)
     (void)state;
     Tree tree;
     Look look = plain_look();
-    look.effects.fade_nearest = 0.125;
-    look.effects.fade_farthest = 0.75;
+    look.fade_nearest = 0.125;
+    look.fade_farthest = 0.75;
     assert_int_equal(tree_init(&tree, 4, NULL), STATUS_OK);
     set_segment(&tree, 0, vec3(-10, -90, -60), vec3(-10, 90, -60), 2.385);
     set_segment(&tree, 2, vec3(10, -90, 60), vec3(10, 90, 60), 2.385);
@@ -243,7 +243,7 @@ static void bands_and_threads_change_no_byte(void **state)
     Look look = plain_look();
     look.effects.outline_width = 31;
     look.effects.halo_width = 47;
-    look.effects.fade_farthest = 0.5;
+    look.fade_farthest = 0.5;
     make_crossing(&tree, 9);
     Scene scene = scene_of(&tree, &look, 83);
     Frame whole = draw(&scene, RENDER_RASTER, 3, 1);

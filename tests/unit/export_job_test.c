@@ -100,8 +100,8 @@ static void test_a_program_takes_the_bytes_of_the_files(void **state)
         {"export", "--color-by radius", "t.obj", 3},
         {"export", "--lattice", "t.3mf", 1},
         {"export", "", "t.usda", 1},
-        {"export", "--voxel 2 --labels segment", "t.nii.gz", 4},
-        {"export", "--voxel 2", "t.df3", 4},
+        {"export", "--spacing 2 --labels segment", "t.nii.gz", 4},
+        {"export", "--spacing 2", "t.df3", 4},
         {"scene", "--ini on", "t.pov", 3},
         {"scene", "--scad polyhedron", "t.scad", 2},
     };

@@ -90,25 +90,25 @@ static void a_line_is_as_wide_as_its_letters_moved_together(void **state)
     assert_true(figure_text_width(fonts, "AV", 12, true) > both);
 }
 
-/* Only superscripts and subscripts that the font lacks have a substitute; each letter is listed
- * once. */
-static void a_letter_that_the_font_lacks_is_drawn_by_another_and_listed(void **state)
+/* U+221D is in DejaVu Sans alone, U+65E5 in no font; each letter is listed once. */
+static void a_letter_that_liberation_sans_lacks_is_listed(void **state)
 {
     FigurePage page;
     Err err;
     (void)state;
     figure_init(&page, 30, 20, 300, fonts);
-    figure_add_text(
-        &page, &(FigureText){.text = "\xC2\xB5m \xE2\x88\x92\xC2\xB2\xE2\x82\x84", .size_pt = 7});
-    assert_int_equal(page.replaced.n_boxed + page.replaced.n_substituted, 0);
+    figure_add_text(&page, &(FigureText){.text = "\xC2\xB5m \xE2\x88\x92\xC2\xB2\xE2\x82\x84"
+                                                 "\xE2\x81\xBB\xE2\x81\xB0",
+                                         .size_pt = 7});
+    assert_int_equal(page.missing.n_boxed + page.missing.n_fallback, 0);
     for (int i = 0; i < 2; i++)
         figure_add_text(
-            &page, &(FigureText){.text = "m\xE2\x81\xBB\xC2\xB2 a\xE6\x97\xA5z", .size_pt = 7});
+            &page, &(FigureText){.text = "m\xE2\x88\x9D\xC2\xB2 a\xE6\x97\xA5z", .size_pt = 7});
     assert_int_equal(figure_check(&page, &err), STATUS_OK);
-    assert_int_equal(page.replaced.n_boxed, 1);
-    assert_int_equal(page.replaced.boxed[0], 0x65e5);
-    assert_int_equal(page.replaced.n_substituted, 1);
-    assert_int_equal(page.replaced.substituted[0], 0x207b);
+    assert_int_equal(page.missing.n_boxed, 1);
+    assert_int_equal(page.missing.boxed[0], 0x65e5);
+    assert_int_equal(page.missing.n_fallback, 1);
+    assert_int_equal(page.missing.fallback[0], 0x221d);
     figure_release(&page);
 }
 
@@ -135,22 +135,95 @@ static void rows_with_ink(const char *text, int *top, int *bottom)
     figure_release(&page);
 }
 
-/* A minus, raised, stands in the middle of a raised 4, and a lowered one in that of a lowered 4. */
-static void substitutes_stand_beside_the_fonts_own(void **state)
+static double width_of(const char *text)
 {
-    static const struct {
-        const char *own, *substitute;
-    } pairs[] = {{"\xE2\x81\xB4", "\xE2\x81\xBB"}, {"\xE2\x82\x84", "\xE2\x82\x8B"}};
+    return figure_text_width(fonts, text, 10, false);
+}
+
+/* Draws a text into a new picture of 236 x 189 pixels. Release it with picture_release. */
+static void draw_line(const char *text, Picture *picture)
+{
+    FigurePage page;
+    Err err;
+    figure_init(&page, 20, 16, 300, fonts);
+    figure_add_text(&page, &(FigureText){.text = text, .x = 1, .y = 10, .size_pt = 20});
+    assert_int_equal(picture_init(picture, 236, 189, 3, 8, &err), STATUS_OK);
+    memset(picture->codes8, 255, (size_t)picture->height * picture_stride(picture));
+    assert_int_equal(figure_draw(&page, 0, picture, &err), STATUS_OK);
+    figure_release(&page);
+}
+
+static void expect_same_drawing(const char *a, const char *b)
+{
+    Picture one, other;
+    draw_line(a, &one);
+    draw_line(b, &other);
+    assert_memory_equal(one.codes8, other.codes8, (size_t)one.height * picture_stride(&one));
+    picture_release(&one);
+    picture_release(&other);
+}
+
+static void superscripts_of_unicode_are_drawn_as_groups(void **state)
+{
     (void)state;
-    for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
-        int own[2], by[2];
-        rows_with_ink(pairs[i].own, &own[0], &own[1]);
-        rows_with_ink(pairs[i].substitute, &by[0], &by[1]);
-        assert_true(by[0] > own[0] && by[1] < own[1]);
-        assert_true(abs(by[0] + by[1] - own[0] - own[1]) <= 6);
+    expect_same_drawing("m\xE2\x81\xBB\xC2\xB2 4\xE2\x81\xB0", "m^{-2} 4^{0}");
+    expect_same_drawing("O^{2-}_{a-b}", "O^{2\xE2\x88\x92}_{a-b}");
+    expect_same_drawing("H\xE2\x82\x82\xE2\x82\x99", "H_{2n}");
+    assert_true(fabs(width_of("^{44}") - 0.7 * width_of("44")) < 1e-9);
+    assert_true(fabs(width_of("x_{i_{j}}") - width_of("x") - 0.7 * width_of("i") -
+                     0.5 * width_of("j")) < 1e-9);
+}
+
+/* A superscript's digits begin above half of a capital's height and end above the capital. */
+static void groups_are_raised_and_lowered(void **state)
+{
+    int top[3], bottom[3];
+    (void)state;
+    rows_with_ink("4", &top[0], &bottom[0]);
+    rows_with_ink("^{4}", &top[1], &bottom[1]);
+    rows_with_ink("_{4}", &top[2], &bottom[2]);
+    assert_true(top[1] < top[0] && bottom[1] < bottom[0] - (bottom[0] - top[0]) / 3);
+    assert_true(bottom[2] > bottom[0] && top[2] > top[0] + (bottom[0] - top[0]) / 3);
+}
+
+static void a_star_is_a_star_where_none_matches_it(void **state)
+{
+    static const char *const literal[][2] = {{"P*", "P\\*"},
+                                             {"2 * 3 * x", "2 \\* 3 \\* x"},
+                                             {"a *b", "a \\*b"},
+                                             {"_ ^ } {x} \\", "\\_ \\^ \\} \\{x\\} \\\\"},
+                                             {"_{}^{}a", "a"}};
+    (void)state;
+    for (size_t i = 0; i < sizeof literal / sizeof *literal; i++)
+        expect_same_drawing(literal[i][0], literal[i][1]);
+    assert_true(width_of("*ab*") == width_of("*a**b*"));
+    assert_true(width_of("*r*") < width_of("r**"));
+}
+
+/* Unclosed, nested without end, with bytes that are not UTF-8: each is drawn, and takes linear
+ * time. */
+static void broken_markup_is_drawn_and_noted(void **state)
+{
+    enum { LONG = 200000 };
+    static const char *const parts[] = {"_{", "*a ", "^{x", "}", "\xC2", "\\", "a*"};
+    FigurePage page;
+    Err err;
+    (void)state;
+    figure_init(&page, 30, 20, 300, fonts);
+    figure_add_text(&page, &(FigureText){.text = "\xCF\x84_{w} \\_{", .size_pt = 7});
+    assert_null(page.unclosed);
+    figure_add_text(&page, &(FigureText){.text = "\xCF\x84_{w", .size_pt = 7});
+    assert_string_equal(page.unclosed, "\xCF\x84_{w");
+    for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) {
+        char *text = calloc(LONG, 4);
+        assert_non_null(text);
+        for (size_t i = 0; i < LONG; i++)
+            memcpy(text + i * strlen(parts[k]), parts[k], strlen(parts[k]));
+        figure_add_text(&page, &(FigureText){.text = text, .size_pt = 7});
+        free(text);
     }
-    assert_true(figure_text_width(fonts, "\xE2\x81\xBB", 10, false) <
-                0.7 * figure_text_width(fonts, "\xE2\x88\x92", 10, false));
+    assert_int_equal(figure_check(&page, &err), STATUS_OK);
+    figure_release(&page);
 }
 
 static void text_stands_where_its_alignment_says(void **state)
@@ -189,7 +262,9 @@ static void fill(FigurePage *page, const Picture *picture)
     figure_add_shape(page, arrow, 3, (FigureColor){{200, 20, 10}});
     figure_add_line(page, frame, 4, true, 0.18, (FigureColor){{0, 0, 0}});
     figure_add_line(page, tie, 2, false, 0.31, (FigureColor){{0, 0, 0}});
-    figure_add_text(page, &(FigureText){.text = "Ag\xC2\xB5", .x = 4, .y = 5.5, .size_pt = 8});
+    figure_add_text(
+        page,
+        &(FigureText){.text = "\xC3\x85g\xC2\xB5_{*f*^{2}}", .x = 4, .y = 5.15, .size_pt = 14});
 }
 
 static void init_picture(Picture *picture, int width, int height, int bits)
@@ -209,6 +284,8 @@ static void rows_are_the_same_whatever_parts_the_page_is_drawn_in(void **state)
     init_picture(&photo, 40, 30, 8);
     init_picture(&whole, 61, 47, 8);
     fill(&page, &photo);
+    for (size_t i = page.n - 2; i < page.n; i++)
+        figure_set_halo(&page, i, 0.3, (FigureColor){{250, 240, 30}});
     Picture parts = whole;
     size_t bytes = picture_stride(&whole) * 47;
     uint8_t *copy = malloc(bytes);
@@ -347,7 +424,7 @@ typedef struct Tick {
     double along_mm;
 } Tick;
 
-/* Each tick is a line followed by its label. */
+/* Each tick is a line followed by its label. Minor ticks have none; the title is q. */
 static void expect_labels(const ColorScale *scale, bool across, const Tick *expected, size_t n)
 {
     const FigureLegend legend = {
@@ -357,7 +434,8 @@ static void expect_labels(const ColorScale *scale, bool across, const Tick *expe
     figure_init(&page, 80, 60, 300, fonts);
     figure_add_legend(&page, &legend);
     for (size_t i = 0; i + 1 < page.n; i++) {
-        if (page.items[i].kind != FIGURE_LINE)
+        if (page.items[i].kind != FIGURE_LINE || page.items[i + 1].kind != FIGURE_TEXT ||
+            page.items[i + 1].text[0] == 'q')
             continue;
         const FigurePoint *at = page.items[i].at;
         assert_true(found < n);
@@ -388,8 +466,11 @@ static void a_bar_has_the_right_numbers_at_the_right_places(void **state)
 {
     (void)state;
     const ColorScale linear = plain_scale(-1, 2, false, 1), log = plain_scale(1, 1000, true, 1),
-                     near = plain_scale(2, 50, true, 1);
-    const double decade = 30 / log10(25);
+                     near = plain_scale(2, 50, true, 1), ends = plain_scale(1.667, 500, true, 1),
+                     wide = plain_scale(1e-8, 1e8, true, 1),
+                     large = plain_scale(-2e9, 6e9, false, 1),
+                     small = plain_scale(0, 4e-6, false, 1);
+    const double decade = 30 / log10(25), decades = 30 / log10(500 / 1.667);
     EXPECT_LABELS(linear,
                   {"\xE2\x88\x92"
                    "1",
@@ -398,6 +479,53 @@ static void a_bar_has_the_right_numbers_at_the_right_places(void **state)
     EXPECT_LABELS(log, {"1", 0}, {"10", 10}, {"100", 20}, {"1000", 30});
     EXPECT_LABELS(near, {"2", 0}, {"5", decade * log10(2.5)}, {"10", decade * log10(5)},
                   {"20", decade}, {"50", 30});
+    EXPECT_LABELS(ends, {"1.67", 0}, {"10", decades * log10(10 / 1.667)},
+                  {"100", decades * log10(100 / 1.667)}, {"500", 30});
+    EXPECT_LABELS(wide, {"10⁻⁸", 0}, {"10⁻⁴", 7.5}, {"1", 15}, {"10⁴", 22.5}, {"10⁸", 30});
+    EXPECT_LABELS(large, {"\u22122", 0}, {"0", 7.5}, {"2", 15}, {"4", 22.5}, {"6", 30});
+    EXPECT_LABELS(small, {"0", 0}, {"1", 7.5}, {"2", 15}, {"3", 22.5}, {"4", 30});
+}
+
+/* A legend of a scale has so many ticks, and one text `text`. */
+static void expect_items(const ColorScale *scale, size_t lines, const char *text)
+{
+    FigureLegend legend = {.scale = scale, .title = "q", .length_mm = 30, .size_pt = 7};
+    FigurePage page;
+    size_t found = 0;
+    figure_init(&page, 80, 60, 300, fonts);
+    figure_add_legend(&page, &legend);
+    for (size_t i = 0; i < page.n; i++)
+        found += page.items[i].kind == FIGURE_TEXT && strcmp(page.items[i].text, text) == 0;
+    assert_int_equal(found, 1);
+    figure_release(&page);
+    assert_int_equal(count_items(&legend, FIGURE_LINE), lines);
+}
+
+static void bars_have_minor_ticks_and_a_common_power_of_ten(void **state)
+{
+    (void)state;
+    const ColorScale log = plain_scale(1.667, 500, true, 1),
+                     large = plain_scale(-2e9, 6e9, false, 1),
+                     small = plain_scale(0, 4e-6, false, 1);
+    expect_items(&log, 4 + 8 + 9 + 4, "500"); /* minor ticks: 2 .. 9, 10 .. 90, 100 .. 400 */
+    expect_items(&large, 5, "\u00d710\u2079");
+    expect_items(&small, 5, "\u00d710\u207b\u2076");
+}
+
+static void listed_values_have_a_swatch_each(void **state)
+{
+    static const double values[] = {1, 2, 5};
+    const ColorScale scale = plain_scale(1, 5, false, 1);
+    const FigureLegend legend = {.scale = &scale,
+                                 .swatches = values,
+                                 .n_swatches = 3,
+                                 .title = "q",
+                                 .length_mm = 30,
+                                 .size_pt = 7};
+    (void)state;
+    assert_int_equal(count_items(&legend, FIGURE_RAMP), 0);
+    assert_int_equal(count_items(&legend, FIGURE_SHAPE), 3);
+    assert_int_equal(count_items(&legend, FIGURE_TEXT), 4);
 }
 
 static void classes_have_the_right_numbers_between_them(void **state)
@@ -552,8 +680,11 @@ int main(void)
         cmocka_unit_test(ticks_of_a_logarithm_are_powers_of_ten_where_there_are_two),
         cmocka_unit_test(ticks_of_whole_numbers_are_whole),
         cmocka_unit_test(a_line_is_as_wide_as_its_letters_moved_together),
-        cmocka_unit_test(a_letter_that_the_font_lacks_is_drawn_by_another_and_listed),
-        cmocka_unit_test(substitutes_stand_beside_the_fonts_own),
+        cmocka_unit_test(a_letter_that_liberation_sans_lacks_is_listed),
+        cmocka_unit_test(superscripts_of_unicode_are_drawn_as_groups),
+        cmocka_unit_test(groups_are_raised_and_lowered),
+        cmocka_unit_test(a_star_is_a_star_where_none_matches_it),
+        cmocka_unit_test(broken_markup_is_drawn_and_noted),
         cmocka_unit_test(text_stands_where_its_alignment_says),
         cmocka_unit_test(rows_are_the_same_whatever_parts_the_page_is_drawn_in),
         cmocka_unit_test(sixteen_bits_are_the_eight_to_rounding),
@@ -561,6 +692,8 @@ int main(void)
         cmocka_unit_test(a_legend_has_points_and_a_swatch_only_for_values_that_need_them),
         cmocka_unit_test(a_legend_of_classes_has_a_box_each),
         cmocka_unit_test(a_bar_has_the_right_numbers_at_the_right_places),
+        cmocka_unit_test(bars_have_minor_ticks_and_a_common_power_of_ten),
+        cmocka_unit_test(listed_values_have_a_swatch_each),
         cmocka_unit_test(classes_have_the_right_numbers_between_them),
         cmocka_unit_test(what_is_outside_has_its_color_at_its_end),
         cmocka_unit_test(swatches_have_the_colors_of_their_numbers),

@@ -137,7 +137,7 @@ static void a_measured_tree_is_one_sphere_near_its_surface(void **state)
     VesselTree vessels;
     Made made;
     assert_int_equal(tree_read(&tree, "tests/data/coronary.swc", &err), STATUS_OK);
-    assert_int_equal(stage_vessels(&tree, &vessels, NULL, &err), STATUS_OK);
+    assert_int_equal(stage_vessels(&tree, NULL, &vessels, NULL, &err), STATUS_OK);
     make(&vessels, &made);
     expect_sound(&made, 1);
     expect_near(&vessels, &made, 0.003, 0.05);

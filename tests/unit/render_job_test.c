@@ -204,7 +204,7 @@ static void test_what_needs_files_is_refused(void **state)
             "--resume needs files; it cannot be used with pictures in memory");
     refused("--turntable 3 --commands",
             "--commands needs files; it cannot be used with pictures in memory");
-    refused("--ink 0.2", "--ink writes .svg or .pdf only");
+    refused("--ink 0.2", "--ink writes .svg, .pdf or .eps only");
     refused("--bits 12", "--bits: '12': this format stores 8 or 16 bits");
 }
 

@@ -80,7 +80,7 @@ static void an_anatomy_tells_trees_orders_and_the_way_along_the_thickest_branch(
     static const Vec3 path[] = {{-10, 19, 0.5}, {-10, 9, 1.5}, {-15, 3, 2.5}};
     Tree tree = make_forest();
     Anatomy anatomy = {0};
-    assert_int_equal(stage_anatomy(&tree, vec3(10, 1, -0.5), &anatomy, NULL), STATUS_OK);
+    assert_int_equal(stage_anatomy(&tree, NULL, vec3(10, 1, -0.5), &anatomy, NULL), STATUS_OK);
     assert_int_equal(anatomy.n_trees, 2);
     assert_near(anatomy.root[0], path[0], 0);
     assert_near(anatomy.root[1], vec3(60, -1, 0.5), 0);
@@ -107,7 +107,7 @@ static void the_path_of_a_tree_without_segments_is_its_root(void **state)
     tree.parent[0] = -1;
     tree.radius_mm[0] = 2.385;
     tree.position[0] = vec3(3, 4, 5);
-    assert_int_equal(stage_anatomy(&tree, vec3(0, 0, 0), &anatomy, NULL), STATUS_OK);
+    assert_int_equal(stage_anatomy(&tree, NULL, vec3(0, 0, 0), &anatomy, NULL), STATUS_OK);
     assert_int_equal(anatomy.n_path, 1);
     assert_near(anatomy.path[0], vec3(3, 4, 5), 0);
     anatomy_release(&anatomy);
@@ -496,9 +496,8 @@ static void a_domain_is_framed_about_the_tree(void **state)
     tree_release(&tree);
 }
 
-/* A ball of radius 2.385 whose middle is 5 mm over the sheet, in light from 45 degrees on the left:
- * the shadow's middle is 5 mm to the right, and its half length 2.385 times the root of 2. */
-static void shadows_on_the_ground_are_framed(void **state)
+/* Light from 45 degrees on the left casts a shadow on the sheet to the right of the tree. */
+static void shadows_on_the_ground_do_not_move_the_camera(void **state)
 {
     (void)state;
     Tree tree = make_tree();
@@ -507,21 +506,17 @@ static void shadows_on_the_ground_are_framed(void **state)
     Look grounded = look;
     grounded.lights[0].direction = vec3(-1, 0, 1);
     grounded.ground = (LookGround){.present = true, .normal = {0, 0, 1}};
-    const double half = vec3_length(vec3(4.77, 8.77, 4.77)) / 2; /* of the box's diagonal */
-    grounded.ground.gap = (5 - 2.385) / half;
+    grounded.ground.gap = 1;
     StageParams params = stage_defaults();
     params.view.tree = &tree;
     params.view.margin = 0;
     for (int shadows = 0; shadows < 2; shadows++) {
         Scene scene;
         params.view.shadows = shadows;
-        params.view.width = 2000; /* so that the height alone counts without shadows */
+        params.view.width = 2000; /* so that the height alone counts */
         assert_int_equal(stage_all(&tree, &grounded, &params, &scene, NULL, NULL), STATUS_OK);
-        double left = -2.385, right = shadows ? 5 + 2.385 * sqrt(2) : 2.385;
-        double reach = 2.385 * (shadows ? sqrt(2) : 1), height = 2 * (2 + reach);
-        double width = fmax(2 * height, right - left);
-        assert_true(fabs(scene.view.camera.location.x - (left + right) / 2) < 1e-9);
-        assert_true(fabs(scene.view.camera.right.x - width) < 1e-9);
+        assert_true(fabs(scene.view.camera.location.x) < 1e-9);
+        assert_true(fabs(scene.view.camera.up.y - 2 * (2 + 2.385)) < 1e-9);
         scene_release(&scene);
     }
     tree_release(&tree);
@@ -947,14 +942,16 @@ static void a_look_is_read(void **state)
     Look read;
     Err err = {{0}};
     Status status = read_look_text(
-        "; a comment\n[vessel]\ncolor = 0.25 0.5 0.125\n[background]\ncolor = 0.75 1 "
-        "0.25\n[finish]\nphong = 0.375\nambient = 0.125\ndiffuse = 0.6875\n"
+        "; a comment\n[vessel]\ncolor = 0.25 0.5 0.125\ntips = 0.5 0 1\n[background]\n"
+        "color = 0.75 1 0.25\ncorners = 0 0.25 0.5\n[finish]\nphong = 0.375\nambient = "
+        "0.125\ndiffuse = 0.6875\n"
         "brilliance = 1.5\nphong_size = 25\nspecular = 0.625\nroughness = 0.03125\n"
         "[light a]\ndirection = 0 1 2\n[light b]\ncolor = 0 0 1\n"
         "[light c]\nposition = 1 2 -3\nsize = 0.75\nsamples = 8\n"
         "[ground]\naxis = 0 2 0\ngap = 0.5\ncolor = 1 0.5 0\ndiffuse = 0.25\n"
         "[look]\nabout = red, and shining\n[outline]\nwidth = 2.5\ncrease = 60\n"
-        "color = 0 0.5 0\n[halo]\nradii = 3\n[fade]\nnearest = 0.25\n[xray]\nper_mm = 0.75\n",
+        "color = 0 0.5 0\n[halo]\nradii = 3\n[fade]\nnearest = 0.25\n[xray]\nper_mm = 0.75\n"
+        "[options]\nao = 24\nshadows = on\nprojection = perspective\n",
         &read, &err);
     assert_string_equal(err.text, "");
     assert_int_equal(status, STATUS_OK);
@@ -972,17 +969,26 @@ static void a_look_is_read(void **state)
     assert_true(read.ground.present && read.ground.in_world && read.ground.normal.y == 2);
     assert_true(read.ground.gap == 0.5 && read.ground.color.g == 0.5f);
     assert_true(read.ground.ambient == 0.1 && read.ground.diffuse == 0.25);
+    assert_true(read.tips.present && read.tips.color.b == 1);
+    assert_true(read.corners.present && read.corners.color.g == 0.25f);
     assert_string_equal(read.about, "red, and shining");
+    assert_int_equal(read.options.occlusion, 24);
+    assert_true(read.options.shadows);
+    assert_int_equal(read.options.projection, PROJECTION_PERSPECTIVE);
     const Effects effects = look_effects(&read, 2, 1);
     assert_true(effects.outline.width_px == 5 && effects.outline.color.g == 0.5f);
     assert_true(fabs(effects.outline.crease_cosine - 0.5) < 1e-15);
     assert_true(effects.halo.width_px == 4 && effects.halo.radii == 3);
-    assert_true(effects.fade.nearest == 0.25 && effects.fade.farthest == 0.8);
+    assert_true(read.fade_nearest == 0.25 && read.fade_farthest == 0.8);
     assert_true(effects.xray.per_mm == 0.75);
     assert_int_equal(read_look_text("[vessel]\ncolor = 1 1 1\n", &read, &err), STATUS_OK);
     const Effects none = look_effects(&read, 2, 1);
     assert_false(effects_present(&none));
     assert_false(read.ground.present);
+    assert_false(read.tips.present || read.corners.present);
+    assert_false(read.options.shadows);
+    assert_int_equal(read.options.occlusion, 0);
+    assert_int_equal(read.options.projection, PROJECTION_ORTHOGRAPHIC);
 }
 
 static void a_bad_look_names_its_line(void **state)
@@ -994,6 +1000,13 @@ static void a_bad_look_names_its_line(void **state)
         {"[vessel]\ncolor = 1 2 3\n", ":2:", "from 0 to 1"},
         {"[vessel]\ncolor = 1 1\n", ":2:", "three numbers"},
         {"[finish]\nambient = 0.1\nshine = 3\n", ":3:", "ambient"},
+        {"[finish]\ndifuse = 1\n", ":2:", "; did you mean diffuse?"},
+        {"[backgrund]\n", ":1:", "; did you mean background?"},
+        {"[options]\nao = 2.5\n", ":2:", "an integer from 0 to 4096"},
+        {"[options]\nao = 5000\n", ":2:", "an integer from 0 to 4096"},
+        {"[options]\nshadows = yes\n", ":2:", "on or off"},
+        {"[options]\nprojection = fisheye\n", ":2:", "orthographic or perspective"},
+        {"[options]\nshadow = on\n", ":2:", "; did you mean shadows?"},
         {"[finish]\ndiffuse = much\n", ":2:", "from 0 to 1"},
         {"[table]\ncolor = 1 1 1\n", ":1:", "sections"},
         {"[light a]\ndirection = 0 0 0\n", ":2:", "not all zero"},
@@ -1099,7 +1112,7 @@ int main(void)
         cmocka_unit_test(a_point_that_is_looked_at_moves_the_framed_camera),
         cmocka_unit_test(all_models_of_a_tree_have_one_view),
         cmocka_unit_test(a_domain_is_framed_about_the_tree),
-        cmocka_unit_test(shadows_on_the_ground_are_framed),
+        cmocka_unit_test(shadows_on_the_ground_do_not_move_the_camera),
         cmocka_unit_test(a_given_camera_is_taken_as_it_is),
         cmocka_unit_test(cameras_that_cannot_be_are_refused),
         cmocka_unit_test(a_tree_with_nothing_to_draw_is_refused),

@@ -24,23 +24,24 @@ static void print_summary(const char *path, const TreeSummary *summary)
            summary->segments, summary->terminals, summary->terminals == 1 ? "" : "s",
            summary->bifurcations, summary->bifurcations == 1 ? "" : "s", summary->roots,
            summary->roots == 1 ? "" : "s");
-    printf("  total length  %.6g mm\n", summary->total_length_mm);
-    printf("  volume        %.6g mm^3\n", summary->volume_mm3);
+    printf("  total length  %s mm\n", READABLE(summary->total_length_mm, 6));
+    printf("  volume        %s mm\xC2\xB3\n", READABLE(summary->volume_mm3, 6));
     if (summary->has.target)
-        printf("  target        %.6g (sum of length * radius^%g)\n", summary->target,
+        printf("  target        %s (sum of length * radius^%g)\n", READABLE(summary->target, 6),
                summary->lambda);
     print_gamma(&summary->gamma);
-    printf("  radius        %.6g mm at the root", summary->root_radius_mm);
+    printf("  radius        %s mm at the root", READABLE(summary->root_radius_mm, 6));
     if (summary->segments > 0)
-        printf(", %.6g mm at the thinnest", summary->min_radius_mm);
+        printf(", %s mm at the thinnest", READABLE(summary->min_radius_mm, 6));
     printf("\n");
     printf("  orders        bifurcation level %d, Strahler %d\n", summary->max_level,
            summary->max_strahler);
     if (summary->has.terminal_pressure)
         printf("  terminals at  %.9g to %.9g mmHg\n", summary->terminal_pressure_min_mmhg,
                summary->terminal_pressure_max_mmhg);
-    printf("  extent        x %.4g to %.4g, y %.4g to %.4g, z %.4g to %.4g mm\n", box->low.x,
-           box->high.x, box->low.y, box->high.y, box->low.z, box->high.z);
+    printf("  extent        x %s to %s, y %s to %s, z %s to %s mm\n", READABLE(box->low.x, 4),
+           READABLE(box->high.x, 4), READABLE(box->low.y, 4), READABLE(box->high.y, 4),
+           READABLE(box->low.z, 4), READABLE(box->high.z, 4));
 }
 
 /* The series that column `k` is of, as one: "pressure (mmHg): 24 frames, 0 to 0.8", its columns
@@ -164,7 +165,7 @@ static void print_degrees(const TreeReading *reading)
 static void print_unit(const TreeReading *reading)
 {
     if (reading->median_radius_mm > 0)
-        printf("  median radius %.6g mm\n", reading->median_radius_mm);
+        printf("  median radius %s mm\n", READABLE(reading->median_radius_mm, 6));
     printf("  unit          %s, %s", length_unit_names[reading->unit],
            reading->unit_is_stated ? "given" : "assumed");
     if (reading->median_radius_mm > 0)
@@ -243,7 +244,7 @@ static void print_statistics(const TreeStatistics *statistics)
     printf("\nBifurcations (mean +- standard deviation)\n");
     print_spread("symmetry, r_thinnest / r_thickest", &statistics->symmetry);
     print_spread("area ratio, sum of r^2 / r_parent^2", &statistics->area_ratio);
-    printf("  total volume %.6g mm^3 in %zu vessels\n", statistics->volume_mm3,
+    printf("  total volume %s mm\xC2\xB3 in %zu vessels\n", READABLE(statistics->volume_mm3, 6),
            statistics->vessels);
 }
 

@@ -63,8 +63,9 @@ static Status describe_look(const char *name, Text *lines, Err *err)
     Status status = look_read(&look, path, err);
     free(path);
     TRY(status);
-    const Effects effects = look_effects(&look, 1, 1);
-    effects_list(&effects, &names);
+    Effects effects = look_effects(&look, 1, 1);
+    effects.grade.present = false;
+    effects_list(&effects, look.options.occlusion > 0, &names);
     text_printf(lines, "%s\t", name);
     if (effects.xray.per_mm > 0)
         text_puts(lines, "not in POV-Ray");
@@ -204,5 +205,5 @@ const Command command_formats = {.name = "formats",
                                  .operands = ""};
 const Command command_morphometries = {
     .name = "morphometries",
-    .summary = "list the published data sets, the values of --morphometry",
+    .summary = "list the published data sets, the values of `info --morphometry`",
     .operands = ""};

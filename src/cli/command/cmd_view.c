@@ -1,6 +1,8 @@
 /* A window on a tree. What it shows is the picture that `render` draws with the options that key o
  * prints: the same scene, the same renderer, the same camera, moved by moving its options. */
+#include "cli/command/view_overlay.h"
 #include "cli/commands.h"
+
 #include "cli/screen.h"
 #include "cli/window/display.h"
 #include "cli/window/window.h"
@@ -23,9 +25,33 @@ typedef struct Viewer {
     Scene scene;
     Display *display;
     Window *window;
+    ViewOverlay overlay;
+    bool plain; /* the overlay is hidden */
+    bool help;  /* the overlay shows the keys */
+    bool stale; /* the overlay must be drawn again */
     bool moved; /* the picture is of another camera */
     bool quit;
 } Viewer;
+
+/* The keys, as --help and the window list them; blanks align the list in --help. */
+#define VIEW_KEYS(X)                                                                               \
+    X("drag     ", "rotate; with the right button or shift: move")                                 \
+    X("wheel    ", "zoom")                                                                         \
+    X("1 ... 6  ", "vessel geometry: cylinders, joined, rounded, isosurface, blob, mesh")          \
+    X("c        ", "color by the next field, or by none")                                          \
+    X("p s a    ", "switch projection, shadows, ambient occlusion")                                \
+    X("r        ", "reset the camera")                                                             \
+    X("i        ", "show or hide the legend and the status line")                                  \
+    X("h, ?     ", "show or hide this list")                                                       \
+    X("o        ", "print the options that reproduce this view")                                   \
+    X("w        ", "write these options as a recipe, for --recipe")                                \
+    X("q, Escape", "quit")
+
+static const OverlayKey view_keys[] = {
+#define X(keys, meaning) {keys, meaning},
+    VIEW_KEYS(X)
+#undef X
+};
 
 /* ---- scene and camera ------------------------------------------------------------------------ */
 
@@ -80,16 +106,48 @@ static Status make_appearance(Viewer *viewer, Err *err)
     return STATUS_OK;
 }
 
-static void set_title(const Viewer *viewer)
+/* Appends what the window shows: "tree.swc: 79 segments, rounded, wall shear stress". */
+static void put_subject(const Viewer *viewer, Text *text)
+{
+    const char *field = viewer->options->coloring.field;
+    text_printf(text, "%s: %zu segments, %s%s%s", file_name(viewer->tree),
+                viewer->scene.geometry.drawn, models[viewer->scene.geometry.model].name,
+                field ? ", " : "", field ? derive_field_title(field) : "");
+}
+
+static void set_title(Viewer *viewer)
 {
     Text title = TEXT_INIT;
-    const char *field = viewer->options->coloring.field;
-    text_printf(&title, "%s: %zu segments, %s%s%s", file_name(viewer->tree),
-                viewer->scene.geometry.drawn, models[viewer->scene.geometry.model].name,
-                field ? ", " : "", field ? field : "");
+    put_subject(viewer, &title);
     if (text_chars(&title))
         window_title(viewer->window, text_chars(&title));
     text_release(&title);
+    viewer->stale = true;
+}
+
+/* Draws the overlay again for the scene as it is now. */
+static Status update_overlay(Viewer *viewer, Err *err)
+{
+    const int *pixels = viewer->options->size.pixels;
+    const size_t n_keys = sizeof view_keys / sizeof *view_keys;
+    Text line = TEXT_INIT;
+    viewer->stale = false;
+    window_overlay(viewer->window, NULL, 0, 0);
+    if (viewer->plain)
+        return STATUS_OK;
+    put_subject(viewer, &line);
+    text_puts(&line, "   h: keys");
+    Status status = text_check(&line, err);
+    const OverlayContent content = {.scene = &viewer->scene,
+                                    .status = text_chars(&line),
+                                    .keys = view_keys,
+                                    .n_keys = viewer->help ? n_keys : 0};
+    if (status == STATUS_OK)
+        status = overlay_draw(&viewer->overlay, &content, pixels[0], pixels[1], err);
+    if (status == STATUS_OK)
+        window_overlay(viewer->window, viewer->overlay.rgba, pixels[0], pixels[1]);
+    text_release(&line);
+    return status;
 }
 
 /* Where the tree cannot be had in this model, the one that there is stays. */
@@ -265,6 +323,8 @@ static Status on_key(Viewer *viewer, int key, Err *err)
     PictureOptions *options = viewer->options;
     Status status;
     Err sentence = {{0}};
+    if (viewer->help && key == WINDOW_KEY_ESCAPE)
+        key = 'h';
     if (key >= '1' && key < '1' + SCENE_MODELS)
         return use_model(viewer, (SceneModel)(key - '1'), err);
     switch (key) {
@@ -272,16 +332,29 @@ static Status on_key(Viewer *viewer, int key, Err *err)
     case WINDOW_KEY_ESCAPE:
         viewer->quit = true;
         return STATUS_OK;
+    case 'h':
+    case '?':
+    case '/': /* the key of '?' on many keyboards */
+        viewer->help = !viewer->help;
+        viewer->plain = false;
+        viewer->stale = true;
+        return STATUS_OK;
+    case 'i':
+        viewer->plain = !viewer->plain;
+        viewer->stale = true;
+        return STATUS_OK;
     case 'c':
         return use_next_field(viewer, err);
     case 'p':
         return use_projection(viewer, err);
     case 's':
         options->stage.shadows = !options->stage.shadows;
+        options->has_shadows = true;
         TRY(aim(viewer, err));
         return make_display(viewer, err);
     case 'a':
         options->occlusion = options->occlusion ? 0 : 16;
+        options->has_occlusion = true;
         return make_display(viewer, err);
     case 'r':
         return go_home(viewer, err);
@@ -334,6 +407,7 @@ static Status on_event(Viewer *viewer, const WindowEvent *event, Err *err)
     case WINDOW_SIZE:
         viewer->options->size.pixels[0] = event->x < 1 ? 1 : (int)event->x;
         viewer->options->size.pixels[1] = event->y < 1 ? 1 : (int)event->y;
+        viewer->stale = true;
         return aim(viewer, err);
     case WINDOW_EXPOSED:
         viewer->moved = true;
@@ -348,6 +422,8 @@ static Status draw(Viewer *viewer, bool *done, Err *err)
 {
     DisplayPicture picture;
     const Scene *scene = &viewer->scene;
+    if (viewer->stale)
+        TRY(update_overlay(viewer, err));
     if (viewer->moved) {
         TRY(display_quick(viewer->display, &scene->view, &scene->appearance, &picture, err));
         *done = false;
@@ -363,12 +439,12 @@ static Status run(Viewer *viewer, Err *err)
 {
     bool done = false;
     while (!viewer->quit) {
-        WindowEvent event = window_event(viewer->window, done && !viewer->moved);
+        WindowEvent event = window_event(viewer->window, done && !viewer->moved && !viewer->stale);
         while (event.kind != WINDOW_NOTHING && !viewer->quit) {
             TRY(on_event(viewer, &event, err));
             event = window_event(viewer->window, false);
         }
-        if (!viewer->quit && (viewer->moved || !done))
+        if (!viewer->quit && (viewer->moved || viewer->stale || !done))
             TRY(draw(viewer, &done, err));
     }
     return STATUS_OK;
@@ -399,6 +475,7 @@ static Status turn_around(Viewer *viewer, int pictures, Err *err)
 static Status open_viewer(Viewer *viewer, Err *err)
 {
     PictureOptions *options = viewer->options;
+    TRY(overlay_open(&viewer->overlay, err));
     TRY(picture_read_source(options, viewer->parsed, &viewer->source, err));
     Status status = make_appearance(viewer, err);
     if (status == STATUS_OK)
@@ -454,33 +531,27 @@ Status run_view(void *options, Parsed *parsed, Err *err)
                      .common = &parsed->common,
                      .tree = parsed->operands[0],
                      .recipe = own_options->recipe};
-    mem_keep();
+    system_keep_memory();
     Status status = open_viewer(&viewer, err);
     if (status == STATUS_OK)
         status =
             own_options->turn ? turn_around(&viewer, own_options->turn, err) : run(&viewer, err);
     window_close(viewer.window);
+    overlay_release(&viewer.overlay);
     display_free(viewer.display);
     scene_release(&viewer.scene);
     picture_source_release(&viewer.source);
     return status;
 }
 
+#define X(keys, meaning) "  " keys "  " meaning "\n"
 const Command command_view = {
     .name = "view",
     .summary = "show a tree in an interactive window",
     .operands = "T.swc",
     .examples = "  corcast view tree.swc\n"
                 "  corcast view tree.swc --model isosurface --color-by pressure --shadows on\n"
-                "\nin the window:\n"
-                "  drag to rotate; drag with the right button or shift to move; scroll to zoom\n"
-                "  1 ... 6    vessel geometry: cylinders, joined, rounded, isosurface, blob, mesh\n"
-                "  c          color by the next field, or by none\n"
-                "  p s a      switch projection, shadows, ambient occlusion\n"
-                "  r          reset the camera\n"
-                "  o          print the options that reproduce this view\n"
-                "  w          write these options as a recipe, for --recipe\n"
-                "  q, Escape  quit\n",
+                "\nin the window:\n" VIEW_KEYS(X),
     .min_operands = 1,
     .max_operands = 1,
     .reads_tree = true,

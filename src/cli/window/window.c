@@ -39,6 +39,8 @@ struct Window {
     Sdl sdl;
     bool started;
     SDL_Window *window;
+    const uint8_t *overlay; /* borrowed; NULL: none */
+    int overlay_width, overlay_height;
 };
 
 static Status load(Window *window, Err *err)
@@ -220,6 +222,37 @@ static void stretch(const uint8_t *rgb, int width, int height, SDL_Surface *to)
     }
 }
 
+static void blend_row(const uint8_t *rgba, const SDL_PixelFormat *format, int n, uint32_t *pixels)
+{
+    const uint8_t shifts[] = {format->Rshift, format->Gshift, format->Bshift};
+    for (int x = 0; x < n; x++, rgba += 4) {
+        if (rgba[3] == 0)
+            continue;
+        uint32_t made = format->Amask;
+        for (int c = 0; c < 3; c++) {
+            const uint32_t below = pixels[x] >> shifts[c] & 255;
+            made |= (rgba[c] + below * (255u - rgba[3]) / 255) << shifts[c];
+        }
+        pixels[x] = made;
+    }
+}
+
+static void blend(const Window *window, SDL_Surface *to)
+{
+    if (!window->overlay || window->overlay_width != to->w || window->overlay_height != to->h)
+        return;
+    for (int y = 0; y < to->h; y++)
+        blend_row(window->overlay + (size_t)y * (size_t)to->w * 4, to->format, to->w,
+                  (uint32_t *)((uint8_t *)to->pixels + (size_t)y * (size_t)to->pitch));
+}
+
+void window_overlay(Window *window, const uint8_t *rgba, int width, int height)
+{
+    window->overlay = rgba;
+    window->overlay_width = width;
+    window->overlay_height = height;
+}
+
 Status window_show(Window *window, const uint8_t *rgb, int width, int height, Err *err)
 {
     const Sdl *sdl = &window->sdl;
@@ -227,6 +260,7 @@ Status window_show(Window *window, const uint8_t *rgb, int width, int height, Er
     if (!surface || surface->format->BytesPerPixel != 4 || sdl->LockSurface(surface) != 0)
         return failed(window, "the window cannot be drawn to", err);
     stretch(rgb, width, height, surface);
+    blend(window, surface);
     sdl->UnlockSurface(surface);
     return sdl->UpdateWindowSurface(window->window) == 0
                ? STATUS_OK

@@ -39,6 +39,12 @@ WindowEvent window_event(Window *window, bool wait);
 /* Shows an image, stretched over the window. `rgb` has 8 bits per channel, rows from the top down;
  * it is copied. Errors: STATUS_TOOL. */
 MUST_CHECK Status window_show(Window *window, const uint8_t *rgb, int width, int height, Err *err);
+/* Sets the image that the following calls of window_show draw over their image, at its own size. It
+ * is not drawn while the window has another size.
+ *
+ * rgba   borrowed until the next call; per pixel: sRGB codes multiplied by the opacity, and the
+ *        opacity in 0..255, rows from the top down. NULL: no image. */
+void window_overlay(Window *window, const uint8_t *rgba, int width, int height);
 void window_title(Window *window, const char *title);
 
 /* Appends the version of SDL that a window would use, or why there is none. */

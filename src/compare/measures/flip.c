@@ -1,15 +1,17 @@
-/* FLIP 1.6 with separable filters, all in float as its authors' program, so that their means come
- * out.
+/* FLIP 1.6 with separable filters. All arithmetic is in float, as in the authors' program, so that
+ * the means are equal to theirs.
  *
- * Both images go to the opponent space YCxCz. There they are blurred as the eye blurs at 67 pixels
- * per degree (Cz by a sum of two Gaussians, each filtered on its own), and their color distance is
- * taken in a Hunt-adjusted CIELab. Edges and points, first and second derivatives of a Gaussian
- * applied to Y, amplify it: error = color^(1 - feature).
+ * Both images are converted to the opponent space YCxCz and blurred as the eye blurs at 67 pixels
+ * per degree; the filter of Cz is a sum of two Gaussians, which are applied separately. The color
+ * difference is a distance in Hunt-adjusted CIELab. The feature difference comes from edges and
+ * points, the first and second derivatives of a Gaussian applied to Y. It amplifies the color
+ * difference: error = color^(1 - feature).
  *
- * Pictures are measured tile by tile, small enough that all filtered planes of a tile stay in a
- * processor's cache: first all rows of the tile and its halo are filtered horizontally, then each
- * of its rows vertically. A tile that is equal in both images, halo included, is zero without
- * computing: the metric is local. Sums are kept by tile and added in order. */
+ * Images are processed in tiles so small that all filtered planes of a tile stay in a processor's
+ * cache. All rows of the tile and its halo are filtered horizontally, then each row vertically. The
+ * metric is local, so a tile that is equal in both images, halo included, has error 0 and is
+ * skipped. Sums are stored per tile and added in the order of the tiles, for any number of
+ * threads. */
 #include "compare/measures/flip.h"
 
 #include "compare/measures/wide.h"
@@ -19,13 +21,14 @@
 
 enum { HALO = FLIP_RADIUS, TILE = 48, SPAN = TILE + 2 * HALO };
 
-/* The four planes the filters are applied to. */
+/* The planes that the filters are applied to. */
 typedef enum Input { IN_Y, IN_CX, IN_CZ, IN_LIGHTNESS, INPUTS } Input;
 
 static const Input filter_input[FLIP_FILTERS] = {IN_Y,         IN_CX,        IN_CZ,       IN_CZ,
                                                  IN_LIGHTNESS, IN_LIGHTNESS, IN_LIGHTNESS};
 
-/* What is filtered vertically by what: the colors, then the derivatives along x and along y. */
+/* The results of the vertical pass: the blurred colors, then the derivatives along x and y. For
+ * each result `outputs` names the plane of the horizontal pass and the vertical filter. */
 typedef enum Output { Y, CX, CZ1, CZ2, EDGE_X, POINT_X, EDGE_Y, POINT_Y, OUTPUTS } Output;
 static const struct {
     FlipFilter plane, filter;
@@ -36,12 +39,12 @@ typedef struct Rows {
     float of[OUTPUTS][TILE];
 } Rows;
 
-/* What is compared of a row of one image. */
+/* The features of one row of one image that are compared. */
 typedef struct Features {
     float lightness[TILE], a[TILE], b[TILE], edge[TILE], point[TILE];
 } Features;
 
-/* What a worker holds of a tile. */
+/* The data of one tile, per thread. */
 typedef struct Workspace {
     float colors[3][SPAN];
     float inputs[INPUTS][SPAN];
@@ -52,8 +55,8 @@ typedef struct Workspace {
     float largest[TILE][TILE];
 } Workspace;
 
-/* Percentiles are of errors that are rounded to 1 / STEPS: counts are exact, and the same for any
- * number of threads. */
+/* Percentiles use errors rounded to 1 / STEPS, so that the counts are exact for any number of
+ * threads. */
 enum { STEPS = 65536 };
 
 /* Sums over the pixels of a tile. */
@@ -64,12 +67,12 @@ typedef struct TileErrors {
 typedef struct Flip {
     const FlipPair *pair;
     FlipKernel kernels[FLIP_FILTERS];
-    float color_max, color_knee; /* cmax, and pc of it */
+    float color_max, color_knee; /* the paper's c_max, and p_c c_max */
     int tiles_across;
-    TileErrors *tiles;     /* owned; of each tile */
-    uint32_t *counts;      /* owned; STEPS + 1 for each worker: pixels by rounded error */
-    Workspace *workspaces; /* owned; one for each worker */
-    Plane map;             /* owned; without values when nobody wants it */
+    TileErrors *tiles;     /* per tile; owned */
+    uint32_t *counts;      /* STEPS + 1 per thread: number of pixels by rounded error; owned */
+    Workspace *workspaces; /* one per thread; owned */
+    Plane map;             /* owned; without values if the caller passed no map */
 } Flip;
 
 /* --------------------------------------------------------------------------------------- color */
@@ -94,7 +97,7 @@ static inline float within_unit(float x)
     return x < 0 ? 0 : x > 1 ? 1 : x;
 }
 
-/* Back, and into [0, 1]. */
+/* Converts YCxCz to linear RGB, clamped to [0, 1]. */
 static inline Triple rgb_from_ycxcz(float y, float cx, float cz)
 {
     float white_y = (y + 16) / 116;
@@ -168,12 +171,12 @@ static int clamp(int i, int low, int high)
 
 /* Row `y` from `x` on, SPAN pixels, in YCxCz and lightness (Y scaled to [0, 1]); the pixels at the
  * image's edges are repeated beyond them. */
-static void load_inputs(const Flip *flip, int side, int exposure, int x, int y, Workspace *work)
+static void load_inputs(const Flip *flip, int image, int exposure, int x, int y, Workspace *work)
 {
     const FlipPair *pair = flip->pair;
     int left = clamp(x, 0, pair->width - 1), right = clamp(x + SPAN, left + 1, pair->width);
     int first = left - x, count = right - left;
-    const FlipSpan span = {side, exposure, left, clamp(y, 0, pair->height - 1), count};
+    const FlipSpan span = {image, exposure, left, clamp(y, 0, pair->height - 1), count};
     pair->colors(pair, &span, work->colors[0] + first, SPAN);
     for (int i = first; i < first + count; i++) {
         Triple xyz =
@@ -393,7 +396,7 @@ typedef struct Pictures {
 static void picture_colors(const FlipPair *pair, const FlipSpan *span, float *out, size_t stride)
 {
     const Pictures *self = pair->context;
-    const Picture *picture = self->pictures[span->side];
+    const Picture *picture = self->pictures[span->image];
     size_t channels = (size_t)picture->channels;
     size_t first = (size_t)span->y * picture_stride(picture) + (size_t)span->x * channels;
     for (size_t i = 0; i < (size_t)span->n; i++)

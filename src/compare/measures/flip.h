@@ -1,53 +1,67 @@
-/* The parts of FLIP. Private to the module compare. */
+/* FLIP, a perceptual difference of two images: 0 where a viewer sees no difference, up to 1
+ * [perception.h names the papers]. Both images are filtered as the eye does at 67 pixels per degree
+ * (ppd), in an opponent color space with lightness Y and the color axes Cx and Cz. LDR-FLIP and
+ * HDR-FLIP share this code. Private to the module compare. */
 #ifndef CORCAST_COMPARE_MEASURES_FLIP_H
 #define CORCAST_COMPARE_MEASURES_FLIP_H
 
 #include "compare/measures/perception.h"
 
-/* ceil(3 sqrt(0.04 / (2 pi^2)) ppd) */
+/* Filters have FLIP_TAPS weights, the centre at index FLIP_RADIUS. The published radius of the
+ * widest filter is ceil(3 sqrt(0.04 / (2 pi^2)) ppd), where 0.04 is its width parameter. */
 enum { FLIP_RADIUS = 10, FLIP_TAPS = 2 * FLIP_RADIUS + 1 };
 /* The weights of F_Y and F_CX beyond FLIP_RADIUS_LUMA are less than 1e-11 of the largest weight.
- * The filters of features end at FLIP_RADIUS_FEATURE = ceil(3 * 0.5 * 0.082 ppd). */
+ * The filters of features end at FLIP_RADIUS_FEATURE = ceil(3 * 0.5 * 0.082 ppd): three
+ * standard deviations of the published Gaussian, half of 0.082 degrees wide. */
 enum { FLIP_RADIUS_LUMA = 7, FLIP_RADIUS_FEATURE = 9 };
 
-/* The seven one-dimensional filters, and the planes that they make horizontally. */
+/* The one-dimensional filters. Each is applied along rows and makes one plane, which the same index
+ * names. */
 typedef enum FlipFilter {
-    F_Y,
-    F_CX,
-    F_CZ1,
-    F_CZ2,
-    F_GAUSS,
-    F_EDGE,
-    F_POINT,
+    F_Y,     /* blur of Y */
+    F_CX,    /* blur of Cx */
+    F_CZ1,   /* blur of Cz, the first of a sum of two Gaussians */
+    F_CZ2,   /* the second */
+    F_GAUSS, /* Gaussian across the derivatives */
+    F_EDGE,  /* first derivative of the Gaussian: edges */
+    F_POINT, /* second derivative of the Gaussian: points and lines */
     FLIP_FILTERS
 } FlipFilter;
 
-/* F_EDGE is antisymmetric, all others are symmetric. */
+/* Weights of one filter. F_EDGE is antisymmetric, all others are symmetric. */
 typedef struct FlipKernel {
     float weights[FLIP_TAPS];
 } FlipKernel;
 
+/* Sets the weights of all filters. The weights of F_Y and F_CX sum to 1. F_CZ1 and F_CZ2, each
+ * applied along both axes, sum to 1 together. The positive weights of the other filters sum to 1,
+ * and their negative weights to -1; they are 0 beyond FLIP_RADIUS_FEATURE. */
 void flip_kernels(FlipKernel kernels[FLIP_FILTERS]);
 
-/* Pixels of a row: `n` from (x, y) on, of side 0 or 1, under an exposure. */
+/* `n` pixels of one row, beginning at (x, y). */
 typedef struct FlipSpan {
-    int side, exposure, x, y, n;
+    int image;    /* 0: A, 1: B */
+    int exposure; /* index of the exposure, below FlipPair.exposures */
+    int x, y, n;
 } FlipSpan;
 
-/* Two images to compare: of each pixel its linear color in [0, 1]. */
+/* The two images. Several threads call the functions at once. */
 typedef struct FlipPair {
-    int width, height;
-    /* Writes the colors of a span: planes of red, green and blue with `stride` floats between
-     * them. */
+    int width, height; /* at least 1 */
+    /* Writes linear colors in [0, 1], after applying the exposure: planes of red, green and blue,
+     * which begin `stride` floats apart. */
     void (*colors)(const struct FlipPair *pair, const FlipSpan *span, float *out, size_t stride);
-    /* Returns true if both sides are equal in `n` pixels from (x, y) on. */
+    /* Returns true if both images are equal in `n` pixels from (x, y) on. */
     bool (*equal)(const struct FlipPair *pair, int x, int y, int n);
-    int exposures;       /* the error is the largest over these */
-    const void *context; /* borrowed */
+    int exposures;       /* number of exposures; a pixel's error is the largest of all; 1: LDR */
+    const void *context; /* data of the two functions; borrowed */
 } FlipPair;
 
-/* Computes the error of each pixel. `map` receives them, 1 channel, and the caller releases it; it
- * may be NULL. Errors: STATUS_MEMORY. */
+/* Computes the error of each pixel, in [0, 1].
+ *
+ * map      receives the errors, 1 channel; release it with plane_release. The argument may be NULL.
+ * summary  receives statistics of the errors.
+ * Errors   STATUS_MEMORY. */
 MUST_CHECK Status flip_run(const FlipPair *pair, Plane *map, FlipSummary *summary, Err *err);
 
 #endif

@@ -26,7 +26,7 @@ static float tone_map(float x)
 static void hdr_colors(const FlipPair *pair, const FlipSpan *span, float *out, size_t stride)
 {
     const Hdr *self = pair->context;
-    const Plane *plane = self->planes[span->side];
+    const Plane *plane = self->planes[span->image];
     double step = (self->stop - self->start) / (self->exposures - 1);
     float factor = (float)elementary_exp2(self->start + span->exposure * step);
     size_t channels = (size_t)plane->channels;

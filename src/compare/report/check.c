@@ -11,7 +11,7 @@ static void add(Check *check, const char *table, const char *name, double value,
 {
     if (isnan(value))
         return;
-    assert(check->n_measures < MEASURES_MAX);
+    assert(check->n_measures < CHECK_MEASURES_MAX);
     check->measures[check->n_measures++] =
         (CheckMeasure){.table = table, .name = name, .value = value, .unit = unit};
 }
@@ -37,7 +37,7 @@ static void add_table(Check *check, const char *heading, MeasureTable table,
             if (row->part == PART_CLASSES)
                 add_classes(check, heading, plane);
             else
-                add(check, heading, row->words, plane->values[row->id], row->unit);
+                add(check, heading, row->label, plane->values[row->id], row->unit);
         }
 }
 

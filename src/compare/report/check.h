@@ -12,26 +12,32 @@ typedef struct CheckMeasure {
     double value; /* never NAN */
 } CheckMeasure;
 
-enum { MEASURES_MAX = 40 };
+enum { CHECK_MEASURES_MAX = 40 }; /* more than the rows of measures[] for one kind of plane */
 
-/* One item that is judged: a plane; alpha; the settled pixels (A is known to be wrong there, see
- * checks/settled.h); the colors or the position of an implicit surface; or a pair of programs, one
- * of which may be the witness (a third, independent renderer, see checks/witness.h). */
+/* One item of a report that is judged. It is one of:
+ *
+ * - one plane: color, depth, normal, id or alpha
+ * - the settled pixels: pixels where A is known to be wrong [checks/settled.h]
+ * - the colors, or the position, of an implicit surface [checks/surface_check.h]
+ * - two programs that drew the same scene. One may be a third renderer, the witness
+ *   [checks/witness.h] */
 typedef struct Check {
-    const char *title; /* "color", "settled", "exact color", "surface"; borrowed */
-    bool agrees;
-    const char *reason; /* sentence about the first rule that is not met; borrowed */
+    const char *title;  /* "color", "settled", "exact color", "surface"; borrowed */
+    bool agrees;        /* all rules are met; true if there are none */
+    const char *reason; /* sentence about the first rule that is not met; "" or NULL if the check
+                         * agrees; borrowed */
     Rule rules[RULES_MAX];
     int n_rules;
-    CheckMeasure measures[MEASURES_MAX]; /* measures of one table are adjacent */
+    CheckMeasure measures[CHECK_MEASURES_MAX]; /* measures of one table are adjacent */
     int n_measures;
     const Settled *settled; /* lists the first settled pixels, or NULL; borrowed */
 } Check;
 
+/* All planes, alpha, the settled pixels, colors and position of a surface, and the witness. */
 enum { CHECKS_MAX = PLANE_KINDS + 4 + WITNESS_PAIRS };
 
-/* Returns the check of one plane: its rules, and the measures that are not NAN. It borrows from
- * `plane`. */
+/* Returns the check of one plane: its rules, and its measures that are not NAN. The check borrows
+ * from `plane`. */
 Check check_plane(const CompareResult *plane);
 /* Makes all checks of a report, in the order in which they are shown. They borrow from `report`.
  * Returns their number. */
@@ -39,9 +45,9 @@ int report_checks(const ReportCase *report, Check checks[CHECKS_MAX]);
 
 /* Returns the reason of the first check that does not agree, borrowed; NULL if all agree. */
 const char *report_reason(const ReportCase *report);
-/* Returns the largest ratio measured / allowed of the rules that are not met, clamped to
- * [1, 10^12]. If `allowed` is not above 0, the ratio is `measured`. Returns 0 if all rules are
- * met. */
+/* Returns the largest ratio of measured to allowed value among the rules that are not met, clamped
+ * to [1, 10^12]; 0 if all rules are met. If nothing is allowed (0), the measured value itself
+ * stands for the ratio. */
 double report_severity(const ReportCase *report);
 
 #endif

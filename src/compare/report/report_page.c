@@ -78,7 +78,8 @@ static void put_sentence(const ReportCase *report, Text *sentence)
                     differing == 1 ? "s" : "");
     text_printf(sentence, "%c%s.", alone ? toupper((unsigned char)*reason) : *reason, reason + 1);
     if (!color->agrees)
-        text_printf(sentence, " The pictures: %s.", *color->cause ? color->cause : "cause unknown");
+        text_printf(sentence, " Likely cause: %s.",
+                    *color->cause ? color->cause : "not identified");
 }
 
 /* What tells the case from others of the same tree and model: the options of its command. */

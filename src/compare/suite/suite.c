@@ -1,7 +1,7 @@
-/* Cases are all pictures by their names below either folder; each is judged for itself, so that a
- * thousand keep all processors busy and hold no more than a pair of pictures a processor in memory.
- * Files of the same bytes are not decoded. What is masked takes the reference's codes before the
- * comparison, so that nothing behind it knows of masks. */
+/* The cases are the pictures of both folders, matched by their path below the folder. Threads judge
+ * cases independently, so that memory holds one pair of pictures per thread. Files with equal bytes
+ * are not decoded. Masked pixels get the reference's codes before the comparison, so that no other
+ * code has to know about masks. */
 #include "compare/suite/suite.h"
 #include "compare/cause/cause.h"
 #include "compare/measures/planes.h"

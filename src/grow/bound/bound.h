@@ -7,8 +7,8 @@
  * one viscosity. Free are the radii, and the positions and pressures of bifurcations. The bound is
  * below the target of any such tree, for any Murray exponent and any rules of length and clearance,
  * and also if less pressure drops on the path to an outlet. */
-#ifndef CORCAST_GROW_BOUND_H
-#define CORCAST_GROW_BOUND_H
+#ifndef CORCAST_GROW_BOUND_BOUND_H
+#define CORCAST_GROW_BOUND_BOUND_H
 
 #include "base/base.h"
 #include "geom/geom.h"

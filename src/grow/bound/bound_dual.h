@@ -1,8 +1,8 @@
 /* The lower bound that a step of Newton's method proves. Each outlet gets a force (a dual
  * variable): its pull on the tree and the charge for its pressure drop. Forces that balance prove
  * that no tree of this topology has a lower target [METHODS 1.5]. */
-#ifndef CORCAST_GROW_BOUND_DUAL_H
-#define CORCAST_GROW_BOUND_DUAL_H
+#ifndef CORCAST_GROW_BOUND_BOUND_DUAL_H
+#define CORCAST_GROW_BOUND_BOUND_DUAL_H
 
 #include "grow/bound/bound_newton.h"
 

@@ -1,7 +1,7 @@
 /* One step of Newton's method on all free joints at once, to minimise the target of a Problem.
  * Lengths are smoothed [bound_problem.h] by `smoothing`, mm. */
-#ifndef CORCAST_GROW_BOUND_NEWTON_H
-#define CORCAST_GROW_BOUND_NEWTON_H
+#ifndef CORCAST_GROW_BOUND_BOUND_NEWTON_H
+#define CORCAST_GROW_BOUND_BOUND_NEWTON_H
 
 #include "grow/bound/bound_problem.h"
 

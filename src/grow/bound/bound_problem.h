@@ -4,8 +4,8 @@
  * A joint is a node of the tree with its state: its position and its pressure drop from the inlet.
  * Outlets and inlets are fixed; all other joints are free. The radius of a segment follows from its
  * length and pressure drop by Poiseuille's law, so that radii are no unknowns. */
-#ifndef CORCAST_GROW_BOUND_PROBLEM_H
-#define CORCAST_GROW_BOUND_PROBLEM_H
+#ifndef CORCAST_GROW_BOUND_BOUND_PROBLEM_H
+#define CORCAST_GROW_BOUND_BOUND_PROBLEM_H
 
 #include "base/base.h"
 #include "tree/tree.h"

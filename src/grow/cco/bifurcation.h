@@ -5,8 +5,8 @@
  * The price of a position is the change of the target (as S_root [law.h]). bifurcation_at computes
  * the price and its derivatives; bifurcation_optimise repeats that and a move to the Fermat point
  * of these derivatives, which converges in a few rounds. */
-#ifndef CORCAST_GROW_BIFURCATION_H
-#define CORCAST_GROW_BIFURCATION_H
+#ifndef CORCAST_GROW_CCO_BIFURCATION_H
+#define CORCAST_GROW_CCO_BIFURCATION_H
 
 #include "geom/geom.h"
 #include "grow/cco/law.h"

@@ -1,6 +1,6 @@
 /* The weighted Fermat point: where the weighted sum of three distances is least. */
-#ifndef CORCAST_GROW_FERMAT_H
-#define CORCAST_GROW_FERMAT_H
+#ifndef CORCAST_GROW_CCO_FERMAT_H
+#define CORCAST_GROW_CCO_FERMAT_H
 
 #include "geom/geom.h"
 

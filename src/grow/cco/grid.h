@@ -8,8 +8,8 @@
  *     TRY(grid_reset(&grid, box, cells, n_segments, 1, err));       (grid was zeroed)
  *     TRY(grid_add(&grid, 0, i, is_terminal, grid_item(&grid, capsule, radius), err));
  *     int found = grid_nearest(&grid, point, INFINITY, 8, near); */
-#ifndef CORCAST_GROW_GRID_H
-#define CORCAST_GROW_GRID_H
+#ifndef CORCAST_GROW_CCO_GRID_H
+#define CORCAST_GROW_CCO_GRID_H
 
 #include "base/base.h"
 #include "geom/geom.h"

@@ -3,27 +3,30 @@
  *
  * A segment has the length l, the flow N relative to a terminal's mean flow, and the viscosity m
  * relative to a reference mu. N m is its burden. R* (in units of 8 mu / pi) and V* are the reduced
- * resistance and target of METHODS 1.1. The reduced quantities of a segment are:
+ * resistance and target of METHODS 1.1; the target is the sum of length times radius^lambda. The
+ * reduced quantities of a segment are:
  *
  * - Load W = N R*, and rho = W^(1/4), which is the radius without the factors q and g below.
  *
- * - rho_gamma X = rho^gamma, which Murray's law adds up. For the subtrees on the distal end of a
- *   segment, G is the sum of X over the daughters, and P = G^(1/gamma).
+ * - X = rho^gamma, the member rho_gamma, which Murray's law adds up. For the subtrees on the distal
+ * end of a segment, G is the sum of X over the daughters, and P = G^(1/gamma).
  *
- * - Cost S = rho^lambda V*, which is the target without the factor q^lambda g^lambda.
+ * - S = rho^lambda V*, the member cost, which is the target without the factor q^lambda
+ *   g^lambda.
  *
  * W = N m l + P^4, and S = rho^lambda l + (rho / P)^lambda times the sum of the daughters' S.
  *
- * If gamma depends on the radius of the parent, each fork has its own gamma. G and P use that of
- * the fork at the distal end, X that of the fork at the proximal end. The functions receive the law
- * at the fork. Only law_gather, and rho_gamma of law_extend, depend on gamma.
+ * If gamma depends on the radius of the parent, each fork has its own gamma. G and P of a segment
+ * use the gamma of the fork at its distal end, X uses the gamma of the fork at its proximal end.
+ * Each function states which of the two laws it receives. Only law_gather, and rho_gamma of
+ * law_extend, depend on gamma.
  *
  * The radius is r = q g rho. q = (8 mu / pi Q_term / (p_perf - p_term))^(1/4) is the radius unit of
  * the tree. g is the gauge of the segment: 1 at the root, and from a segment to its daughters
  * multiplied by the segment's widening, rho / P. The target is T = q^lambda S_root, so for a fixed
  * number of terminals the least S_root gives the least T. */
-#ifndef CORCAST_GROW_LAW_H
-#define CORCAST_GROW_LAW_H
+#ifndef CORCAST_GROW_CCO_LAW_H
+#define CORCAST_GROW_CCO_LAW_H
 
 #include "base/base.h"
 
@@ -37,12 +40,12 @@ typedef struct Law {
     double lambda; /* >= 0 */
 } Law;
 
-/* The subtree below a segment, that is at its distal end: all daughters together. All members are 0
- * at a terminal. */
+/* The subtree at the distal end of a segment: all daughters together. All members are 0 at a
+ * terminal. Lengths are in mm, so loads are in mm, rho in mm^(1/4). */
 typedef struct Below {
     double rho_gamma, cost; /* G, and the sum of S */
     double inverse;         /* 1 / P */
-    double load;            /* P^4 */
+    double load;            /* P^4, the part of the segment's load that the subtree adds, mm */
 } Below;
 
 /* A segment together with the subtree below it. */
@@ -57,16 +60,17 @@ typedef struct Reduced {
     Below below;
 } Reduced;
 
-/* Derivatives of S_root with respect to a segment's load, its cost held fixed, and to its cost. */
+/* Derivatives of S_root, the cost of the root segment. The root's own adjoint is {0, 1}. */
 typedef struct Adjoint {
-    double load;
-    double cost;
+    double load; /* with respect to a segment's load, while its cost is held fixed */
+    double cost; /* with respect to its cost */
 } Adjoint;
 
 /* Returns x^(-1/3) for a normal double x > 0, accurate to about one unit in the last place.
- * Exponent arithmetic gives the first guess (3.4 % off); then follow two iterations of order three
- * and one of order two, as in Newton's method. No library function is used, so every machine gives
- * the same bits. */
+ * Dividing the exponent by -3 in integer arithmetic gives a first guess, at most 3.4 % off. Two
+ * steps with the first two terms of the series of (1 - e)^(-1/3), and one with the first term,
+ * follow. No library function is used, and the build forbids fused multiply-adds, so that every
+ * machine gives the same bits. */
 static inline double inverse_cube_root(double x)
 {
     uint64_t bits;
@@ -83,8 +87,8 @@ static inline double inverse_cube_root(double x)
 }
 
 /* Returns the radius unit q, mm^(3/4), of a tree whose terminals carry `flow` mm^3/s each at a
- * pressure `drop` Pa below the inlet's, for blood of `viscosity` Pa s. With the flow of all N
- * terminals together, returns q N^(1/4). */
+ * pressure `drop` Pa, above 0, below the inlet's, for blood of `viscosity` Pa s. If `flow` is the
+ * total flow of N terminals, the result is q N^(1/4). */
 static inline double law_radius_unit(double viscosity, double flow, double drop)
 {
     return sqrt(sqrt(8 * viscosity / PI * flow / drop));
@@ -120,7 +124,8 @@ static inline Below law_gather(const Law *law, double rho_gamma, double cost)
 }
 
 /* Returns the segment of `length` mm with this `burden`, together with the subtree `below` it.
- * `law` is the law at the segment's proximal end. */
+ * `law` is the law at the segment's proximal end. The load must be above 0: a terminal's segment
+ * has length and burden above 0. */
 static inline Reduced law_extend(const Law *law, double burden, double length, const Below *below)
 {
     Reduced out = {.below = *below};
@@ -146,13 +151,16 @@ static inline Reduced law_extend(const Law *law, double burden, double length, c
     return out;
 }
 
-/* Returns dS_root / d load of `at`, whose own cost changes with the load. */
+/* Returns dS_root / d load of the segment `at`, including the change of its cost with the load:
+ * S = W^(lambda/4) V*, so dS / dW = lambda / 4 S / W. */
 static inline double law_total(const Law *law, const Reduced *at, Adjoint adjoint)
 {
     return adjoint.load + adjoint.cost * law->lambda / 4 * at->cost / at->load;
 }
 
-/* Returns the adjoint of a daughter of the segment `parent`, whose adjoint is `adjoint`. */
+/* Returns the adjoint of `daughter`, a daughter of `parent`, whose adjoint is `adjoint`. `law` is
+ * the law at the fork between them. By the chain rule through the parent's P^4 = G^(4/gamma) and
+ * rho / P, where X of the daughter is load^(gamma/4). */
 static inline Adjoint law_descend(const Law *law, const Reduced *parent, Adjoint adjoint,
                                   const Reduced *daughter)
 {

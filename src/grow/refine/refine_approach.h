@@ -1,7 +1,7 @@
 /* Moves all bifurcations from their starts towards their goals at the same time [refine_joint.h],
  * as far as the rules of clearance allow. */
-#ifndef CORCAST_GROW_REFINE_APPROACH_H
-#define CORCAST_GROW_REFINE_APPROACH_H
+#ifndef CORCAST_GROW_REFINE_REFINE_APPROACH_H
+#define CORCAST_GROW_REFINE_REFINE_APPROACH_H
 
 #include "grow/refine/refine_joint.h"
 

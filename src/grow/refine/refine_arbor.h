@@ -11,8 +11,8 @@
  * distal end of the segment with the same index. Nodes with one child are left out, so that a
  * vessel of several segments is one straight segment. Indices stay: a bifurcation that moves, also
  * with a subtree to another segment, is the same node. */
-#ifndef CORCAST_GROW_REFINE_ARBOR_H
-#define CORCAST_GROW_REFINE_ARBOR_H
+#ifndef CORCAST_GROW_REFINE_REFINE_ARBOR_H
+#define CORCAST_GROW_REFINE_REFINE_ARBOR_H
 
 #include "base/base.h"
 #include "geom/geom.h"

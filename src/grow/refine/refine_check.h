@@ -1,6 +1,6 @@
 /* Checks whether a tree can be refined, before anything is changed. */
-#ifndef CORCAST_GROW_REFINE_CHECK_H
-#define CORCAST_GROW_REFINE_CHECK_H
+#ifndef CORCAST_GROW_REFINE_REFINE_CHECK_H
+#define CORCAST_GROW_REFINE_REFINE_CHECK_H
 
 #include "grow/grow.h"
 

@@ -8,8 +8,8 @@
  *
  * Every segment has a reserved radius [refine_arbor.h], which no other segment's reserved radius
  * meets. */
-#ifndef CORCAST_GROW_REFINE_CLEARANCE_H
-#define CORCAST_GROW_REFINE_CLEARANCE_H
+#ifndef CORCAST_GROW_REFINE_REFINE_CLEARANCE_H
+#define CORCAST_GROW_REFINE_REFINE_CLEARANCE_H
 
 #include "domain/domain.h"
 #include "grow/cco/grid.h"

@@ -2,8 +2,8 @@
  * present topology are the goals; approach_goals [refine_approach.h] moves the nodes towards
  * them. Joint moves are needed where bifurcations would merge: moved one by one, each waits for
  * the other. */
-#ifndef CORCAST_GROW_REFINE_JOINT_H
-#define CORCAST_GROW_REFINE_JOINT_H
+#ifndef CORCAST_GROW_REFINE_REFINE_JOINT_H
+#define CORCAST_GROW_REFINE_REFINE_JOINT_H
 
 #include "grow/refine/refine_arbor.h"
 #include "grow/refine/refine_clearance.h"

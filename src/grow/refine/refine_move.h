@@ -1,7 +1,7 @@
 /* The two moves of the local search that refines a tree: a bifurcation moves to a better position,
  * or a subtree is cut off and connected elsewhere. */
-#ifndef CORCAST_GROW_REFINE_MOVE_H
-#define CORCAST_GROW_REFINE_MOVE_H
+#ifndef CORCAST_GROW_REFINE_REFINE_MOVE_H
+#define CORCAST_GROW_REFINE_REFINE_MOVE_H
 
 #include "grow/refine/refine_arbor.h"
 #include "grow/refine/refine_clearance.h"

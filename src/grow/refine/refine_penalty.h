@@ -4,8 +4,8 @@
  * Every segment has a rate. A segment pays its rate for every mm that it is shorter than wide. Two
  * segments without a common node pay the lower of their rates for every mm that they overlap, so
  * that a segment that has long broken a rule may push others aside. */
-#ifndef CORCAST_GROW_REFINE_PENALTY_H
-#define CORCAST_GROW_REFINE_PENALTY_H
+#ifndef CORCAST_GROW_REFINE_REFINE_PENALTY_H
+#define CORCAST_GROW_REFINE_REFINE_PENALTY_H
 
 #include "grow/refine/refine_arbor.h"
 #include "grow/refine/refine_clearance.h"

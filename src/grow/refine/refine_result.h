@@ -1,6 +1,6 @@
 /* Turns a refined arbor back into a Tree: the last step of refinement. */
-#ifndef CORCAST_GROW_REFINE_RESULT_H
-#define CORCAST_GROW_REFINE_RESULT_H
+#ifndef CORCAST_GROW_REFINE_REFINE_RESULT_H
+#define CORCAST_GROW_REFINE_REFINE_RESULT_H
 
 #include "grow/refine/refine_arbor.h"
 #include "tree/tree.h"

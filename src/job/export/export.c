@@ -27,7 +27,8 @@ static const Option own[] = {
      .when = WHEN(MESH) | OF_SURFACE,
      .help = "surface of the vessels: isosurface (blends vessels smoothly where they meet), "
              "rounded (cylinders with spheres at their ends)"},
-    {.name = "tolerance",
+    {.name = "mesh-tolerance",
+     .former = "tolerance",
      SETS(NUMBER, ExportOptions, meshing.tolerance),
      .group = GROUP_VESSELS,
      .range = &tolerance_range,
@@ -49,6 +50,7 @@ static const Option own[] = {
      .when = WHEN(MESH) | OF_SURFACE,
      .help = "maximum length of a triangle along a straight tube, in units of the radius; set it "
              "for flow solvers"},
+    {SMOOTH_OPTION(ExportOptions, smooth), .when = WHEN(NO_PAGE)},
     {.name = "prune-radius",
      SETS(NUMBER, ExportOptions, prune_radius_mm),
      .group = GROUP_VESSELS,
@@ -174,11 +176,25 @@ static Status plan_mesh(ExportOptions *options, const Emitter **emitter, Err *er
     return read_print(options, *emitter, err);
 }
 
+/* Reads the tree, and divides its segments into smooth curves if --smooth is on. `properties` are
+ * those of the model that is exported. */
+static Status read_tree(const ExportOptions *options, unsigned properties, const Parsed *parsed,
+                        PictureTree *of, Err *err)
+{
+    TRY(picture_read_tree(&options->meshing.coloring, options->prune_radius_mm, parsed, of, err));
+    Status status =
+        options->smooth ? picture_smooth_tree(of, model_with(properties), err) : STATUS_OK;
+    if (status != STATUS_OK)
+        picture_tree_release(of);
+    picture_say_smooth(&of->smooth.report, parsed->common.talk);
+    return status;
+}
+
 static Status make_mesh(const ExportOptions *options, const Emitter *emitter, const Parsed *parsed,
                         MeshResult *mesh, Err *err)
 {
     PictureTree of;
-    TRY(picture_read_tree(&options->meshing.coloring, options->prune_radius_mm, parsed, &of, err));
+    TRY(read_tree(options, emitter->of_lines ? MODEL_VOXELS : MODEL_TRIANGLES, parsed, &of, err));
     return meshing_make(emitter, &options->meshing, &of, &parsed->common, mesh, err);
 }
 
@@ -208,11 +224,10 @@ static Status export_mesh(ExportOptions *options, Parsed *parsed, FileSet *files
 static Status export_volume(const ExportOptions *options, Parsed *parsed, FileSet *files, Err *err)
 {
     const VolumeFormat *format = volume_format_find(options->output);
-    const Coloring *coloring = &options->meshing.coloring;
     PictureTree of;
     TRY(volumes_name(&options->volume, format, options->output, files, err));
     TRY(work_note_files(files, &parsed->files, err));
-    TRY(picture_read_tree(coloring, options->prune_radius_mm, parsed, &of, err));
+    TRY(read_tree(options, MODEL_VOXELS, parsed, &of, err));
     Status status = volumes_write(&options->volume, format, &of, files, parsed, err);
     picture_tree_release(&of);
     return status;
@@ -301,10 +316,10 @@ const Command command_export = {
     .operands = "T.swc -o M.stl",
     .examples = "  corcast export tree.swc -o tree.stl\n"
                 "  corcast export tree.swc --color-by strahler -o tree.glb\n"
-                "  corcast export tree.swc --tolerance 0.05 -o tree.ply\n"
+                "  corcast export tree.swc --mesh-tolerance 0.05 -o tree.ply\n"
                 "  corcast export tree.swc --parts -o tree.stl\n"
                 "  corcast export tree.swc --color-by flow -o tree.py\n"
-                "  corcast export tree.swc --voxel 0.1 --labels segment -o tree.nii.gz\n"
+                "  corcast export tree.swc --spacing 0.1 --labels segment -o tree.nii.gz\n"
                 "  corcast export tree.swc --color-by flow -o tree.html\n",
     .min_operands = 1,
     .max_operands = 1,

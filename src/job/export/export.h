@@ -9,6 +9,7 @@
 typedef struct ExportOptions {
     const char *output; /* its extension selects the format */
     double prune_radius_mm;
+    bool smooth;            /* as in PictureOptions */
     bool parts, lattice;    /* select another format of the extension */
     const char *print;      /* the text of --print; NULL: none */
     PrintSettings settings; /* made of `print` or wall_mm */

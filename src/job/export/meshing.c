@@ -14,7 +14,7 @@ const char *const vessel_body_names[] = {
 static Status take_vessels(MeshResult *made, VesselBody body, const Talk *talk, Err *err)
 {
     StageReport report;
-    TRY(stage_vessels(&made->of.tree, &made->vessels, &report, err));
+    TRY(stage_vessels(&made->of.tree, picture_pieces(&made->of), &made->vessels, &report, err));
     made->vessels.body = body;
     if (report.dropped)
         talk_warn(talk, "segments that are left out, as they have no length or no radius: %zu",
@@ -36,7 +36,7 @@ static Status color_vessels(const MeshingOptions *options, const Talk *talk, Mes
     TRY(coloring_read_look(options->look, &look, err));
     TRY(coloring_appearance(&options->coloring, &tree, &look, &made->appearance, err));
     coloring_say(&made->appearance, talk);
-    TRY(stage_anatomy(tree.drawn, vec3(0, 0, 0), &made->anatomy, err));
+    TRY(stage_anatomy(tree.drawn, picture_pieces(&made->of), vec3(0, 0, 0), &made->anatomy, err));
     return derive_rule(tree.drawn, &(TreeMeta){0}, "strahler", &made->orders, err);
 }
 
@@ -114,7 +114,8 @@ static void say_result(const MeshResult *made, const Talk *talk)
     if (report->n_near)
         talk_note(talk, "%zu pair%s of unconnected vessels almost touch", report->n_near,
                   report->n_near == 1 ? "" : "s");
-    talk_note(talk, "%zu triangles enclose %.6g mm^3", made->mesh.n_triangles, report->volume_mm3);
+    talk_note(talk, "%zu triangles enclose %s mm\xC2\xB3", made->mesh.n_triangles,
+              READABLE(report->volume_mm3, 6));
     if (made->print && !made->print->params.lids)
         mesh_say_print(made, talk);
 }
@@ -182,7 +183,8 @@ static Status put_beside(const MeshResult *made, FileSlot files[], Err *err)
     if (!made->emitter->has_parts)
         return STATUS_OK;
     TRY(solver_ends(&made->ends, &made->of.tree, &made->vessels, &files[MESH_ENDS].text, err));
-    return solver_centerline(&made->of.tree, &made->vessels, &files[MESH_CENTERLINE].text, err);
+    return solver_centerline(&made->of.tree, picture_pieces(&made->of), &made->vessels,
+                             &files[MESH_CENTERLINE].text, err);
 }
 
 static Status put_mesh(const void *job, const char *command, FileSlot files[], Err *err)

@@ -104,8 +104,7 @@ static Status make_scene(const PictureOptions *picture, const Parsed *parsed, Sc
                          err));
     TRY(picture_say(&made->scene, &report, parsed->common.talk, err));
     return made->emitter->has_view
-               ? picture_say_effects(picture, &made->scene.view, "the scene omits them",
-                                     parsed->common.talk, err)
+               ? picture_say_effects(picture, "the scene omits them", parsed->common.talk, err)
                : STATUS_OK;
 }
 
@@ -185,6 +184,7 @@ static Status put_scene(const void *job, const char *command, FileSlot files[], 
                                .antialias = picture->antialias,
                                .digits = SCENE_DIGITS,
                                .shadows = picture->stage.shadows,
+                               .occlusion = picture->occlusion > 0,
                                .ids = writing->options->ids,
                                .cells = picture_cells(picture)};
     return scene_files_put(made->emitter, &params, made->source.of.path, files, writing->report,

@@ -20,16 +20,17 @@ static const char *const depths[] = {"8", "16", "float", NULL};
 typedef enum LabelKind { LABEL_NONE, LABEL_SEGMENT, LABEL_STRAHLER, LABEL_TREE } LabelKind;
 static const char *const label_kinds[] = {"none", "segment", "strahler", "tree", NULL};
 
-/* Number of voxels along the longest side, without --voxel. */
+/* Number of voxels along the longest side, without --spacing. */
 enum { USUAL_VOXELS = 256 };
 
 static const Option volume_options[] = {
-    {.name = "voxel",
+    {.name = "spacing",
+     .former = "voxel",
      SETS(NUMBERS, VolumeOptions, voxel),
      .group = GROUP_VOXELS,
      .argument = "MM",
      .otherwise = "1/256 of the longest side",
-     .help = "voxel size; one length, or three lengths X,Y,Z"},
+     .help = "edge length of the voxels of the volume, mm; one length, or three lengths X,Y,Z"},
     {.name = "depth",
      SETS(CHOICE, VolumeOptions, depth),
      .choices = depths,
@@ -40,15 +41,16 @@ static const Option volume_options[] = {
      SETS(CHOICE, VolumeOptions, labels),
      .choices = label_kinds,
      .group = GROUP_VOXELS,
-     .help = "second volume V.labels, with a label of the segment that fills most of each voxel: "
-             "none (no second volume), segment (its id), strahler (its Strahler order), tree (the "
+     .help = "also write the volume V.labels, with a label of the segment that fills most of each "
+             "voxel: "
+             "none (no such volume), segment (its id), strahler (its Strahler order), tree (the "
              "number of its tree)"},
     {.name = "centreline",
      SETS(OUTPUT, VolumeOptions, centreline),
      .argument = "C.nii.gz",
      .group = GROUP_VOXELS,
-     .help = "write a second volume that is 1 in each voxel that a segment axis passes through, "
-             "else 0"},
+     .help =
+         "also write a volume that is 1 in each voxel that a segment axis passes through, else 0"},
 };
 
 const OptionTable volume_table = OPTION_TABLE(volume_options);
@@ -121,14 +123,13 @@ typedef struct Volumes {
 static Status take_geometry(Volumes *made, const Talk *talk, Err *err)
 {
     StageReport report;
-    const GeometryParams rounded = {.model = model_with(MODEL_VOXELS)};
+    const GeometryParams rounded = {.model = model_with(MODEL_VOXELS),
+                                    .smooth = picture_pieces(made->of)};
     TRY(stage_geometry(&made->of->tree, &rounded, &made->geometry, &report, err));
     if (report.dropped)
         talk_warn(talk, "segments that are left out, as they have no length or no radius: %zu",
                   report.dropped);
-    made->within = made->geometry.drawn;
-    for (size_t i = 0; i < made->geometry.n_primitives; i++)
-        made->within -= made->geometry.primitives[i].kind == PRIMITIVE_CYLINDER;
+    made->within = report.covered;
     if (made->within)
         talk_warn(
             talk,
@@ -163,10 +164,10 @@ static Status make_grid(Volumes *made, Err *err)
     Vec3 size = vec3_sub(made->geometry.bounds.high, made->geometry.bounds.low);
     double usual = fmax(size.x, fmax(size.y, size.z)) / USUAL_VOXELS;
     if (sides->n > 1 && sides->n != 3)
-        return err_set(err, STATUS_USAGE, "--voxel takes one number or three, not %zu", sides->n);
+        return err_set(err, STATUS_USAGE, "--spacing takes one number or three, not %zu", sides->n);
     for (size_t i = 0; i < sides->n; i++)
         if (!(sides->at[i] > 0))
-            return err_set(err, STATUS_USAGE, "--voxel: %g is not above 0", sides->at[i]);
+            return err_set(err, STATUS_USAGE, "--spacing: %g is not above 0", sides->at[i]);
     Vec3 step = sides->n == 3   ? vec3(sides->at[0], sides->at[1], sides->at[2])
                 : sides->n == 1 ? vec3(sides->at[0], sides->at[0], sides->at[0])
                                 : vec3(usual, usual, usual);
@@ -237,8 +238,8 @@ static void say_result(const Volumes *made, const Talk *talk)
         talk_warn(talk, "%zu label%s no voxel; each was given a voxel that it touches",
                   report->n_given_voxels,
                   report->n_given_voxels == 1 ? " dominates" : "s dominate");
-    talk_note(talk, "%lld voxels contain vessels, %.6g mm^3", (long long)report->filled,
-              report->volume_mm3);
+    talk_note(talk, "%lld voxels contain vessels, %s mm\xC2\xB3", (long long)report->filled,
+              READABLE(report->volume_mm3, 6));
 }
 
 static json_t *json_vector(Vec3 v)

@@ -32,7 +32,7 @@ MUST_CHECK Status volumes_name(const VolumeOptions *options, const VolumeFormat 
  * filled voxels and their volume after.
  *
  * files    volumes_name has set the paths.
- * Errors   STATUS_USAGE if --voxel is not one or three numbers above 0, or if the centreline's file
+ * Errors   STATUS_USAGE if --spacing is not one or three numbers above 0, or if the centreline's file
  *          has no extension of a volume; the errors of stage_geometry, voxelgrid_make,
  *          volume_check, work_make, voxels_write and work_write. */
 MUST_CHECK Status volumes_write(const VolumeOptions *options, const VolumeFormat *format,

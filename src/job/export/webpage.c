@@ -17,6 +17,7 @@ typedef struct Webpage {
     const PictureTree *of; /* this and the next two are borrowed */
     const Coloring *coloring;
     const char *look_name;
+    bool is_look_chosen;
     char *templates, *viewer, *title; /* owned */
     Look look;
     Appearance appearance;
@@ -301,8 +302,10 @@ static Status put_page(const void *job, const char *command, FileSlot files[], E
                                .n_maps = page->n_maps,
                                .look = &page->look,
                                .look_name = page->look_name,
+                               .is_look_chosen = page->is_look_chosen,
                                .scale = page->appearance.colors ? &page->appearance.scale : NULL,
-                               .map = file_name(page->coloring->colormap)};
+                               .map = file_name(page->coloring->colormap),
+                               .is_scale_chosen = page->coloring->has_range || page->coloring->log};
     return page_put(&params, &files[0].text, err);
 }
 
@@ -325,7 +328,10 @@ static Status collect(Webpage *page, const Talk *talk, Err *err)
 Status webpage_write(const Coloring *coloring, const char *look, const PictureTree *of,
                      FileSet *files, const Parsed *parsed, Err *err)
 {
-    Webpage page = {.of = of, .coloring = coloring, .look_name = look};
+    Webpage page = {.of = of,
+                    .coloring = coloring,
+                    .look_name = look,
+                    .is_look_chosen = options_said(parsed, "look")};
     Status status = collect(&page, parsed->common.talk, err);
     if (status == STATUS_OK)
         status = work_write(files, put_page, &page, parsed, err);

@@ -19,7 +19,7 @@ static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, FigureOptions, output),
      .argument = "F",
-     .help = "figure: .pdf or .svg with live text, or .png, .tif or .jpg"},
+     .help = "figure: .pdf, .eps or .svg with live text, or .png, .tif or .jpg"},
     {.name = "size",
      SETS(SIZE, FigureOptions, size),
      FROM_TO(1, IMAGE_MAX_SIDE),
@@ -27,8 +27,10 @@ static const Option own[] = {
      .help = "size of the page on paper (183mmx120mm) or in pixels (2000x1300); one length gives a "
              "square"},
     {DPI_OF_SIZE(FigureOptions, size), .group = GROUP_PAGE,
-     .help = "resolution in pixels per inch"},
-    {.name = "columns",
+     .help = "pixels per inch: sets the number of pixels of a --size on paper; with a --size in "
+             "pixels it is only stored in the file (.png, .tif, .jpg)"},
+    {.name = "panel-columns",
+     .former = "columns",
      SETS(WHOLE, FigureOptions, columns),
      FROM_TO(1, 64),
      .group = GROUP_PAGE,
@@ -45,6 +47,11 @@ static const Option own[] = {
      .group = GROUP_PAGE,
      .unit = "mm",
      .help = "space between the panels and the edge of the page"},
+    {.name = "same-scale",
+     SETS(SWITCH, FigureOptions, same_scale),
+     .group = GROUP_PAGE,
+     .help = "show the trees of all panels at one scale, the largest at which every panel holds "
+             "its tree"},
     {.name = "letters",
      SETS(CHOICE, FigureOptions, letters),
      .choices = letter_names,
@@ -109,11 +116,12 @@ static Status prepare_panels(const Figure *figure, Err *err)
     return STATUS_OK;
 }
 
-/* Makes the tree of a panel the first operand. *path is owned by the caller. */
-static Status set_tree(const Figure *figure, size_t i, char **path, Err *err)
+/* Makes the tree of a panel the first operand. */
+static Status set_tree(const Figure *figure, size_t i, Err *err)
 {
     Section *section = figure->plan.sections[i];
     const PanelOptions *panel = section->own.options;
+    char **path = &figure->places[i].tree;
     if (section->maker) {
         parsed_give(&section->render, madetrees_tree(&figure->plan, &figure->trees, i),
                     section->tree_name);
@@ -125,29 +133,67 @@ static Status set_tree(const Figure *figure, size_t i, char **path, Err *err)
     return STATUS_OK;
 }
 
-static Status draw_panel(const Figure *figure, size_t i, Panel *panel, Err *err)
+static Status in_panel(Section *section, Status status, Err *err)
 {
-    Section *section = figure->plan.sections[i];
-    char name[80], *path = NULL;
-    snprintf(name, sizeof name, "[panel %.60s]", section->name);
-    panel->name = name;
-    Status status = set_tree(figure, i, &path, err);
-    if (status == STATUS_OK)
-        status = figure_rebase(&section->render, figure->folder, NULL, err);
-    if (status == STATUS_OK)
-        status = panel_draw(&section->render, panel, err);
     if (status != STATUS_OK) {
         options_name_fields(&section->render, err);
         err_prefix(err, "[panel %s]: ", section->name);
     }
-    panel->name = NULL;
-    free(path);
     return status;
+}
+
+static Status set_paths(const Figure *figure, size_t i, Err *err)
+{
+    TRY(set_tree(figure, i, err));
+    return figure_rebase(&figure->plan.sections[i]->render, figure->folder, NULL, err);
+}
+
+static Status draw_panel(const Figure *figure, size_t i, Panel *panel, Err *err)
+{
+    Section *section = figure->plan.sections[i];
+    char name[80];
+    snprintf(name, sizeof name, "[panel %.60s]", section->name);
+    panel->name = name;
+    const Status status = panel_draw(&section->render, panel, err);
+    panel->name = NULL;
+    return in_panel(section, status, err);
+}
+
+/* Raises *scale, millimetres of a tree per pixel, to the panel's own scale. */
+static Status measure_panel(const Figure *figure, size_t i, double *scale, Err *err)
+{
+    Section *section = figure->plan.sections[i];
+    double own_scale;
+    if (options_said(&section->render, "height"))
+        return err_set(err, STATUS_USAGE, "height has no effect beside same-scale");
+    TRY(panel_scale(&section->render, figure->sheet.fonts, &own_scale, err));
+    *scale = fmax(*scale, own_scale);
+    return STATUS_OK;
+}
+
+/* Gives all panels the scale of the panel whose tree is the largest for its place. */
+static Status set_scale(const Figure *figure, Err *err)
+{
+    double scale = 0;
+    char height[NUMBER_TEXT_SIZE];
+    for (size_t i = 0; i < figure->plan.n; i++)
+        if (figure_is_panel(figure, i))
+            TRY(in_panel(figure->plan.sections[i], measure_panel(figure, i, &scale, err), err));
+    for (size_t i = 0; i < figure->plan.n; i++)
+        if (figure_is_panel(figure, i))
+            TRY(set_key(&figure->plan.sections[i]->render, "height",
+                        number_text(scale * figure->places[i].height, height), err));
+    return STATUS_OK;
 }
 
 static Status draw_panels(Figure *figure, Err *err)
 {
     size_t first = 0;
+    for (size_t i = 0; i < figure->plan.n; i++)
+        if (figure_is_panel(figure, i))
+            TRY(in_panel(figure->plan.sections[i], set_paths(figure, i, err), err));
+    if (figure->options->same_scale)
+        TRY(set_scale(figure, err));
     for (size_t i = 0; i < figure->plan.n; i++) {
         Panel *panel = &figure->panels[i];
         if (!figure_is_panel(figure, i))
@@ -177,7 +223,7 @@ static FigureColor ink_on(FigureColor paper)
 }
 
 /* In the line above the panel, or in its upper left corner: at the edge where nobody sees one. */
-static void put_letter(Figure *figure, size_t i, const char *letter, FigureColor paper)
+static Status put_letter(Figure *figure, size_t i, const char *letter, FigureColor paper, Err *err)
 {
     const FigureOptions *options = figure->options;
     const bool above = figure->places[i].title_mm > 0;
@@ -193,7 +239,12 @@ static void put_letter(Figure *figure, size_t i, const char *letter, FigureColor
                              .size_pt = options->text_pt + 1,
                              .bold = true,
                              .color = above ? ink_on(paper) : annotation_ink(inside)};
-    figure_add_text(&figure->sheet.page, &text);
+    FigurePage *page = &figure->sheet.page;
+    const PlacedPicture picture = {&figure->panels[i].scene, box};
+    figure_add_text(page, &text);
+    TRY(figure_check(page, err));
+    return placing_add_halos(page, page->n - 1, &picture, annotation_halo_width(options->text_pt),
+                             err);
 }
 
 static void put_title(Figure *figure, size_t i, FigureColor ink)
@@ -222,7 +273,7 @@ static void automatic_letter(int number, bool upper, char out[8])
     out[k] = '\0';
 }
 
-/* Over the panel but for its letter, which is the page's. */
+/* Adds a panel, its insets, and its annotations. The letter is the page's. */
 static Status put_panel(Figure *figure, size_t i, int number, Err *err)
 {
     Panel *panel = &figure->panels[i];
@@ -240,8 +291,9 @@ static Status put_panel(Figure *figure, size_t i, int number, Err *err)
     const char *shown = annotation.letter ? annotation.letter : letter;
     FigureColor paper = figure->sheet.page.background;
     if (annotation.letter || letters != LETTERS_NONE)
-        put_letter(figure, i, shown, paper);
+        TRY(put_letter(figure, i, shown, paper, err));
     put_title(figure, i, figure->ink);
+    TRY(figure_put_insets(figure, i, err));
     annotation.letter = NULL;
     return annotation_put(&annotation, &panel->scene, box, &figure->sheet.page, err);
 }
@@ -271,7 +323,15 @@ static Status put_text(Figure *figure, const Section *section, Err *err)
                              .bold = options->bold,
                              .align = options->align,
                              .color = color_of(options->color)};
-    figure_add_text(&figure->sheet.page, &text);
+    FigurePage *page = &figure->sheet.page;
+    figure_add_text(page, &text);
+    TRY(figure_check(page, err));
+    for (size_t i = 0; i < figure->plan.n; i++) {
+        const PlacedPicture picture = {&figure->panels[i].scene, figure_panel_box(figure, i)};
+        if (figure_is_panel(figure, i))
+            TRY(placing_add_halos(page, page->n - 1, &picture, annotation_halo_width(text.size_pt),
+                                  err));
+    }
     return STATUS_OK;
 }
 
@@ -292,10 +352,8 @@ static Status fill_page(Figure *figure, Err *err)
     figure->sheet.page.background = color_of(figure->options->background);
     figure->ink = ink_on(figure->sheet.page.background);
     for (size_t i = 0; i < figure->plan.n; i++)
-        if (figure_is_panel(figure, i)) {
+        if (figure_is_panel(figure, i))
             TRY(put_panel(figure, i, number++, err));
-            TRY(figure_put_insets(figure, i, err));
-        }
     for (size_t i = 0; i < figure->plan.n; i++)
         if (figure->plan.sections[i]->kind == SECTION_TEXT)
             TRY(put_text(figure, figure->plan.sections[i], err));
@@ -399,11 +457,14 @@ static Status open_press(Figure *figure, Err *err)
 
 static Status check_output(const FigureOptions *options, Err *err)
 {
-    static const char *const known[] = {"pdf", "svg", "png", "tif", "tiff", "jpg", "jpeg", NULL};
+    static const char *const known[] = {"pdf",  "eps", "svg",  "png", "tif",
+                                        "tiff", "jpg", "jpeg", NULL};
     if (is_one_of(file_extension(options->output), known))
         return STATUS_OK;
-    return err_set(err, STATUS_USAGE, "-o: '%s' does not end in .pdf, .svg, .png, .tif or .jpg",
-                   options->output);
+    (void)err_set(err, STATUS_USAGE,
+                  "-o: '%s' does not end in .pdf, .eps, .svg, .png, .tif or .jpg", options->output);
+    suggestion_add_extension(file_extension(options->output), err);
+    return STATUS_USAGE;
 }
 
 static Status make_figure(Figure *figure, const char *recipe, Err *err)
@@ -445,6 +506,8 @@ void figure_done(Figure *figure)
 {
     for (size_t i = 0; figure->panels && i < figure->plan.n; i++)
         panel_release(&figure->panels[i]);
+    for (size_t i = 0; figure->places && i < figure->plan.n; i++)
+        free(figure->places[i].tree);
     madetrees_release(&figure->trees);
     figureplan_release(&figure->plan);
     sheet_release(&figure->sheet);

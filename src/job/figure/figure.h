@@ -15,6 +15,7 @@ typedef struct FigureOptions {
     PictureSize size;
     int columns;
     double gap_mm, margin_mm, text_pt;
+    bool same_scale; /* all panels show their trees at one scale */
     Letters letters;
     Vec3 background; /* sRGB in [0, 1] */
 } FigureOptions;
@@ -23,6 +24,7 @@ typedef struct FigureOptions {
 typedef struct Place {
     int left, top, width, height;
     double title_mm; /* height of the line above the panel */
+    char *tree;      /* path of the panel's tree; NULL: the recipe makes the tree; owned */
 } Place;
 
 /* A figure on its page. Zero it before use; release it with figure_done. */
@@ -52,7 +54,8 @@ typedef struct Figure {
  * render_make; STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status figure_make(const FigureOptions *options, Parsed *parsed, Figure *figure,
                               Err *err);
-/* Writes the page to the output: .pdf, .svg, .png, .tif or .jpg. Errors: STATUS_IO, STATUS_MEMORY.
+/* Writes the page to the output: .pdf, .eps, .svg, .png, .tif or .jpg. Errors: STATUS_IO,
+ * STATUS_MEMORY.
  */
 MUST_CHECK Status figure_write(Figure *figure, Err *err);
 void figure_done(Figure *figure);

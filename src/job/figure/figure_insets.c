@@ -148,6 +148,7 @@ static Status put_inset(Figure *figure, const Section *section, size_t of, const
     larger.view = panel_inset_view(inset, &panel->scene.view);
     const Annotation annotation = {.scale_bar_mm = options->scale_bar_mm,
                                    .has_scale_bar = options->has_scale_bar,
+                                   .scale_bar_at = options->scale_bar_at,
                                    .text_pt = figure->options->text_pt};
     return annotation_put(&annotation, &larger, shown, page, err);
 }

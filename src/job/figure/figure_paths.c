@@ -41,7 +41,7 @@ static const char *find_path(const Option *option, const char *value, const char
         return path_of_domain(value);
     if (strcmp(option->name, "color-by") == 0)
         return values_parse(from_folder, &length, &column) ? value : NULL;
-    if (strcmp(option->name, "terminal-flow") == 0)
+    if (strcmp(option->name, "flow-split") == 0)
         return strcasecmp(file_extension(value), "csv") == 0 ? value : NULL;
     return strcmp(option->name, "demand") == 0 && strcmp(value, "even") != 0 ? value : NULL;
 }

@@ -15,7 +15,9 @@ static const Option panel_rows[] = {
      .otherwise = "",
      .argument = "T.swc",
      .help = "tree file that the panel shows"},
-    {.name = "title", SETS(TEXT, PanelOptions, title), .help = "line of text above the panel"},
+    {.name = "title",
+     SETS(TEXT, PanelOptions, title),
+     .help = "line of text above the panel; *r* is italic, _{w} a subscript, ^{-3} a superscript"},
     {.name = "span",
      SETS(WHOLE, PanelOptions, span),
      FROM_TO(1, 64),
@@ -59,13 +61,20 @@ static const Option inset_rows[] = {
      FROM_TO(1e-6, 1e7),
      .unit = "mm",
      .help = "draw a scale bar in the inset that represents this length of the tree"},
+    {.name = "scale-bar-at",
+     SETS(CHOICE, InsetOptions, scale_bar_at),
+     .choices = corner_names,
+     .help = "corner of the inset's scale bar; emptiest selects the corner where it covers the "
+             "least vessels"},
 };
 
 static const char *const aligns[] = {
     [ALIGN_LEFT] = "left", [ALIGN_CENTER] = "center", [ALIGN_RIGHT] = "right", NULL};
 
 static const Option text_rows[] = {
-    {.name = "text", SETS(TEXT, TextOptions, text), .help = "one line of text"},
+    {.name = "text",
+     SETS(TEXT, TextOptions, text),
+     .help = "one line of text; *r* is italic, _{w} a subscript, ^{-3} a superscript"},
     {.name = "at",
      SETS(VECTOR, TextOptions, at),
      GIVEN(TextOptions, has_at),
@@ -134,7 +143,7 @@ static Setting *find_key(const Parsed *parsed, OptionIsKey *is_key, const char *
 {
     for (size_t i = 0; parsed->settings && i < parsed->n_settings; i++)
         if (is_key(parsed->settings[i].option) &&
-            strcmp(parsed->settings[i].option->name, name) == 0)
+            option_is_named(parsed->settings[i].option, name, strlen(name)))
             return &parsed->settings[i];
     return NULL;
 }

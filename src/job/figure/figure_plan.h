@@ -4,6 +4,7 @@
 #define CORCAST_JOB_FIGURE_FIGURE_PLAN_H
 
 #include "figure/figure.h"
+#include "job/picture/placing.h"
 #include "job/tree/makers.h"
 #include "options/options.h"
 
@@ -25,6 +26,7 @@ typedef struct InsetOptions {
     double magnify; /* magnification relative to the panel */
     double width_mm, height_mm; /* size of the inset on the page; height 0: equal to the width */
     double scale_bar_mm;        /* length in the tree that the inset's scale bar stands for */
+    Corner scale_bar_at;        /* corner of the inset that the scale bar is in */
     bool has_at, has_place, has_scale_bar;
 } InsetOptions;
 

@@ -70,12 +70,12 @@ Status animation_read(const AnimationOptions *options, const char *output, Anima
     Animation made = {.first = 1};
     if ((options->frames != NULL) + (options->turn > 0) + (options->growth > 0) > 1)
         return err_set(err, STATUS_USAGE,
-                       "--frames, --turntable and --growth exclude each other; give one");
+                       "--moments, --turntable and --growth exclude each other; give one");
     if (options->frames) {
         made.kind = ANIMATION_SERIES;
         if (!read_frames(options->frames, &made))
             return err_set(err, STATUS_USAGE,
-                           "--frames: '%.40s' is not valid; use all or A..B, such as 1..24",
+                           "--moments: '%.40s' is not valid; use all or A..B, such as 1..24",
                            options->frames);
     } else if (options->turn || options->growth) {
         made.kind = options->turn ? ANIMATION_TURN : ANIMATION_GROWTH;
@@ -97,11 +97,11 @@ Status animation_count(Animation *animation, const Appearance *appearance, Err *
     if (n == 0)
         return err_set(
             err, STATUS_USAGE,
-            "--frames: %s does not change with time; give --color-by with values that do",
+            "--moments: %s does not change with time; give --color-by with values that do",
             appearance->name ? appearance->name : "the picture");
     if (animation->last > n)
-        return err_set(err, STATUS_USAGE, "--frames: %s has %d frames, not %d", appearance->name, n,
-                       animation->last);
+        return err_set(err, STATUS_USAGE, "--moments: %s has %d frames, not %d", appearance->name,
+                       n, animation->last);
     animation->n = n;
     if (animation->last == 0)
         animation->last = n;
@@ -161,13 +161,21 @@ static Status grow_to(const AnimationSubject *subject, double part, Scene *grown
 {
     const Scene *whole = subject->whole;
     const Tree *tree = &subject->source->of.tree;
+    const SmoothTree *smooth = picture_pieces(&subject->source->of);
     PictureSource young = *subject->source;
-    TRY(tree_proximal_part(tree, part, &young.of.tree, err));
-    Status status =
+    Status status;
+    if (smooth) /* the pieces have the indices of the whole tree's segments */
+        TRY(smoothtree_part(smooth, part, &young.of.smooth, err));
+    else
+        TRY(tree_proximal_part(tree, part, &young.of.tree, err));
+    status =
         picture_geometry(subject->options, &young, subject->common, &grown->geometry, NULL, err);
     if (status == STATUS_OK)
         status = part_appearance(&whole->appearance, tree, &young.of.tree, &grown->appearance, err);
-    tree_release(&young.of.tree);
+    if (smooth)
+        smoothtree_release(&young.of.smooth);
+    else
+        tree_release(&young.of.tree);
     Vec3 moved = vec3_sub(whole->geometry.origin, grown->geometry.origin);
     grown->view = view_moved(&whole->view, moved);
     return status;

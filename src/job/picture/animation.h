@@ -35,12 +35,12 @@ typedef struct Animation {
     int n;           /* pictures of the whole animation; 0: the number of frames, not known yet */
 } Animation;
 
-/* Reads the options. Errors: STATUS_USAGE if they select two kinds, if --frames is not a range, or
+/* Reads the options. Errors: STATUS_USAGE if they select two kinds, if --moments is not a range, or
  * if the `output` of an animation does not contain exactly one %d, %4d or %04d. */
 MUST_CHECK Status animation_read(const AnimationOptions *options, const char *output,
                                  Animation *animation, Err *err);
 /* Counts the frames of a series and completes its animation; leaves other kinds as they are.
- * Errors: STATUS_USAGE if values do not change with time, or if --frames asks for a frame beyond
+ * Errors: STATUS_USAGE if values do not change with time, or if --moments asks for a frame beyond
  * the last.
  */
 MUST_CHECK Status animation_count(Animation *animation, const Appearance *appearance, Err *err);

@@ -1,6 +1,6 @@
 /* The legend stands at the right of the picture or below it, and a camera that frames the tree
- * leaves that room free; scale bar and letter stand in corners, which trees hardly ever fill. All
- * distances follow from the size of the text. */
+ * leaves that room free. The letter stands in the upper left corner, where publishers want it, and
+ * the scale bar in the emptiest corner. All distances follow from the size of the text. */
 #include "job/picture/annotation.h"
 
 #include "derive/derive.h"
@@ -9,7 +9,7 @@
 
 static const char *const sides[] = {[LEGEND_RIGHT] = "right", [LEGEND_BOTTOM] = "bottom", NULL};
 
-static const Option rows[] = {
+static const Option legend_rows[] = {
     {.name = "legend",
      SETS(SWITCH, Annotation, legend),
      .group = GROUP_PAGE,
@@ -20,6 +20,7 @@ static const Option rows[] = {
      GIVEN(Annotation, has_side),
      .choices = sides,
      .group = GROUP_PAGE,
+     .otherwise = "right; bottom if an upright picture then has a larger tree",
      .needs = "legend",
      .help = "position of the legend"},
     {.name = "legend-title",
@@ -29,7 +30,19 @@ static const Option rows[] = {
      .argument = "TEXT",
      .otherwise = "name and unit of the field",
      .needs = "legend",
-     .help = "text above the legend"},
+     .help = "text above the legend; *r* is italic, _{w} a subscript, ^{-3} a superscript"},
+    {.name = "text-size",
+     SETS(NUMBER, Annotation, text_pt),
+     FROM_TO(1, 1000),
+     .group = GROUP_PAGE,
+     .unit = "pt",
+     .needs = "legend scale-bar letter",
+     .help =
+         "size of the text of legend and scale bar; an image sized in pixels counts as 300 dpi, a "
+         "diagram on a page as 180 mm wide"},
+};
+
+static const Option rows[] = {
     {.name = "scale-bar",
      SETS(NUMBER, Annotation, scale_bar_mm),
      GIVEN(Annotation, has_scale_bar),
@@ -39,21 +52,21 @@ static const Option rows[] = {
      .otherwise = "",
      .help =
          "draw a scale bar that represents this length of the tree; orthographic projection only"},
+    {.name = "scale-bar-at",
+     SETS(CHOICE, Annotation, scale_bar_at),
+     .choices = corner_names,
+     .group = GROUP_PAGE,
+     .needs = "scale-bar",
+     .help =
+         "corner of the scale bar; emptiest selects the corner where it covers the least vessels"},
     {.name = "letter",
      SETS(TEXT, Annotation, letter),
      .group = GROUP_PAGE,
      .argument = "TEXT",
      .help = "draw a bold letter in the upper left corner, as for a panel of a figure"},
-    {.name = "text-size",
-     SETS(NUMBER, Annotation, text_pt),
-     FROM_TO(1, 1000),
-     .group = GROUP_PAGE,
-     .unit = "pt",
-     .needs = "legend scale-bar letter",
-     .help =
-         "size of the text of legend and scale bar; an image sized in pixels counts as 300 dpi"},
 };
 
+const OptionTable legend_table = OPTION_TABLE(legend_rows);
 const OptionTable annotation_table = OPTION_TABLE(rows);
 
 void annotation_set_defaults(Annotation *annotation)
@@ -66,11 +79,17 @@ bool annotation_is_any(const Annotation *annotation)
     return annotation->legend || annotation->has_scale_bar || annotation->letter;
 }
 
+Status annotation_check_legend(const Annotation *annotation, const Coloring *coloring, Err *err)
+{
+    if (annotation->legend && !coloring->field)
+        return err_set(err, STATUS_USAGE, "--legend needs --color-by");
+    return STATUS_OK;
+}
+
 Status annotation_check(const Annotation *annotation, const PictureOptions *picture, Err *err)
 {
     const bool flat = picture->projection == PROJECTION_ORTHOGRAPHIC;
-    if (annotation->legend && !picture->coloring.field)
-        return err_set(err, STATUS_USAGE, "--legend needs --color-by");
+    TRY(annotation_check_legend(annotation, &picture->coloring, err));
     if (annotation->has_scale_bar && !flat)
         return err_set(
             err, STATUS_USAGE,
@@ -78,9 +97,18 @@ Status annotation_check(const Annotation *annotation, const PictureOptions *pict
     return STATUS_OK;
 }
 
-double annotation_dpi(const PictureOptions *picture)
+Status annotation_check_file(const Annotation *annotation, const char *output, Err *err)
 {
-    return picture->size.dpi > 0 ? picture->size.dpi : 300;
+    if (!image_traits(output).floats || !annotation_is_any(annotation))
+        return STATUS_OK;
+    return err_set(err, STATUS_USAGE,
+                   "-o: %s stores measured values and cannot have a legend, scale bar or letter",
+                   strcmp(file_extension(output), "exr") ? "a .pfm" : "an .exr");
+}
+
+double annotation_dpi(const PictureSize *size)
+{
+    return size->dpi > 0 ? size->dpi : 300;
 }
 
 FigureColor annotation_color(Rgb linear)
@@ -99,18 +127,6 @@ FigureColor annotation_ink(Rgb background)
 
 /* ---- words ----------------------------------------------------------------------------------- */
 
-/* "mm3/s" with its exponent raised, and "um" with its Greek letter. */
-static void put_unit(const char *unit, Text *text)
-{
-    for (const char *c = unit; *c; c++)
-        if (c > unit && (*c == '2' || *c == '3') && c[-1] >= 'a' && c[-1] <= 'z')
-            text_puts(text, *c == '2' ? "\xC2\xB2" : "\xC2\xB3");
-        else if (*c == 'u' && c[1] == 'm')
-            text_puts(text, "\xC2\xB5");
-        else
-            text_append(text, c, 1);
-}
-
 static void put_title(const Annotation *annotation, const ColorScale *scale, Text *text)
 {
     if (annotation->title) {
@@ -120,7 +136,7 @@ static void put_title(const Annotation *annotation, const ColorScale *scale, Tex
     text_puts(text, derive_field_title(scale->name));
     if (*scale->unit) {
         text_puts(text, " (");
-        put_unit(scale->unit, text);
+        text_unit(text, scale->unit);
         text_puts(text, ")");
     }
 }
@@ -144,18 +160,67 @@ static bool are_whole(const Appearance *appearance)
     return true;
 }
 
+enum { MOST_SWATCHES = 12 };
+
+/* Lists the different values that the scale can show, ascending. Returns their number, at most
+ * MOST_SWATCHES + 1. */
+static int list_values(const Appearance *appearance, double list[MOST_SWATCHES + 1])
+{
+    int n = 0;
+    for (size_t i = 0; i < appearance->n_values && n <= MOST_SWATCHES; i++) {
+        const double value = appearance->values[i];
+        int at = n;
+        if (isnan(colorscale_position(&appearance->scale, value)))
+            continue;
+        while (at > 0 && list[at - 1] >= value)
+            at--;
+        if (at < n && list[at] == value)
+            continue;
+        memmove(&list[at + 1], &list[at], (size_t)(n - at) * sizeof *list);
+        list[at] = value;
+        n++;
+    }
+    return n;
+}
+
+/* Returns the length that a swatch takes, as a multiple of the text size. */
+static double swatch_ems(bool across, double value)
+{
+    const double digit_ems = 0.56;
+    const size_t digits = strlen(READABLE(value, 6));
+    return across ? fmax(1.7, digit_ems * (double)digits + 0.6) : 1.35;
+}
+
+/* Lists the values that have swatches: integers, if they fit into `ems` times the text size and
+ * have the color of no class, and the value of a field that has only one. Returns their number; 0:
+ * the legend has a bar. */
+static int list_swatches(const Appearance *appearance, bool across, double ems,
+                         double list[MOST_SWATCHES + 1])
+{
+    const ColorScale *scale = &appearance->scale;
+    const int n = list_values(appearance, list);
+    if (scale->n_bounds || scale->classes > 1 || n == 1)
+        return n == 1 && !scale->n_bounds && scale->classes < 2;
+    const bool few = n > 0 && n <= MOST_SWATCHES && are_whole(appearance);
+    return few && !appearance->positions && n * swatch_ems(across, list[n - 1]) <= ems ? n : 0;
+}
+
 /* Appends the legend of a picture of this size, anywhere. */
 static Status add_legend(const Annotation *annotation, const Appearance *appearance, double width,
                          double height, FigureColor ink, FigurePage *page, Err *err)
 {
     const double em = annotation->text_pt * MM_PER_POINT;
     const bool across = annotation->legend_at == LEGEND_BOTTOM;
+    const double title_ems = 3, ems = across ? width / em : height / em - title_ems;
+    double swatches[MOST_SWATCHES + 1];
     Text title = TEXT_INIT;
     put_title(annotation, &appearance->scale, &title);
     Status status = text_check(&title, err);
     const FigureLegend legend = {.scale = &appearance->scale,
                                  .outside = appearance->outside,
                                  .integers = are_whole(appearance),
+                                 .swatches = swatches,
+                                 .n_swatches = list_swatches(appearance, across, ems, swatches),
                                  .title = text_chars(&title),
                                  .horizontal = across,
                                  .length_mm =
@@ -173,50 +238,69 @@ static double gap_of(const Annotation *annotation)
     return 0.9 * annotation->text_pt * MM_PER_POINT;
 }
 
-static Status measure(const Annotation *annotation, const Appearance *appearance, FigurePage *page,
-                      double size[2], Err *err)
+/* Measures the legend of a picture that is as large as the page `like`. */
+static Status measure(const Annotation *annotation, const Appearance *appearance,
+                      const FigurePage *like, double size[2], Err *err)
 {
-    TRY(add_legend(annotation, appearance, page->width_mm, page->height_mm, page->background, page,
-                   err));
-    FigureBox box = figure_bounds(page, 0);
-    size[0] = box.right - box.left;
-    size[1] = box.bottom - box.top;
-    return STATUS_OK;
+    FigurePage page;
+    figure_init(&page, like->width_mm, like->height_mm, like->dpi, like->fonts);
+    Status status = add_legend(annotation, appearance, page.width_mm, page.height_mm,
+                               page.background, &page, err);
+    const FigureBox box = figure_bounds(&page, 0);
+    size[0] = box.right - box.left + gap_of(annotation);
+    size[1] = box.bottom - box.top + gap_of(annotation);
+    figure_release(&page);
+    return status;
 }
 
-Status annotation_make_room(const Annotation *annotation, const FigureFonts *fonts,
-                            const Appearance *appearance, PictureOptions *picture, Err *err)
+Status annotation_measure_legend(Annotation *annotation, const Appearance *appearance,
+                                 const FigurePage *page, double size[2], Err *err)
+{
+    TRY(measure(annotation, appearance, page, size, err));
+    if (annotation->has_side || page->height_mm <= page->width_mm)
+        return STATUS_OK;
+    const double beside = fmin(page->width_mm - size[0], page->height_mm);
+    annotation->legend_at = LEGEND_BOTTOM;
+    TRY(measure(annotation, appearance, page, size, err));
+    if (fmin(page->width_mm, page->height_mm - size[1]) > beside)
+        return STATUS_OK;
+    annotation->legend_at = LEGEND_RIGHT;
+    return measure(annotation, appearance, page, size, err);
+}
+
+Status annotation_make_room(Annotation *annotation, const FigureFonts *fonts,
+                            const Appearance *appearance, const PictureSize *picture, int room[2],
+                            Err *err)
 {
     const double pixel = MM_PER_INCH / annotation_dpi(picture);
-    const int *pixels = picture->size.pixels;
+    const int *pixels = picture->pixels;
     FigurePage page;
     double size[2];
     if (!annotation->legend)
         return STATUS_OK;
     figure_init(&page, pixels[0] * pixel, pixels[1] * pixel, annotation_dpi(picture), fonts);
-    Status status = measure(annotation, appearance, &page, size, err);
+    Status status = annotation_measure_legend(annotation, appearance, &page, size, err);
     figure_release(&page);
     TRY(status);
     int side = annotation->legend_at == LEGEND_RIGHT ? 0 : 1;
-    int needed = (int)ceil((size[side] + gap_of(annotation)) / pixel);
+    int needed = (int)ceil(size[side] / pixel);
     if (needed > pixels[side] * 2 / 3)
         return err_set(err, STATUS_USAGE,
                        "--legend needs %.0f mm, but the picture has %.0f mm; use a larger --size "
                        "or a smaller --text-size",
                        needed * pixel, pixels[side] * pixel);
-    picture->stage.room[side] = needed;
+    room[side] = needed;
     return STATUS_OK;
 }
 
 /* At the edge, in the middle of it. */
-static Status put_legend(const Annotation *annotation, const Scene *scene, FigureBox where,
-                         FigurePage *page, Err *err)
+Status annotation_put_legend(const Annotation *annotation, const Appearance *appearance,
+                             FigureColor ink, FigureBox where, FigurePage *page, Err *err)
 {
     const size_t first = page->n;
     const double width = where.right - where.left, height = where.bottom - where.top;
     const double gap = gap_of(annotation);
-    TRY(add_legend(annotation, &scene->appearance, width, height,
-                   annotation_ink(scene->view.background), page, err));
+    TRY(add_legend(annotation, appearance, width, height, ink, page, err));
     FigureBox box = figure_bounds(page, first);
     if (annotation->legend_at == LEGEND_RIGHT)
         figure_move(page, first, where.right - gap - box.right,
@@ -247,9 +331,8 @@ static Status put_scale_bar(const Annotation *annotation, const Scene *scene, Fi
                              annotation->text_pt, annotation_ink(scene->view.background));
     text_release(&label);
     TRY(status);
-    FigureBox box = figure_bounds(page, first);
-    figure_move(page, first, where.left + gap - box.left, where.bottom - gap - box.bottom);
-    return STATUS_OK;
+    const PlacedPicture picture = {scene, where};
+    return placing_move(page, first, &picture, annotation->scale_bar_at, gap, err);
 }
 
 static void put_letter(const Annotation *annotation, const Scene *scene, FigureBox where,
@@ -265,14 +348,24 @@ static void put_letter(const Annotation *annotation, const Scene *scene, FigureB
     figure_add_text(page, &letter);
 }
 
+double annotation_halo_width(double text_pt)
+{
+    return 0.12 * text_pt * MM_PER_POINT;
+}
+
 Status annotation_put(const Annotation *annotation, const Scene *scene, FigureBox where,
                       FigurePage *page, Err *err)
 {
+    const size_t first = page->n;
+    const PlacedPicture picture = {scene, where};
     if (annotation->legend)
-        TRY(put_legend(annotation, scene, where, page, err));
-    if (annotation->has_scale_bar)
-        TRY(put_scale_bar(annotation, scene, where, page, err));
+        TRY(annotation_put_legend(annotation, &scene->appearance,
+                                  annotation_ink(scene->view.background), where, page, err));
     if (annotation->letter)
         put_letter(annotation, scene, where, page);
-    return figure_check(page, err);
+    if (annotation->has_scale_bar)
+        TRY(put_scale_bar(annotation, scene, where, page, err));
+    TRY(figure_check(page, err));
+    return placing_add_halos(page, first, &picture, annotation_halo_width(annotation->text_pt),
+                             err);
 }

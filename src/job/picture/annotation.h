@@ -5,13 +5,14 @@
  * All three are appended to a page (FigurePage), which is drawn over the picture or contains it:
  *
  *     annotation_check(annotation, picture, err);                          // before the scene
- *     annotation_make_room(annotation, fonts, appearance, picture, err);   // before the view
+ *     annotation_make_room(annotation, fonts, appearance, size, room, err); // before the view
  *     annotation_put(annotation, scene, where, page, err);                 // after the view */
 #ifndef CORCAST_JOB_PICTURE_ANNOTATION_H
 #define CORCAST_JOB_PICTURE_ANNOTATION_H
 
 #include "figure/figure.h"
 #include "job/picture/picture.h"
+#include "job/picture/placing.h"
 #include "options/options.h"
 
 /* The side of the picture on which the legend is drawn. */
@@ -27,12 +28,14 @@ typedef struct Annotation {
     const char *letter;  /* NULL: no letter */
     double scale_bar_mm; /* length in the tree that the scale bar stands for */
     bool has_scale_bar;  /* a scale bar is drawn */
+    Corner scale_bar_at; /* corner of the picture that the scale bar is in */
     double text_pt;      /* font size of legend and scale bar, points */
 } Annotation;
 
 /* Sets the defaults of a zeroed Annotation. */
 void annotation_set_defaults(Annotation *annotation);
-extern const OptionTable annotation_table; /* sets an Annotation */
+/* Set an Annotation: the legend and the size of text; scale bar and letter. */
+extern const OptionTable legend_table, annotation_table;
 
 /* Returns true if a legend, a scale bar or a letter is to be drawn. */
 bool annotation_is_any(const Annotation *annotation);
@@ -42,25 +45,52 @@ bool annotation_is_any(const Annotation *annotation);
 MUST_CHECK Status annotation_check(const Annotation *annotation, const PictureOptions *picture,
                                    Err *err);
 
+/* Checks that a legend has colors to explain. Errors: STATUS_USAGE if there is no --color-by. */
+MUST_CHECK Status annotation_check_legend(const Annotation *annotation, const Coloring *coloring,
+                                          Err *err);
+
+/* Checks that a file can hold annotations. Errors: STATUS_USAGE if it stores floats. */
+MUST_CHECK Status annotation_check_file(const Annotation *annotation, const char *output, Err *err);
+
 /* Returns the resolution of the page in dots per inch: that of the picture's size on paper, or 300
  * if the size is in pixels. */
-double annotation_dpi(const PictureOptions *picture);
+double annotation_dpi(const PictureSize *size);
 
 /* Reserves space for the legend, so that a camera that frames the tree leaves this space empty.
  *
- * picture  receives the reserved space, in its view parameters.
- * Errors   STATUS_USAGE if the legend leaves no space for the tree; STATUS_MEMORY. */
-MUST_CHECK Status annotation_make_room(const Annotation *annotation, const FigureFonts *fonts,
-                                       const Appearance *appearance, PictureOptions *picture,
-                                       Err *err);
+ * annotation  receives the side of the legend, if no option specifies it.
+ * room        receives the reserved width or height in pixels. Unchanged without a legend.
+ * Errors      STATUS_USAGE if the legend leaves no space for the tree; STATUS_MEMORY. */
+MUST_CHECK Status annotation_make_room(Annotation *annotation, const FigureFonts *fonts,
+                                       const Appearance *appearance, const PictureSize *picture,
+                                       int room[2], Err *err);
 
-/* Appends legend, scale bar and letter to a page.
+/* Measures the legend of a page, and chooses its side if no option specifies one: below a page that
+ * is upright, if more of the page is then left for the tree, else at the right.
+ *
+ * annotation  receives the side.
+ * page        its size and fonts; its items do not matter.
+ * size        receives width and height of the legend with the gap to the edge, mm.
+ * Errors      STATUS_MEMORY. */
+MUST_CHECK Status annotation_measure_legend(Annotation *annotation, const Appearance *appearance,
+                                            const FigurePage *page, double size[2], Err *err);
+
+/* Appends the legend to a page, at its side of the rectangle `where`. Errors: STATUS_MEMORY. */
+MUST_CHECK Status annotation_put_legend(const Annotation *annotation, const Appearance *appearance,
+                                        FigureColor ink, FigureBox where, FigurePage *page,
+                                        Err *err);
+
+/* Appends legend, scale bar and letter to a page. What lies on vessels gets a halo of the
+ * background's color.
  *
  * where   the rectangle of the page that the picture of `scene` covers.
  * Errors  STATUS_USAGE if the scale bar is longer than the width of the picture; the errors of
  *         figure_check; STATUS_MEMORY. */
 MUST_CHECK Status annotation_put(const Annotation *annotation, const Scene *scene, FigureBox where,
                                  FigurePage *page, Err *err);
+
+/* Returns the width in mm of halos around text of this size. */
+double annotation_halo_width(double text_pt);
 
 /* Converts a linear RGB color to the color type of pages. */
 FigureColor annotation_color(Rgb linear);

@@ -64,15 +64,16 @@ static const Option rows[] = {
      .group = GROUP_COLOR,
      .when = WHEN(NO_BOUNDS),
      .needs = "color-by",
-     .help = "use a logarithmic color scale"},
+     .help =
+         "logarithmic color scale; segments with values of 0 or less get the color of --no-data"},
     {.name = "classes",
      SETS(NUMBERS, Coloring, classes),
      .group = GROUP_COLOR,
      .argument = "N|A,B,...",
      .when = WHEN(STEPS),
      .needs = "color-by",
-     .help = "divide the range into N classes of one color each, or at the bounds A,B,...; 1 draws "
-             "continuous colors"},
+     .help = "number of classes, each of one color, or the bounds between classes: 0,5,10 makes "
+             "the classes 0 to 5 and 5 to 10; 1: continuous colors"},
     {.name = "under",
      SETS(COLOR, Coloring, under),
      GIVEN(Coloring, has_under),
@@ -239,6 +240,49 @@ Status coloring_appearance(const Coloring *coloring, const ColoredTree *tree, co
     Colormap map = {0};
     TRY(read_map(coloring, &map, err));
     Status status = color_field(coloring, tree, look, &map, appearance, err);
+    colormap_release(&map);
+    return status;
+}
+
+static Status map_of_look(const Look *look, Colormap *map, Err *err)
+{
+    const Rgb ends[] = {look->tips.color, look->color};
+    TRY(mem_calloc(&map->srgb, 2, sizeof *map->srgb, "colors", err));
+    map->n = 2;
+    for (int i = 0; i < 2; i++) {
+        map->srgb[i][0] = srgb_encode(ends[i].r);
+        map->srgb[i][1] = srgb_encode(ends[i].g);
+        map->srgb[i][2] = srgb_encode(ends[i].b);
+    }
+    return STATUS_OK;
+}
+
+Status coloring_by_radius(const ColoredTree *tree, const Look *look, Appearance *appearance,
+                          Err *err)
+{
+    const double one_class = 1;
+    const FieldScaleParams params = {.look = look,
+                                     .has_ends = true,
+                                     .ends = {2, 100},
+                                     .percent = {true, true},
+                                     .log = true,
+                                     .classes = &one_class,
+                                     .n_classes = 1};
+    const TreeMeta meta = {0};
+    FieldSeries series = {0};
+    FieldValues radii = {0};
+    Colormap map = {0};
+    Status status;
+    TRY_GOTO(map_of_look(look, &map, err));
+    TRY_GOTO(derive_series(tree->drawn, &meta, "radius", &series, err));
+    TRY_GOTO(fieldvalues_take(tree->drawn, &series, NULL, &radii, err));
+    TRY_GOTO(fieldscale_color(&params, &map, &radii, &radii, appearance, err));
+    free(appearance->meaning);
+    appearance->meaning = NULL;
+done:
+    if (status == STATUS_INPUT) /* no segment has a radius, so that there is no geometry either */
+        status = stage_appearance(look, NULL, NULL, appearance, err);
+    fieldvalues_release(&radii);
     colormap_release(&map);
     return status;
 }

@@ -88,6 +88,16 @@ typedef struct ColoredTree {
 MUST_CHECK Status coloring_appearance(const Coloring *coloring, const ColoredTree *tree,
                                       const Look *look, Appearance *appearance, Err *err);
 
+/* Sets the colors of the vessels from the look's color of the thinnest vessels to that of the
+ * thickest, by the logarithm of the radius. The thinnest 2 % of the segments have one color. If no
+ * segment has a radius, all have the look's color. The appearance has no meaning that a legend
+ * would show.
+ *
+ * appearance  set on success; release it with appearance_release.
+ * Errors      STATUS_MEMORY. */
+MUST_CHECK Status coloring_by_radius(const ColoredTree *tree, const Look *look,
+                                     Appearance *appearance, Err *err);
+
 /* Reports, as notes, what the colors mean. Recommends --log if the field spans more than three
  * decades: a linear scale hardly shows the lowest values. Reports nothing if appearance->meaning is
  * NULL. */

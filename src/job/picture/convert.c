@@ -156,14 +156,7 @@ static Status unknown_kind(const char *path, Err *err)
                          ".pnm for one that is read",
                          path, text_chars(&trees));
     text_release(&trees);
-    if (status != STATUS_USAGE)
-        return status;
-    Suggestion suggestion = suggestion_for(file_extension(path), strlen(file_extension(path)));
-    for (size_t i = 0; tree_format_extension(i); i++)
-        suggestion_offer(&suggestion, tree_format_extension(i));
-    for (size_t i = 0; i < N_IMAGES; i++)
-        suggestion_offer(&suggestion, images[i].extension);
-    suggestion_add(&suggestion, ".", err);
+    suggestion_add_extension(file_extension(path), err);
     return status;
 }
 

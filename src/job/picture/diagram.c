@@ -1,6 +1,7 @@
-/* One layout, drawn as SVG or as pixels: the output's extension says which. */
+/* One layout, drawn on a page or as pixels: the output's extension says which. */
 #include "job/picture/diagram.h"
 
+#include "job/picture/annotation.h"
 #include "options/output.h"
 #include "options/templates.h"
 #include <stdlib.h>
@@ -13,13 +14,14 @@ typedef struct DiagramOptions {
     Vec3 background; /* sRGB in [0, 1] */
     Coloring coloring;
     PressOptions press;
+    Annotation annotation; /* its legend */
 } DiagramOptions;
 
 static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, DiagramOptions, output),
      .argument = "D.svg",
-     .help = "diagram: .svg, true to size, or .png, .tif, .jpg or .ppm"},
+     .help = "diagram: .svg, .pdf or .eps, true to size, or .png, .tif, .jpg or .ppm"},
     {.name = "gap",
      SETS(NUMBER, DiagramOptions, gap_mm),
      FROM_TO(0, 1e7),
@@ -43,7 +45,8 @@ static const Option own[] = {
              "(89mm)"},
     {DPI_OF_SIZE(DiagramOptions, size), .group = GROUP_CAMERA,
      .when = WHEN(PIXELS) | WHEN(ON_PAPER_OR_KEPT),
-     .help = "resolution in pixels per inch; stored in .png, .tif and .jpg"},
+     .help = "pixels per inch: sets the number of pixels of a --size on paper; with a --size in "
+             "pixels it is only stored in the file (.png, .tif, .jpg)"},
     {.name = "margin",
      SETS(NUMBER, DiagramOptions, margin),
      FROM_TO(0, 0.45),
@@ -62,10 +65,11 @@ static const Option own[] = {
      .help = "background color: a CSS name, #RRGGBB, or R,G,B each 0..1"},
 };
 
-/* Returns true if the diagram is a page: for an .svg, and in memory, where there is no file. */
+/* Returns true if the diagram is a page: in a file of a page, and in memory, where there is no
+ * file. */
 static bool is_page(const DiagramOptions *options)
 {
-    return !options->output || strcmp(file_extension(options->output), "svg") == 0;
+    return !options->output || frames_is_page(options->output);
 }
 
 static ConditionSet unmet(const void *set, const Parsed *parsed)
@@ -84,6 +88,7 @@ static void set_defaults(void *options)
         .look = "cast", .size = {.pixels = {1200, 900}}, .margin = 0.05, .background = {1, 1, 1}};
     coloring_set_defaults(&own_options->coloring);
     press_set_defaults(&own_options->press);
+    annotation_set_defaults(&own_options->annotation);
 }
 
 static Status paint(const DiagramOptions *options, MadeDiagram *made, Err *err)
@@ -131,33 +136,77 @@ static Status lay_out(const DiagramOptions *options, const Parsed *parsed, MadeD
 
 static Status check(const DiagramOptions *options, Err *err)
 {
+    TRY(annotation_check_legend(&options->annotation, &options->coloring, err));
     if (is_page(options))
         return STATUS_OK;
+    TRY(annotation_check_file(&options->annotation, options->output, err));
     TRY(press_check(&options->press, options->output, err));
     return frames_check_output(options->output, false, err);
 }
 
+/* The widest page of journals, mm: on it, the text of a legend has its size in points. */
+static const double widest_mm = 180;
+
+/* Makes the page larger, and adds the legend there. */
+static Status add_legend(const DiagramOptions *options, MadeDiagram *made, Err *err)
+{
+    FigurePage *page = &made->page;
+    Annotation legend = options->annotation;
+    double size[2];
+    page->fonts = made->sheet.fonts;
+    legend.text_pt *= fmax(page->width_mm, page->height_mm) / widest_mm;
+    TRY(annotation_measure_legend(&legend, &made->appearance, page, size, err));
+    const int side = legend.legend_at == LEGEND_RIGHT ? 0 : 1;
+    page->width_mm = side ? fmax(page->width_mm, size[0]) : page->width_mm + size[0];
+    page->height_mm = side ? page->height_mm + size[1] : fmax(page->height_mm, size[1]);
+    const FigureBox whole = {0, 0, page->width_mm, page->height_mm};
+    return annotation_put_legend(&legend, &made->appearance,
+                                 annotation_ink(rgb_of_option(options->background)), whole, page,
+                                 err);
+}
+
+/* Draws the bars beside the space of the legend, which becomes the page over the pixels. */
+static Status draw_pixels(DiagramOptions *options, MadeDiagram *made, Err *err)
+{
+    const int *size = options->size.pixels;
+    const FigureColor ink = annotation_ink(rgb_of_option(options->background));
+    int room[2] = {0, 0};
+    TRY(picture_fits(size[0], size[1], 40, err));
+    TRY(annotation_make_room(&options->annotation, made->sheet.fonts, &made->appearance,
+                             &options->size, room, err));
+    TRY(diagram_draw(&made->style, &made->bars, size[0], size[1], room, &made->pixels.color, err));
+    if (!options->annotation.legend)
+        return STATUS_OK;
+    sheet_begin(&made->sheet, size, annotation_dpi(&options->size));
+    const FigurePage *page = &made->sheet.page;
+    const FigureBox whole = {0, 0, page->width_mm, page->height_mm};
+    return annotation_put_legend(&options->annotation, &made->appearance, ink, whole,
+                                 &made->sheet.page, err);
+}
+
 Status diagram_make(void *options, Parsed *parsed, MadeDiagram *made, Err *err)
 {
-    const DiagramOptions *own_options = options;
-    const int *size = own_options->size.pixels;
+    DiagramOptions *own_options = options;
     *made = (MadeDiagram){.is_page = is_page(own_options)};
     TRY(check(own_options, err));
     if (!made->is_page)
         TRY(press_open(&own_options->press, own_options->output, parsed->common.threads,
                        &made->press, err));
+    if (own_options->annotation.legend)
+        TRY(sheet_open(&made->sheet, err));
     TRY(lay_out(own_options, parsed, made, err));
-    if (!made->is_page) {
-        TRY(picture_fits(size[0], size[1], 40, err));
-        return diagram_draw(&made->style, &made->bars, size[0], size[1], &made->pixels.color, err);
-    }
+    if (!made->is_page)
+        return draw_pixels(own_options, made, err);
     diagram_make_page(&made->style, &made->bars, &made->page);
+    if (own_options->annotation.legend)
+        TRY(add_legend(own_options, made, err));
     return figure_check(&made->page, err);
 }
 
 void madediagram_release(MadeDiagram *made)
 {
     figure_release(&made->page);
+    sheet_release(&made->sheet);
     frame_release(&made->pixels);
     press_release(&made->press);
     picture_tree_release(&made->of);
@@ -176,6 +225,7 @@ static Status write_pixels(const DiagramOptions *options, const MadeDiagram *mad
                              .picture = true,
                              .dpi = options->size.dpi,
                              .provenance = command,
+                             .page = made->sheet.fonts ? (FigurePage *)&made->sheet.page : NULL,
                              .colors = made->appearance.meaning};
     return frames_write(&made->pixels, &form, err);
 }
@@ -221,7 +271,7 @@ const Command command_diagram = {
     .name = "diagram",
     .summary = "draw a tree unrolled flat, with true lengths and diameters",
     .operands = "T.swc -o D.svg",
-    .examples = "  corcast diagram tree.swc --color-by wss -o wss.svg\n"
+    .examples = "  corcast diagram tree.swc --color-by wss --log --legend -o wss.svg\n"
                 "  corcast diagram tree.swc --color-by pressure --size 2400x1800 -o pressure.png\n",
     .min_operands = 1,
     .max_operands = 1,
@@ -231,5 +281,6 @@ const Command command_diagram = {
     .set_defaults = set_defaults,
     .tables = {{&own_table, 0},
                COLORING_TABLES(DiagramOptions, coloring),
+               {&legend_table, offsetof(DiagramOptions, annotation)},
                {&press_table, offsetof(DiagramOptions, press)}},
 };

@@ -8,6 +8,7 @@
 #include "job/picture/frames.h"
 #include "job/picture/picture.h"
 #include "job/picture/press.h"
+#include "job/picture/sheet.h"
 
 /* The command line of the operation. */
 extern const Command command_diagram;
@@ -24,10 +25,12 @@ typedef struct MadeDiagram {
     DiagramStyle style; /* borrows from the other members */
     FigureBars bars;
     float (*color)[3]; /* per node: linear RGB */
+    Sheet sheet; /* templates and fonts, and the page that lies over `pixels`; only opened for a
+                    legend */
 } MadeDiagram;
 
-/* Draws the tree that is the first operand. The result is a page if the option `output` is an .svg
- * file or not specified, else an image.
+/* Draws the tree that is the first operand. The result is a page if the option `output` is an .svg,
+ * .pdf or .eps file or not specified, else an image.
  *
  * options   parsed->options.
  * made      must not be moved or copied, because it points to itself. The caller releases it with

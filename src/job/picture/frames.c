@@ -10,7 +10,7 @@
 
 bool frames_is_page(const char *path)
 {
-    static const char *const known[] = {"pdf", "svg", NULL};
+    static const char *const known[] = {"pdf", "eps", "svg", NULL};
     return is_one_of(file_extension(path), known);
 }
 
@@ -26,8 +26,10 @@ Status frames_check_output(const char *path, bool planes, Err *err)
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
         if (strcmp(file_extension(path), known[i]) == 0)
             return STATUS_OK;
-    return err_set(err, STATUS_USAGE,
-                   "-o: '%s' does not end in .png, .ppm, .tif, .jpg, .exr or .pfm", path);
+    (void)err_set(err, STATUS_USAGE,
+                  "-o: '%s' does not end in .png, .ppm, .tif, .jpg, .exr or .pfm", path);
+    suggestion_add_extension(file_extension(path), err);
+    return STATUS_USAGE;
 }
 
 const Range bits_range = {8, 16};
@@ -286,8 +288,9 @@ static Status write_picture(FramesWriter *writer, const Frame *rows, Err *err)
 Status frames_write_page(const FigurePage *page, const FigureNotes *notes, const char *path,
                          Err *err)
 {
-    if (strcmp(file_extension(path), "pdf") == 0)
-        return figure_write_pdf(page, notes, path, err);
+    const bool eps = strcmp(file_extension(path), "eps") == 0;
+    if (eps || strcmp(file_extension(path), "pdf") == 0)
+        return figure_write_pdf(page, notes, eps, path, err);
     OutFile file;
     TRY(outfile_open(&file, path, err));
     Text svg = TEXT_TO(file.stream);

@@ -2,8 +2,8 @@
  * color, depth, normals and ids.
  *
  * A FramesForm describes the files. A FramesWriter receives the rows from the top, band by band, so
- * that a file needs the memory of one band. A page (.pdf, .svg) is different: its whole picture is
- * stored until frames_commit.
+ * that a file needs the memory of one band. A page (.pdf, .eps, .svg) is different: its whole
+ * picture is stored until frames_commit.
  *
  * Use:
  *
@@ -18,10 +18,10 @@
 #include "image/image.h"
 #include "options/files.h"
 
-/* Returns true if the extension of `path` is that of a page: .pdf or .svg. */
+/* Returns true if the extension of `path` is that of a page: .pdf, .eps or .svg. */
 bool frames_is_page(const char *path);
-/* Writes a page as PDF if `path` ends in .pdf, otherwise as SVG. Errors: as figure_write_pdf and
- * figure_put_svg; STATUS_IO. */
+/* Writes a page as PDF or EPS if `path` ends in .pdf or .eps, otherwise as SVG. Errors: as
+ * figure_write_pdf and figure_put_svg; STATUS_IO. */
 MUST_CHECK Status frames_write_page(const FigurePage *page, const FigureNotes *notes,
                                     const char *path, Err *err);
 /* Checks the path of a picture. "-" is standard output. Errors: STATUS_USAGE if `path` does not

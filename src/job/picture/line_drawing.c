@@ -9,7 +9,7 @@ Status line_drawing_check(const PictureOptions *picture, const char *output, Err
 {
     if (!frames_is_page(output))
         return err_set(err, STATUS_USAGE,
-                       "--ink writes .svg or .pdf only; for pixels use --look ink");
+                       "--ink writes .svg, .pdf or .eps only; for pixels use --look ink");
     if (!model_is_of(picture->model, MODEL_PRIMITIVES))
         return err_set(err, STATUS_USAGE, "--ink needs --model %s, not %s",
                        models_of(MODEL_PRIMITIVES).text, models[picture->model].name);

@@ -1,5 +1,5 @@
 /* Draws the vessels of a scene as lines (--ink) instead of as a shaded picture. The lines are
- * vector graphics on a page, .pdf or .svg. Hidden lines are omitted. */
+ * vector graphics on a page, .pdf, .eps or .svg. Hidden lines are omitted. */
 #ifndef CORCAST_JOB_PICTURE_LINE_DRAWING_H
 #define CORCAST_JOB_PICTURE_LINE_DRAWING_H
 
@@ -11,7 +11,7 @@
 extern const Range ink_range;
 
 /* Checks that --ink can be used. Errors: STATUS_USAGE if the model has no line drawing, or if the
- * file `output` is not a .pdf or .svg. */
+ * file `output` is not a .pdf, .eps or .svg. */
 MUST_CHECK Status line_drawing_check(const PictureOptions *picture, const char *output, Err *err);
 
 /* Draws the vessels of the scene as lines below everything else on the page form->page, and writes

@@ -43,11 +43,11 @@ static const Option rows[] = {
      .choices = model_names,
      .group = GROUP_VESSELS,
      .when = WHEN(MODELS),
-     .help = "vessel geometry: cylinders (one closed cylinder per segment), joined (cylinders with "
-             "ruled surfaces at "
-             "junctions), rounded (cylinders with spheres where they meet or end), isosurface "
-             "(smoothly blended surface), blob (POV-Ray's approximation of that surface), mesh "
-             "(triangles of that surface, cut flat at free ends)"},
+     .help =
+         "vessel geometry: cylinders (one closed cylinder per segment), joined (cylinders "
+         "connected by straight-sided transitions), rounded (cylinders with spheres where they "
+         "meet or end), isosurface (smoothly blended surface), blob (POV-Ray's quick approximation "
+         "of the isosurface), mesh (the isosurface as triangles, open ends cut flat)"},
     {.name = "potential",
      SETS(CHOICE, PictureOptions, potential),
      .choices = potentials,
@@ -64,7 +64,8 @@ static const Option rows[] = {
      .help = "joined only: what to draw where a junction cannot be built because vessels are too "
              "short or turn too sharply: robust (as with rounded), paper (the junction as it "
              "comes, with faults)"},
-    {.name = "tolerance",
+    {.name = "mesh-tolerance",
+     .former = "tolerance",
      SETS(NUMBER, PictureOptions, tolerance),
      .range = &tolerance_range,
      .group = GROUP_VESSELS,
@@ -76,6 +77,8 @@ static const Option rows[] = {
      .group = GROUP_VESSELS,
      .when = WHEN(TRIANGLES) | WHEN(SURFACES),
      .help = "mesh only: shrink unconnected vessels that overlap until they no longer touch"},
+    {SMOOTH_OPTION(PictureOptions, smooth), GIVEN(PictureOptions, has_smooth),
+     .otherwise = "the look's: off in most looks", .when = WHEN(VESSELS)},
     {.name = "prune-radius",
      SETS(NUMBER, PictureOptions, prune_radius_mm),
      .range = &prune_range,
@@ -88,9 +91,9 @@ static const Option rows[] = {
      .group = GROUP_COLOR,
      .when = WHEN(FIELD_MODEL),
      .needs = "color-by",
-     .help = "isosurface and blob only: color of a point where segments blend: segment (color of "
-             "the segment that contributes most), blended (color of the mean value, weighted by "
-             "contribution)"},
+     .help = "isosurface and blob only: color where segments merge: segment (the value of the "
+             "segment that contributes most), blended (the mean of the segments' values, weighted "
+             "by contribution)"},
     {.name = "size",
      SETS(SIZE, PictureOptions, size),
      FROM_TO(1, IMAGE_MAX_SIDE),
@@ -100,11 +103,14 @@ static const Option rows[] = {
              "(89mm)"},
     {DPI_OF_SIZE(PictureOptions, size), .group = GROUP_CAMERA,
      .when = WHEN(ON_PAPER) | WHEN(ON_PAPER_OR_KEPT),
-     .help = "resolution in pixels per inch; stored in .png, .tif and .jpg"},
+     .help = "pixels per inch: sets the number of pixels of a --size on paper; with a --size in "
+             "pixels it is only stored in the file (.png, .tif, .jpg)"},
     {.name = "projection",
      SETS(CHOICE, PictureOptions, projection),
+     GIVEN(PictureOptions, has_projection),
      .choices = projections,
      .group = GROUP_CAMERA,
+     .otherwise = "the look's: orthographic in most looks",
      .when = WHEN(CAMERA),
      .help = "projection of the camera"},
     {.name = "view",
@@ -122,7 +128,8 @@ static const Option rows[] = {
      .argument = "AZ,EL",
      .otherwise = "",
      .when = WHEN(CAMERA),
-     .help = "then rotate the camera AZ degrees to the right and EL degrees up"},
+     .help =
+         "rotate the camera of --view AZ degrees to the right and EL degrees up around the tree"},
     {.name = "up-axis",
      SETS(CHOICE, PictureOptions, stage.up_axis),
      .choices = up_axes,
@@ -134,8 +141,9 @@ static const Option rows[] = {
      .choices = framings,
      .group = GROUP_CAMERA,
      .when = WHEN(CAMERA),
-     .help = "what to fit in the image: tree (the same for all models), domain (the tissue shape "
-             "it was grown in), drawing (everything that is drawn)"},
+     .help = "what to fit in the image: tree (axes and radii of the segments, so that images of "
+             "all models match), domain (the tissue shape that the tree was grown in; an error if "
+             "its header states none), drawing (the geometry as drawn)"},
     {.name = "location",
      SETS(VECTOR, PictureOptions, stage.location),
      GIVEN(PictureOptions, stage.has_location),
@@ -155,9 +163,9 @@ static const Option rows[] = {
      SETS(VECTOR, PictureOptions, stage.up),
      GIVEN(PictureOptions, stage.has_up),
      .group = GROUP_CAMERA,
-     .otherwise = "",
+     .otherwise = "the axis of --up-axis",
      .when = WHEN(CAMERA),
-     .help = "direction that points up in the image"},
+     .help = "direction in the coordinates of the tree that points up in the image"},
     {.name = "angle",
      SETS(NUMBER, PictureOptions, stage.angle_deg),
      GIVEN(PictureOptions, has_angle),
@@ -191,15 +199,19 @@ static const Option rows[] = {
      .help = "draw N x N samples per pixel; 1 turns antialiasing off"},
     {.name = "ao",
      SETS(WHOLE, PictureOptions, occlusion),
-     FROM_TO(0, 4096),
+     GIVEN(PictureOptions, has_occlusion),
+     FROM_TO(0, LOOK_MAX_OCCLUSION),
      .group = GROUP_LIGHT,
+     .otherwise = "the look's: 0 in most looks",
      .when = WHEN(LIT),
-     .help = "ambient occlusion with N rays per pixel (with --exact: N rays per sample); suits "
-             "--look print; 0 turns it off"},
+     .help =
+         "ambient occlusion with N rays per pixel (with --exact: N rays per sample); 0 turns it "
+         "off"},
     {.name = "look",
      SETS(LOOKUP, PictureOptions, look),
      .group = GROUP_LIGHT,
      .list = "looks",
+     .otherwise = "cast; with --color-by data, whose colors are those of the legend",
      .when = WHEN(VESSELS),
      .help = "colors, finish and lights: the name of a look, or the path of a file of your own "
              "(with a '/')"},
@@ -220,7 +232,9 @@ static const Option rows[] = {
              "radius in the cell"},
     {.name = "shadows",
      SETS(SWITCH, PictureOptions, stage.shadows),
+     GIVEN(PictureOptions, has_shadows),
      .group = GROUP_LIGHT,
+     .otherwise = "the look's: off in most looks",
      .when = WHEN(CAMERA) | WHEN(LIGHTS),
      .help = "cast shadows"},
     {.name = "background",
@@ -246,7 +260,28 @@ static ConditionSet unmet(const void *set, const Parsed *parsed)
            UNLESS(field, FIELD_IDS);
 }
 
-const OptionTable picture_table = {OPTION_ROWS(rows), .unmet = unmet};
+/* Reads the look, and takes from it what no option specifies. A height needs an orthographic
+ * picture, so it overrules the look as well. Colors that mean something must be those of the
+ * legend, so a field has a look of its own. */
+static Status settle(void *set, const Parsed *parsed, Err *err)
+{
+    PictureOptions *options = set;
+    if (options->coloring.field && !options_said(parsed, "look"))
+        options->look = "data";
+    TRY(coloring_read_look(options->look, &options->look_file, err));
+    const LookOptions *proposed = &options->look_file.options;
+    if (!options->has_smooth)
+        options->smooth = proposed->smooth;
+    if (!options->has_shadows)
+        options->stage.shadows = proposed->shadows;
+    if (!options->has_occlusion)
+        options->occlusion = proposed->occlusion;
+    if (!options->has_projection && !options->has_height)
+        options->projection = (int)proposed->projection;
+    return STATUS_OK;
+}
+
+const OptionTable picture_table = {OPTION_ROWS(rows), .settle = settle, .unmet = unmet};
 
 void picture_set_defaults(PictureOptions *picture)
 {
@@ -295,7 +330,7 @@ ConditionSet picture_unmet_dpi(const PictureSize *size, const char *output)
 
 Status picture_check_povray(const PictureOptions *options, Err *err)
 {
-    if (options->occlusion == 0)
+    if (options->occlusion == 0 || !options->has_occlusion)
         return STATUS_OK;
     return err_set(err, STATUS_USAGE, "--ao cannot be verified: POV-Ray has no ambient occlusion");
 }
@@ -414,13 +449,18 @@ static bool is_xray(const Look *look)
     return look_effects(look, 1, 1).xray.per_mm > 0;
 }
 
-static Status read_look(const PictureOptions *options, const Parsed *parsed, Look *look, Err *err)
+static Status take_look(const PictureOptions *options, const Parsed *parsed, Look *look, Err *err)
 {
-    TRY(coloring_read_look(options->look, look, err));
-    if (is_xray(look) && options->coloring.field)
+    const bool xray = is_xray(&options->look_file);
+    *look = options->look_file;
+    if (options->omits_effects)
+        look->effects = (LookEffects){0};
+    if (options->omits_effects || options->has_background)
+        look->corners.present = false;
+    if (xray && options->coloring.field)
         return err_set(err, STATUS_USAGE,
                        "--color-by has no effect: --look %s uses two fixed colors", options->look);
-    if (is_xray(look))
+    if (xray)
         TRY(options_refuse(parsed, WHEN(LIT) | WHEN(LIGHTS), err));
     if (options->has_background && !color_is_none(options->background))
         look->background = rgb_of_option(options->background);
@@ -475,7 +515,29 @@ void picture_tree_release(PictureTree *tree)
 {
     tree_release(&tree->tree);
     tree_release(&tree->whole);
+    smoothtree_release(&tree->smooth);
     free(tree->joined);
+}
+
+Status picture_smooth_tree(PictureTree *of, SceneModel model, Err *err)
+{
+    return stage_smooth(&of->tree, model, &of->smooth, err);
+}
+
+const SmoothTree *picture_pieces(const PictureTree *of)
+{
+    return of->smooth.tree.n ? &of->smooth : NULL;
+}
+
+void picture_say_smooth(const SmoothReport *report, const Talk *talk)
+{
+    if (report->pieces == 0)
+        return;
+    talk_note(talk,
+              "smooth: %zu segments are drawn as %zu pieces, at most %.3g mm (%.3g radii) from the "
+              "straight segments; radii change by at most %.3g %%",
+              report->segments, report->pieces, report->distance_mm, report->distance_radii,
+              100 * report->radius_change);
 }
 
 ColoredTree picture_colored_tree(const PictureTree *tree)
@@ -503,10 +565,11 @@ Status picture_read_source(const PictureOptions *options, const Parsed *parsed,
 {
     PictureSource made = {0};
     TRY(check_camera(options, err));
-    TRY(read_look(options, parsed, &made.look, err));
+    TRY(take_look(options, parsed, &made.look, err));
     TRY(picture_read_tree(&options->coloring, options->prune_radius_mm, parsed, &made.of, err));
-    Status status = STATUS_OK;
-    if (options->frame == PICTURE_DOMAIN)
+    Status status = options->smooth ? picture_smooth_tree(&made.of, (SceneModel)options->model, err)
+                                    : STATUS_OK;
+    if (status == STATUS_OK && options->frame == PICTURE_DOMAIN)
         status = find_domain(&made.of, &made.domain, err);
     if (status == STATUS_OK)
         *source = made;
@@ -528,7 +591,10 @@ bool picture_is_transparent(const PictureOptions *options)
 ViewParams picture_view_params(const PictureOptions *options, const PictureSource *source)
 {
     ViewParams params = options->stage;
-    params.tree = options->frame == PICTURE_DRAWING ? NULL : &source->of.tree;
+    const SmoothTree *smooth = picture_pieces(&source->of);
+    params.tree = smooth ? &smooth->tree : &source->of.tree;
+    if (options->frame == PICTURE_DRAWING)
+        params.tree = NULL;
     params.domain = options->frame == PICTURE_DOMAIN ? &source->domain : NULL;
     params.transparent = picture_is_transparent(options);
     params.turn_deg = options->turn.at[0];
@@ -546,6 +612,7 @@ Status picture_geometry(const PictureOptions *options, const PictureSource *sour
     const SceneModel model = (SceneModel)options->model;
     Progress progress;
     const GeometryParams params = {.model = model,
+                                   .smooth = picture_pieces(&source->of),
                                    .joints = (JointForm)options->joints,
                                    .implied_ends = options->by_tiles && !is_xray(&source->look),
                                    .graph =
@@ -585,7 +652,10 @@ Status picture_appearance(const PictureOptions *options, const PictureSource *so
 {
     const ColoredTree tree = picture_colored_tree(&source->of);
     Appearance made;
-    TRY(coloring_appearance(&options->coloring, &tree, &source->look, &made, err));
+    if (options->coloring.field || !source->look.tips.present)
+        TRY(coloring_appearance(&options->coloring, &tree, &source->look, &made, err));
+    else
+        TRY(coloring_by_radius(&tree, &source->look, &made, err));
     Status status = blend(options, &made, err);
     if (status == STATUS_OK)
         *appearance = made;
@@ -628,6 +698,7 @@ Status picture_scene_of(const PictureOptions *options, const PictureSource *sour
                         Err *err)
 {
     PictureReport told = {.pruned = source->of.pruned,
+                          .smooth = source->of.smooth.report,
                           .joints = (JointForm)options->joints,
                           .shadows = options->stage.shadows};
     Scene made = {0};
@@ -635,7 +706,8 @@ Status picture_scene_of(const PictureOptions *options, const PictureSource *sour
     if (status == STATUS_OK)
         status = check_distance(&made, err);
     if (status == STATUS_OK && anatomy)
-        status = stage_anatomy(&source->of.tree, made.geometry.origin, anatomy, err);
+        status = stage_anatomy(&source->of.tree, picture_pieces(&source->of), made.geometry.origin,
+                               anatomy, err);
     if (status != STATUS_OK) {
         scene_release(&made);
         return status;
@@ -648,23 +720,26 @@ Status picture_scene_of(const PictureOptions *options, const PictureSource *sour
 Status picture_say(const Scene *scene, const PictureReport *report, const Talk *talk, Err *err)
 {
     say_limits(scene, report->shadows, talk);
+    picture_say_smooth(&report->smooth, talk);
     TRY(say_losses(&scene->geometry, report, talk, err));
     coloring_say(&scene->appearance, talk);
     return STATUS_OK;
 }
 
-Status picture_say_effects(const PictureOptions *options, const View *view, const char *what,
-                           const Talk *talk, Err *err)
+Status picture_say_effects(const PictureOptions *options, const char *what, const Talk *talk,
+                           Err *err)
 {
     Text names = TEXT_INIT;
-    if (view->effects.xray.per_mm > 0)
+    Effects effects = look_effects(&options->look_file, 1, 1);
+    effects.grade.present &= options->omits_effects; /* a scene has it */
+    if (effects.xray.per_mm > 0)
         return err_set(err, STATUS_USAGE, "--look %s: POV-Ray cannot draw an x-ray; use render",
                        options->look);
-    effects_list(&view->effects, &names);
+    effects_list(&effects, options->occlusion > 0, &names);
     Status status = text_check(&names, err);
     if (status == STATUS_OK && names.length)
-        talk_note(talk, "--look %s: %s are corcast's own, and %s", options->look,
-                  text_chars(&names), what);
+        talk_note(talk, "--look %s: only corcast draws %s; %s", options->look, text_chars(&names),
+                  what);
     text_release(&names);
     return status;
 }

@@ -40,18 +40,22 @@ typedef struct PictureOptions {
                          * render's --exact number of rays per sample; 0: no ambient occlusion */
     double tolerance;   /* mesh: maximum distance of the triangles from the surface / the local
                          * vessel radius */
+    bool smooth;        /* vessels follow smooth curves through the nodes of the tree */
     bool part_overlaps; /* mesh: makes vessels thinner that overlap vessels to which they are not
                          * connected */
     bool as_mesh;       /* options are checked as if `model` were the mesh; set for output
                          * formats that hold triangles */
+    bool omits_effects; /* leaves out the effects of the look, which POV-Ray does not draw */
     bool by_tiles;      /* the geometry is only rendered tile by tile; saves memory, see
                          * GeometryParams.implied_ends */
     double prune_radius_mm; /* segments thinner than this radius are removed; 0: none */
     const char *look;       /* name in templates/looks, or path of a look file */
+    Look look_file;         /* the look, without `background`; set by picture_table.settle */
     Vec3 background;        /* sRGB in [0, 1], or transparent (picture_is_transparent) */
     bool has_background;    /* `background` is specified; else the look's background applies */
     /* The option of this name is specified: */
-    bool has_height, has_angle, has_view, has_turn, has_joints, has_antialias;
+    bool has_height, has_angle, has_view, has_turn, has_joints, has_antialias, has_projection,
+        has_smooth, has_shadows, has_occlusion;
     int erf;          /* choice: ErfForm; POV-Ray's isosurface */
     double cell_beta; /* POV-Ray's isosurface: a cell is split while its side / the smallest radius
                        * that matters in the cell is larger than this; 0: CELL_BETA */
@@ -63,12 +67,14 @@ typedef struct PictureOptions {
 void picture_set_defaults(PictureOptions *options);
 /* Default of --antialias for pictures that are not compared with POV-Ray's. */
 enum { PICTURE_ANTIALIAS = 3 };
-/* Default of --tolerance: maximum distance of triangles from the surface / the local radius. */
+/* Default of --mesh-tolerance: maximum distance of triangles from the surface / the local radius. */
 #define MESHING_TOLERANCE 0.02
 
-/* Accepted ranges of --antialias, --prune-radius (mm) and --tolerance, for all commands. */
+/* Accepted ranges of --antialias, --prune-radius (mm) and --mesh-tolerance, for all commands. */
 extern const Range antialias_range, prune_range, tolerance_range;
-/* Sets a PictureOptions, except its member `coloring`. */
+/* Sets a PictureOptions, except its member `coloring`. Its function `settle` reads the look, whose
+ * errors are those of coloring_read_look, and takes shadows, ambient occlusion and projection from
+ * the look where no option specifies them. */
 extern const OptionTable picture_table;
 /* Lists the option tables that set a PictureOptions, including `coloring`. The PictureOptions is
  * the member `path` of the command's options struct `Type`. */
@@ -91,15 +97,23 @@ ConditionSet picture_unmet_dpi(const PictureSize *size, const char *output);
  * Errors   STATUS_USAGE if ambient occlusion is specified. */
 MUST_CHECK Status picture_check_povray(const PictureOptions *options, Err *err);
 
+/* Fills the option --smooth, which sets the bool at `path`. */
+#define SMOOTH_OPTION(Type, path)                                                                  \
+    .name = "smooth", SETS(SWITCH, Type, path), .group = GROUP_VESSELS,                            \
+    .help = "draw vessels as smooth curves through the nodes, with radii that taper from node to " \
+            "node, instead of straight segments"
+
 /* A tree that has been read for drawing. Release it with picture_tree_release. */
 typedef struct PictureTree {
-    const char *path; /* the tree's file, for messages; borrowed from the Parsed */
-    Tree tree;        /* without pruned segments; owned */
-    Tree whole;       /* with pruned segments; owned. Only stored if the range of colors is that of
-                       * the whole tree (RANGE_OF_TREE); else zeroed, and n is 0 */
-    char *joined;     /* if --color-by names a file of values: the name of the tree's column that
-                       * the values were read into; else NULL. Owned */
-    size_t pruned;    /* number of segments that were pruned */
+    const char *path;  /* the tree's file, for messages; borrowed from the Parsed */
+    Tree tree;         /* without pruned segments; owned */
+    Tree whole;        /* with pruned segments; owned. Only stored if the range of colors is that of
+                        * the whole tree (RANGE_OF_TREE); else zeroed, and n is 0 */
+    char *joined;      /* if --color-by names a file of values: the name of the tree's column that
+                        * the values were read into; else NULL. Owned */
+    size_t pruned;     /* number of segments that were pruned */
+    SmoothTree smooth; /* the pieces of `tree` that are drawn; zeroed, and tree.n is 0, if the
+                        * segments are drawn. Owned */
 } PictureTree;
 
 /* Reads the tree that is the first operand, and the flows and values that options add to it. Then
@@ -112,6 +126,13 @@ typedef struct PictureTree {
 MUST_CHECK Status picture_read_tree(const Coloring *coloring, double prune_radius_mm,
                                     const Parsed *parsed, PictureTree *out, Err *err);
 void picture_tree_release(PictureTree *tree);
+/* Divides the segments of of->tree into smooth curves for a model, and stores the pieces in
+ * of->smooth. Errors: STATUS_MEMORY. */
+MUST_CHECK Status picture_smooth_tree(PictureTree *of, SceneModel model, Err *err);
+/* Returns the pieces of a tree, or NULL if its segments are drawn. Borrowed. */
+const SmoothTree *picture_pieces(const PictureTree *of);
+/* Prints a note about how far the pieces are from the tree, if there are any. */
+void picture_say_smooth(const SmoothReport *report, const Talk *talk);
 /* Returns the tree as coloring_appearance takes it. The result borrows from `tree` and owns
  * nothing. */
 ColoredTree picture_colored_tree(const PictureTree *tree);
@@ -124,13 +145,12 @@ typedef struct PictureSource {
                  * tree; only set if the options frame the domain */
 } PictureSource;
 
-/* Checks the options, and reads the look and the tree, which is the first operand.
+/* Checks the options, and reads the tree, which is the first operand.
  *
  * source   release it with picture_source_release. It borrows from `parsed`.
  * Errors   STATUS_USAGE if options exclude each other, or have no effect with this look or this
  *          law of blood viscosity; STATUS_INPUT if the domain is to be framed, and the tree's file
- *          does not state it; the errors of coloring_read_look, picture_read_tree and
- *          tree_domain_box. */
+ *          does not state it; the errors of picture_read_tree and tree_domain_box. */
 MUST_CHECK Status picture_read_source(const PictureOptions *options, const Parsed *parsed,
                                       PictureSource *source, Err *err);
 void picture_source_release(PictureSource *source);
@@ -166,12 +186,13 @@ MUST_CHECK Status picture_view(const PictureOptions *options, const PictureSourc
 /* What a user should know about a scene: which parts of the tree it does not show. */
 typedef struct PictureReport {
     StageReport staged;
-    size_t pruned; /* number of segments that were pruned */
+    SmoothReport smooth; /* zeroed if segments are straight */
+    size_t pruned;       /* number of segments that were pruned */
     JointForm joints;
     bool shadows; /* lights cast shadows */
 } PictureReport;
 
-/* Reads the tree and the look, and makes geometry, appearance and view.
+/* Reads the tree, and makes geometry, appearance and view.
  *
  * scene    release it with scene_release.
  * report   must not be NULL.
@@ -200,13 +221,13 @@ MUST_CHECK Status picture_scene_of(const PictureOptions *options, const PictureS
 MUST_CHECK Status picture_say(const Scene *scene, const PictureReport *report, const Talk *talk,
                               Err *err);
 
-/* Prints a note that lists the effects of the look that POV-Ray does not draw, if there are any.
+/* Prints a note that lists what POV-Ray does not draw of the look, if there is any.
  *
- * what     the end of the sentence, about these effects: "omitted on both sides".
+ * what     the end of the sentence, about these effects: "both pictures omit them".
  * Errors   STATUS_USAGE if the look is an x-ray, because nothing of the picture would be left;
  *          STATUS_MEMORY. */
-MUST_CHECK Status picture_say_effects(const PictureOptions *options, const View *view,
-                                      const char *what, const Talk *talk, Err *err);
+MUST_CHECK Status picture_say_effects(const PictureOptions *options, const char *what,
+                                      const Talk *talk, Err *err);
 
 /* Checks that an image of this size fits into the memory of this machine.
  *

@@ -19,9 +19,11 @@ static const Option rows[] = {
      SETS(LOOKUP, PressOptions, preset),
      .group = GROUP_PRESS,
      .list = "presets",
-     .help = "publisher's size, dpi and compression, where other options do not set them: the name "
-             "of a preset, or the path of a file of your own (with a '/')"},
-    {.name = "column",
+     .help = "use a publisher's size, dpi and compression, except where other options set them: "
+             "the name of a preset, or the path of a file of your own (with a '/': ./my.ini); an "
+             "existing image is not resampled"},
+    {.name = "preset-width",
+     .former = "column",
      SETS(CHOICE, PressOptions, column),
      .choices = columns,
      .group = GROUP_PRESS,
@@ -60,7 +62,7 @@ static const Option rows[] = {
      .group = GROUP_PRESS,
      .needs = "cmyk-profile",
      .when = WHEN(PACKED),
-     .help = "rendering intent for colors that cannot be printed: perceptual (shift all colors to "
+     .help = "how to treat colors that cannot be printed: perceptual (shift all colors to "
              "fit), relative (change only the colors that cannot be printed)"},
 };
 

@@ -23,7 +23,7 @@ extern const OptionTable press_table; /* sets a PressOptions */
 void press_set_defaults(PressOptions *options);
 
 /* Checks that the format of the file `output` can store the specified number of bits per channel.
- * Accepts any number for pages (.pdf, .svg).
+ * Accepts any number for pages (.pdf, .eps, .svg).
  *
  * Errors   STATUS_USAGE if the format cannot. */
 MUST_CHECK Status press_check(const PressOptions *options, const char *output, Err *err);

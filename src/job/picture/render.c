@@ -157,7 +157,7 @@ static Status fill_sheet(Rendering *r, Err *err)
     const PictureOptions *picture = &r->options->picture;
     FigurePage *page = &r->sheet.page;
     Text description = TEXT_INIT;
-    sheet_begin(&r->sheet, picture->size.pixels, annotation_dpi(picture));
+    sheet_begin(&r->sheet, picture->size.pixels, annotation_dpi(&picture->size));
     picture_description(&r->scene.geometry, r->source.of.path, &description);
     Status status = sheet_describe(&r->sheet, &description, r->provenance, err);
     text_release(&description);
@@ -182,6 +182,14 @@ Status rendering_describe(Rendering *r, Err *err)
     return picture_say(&r->scene, &r->report, r->parsed->common.talk, err);
 }
 
+static json_t *smooth_json(const SmoothReport *smooth)
+{
+    return json_pack("{s:I, s:I, s:f, s:f, s:f, s:f}", "segments", (json_int_t)smooth->segments,
+                     "pieces", (json_int_t)smooth->pieces, "distance_mm", smooth->distance_mm,
+                     "distance_radii", smooth->distance_radii, "radius_change",
+                     smooth->radius_change, "tolerance", smooth->tolerance);
+}
+
 json_t *rendering_json(const Rendering *r)
 {
     const Scene *scene = &r->scene;
@@ -203,6 +211,8 @@ json_t *rendering_json(const Rendering *r)
         };
         report = json_with_members(report, of_joints, sizeof of_joints / sizeof *of_joints);
     }
+    if (r->report.smooth.pieces)
+        report = json_with(report, "smooth", smooth_json(&r->report.smooth));
     if (scene->appearance.meaning)
         report = json_with(report, "color", coloring_json(&scene->appearance));
     return report;
@@ -352,7 +362,7 @@ const Command command_render = {
                 "  corcast render tree.swc --model isosurface --shadows on -o tree.ppm\n"
                 "  corcast render tree.swc --planes depth,normal,id -o tree.png\n"
                 "  corcast render tree.swc --turntable 120 -o turn%03d.png\n"
-                "  corcast render tree.swc --color-by pulse.csv --frames all -o f%04d.png\n",
+                "  corcast render tree.swc --color-by pulse.csv --moments all -o f%04d.png\n",
     .min_operands = 1,
     .max_operands = 1,
     .needs_output = true,
@@ -361,6 +371,7 @@ const Command command_render = {
     .set_defaults = render_set_defaults,
     .tables = {{&render_table, 0},
                {&shard_table, offsetof(RenderOptions, shard)},
+               {&legend_table, offsetof(RenderOptions, annotation)},
                {&annotation_table, offsetof(RenderOptions, annotation)},
                PICTURE_TABLES(RenderOptions, picture),
                {&press_table, offsetof(RenderOptions, press)}},

@@ -4,6 +4,7 @@
 #include "job/picture/render_bands.h"
 
 #include "options/talk.h"
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -44,12 +45,31 @@ int render_band_rows(const FramesForm *form, const RenderParams *params, const V
                                        : (int)rows / RENDER_BAND_STEP * RENDER_BAND_STEP;
 }
 
+/* Returns true if all colors of a band, which begins at row `first`, are the background's. A mean
+ * of samples may differ from it in its last digits, and a graded background has noise. */
+static bool colors_show_nothing(const Plane *color, const View *view, int first)
+{
+    const Grade *grade = &view->effects.grade;
+    const Camera *camera = &view->camera;
+    const float tolerance = grade->present ? 0.006f : 1e-6f;
+    for (int row = 0; row < color->height; row++)
+        for (int x = 0; x < color->width; x++) {
+            const float *at = color->values + 3 * ((size_t)row * (size_t)color->width + (size_t)x);
+            const Rgb paper = grade->present ? grade_at(grade, x + 0.5, first + row + 0.5,
+                                                        camera->width, camera->height)
+                                             : view->background;
+            if (!(fabsf(at[0] - paper.r) <= tolerance && fabsf(at[1] - paper.g) <= tolerance &&
+                  fabsf(at[2] - paper.b) <= tolerance))
+                return false;
+        }
+    return true;
+}
+
 /* Returns true if all pixels of a band show the background. */
-static bool shows_nothing(const Frame *band, const View *view)
+static bool shows_nothing(const Frame *band, const View *view, int first)
 {
     const Rgb paper = view->background;
-    const float colors[3] = {paper.r, paper.g, paper.b};
-    const Plane *color = &band->color, *alpha = &band->alpha;
+    const Plane *alpha = &band->alpha;
     const Picture *codes = &band->codes;
     if (alpha->values) {
         for (size_t i = 0; i < (size_t)alpha->width * (size_t)alpha->height; i++)
@@ -57,11 +77,10 @@ static bool shows_nothing(const Frame *band, const View *view)
                 return false;
         return true;
     }
-    for (size_t i = 0; color->values && i < 3 * (size_t)color->width * (size_t)color->height; i++)
-        if (color->values[i] != colors[i % 3])
-            return false;
-    if (color->values || !codes->codes8)
-        return color->values != NULL;
+    if (band->color.values)
+        return colors_show_nothing(&band->color, view, first);
+    if (!codes->codes8)
+        return false;
     const uint8_t code[3] = {(uint8_t)image_code(paper.r, ENCODING_SRGB, 8),
                              (uint8_t)image_code(paper.g, ENCODING_SRGB, 8),
                              (uint8_t)image_code(paper.b, ENCODING_SRGB, 8)};
@@ -88,13 +107,13 @@ static Status draw_bands(const Rendering *r, Renderer *renderer, const Scene *sc
     const int end = form->first + form->height;
     const int step = render_band_rows(form, &r->params, &scene->view, r->options->memory_mb);
     if (step < form->height)
-        mem_keep();
+        system_keep_memory();
     *empty = true;
     for (int first = form->first; first < end; first += step) {
         Frame band;
         int rows = step < end - first ? step : end - first;
         TRY(renderer_rows(renderer, &scene->view, &scene->appearance, first, rows, &band, err));
-        *empty = *empty && shows_nothing(&band, &scene->view);
+        *empty = *empty && shows_nothing(&band, &scene->view, first);
         Status status = frames_rows(writer, &band, err);
         frame_release(&band);
         TRY(status);

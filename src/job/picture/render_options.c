@@ -18,7 +18,8 @@ static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, RenderOptions, output),
      .argument = "P",
-     .help = "image: .png, .ppm, .tif, .jpg, .exr or .pfm, or a page with the image: .pdf or .svg"},
+     .help = "image: .png, .ppm, .tif, .jpg, .exr or .pfm, or a page with the image: .pdf, .eps "
+             "or .svg"},
     {.name = "planes",
      SETS(TEXT, RenderOptions, planes),
      .argument = "LIST",
@@ -53,7 +54,7 @@ static const Option own[] = {
      .unit = "mm",
      .otherwise = "",
      .help = "draw outlines of this width on paper instead of shaded vessels, without hidden "
-             "lines; .svg or .pdf only"},
+             "lines; .svg, .pdf or .eps only"},
     {.name = "hits",
      SETS(CHOICE, RenderOptions, hits),
      .choices = hits_names,
@@ -74,7 +75,7 @@ static const Option own[] = {
      .choices = render_kernel_names,
      .group = GROUP_RUN,
      .when = WHEN(SURFACES),
-     .help = "for tests: instruction set that tiles are drawn with"},
+     .help = "for tests only: processor instructions to use; the image is the same for all"},
     {.name = "memory",
      SETS(NUMBER, RenderOptions, memory_mb),
      FROM_TO(1e-3, 1e9),
@@ -87,7 +88,8 @@ static const Option own[] = {
      SETS(OUTPUT, RenderOptions, json),
      .when = WHEN(SURFACES) | WHEN(WHOLE),
      .help = "write a summary of the run as JSON to FILE"},
-    {.name = "frames",
+    {.name = "moments",
+     .former = "frames",
      SETS(TEXT, RenderOptions, animation.frames),
      .group = GROUP_ANIMATION,
      .argument = "all|A..B",
@@ -149,8 +151,16 @@ void render_settle(RenderOptions *options)
     PictureOptions *picture = &options->picture;
     if (options->exact && !options->has_method)
         options->method = RENDER_TRACE;
-    if (!picture->has_antialias && (options->exact || options->method == RENDER_ZBUFFER))
+    picture->omits_effects = options->exact;
+    const bool bare = options->exact || options->method == RENDER_ZBUFFER;
+    if (!picture->has_antialias && bare)
         picture->antialias = 1;
+    if (!picture->has_occlusion && bare)
+        picture->occlusion = 0;
+    if (!picture->has_shadows && options->method == RENDER_ZBUFFER)
+        picture->stage.shadows = false;
+    if (!picture->has_projection && options->annotation.has_scale_bar)
+        picture->projection = PROJECTION_ORTHOGRAPHIC;
 }
 
 /* Whether vessels thinner than a pixel are drawn by their coverage: not where a method is asked
@@ -176,11 +186,7 @@ static Status check_method(const RenderOptions *options, Err *err)
 /* What the file holds: 8 bits of a page, and nothing over floats. */
 static Status check_file(const RenderOptions *options, Err *err)
 {
-    if (image_traits(options->output).floats && annotation_is_any(&options->annotation))
-        return err_set(
-            err, STATUS_USAGE,
-            "-o: %s stores measured values and cannot have a legend, scale bar or letter",
-            strcmp(file_extension(options->output), "exr") ? "a .pfm" : "an .exr");
+    TRY(annotation_check_file(&options->annotation, options->output, err));
     return press_check(&options->press, options->output, err);
 }
 
@@ -264,10 +270,6 @@ static Status check_effects(const RenderOptions *options, const View *view, Err 
 {
     if (!effects_present(&view->effects))
         return STATUS_OK;
-    if (options->exact)
-        return err_set(err, STATUS_USAGE,
-                       "--exact draws the picture of verify, which omits the effects of --look %s",
-                       options->picture.look);
     if (options->threshold > 0)
         return err_set(err, STATUS_USAGE,
                        "--antialias-threshold: --look %s needs all samples of every pixel",
@@ -291,10 +293,14 @@ Status render_make_scene(RenderOptions *options, Parsed *parsed, const PictureSo
     TRY(animation_count(animation, &scene->appearance, err));
     TRY(pick_only(options->shard.only, animation, err));
     if (options->annotation.legend) {
-        TRY(annotation_make_room(&options->annotation, fonts, &scene->appearance, picture, err));
+        TRY(annotation_make_room(&options->annotation, fonts, &scene->appearance, &picture->size,
+                                 picture->stage.room, err));
         TRY(picture_view(picture, source, &scene->geometry, &scene->view, err));
     }
     if (animation->kind == ANIMATION_TURN)
         TRY(animation_frame_turn(picture, source, scene, err));
-    return check_effects(options, &scene->view, err);
+    TRY(check_effects(options, &scene->view, err));
+    return options->exact
+               ? picture_say_effects(picture, "--exact omits them", parsed->common.talk, err)
+               : STATUS_OK;
 }

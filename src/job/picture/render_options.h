@@ -40,7 +40,8 @@ extern const OptionTable render_table;
 /* Sets all defaults of a zeroed RenderOptions. */
 void render_set_defaults(void *options);
 
-/* Sets the options that follow from --exact and --method and that are not specified themselves. */
+/* Sets the options that follow from --exact, --method and --scale-bar and that are not specified
+ * themselves. Each of these options overrules the look. */
 void render_settle(RenderOptions *options);
 
 /* Checks the options. Errors: STATUS_USAGE if two options exclude each other, or if the method does

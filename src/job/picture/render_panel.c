@@ -63,11 +63,26 @@ static Status draw_views(Rendering *r, Panel *panel, Err *err)
     return STATUS_OK;
 }
 
+Status panel_scale(Parsed *parsed, const FigureFonts *fonts, double *mm_per_pixel, Err *err)
+{
+    RenderOptions *options = parsed->options;
+    Rendering r;
+    if (options->picture.projection == PROJECTION_PERSPECTIVE)
+        return err_set(err, STATUS_USAGE, "same-scale needs orthographic panels");
+    TRY(rendering_open(options, parsed, fonts, &r, err));
+    *mm_per_pixel = vec3_length(r.scene.view.camera.up) / r.scene.view.camera.height;
+    rendering_close(&r);
+    return STATUS_OK;
+}
+
 Status panel_draw(Parsed *parsed, Panel *panel, Err *err)
 {
     RenderOptions *options = parsed->options;
     Rendering r;
     panel->in_lines = options->ink_mm > 0;
+    TRY(options_settle(parsed, err));
+    if (panel->n_insets > 0 && !options->picture.has_projection)
+        options->picture.projection = PROJECTION_ORTHOGRAPHIC;
     if (panel->n_insets > 0 && options->picture.projection == PROJECTION_PERSPECTIVE)
         return err_set(err, STATUS_USAGE, "an inset needs an orthographic panel");
     TRY(rendering_open(options, parsed, panel->fonts, &r, err));

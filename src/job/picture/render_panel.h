@@ -39,6 +39,15 @@ FigureBox panel_part(const PanelInset *inset, const Camera *camera);
 /* Returns the view of an inset. `view` is the view of the panel, with an orthographic camera. */
 View panel_inset_view(const PanelInset *inset, const View *view);
 
+/* Measures the scale at which a panel would be drawn.
+ *
+ * parsed        as for panel_draw.
+ * fonts         the fonts of the page.
+ * mm_per_pixel  receives the length in the tree that one pixel of the panel stands for.
+ * Errors        STATUS_USAGE if the panel is in perspective; the errors of render_make. */
+MUST_CHECK Status panel_scale(Parsed *parsed, const FigureFonts *fonts, double *mm_per_pixel,
+                              Err *err);
+
 /* Draws a panel and its insets into memory.
  *
  * parsed   parsed->options is a RenderOptions. It must not specify output, planes, JSON, tiles or

@@ -30,15 +30,20 @@ Status sheet_describe(Sheet *sheet, Text *description, const char *command, Err 
 
 void sheet_say(const Sheet *sheet, const Talk *talk)
 {
-    Text boxed = TEXT_INIT, substituted = TEXT_INIT;
-    figure_put_missing(&sheet->page, false, &boxed);
-    figure_put_missing(&sheet->page, true, &substituted);
-    if (boxed.length)
-        talk_warn(talk, "%s", text_chars(&boxed));
-    if (substituted.length)
-        talk_note(talk, "%s", text_chars(&substituted));
-    text_release(&boxed);
-    text_release(&substituted);
+    enum { WARNINGS = 3 };
+    Text warnings[WARNINGS] = {TEXT_INIT}, fallback = TEXT_INIT;
+    figure_put_missing(&sheet->page, true, &warnings[0]);
+    figure_put_unclosed(&sheet->page, &warnings[1]);
+    figure_put_collisions(&sheet->page, &warnings[2]);
+    figure_put_missing(&sheet->page, false, &fallback);
+    for (int i = 0; i < WARNINGS; i++) {
+        if (warnings[i].length)
+            talk_warn(talk, "%s", text_chars(&warnings[i]));
+        text_release(&warnings[i]);
+    }
+    if (fallback.length)
+        talk_note(talk, "%s", text_chars(&fallback));
+    text_release(&fallback);
 }
 
 void sheet_release(Sheet *sheet)

@@ -29,8 +29,9 @@ void sheet_begin(Sheet *sheet, const int pixels[2], double dpi);
 /* Sets the metadata of the file. Moves the text out of `description`, and copies `command`. Errors:
  * STATUS_MEMORY. */
 MUST_CHECK Status sheet_describe(Sheet *sheet, Text *description, const char *command, Err *err);
-/* Reports the characters of the page that the font lacks: a warning for characters that are drawn
- * as boxes, a note for characters that are replaced by similar ones. */
+/* Reports what is wrong with the texts of the page: a warning for characters that are drawn as
+ * boxes, for markup that is not closed, and for texts that overlap; a note for characters that
+ * another font draws. */
 void sheet_say(const Sheet *sheet, const Talk *talk);
 void sheet_release(Sheet *sheet);
 

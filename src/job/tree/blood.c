@@ -6,7 +6,7 @@
 #include <string.h>
 #include <strings.h>
 
-static const char of_tree[] = "from the tree";
+static const char of_tree[] = "from the tree; required if it has none";
 
 #define SAYS(KEY) SETS_KEY(BloodOptions, said.number[META_##KEY], said.known, KEY)
 
@@ -17,20 +17,23 @@ static const Option rows[] = {
      .otherwise = of_tree,
      .when = WHEN(USES_BLOOD),
      .help = "flow through the inlet"},
-    {.name = "terminal-flow",
+    {.name = "flow-split",
+     .former = "terminal-flow",
      SETS(TEXT, BloodOptions, terminal_flow),
      .group = GROUP_BLOOD,
      .argument = "equal|murray|FILE.csv",
-     .otherwise = of_tree,
+     .otherwise = "from the tree, else equal",
      .when = WHEN(USES_FLOW),
      .help = "how flow is divided among the terminals: equal (the same for all), murray (in "
-             "proportion to radius^gamma), or a CSV file with the columns id and flow"},
-    {.name = "gamma",
+             "proportion to radius^E; see --flow-exponent), or a CSV file with the columns id and "
+             "flow"},
+    {.name = "flow-exponent",
+     .former = "gamma",
      SAYS(GAMMA),
      .group = GROUP_BLOOD,
-     .otherwise = "from the tree, or 3",
+     .otherwise = "gamma of the tree, else 3",
      .when = WHEN(USES_FLOW) | WHEN(MURRAY),
-     .help = "exponent of the radius for --terminal-flow murray"},
+     .help = "exponent E of the terminal radius for --flow-split murray; radii do not change"},
     {.name = "p-perf",
      SAYS(P_PERF),
      .group = GROUP_BLOOD,
@@ -42,16 +45,16 @@ static const Option rows[] = {
      .group = GROUP_BLOOD,
      .otherwise = of_tree,
      .when = WHEN(USES_BLOOD) | WHEN(CONSTANT_VISCOSITY),
-     .help = "viscosity of the blood"},
+     .help = "viscosity of the blood, for --viscosity-law constant"},
     {.name = "viscosity-law",
      SETS(CHOICE, BloodOptions, law),
      GIVEN(BloodOptions, said.known[META_VISCOSITY_LAW]),
      .choices = viscosity_law_names,
      .group = GROUP_BLOOD,
-     .otherwise = of_tree,
+     .otherwise = "from the tree, else constant",
      .when = WHEN(USES_BLOOD),
      .help = "viscosity model: constant (the same in all vessels), pries (depends on the vessel "
-             "diameter)"},
+             "diameter; Pries 1994)"},
     {.name = "hematocrit",
      SAYS(HEMATOCRIT),
      .group = GROUP_BLOOD,
@@ -102,8 +105,8 @@ static Status check_gamma(const BloodOptions *blood, const Tree *tree, const cha
     if (blood->said.known[META_GAMMA] || !tree->meta.known[META_GAMMA_BY_RADIUS])
         return STATUS_OK;
     return err_set(err, STATUS_USAGE,
-                   "--terminal-flow murray: the exponent of %s varies with radius; give one number "
-                   "with --gamma",
+                   "--flow-split murray: the exponent of %s varies with radius; give one number "
+                   "with --flow-exponent",
                    tree_path);
 }
 
@@ -125,7 +128,7 @@ static Status part_flow(const BloodOptions *blood, Tree *tree, const char *tree_
     }
     if (strcasecmp(file_extension(law), "csv") == 0)
         return tree_read_flows(tree, law, err);
-    return err_set(err, STATUS_USAGE, "--terminal-flow: '%.60s' is not equal, murray or a FILE.csv",
+    return err_set(err, STATUS_USAGE, "--flow-split: '%.60s' is not equal, murray or a FILE.csv",
                    law);
 }
 

@@ -20,8 +20,6 @@ typedef struct CertifyOptions {
     BloodOptions blood; /* only law, flow of the terminals and gamma are set */
 } CertifyOptions;
 
-static const char of_tree[] = "from the tree";
-
 static const Option rows[] = {
     {.name = "json",
      SETS(FLAG, CertifyOptions, json),
@@ -32,36 +30,40 @@ static const Option rows[] = {
      .otherwise = "",
      .help =
          "write the proof to FILE, for an independent checker that shares no code with corcast"},
-    {.name = "parts",
+    {.name = "explain-gap",
+     .former = "parts",
      SETS(FLAG, CertifyOptions, parts),
      .group = GROUP_OPTIMUM,
-     .help = "also refine the geometry of the tree, to show how much of the gap is due to the "
-             "search and how much to the rules on length and clearance"},
+     .help = "also refine the geometry of the tree, to show which part of the gap between target "
+             "and bound is due to the search, and which to the rules on length and clearance"},
     {.name = "lambda",
      SETS(NUMBER, CertifyOptions, lambda),
      GIVEN(CertifyOptions, has_lambda),
      .range = &BOUND_LAMBDA_RANGE,
      .group = GROUP_OPTIMUM,
-     .otherwise = of_tree,
+     .otherwise = "from the tree; required if it has none",
      .help = "exponent of the target, the cost of the tree: sum of length * radius^lambda"},
-    {.name = "terminal-flow",
+    {.name = "flow-split",
+     .former = "terminal-flow",
      SETS(TEXT, CertifyOptions, blood.terminal_flow),
      .group = GROUP_BLOOD,
      .argument = "equal|murray|FILE.csv",
-     .otherwise = of_tree,
+     .otherwise = "from the tree, else equal",
      .help = "how flow is divided among the terminals: equal (the same for all), murray (in "
-             "proportion to radius^gamma), or a CSV file with the columns id and flow"},
-    {.name = "gamma",
+             "proportion to radius^E; see --flow-exponent), or a CSV file with the columns id and "
+             "flow"},
+    {.name = "flow-exponent",
+     .former = "gamma",
      SETS_KEY(CertifyOptions, blood.said.number[META_GAMMA], blood.said.known, GAMMA),
      .group = GROUP_BLOOD,
-     .otherwise = "from the tree, or 3",
-     .help = "exponent of the radius for --terminal-flow murray"},
+     .otherwise = "gamma of the tree, else 3",
+     .help = "exponent E of the terminal radius for --flow-split murray; radii do not change"},
     {.name = "viscosity-law",
      SETS(CHOICE, CertifyOptions, blood.law),
      GIVEN(CertifyOptions, blood.said.known[META_VISCOSITY_LAW]),
      .choices = viscosity_law_names,
      .group = GROUP_BLOOD,
-     .otherwise = of_tree,
+     .otherwise = "from the tree, else constant",
      .help = "viscosity model; a bound can be proved for constant only"},
 };
 
@@ -134,7 +136,7 @@ static Status refine(const char *path, Tree *tree, Certified *found, Err *err)
     meta_set_number(&tree->meta, META_LAMBDA, found->bound.lambda);
     Status status = refine_geometry(tree, &found->refined, err);
     if (status == STATUS_INPUT)
-        err_prefix(err, "--parts: %s: ", path);
+        err_prefix(err, "--explain-gap: %s: ", path);
     return status;
 }
 
@@ -152,7 +154,7 @@ static Status bound(const CertifyOptions *options, const char *path, const Tree 
     return STATUS_OK;
 }
 
-/* Bounds the target of `tree`, and with --parts refines the tree's geometry. */
+/* Bounds the target of `tree`, and with --explain-gap refines the tree's geometry. */
 static Status prove(const CertifyOptions *options, const Parsed *parsed, Tree *tree,
                     Certified *found, Err *err)
 {
@@ -226,10 +228,10 @@ Status bound_json(const Tree *tree, const TreeMeta *said, json_t **out, Err *err
 
 const Command command_certify = {
     .name = "certify",
-    .summary = "prove how low the target (cost) of a tree can get",
+    .summary = "prove a lower bound of the target, the cost that growth minimizes",
     .operands = "T.swc [--certificate FILE] [--json]",
     .examples = "  corcast certify tree.swc\n"
-                "  corcast certify tree.swc --parts\n"
+                "  corcast certify tree.swc --explain-gap\n"
                 "  corcast certify tree.swc --certificate tree.cert --json | jq .gap\n",
     .min_operands = 1,
     .max_operands = 1,

@@ -20,9 +20,9 @@ extern const struct PartRow {
 } part_rows[PARTS];
 
 typedef struct Certified {
-    Bound bound;        /* owned */
-    Text certificate;   /* the proof; owned; empty if the option certificate was not given */
-    double refined;     /* target of the tree with its geometry refined; NAN without --parts */
+    Bound bound;      /* owned */
+    Text certificate; /* the proof; owned; empty if the option certificate was not given */
+    double refined;   /* target of the tree with its geometry refined; NAN without --explain-gap */
     double part[PARTS]; /* per part; NAN: not separated from the next part */
     double seconds;     /* wall clock time of the bound */
 } Certified;
@@ -33,7 +33,7 @@ typedef struct Certified {
  * found    the caller releases it with certified_release even after an error.
  * Errors   STATUS_INPUT if the exponent of the target is not known or out of range, and if
  *          viscosity follows the radius; as reading_tree, blood_settle, bound_tree and, with
- *          --parts, refine_tree and tree_domain. */
+ *          --explain-gap, refine_tree and tree_domain. */
 MUST_CHECK Status certify_make(void *options, Parsed *parsed, Certified *found, Err *err);
 void certified_release(Certified *found);
 

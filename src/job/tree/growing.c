@@ -35,15 +35,15 @@ static const Option rows[] = {
      SETS(NUMBERS, Growing, inlet_share),
      .group = GROUP_TREE,
      .otherwise = "equal shares",
-     .help =
-         "share of the terminals per inlet, in the order of the inlets; the sum may be any number"},
+     .help = "share of the terminals for each inlet, in the order of the inlets; shares need not "
+             "add up to 1"},
     {.name = "from",
      SETS(INPUT, Growing, from_path),
      .group = GROUP_FILES,
      .argument = "T.swc",
      .help = "continue growing this tree: existing nodes keep their positions, ids and types, and "
-             "existing segments stay straight; all radii are recomputed. Properties in its header "
-             "apply unless options override them"},
+             "existing segments stay straight; all radii are recomputed, unless --keep-radii is "
+             "given. Properties in its header apply unless options override them"},
     {.name = "keep-radii",
      SETS(FLAG, Growing, params.keep_radii),
      .group = GROUP_TREE,
@@ -77,7 +77,7 @@ static const Option rows[] = {
      SETS_KEY(Growing, params.blood.viscosity_cp, given, VISCOSITY),
      .group = GROUP_BLOOD,
      .when = WHEN(CONSTANT_VISCOSITY),
-     .help = "viscosity of the blood"},
+     .help = "viscosity of the blood, for --viscosity-law constant"},
     {.name = "viscosity-law",
      SETS(CHOICE, Growing, params.blood.viscosity_law),
      GIVEN(Growing, given[META_VISCOSITY_LAW]),
@@ -116,7 +116,8 @@ static const Option rows[] = {
      FROM_TO(0, 1e3),
      .group = GROUP_TREE,
      .unit = "mm",
-     .help = "stop when the mean terminal radius falls to MM; 0 stops at --terminals"},
+     .help = "also stop when the mean terminal radius falls to MM, if --terminals is not reached "
+             "before; 0: stop only at --terminals"},
     {.name = "clearance",
      SETS_KEY(Growing, params.clearance_mm, given, CLEARANCE),
      .group = GROUP_TREE,
@@ -138,8 +139,8 @@ static const Option rows[] = {
      SETS(COUNT, Growing, params.relax),
      FROM_TO(0, GROW_MAX_TERMINALS),
      .group = GROUP_OPTIMUM,
-     .help = "move all bifurcations to better positions at each doubling of the terminals, up to N "
-             "terminals; 0 never moves them"},
+     .help = "while the tree has at most N terminals: move all bifurcations to better positions "
+             "each time the number of terminals has doubled; 0: never"},
     {.name = "toss",
      SETS(CHOICE, Growing, params.toss),
      .choices = tosses,

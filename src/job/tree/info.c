@@ -33,7 +33,7 @@ static const Option own[] = {
     {.name = "lambda",
      SETS_KEY(InfoOptions, blood.said.number[META_LAMBDA], blood.said.known, LAMBDA),
      .group = GROUP_OPTIMUM,
-     .otherwise = "from the tree",
+     .otherwise = "from the tree; without one, no target is computed",
      .help = "exponent of the target, the cost of the tree: sum of length * radius^lambda"},
 };
 

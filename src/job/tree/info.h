@@ -15,22 +15,23 @@ typedef struct InfoReport {
     TreeReading reading;
     TreeSummary summary;
     bool has_statistics, has_morphometry; /* the user asked for them */
-    TreeStatistics statistics;
-    Morphometry table;                /* the published table; zeroed without has_morphometry */
-    MorphometryComparison comparison; /* of the tree with the table; zeroed without it */
-    json_t *bound;                    /* bound_json [certify.h]; owned; NULL: not asked for */
+    TreeStatistics statistics;            /* set if has_statistics */
+    Morphometry table;                    /* the published table; set if has_morphometry */
+    MorphometryComparison comparison;     /* the tree against the table; set if has_morphometry */
+    json_t *bound;                        /* bound_json [certify.h]; owned; NULL: not asked for */
 } InfoReport;
 
 /* Measures the tree that is the first operand.
  *
- * options  parsed->options.
- * report   the caller releases it even after an error.
- * Errors   STATUS_USAGE for options without effect; as reading_tree, blood_settle, template_file,
- *          morphometry_read and bound_tree. */
+ * options  the struct parsed->options.
+ * report   is overwritten; the caller releases it even after an error.
+ * Errors   STATUS_USAGE for an option without effect; STATUS_INPUT for a tree, a flow file or a
+ *          published table that cannot be used; STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status info_make(void *options, Parsed *parsed, InfoReport *report, Err *err);
 void inforeport_release(InfoReport *report);
 
-/* Returns the report as JSON. New reference, or NULL if memory runs out. */
+/* Returns the report as JSON; the unit of a number is the end of its key, such as _mm3. New
+ * reference, or NULL if memory runs out. */
 json_t *inforeport_json(const InfoReport *report);
 
 #endif

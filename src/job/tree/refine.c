@@ -28,14 +28,14 @@ static const Option own[] = {
      SETS(TEXT, RefineOptions, domain),
      .group = GROUP_TREE,
      .argument = "SHAPE",
-     .otherwise = "from the tree",
+     .otherwise = "from the tree, else none",
      .help = "tissue shape that vessels must stay in; without one, vessels may go anywhere"},
     {.name = "clearance",
      SETS(NUMBER, RefineOptions, clearance_mm),
      GIVEN(RefineOptions, has_clearance),
      .meta = &meta_rows[META_CLEARANCE],
      .group = GROUP_TREE,
-     .otherwise = "from the tree",
+     .otherwise = "from the tree, else 0",
      .help = "minimum distance between the walls of vessels of different trees, kept and checked"},
 };
 

@@ -308,7 +308,7 @@ json_t *comparison_json(const Comparison *comparison)
 
 const Command command_compare = {
     .name = "compare",
-    .summary = "compare two images or planes, or two folders of images",
+    .summary = "compare two images, two depth, normal or id planes, or two folders",
     .operands = "A B",
     .examples =
         "  corcast compare reference.png mine.png\n"

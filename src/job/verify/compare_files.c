@@ -56,7 +56,10 @@ static Status write_page(const CompareOptions *options, const Parsed *parsed,
     char *folder = NULL, *line = NULL;
     Text title = TEXT_INIT;
     Status status;
-    text_printf(&title, "%s and %s", file_name(sides[0].name), file_name(sides[1].name));
+    const char *names[] = {file_name(sides[0].name), file_name(sides[1].name)};
+    const bool is_told = strcmp(names[0], names[1]) != 0;
+    text_printf(&title, "%s and %s", is_told ? names[0] : sides[0].name,
+                is_told ? names[1] : sides[1].name);
     TRY_GOTO(text_check(&title, err));
     TRY_GOTO(command_line_text(parsed, &line, err));
     TRY_GOTO(templates_path("report", &folder, err));

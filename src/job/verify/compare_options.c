@@ -45,8 +45,8 @@ static const Option own[] = {
     {.name = "reference",
      SETS(TEXT, CompareOptions, reference),
      .argument = "DIR",
-     .help = "compare every image of the folder A with the image of the same name in the reference "
-             "folder DIR"},
+     .help = "compare each image in the folder A with the image of the same name in DIR (give no "
+             "B); an image that only one folder has counts as a difference"},
     {.name = "accept",
      SETS(TEXT, CompareOptions, accept),
      .argument = "CASE",
@@ -113,7 +113,8 @@ static const Option own[] = {
      SETS(OUTPUT, CompareOptions, ledger),
      .argument = "L.csv",
      .when = WHEN(TWO_PICTURES),
-     .help = "write a table of the differences of every segment"},
+     .help = "write a CSV table with one row per segment: its pixels in A and B, and how much they "
+             "differ; needs the id planes of both images (--ids-a, --ids-b)"},
     {.name = "html",
      SETS(OUTPUT, CompareOptions, page),
      .is_told = true,
@@ -150,7 +151,9 @@ static const Option of_judge[] = {
      .group = GROUP_JUDGE,
      .excludes = "verdict",
      .clash = " are two rules; one can be asked",
-     .help = "required agreement (see `tiers of agreement`)"},
+     .help = "required agreement: A (identical), B (equal up to single-precision arithmetic), "
+             "surface (equal up to the search for an implicit surface), none (only NaN differs); "
+             "`corcast compare --help` defines them"},
     {.name = "tolerance",
      SETS(INPUT, JudgeOptions, tolerance),
      .group = GROUP_JUDGE,

@@ -266,7 +266,7 @@ done:
 
 const Command command_power = {
     .name = "power",
-    .summary = "measure which faults in a renderer's images a tolerance fails to detect",
+    .summary = "measure which faults in an image a comparison fails to detect",
     .operands = "--render COMMAND",
     .examples =
         "  corcast power --render 'povray scene.pov +O{} -D +W320 +H240' --levels 2 --ppm 100\n"

@@ -109,6 +109,7 @@ static Status render_alpha(Verification *v, Err *err)
     Status status;
     params.want_depth = params.want_normal = params.want_id = false;
     scene.view.transparent = true;
+    scene.view.fade = (Fade){0}; /* vessels of POV-Ray's picture are opaque */
     TRY_GOTO(render(&scene, &params, &frame, NULL, err));
     TRY_GOTO(picture_from_transparent(&picture, &frame.color, &frame.alpha, ENCODING_SRGB, 8, err));
     status = picture_take_alpha(&v->native.alpha, &picture, err);

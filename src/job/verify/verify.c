@@ -17,7 +17,8 @@ static const Option own[] = {
      SETS(FOLDER, VerifyOptions, folder),
      .argument = "DIR",
      .is_told = true,
-     .help = "folder for the report, the scene and all planes"},
+     .help = "folder for the report, the POV-Ray scene, and the color, depth, normal and id images "
+             "of both renderers"},
     {.name = "bits",
      SETS(WHOLE, VerifyOptions, bits),
      .range = &bits_range,
@@ -28,7 +29,8 @@ static const Option own[] = {
      SETS(CHOICE, VerifyOptions, kernels),
      .choices = render_kernel_names,
      .group = GROUP_RUN,
-     .help = "for tests: instruction set that the exact isosurface is drawn with"},
+     .help = "for tests only: processor instructions to draw the exact isosurface with; the image "
+             "is the same for all"},
     {.name = "witness",
      SETS(CHOICE, VerifyOptions, witness),
      .choices = witnesses,
@@ -105,13 +107,12 @@ static Status verify(Verification *v, VerifyFolder *folder, Parsed *parsed, Err 
     PictureOptions all_moments = *picture; /* POV-Ray's scene contains all moments */
     PictureReport made;
     all_moments.coloring.frame = 0;
+    all_moments.omits_effects = true;
     TRY(verifyfolder_claim(folder, &parsed->files, err));
     TRY(picture_scene(&all_moments, parsed, &v->scene, &made, err));
     TRY(picture_check_ids(&v->scene.geometry, v->tree, err));
     TRY(picture_say(&v->scene, &made, parsed->common.talk, err));
-    TRY(picture_say_effects(picture, &v->scene.view, "omitted on both sides", parsed->common.talk,
-                            err));
-    v->scene.view.effects = (Effects){0};
+    TRY(picture_say_effects(&all_moments, "both pictures omit them", parsed->common.talk, err));
     if (!picture->stage.has_location)
         move_off_ties(&v->scene.view.camera);
     v->has_alpha = v->scene.view.transparent;
@@ -158,7 +159,7 @@ done:
 
 const Command command_verify = {
     .name = "verify",
-    .summary = "check that POV-Ray and the native renderer draw the same image",
+    .summary = "check that corcast and POV-Ray draw a tree alike",
     .operands = "T.swc -o DIR",
     .examples = "  corcast verify tree.swc -o check\n"
                 "  corcast verify tree.swc --model isosurface --size 400x400 -o check\n",

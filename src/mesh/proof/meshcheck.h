@@ -27,13 +27,14 @@ MUST_CHECK Status meshcheck_trees(const VesselTree *tree, uint32_t **trees, size
 MUST_CHECK Status meshcheck_topology(const VesselMesh *mesh, const uint32_t *trees,
                                      MeshReport *report, Err *err);
 
-/* Counts the pairs of triangles that cross: they have a common point that is not on a corner or an
- * edge that they share. The result is exact, and does not depend on the number of threads.
+/* Counts the pairs of triangles that cross. A pair crosses if it has a common point that lies
+ * neither on a common corner nor on a common edge. The result is exact, and does not depend on the
+ * number of threads.
  *
  * grid_mm    all coordinates are integer multiples of it, below 2^25 times it in magnitude.
  * threads    number of threads; 0: one per processor.
- * crossed    per triangle, false before: set to true if the triangle is in such a pair. NULL: not
- *            wanted.
+ * crossed    per triangle: set to true if the triangle is in such a pair. The caller sets all to
+ *            false before. NULL: not wanted.
  * crossings  receives the number of pairs.
  * Errors     STATUS_MEMORY. */
 MUST_CHECK Status meshcheck_crossings(const VesselMesh *mesh, double grid_mm, int threads,

@@ -2,8 +2,9 @@
  * be cut flat. Exported by the public header of the module mesh.
  *
  * vesselmesh_build refuses a tree whose vessels overlap although they do not blend. It leaves an
- * end round if other vessels are too close to cut it flat. Both functions here change the tree so
- * that this does not happen, and list the changed segments. On error the tree may be changed. */
+ * end round if other vessels are too close to cut it flat. The functions here
+ * change the tree to avoid both, and list the changed segments. After an error the tree may be
+ * changed, and the lists are not set. */
 #ifndef CORCAST_MESH_REGIONS_ADJUST_H
 #define CORCAST_MESH_REGIONS_ADJUST_H
 

@@ -8,8 +8,8 @@
  *     if (caster_first(caster, 0, ray, &surfel))
  *         ... the ray hits segment surfel.segment after surfel.t mm
  *     caster_free(caster); */
-#ifndef CORCAST_RENDER_CASTER_H
-#define CORCAST_RENDER_CASTER_H
+#ifndef CORCAST_RENDER_CAST_CASTER_H
+#define CORCAST_RENDER_CAST_CASTER_H
 
 #include "render/cast/raysearch.h"
 

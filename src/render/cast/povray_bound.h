@@ -2,8 +2,8 @@
  * [docs/POVRAY.md section 13]. They decide which objects POV-Ray intersects with a ray, and in
  * which order. The caller converts a ray once with bound_ray and then tests any number of boxes.
  * Nothing is allocated. */
-#ifndef CORCAST_RENDER_POVRAY_BOUND_H
-#define CORCAST_RENDER_POVRAY_BOUND_H
+#ifndef CORCAST_RENDER_CAST_POVRAY_BOUND_H
+#define CORCAST_RENDER_CAST_POVRAY_BOUND_H
 
 #include "base/base.h"
 #include "geom/geom.h"

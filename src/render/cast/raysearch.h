@@ -7,8 +7,8 @@
  *     TRY(search->build(&index, NULL, err));
  *     bool hit = search->first(&index, workspace, &(RayPart){ray, 1e-4, INFINITY}, &result);
  *     rayindex_release(&index); */
-#ifndef CORCAST_RENDER_RAYSEARCH_H
-#define CORCAST_RENDER_RAYSEARCH_H
+#ifndef CORCAST_RENDER_CAST_RAYSEARCH_H
+#define CORCAST_RENDER_CAST_RAYSEARCH_H
 
 #include "base/base.h"
 #include "field/field.h"

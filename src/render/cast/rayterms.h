@@ -7,8 +7,8 @@
  *     while (rayterms_next_group(scratch))
  *         if (rayterms_find_windows(scratch))
  *             ... */
-#ifndef CORCAST_RENDER_RAYTERMS_H
-#define CORCAST_RENDER_RAYTERMS_H
+#ifndef CORCAST_RENDER_CAST_RAYTERMS_H
+#define CORCAST_RENDER_CAST_RAYTERMS_H
 
 #include "base/base.h"
 #include "field/field.h"

@@ -204,6 +204,43 @@ static void gather(const EffectEdges *edges, size_t row, float *line, float *gap
 
 /* ---- colors --------------------------------------------------------------------------------- */
 
+/* Returns the background's color at a sample. */
+static Rgb paper_at(const EffectSamples *samples, size_t x, size_t row)
+{
+    const Grade *grade = &samples->effects->grade;
+    const Camera *camera = samples->camera;
+    const double y = (double)row + samples->band.first + 0.5;
+    return grade->present ? grade_at(grade, (double)x + 0.5, y, camera->width, camera->height)
+                          : samples->paper;
+}
+
+static float graded(float color, float paper, float center, float dither)
+{
+    const float made = center > 0 ? color * paper / center : paper;
+    return fmaxf(made + dither * 2.2f * sqrtf(made), 0); /* the slope of sRGB is about 2.2 sqrt */
+}
+
+/* Returns an offset of at most half an 8-bit code of sRGB, the same for all samples of a pixel.
+ * Without it, the steps between codes show as rings. Interleaved gradient noise: J. Jimenez, Next
+ * generation post processing in Call of Duty: Advanced Warfare, SIGGRAPH 2014. */
+static float dither_at(const EffectSamples *samples, size_t x, size_t row)
+{
+    const size_t side = (size_t)samples->side;
+    const double line = (double)((row + (size_t)samples->band.first) / side);
+    double whole;
+    const double step = modf(0.06711056 * (double)(x / side) + 0.00583715 * line, &whole);
+    return (float)((modf(52.9829189 * step, &whole) - 0.5) / 255);
+}
+
+/* Gives a sample of the background, or of a ground plane, its part of the graded background. */
+static void grade(const EffectSamples *samples, Rgb paper, float dither, float color[3])
+{
+    const Rgb center = samples->effects->grade.center;
+    color[0] = graded(color[0], paper.r, center.r, dither);
+    color[1] = graded(color[1], paper.g, center.g, dither);
+    color[2] = graded(color[2], paper.b, center.b, dither);
+}
+
 static void draw_row(size_t number, int worker, void *context)
 {
     const EffectEdges *edges = context;
@@ -217,13 +254,19 @@ static void draw_row(size_t number, int worker, void *context)
     for (size_t x = 0; x < width; x++) {
         size_t at = row * width + x;
         float *color = frame->color.values + 3 * at;
-        if (!frame->id.ids[at])
+        const Rgb paper = paper_at(samples, x, row);
+        if (!frame->id.ids[at]) {
+            if (effects->grade.present)
+                grade(samples, paper, dither_at(samples, x, row), color);
             continue;
-        Rgb seen =
-            rgb_mixed((Rgb){color[0], color[1], color[2]}, effects->outline.color, (double)line[x]);
-        seen = rgb_mixed(seen, samples->paper,
-                         fade_at(&effects->fade, (double)frame->depth.values[at]));
-        seen = rgb_mixed(seen, samples->paper, (double)gap[x]);
+        }
+        const double faded = fade_at(samples->fade, (double)frame->depth.values[at]);
+        const Rgb drawn = {color[0] + (float)faded * (paper.r - samples->paper.r),
+                           color[1] + (float)faded * (paper.g - samples->paper.g),
+                           color[2] + (float)faded * (paper.b - samples->paper.b)};
+        const Rgb outline = rgb_mixed(effects->outline.color, paper, faded);
+        Rgb seen = rgb_mixed(drawn, outline, (double)line[x]);
+        seen = rgb_mixed(seen, paper, (double)gap[x]);
         color[0] = seen.r;
         color[1] = seen.g;
         color[2] = seen.b;

@@ -1,8 +1,8 @@
-/* Fading, outlines and halos [scene/effects.h], drawn over the samples of a shaded image. The image
- * is rendered at `side` x `side` samples per pixel. effects_draw changes the colors of the samples,
- * and effects_reduce averages them to pixels. */
-#ifndef CORCAST_RENDER_EFFECT_H
-#define CORCAST_RENDER_EFFECT_H
+/* Fading, outlines, halos and a graded background [scene/effects.h], drawn over the samples of a
+ * shaded image. The image is rendered at `side` x `side` samples per pixel. effects_draw changes the
+ * colors of the samples, and effects_reduce averages them to pixels. */
+#ifndef CORCAST_RENDER_EFFECT_EFFECT_H
+#define CORCAST_RENDER_EFFECT_EFFECT_H
 
 #include "base/base.h"
 #include "image/image.h"
@@ -37,8 +37,9 @@ typedef struct EffectSamples {
     const Effects *effects;
     const Camera *camera; /* camera whose pixels are the samples */
     const RadiusTable *radii;
-    Rgb paper; /* background */
-    int side;  /* samples per pixel width */
+    const Fade *fade; /* that the colors of vessels have */
+    Rgb paper;        /* background */
+    int side;         /* samples per pixel width */
     int threads;
     Band band;    /* rows of samples */
     Frame *frame; /* color, depth and ids; normals if outlines follow creases */

@@ -1,8 +1,8 @@
 /* The kernels of implicit models (potential and blob), in one version for each instruction set. A
  * FieldKernel finds the first hits of a tile of the image. A ShadowKernel answers the shadow
  * queries of a tile of a light view. Kernels allocate nothing and cannot fail. */
-#ifndef CORCAST_RENDER_FIELDKERNELS_H
-#define CORCAST_RENDER_FIELDKERNELS_H
+#ifndef CORCAST_RENDER_FIELD_FIELDKERNELS_H
+#define CORCAST_RENDER_FIELD_FIELDKERNELS_H
 
 #include "render/field/fieldterms.h"
 #include "render/light/shadowengine.h"

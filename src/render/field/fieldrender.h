@@ -1,6 +1,6 @@
 /* The engine that draws implicit models (potential and blob), tile by tile. */
-#ifndef CORCAST_RENDER_FIELDRENDER_H
-#define CORCAST_RENDER_FIELDRENDER_H
+#ifndef CORCAST_RENDER_FIELD_FIELDRENDER_H
+#define CORCAST_RENDER_FIELD_FIELDRENDER_H
 
 #include "render/engine.h"
 

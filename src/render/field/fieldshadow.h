@@ -1,7 +1,7 @@
 /* Answers shadow queries among the segments of a potential or a blob
  * [render/light/shadowengine.h]. */
-#ifndef CORCAST_RENDER_FIELDSHADOW_H
-#define CORCAST_RENDER_FIELDSHADOW_H
+#ifndef CORCAST_RENDER_FIELD_FIELDSHADOW_H
+#define CORCAST_RENDER_FIELD_FIELDSHADOW_H
 
 #include "render/light/shadowengine.h"
 

@@ -1,7 +1,7 @@
 /* The workspace of one thread for the terms of one tile, in the view of a camera or of a light.
  * Capacities only grow. */
-#ifndef CORCAST_RENDER_FIELDSPACE_H
-#define CORCAST_RENDER_FIELDSPACE_H
+#ifndef CORCAST_RENDER_FIELD_FIELDSPACE_H
+#define CORCAST_RENDER_FIELD_FIELDSPACE_H
 
 #include "render/cast/raysearch.h"
 #include "render/field/fieldterms.h"

@@ -2,8 +2,8 @@
  * moved to the frame of the view [FrameSegment]. For each tile that it may touch, it then becomes a
  * term [TileTerm]: the segment relative to the middle ray of the tile, in single precision. A
  * FieldTile holds the terms of a tile and its sample positions. */
-#ifndef CORCAST_RENDER_FIELDTERMS_H
-#define CORCAST_RENDER_FIELDTERMS_H
+#ifndef CORCAST_RENDER_FIELD_FIELDTERMS_H
+#define CORCAST_RENDER_FIELD_FIELDTERMS_H
 
 #include "field/field.h"
 #include "render/tile/interval.h"

@@ -6,8 +6,8 @@
  *     TRY(fieldtiles_list(tiles, row, worker, err));                       per row
  *     TRY(fieldtiles_trace(tiles, worker, &traced, &hits, err));           per tile of the row
  *     fieldtiles_free(tiles); */
-#ifndef CORCAST_RENDER_FIELDTILES_H
-#define CORCAST_RENDER_FIELDTILES_H
+#ifndef CORCAST_RENDER_FIELD_FIELDTILES_H
+#define CORCAST_RENDER_FIELD_FIELDTILES_H
 
 #include "render/field/fieldkernels.h"
 #include "render/field/vessellists.h"

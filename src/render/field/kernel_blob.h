@@ -16,8 +16,8 @@
  *   x = e; near the axis and far from it, x = d; and 0. Where the line stays out of reach of both
  *   ends it is at most that times the squared sine of the line to the axis. It is no less than
  *   -1.25 times that. */
-#ifndef CORCAST_RENDER_KERNEL_BLOB_H
-#define CORCAST_RENDER_KERNEL_BLOB_H
+#ifndef CORCAST_RENDER_FIELD_KERNEL_BLOB_H
+#define CORCAST_RENDER_FIELD_KERNEL_BLOB_H
 
 #include "render/field/kernel_packet.h"
 

@@ -10,8 +10,8 @@
  * this plane. d is the distance between ray and segment, s and a are sine and cosine of the angle
  * between ray and axis, and h = 1/2 if the ray passes the axis beyond an end of the segment, else
  * 1. */
-#ifndef CORCAST_RENDER_KERNEL_PACKET_H
-#define CORCAST_RENDER_KERNEL_PACKET_H
+#ifndef CORCAST_RENDER_FIELD_KERNEL_PACKET_H
+#define CORCAST_RENDER_FIELD_KERNEL_PACKET_H
 
 #include "render/field/kernel_trace_common.h"
 

@@ -8,8 +8,8 @@
  *   e) / sqrt(pi) / a). Since (exp(-q^2))'' >= -2, also Phi_i'' >= -M exp(3/2) / 2.
  * - Distance. It is at most exp(-E^2 - w^2) beside the segment, and exp(-E^2 - w^2 - x^2) / 2 at x
  *   beyond an end. */
-#ifndef CORCAST_RENDER_KERNEL_POTENTIAL_H
-#define CORCAST_RENDER_KERNEL_POTENTIAL_H
+#ifndef CORCAST_RENDER_FIELD_KERNEL_POTENTIAL_H
+#define CORCAST_RENDER_FIELD_KERNEL_POTENTIAL_H
 
 #include "render/field/kernel_packet.h"
 

@@ -1,7 +1,7 @@
 /* The common part of the kernels of kernel_trace.h and kernel_trace_flat.h: constants of the proof,
  * the axial factor of a term, and the storing of hits. */
-#ifndef CORCAST_RENDER_KERNEL_TRACE_COMMON_H
-#define CORCAST_RENDER_KERNEL_TRACE_COMMON_H
+#ifndef CORCAST_RENDER_FIELD_KERNEL_TRACE_COMMON_H
+#define CORCAST_RENDER_FIELD_KERNEL_TRACE_COMMON_H
 
 #include "render/field/fieldterms.h"
 #include "render/tile/lanes.h"

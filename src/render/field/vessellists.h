@@ -1,6 +1,6 @@
 /* Lists, for each tile of a picture, the segments of an implicit model that can affect the tile. */
-#ifndef CORCAST_RENDER_VESSELLISTS_H
-#define CORCAST_RENDER_VESSELLISTS_H
+#ifndef CORCAST_RENDER_FIELD_VESSELLISTS_H
+#define CORCAST_RENDER_FIELD_VESSELLISTS_H
 
 #include "render/field/fieldterms.h"
 #include "render/light/lightview.h"

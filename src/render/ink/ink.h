@@ -1,6 +1,6 @@
 /* Line drawings of vessels: the visible outlines, as lines on paper. */
-#ifndef CORCAST_RENDER_INK_H
-#define CORCAST_RENDER_INK_H
+#ifndef CORCAST_RENDER_INK_INK_H
+#define CORCAST_RENDER_INK_INK_H
 
 #include "base/base.h"
 #include "scene/scene.h"

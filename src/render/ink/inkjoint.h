@@ -3,8 +3,8 @@
  * the first circle, 1 the second circle, and values between select the ellipses between. The
  * outline crosses each ellipse where the surface normal is perpendicular to the line of sight. All
  * functions are pure. */
-#ifndef CORCAST_RENDER_INKJOINT_H
-#define CORCAST_RENDER_INKJOINT_H
+#ifndef CORCAST_RENDER_INK_INKJOINT_H
+#define CORCAST_RENDER_INK_INKJOINT_H
 
 #include "scene/scene.h"
 

@@ -1,6 +1,6 @@
 /* Soft shadows: the visibility of area lights at the pixels of a band. */
-#ifndef CORCAST_RENDER_AREALIGHTS_H
-#define CORCAST_RENDER_AREALIGHTS_H
+#ifndef CORCAST_RENDER_LIGHT_AREALIGHTS_H
+#define CORCAST_RENDER_LIGHT_AREALIGHTS_H
 
 #include "render/light/pixelpoints.h"
 

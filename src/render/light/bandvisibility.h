@@ -1,7 +1,7 @@
 /* Computes the visibility of ambient light and area lights that all samples of a pixel share, for a
  * band of an image [visibility.h]. */
-#ifndef CORCAST_RENDER_BANDVISIBILITY_H
-#define CORCAST_RENDER_BANDVISIBILITY_H
+#ifndef CORCAST_RENDER_LIGHT_BANDVISIBILITY_H
+#define CORCAST_RENDER_LIGHT_BANDVISIBILITY_H
 
 #include "render/light/occluders.h"
 #include "render/light/offpixel.h"

@@ -4,8 +4,8 @@
  * A light view is a square grid of tiles. To find whether a point is in shadow, the point is
  * projected to its tile (lightview_projection), and only the vessels in this tile are tested. All
  * functions are pure. Lengths are in mm. */
-#ifndef CORCAST_RENDER_LIGHTVIEW_H
-#define CORCAST_RENDER_LIGHTVIEW_H
+#ifndef CORCAST_RENDER_LIGHT_LIGHTVIEW_H
+#define CORCAST_RENDER_LIGHT_LIGHTVIEW_H
 
 #include "render/tile/interval.h"
 #include "render/tile/tilekernels.h"

@@ -1,7 +1,7 @@
 /* The vessels that block ambient light, as capsules. Every model is reduced to capsules, because
  * ambient occlusion needs no exact surface. */
-#ifndef CORCAST_RENDER_OCCLUDERS_H
-#define CORCAST_RENDER_OCCLUDERS_H
+#ifndef CORCAST_RENDER_LIGHT_OCCLUDERS_H
+#define CORCAST_RENDER_LIGHT_OCCLUDERS_H
 
 #include "base/base.h"
 #include "scene/scene.h"

@@ -1,6 +1,6 @@
 /* Ambient occlusion: the ambient visibility of the pixels of a band. */
-#ifndef CORCAST_RENDER_OCCLUSION_H
-#define CORCAST_RENDER_OCCLUSION_H
+#ifndef CORCAST_RENDER_LIGHT_OCCLUSION_H
+#define CORCAST_RENDER_LIGHT_OCCLUSION_H
 
 #include "render/light/occluders.h"
 #include "render/light/visibility.h"

@@ -1,8 +1,8 @@
 /* Kernels of ambient occlusion. A cone begins as a line at a shading point and widens along an
  * occlusion direction. Kernels work on several cones at once. There is one version for each kind of
  * processor. All give the same bytes: nothing is fused, and sums and products have one order. */
-#ifndef CORCAST_RENDER_OCCLUSIONKERNELS_H
-#define CORCAST_RENDER_OCCLUSIONKERNELS_H
+#ifndef CORCAST_RENDER_LIGHT_OCCLUSIONKERNELS_H
+#define CORCAST_RENDER_LIGHT_OCCLUSIONKERNELS_H
 
 #include "render/light/occluders.h"
 #include "render/tile/tilekernels.h"

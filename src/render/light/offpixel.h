@@ -1,7 +1,7 @@
 /* Visibility of lights at shading points that belong to no pixel, such as the sample points of
  * vessels thinner than a pixel. */
-#ifndef CORCAST_RENDER_OFFPIXEL_H
-#define CORCAST_RENDER_OFFPIXEL_H
+#ifndef CORCAST_RENDER_LIGHT_OFFPIXEL_H
+#define CORCAST_RENDER_LIGHT_OFFPIXEL_H
 
 #include "render/light/shadowengine.h"
 

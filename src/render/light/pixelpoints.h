@@ -1,7 +1,7 @@
 /* The shading points of a band of pixels, sorted so that consecutive points query the same few
  * tiles of a light view. */
-#ifndef CORCAST_RENDER_PIXELPOINTS_H
-#define CORCAST_RENDER_PIXELPOINTS_H
+#ifndef CORCAST_RENDER_LIGHT_PIXELPOINTS_H
+#define CORCAST_RENDER_LIGHT_PIXELPOINTS_H
 
 #include "render/light/bandvisibility.h"
 
@@ -19,7 +19,8 @@ static inline size_t blocks_across(int pixels)
     return ((size_t)pixels + PIXEL_BLOCK - 1) / PIXEL_BLOCK;
 }
 
-/* Returns block `index`, row by row, of the band's rows [first, first + rows). */
+/* Returns block `index` of the rows [first, first + rows) of the band. Blocks are numbered row by
+ * row, from the left. */
 static inline PixelBlock pixelblock_at(const PixelVisibility *visibility, size_t index, int first,
                                        int rows)
 {
@@ -31,7 +32,7 @@ static inline PixelBlock pixelblock_at(const PixelVisibility *visibility, size_t
                         row, end_row < first + rows ? end_row : first + rows};
 }
 
-/* Returns the pixel at (column, row) of the band. */
+/* Returns the index of the pixel at (column, row) in the band's arrays per pixel. */
 static inline size_t pixel_at(const PixelVisibility *visibility, int column, int row)
 {
     return (size_t)row * (size_t)visibility->width + (size_t)column;
@@ -43,33 +44,35 @@ typedef struct PointRun {
     int sample_set;
 } PointRun;
 
-/* PixelPoints.n_visible combines a flag and a count: the pixel shows the ground plane, and the
- * number of visible points of a light. */
+/* The two parts of an element of PixelPoints.n_visible: the flag that the pixel shows the ground
+ * plane, and the mask of a count, the number of a light's points that are visible from the pixel.
+ * A uint16_t holds both, so a light may have up to VISIBLE_COUNT points. */
 enum { GROUND_FLAG = 1 << 15, VISIBLE_COUNT = GROUND_FLAG - 1 };
 
 /* The shading points of a band, in addition to PixelVisibility.points. All arrays are owned.
  *
- * Points are sorted by scanline block, then by sample set [shadowpass.h], then by pixel block. If
- * no area light is queried, all points belong to set 0, so that neighbouring pixels are
- * consecutive. */
+ * Points are sorted by the row of pixel blocks they are in, then by sample set [shadowpass.h], then
+ * by pixel block. If no area light is queried, all points belong to set 0, so that neighbouring
+ * pixels are consecutive. */
 typedef struct PixelPoints {
     bool has_sets; /* area lights are queried; if false, pixel_of_point and n_visible are NULL */
     size_t n;      /* number of points */
     PointRun *runs;
     size_t n_runs;
-    Box bounds;               /* bounds of the points, relative to PixelVisibility.origin; set if
-                               * has_sets */
+    Box bounds;               /* bounds of the points, mm, relative to PixelVisibility.origin; set
+                               * if has_sets */
     uint32_t *pixel_of_point; /* per point: its pixel */
-    uint16_t *n_visible;      /* per pixel: GROUND_FLAG if it shows the ground, else 0. The counts
-                               * are 0. */
+    uint16_t *n_visible;      /* per pixel: the flag and the count. pixelpoints_find sets the flag;
+                               * the count is 0 until arealights.c sets it. */
 } PixelPoints;
 
-/* Finds the shading points of the band: sets visibility->point_index and visibility->points, whose
- * other fields are set, and *points, whose has_sets is set. Draws the vessels by
- * sources->draw_planes and adds the view's ground plane.
+/* Finds the shading points of the band. Vessels are drawn by sources->draw_planes; then the view's
+ * ground plane is added.
  *
- * points   release it with pixelpoints_release, even after an error.
- * Errors   STATUS_MEMORY. */
+ * visibility  its members point_index and points are set. The caller sets all others before.
+ * points      all members except has_sets are set. The caller sets has_sets before and zeroes the
+ *             rest. Release it with pixelpoints_release, even after an error.
+ * Errors      STATUS_MEMORY. */
 MUST_CHECK Status pixelpoints_find(const Drawing *drawing, const VisibilitySources *sources,
                                    PixelVisibility *visibility, PixelPoints *points, Err *err);
 void pixelpoints_release(PixelPoints *points);

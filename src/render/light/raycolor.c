@@ -75,5 +75,6 @@ Rgb ray_color(const Drawing *drawing, int worker, Ray ray, double i, double j, c
     else if (params->occlusion > 0)
         at.ambient = rayocclusion_ambient(drawing->caster, worker, ground, at.point, at.normal,
                                           params->occlusion, rayocclusion_turn(i, j));
-    return shade(view, &at, params->shadows ? shadowed : NULL, &context);
+    const Rgb color = shade(view, &at, params->shadows ? shadowed : NULL, &context);
+    return on_ground ? color : rgb_mixed(color, view->background, fade_at(&view->fade, t));
 }

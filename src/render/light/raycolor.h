@@ -1,6 +1,6 @@
 /* The color of one camera ray. */
-#ifndef CORCAST_RENDER_RAYCOLOR_H
-#define CORCAST_RENDER_RAYCOLOR_H
+#ifndef CORCAST_RENDER_LIGHT_RAYCOLOR_H
+#define CORCAST_RENDER_LIGHT_RAYCOLOR_H
 
 #include "render/cast/caster.h"
 #include "render/job.h"

@@ -1,6 +1,6 @@
 /* Ambient occlusion of one point, by rays. */
-#ifndef CORCAST_RENDER_RAYOCCLUSION_H
-#define CORCAST_RENDER_RAYOCCLUSION_H
+#ifndef CORCAST_RENDER_LIGHT_RAYOCCLUSION_H
+#define CORCAST_RENDER_LIGHT_RAYOCCLUSION_H
 
 #include "render/cast/caster.h"
 

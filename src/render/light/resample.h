@@ -1,7 +1,7 @@
 /* Antialiasing: the samples that a pixel gets beside its centre sample, and which pixels get them.
  */
-#ifndef CORCAST_RENDER_RESAMPLE_H
-#define CORCAST_RENDER_RESAMPLE_H
+#ifndef CORCAST_RENDER_LIGHT_RESAMPLE_H
+#define CORCAST_RENDER_LIGHT_RESAMPLE_H
 
 #include "image/image.h"
 #include "render/job.h"

@@ -1,6 +1,6 @@
 /* The shading model: POV-Ray's finishes and lights [docs/METHODS.md section 3]. */
-#ifndef CORCAST_RENDER_SHADE_H
-#define CORCAST_RENDER_SHADE_H
+#ifndef CORCAST_RENDER_LIGHT_SHADE_H
+#define CORCAST_RENDER_LIGHT_SHADE_H
 
 #include "geom/geom.h"
 #include "scene/scene.h"

@@ -3,8 +3,8 @@
  * The engine sorts the geometry into the tiles of a light view, once per light [LightBins]. It then
  * answers the queries of many points that lie in one tile together. ShadowQueue [shadowqueue.h]
  * sorts queries into tiles and calls the engine. */
-#ifndef CORCAST_RENDER_SHADOWENGINE_H
-#define CORCAST_RENDER_SHADOWENGINE_H
+#ifndef CORCAST_RENDER_LIGHT_SHADOWENGINE_H
+#define CORCAST_RENDER_LIGHT_SHADOWENGINE_H
 
 #include "render/job.h"
 #include "render/light/lightview.h"

@@ -1,7 +1,7 @@
 /* Counts how many points of a light are visible from each shading point: by queries to several
  * light views at once, or by shadow rays. The caller describes its points by a ShadowPoser. */
-#ifndef CORCAST_RENDER_SHADOWPASS_H
-#define CORCAST_RENDER_SHADOWPASS_H
+#ifndef CORCAST_RENDER_LIGHT_SHADOWPASS_H
+#define CORCAST_RENDER_LIGHT_SHADOWPASS_H
 
 #include "render/light/shadowqueue.h"
 

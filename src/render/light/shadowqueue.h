@@ -1,6 +1,6 @@
 /* Shadow queries of many points to one light, sorted into the tiles of the light view. */
-#ifndef CORCAST_RENDER_SHADOWQUEUE_H
-#define CORCAST_RENDER_SHADOWQUEUE_H
+#ifndef CORCAST_RENDER_LIGHT_SHADOWQUEUE_H
+#define CORCAST_RENDER_LIGHT_SHADOWQUEUE_H
 
 #include "render/light/shadowengine.h"
 

@@ -1,8 +1,8 @@
 /* Visibility that all samples of a pixel share: the ambient visibility of the surface, and the
  * visibility of each area light. It is computed once per pixel, at the hit of the ray through the
  * pixel's centre [bandvisibility.h]. */
-#ifndef CORCAST_RENDER_VISIBILITY_H
-#define CORCAST_RENDER_VISIBILITY_H
+#ifndef CORCAST_RENDER_LIGHT_VISIBILITY_H
+#define CORCAST_RENDER_LIGHT_VISIBILITY_H
 
 #include "render/job.h"
 #include "scene/scene.h"

@@ -10,8 +10,8 @@
  * separated. Newton's method, limited to the interval, finds the ruling. A hit counts if it lies on
  * its line to 1e-4 of the joint's size. Lines that are still undecided then are decided in double
  * precision. */
-#ifndef CORCAST_RENDER_KERNEL_JOINT_H
-#define CORCAST_RENDER_KERNEL_JOINT_H
+#ifndef CORCAST_RENDER_RASTER_KERNEL_JOINT_H
+#define CORCAST_RENDER_RASTER_KERNEL_JOINT_H
 
 #include "render/raster/kernel_round.h"
 

@@ -1,8 +1,8 @@
 /* Finds where lines of sight enter spheres and cylinders, several lines at once. A part of
  * kernel_raster.h. At the depth of an item's middle, a line passes at (X, Y) = (x, y) depth -
  * middle from it. This offset is computed in double precision for the tile, and stays small. */
-#ifndef CORCAST_RENDER_KERNEL_ROUND_H
-#define CORCAST_RENDER_KERNEL_ROUND_H
+#ifndef CORCAST_RENDER_RASTER_KERNEL_ROUND_H
+#define CORCAST_RENDER_RASTER_KERNEL_ROUND_H
 
 #include "render/raster/rastertile.h"
 #include "render/tile/lanes.h"

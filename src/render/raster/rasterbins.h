@@ -8,8 +8,8 @@
  *     rasterbins_free(bins);
  *
  * Functions that take a const RasterBins can be called by several threads. */
-#ifndef CORCAST_RENDER_RASTERBINS_H
-#define CORCAST_RENDER_RASTERBINS_H
+#ifndef CORCAST_RENDER_RASTER_RASTERBINS_H
+#define CORCAST_RENDER_RASTER_RASTERBINS_H
 
 #include "render/raster/rasteritem.h"
 

@@ -1,8 +1,8 @@
 /* Computes the items of a view: for one primitive, its projection [RasterItem] and the tiles that
  * it may touch. rasterbins.c calls these functions for all primitives of a geometry. All functions
  * are pure and can run in parallel. */
-#ifndef CORCAST_RENDER_RASTERITEM_H
-#define CORCAST_RENDER_RASTERITEM_H
+#ifndef CORCAST_RENDER_RASTER_RASTERITEM_H
+#define CORCAST_RENDER_RASTER_RASTERITEM_H
 
 #include "render/raster/rasterview.h"
 

@@ -5,8 +5,8 @@
  * Kernels read and write whole blocks of as many samples as the processor has lanes, at most 16.
  * Arrays of TILE_SAMPLES elements are not exceeded; where a kernel reads or writes farther, its
  * contract says so. Nothing is allocated, and nothing can fail. */
-#ifndef CORCAST_RENDER_RASTERKERNELS_H
-#define CORCAST_RENDER_RASTERKERNELS_H
+#ifndef CORCAST_RENDER_RASTER_RASTERKERNELS_H
+#define CORCAST_RENDER_RASTER_RASTERKERNELS_H
 
 #include "render/light/shadowengine.h"
 #include "render/raster/rastertile.h"

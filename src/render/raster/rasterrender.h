@@ -1,6 +1,6 @@
 /* The engine that draws primitives tile by tile, in single precision. */
-#ifndef CORCAST_RENDER_RASTERRENDER_H
-#define CORCAST_RENDER_RASTERRENDER_H
+#ifndef CORCAST_RENDER_RASTER_RASTERRENDER_H
+#define CORCAST_RENDER_RASTER_RASTERRENDER_H
 
 #include "render/engine.h"
 

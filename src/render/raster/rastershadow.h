@@ -1,6 +1,6 @@
 /* Answers shadow queries among primitives [render/light/shadowengine.h]. */
-#ifndef CORCAST_RENDER_RASTERSHADOW_H
-#define CORCAST_RENDER_RASTERSHADOW_H
+#ifndef CORCAST_RENDER_RASTER_RASTERSHADOW_H
+#define CORCAST_RENDER_RASTER_RASTERSHADOW_H
 
 #include "render/light/shadowengine.h"
 

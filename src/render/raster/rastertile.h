@@ -7,8 +7,8 @@
  * Points are in the frame of the view [viewpoint.h], mm. A line of sight is given by a point (x, y)
  * of the view's plane: in a parallel view it leads from (x, y, 0) along (0, 0, 1), in perspective
  * from the origin along (x, y, 1). */
-#ifndef CORCAST_RENDER_RASTERTILE_H
-#define CORCAST_RENDER_RASTERTILE_H
+#ifndef CORCAST_RENDER_RASTER_RASTERTILE_H
+#define CORCAST_RENDER_RASTER_RASTERTILE_H
 
 #include "render/tile/interval.h"
 #include "render/tile/tile.h"

@@ -1,7 +1,7 @@
 /* The view of a camera or of a light on primitives: its viewpoint, and the grid of pixels on which
  * it is sampled. Tiles are numbered row by row from the upper left. All functions are pure. */
-#ifndef CORCAST_RENDER_RASTERVIEW_H
-#define CORCAST_RENDER_RASTERVIEW_H
+#ifndef CORCAST_RENDER_RASTER_RASTERVIEW_H
+#define CORCAST_RENDER_RASTER_RASTERVIEW_H
 
 #include "render/raster/rastertile.h"
 #include "render/tile/interval.h"

@@ -1,7 +1,7 @@
 /* The engine that draws primitives by sampling their surfaces into a depth buffer, as the paper
  * does [N, section 3]. */
-#ifndef CORCAST_RENDER_ZBUFFER_H
-#define CORCAST_RENDER_ZBUFFER_H
+#ifndef CORCAST_RENDER_RASTER_ZBUFFER_H
+#define CORCAST_RENDER_RASTER_ZBUFFER_H
 
 #include "render/engine.h"
 

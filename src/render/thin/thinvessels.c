@@ -466,10 +466,14 @@ static Rgb piece_color(const Drawing *drawing, const ThinVessels *thin, size_t p
     const View *view = drawing->view;
     const ThinWall wall = wall_of(thin, piece);
     Rgb color = wall_color(drawing, thin, &wall, piece);
-    if (!effects_present(&view->effects))
+    if (!fade_is_on(&view->fade))
         return color;
-    double depth = camera_point(&thin->camera, wall.middle).depth_mm - wall.radius;
-    return rgb_mixed(color, view->background, fade_at(&view->effects.fade, depth));
+    const CameraPoint at = camera_point(&thin->camera, wall.middle);
+    const Grade *grade = &view->effects.grade;
+    const Rgb paper = grade->present
+                          ? grade_at(grade, at.x, at.y, thin->camera.width, thin->camera.height)
+                          : view->background;
+    return rgb_mixed(color, paper, fade_at(&view->fade, at.depth_mm - wall.radius));
 }
 
 typedef struct ThinJob {

@@ -7,8 +7,8 @@
  *     thinvessels_color(&drawing, &thin);
  *     TRY(thinvessels_draw(&drawing, &thin, &frame, err));
  *     thinvessels_release(&thin); */
-#ifndef CORCAST_RENDER_THINVESSELS_H
-#define CORCAST_RENDER_THINVESSELS_H
+#ifndef CORCAST_RENDER_THIN_THINVESSELS_H
+#define CORCAST_RENDER_THIN_THINVESSELS_H
 
 #include "base/base.h"
 #include "render/job.h"

@@ -12,7 +12,9 @@
 
 TileLook tilelook_of(const View *view, const Finish *finish, const Viewpoint *eye)
 {
-    TileLook look = {.finish = *finish, .n_lights = view->n_lights};
+    const Rgb paper = view->background;
+    TileLook look = {
+        .finish = *finish, .n_lights = view->n_lights, .paper = {paper.r, paper.g, paper.b}};
     for (size_t i = 0; i < view->n_lights; i++) {
         const Light *light = &view->lights[i];
         Vec3 v = light->parallel
@@ -29,7 +31,7 @@ TileLook tilelook_of(const View *view, const Finish *finish, const Viewpoint *ey
 /* Returns true if shading needs the positions of points, and not only their normals. */
 static bool needs_points(const View *view)
 {
-    bool needs = view->camera.projection == PROJECTION_PERSPECTIVE;
+    bool needs = view->camera.projection == PROJECTION_PERSPECTIVE || fade_is_on(&view->fade);
     for (size_t i = 0; i < view->n_lights; i++)
         needs |= !view->lights[i].parallel;
     return needs;
@@ -278,6 +280,14 @@ void canvas_trace_ground(const Canvas *canvas, TracedTile *traced, TileHits *hit
         traced->hits = hits;
 }
 
+static void set_fade(const Fade *fade, const TracedTile *traced, CanvasWorker *own)
+{
+    for (int sample = 0; sample < TILE_SAMPLES; sample++)
+        if (traced->hits->state[sample] == TILE_HIT)
+            own->fade[sample] = (float)fade_at(fade, tile_hit_distance(traced, sample));
+    own->surface.fade = own->fade;
+}
+
 /* Shades the samples that hit the ground. */
 static void shade_ground(const Canvas *canvas, const TracedTile *traced,
                          const uint8_t (*shadowed)[TILE_SAMPLES], CanvasWorker *own)
@@ -305,6 +315,8 @@ float (*canvas_shade(const Canvas *canvas, int worker, const TracedTile *traced,
         set_places(traced, &own->surface);
     if (canvas->drawing->visibility)
         set_shared(canvas, traced, own);
+    if (fade_is_on(&canvas->drawing->view->fade))
+        set_fade(&canvas->drawing->view->fade, traced, own);
     canvas->kernels->shade(&canvas->look, &own->surface, own->color);
     if (traced->ground)
         shade_ground(canvas, traced, shadowed, own);

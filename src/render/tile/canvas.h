@@ -4,8 +4,8 @@
  *     TRY(canvas_init(&drawing, frame, &eye, &canvas, err));
  *     TRY(canvas_pass(&canvas, false, 1, draw_rows, context, err));  calls draw_rows per row of
  * tiles, which calls canvas_shade and canvas_draw per tile canvas_release(&canvas); */
-#ifndef CORCAST_RENDER_CANVAS_H
-#define CORCAST_RENDER_CANVAS_H
+#ifndef CORCAST_RENDER_TILE_CANVAS_H
+#define CORCAST_RENDER_TILE_CANVAS_H
 
 #include "render/light/resample.h"
 #include "render/planes.h"
@@ -20,6 +20,7 @@ TileLook tilelook_of(const View *view, const Finish *finish, const Viewpoint *ey
 typedef struct CanvasWorker {
     TileSurface surface, ground; /* hits of vessels, and hits of the ground */
     float ambient[TILE_SAMPLES]; /* ambient visibility of the samples of both surfaces */
+    float fade[TILE_SAMPLES];    /* fraction of the background's color in the vessels' samples */
     float light_visibility[VIEW_MAX_LIGHTS][TILE_SAMPLES];
     float color[3][TILE_SAMPLES]; /* colors of the present tile */
     int row, column;              /* upper left pixel of the first tile that is not drawn yet */

@@ -6,8 +6,8 @@
  *
  * The view's plane is the plane z = 1 of a perspective view, in mm per mm of depth, or the plane z
  * = 0 of a parallel view, in mm [tile.h]. All functions are pure. */
-#ifndef CORCAST_RENDER_INTERVAL_H
-#define CORCAST_RENDER_INTERVAL_H
+#ifndef CORCAST_RENDER_TILE_INTERVAL_H
+#define CORCAST_RENDER_TILE_INTERVAL_H
 
 #include "render/tile/tile.h"
 #include <math.h>

@@ -1,14 +1,17 @@
-/* The kernels of TileKernels: the shading model of shade.c for the samples of a tile, storing their
- * pixels, and encoding their colors. They process several samples at once, in single precision.
- * Each source that compiles them for its lanes includes this file. LANES_NAME(name) makes the names
- * of its functions. */
+/* The functions of a TileKernels, whose contracts are in tilekernels.h: shade the samples of a tile
+ * by the model of shade.c, store or encode their pixels, and project them to lights. They process
+ * LANES samples at once, in single precision.
+ *
+ * Each source that compiles the kernels for one instruction set defines the lanes and includes this
+ * file, which therefore has no include guard. LANES_NAME(name) makes the names of its functions.
+ * Samples of a tile are ordered by blocks of 2 x 2 [tile.h]. */
 #include "render/tile/lanes.h"
 #include "render/tile/tilekernels.h"
 #include <endian.h>
 
-/* Returns x^y for x in (0, 1] and y >= 0. Uses repeated squaring if y is a small integer, which is
- * the usual case. Results below 1e-15 may be wrong; this avoids slow arithmetic with subnormal
- * numbers. */
+/* Returns x^y for x in (0, 1] and y >= 0; lanes with other x get a finite value without meaning.
+ * Uses repeated squaring if y is an integer up to 256, which is the usual case: at most 8 rounds.
+ * Results below 1e-15 may be wrong, because products are kept above the slow subnormal numbers. */
 LANE_FN Lanes lanes_power(Lanes x, float y)
 {
     const Lanes least = lanes_set(1e-15f);
@@ -26,6 +29,7 @@ LANE_FN Lanes lanes_power(Lanes x, float y)
     return lanes_exp_minus(-y * lanes_log(lanes_max(x, lanes_set(1e-30f))));
 }
 
+/* LANES samples that are being shaded, from sample `first` on. */
 typedef struct Shading {
     const TileLook *look;
     const TileSurface *surface;
@@ -33,7 +37,7 @@ typedef struct Shading {
     Lanes normal[3], direction[3], color[3];
 } Shading;
 
-LANE_FN Lanes inner(const Lanes a[3], const Lanes b[3])
+LANE_FN Lanes dot(const Lanes a[3], const Lanes b[3])
 {
     return lanes_fma(a[0], b[0], lanes_fma(a[1], b[1], a[2] * b[2]));
 }
@@ -41,13 +45,13 @@ LANE_FN Lanes inner(const Lanes a[3], const Lanes b[3])
 LANE_FN Lanes phong(const Shading *shading, const Lanes towards[3])
 {
     const Finish *finish = &shading->look->finish;
-    Lanes twice = -2.0f * inner(shading->direction, shading->normal), mirrored[3];
+    Lanes twice = -2.0f * dot(shading->direction, shading->normal), mirrored[3];
     for (int c = 0; c < 3; c++)
         mirrored[c] = lanes_fma(shading->normal[c], twice, shading->direction[c]);
-    Lanes cosine = inner(mirrored, towards);
-    LaneMask traced = cosine > 0.0f;
+    Lanes cosine = dot(mirrored, towards);
+    LaneMask towards_light = cosine > 0.0f;
     Lanes power = lanes_power(cosine, finish->phong_size) * finish->phong;
-    return lanes_select(traced, power, lanes_set(0));
+    return lanes_select(towards_light, power, lanes_set(0));
 }
 
 LANE_FN Lanes specular(const Shading *shading, const Lanes towards[3])
@@ -56,8 +60,8 @@ LANE_FN Lanes specular(const Shading *shading, const Lanes towards[3])
     Lanes halfway[3];
     for (int c = 0; c < 3; c++)
         halfway[c] = towards[c] - shading->direction[c];
-    Lanes length = lanes_sqrt(inner(halfway, halfway));
-    Lanes cosine = inner(halfway, shading->normal) / lanes_max(length, lanes_set(1e-30f));
+    Lanes length = lanes_sqrt(dot(halfway, halfway));
+    Lanes cosine = dot(halfway, shading->normal) / lanes_max(length, lanes_set(1e-30f));
     Lanes power = lanes_power(cosine, 1 / finish->roughness) * finish->specular;
     return lanes_select(cosine > 0.0f, power, lanes_set(0));
 }
@@ -70,21 +74,21 @@ LANE_FN void to_light(const Shading *shading, const TileLight *light, Lanes towa
         return;
     for (int c = 0; c < 3; c++)
         towards[c] -= lanes_load(&shading->surface->point[c][shading->first]);
-    Lanes per_length = 1.0f / lanes_sqrt(inner(towards, towards));
+    Lanes per_length = 1.0f / lanes_sqrt(dot(towards, towards));
     for (int c = 0; c < 3; c++)
         towards[c] *= per_length;
 }
 
-LANE_FN void add_light(Shading *shading, size_t number)
+LANE_FN void add_light(Shading *shading, size_t index)
 {
     const Finish *finish = &shading->look->finish;
-    const TileLight *light = &shading->look->lights[number];
+    const TileLight *light = &shading->look->lights[index];
     Lanes towards[3];
     to_light(shading, light, towards);
-    Lanes cosine = inner(shading->normal, towards);
+    Lanes cosine = dot(shading->normal, towards);
     LaneMask lit = cosine >= 1e-10f;
     if (shading->surface->shadowed)
-        lit &= ~lanes_of_bytes(&shading->surface->shadowed[number][shading->first]);
+        lit &= ~lanes_of_bytes(&shading->surface->shadowed[index][shading->first]);
     if (!lanes_any(lit))
         return;
     Lanes diffuse = finish->brilliance == 1 ? cosine : lanes_power(cosine, finish->brilliance);
@@ -94,14 +98,22 @@ LANE_FN void add_light(Shading *shading, size_t number)
         highlight += phong(shading, towards);
     if (finish->specular > 0)
         highlight += specular(shading, towards);
-    Lanes part = lanes_set(1);
-    if (shading->surface->light_visibility && shading->surface->is_shared[number])
-        part = lanes_load(&shading->surface->light_visibility[number][shading->first]);
+    Lanes visible_part = lanes_set(1);
+    if (shading->surface->light_visibility && shading->surface->is_shared[index])
+        visible_part = lanes_load(&shading->surface->light_visibility[index][shading->first]);
     for (int c = 0; c < 3; c++) {
         Lanes pigment = lanes_load(&shading->surface->pigment[c][shading->first]);
-        Lanes sum = lanes_fma(pigment, diffuse, highlight) * (part * light->color[c]);
+        Lanes sum = lanes_fma(pigment, diffuse, highlight) * (visible_part * light->color[c]);
         shading->color[c] += lanes_select(lit, sum, lanes_set(0));
     }
+}
+
+LANE_FN void fade(Shading *shading)
+{
+    const Lanes part = lanes_load(&shading->surface->fade[shading->first]);
+    for (int c = 0; c < 3; c++)
+        shading->color[c] = lanes_fma(lanes_set(shading->look->paper[c]) - shading->color[c], part,
+                                      shading->color[c]);
 }
 
 LANE_TARGET static void LANES_NAME(shade)(const TileLook *look, const TileSurface *surface,
@@ -122,16 +134,22 @@ LANE_TARGET static void LANES_NAME(shade)(const TileLook *look, const TileSurfac
             shading.direction[c] = lanes_load(&surface->direction[c][first]);
             shading.color[c] = lanes_load(&surface->pigment[c][first]) * ambient;
         }
-        Lanes away = inner(shading.normal, shading.direction);
+        Lanes along_ray = dot(shading.normal, shading.direction);
         for (int c = 0; c < 3; c++)
-            shading.normal[c] = lanes_select(away > 0.0f, -shading.normal[c], shading.normal[c]);
+            shading.normal[c] =
+                lanes_select(along_ray > 0.0f, -shading.normal[c], shading.normal[c]);
         for (size_t i = 0; i < look->n_lights; i++)
             add_light(&shading, i);
+        if (surface->fade)
+            fade(&shading);
         for (int c = 0; c < 3; c++)
             lanes_store(&color[c][first], shading.color[c]);
     }
 }
 
+/* Returns 8-bit sRGB codes of `linear`, clamped to [0, 1]. The bits of a positive float, read as an
+ * integer, rise with its value. Their high part selects a cell of the table; the low part, added to
+ * the cell's entry, interpolates within it. */
 LANE_FN LaneMask srgb_lanes(const SrgbCodes *codes, const float *linear)
 {
     Lanes value =
@@ -141,7 +159,7 @@ LANE_FN LaneMask srgb_lanes(const SrgbCodes *codes, const float *linear)
     return (cell + (bits & (SRGB_CELL - 1))) >> SRGB_CELL_BITS;
 }
 
-/* Two pixels of three bytes each. */
+/* Returns two pixels of three bytes each, as the low 48 bits. */
 LANE_FN uint64_t two_pixels(const uint32_t *pixels)
 {
     return pixels[0] | (uint64_t)pixels[1] << 24;
@@ -158,14 +176,14 @@ LANE_TARGET static void LANES_NAME(encode)(const SrgbCodes *codes, float color[3
                                            uint8_t *to, size_t stride)
 {
     uint32_t pixels[TILE_SAMPLES];
-    int32_t other = background[0] | background[1] << 8 | background[2] << 16;
+    int32_t background_code = background[0] | background[1] << 8 | background[2] << 16;
     for (int first = 0; first < TILE_SAMPLES; first += LANES) {
         LaneMask pixel = srgb_lanes(codes, &color[0][first]) |
                          srgb_lanes(codes, &color[1][first]) << 8 |
                          srgb_lanes(codes, &color[2][first]) << 16;
         if (state) {
             LaneMask traced = lanes_of_bytes(&state[first]);
-            pixel = (pixel & traced) | (other & ~traced);
+            pixel = (pixel & traced) | (background_code & ~traced);
         }
         __builtin_memcpy(&pixels[first], &pixel, sizeof pixel);
     }
@@ -184,7 +202,7 @@ LANE_TARGET static void LANES_NAME(encode)(const SrgbCodes *codes, float color[3
 
 typedef float Quad __attribute__((vector_size(16)));
 
-/* Four pixels of three channels each. */
+/* Stores four pixels: turns planes of red, green and blue into r g b r g b ... */
 LANE_FN void store_pixels(float *to, Quad r, Quad g, Quad b)
 {
     Quad low = __builtin_shufflevector(r, g, 0, 4, 1, 5);
@@ -201,6 +219,7 @@ LANE_FN void store_pixels(float *to, Quad r, Quad g, Quad b)
 LANE_TARGET static void LANES_NAME(paint)(float color[3][TILE_SAMPLES], float *pixels,
                                           size_t stride)
 {
+    /* Eight samples in a row are two blocks of 2 x 2, side by side: 4 x 2 pixels. */
     for (int block = 0; block < TILE_SAMPLES / 8; block++) {
         Quad upper[3], lower[3];
         for (int c = 0; c < 3; c++) {
@@ -230,27 +249,28 @@ LANE_TARGET static void LANES_NAME(clear)(const uint8_t *state, const float back
 
 /* ---- lights ---------------------------------------------------------------------------------- */
 
-/* Returns the mask of TileKernels.face. `near`: the light is not parallel; `slanted`: the camera's
- * view is not parallel. */
+/* Returns the mask of TileKernels.face. A surface faces the light if the light and the camera are
+ * on the same side of it. `point_light`: the light has a position. `perspective`: camera rays have
+ * the direction (x, y, 1) of their sample in the image plane; otherwise (0, 0, 1). */
 LANE_FN uint64_t face_samples(const TracedTile *traced, const HitPoints *points,
                               const float normal[3][TILE_SAMPLES], const TileLight *light,
-                              bool near, bool slanted)
+                              bool point_light, bool perspective)
 {
     uint64_t facing = 0;
     for (int first = 0; first < TILE_SAMPLES; first += LANES) {
         Lanes nx = lanes_load(&normal[0][first]), ny = lanes_load(&normal[1][first]);
-        Lanes nz = lanes_load(&normal[2][first]), away = nz, x = lanes_set(light->towards[0]);
+        Lanes nz = lanes_load(&normal[2][first]), along_ray = nz, x = lanes_set(light->towards[0]);
         Lanes y = lanes_set(light->towards[1]), z = lanes_set(light->towards[2]);
-        if (near) {
+        if (point_light) {
             x -= lanes_of_doubles(&points->x[first], 0);
             y -= lanes_of_doubles(&points->y[first], 0);
             z -= lanes_of_doubles(&points->z[first], 0);
         }
-        if (slanted)
-            away += nx * (lanes_load(&traced->x[first]) + (float)traced->middle_x) +
-                    ny * (lanes_load(&traced->y[first]) + (float)traced->middle_y);
-        Lanes along = nx * x + ny * y + nz * z;
-        LaneMask faces = lanes_select(away > 0.0f, -along, along) > 0.0f;
+        if (perspective)
+            along_ray += nx * (lanes_load(&traced->x[first]) + (float)traced->middle_x) +
+                         ny * (lanes_load(&traced->y[first]) + (float)traced->middle_y);
+        Lanes along_light = nx * x + ny * y + nz * z;
+        LaneMask faces = lanes_select(along_ray > 0.0f, -along_light, along_light) > 0.0f;
         facing |= (uint64_t)lanes_bits(faces) << first;
     }
     return facing;
@@ -265,7 +285,8 @@ LANE_TARGET static uint64_t LANES_NAME(face)(const TracedTile *traced, const Hit
     return face_samples(traced, points, normal, light, !light->parallel, traced->perspective);
 }
 
-/* Returns the tile, in [0, count), that contains a position in tiles. */
+/* Returns the index of the tile that contains a position along one axis, in tile widths, clamped to
+ * [0, count). */
 LANE_FN int32_t tile_at(double place, double count)
 {
     place = place > 0 ? place : 0;

@@ -10,8 +10,8 @@
  * version are therefore the same on every processor.
  *
  * Lanes of a LaneMask are -1 (true) or 0 (false). */
-#ifndef CORCAST_RENDER_LANES_H
-#define CORCAST_RENDER_LANES_H
+#ifndef CORCAST_RENDER_TILE_LANES_H
+#define CORCAST_RENDER_TILE_LANES_H
 
 #include <math.h>
 #include <stdbool.h>

@@ -1,6 +1,6 @@
 /* The sample positions of one pass over an image: a grid of side x side samples per pixel. */
-#ifndef CORCAST_RENDER_SAMPLEGRID_H
-#define CORCAST_RENDER_SAMPLEGRID_H
+#ifndef CORCAST_RENDER_TILE_SAMPLEGRID_H
+#define CORCAST_RENDER_TILE_SAMPLEGRID_H
 
 #include "render/job.h"
 

@@ -1,8 +1,8 @@
 /* Coverage of the cells of a picture by thin vessels. A cell is the square of the picture that one
  * sample stands for: a pixel for the sample at the pixel's centre, 1 / N of a pixel across for N x
  * N samples per pixel. */
-#ifndef CORCAST_RENDER_THINCELLS_H
-#define CORCAST_RENDER_THINCELLS_H
+#ifndef CORCAST_RENDER_TILE_THINCELLS_H
+#define CORCAST_RENDER_TILE_THINCELLS_H
 
 #include "render/job.h"
 #include "render/tile/tile.h"

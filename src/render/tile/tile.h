@@ -4,8 +4,8 @@
  * the origin at its location. The line of sight of the sample (x, y) of the view's plane consists
  * of the points (x, y, z) in a parallel view, and of the points (x z, y z, z) in perspective. In
  * both, z is the parameter. */
-#ifndef CORCAST_RENDER_TILE_H
-#define CORCAST_RENDER_TILE_H
+#ifndef CORCAST_RENDER_TILE_TILE_H
+#define CORCAST_RENDER_TILE_TILE_H
 
 #include "scene/scene.h"
 #include <stdint.h>

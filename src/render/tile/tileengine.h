@@ -1,8 +1,8 @@
 /* The interface between the pipeline of tilerender.h and an engine. For each tile, the engine finds
  * the first hit of each sample (`bin` once, `list` per row of tiles, `trace` per tile). The
  * pipeline does batches, shadows, shading, antialiasing and threads. */
-#ifndef CORCAST_RENDER_TILEENGINE_H
-#define CORCAST_RENDER_TILEENGINE_H
+#ifndef CORCAST_RENDER_TILE_TILEENGINE_H
+#define CORCAST_RENDER_TILE_TILEENGINE_H
 
 #include "render/light/shadowengine.h"
 #include "render/tile/samplegrid.h"

@@ -1,8 +1,8 @@
 /* Kernels that process several samples of a tile at once, compiled once for each kind of processor.
  * A kernel reads and writes whole blocks of as many samples as the processor has lanes, at most 16.
  * Array elements of samples that hit nothing are undefined and may be overwritten. */
-#ifndef CORCAST_RENDER_TILEKERNELS_H
-#define CORCAST_RENDER_TILEKERNELS_H
+#ifndef CORCAST_RENDER_TILE_TILEKERNELS_H
+#define CORCAST_RENDER_TILE_TILEKERNELS_H
 
 #include "image/image.h"
 #include "render/job.h"
@@ -22,6 +22,7 @@ typedef struct TileLook {
     Finish finish;
     TileLight lights[VIEW_MAX_LIGHTS];
     size_t n_lights;
+    float paper[3]; /* the color that surfaces fade into */
 } TileLook;
 
 /* The surface points that the samples of a tile hit, in the camera's frame. */
@@ -31,6 +32,7 @@ typedef struct TileSurface {
     float point[3][TILE_SAMPLES];     /* mm from the camera; set if a light is not parallel */
     float pigment[3][TILE_SAMPLES];
     const uint8_t (*shadowed)[TILE_SAMPLES]; /* per light and sample: 1 in shadow; NULL: none is */
+    const float *fade;    /* per sample: fraction of the paper's color; NULL: 0 for all */
     const float *ambient; /* per sample: ambient visibility, 0 to 1; NULL: 1 for all */
     const float (
         *light_visibility)[TILE_SAMPLES]; /* per light and sample: visibility of the light, 0 to 1,

@@ -1,11 +1,13 @@
 /* The pipeline of the engines that draw an image tile by tile. */
-#ifndef CORCAST_RENDER_TILERENDER_H
-#define CORCAST_RENDER_TILERENDER_H
+#ifndef CORCAST_RENDER_TILE_TILERENDER_H
+#define CORCAST_RENDER_TILE_TILERENDER_H
 
 #include "render/tile/tileengine.h"
 
-/* The functions of an Engine [render/engine.h], given the engine of the tiles. The drawing must
- * have a caster if shadowengine_needs_rays returns true. */
+/* Functions for the members prepare, rows, free and light_bins of an Engine, with the contracts of
+ * render/engine.h. `engine` contains the functions that draw one tile; it is borrowed until
+ * tilerender_free. The drawing must have a caster if shadowengine_needs_rays returns true for
+ * it. */
 MUST_CHECK Status tilerender_prepare(const TileEngine *engine, const Drawing *drawing,
                                      void **prepared, Err *err);
 MUST_CHECK Status tilerender_rows(const Drawing *drawing, void *prepared, Frame *frame, Err *err);

@@ -1,7 +1,7 @@
 /* The position and orientation of a camera or of a light, and conversions between world coordinates
  * and the frame of the viewpoint. Lengths are in mm. */
-#ifndef CORCAST_RENDER_VIEWPOINT_H
-#define CORCAST_RENDER_VIEWPOINT_H
+#ifndef CORCAST_RENDER_TILE_VIEWPOINT_H
+#define CORCAST_RENDER_TILE_VIEWPOINT_H
 
 #include "scene/scene.h"
 

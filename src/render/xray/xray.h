@@ -1,7 +1,7 @@
 /* The x-ray view: the color of a pixel depends on the length of the ray inside vessels [Xray in
  * scene/effects.h]. */
-#ifndef CORCAST_RENDER_XRAY_H
-#define CORCAST_RENDER_XRAY_H
+#ifndef CORCAST_RENDER_XRAY_XRAY_H
+#define CORCAST_RENDER_XRAY_XRAY_H
 
 #include "render/engine.h"
 

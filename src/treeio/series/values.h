@@ -4,8 +4,8 @@
  * The values become columns of the tree: one number per node, for the segment that ends there. A
  * file is a CSV with a column of segment ids, or a result folder of svOneDSolver. docs/FIELDS.md
  * describes the files. */
-#ifndef CORCAST_TREEIO_VALUES_H
-#define CORCAST_TREEIO_VALUES_H
+#ifndef CORCAST_TREEIO_SERIES_VALUES_H
+#define CORCAST_TREEIO_SERIES_VALUES_H
 
 #include "base/base.h"
 #include "tree/tree.h"

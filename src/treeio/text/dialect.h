@@ -11,8 +11,8 @@
  *     if (status == STATUS_OK)
  *         status = dialect_add_segments(&reader, err);
  *     dialect_release(&reader); */
-#ifndef CORCAST_TREEIO_DIALECT_H
-#define CORCAST_TREEIO_DIALECT_H
+#ifndef CORCAST_TREEIO_TEXT_DIALECT_H
+#define CORCAST_TREEIO_TEXT_DIALECT_H
 
 #include "tree/tree.h"
 #include "treeio/names.h"

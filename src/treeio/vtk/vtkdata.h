@@ -1,7 +1,7 @@
 /* The contents of a VTK file of lines, legacy or XML: points, polylines, and arrays of numbers.
  * Readers of other formats with named arrays fill it, too. vtk_to_graph makes a network of it. */
-#ifndef CORCAST_TREEIO_VTKDATA_H
-#define CORCAST_TREEIO_VTKDATA_H
+#ifndef CORCAST_TREEIO_VTK_VTKDATA_H
+#define CORCAST_TREEIO_VTK_VTKDATA_H
 
 #include "tree/tree.h"
 

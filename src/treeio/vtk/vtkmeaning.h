@@ -1,6 +1,6 @@
 /* What the arrays of a file mean. */
-#ifndef CORCAST_TREEIO_VTKMEANING_H
-#define CORCAST_TREEIO_VTKMEANING_H
+#ifndef CORCAST_TREEIO_VTK_VTKMEANING_H
+#define CORCAST_TREEIO_VTK_VTKMEANING_H
 
 #include "treeio/vtk/vtkdata.h"
 

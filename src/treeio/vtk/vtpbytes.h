@@ -1,6 +1,6 @@
 /* Decodes arrays of VTK's XML files: base64 or raw bytes, compressed or not. */
-#ifndef CORCAST_TREEIO_VTPBYTES_H
-#define CORCAST_TREEIO_VTPBYTES_H
+#ifndef CORCAST_TREEIO_VTK_VTPBYTES_H
+#define CORCAST_TREEIO_VTK_VTPBYTES_H
 
 #include "base/base.h"
 #include <stdbool.h>

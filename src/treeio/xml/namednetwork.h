@@ -1,7 +1,7 @@
 /* A network whose points have names and whose lines list the names of their points. Both have any
  * numbers, by name. GXL, GraphML and Amira's workbooks hold such networks. */
-#ifndef CORCAST_TREEIO_NAMEDNETWORK_H
-#define CORCAST_TREEIO_NAMEDNETWORK_H
+#ifndef CORCAST_TREEIO_XML_NAMEDNETWORK_H
+#define CORCAST_TREEIO_XML_NAMEDNETWORK_H
 
 #include "treeio/names.h"
 #include "treeio/vtk/vtkdata.h"
