@@ -138,6 +138,17 @@ size_t utf8_length(const char *bytes)
     return 0;
 }
 
+void text_put_start(Text *text, const char *chars, int most)
+{
+    const char *end = chars;
+    for (int i = 0; i < most && *end; i++) {
+        const size_t length = utf8_length(end);
+        end += length ? length : 1;
+    }
+    text_append(text, chars, (size_t)(end - chars));
+    text_puts(text, *end ? "\xE2\x80\xA6" : "");
+}
+
 void text_put_character(Text *text, uint32_t code)
 {
     static const unsigned char leads[] = {0, 0xc0, 0xe0, 0xf0};

@@ -85,6 +85,8 @@ char *text_field(char **rest);
  * Returns 0 for bytes that are not a well-formed character, and for U+FFFE and U+FFFF, which XML
  * excludes. */
 size_t utf8_length(const char *bytes);
+/* Appends the first `most` characters of UTF-8, and an ellipsis if there are more. */
+void text_put_start(Text *text, const char *chars, int most);
 /* Appends a character, given by its code point, as UTF-8. */
 void text_put_character(Text *text, uint32_t code);
 /* Appends a string as UTF-8: each byte that is not part of a well-formed character becomes U+FFFD.

@@ -20,12 +20,25 @@ static bool collide(const FigureItem *text, const FigureItem *other)
     return is_pair && figure_boxes_overlap(&text->box, &other->box, slack_mm);
 }
 
-static void put_collision(const FigureItem *text, const char *with, const char *name, int n,
-                          Text *out)
+static void put_name(const FigureItem *item, Text *out)
 {
-    if (n <= LISTED)
-        text_printf(out, "%s'%.40s' and %s%.40s%s", n > 1 ? "; " : "", text->text,
-                    name ? "'" : with, name ? name : "", name ? "'" : "");
+    text_puts(out, "'");
+    text_put_start(out, item->text, 40);
+    text_puts(out, "'");
+}
+
+/* Appends the collision of a text with an item, or with the edge of the page if `with` is NULL. */
+static void put_collision(const FigureItem *text, const FigureItem *with, int n, Text *out)
+{
+    if (n > LISTED)
+        return;
+    text_puts(out, n > 1 ? "; " : "");
+    put_name(text, out);
+    text_puts(out, " and ");
+    if (with && with->text)
+        put_name(with, out);
+    else
+        text_puts(out, with ? "a bar" : "the edge of the page");
 }
 
 void figure_put_collisions(const FigurePage *page, Text *out)
@@ -37,10 +50,10 @@ void figure_put_collisions(const FigurePage *page, Text *out)
         if (text->kind != FIGURE_TEXT)
             continue;
         if (!is_on_page(page, &text->box))
-            put_collision(text, "the edge of the page", NULL, ++n, &list);
+            put_collision(text, NULL, ++n, &list);
         for (size_t k = 0; k < page->n; k++)
             if (collide(text, &page->items[k]))
-                put_collision(text, "a bar", page->items[k].text, ++n, &list);
+                put_collision(text, &page->items[k], ++n, &list);
     }
     if (n > 0) {
         text_puts(out, "texts overlap: ");

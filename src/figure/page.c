@@ -126,6 +126,11 @@ void figure_add_bars(FigurePage *page, const FigureBars *bars, FigurePoint at, d
                            .bars = bars});
 }
 
+void figure_add_artwork(FigurePage *page, const FigureArtwork *artwork, FigureBox box)
+{
+    add(page, (FigureItem){.kind = FIGURE_ARTWORK, .box = box, .artwork = artwork});
+}
+
 /* Appends the item of a line with these glyphs. Takes `chars`, also on failure. */
 static void add_line_of_text(FigurePage *page, const FigureText *text, char *chars,
                              const Glyphs *glyphs)
@@ -251,6 +256,15 @@ void figure_put_missing(const FigurePage *page, bool boxed, Text *out)
         text_printf(out, " (U+%04X)", (unsigned)letters[i]);
     }
     text_puts(out, boxed ? "; a box is drawn in place of each" : "; DejaVu Sans is used for these");
+}
+
+void figure_put_unclosed(const FigurePage *page, Text *out)
+{
+    if (!page->unclosed)
+        return;
+    text_puts(out, "the text '");
+    text_put_start(out, page->unclosed, 60);
+    text_puts(out, "' has a group _{ or ^{ without }: the group ends with the text");
 }
 
 FigureBox figure_bounds(const FigurePage *page, size_t first)

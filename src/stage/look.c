@@ -35,7 +35,7 @@ static const struct LookSection {
     double value;
 } sections[] = {
     {"look", "about, a line of at most 160 bytes", 0, 0},
-    {"options", "ao, shadows or projection", 0, 0},
+    {"options", "ao, shadows, projection or smooth", 0, 0},
     {"vessel", "color or tips", 0, 0},
     {"background", "color or corners", 0, 0},
     {"finish", "one of ambient, diffuse, brilliance, phong, phong_size, specular, roughness", 0, 0},
@@ -66,6 +66,7 @@ static const struct LookKey {
     {"options", "shadows", TYPE_SWITCH, offsetof(Look, options.shadows), 0, 0, "on or off"},
     {"options", "projection", TYPE_PROJECTION, offsetof(Look, options.projection), 0, 0,
      "orthographic or perspective"},
+    {"options", "smooth", TYPE_SWITCH, offsetof(Look, options.smooth), 0, 0, "on or off"},
     {"vessel", "color", TYPE_COLOR, offsetof(Look, color), A_COLOR},
     {"vessel", "tips", TYPE_OPTIONAL_COLOR, offsetof(Look, tips), A_COLOR},
     {"background", "color", TYPE_COLOR, offsetof(Look, background), A_COLOR},

@@ -10,16 +10,25 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Tolerances: the maximum distance of a piece from its curve, and half the step of the radius from
- * piece to piece, / the segment's radius. A smaller number shows no difference in pictures. */
-static const double distance_tolerance = 0.01, radius_tolerance = 0.01;
+/* Maximum distance of a piece from its curve, and half the step of the radius from piece to piece,
+ * / the segment's radius. Steps of 0.02 radii show as rings on cylinders that are 50 pixels wide.
+ * Implicit surfaces smooth the steps. */
+static const double distance_tolerance = 0.01, step_tolerance = 0.01, finest_step = 0.0003;
 
-/* Distances below this fraction of the diagonal of the tree's box are no errors: a tenth of a pixel
- * in a picture of 2,000 pixels. */
+/* This fraction of the diagonal of the tree's box is not visible: a tenth of a pixel in a picture
+ * of 2,000 pixels. */
 static const double invisible = 5e-5;
 
 /* Part of the direction of a side branch that is the direction of its parent. */
 static const double branch_share = 1.0 / 3;
+
+/* Models with joints: the shortest piece at a node with three segments or more / the radius of the
+ * thickest one. With 2, four of 299 joints of a grown tree could not be built; without, 283. */
+static const double joint_space = 2.5;
+
+/* Models that are cut off flat at free ends: the shortest piece there / its radius. Shorter pieces
+ * cannot be cut flat, and are lengthened until they can. */
+static const double end_space = 4;
 
 /* A tree whose segments are being divided. */
 typedef struct Smoother {
@@ -28,6 +37,10 @@ typedef struct Smoother {
     /* Per node that represents a junction: the thickest segment that ends there, and the main
      * segment of those that start there; -1: none. Owned. */
     int32_t *incoming, *main;
+    /* Per node: points of curves nearer than this are left out, to make space for joints; 0: none.
+     * Owned. */
+    double *space_mm;
+    bool has_steps; /* the model shows the steps of the radius between pieces */
     double invisible_mm;
     double tolerance; /* factor of both tolerances; 1 unless there are too many pieces */
 } Smoother;
@@ -165,53 +178,94 @@ static double needed_for_bend(const Curve *curve, double tolerance_mm)
     return largest_across(curve) / 4 <= tolerance_mm ? 1 : sqrt(bend / (8 * tolerance_mm));
 }
 
-/* Returns the number of pieces of segment i, which must be drawn. No piece is shorter than
- * SHORTEST_MM after rounding: the speed along the chord may be 0 at an end, where the shortest
- * piece has the length chord / pieces^2. */
-static size_t count_pieces(const Smoother *smoother, size_t i)
+/* How a segment is divided: the curve at t = k / steps for rising integers k. */
+typedef struct Division {
+    size_t steps;
+    size_t skipped; /* the first piece ends at k = skipped + 1; all others are one step long, except
+                     * that the last piece ends at t = 1 */
+    size_t pieces;
+} Division;
+
+static Vec3 curve_point(const Curve *curve, double t)
 {
-    const Curve curve = curve_of(smoother, i);
+    return vec3_add(vec3_add_scaled(curve->start, curve->chord, t), curve_offset(curve, t));
+}
+
+/* Returns the number of steps of segment i, which must be drawn. No step is shorter than
+ * SHORTEST_MM after rounding: the speed along the chord may be 0 at an end, where the shortest step
+ * has the length chord / steps^2. */
+static size_t count_steps(const Smoother *smoother, const Curve *curve, size_t i)
+{
     const double radius = smoother->tree->radius_mm[i];
-    const double far_mm = vec3_length(curve.start) + vec3_length(curve.chord);
+    const double far_mm = vec3_length(curve->start) + vec3_length(curve->chord);
     double bend_mm =
         fmax(smoother->tolerance * distance_tolerance * radius, smoother->invisible_mm);
-    double step_mm = fmax(smoother->tolerance * radius_tolerance * radius, smoother->invisible_mm);
-    double needed = fmax(needed_for_bend(&curve, bend_mm),
-                         fabs(curve.radius[1] - curve.radius[0]) / (2 * step_mm));
-    double most = sqrt(vec3_length(curve.chord) / (2 * SHORTEST_MM + 1e-15 * far_mm));
+    double step_mm = step_tolerance * radius;
+    if (smoother->has_steps)
+        step_mm = fmax(fmin(step_mm, smoother->invisible_mm / 10), finest_step * radius);
+    double needed =
+        fmax(needed_for_bend(curve, bend_mm),
+             fabs(curve->radius[1] - curve->radius[0]) / (2 * step_mm * smoother->tolerance));
+    double most = sqrt(vec3_length(curve->chord) / (2 * SHORTEST_MM + 1e-15 * far_mm));
     most = fmin(floor(most), SMOOTH_SEGMENT_PIECES);
     return (size_t)ceil(fmax(fmin(needed, most), 1));
+}
+
+/* Divides the curve of segment i. Points nearer than `space_mm` to a node with a joint are left
+ * out. */
+static Division division_of(const Smoother *smoother, const Curve *curve, size_t i)
+{
+    const size_t steps = count_steps(smoother, curve, i);
+    const double from_start = smoother->space_mm[start_of(smoother, i)];
+    const double from_end = smoother->space_mm[smoother->found.junction[i]];
+    size_t low = 1, high = steps;
+    while (low < high && vec3_distance(curve_point(curve, (double)low / (double)steps),
+                                       curve->start) < from_start)
+        low++;
+    while (low < high && vec3_distance(curve_point(curve, (double)(high - 1) / (double)steps),
+                                       smoother->tree->position[i]) < from_end)
+        high--;
+    return (Division){.steps = steps, .skipped = low - 1, .pieces = high - low + 1};
 }
 
 /* ---- pieces ---------------------------------------------------------------------------------- */
 
 /* Makes the nodes of segment i, from `first` on. The last one is the segment's end. */
-static void put_pieces(const Smoother *smoother, size_t i, size_t first, size_t pieces,
-                       SmoothTree *out)
+static void put_pieces(const Smoother *smoother, size_t i, size_t first, SmoothTree *out)
 {
     const Curve curve = curve_of(smoother, i);
+    const Division division = division_of(smoother, &curve, i);
     const double radius = smoother->tree->radius_mm[i];
     SmoothReport *report = &out->report;
-    for (size_t k = 0; k < pieces; k++) {
-        const double t = (double)(k + 1) / (double)pieces,
-                     middle = (double)(2 * k + 1) / (double)(2 * pieces);
+    double before = 0;
+    for (size_t k = 0; k < division.pieces; k++) {
         const size_t node = first + k;
-        Vec3 offset = k + 1 < pieces ? curve_offset(&curve, t) : vec3(0, 0, 0);
-        out->tree.radius_mm[node] = curve.radius[0] + (curve.radius[1] - curve.radius[0]) * middle;
+        const bool is_last = k + 1 == division.pieces;
+        const double t = is_last ? 1 : (double)(division.skipped + k + 1) / (double)division.steps;
+        const double share = (before + t) / 2;
+        out->tree.radius_mm[node] = curve.radius[0] + (curve.radius[1] - curve.radius[0]) * share;
         if (k > 0)
             out->tree.parent[node] = (int32_t)node - 1;
-        if (k + 1 < pieces)
-            out->tree.position[node] =
-                vec3_add(vec3_add_scaled(curve.start, curve.chord, t), offset);
-        double distance =
-            sqrt(vec3_distance2_along(vec3_add_scaled(offset, curve.chord, t), curve.chord));
+        if (!is_last)
+            out->tree.position[node] = curve_point(&curve, t);
+        double distance = sqrt(
+            vec3_distance2_along(vec3_sub(out->tree.position[node], curve.start), curve.chord));
         report->distance_mm = fmax(report->distance_mm, distance);
         report->distance_radii = fmax(report->distance_radii, distance / radius);
         report->radius_change =
             fmax(report->radius_change, fabs(out->tree.radius_mm[node] / radius - 1));
+        before = t;
     }
     report->segments++;
-    report->pieces += pieces;
+    report->pieces += division.pieces;
+}
+
+static size_t count_pieces(const Smoother *smoother, size_t i)
+{
+    if (!coincidence_draws(&smoother->found, i))
+        return 1;
+    const Curve curve = curve_of(smoother, i);
+    return division_of(smoother, &curve, i).pieces;
 }
 
 /* Sets first[i] to the first node of the pieces of segment i, and first[n] to their number. Relaxes
@@ -219,16 +273,36 @@ static void put_pieces(const Smoother *smoother, size_t i, size_t first, size_t 
 static void count_all_pieces(Smoother *smoother, size_t *first)
 {
     const size_t n = smoother->tree->n;
-    for (bool divided = true; divided; smoother->tolerance *= 2) {
-        divided = false;
-        for (size_t i = 0; i < n; i++) {
-            size_t pieces = coincidence_draws(&smoother->found, i) ? count_pieces(smoother, i) : 1;
-            first[i + 1] = first[i] + pieces;
-            divided = divided || pieces > 1;
-        }
-        if (first[n] <= SMOOTH_TREE_PIECES)
+    for (smoother->tolerance = 1;; smoother->tolerance *= 2) {
+        for (size_t i = 0; i < n; i++)
+            first[i + 1] = first[i] + count_pieces(smoother, i);
+        if (first[n] <= SMOOTH_TREE_PIECES || first[n] == n)
             return;
     }
+}
+
+/* Sets space_mm at each node where three or more segments meet, or where one ends freely, if the
+ * model needs it. */
+static Status find_spaces(Smoother *smoother, SceneModel model, Err *err)
+{
+    const Tree *tree = smoother->tree;
+    int *meeting = NULL;
+    TRY(mem_calloc(&smoother->space_mm, tree->n, sizeof *smoother->space_mm, "nodes", err));
+    TRY(mem_calloc(&meeting, tree->n, sizeof *meeting, "nodes", err));
+    for (size_t end = 0; end < 2 * tree->n; end++) {
+        if (!coincidence_draws(&smoother->found, end / 2))
+            continue;
+        size_t node =
+            end % 2 ? (size_t)smoother->found.junction[end / 2] : start_of(smoother, end / 2);
+        meeting[node]++;
+        smoother->space_mm[node] = fmax(smoother->space_mm[node], tree->radius_mm[end / 2]);
+    }
+    for (size_t i = 0; i < tree->n; i++)
+        smoother->space_mm[i] *= meeting[i] >= 3 && model_has(model, MODEL_JOINTS) ? joint_space
+                                 : meeting[i] == 1 && model_has(model, MODEL_TRIANGLES) ? end_space
+                                                                                        : 0;
+    free(meeting);
+    return STATUS_OK;
 }
 
 /* Makes the node of a root or of a segment that is not divided, and the last node of any other. */
@@ -262,7 +336,6 @@ static Status divide(Smoother *smoother, size_t *first, SmoothTree *out, Err *er
 {
     const Tree *tree = smoother->tree;
     const Box box = tree_bounds(tree);
-    smoother->tolerance = 1;
     smoother->invisible_mm = invisible * vec3_distance(box.low, box.high);
     count_all_pieces(smoother, first);
     TRY(tree_init(&out->tree, first[tree->n], err));
@@ -271,19 +344,20 @@ static Status divide(Smoother *smoother, size_t *first, SmoothTree *out, Err *er
     for (size_t i = 0; i < tree->n; i++) {
         put_node(smoother, i, first, out);
         if (coincidence_draws(&smoother->found, i))
-            put_pieces(smoother, i, first[i], first[i + 1] - first[i], out);
+            put_pieces(smoother, i, first[i], out);
     }
     return STATUS_OK;
 }
 
-Status stage_smooth(const Tree *tree, SmoothTree *out, Err *err)
+Status stage_smooth(const Tree *tree, SceneModel model, SmoothTree *out, Err *err)
 {
-    Smoother smoother = {.tree = tree};
+    Smoother smoother = {.tree = tree, .has_steps = model_has(model, MODEL_ROUND_ENDS)};
     SmoothTree made = {0};
     size_t *first = NULL;
     Status status;
     TRY_GOTO(coincidence_find(tree, &smoother.found, err));
     TRY_GOTO(find_main_paths(&smoother, err));
+    TRY_GOTO(find_spaces(&smoother, model, err));
     TRY_GOTO(mem_calloc(&first, tree->n + 1, sizeof *first, "nodes", err));
     TRY_GOTO(divide(&smoother, first, &made, err));
     *out = made;
@@ -292,6 +366,7 @@ done:
     coincidence_release(&smoother.found);
     free(smoother.incoming);
     free(smoother.main);
+    free(smoother.space_mm);
     free(first);
     smoothtree_release(&made);
     return status;
@@ -327,4 +402,9 @@ void smoothtree_release(SmoothTree *smooth)
     free(smooth->twin);
     free(smooth->junction);
     *smooth = (SmoothTree){0};
+}
+
+bool smoothtree_draws(const SmoothTree *smooth, size_t node)
+{
+    return smooth->twin[node] == NO_TWIN;
 }

@@ -1,7 +1,7 @@
 /* Smooth vessels: each segment of a tree is divided into short straight pieces along a cubic curve
  * from its start to its end [docs/METHODS.md section 9].
  *
- *     TRY(stage_smooth(&tree, &smooth, err));
+ *     TRY(stage_smooth(&tree, model, &smooth, err));
  *     params.smooth = &smooth;
  *     TRY(stage_geometry(&tree, &params, &geometry, NULL, err));
  *     smoothtree_release(&smooth); */
@@ -9,10 +9,11 @@
 #define CORCAST_STAGE_SMOOTH_H
 
 #include "base/base.h"
+#include "scene/scene.h"
 #include "tree/tree.h"
 
 /* Maximum number of pieces of a segment, and of a tree whose segments have more than one piece. */
-enum { SMOOTH_SEGMENT_PIECES = 64, SMOOTH_TREE_PIECES = 4000000 };
+enum { SMOOTH_SEGMENT_PIECES = 256, SMOOTH_TREE_PIECES = 4000000 };
 
 /* How far the pieces are from the tree. */
 typedef struct SmoothReport {
@@ -43,14 +44,19 @@ typedef struct SmoothTree {
  * change evenly from node to node.
  *
  * tree    may have coincident nodes, loops and several roots.
+ * model   models with joints get longer pieces where three or more segments meet, so that the
+ *         joints have space. Meshes get longer pieces at free ends, which are cut off flat.
  * out     borrows nothing; release it with smoothtree_release.
  * Errors  STATUS_MEMORY.
  * Cost    O(number of pieces); the result does not depend on threads. */
-MUST_CHECK Status stage_smooth(const Tree *tree, SmoothTree *out, Err *err);
+MUST_CHECK Status stage_smooth(const Tree *tree, SceneModel model, SmoothTree *out, Err *err);
 /* Makes the smooth tree of a part of a tree, cut from the smooth tree `whole` of the whole tree as
  * by tree_proximal_part, so that the curves of the part are those of the whole. Errors:
  * STATUS_MEMORY. */
 MUST_CHECK Status smoothtree_part(const SmoothTree *whole, double part, SmoothTree *out, Err *err);
 void smoothtree_release(SmoothTree *smooth);
+/* Returns true if the piece that ends at `node` is drawn. stage_vessels lists these pieces in the
+ * order of their nodes. */
+bool smoothtree_draws(const SmoothTree *smooth, size_t node);
 
 #endif

@@ -71,7 +71,7 @@ typedef struct LookEffects {
  * look. */
 typedef struct LookOptions {
     int occlusion; /* ambient occlusion: number of occlusion directions per pixel; 0: none */
-    bool shadows;
+    bool shadows, smooth;
     Projection projection;
 } LookOptions;
 
@@ -99,7 +99,7 @@ Effects look_effects(const Look *look, double thousandth_px, double diameter_mm)
 /* Reads a look from an INI file. Its sections and keys:
  *
  *     [look]        about
- *     [options]     ao, shadows, projection
+ *     [options]     ao, shadows, projection, smooth
  *     [vessel]      color, tips
  *     [background]  color, corners
  *     [finish]      ambient, diffuse, brilliance, phong, phong_size, specular, roughness

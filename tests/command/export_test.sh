@@ -71,6 +71,23 @@ test_the_rounded_model_is_one_closed_mesh_too() {
     expect_sentence "--model: 'joined' is not one of isosurface, rounded"
 }
 
+test_smooth_vessels_are_in_every_kind_of_file() {
+    local file
+    run_ok corcast grow --terminals 8 --domain ball:12 --seed 4 -o tree.swc
+    for file in tree.stl tree.vtp tree.py tree.nii.gz; do
+        run_ok corcast export tree.swc -o $file
+        mv $file straight
+        run_ok corcast export tree.swc --smooth -o $file
+        grep -q 'smooth: 15 segments are drawn as' stderr || fail "expected the number of pieces of $file"
+        ! cmp -s $file straight || fail "expected other vessels in $file"
+    done
+    run_ok corcast info tree.centreline.vtp
+    expect_stdout '8 terminals, 7 bifurcations, 1 root'
+    run corcast export tree.swc --smooth -o page.html
+    expect_status 2
+    expect_sentence '--smooth is for surfaces; a page always shows cylinders and balls'
+}
+
 test_same_bytes_for_any_number_of_threads() {
     corcast grow --terminals 23 --domain ball:41 --seed 7 -o t.swc --quiet
     run_ok corcast export t.swc -o one.ply --threads 1 --quiet

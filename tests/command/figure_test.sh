@@ -251,6 +251,8 @@ test_a_group_that_is_not_closed_is_drawn_and_told() {
     run_ok corcast render t.swc --quiet --size 60x60 --letter '*τ*_{w' --text-size 4 -o open.pdf
     expect_sentence "the text '\*τ\*_\{w' has a group _\{ or \^\{ without \}: the group ends with the text"
     pdftotext open.pdf - | grep -q '^τw$' || fail "expected τw, got $(pdftotext open.pdf -)"
+    run_ok corcast render t.swc --quiet --size 900x60 --letter "a$(printf 'τ%.0s' {1..70})_{" --text-size 4 -o long.pdf
+    expect_sentence "the text 'a(τ){59}…' has a group"
     run_ok corcast render t.swc --quiet --size 60x60 --letter "$(printf 'a\302_{}b\377')" --text-size 4 -o bytes.pdf
     pdftotext bytes.pdf - | grep -q '^a�b�$' || fail "expected replacements, got $(pdftotext bytes.pdf -)"
 }

@@ -31,21 +31,21 @@ test_a_look_proposes_options_and_the_command_line_overrules_it() {
     local draw="corcast render tree.swc --quiet --size 60x60 --view iso --antialias 1"
     make_crossing
     printf '[light key]\nposition = -1 1 3\nsize = 1\n' >plain.ini
-    { cat plain.ini && printf '[options]\nao = 8\nshadows = on\nprojection = perspective\n'; } >show.ini
+    { cat plain.ini && printf '[options]\nao = 8\nshadows = on\nprojection = perspective\nsmooth = on\n'; } >show.ini
     run_ok $draw --look ./show.ini -o show.ppm
-    run_ok $draw --look ./plain.ini --ao 8 --shadows on --projection perspective -o typed.ppm
+    run_ok $draw --look ./plain.ini --ao 8 --shadows on --smooth --projection perspective -o typed.ppm
     expect_same typed.ppm show.ppm
-    run_ok $draw --look ./show.ini --ao 0 --shadows off --projection orthographic -o off.ppm
+    run_ok $draw --look ./show.ini --ao 0 --shadows off --smooth off --projection orthographic -o off.ppm
     run_ok $draw --look ./plain.ini -o plain.ppm
     expect_same plain.ppm off.ppm
-    run_ok $draw --look ./show.ini --ao 0 --shadows on --projection orthographic -o shadows.ppm
+    run_ok $draw --look ./show.ini --ao 0 --shadows on --smooth off --projection orthographic -o shadows.ppm
     expect_differing 20 3600 shadows.ppm off.ppm
     run_ok $draw --look ./show.ini --height 50 -o flat.ppm
-    run_ok $draw --look ./plain.ini --height 50 --ao 8 --shadows -o high.ppm
+    run_ok $draw --look ./plain.ini --height 50 --ao 8 --shadows --smooth -o high.ppm
     expect_same high.ppm flat.ppm
     run_ok $draw --look ./show.ini --scale-bar 10 -o bar.ppm
     run_ok $draw --look ./show.ini --method zbuffer -o zbuffer.ppm
-    run_ok $draw --look ./plain.ini --method zbuffer --projection perspective -o bare.ppm
+    run_ok $draw --look ./plain.ini --method zbuffer --smooth --projection perspective -o bare.ppm
     expect_same bare.ppm zbuffer.ppm
     run corcast render tree.swc --quiet --look ./show.ini --ao 4 --method zbuffer -o no.ppm
     expect_status 2
@@ -100,7 +100,7 @@ test_colors_run_with_the_radius_from_the_color_of_the_tips() {
 # What POV-Ray does not draw is left out, and said; what was asked for by an option is refused.
 test_povray_does_without_the_occlusion_of_a_look() {
     make_crossing
-    run_ok corcast scene tree.swc --input-unit mm --look atlas -o tree.pov
+    run_ok corcast scene tree.swc --input-unit mm --smooth off --look atlas -o tree.pov
     expect_sentence '--look atlas: only corcast draws ambient occlusion; the scene omits them$'
     grep -q '^// Not in this scene, .*: ambient occlusion$' tree.pov || fail "expected the header to say what is not in the scene"
     grep -q 'Fade_Farthest = 0.6' tree.pov || fail "expected the fade of the look"
@@ -108,7 +108,7 @@ test_povray_does_without_the_occlusion_of_a_look() {
     run corcast verify tree.swc --quiet --look atlas --ao 8 -o report
     expect_status 2
     expect_sentence '--ao cannot be verified'
-    run_ok corcast render tree.swc --input-unit mm --size 30x30 --look atlas --exact -o exact.ppm
+    run_ok corcast render tree.swc --input-unit mm --smooth off --size 30x30 --look atlas --exact -o exact.ppm
     expect_sentence '--look atlas: only corcast draws a graded background; --exact omits them$'
     run corcast render tree.swc --quiet --look xray --exact -o no.png
     expect_status 2
@@ -168,7 +168,7 @@ s/light lamp/lamp/|3: not a look: expected one of the sections .*, not \[lamp\]
 s/position/direction/|5: not a look: .* position, not 'size = 0.7'
 s/size/sise/|5: not a look: expected direction, .*, not 'sise = 0.7'; did you mean size.
 s/vessel/vesel/|1: not a look: expected one of the sections .*, not \[vesel\]; did you mean vessel.
-s/.light lamp./[options]/|4: not a look: expected ao, shadows or projection, not 'position = -1 2 3.5'
+s/.light lamp./[options]/|4: not a look: expected ao, shadows, projection or smooth, not 'position = -1 2 3.5'
 END
 }
 

@@ -39,6 +39,19 @@ agrees() {
 }
 
 # Outlines, cuts and equally near surfaces of these lie exactly at pixel centres of a picture whose frame is theirs.
+# Sums of hundreds of quartics round differently in the two programs: one pixel in 19,200 by one level.
+test_smooth_vessels_agree_in_every_model() {
+    local model pixels
+    tree_3d 12
+    for model in $(corcast models | cut -f 1) 'isosurface --potential graph'; do
+        run_ok corcast verify tree.swc --smooth --model $model --size 160x120 -o report
+        expect_json report/report.json '.verdict == "agree"'
+        grep -q 'smooth: 23 segments are drawn as' stderr || fail "expected the pieces of $model"
+        pixels=$(differing report/povray.png report/native.png 1)
+        [ "$pixels" -eq 0 ] || fail "expected the same pixels of $model, got $pixels that differ"
+    done
+}
+
 test_tubes_tees_and_crosses_on_integers_agree() {
     local case
     printf '1 1 0 0 0 1 -1\n2 3 0 10 0 1 1\n' >tube.swc
@@ -705,6 +718,19 @@ test_every_look_agrees_but_for_what_is_said_to_be_left_out() {
         else
             expect_sentence "^corcast: --look $look: only corcast draws .*; both pictures omit them"
         fi
+    done
+}
+
+# The fade is part of the surfaces' texture, whatever writes that, and of the picture that is compared.
+test_fading_agrees_in_every_model() {
+    local model
+    run_ok corcast grow --quiet --terminals 8 --domain ball:20 -o tree.swc
+    printf '[fade]\nnearest = 0.2\nfarthest = 0.9\n[background]\ncolor = 0 0 1\n[light key]\n' >fading.ini
+    for model in $(corcast models | cut -f 1); do
+        run_ok corcast verify tree.swc --quiet --size 60x45 --model "$model" --view iso --projection perspective \
+            --color-by flow --look ./fading.ini -o "$model"
+        run_ok corcast verify tree.swc --quiet --size 60x45 --model "$model" --look ./fading.ini -o "$model-one"
+        grep -q 'Fade_Farthest = 0.9' "$model/scene.pov" || fail "expected the fade in the scene of $model"
     done
 }
 

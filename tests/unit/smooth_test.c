@@ -3,6 +3,8 @@
 #include "stage/stage.h"
 #include "unit.h"
 
+#include "field/blob.h"
+#include "field/field.h"
 #include "stage/coincidence.h"
 #include <stdlib.h>
 
@@ -48,7 +50,7 @@ static Tree random_tree(size_t n, uint64_t seed, int coincident)
 static SmoothTree smooth_of(const Tree *tree)
 {
     SmoothTree smooth;
-    assert_int_equal(stage_smooth(tree, &smooth, NULL), STATUS_OK);
+    assert_int_equal(stage_smooth(tree, SCENE_ROUNDED, &smooth, NULL), STATUS_OK);
     return smooth;
 }
 
@@ -217,7 +219,8 @@ static void pieces_are_as_near_to_the_curve_as_stated(void **state)
 {
     (void)state;
     Tree tree = make_chain();
-    SmoothTree smooth = smooth_of(&tree);
+    SmoothTree smooth;
+    assert_int_equal(stage_smooth(&tree, SCENE_ISOSURFACE, &smooth, NULL), STATUS_OK);
     const double length = vec3_distance(chain[2], chain[1]), radius = tree.radius_mm[2];
     size_t last = 0, n = pieces_of(&smooth, 2, &last);
     double farthest = 0;
@@ -341,6 +344,106 @@ static void a_part_has_the_curves_of_the_whole(void **state)
     tree_release(&tree);
 }
 
+/* ---- the radius of implicit surfaces along curves ------------------------------------------- */
+
+/* Returns the field at a point over the level of the surface: the sum of all terms, or the largest
+ * sum of a group. */
+static double level_at(const Geometry *geometry, Vec3 point)
+{
+    const bool blob = model_has(geometry->model, MODEL_BLOB);
+    const Blend *blend = &geometry->blend;
+    double largest = 0;
+    for (size_t group = 0; group < (blend->n_groups ? blend->n_groups : 1); group++) {
+        double sum = 0;
+        size_t first = blend->n_groups ? blend->members.first[group] : 0;
+        size_t end = blend->n_groups ? blend->members.first[group + 1] : geometry->n_segments;
+        for (size_t k = first; k < end; k++) {
+            const FieldSegment *segment =
+                &geometry->segments[blend->n_groups ? blend->members.items[k] : k];
+            sum += blob ? blob_term(segment, point) : potential_term(segment, point) / FIELD_LEVEL;
+        }
+        largest = fmax(largest, sum);
+    }
+    return largest;
+}
+
+static double radius_towards(const Geometry *geometry, Vec3 center, Vec3 outwards)
+{
+    double low = 0, high = 4;
+    for (int i = 0; i < 50; i++) {
+        double middle = (low + high) / 2;
+        bool inside = level_at(geometry, vec3_add_scaled(center, outwards, middle)) > 1;
+        low = inside ? middle : low;
+        high = inside ? high : middle;
+    }
+    return low;
+}
+
+/* The largest |radius of the surface / radius of the piece - 1|, across the pieces of the middle
+ * segments of a chain. */
+static double radius_error(const Tree *tree, SceneModel model, bool graph)
+{
+    SmoothTree smooth;
+    Geometry geometry;
+    double largest = 0;
+    assert_int_equal(stage_smooth(tree, model, &smooth, NULL), STATUS_OK);
+    const GeometryParams params = {.model = model, .smooth = &smooth, .graph = graph};
+    assert_int_equal(stage_geometry(tree, &params, &geometry, NULL, NULL), STATUS_OK);
+    for (size_t node = 1; node < smooth.tree.n; node++) {
+        if (smooth.segment[node] < 3 || smooth.segment[node] + 2 >= tree->n)
+            continue;
+        Vec3 a = smooth.tree.position[smooth.tree.parent[node]], b = smooth.tree.position[node], u,
+             v;
+        vec3_across(vec3_normalized(vec3_sub(b, a)), &u, &v);
+        for (int k = 0; k < 12; k++) {
+            double angle = 6.283185307179586 * k / 12;
+            Vec3 outwards = vec3_add(vec3_scale(u, cos(angle)), vec3_scale(v, sin(angle)));
+            double radius = radius_towards(
+                &geometry, vec3_sub(vec3_scale(vec3_add(a, b), 0.5), geometry.origin), outwards);
+            largest = fmax(largest, fabs(radius / smooth.tree.radius_mm[node] - 1));
+        }
+    }
+    geometry_release(&geometry);
+    smoothtree_release(&smooth);
+    return largest;
+}
+
+/* Nodes on a circle of `bend` times the radius 1 of the vessel, 4 apart; each radius is `taper`
+ * times the one before. */
+static Tree make_arc(double bend, double taper)
+{
+    Tree tree;
+    assert_int_equal(tree_init(&tree, 8, NULL), STATUS_OK);
+    for (size_t i = 0; i < tree.n; i++) {
+        tree.id[i] = (int32_t)i + 1;
+        tree.parent[i] = (int32_t)i - 1;
+        tree.radius_mm[i] = i < 2 ? 1 : taper * tree.radius_mm[i - 1];
+        tree.position[i] =
+            vec3(bend * cos(4 / bend * (double)i), bend * sin(4 / bend * (double)i), 0);
+    }
+    return tree;
+}
+
+/* Pieces neither thicken nor thin a vessel: their terms add up to that of the curve, since the term
+ * of a segment is an integral along it. A curve thickens its inner side a little. */
+static void surfaces_keep_the_radius_along_curves(void **state)
+{
+    (void)state;
+    static const struct {
+        double bend, taper, potential, blob;
+    } cases[] = {{1e4, 1, 2e-5, 1e-5}, {20, 1, 0.005, 0.006},    {10, 1, 0.012, 0.012},
+                 {5, 1, 0.036, 0.028}, {1e4, 0.9, 7e-4, 1.3e-3}, {10, 0.9, 0.012, 0.012}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        Tree tree = make_arc(cases[i].bend, cases[i].taper);
+        double potential = radius_error(&tree, SCENE_ISOSURFACE, false);
+        double graph = radius_error(&tree, SCENE_ISOSURFACE, true);
+        double blob = radius_error(&tree, SCENE_BLOB, false);
+        assert_true(potential < cases[i].potential && graph < cases[i].potential);
+        assert_true(blob < cases[i].blob);
+        tree_release(&tree);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -354,6 +457,7 @@ int main(void)
         cmocka_unit_test(a_straight_vessel_stays_straight),
         cmocka_unit_test(a_step_of_no_length_changes_nothing),
         cmocka_unit_test(a_part_has_the_curves_of_the_whole),
+        cmocka_unit_test(surfaces_keep_the_radius_along_curves),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

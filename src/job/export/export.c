@@ -172,12 +172,14 @@ static Status plan_mesh(ExportOptions *options, const Emitter **emitter, Err *er
     return read_print(options, *emitter, err);
 }
 
-/* Reads the tree, and divides its segments into smooth curves if --smooth is on. */
-static Status read_tree(const ExportOptions *options, const Parsed *parsed, PictureTree *of,
-                        Err *err)
+/* Reads the tree, and divides its segments into smooth curves if --smooth is on. `properties` are
+ * those of the model that is exported. */
+static Status read_tree(const ExportOptions *options, unsigned properties, const Parsed *parsed,
+                        PictureTree *of, Err *err)
 {
     TRY(picture_read_tree(&options->meshing.coloring, options->prune_radius_mm, parsed, of, err));
-    Status status = options->smooth ? picture_smooth_tree(of, err) : STATUS_OK;
+    Status status =
+        options->smooth ? picture_smooth_tree(of, model_with(properties), err) : STATUS_OK;
     if (status != STATUS_OK)
         picture_tree_release(of);
     picture_say_smooth(&of->smooth.report, parsed->common.talk);
@@ -188,7 +190,7 @@ static Status make_mesh(const ExportOptions *options, const Emitter *emitter, co
                         MeshResult *mesh, Err *err)
 {
     PictureTree of;
-    TRY(read_tree(options, parsed, &of, err));
+    TRY(read_tree(options, emitter->of_lines ? MODEL_VOXELS : MODEL_TRIANGLES, parsed, &of, err));
     return meshing_make(emitter, &options->meshing, &of, &parsed->common, mesh, err);
 }
 
@@ -218,7 +220,7 @@ static Status export_volume(const ExportOptions *options, Parsed *parsed, FileSe
     PictureTree of;
     TRY(volumes_name(&options->volume, format, options->output, files, err));
     TRY(work_note_files(files, &parsed->files, err));
-    TRY(read_tree(options, parsed, &of, err));
+    TRY(read_tree(options, MODEL_VOXELS, parsed, &of, err));
     Status status = volumes_write(&options->volume, format, &of, files, parsed, err);
     picture_tree_release(&of);
     return status;

@@ -183,7 +183,8 @@ static Status put_beside(const MeshResult *made, FileSlot files[], Err *err)
     if (!made->emitter->has_parts)
         return STATUS_OK;
     TRY(solver_ends(&made->ends, &made->of.tree, &made->vessels, &files[MESH_ENDS].text, err));
-    return solver_centerline(&made->of.tree, &made->vessels, &files[MESH_CENTERLINE].text, err);
+    return solver_centerline(&made->of.tree, picture_pieces(&made->of), &made->vessels,
+                             &files[MESH_CENTERLINE].text, err);
 }
 
 static Status put_mesh(const void *job, const char *command, FileSlot files[], Err *err)

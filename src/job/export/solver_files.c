@@ -55,26 +55,45 @@ Status solver_ends(const MeshEnds *ends, const Tree *tree, const VesselTree *ves
     return text_check(out, err);
 }
 
-Status solver_centerline(const Tree *tree, const VesselTree *vessels, Text *out, Err *err)
+/* Copies the arrays of a tree that solver_centerline changes. */
+static Status copy_arrays(const Tree *tree, Tree *copy, Err *err)
 {
-    Tree drawn = *tree;
+    const size_t n = tree->n;
+    TRY(mem_calloc(&copy->radius_mm, n, sizeof *copy->radius_mm, "radii", err));
+    TRY(mem_calloc(&copy->position, n, sizeof *copy->position, "points", err));
+    TRY(mem_calloc(&copy->id, n, sizeof *copy->id, "ids", err));
+    memcpy(copy->radius_mm, tree->radius_mm, n * sizeof *copy->radius_mm);
+    memcpy(copy->position, tree->position, n * sizeof *copy->position);
+    memcpy(copy->id, tree->id, n * sizeof *copy->id);
+    return STATUS_OK;
+}
+
+Status solver_centerline(const Tree *tree, const SmoothTree *smooth, const VesselTree *vessels,
+                         Text *out, Err *err)
+{
+    Tree drawn = smooth ? smooth->tree : *tree;
     Status status;
+    size_t node = 0;
     drawn.radius_mm = NULL;
     drawn.position = NULL;
-    TRY_GOTO(mem_calloc(&drawn.radius_mm, tree->n, sizeof *drawn.radius_mm, "radii", err));
-    TRY_GOTO(mem_calloc(&drawn.position, tree->n, sizeof *drawn.position, "points", err));
-    memcpy(drawn.radius_mm, tree->radius_mm, tree->n * sizeof *drawn.radius_mm);
-    memcpy(drawn.position, tree->position, tree->n * sizeof *drawn.position);
-    for (size_t i = 0; i < vessels->n_segments; i++) {
+    drawn.id = NULL;
+    TRY_GOTO(copy_arrays(smooth ? &smooth->tree : tree, &drawn, err));
+    if (smooth)
+        tree_renumber(&drawn);
+    for (size_t i = 0; i < vessels->n_segments; i++, node++) {
         const FieldSegment *segment = &vessels->segments[i];
-        drawn.radius_mm[segment->segment] = segment->radius_mm;
-        drawn.position[segment->segment] = segment->b;
-        drawn.position[tree->parent[segment->segment]] = segment->a;
+        while (smooth && !smoothtree_draws(smooth, node))
+            node++;
+        size_t end = smooth ? node : segment->segment;
+        drawn.radius_mm[end] = segment->radius_mm;
+        drawn.position[end] = segment->b;
+        drawn.position[drawn.parent[end]] = segment->a;
     }
     TRY_GOTO(tree_write_text(&drawn, "centreline.vtp", out, err));
 done:
     free(drawn.radius_mm);
     free(drawn.position);
+    free(drawn.id);
     return status;
 }
 

@@ -5,6 +5,7 @@
 
 #include "base/base.h"
 #include "scene/scene.h"
+#include "stage/stage.h"
 #include "tree/tree.h"
 
 /* Appends the ends as CSV, one row per end; docs/FORMATS.md describes the columns. `vessels` are
@@ -13,9 +14,10 @@ MUST_CHECK Status solver_ends(const MeshEnds *ends, const Tree *tree, const Vess
                               Text *out, Err *err);
 
 /* Appends the tree as a VTP file, with the radii and the end points of the segments in `vessels`.
- * Errors: those of tree_write_text. */
-MUST_CHECK Status solver_centerline(const Tree *tree, const VesselTree *vessels, Text *out,
-                                    Err *err);
+ * If `smooth` is not NULL, these are its pieces, which the file has instead of the tree's segments,
+ * with ids from 1. Errors: those of tree_write_text; STATUS_MEMORY. */
+MUST_CHECK Status solver_centerline(const Tree *tree, const SmoothTree *smooth,
+                                    const VesselTree *vessels, Text *out, Err *err);
 
 /* Appends a geometry for gmsh. It reads the STL file `file`, gives each surface the name of its
  * part, and makes volumes of the surfaces: "blood" and, of a hollow wall, "wall". The text fails if

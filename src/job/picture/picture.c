@@ -77,7 +77,8 @@ static const Option rows[] = {
      .group = GROUP_VESSELS,
      .when = WHEN(TRIANGLES) | WHEN(SURFACES),
      .help = "mesh only: shrink unconnected vessels that overlap until they no longer touch"},
-    {SMOOTH_OPTION(PictureOptions, smooth), .when = WHEN(VESSELS)},
+    {SMOOTH_OPTION(PictureOptions, smooth), GIVEN(PictureOptions, has_smooth),
+     .otherwise = "the look's: off in most looks", .when = WHEN(VESSELS)},
     {.name = "prune-radius",
      SETS(NUMBER, PictureOptions, prune_radius_mm),
      .range = &prune_range,
@@ -269,6 +270,8 @@ static Status settle(void *set, const Parsed *parsed, Err *err)
         options->look = "data";
     TRY(coloring_read_look(options->look, &options->look_file, err));
     const LookOptions *proposed = &options->look_file.options;
+    if (!options->has_smooth)
+        options->smooth = proposed->smooth;
     if (!options->has_shadows)
         options->stage.shadows = proposed->shadows;
     if (!options->has_occlusion)
@@ -516,9 +519,9 @@ void picture_tree_release(PictureTree *tree)
     free(tree->joined);
 }
 
-Status picture_smooth_tree(PictureTree *of, Err *err)
+Status picture_smooth_tree(PictureTree *of, SceneModel model, Err *err)
 {
-    return stage_smooth(&of->tree, &of->smooth, err);
+    return stage_smooth(&of->tree, model, &of->smooth, err);
 }
 
 const SmoothTree *picture_pieces(const PictureTree *of)
@@ -564,7 +567,8 @@ Status picture_read_source(const PictureOptions *options, const Parsed *parsed,
     TRY(check_camera(options, err));
     TRY(take_look(options, parsed, &made.look, err));
     TRY(picture_read_tree(&options->coloring, options->prune_radius_mm, parsed, &made.of, err));
-    Status status = options->smooth ? picture_smooth_tree(&made.of, err) : STATUS_OK;
+    Status status = options->smooth ? picture_smooth_tree(&made.of, (SceneModel)options->model, err)
+                                    : STATUS_OK;
     if (status == STATUS_OK && options->frame == PICTURE_DOMAIN)
         status = find_domain(&made.of, &made.domain, err);
     if (status == STATUS_OK)

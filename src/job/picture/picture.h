@@ -55,7 +55,7 @@ typedef struct PictureOptions {
     bool has_background;    /* `background` is specified; else the look's background applies */
     /* The option of this name is specified: */
     bool has_height, has_angle, has_view, has_turn, has_joints, has_antialias, has_projection,
-        has_shadows, has_occlusion;
+        has_smooth, has_shadows, has_occlusion;
     int erf;          /* choice: ErfForm; POV-Ray's isosurface */
     double cell_beta; /* POV-Ray's isosurface: a cell is split while its side / the smallest radius
                        * that matters in the cell is larger than this; 0: CELL_BETA */
@@ -126,9 +126,9 @@ typedef struct PictureTree {
 MUST_CHECK Status picture_read_tree(const Coloring *coloring, double prune_radius_mm,
                                     const Parsed *parsed, PictureTree *out, Err *err);
 void picture_tree_release(PictureTree *tree);
-/* Divides the segments of of->tree into smooth curves, and stores the pieces in of->smooth. Errors:
- * STATUS_MEMORY. */
-MUST_CHECK Status picture_smooth_tree(PictureTree *of, Err *err);
+/* Divides the segments of of->tree into smooth curves for a model, and stores the pieces in
+ * of->smooth. Errors: STATUS_MEMORY. */
+MUST_CHECK Status picture_smooth_tree(PictureTree *of, SceneModel model, Err *err);
 /* Returns the pieces of a tree, or NULL if its segments are drawn. Borrowed. */
 const SmoothTree *picture_pieces(const PictureTree *of);
 /* Prints a note about how far the pieces are from the tree, if there are any. */

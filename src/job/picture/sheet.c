@@ -30,22 +30,19 @@ Status sheet_describe(Sheet *sheet, Text *description, const char *command, Err 
 
 void sheet_say(const Sheet *sheet, const Talk *talk)
 {
-    Text boxed = TEXT_INIT, fallback = TEXT_INIT, collisions = TEXT_INIT;
-    figure_put_missing(&sheet->page, true, &boxed);
+    enum { WARNINGS = 3 };
+    Text warnings[WARNINGS] = {TEXT_INIT}, fallback = TEXT_INIT;
+    figure_put_missing(&sheet->page, true, &warnings[0]);
+    figure_put_unclosed(&sheet->page, &warnings[1]);
+    figure_put_collisions(&sheet->page, &warnings[2]);
     figure_put_missing(&sheet->page, false, &fallback);
-    figure_put_collisions(&sheet->page, &collisions);
-    if (boxed.length)
-        talk_warn(talk, "%s", text_chars(&boxed));
+    for (int i = 0; i < WARNINGS; i++) {
+        if (warnings[i].length)
+            talk_warn(talk, "%s", text_chars(&warnings[i]));
+        text_release(&warnings[i]);
+    }
     if (fallback.length)
         talk_note(talk, "%s", text_chars(&fallback));
-    if (sheet->page.unclosed)
-        talk_warn(talk,
-                  "the text '%.60s' has a group _{ or ^{ without }: the group ends with the text",
-                  sheet->page.unclosed);
-    if (collisions.length)
-        talk_warn(talk, "%s", text_chars(&collisions));
-    text_release(&collisions);
-    text_release(&boxed);
     text_release(&fallback);
 }
 
