@@ -442,7 +442,7 @@ install: build/corcast lib build/share ## install program, library, manual pages
 	install -m644 README.md CHANGELOG.md LICENSE CITATION.cff $(SHARE)/doc/corcast"
 	install -m644 docs/*.md $(SHARE)/doc/corcast/docs"
 	install -m644 docs/decisions/*.md $(SHARE)/doc/corcast/docs/decisions"
-	for folder in images images/looks images/gallery; do install -m644 docs/$$folder/*.png $(SHARE)/doc/corcast/docs/$$folder" || exit; done
+	for folder in images images/looks images/gallery; do install -m644 docs/$$folder/*.[jp]*g $(SHARE)/doc/corcast/docs/$$folder" || exit; done
 
 uninstall: ## remove the files of `make install`
 	rm -f $(BIN)/corcast" $(SHARE)/man/man1/corcast.1" $(SHARE)"/man/man1/corcast-*.1

@@ -4,28 +4,30 @@
 
 # pictures: of the gallery, the command of each and its file.
 pictures() {
-    awk '/^    corcast (figure|render) / { command = substr($0, 5) }
+    awk '/^    corcast (diagram|figure|render) / { command = substr($0, 5) }
          /^!\[/ { file = $0; gsub(/.*\(|\).*/, "", file); print command "|" file }' "$REPO/docs/GALLERY.md"
 }
 
-test_the_gallery_shows_ten_pictures_each_by_the_command_beside_it() {
-    local n=0 shown=0 command file
+test_the_gallery_shows_fourteen_large_pictures_each_by_the_command_beside_it() {
+    local n=0 shown=0 command file wide
     while IFS='|' read -r command file; do
         n=$((n + 1))
         [ "${command##* }" = "${file##*/}" ] || fail "expected $file beside its command, found $command"
-        [ "$(stat -c %s "$REPO/docs/$file")" -le 400000 ] || fail "expected at most 400 kB of $file"
+        [ "$(stat -c %s "$REPO/docs/$file")" -le 600000 ] || fail "expected at most 600 kB of $file"
+        run_ok corcast convert "$REPO/docs/$file" picture.ppm
+        read -r wide _ < <(head -c 15 picture.ppm | sed -n 2p)
+        [ "$wide" -ge 1200 ] || fail "expected $file to be at least 1200 pixels wide, found $wide"
         ! grep -qF "](docs/$file)" "$REPO/README.md" || shown=$((shown + 1))
         ! grep -qF "](docs/$file)" "$REPO/README.md" || grep -qF "\`$command\`" "$REPO/README.md" || fail "expected in README.md: $command"
     done < <(pictures)
-    [ $n = 10 ] || fail "expected 10 pictures, found $n"
+    [ $n = 14 ] || fail "expected 14 pictures, found $n"
     [ $shown = 4 ] || fail "expected 4 pictures in README.md, found $shown"
-    [ "$(find "$REPO/docs/images/gallery" -name '*.png' | wc -l)" = 10 ] || fail "expected no other picture"
+    [ "$(find "$REPO/docs/images/gallery" -type f | wc -l)" = 14 ] || fail "expected no other picture"
 }
 
 # As they stand, but small.
 test_the_commands_of_the_gallery_run() {
     local command
-    cp "$DATA/coronary.swc" .
     while read -r command; do
         command=$(sed -E 's/--size [0-9]+x[0-9]+/--size 40x30/; s/--dpi [0-9]+/--dpi 20/; s/--terminals [0-9]{3,}/--terminals 40/' <<<"$command")
         # shellcheck disable=SC2086
