@@ -342,7 +342,7 @@ static Status put_graded(Text *out, void *context, Err *err)
     if (!view->effects.grade.present)
         return STATUS_OK;
     camera_depth_range(&view->camera, geometry->scene->geometry.bounds, &near_mm, &far_mm);
-    put_text(add_value(&values, "corners"), "rgb <%c>", view->effects.grade.corners);
+    put_text(add_value(&values, "corners"), "<%c>", view->effects.grade.corners);
     add_number(&values, "distance", 2 * far_mm);
     return values_expand(&values, geometry->params, "povray/graded.inc", out, err);
 }

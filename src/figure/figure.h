@@ -84,6 +84,7 @@ typedef enum FigureKind {
     FIGURE_TEXT,
     FIGURE_STROKES, /* a line drawing */
     FIGURE_BARS,    /* a diagram */
+    FIGURE_ARTWORK, /* a picture of another program */
     FIGURE_KINDS
 } FigureKind;
 
@@ -106,6 +107,28 @@ typedef struct FigureBars {
     const void *context;
 } FigureBars;
 
+/* A picture that another program has made: a page of a PDF, an SVG, or pixels. */
+typedef struct FigureArtwork {
+    const char *path; /* borrowed */
+    char *bytes;      /* of a PDF or SVG, else NULL; owned */
+    size_t size;
+    bool pdf;             /* the bytes are a PDF, else an SVG */
+    double width, height; /* > 0, in any unit: they state the proportions */
+    Picture picture;      /* pixels, of 3 channels of 8 bits; zeroed for a PDF or SVG; owned */
+} FigureArtwork;
+
+/* Reads the picture of another program.
+ *
+ * path     a .pdf of one page, .svg, .png, .tif or .jpg; the content decides which.
+ * paper    color that shows through transparent pixels of a .png or .tif.
+ * artwork  borrows `path`. The caller releases it with figureartwork_release even after an error.
+ * Errors   STATUS_INPUT, naming the file, if it is missing, larger than 100 MB, of another format
+ *          or broken; STATUS_TOOL if the library that reads a PDF (poppler-glib) or an SVG
+ *          (librsvg) is not installed; STATUS_MEMORY. */
+MUST_CHECK Status figureartwork_read(const char *path, FigureColor paper, FigureArtwork *artwork,
+                                     Err *err);
+void figureartwork_release(FigureArtwork *artwork);
+
 typedef struct FigureItem {
     FigureKind kind;
     FigureBox box; /* bounds of what the item covers */
@@ -115,23 +138,25 @@ typedef struct FigureItem {
     bool solid;        /* a bar or swatch: no text is to be over it */
     FigureAlign align; /* of a text at at[0], which is on its baseline */
     FigurePoint at[FIGURE_CORNERS];
-    double width_mm;        /* of a line */
-    double size_pt;         /* of a text */
-    double outline_mm;      /* of a text: its letters are filled, and outlined this wide */
-    double halo_mm;         /* width of the halo around the item; 0: none */
-    FigureColor halo;       /* color of the halo */
-    char *text;             /* owned */
-    FigureColor *ramp;      /* owned; FIGURE_STOPS colors at equal distances */
-    const Strokes *strokes; /* borrowed; their paper's corner is at at[0] */
-    const FigureBars *bars; /* borrowed; their origin is at at[0] */
-    const Picture *picture; /* borrowed; 8 bits */
-    int column, row;        /* of the picture's first pixel */
+    double width_mm;              /* of a line */
+    double size_pt;               /* of a text */
+    double outline_mm;            /* of a text: its letters are filled, and outlined this wide */
+    double halo_mm;               /* width of the halo around the item; 0: none */
+    FigureColor halo;             /* color of the halo */
+    char *text;                   /* owned */
+    FigureColor *ramp;            /* owned; FIGURE_STOPS colors at equal distances */
+    const Strokes *strokes;       /* borrowed; their paper's corner is at at[0] */
+    const FigureBars *bars;       /* borrowed; their origin is at at[0] */
+    const FigureArtwork *artwork; /* borrowed */
+    const Picture *picture;       /* borrowed; 8 bits */
+    int column, row;              /* of the picture's first pixel */
 } FigureItem;
 
 typedef struct FigurePage {
     double width_mm, height_mm, dpi; /* 0 < dpi */
     bool exact;                      /* an SVG states the size with all digits, else to 0.001 mm */
     FigureColor background;
+    const Inks *inks;         /* borrowed; of 8 bits; converts the colors of a PDF; NULL: sRGB */
     const FigureFonts *fonts; /* borrowed; NULL: the page has no text */
     FigureItem *items;        /* owned */
     size_t n, capacity;
@@ -167,6 +192,10 @@ void figure_add_strokes(FigurePage *page, const Strokes *strokes, FigurePoint at
 /* Appends a diagram, borrowed, of `width_mm` x `height_mm`. Its origin is at the point `at`. */
 void figure_add_bars(FigurePage *page, const FigureBars *bars, FigurePoint at, double width_mm,
                      double height_mm);
+
+/* Appends a picture of another program, borrowed, that fills the box. A PDF, SVG or EPS holds the
+ * vectors of a vector picture, and the pixels of the others as they are. */
+void figure_add_artwork(FigurePage *page, const FigureArtwork *artwork, FigureBox box);
 
 /* A line of text. It may have markup, which every text of a page has in the same form:
  *
@@ -266,7 +295,8 @@ enum { FIGURE_PDF_SIDE = 32767 };
 MUST_CHECK Status figure_write_pdf(const FigurePage *page, const FigureNotes *notes, bool eps,
                                    const char *path, Err *err);
 
-/* Draws a band of the page over `rows`, a picture of 3 channels at the page's resolution. The band
+/* Draws a band of the page over `rows`, a picture of 3 channels at the page's resolution. A fourth
+ * channel, 0 at first, receives the black ink of black items instead of the colors. The band
  * begins at row `first` of the page. Items other than pictures are antialiased. The pixels do not
  * depend on how the page is divided into bands. Errors: STATUS_MEMORY. */
 MUST_CHECK Status figure_draw(const FigurePage *page, int first, Picture *rows, Err *err);

@@ -4,8 +4,10 @@
  * cairo 1.16 ignores some failed allocations and crashes by others, and it keeps the fonts for as
  * long as the process lives. It therefore runs in a process of its own. An allocation that cairo
  * ignored leaves ENOMEM in errno. */
+#include "figure/artwork.h"
 #include "figure/fonts.h"
 #include "figure/items.h"
+#include "figure/pdf_inks.h"
 
 #include <cairo-ft.h>
 #include <cairo-pdf.h>
@@ -22,15 +24,6 @@ typedef struct PdfPage {
     cairo_font_face_t *face[FACES];
     const FigurePage *page;
 } PdfPage;
-
-static Status check(cairo_status_t failed, Err *err)
-{
-    if (failed == CAIRO_STATUS_SUCCESS)
-        return STATUS_OK;
-    if (failed == CAIRO_STATUS_NO_MEMORY || failed == CAIRO_STATUS_WRITE_ERROR)
-        return mem_out_of("for", "the page", err);
-    return err_set(err, STATUS_IO, "the page: %s", cairo_status_to_string(failed));
-}
 
 static void set_color(const PdfPage *pdf, FigureColor color)
 {
@@ -52,7 +45,7 @@ static Status put_shape(void *context, const FigureItem *item, Err *err)
     const PdfPage *pdf = context;
     put_path(pdf, item);
     cairo_fill(pdf->cairo);
-    return check(cairo_status(pdf->cairo), err);
+    return artwork_check_cairo(cairo_status(pdf->cairo), err);
 }
 
 static Status put_line(void *context, const FigureItem *item, Err *err)
@@ -61,7 +54,7 @@ static Status put_line(void *context, const FigureItem *item, Err *err)
     put_path(pdf, item);
     cairo_set_line_width(pdf->cairo, item->width_mm);
     cairo_stroke(pdf->cairo);
-    return check(cairo_status(pdf->cairo), err);
+    return artwork_check_cairo(cairo_status(pdf->cairo), err);
 }
 
 static Status put_bars(void *context, const FigureItem *item, Err *err)
@@ -90,7 +83,7 @@ static Status put_ramp(void *context, const FigureItem *item, Err *err)
                     box->bottom - box->top);
     cairo_fill(pdf->cairo);
     cairo_pattern_destroy(ramp);
-    return check(cairo_status(pdf->cairo), err);
+    return artwork_check_cairo(cairo_status(pdf->cairo), err);
 }
 
 /* The arrays of cairo's call for a run of glyphs. A cluster states which bytes of `text` a glyph
@@ -165,7 +158,7 @@ static Status put_text(void *context, const FigureItem *item, Err *err)
     set_color(pdf, item->color);
     Status status = show_glyphs(pdf, item, &glyphs, err);
     glyphs_release(&glyphs);
-    return status == STATUS_OK ? check(cairo_status(pdf->cairo), err) : status;
+    return status == STATUS_OK ? artwork_check_cairo(cairo_status(pdf->cairo), err) : status;
 }
 
 static Status put_strokes(void *context, const FigureItem *item, Err *err)
@@ -186,7 +179,7 @@ static Status put_strokes(void *context, const FigureItem *item, Err *err)
         cairo_stroke(pdf->cairo);
     }
     cairo_restore(pdf->cairo);
-    return check(cairo_status(pdf->cairo), err);
+    return artwork_check_cairo(cairo_status(pdf->cairo), err);
 }
 
 /* Glyphs are neither hinted nor moved. */
@@ -204,70 +197,34 @@ static Status set_fonts(PdfPage *pdf, Err *err)
         if (failed == CAIRO_STATUS_SUCCESS)
             failed = cairo_font_face_status(pdf->face[i]);
     }
-    return check(failed, err);
-}
-
-/* Copies a picture to a surface of cairo. */
-static Status make_surface(const Picture *picture, cairo_surface_t **out, Err *err)
-{
-    if (picture->width > FIGURE_PDF_SIDE || picture->height > FIGURE_PDF_SIDE)
-        return err_set(err, STATUS_USAGE,
-                       "a picture of %dx%d pixels is too large for a PDF (at most %d per side); "
-                       "use .png or .tif",
-                       picture->width, picture->height, FIGURE_PDF_SIDE);
-    cairo_surface_t *surface =
-        cairo_image_surface_create(CAIRO_FORMAT_RGB24, picture->width, picture->height);
-    TRY(check(cairo_surface_status(surface), err));
-    unsigned char *bytes = cairo_image_surface_get_data(surface);
-    int stride = cairo_image_surface_get_stride(surface);
-    for (int y = 0; y < picture->height; y++)
-        for (int x = 0; x < picture->width; x++) {
-            const uint8_t *rgb =
-                picture->codes8 + (size_t)y * picture_stride(picture) + 3 * (size_t)x;
-            uint32_t pixel = (uint32_t)rgb[0] << 16 | (uint32_t)rgb[1] << 8 | rgb[2];
-            memcpy(bytes + (size_t)y * (size_t)stride + 4 * (size_t)x, &pixel, sizeof pixel);
-        }
-    cairo_surface_mark_dirty(surface);
-    *out = surface;
-    return STATUS_OK;
+    return artwork_check_cairo(failed, err);
 }
 
 /* Viewers are asked not to smooth the picture. */
 static Status put_picture(void *context, const FigureItem *item, Err *err)
 {
     const PdfPage *pdf = context;
-    cairo_surface_t *surface = NULL;
-    double pixel = MM_PER_INCH / pdf->page->dpi;
-    TRY(make_surface(item->picture, &surface, err));
-    cairo_save(pdf->cairo);
-    cairo_translate(pdf->cairo, item->box.left, item->box.top);
-    cairo_scale(pdf->cairo, pixel, pixel);
-    cairo_set_source_surface(pdf->cairo, surface, 0, 0);
-    cairo_pattern_set_filter(cairo_get_source(pdf->cairo), CAIRO_FILTER_NEAREST);
-    cairo_paint(pdf->cairo);
-    cairo_restore(pdf->cairo);
-    cairo_surface_destroy(surface);
-    return check(cairo_status(pdf->cairo), err);
+    return artwork_draw_picture(item->picture, &item->box, CAIRO_FILTER_NEAREST, pdf->cairo, err);
+}
+
+static Status put_artwork(void *context, const FigureItem *item, Err *err)
+{
+    const PdfPage *pdf = context;
+    return artwork_draw(item->artwork, &item->box, pdf->cairo, err);
 }
 
 static Status put_page(PdfPage *pdf, Err *err)
 {
     static FigurePut *const put[FIGURE_KINDS] = {
-        [FIGURE_PICTURE] = put_picture, [FIGURE_SHAPE] = put_shape, [FIGURE_LINE] = put_line,
-        [FIGURE_RAMP] = put_ramp,       [FIGURE_TEXT] = put_text,   [FIGURE_BARS] = put_bars,
-        [FIGURE_STROKES] = put_strokes};
+        [FIGURE_PICTURE] = put_picture, [FIGURE_SHAPE] = put_shape,    [FIGURE_LINE] = put_line,
+        [FIGURE_RAMP] = put_ramp,       [FIGURE_TEXT] = put_text,      [FIGURE_BARS] = put_bars,
+        [FIGURE_STROKES] = put_strokes, [FIGURE_ARTWORK] = put_artwork};
     set_color(pdf, pdf->page->background);
     cairo_paint(pdf->cairo);
     return figure_put_items(pdf->page, put, pdf, err);
 }
 
 /* ---- files ----------------------------------------------------------------------------------- */
-
-static cairo_status_t take_bytes(void *bytes, const unsigned char *from, unsigned int n)
-{
-    text_append(bytes, (const char *)from, n);
-    return text_chars(bytes) ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_WRITE_ERROR;
-}
 
 /* cairo would write the current date. */
 static void set_pdf_notes(cairo_surface_t *pdf, const FigureNotes *notes)
@@ -288,20 +245,28 @@ static void set_eps_note(cairo_surface_t *eps, const char *key, const char *valu
     cairo_ps_surface_dsc_comment(eps, line);
 }
 
-static void set_eps_notes(cairo_surface_t *eps, const FigureNotes *notes)
+/* PostScript has no transparency: cairo replaces translucent parts by pixels. */
+static void set_eps_notes(cairo_surface_t *eps, const FigureNotes *notes, double dpi)
 {
     cairo_ps_surface_set_eps(eps, 1);
+    cairo_surface_set_fallback_resolution(eps, dpi, dpi);
     set_eps_note(eps, "Title", notes->description);
     set_eps_note(eps, "For", notes->generator);
 }
 
 /* Replaces the current date, which cairo writes into the header of an EPS. */
-static void remove_date(Text *bytes)
+static Status remove_date(Text *bytes, Err *err)
 {
     static const char key[] = "%%CreationDate: ", date[] = "Sat Jan  1 00:00:00 2000";
-    char *at = text_chars(bytes) ? strstr(bytes->chars, key) : NULL;
+    const size_t length = bytes->length;
+    char *chars = NULL;
+    TRY(text_take(bytes, &chars, err));
+    char *at = strstr(chars, key);
     if (at && strcspn(at + strlen(key), "\n") == strlen(date))
         memcpy(at + strlen(key), date, strlen(date));
+    text_append(bytes, chars, length);
+    free(chars);
+    return STATUS_OK;
 }
 
 /* What the child process draws. */
@@ -316,9 +281,12 @@ static cairo_surface_t *make_page(const PdfWork *work, Text *bytes)
     const double width = work->page->width_mm / MM_PER_POINT;
     const double height = work->page->height_mm / MM_PER_POINT;
     cairo_surface_t *page =
-        work->eps ? cairo_ps_surface_create_for_stream(take_bytes, bytes, width, height)
-                  : cairo_pdf_surface_create_for_stream(take_bytes, bytes, width, height);
-    (work->eps ? set_eps_notes : set_pdf_notes)(page, work->notes);
+        work->eps ? cairo_ps_surface_create_for_stream(artwork_take_bytes, bytes, width, height)
+                  : cairo_pdf_surface_create_for_stream(artwork_take_bytes, bytes, width, height);
+    if (work->eps)
+        set_eps_notes(page, work->notes, work->page->dpi);
+    else
+        set_pdf_notes(page, work->notes);
     return page;
 }
 
@@ -343,9 +311,11 @@ static Status put_pdf(const void *context, Text *bytes, Err *err)
     if (page->fonts)
         TRY(set_fonts(&self, err));
     TRY(put_page(&self, err));
-    TRY(check(finish(self.cairo, surface), err));
+    TRY(artwork_check_cairo(finish(self.cairo, surface), err));
     if (work->eps)
-        remove_date(bytes);
+        TRY(remove_date(bytes, err));
+    else if (page->inks)
+        TRY(pdf_to_inks(page->inks, bytes, err));
     return errno == ENOMEM ? mem_out_of("for", "the page", err) : STATUS_OK;
 }
 

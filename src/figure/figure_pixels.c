@@ -3,6 +3,7 @@
  * rows are. Boxes and lines along the pixel grid are rounded to whole pixels, so that they are
  * sharp. A ramp has the color at the centre of each pixel. Each part of a polyline is a polygon of
  * its own. */
+#include "figure/artwork.h"
 #include "figure/fonts.h"
 #include "figure/items.h"
 
@@ -26,14 +27,18 @@ static double pixels_of(const PixelRows *target, double mm)
     return mm / MM_PER_INCH * target->page->dpi;
 }
 
-/* Blends an 8-bit color over a pixel that it covers by `alpha` / 255. */
+/* Blends an 8-bit color over a pixel that it covers by `alpha` / 255. Black goes to the channel of
+ * black ink, if there is one, and any other color takes black ink away. */
 static void blend(Picture *rows, size_t pixel, const uint8_t color[3], unsigned alpha)
 {
+    const size_t channels = (size_t)rows->channels;
     const unsigned scale = rows->bits == 8 ? 1 : 257;
-    for (size_t c = 0; c < 3; c++) {
-        unsigned below = picture_code(rows, 3 * pixel + c);
-        unsigned sum = color[c] * scale * alpha + below * (255 - alpha);
-        picture_set(rows, 3 * pixel + c, (uint16_t)((sum + 127) / 255));
+    const bool black = channels == 4 && color[0] + color[1] + color[2] == 0;
+    for (size_t c = black ? 3 : 0; c < channels; c++) {
+        const unsigned above = c < 3 ? color[c] : black ? 255 : 0;
+        unsigned below = picture_code(rows, channels * pixel + c);
+        unsigned sum = above * scale * alpha + below * (255 - alpha);
+        picture_set(rows, channels * pixel + c, (uint16_t)((sum + 127) / 255));
     }
 }
 
@@ -308,13 +313,33 @@ static Status draw_picture(PixelRows *target, const FigureItem *item, Err *err)
         int row = item->row + y - target->first;
         if (row < 0 || row >= rows->height)
             continue;
-        size_t to = (size_t)row * picture_stride(rows) + 3 * (size_t)item->column;
+        const size_t channels = (size_t)rows->channels;
+        size_t to = (size_t)row * picture_stride(rows) + channels * (size_t)item->column;
         for (size_t i = 0; i < 3 * (size_t)columns; i++) {
             uint16_t code = picture_code(picture, (size_t)y * picture_stride(picture) + i);
-            picture_set(rows, to + i, rows->bits == 8 ? code : (uint16_t)(code * 257));
+            picture_set(rows, to + i / 3 * channels + i % 3,
+                        rows->bits == 8 ? code : (uint16_t)(code * 257));
         }
     }
     return STATUS_OK;
+}
+
+/* Snaps the artwork to pixels, and draws them as a picture. */
+static Status draw_artwork(PixelRows *target, const FigureItem *item, Err *err)
+{
+    const FigureBox *box = &item->box;
+    const int left = figure_pixels(target->page, box->left);
+    const int top = figure_pixels(target->page, box->top);
+    const int width = figure_pixels(target->page, box->right) - left;
+    const int height = figure_pixels(target->page, box->bottom) - top;
+    Picture picture;
+    if (width < 1 || height < 1)
+        return STATUS_OK;
+    TRY(artwork_rasterize(item->artwork, width, height, target->page->background, &picture, err));
+    const FigureItem pixels = {.picture = &picture, .column = left, .row = top};
+    Status status = draw_picture(target, &pixels, err);
+    picture_release(&picture);
+    return status;
 }
 
 static Status draw_bars(PixelRows *target, const FigureItem *item, Err *err)
@@ -340,9 +365,9 @@ static bool meets(const PixelRows *target, const FigureItem *item)
 static Status draw_item(void *context, const FigureItem *item, Err *err)
 {
     static Status (*const draw[FIGURE_KINDS])(PixelRows *, const FigureItem *, Err *) = {
-        [FIGURE_PICTURE] = draw_picture, [FIGURE_SHAPE] = draw_shape, [FIGURE_LINE] = draw_line,
-        [FIGURE_RAMP] = draw_ramp,       [FIGURE_TEXT] = draw_text,   [FIGURE_BARS] = draw_bars,
-        [FIGURE_STROKES] = draw_strokes};
+        [FIGURE_PICTURE] = draw_picture, [FIGURE_SHAPE] = draw_shape,    [FIGURE_LINE] = draw_line,
+        [FIGURE_RAMP] = draw_ramp,       [FIGURE_TEXT] = draw_text,      [FIGURE_BARS] = draw_bars,
+        [FIGURE_STROKES] = draw_strokes, [FIGURE_ARTWORK] = draw_artwork};
     PixelRows *target = context;
     if (!meets(target, item))
         return STATUS_OK;
@@ -355,7 +380,7 @@ static Status draw_item(void *context, const FigureItem *item, Err *err)
 Status figure_draw(const FigurePage *page, int first, Picture *rows, Err *err)
 {
     static FigurePut *const put[FIGURE_KINDS] = {draw_item, draw_item, draw_item, draw_item,
-                                                 draw_item, draw_item, draw_item};
+                                                 draw_item, draw_item, draw_item, draw_item};
     PixelRows target = {.page = page, .rows = rows, .first = first};
     return figure_put_items(page, put, &target, err);
 }

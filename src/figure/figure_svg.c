@@ -1,6 +1,7 @@
 /* There is one template for the page, and one for each kind of item. Text stays text, in a font
  * family whose letters are as wide as those of Arial and Helvetica, which replace it where it is
  * not installed. */
+#include "figure/artwork.h"
 #include "figure/fonts.h"
 #include "figure/items.h"
 #include "tmpl/tmpl.h"
@@ -154,6 +155,69 @@ done:
     return status;
 }
 
+/* Returns the part of an SVG between its outer tags, and the value of its viewBox. Both are cut out
+ * of `svg`, and NULL if there is none. */
+static char *cut_svg(char *svg, char **view)
+{
+    char *root = strstr(svg, "<svg"), *end = strstr(svg, "</svg>");
+    char *box = root ? strstr(root, "viewBox=\"") : NULL, *body = box ? strchr(box, '>') : NULL;
+    if (!body || !end)
+        return NULL;
+    *end = '\0';
+    *view = box + strlen("viewBox=\"");
+    (*view)[strcspn(*view, "\"")] = '\0';
+    return body + 1;
+}
+
+/* Appends a drawing of cairo's, whose names begin with `prefix` then: an SVG may hold several. */
+static void put_with_prefix(const char *drawing, const char *prefix, Text *out)
+{
+    static const char *const before[] = {"id=\"", "url(#", "href=\"#"};
+    for (size_t length; *drawing; drawing += length) {
+        size_t i = 0;
+        while (i < 3 && strncmp(drawing, before[i], strlen(before[i])) != 0)
+            i++;
+        length = i < 3 ? strlen(before[i]) : 1 + strcspn(drawing + 1, "iuh");
+        text_append(out, drawing, length);
+        text_puts(out, i < 3 ? prefix : "");
+    }
+}
+
+static Status put_drawing(const SvgPage *svg, const FigureItem *item, char *drawing, Err *err)
+{
+    Markup parts = {0};
+    char prefix[32], *view, *body = cut_svg(drawing, &view);
+    if (!body)
+        return err_set(err, STATUS_IO, "the page: cairo wrote no SVG");
+    snprintf(prefix, sizeof prefix, "artwork%zu-", (size_t)(item - svg->page->items));
+    put_box(&item->box, &parts);
+    text_puts(markup_text(&parts, "view"), view);
+    put_with_prefix(body, prefix, markup_raw(&parts, "drawing"));
+    return markup_put(&parts, svg->templates, "figure/artwork.svg", svg->out, err);
+}
+
+/* Pixels become a picture, and vectors a drawing within the page. */
+static Status put_artwork(void *context, const FigureItem *item, Err *err)
+{
+    const SvgPage *svg = context;
+    const FigureBox *box = &item->box;
+    FigureItem pixels = *item;
+    pixels.picture = &item->artwork->picture;
+    if (pixels.picture->width > 0)
+        return put_picture(context, &pixels, err);
+    Text drawing = TEXT_INIT;
+    char *chars = NULL;
+    Status status;
+    TRY_GOTO(artwork_put_svg(item->artwork, box->right - box->left, box->bottom - box->top,
+                             &drawing, err));
+    TRY_GOTO(text_take(&drawing, &chars, err));
+    status = put_drawing(svg, item, chars, err);
+done:
+    text_release(&drawing);
+    free(chars);
+    return status;
+}
+
 static Status put_shape(void *context, const FigureItem *item, Err *err)
 {
     const SvgPage *svg = context;
@@ -275,9 +339,9 @@ static Status put_bars(void *context, const FigureItem *item, Err *err)
 static Status put_items(Text *out, void *context, Err *err)
 {
     static FigurePut *const put[FIGURE_KINDS] = {
-        [FIGURE_PICTURE] = put_picture, [FIGURE_SHAPE] = put_shape, [FIGURE_LINE] = put_line,
-        [FIGURE_RAMP] = put_ramp,       [FIGURE_TEXT] = put_text,   [FIGURE_BARS] = put_bars,
-        [FIGURE_STROKES] = put_strokes};
+        [FIGURE_PICTURE] = put_picture, [FIGURE_SHAPE] = put_shape,    [FIGURE_LINE] = put_line,
+        [FIGURE_RAMP] = put_ramp,       [FIGURE_TEXT] = put_text,      [FIGURE_BARS] = put_bars,
+        [FIGURE_STROKES] = put_strokes, [FIGURE_ARTWORK] = put_artwork};
     SvgPage *svg = context;
     svg->out = out;
     return figure_put_items(svg->page, put, svg, err);

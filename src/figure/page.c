@@ -126,6 +126,11 @@ void figure_add_bars(FigurePage *page, const FigureBars *bars, FigurePoint at, d
                            .bars = bars});
 }
 
+void figure_add_artwork(FigurePage *page, const FigureArtwork *artwork, FigureBox box)
+{
+    add(page, (FigureItem){.kind = FIGURE_ARTWORK, .box = box, .artwork = artwork});
+}
+
 /* Appends the item of a line with these glyphs. Takes `chars`, also on failure. */
 static void add_line_of_text(FigurePage *page, const FigureText *text, char *chars,
                              const Glyphs *glyphs)

@@ -4,8 +4,8 @@
 #include "image/formats.h"
 #include "image/png_fast.h"
 
-#include <errno.h>
 #include <OpenEXR/openexr.h>
+#include <errno.h>
 #include <string.h>
 
 typedef struct ExrWriter {

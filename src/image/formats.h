@@ -185,9 +185,6 @@ const char *image_note(const ImageNotes *notes, const char *key);
  * STATUS_MEMORY. */
 MUST_CHECK Status image_profile(const ImageForm *form, ImageProfile *profile, Err *err);
 
-/* Converts `n` pixels from sRGB (three codes) to CMYK (four codes). The codes have inks_bits(inks)
- * bits: uint8_t or uint16_t. */
-void inks_convert(const Inks *inks, const void *rgb, void *cmyk, size_t n);
 int inks_bits(const Inks *inks);
 
 #endif

@@ -188,6 +188,11 @@ typedef struct Inks Inks;
  * profile of four inks; STATUS_MEMORY. */
 MUST_CHECK Status inks_read(Inks **out, const char *path, InkIntent intent, int bits, Err *err);
 void inks_free(Inks *inks); /* NULL is allowed */
+/* Converts `n` pixels from sRGB (three codes) to CMYK (four codes): uint8_t or uint16_t, as the
+ * bits of the inks. */
+void inks_convert(const Inks *inks, const void *rgb, void *cmyk, size_t n);
+/* Returns the bytes of the profile, borrowed, and their number in *size. */
+const void *inks_profile(const Inks *inks, size_t *size);
 
 typedef enum ImageCompression { IMAGE_LZW, IMAGE_DEFLATE, IMAGE_UNCOMPRESSED } ImageCompression;
 

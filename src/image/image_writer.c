@@ -13,10 +13,11 @@ struct ImageWriter {
     const RowEncoder *encoder;
     ImageOutput *output; /* owned */
     OutFile file;
-    char *path;      /* owned; for errors */
-    ImageForm form;  /* of the rows that the caller hands over */
-    int next;        /* index of the next row */
-    void *inked_row; /* owned; NULL unless colors are converted to inks */
+    char *path;       /* owned; for errors */
+    ImageForm form;   /* of the rows that the caller hands over */
+    int next;         /* index of the next row */
+    void *inked_row;  /* owned; NULL unless colors are converted to inks */
+    void *colors_row; /* owned; the colors of a row with black ink as its fourth channel */
 };
 
 const char *image_note(const ImageNotes *notes, const char *key)
@@ -171,7 +172,7 @@ static Status check_inks(const char *path, const ImageForm *form, const RowEncod
     if (!encoder->traits.has_profile)
         return err_set(err, STATUS_USAGE, "%s: an output profile (CMYK) needs a .tif or .jpg",
                        path);
-    if (form->channels != 3)
+    if (form->channels < 3)
         return err_set(err, STATUS_USAGE,
                        "%s: an output profile (CMYK) needs an opaque picture in color", path);
     assert(inks_bits(form->packing.inks) == form->bits && form->encoding == ENCODING_SRGB);
@@ -188,7 +189,8 @@ static Status choose_encoder(const char *path, const ImageForm *form, const RowE
         return err_set(err, STATUS_USAGE,
                        "%s: the extension of a picture must be .ppm, .pgm, .png, .tif or .jpg",
                        path);
-    if (form->channels == 4 && !(*encoder)->traits.keeps_alpha && !form->named)
+    if (form->channels == 4 && !(*encoder)->traits.keeps_alpha && !form->named &&
+        !form->packing.inks)
         return err_set(err, STATUS_USAGE, "%s: a transparent picture must be .png, .tif or .exr",
                        path);
     if (*encoder == &pgm_encoder && form->channels != 1)
@@ -211,6 +213,8 @@ static Status begin(ImageWriter *writer, Err *err)
     if (form.packing.inks) {
         form.channels = 4;
         TRY(mem_calloc(&writer->inked_row, (size_t)form.width, (size_t)form.bits / 2,
+                       "bytes of a row", err));
+        TRY(mem_calloc(&writer->colors_row, (size_t)form.width, (size_t)form.bits / 8 * 3,
                        "bytes of a row", err));
     }
     Status status = open_output(encoder, writer->file.stream, &form, &writer->output, err);
@@ -241,8 +245,48 @@ done:
 static void release(ImageWriter *writer)
 {
     free(writer->inked_row);
+    free(writer->colors_row);
     free(writer->path);
     free(writer);
+}
+
+/* Returns code `i` of a row of 8 or 16 bits. */
+static unsigned code_at(const void *row, int bits, size_t i)
+{
+    return bits == 8 ? ((const uint8_t *)row)[i] : ((const uint16_t *)row)[i];
+}
+
+static void set_code(void *row, int bits, size_t i, unsigned code)
+{
+    if (bits == 8)
+        ((uint8_t *)row)[i] = (uint8_t)code;
+    else
+        ((uint16_t *)row)[i] = (uint16_t)code;
+}
+
+/* Copies the three colors of a row whose fourth channel is black ink. */
+static const void *without_black(ImageWriter *writer, const void *row)
+{
+    const int bits = writer->form.bits;
+    for (size_t i = 0; i < (size_t)writer->form.width; i++)
+        for (size_t c = 0; c < 3; c++)
+            set_code(writer->colors_row, bits, 3 * i + c, code_at(row, bits, 4 * i + c));
+    return writer->colors_row;
+}
+
+/* Prints the black ink over the inks of the row: where black is full there is no other ink. */
+static void print_black(ImageWriter *writer, const void *row)
+{
+    const int bits = writer->form.bits;
+    const uint64_t full = (1u << bits) - 1;
+    for (size_t i = 0; i < (size_t)writer->form.width; i++) {
+        const uint64_t black = code_at(row, bits, 4 * i + 3);
+        for (size_t c = 0; black > 0 && c < 4; c++) {
+            const uint64_t ink = code_at(writer->inked_row, bits, 4 * i + c) * (full - black);
+            set_code(writer->inked_row, bits, 4 * i + c,
+                     (unsigned)((ink + (c == 3 ? black * full : 0) + full / 2) / full));
+        }
+    }
 }
 
 /* Converts the colors to inks, row by row. */
@@ -251,8 +295,12 @@ static Status write_inked(ImageWriter *writer, const uint8_t *values, int n, Err
     const ImageForm *form = &writer->form;
     size_t row_bytes = (size_t)form->width * (size_t)form->channels * (size_t)form->bits / 8;
     for (int y = 0; y < n; y++) {
-        inks_convert(form->packing.inks, values + (size_t)y * row_bytes, writer->inked_row,
-                     (size_t)form->width);
+        const void *row = values + (size_t)y * row_bytes;
+        const bool black = form->channels == 4;
+        inks_convert(form->packing.inks, black ? without_black(writer, row) : row,
+                     writer->inked_row, (size_t)form->width);
+        if (black)
+            print_black(writer, row);
         TRY(put_rows(writer->output, writer->inked_row, 1, err));
     }
     return STATUS_OK;

@@ -208,6 +208,12 @@ void inks_convert(const Inks *inks, const void *rgb, void *cmyk, size_t n)
     cmsDoTransform(inks->transform, rgb, cmyk, (cmsUInt32Number)n);
 }
 
+const void *inks_profile(const Inks *inks, size_t *size)
+{
+    *size = inks->profile.size;
+    return inks->profile.bytes;
+}
+
 int inks_bits(const Inks *inks)
 {
     return inks->bits;

@@ -2,10 +2,10 @@
  * the program was compiled with. */
 #include "image/image.h"
 
+#include <OpenEXR/openexr_base.h>
 #include <jpeglib.h>
 #include <lcms2.h>
 #include <libdeflate.h>
-#include <OpenEXR/openexr_base.h>
 #include <png.h>
 #include <tiffio.h>
 #include <webp/decode.h>

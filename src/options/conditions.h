@@ -34,7 +34,7 @@ typedef enum Condition {
     WHEN_PACKED,
     WHEN_TIFF,
     WHEN_JPEG,
-    WHEN_TIFF_OR_JPEG,
+    WHEN_HAS_INKS,
     WHEN_ON_PAPER,
     WHEN_ON_PAPER_OR_KEPT,
     WHEN_KEEPS_DPI,

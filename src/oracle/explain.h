@@ -8,9 +8,9 @@
 /* One scene, drawn by both programs: A by POV-Ray, B by corcast. All pointers are borrowed. */
 typedef struct ExplainCase {
     const Scene *scene;
-    const RenderParams *params; /* with which B was drawn */
+    const RenderParams *params; /* parameters that B was drawn with */
     const Rendering *a, *b;     /* with all planes */
-    Encoding encoding;          /* of the colors of both */
+    Encoding encoding;          /* encoding of the colors of A and B */
     const Tolerance *tolerance; /* pixels within it are not examined */
 } ExplainCase;
 
@@ -22,8 +22,8 @@ bool explain_applies(const ExplainCase *input);
  * settled if B is right there and a known weakness of POV-Ray explains what A shows:
  *
  * - Blobs: the field is computed in long double along the pixel's ray. B shows its first root. A
- *   shows a later root or what is behind the vessels, or A is lit as if a shadow ray had missed a
- *   root.
+ *   shows a later root or the surface behind the vessels, or A is lit as if a shadow ray had missed
+ * a root.
  * - Shadows of other models: B is lit as if hits nearer than 0.001 mm, POV-Ray's limit, cast no
  *   shadow. A lies between that and the limit of POV-Ray's shadow cache, 0.0001 mm [docs/POVRAY.md
  *   section 3].

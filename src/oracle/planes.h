@@ -1,4 +1,4 @@
-/* What a program has drawn of a scene, plane by plane. */
+/* The planes of a scene that a program has drawn: colors, alpha, depth, normals and ids. */
 #ifndef CORCAST_ORACLE_PLANES_H
 #define CORCAST_ORACLE_PLANES_H
 
@@ -9,7 +9,7 @@
 typedef struct OraclePlanes {
     Picture picture; /* colors: 8-bit sRGB or 16-bit linear */
     Picture alpha;   /* 8-bit grey; empty if alpha is not drawn */
-    Frame frame;     /* depth, normals and ids; of corcast also linear colors */
+    Frame frame;     /* depth, normals and ids; linear colors only if corcast drew them */
 } OraclePlanes;
 
 void planes_release(OraclePlanes *planes);

@@ -9,7 +9,7 @@
 #define CORCAST_STAGE_SMOOTH_H
 
 #include "base/base.h"
-#include "scene/models.h"
+#include "scene/scene.h"
 #include "tree/tree.h"
 
 /* Maximum number of pieces of a segment, and of a tree whose segments have more than one piece. */

@@ -85,7 +85,7 @@ test_smooth_vessels_are_in_every_kind_of_file() {
     expect_stdout '8 terminals, 7 bifurcations, 1 root'
     run corcast export tree.swc --smooth -o page.html
     expect_status 2
-    expect_sentence '--smooth is for the surface; a page shows cylinders and balls'
+    expect_sentence '--smooth is for surfaces; a page always shows cylinders and balls'
 }
 
 test_same_bytes_for_any_number_of_threads() {

@@ -80,7 +80,7 @@ test_an_eps_shows_what_the_pdf_shows() {
 test_panels_of_one_scale_show_a_tree_in_one_size() {
     run_ok corcast grow --terminals 30 --seed 3 --quiet -o t.swc
     printf '[figure]\nsize = 120mmx60mm\ndpi = 100\ncolumns = 2\nletters = none\n[panels]\ntree = t.swc\n' >f.ini
-    printf 'look = data\ncolor-by = radius\n[panel a]\n[panel b]\nlegend = on\n' >>f.ini
+    printf 'look = data\nbackground = white\ncolor-by = radius\n[panel a]\n[panel b]\nlegend = on\nlegend-at = right\n' >>f.ini
     for scale in off on; do
         run_ok corcast figure f.ini --quiet --same-scale $scale -o $scale.png
         for column in 0 236; do
@@ -94,6 +94,168 @@ test_panels_of_one_scale_show_a_tree_in_one_size() {
     run corcast figure f.ini --same-scale on -o x.png
     expect_status 2
     expect_sentence '\[panel b\]: height has no effect beside same-scale'
+}
+
+# A graph as another program writes it: a gradient, a marker that is used twice, translucent disks.
+write_graph() {
+    cat >graph.svg <<'END'
+<?xml version="1.0"?>
+<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" width="80mm" height="60mm" viewBox="0 0 80 60">
+<style>* { stroke-linecap: round }</style>
+<defs><linearGradient id="ramp1"><stop offset="0" stop-color="#00f"/><stop offset="1" stop-color="#f80"/></linearGradient>
+<g id="m"><circle r="1.5" fill="none" stroke="black" stroke-width=".3"/></g></defs>
+<rect x="10" y="5" width="66" height="45" fill="none" stroke="black" stroke-width=".3"/>
+<path d="M10 50 C 30 0 50 60 76 10" fill="none" stroke="url(#ramp1)" stroke-width="1"/>
+<use xlink:href="#m" x="30" y="27"/><use xlink:href="#m" x="50" y="33"/>
+<circle cx="60" cy="40" r="7" fill="#0a0" fill-opacity="0.4"/><circle cx="65" cy="38" r="7" fill="#a00" fill-opacity="0.4"/>
+<text x="43" y="57" font-size="4" text-anchor="middle" font-family="Liberation Sans">distance</text></svg>
+END
+    rsvg-convert -f pdf -o graph.pdf graph.svg
+    rsvg-convert -w 640 -o graph.png graph.svg
+    pngtopnm -mix -background white graph.png | pnmtotiff >graph.tif 2>/dev/null
+    pngtopnm -mix -background white graph.png | pnmtojpeg -quality 95 >graph.jpg
+}
+
+# expect_alike A B: two PNG pictures of one size look alike, letters and edges aside.
+expect_alike() {
+    pngtopnm "$1" | pamscale -reduce 3 >a.ppm 2>/dev/null
+    pngtopnm "$2" | pamscale -reduce 3 >b.ppm 2>/dev/null
+    pnmpsnr -machine a.ppm b.ppm | awk '{ exit !($1 == "nomatch" || $1 > 20) }' ||
+        fail "expected $1 to look like $2, got $(pnmpsnr -machine a.ppm b.ppm) dB"
+}
+
+test_a_panel_shows_the_picture_of_another_program() {
+    local file form
+    write_graph
+    for file in graph.svg graph.pdf graph.png graph.tif graph.jpg; do
+        printf '[figure]\nsize = 80mmx60mm\ndpi = 203.2\nletters = none\n[panel a]\nimage = %s\n' $file >f.ini
+        for form in png pdf svg eps; do
+            run_ok corcast figure f.ini --quiet -o f.$form
+            cp f.$form again.$form
+            run_ok corcast figure f.ini --quiet -o f.$form
+            expect_same f.$form again.$form
+        done
+        pngtopnm -mix -background white graph.png | pnmtopng >graph.white.png
+        expect_alike f.png graph.white.png
+        rsvg-convert -w 640 -o f.svg.png f.svg
+        expect_alike f.svg.png graph.white.png
+        pdftoppm -r 203.2 -png -singlefile f.pdf f.pdf
+        expect_alike f.pdf.png graph.white.png
+        gs -q -dSAFER -dEPSCrop -dBATCH -dNOPAUSE -sDEVICE=png16m -r812.8 -dTextAlphaBits=4 \
+            -dGraphicsAlphaBits=4 -sOutputFile=eps.png f.eps
+        pngtopnm eps.png | pamflip -tb | pamcut -width 2560 -height 1920 | pamflip -tb | pamscale -reduce 4 | pnmtopng >f.eps.png
+        expect_alike f.eps.png graph.white.png
+        case $file in
+        graph.svg | graph.pdf) # lines stay lines, and letters letters
+            [ "$(pdfimages -list f.pdf | wc -l)" = 2 ] || fail "expected no pixels, got $(pdfimages -list f.pdf)"
+            pdftotext f.pdf - | grep -q distance || fail "expected text in f.pdf"
+            ! grep -q '<image' f.svg || fail "expected no pixels in f.svg"
+            xmllint --noout f.svg || fail "xmllint refuses f.svg"
+            run corcast figure f.ini -o f.eps
+            expect_sentence 'an .eps has no transparency: translucent parts of images become pixels of 203.2 dpi'
+            ;;
+        *)  pdfimages -list f.pdf | awk 'NR > 2 && $4 == 640 && $5 == 480 { n++ } END { exit n != 1 }' ||
+                fail "expected the pixels of $file, got $(pdfimages -list f.pdf)" ;;
+        esac
+    done
+}
+
+test_two_drawings_in_one_svg_have_names_of_their_own() {
+    write_graph
+    sed 's/#00f/#fff/; s/#f80/#fff/' graph.svg >white.svg
+    printf '[figure]\nsize = 80mmx60mm\ncolumns = 2\n[panel a]\nimage = white.svg\n[panel b]\nimage = graph.svg\n' >f.ini
+    run_ok corcast figure f.ini --quiet -o f.svg
+    [ -z "$(grep -o ' id="[^"]*"' f.svg | sort | uniq -d)" ] || fail "expected each id once"
+    rsvg-convert -w 800 -o f.png f.svg
+    run_ok corcast figure f.ini --quiet --size 800x600 --dpi 254 -o g.png
+    expect_alike f.png g.png
+}
+
+# refuse_image IMAGE PATTERN: one sentence, and no file.
+refuse_image() {
+    printf '[panel a]\nimage = %s\n%s' "$1" "${3-}" >f.ini
+    run corcast figure f.ini -o f.pdf
+    expect_status 2
+    expect_sentence "$2"
+    [ ! -e f.pdf ] || fail "expected no file"
+}
+
+test_images_that_cannot_be_shown_are_named() {
+    write_graph
+    refuse_image none.pdf '\[panel a\]: none.pdf: .*'
+    echo 'no picture' >words.pdf
+    refuse_image words.pdf '\[panel a\]: words.pdf'
+    head -c 300 graph.pdf >half.pdf
+    refuse_image half.pdf 'half.pdf: is not a PDF that can be read'
+    head -c 300 graph.svg >half.svg
+    refuse_image half.svg 'half.svg: is not an SVG that can be read'
+    truncate -s 101M huge.pdf
+    printf '%%PDF-1.5' | dd of=huge.pdf conv=notrunc 2>/dev/null
+    refuse_image huge.pdf 'huge.pdf: has 106 MB; a panel shows files of at most 100 MB'
+    pdfunite graph.pdf graph.pdf two.pdf
+    refuse_image two.pdf 'two.pdf: has 2 pages; a panel shows a PDF of one page'
+    echo '<svg xmlns="http://www.w3.org/2000/svg" width="0" height="9"/>' >flat.svg
+    refuse_image flat.svg 'flat.svg: its size is 0 x 9'
+    printf '%%!PS\n' >page.eps
+    refuse_image page.eps 'page.eps: is of the format eps; a panel shows a .pdf, .svg, .png, .tif or .jpg'
+    refuse_image graph.svg '\[panel a\]: model has no effect on an image' 'model = joined'
+    refuse_image graph.svg '\[panel a\] has both a tree and an image' 'tree = t.swc'
+    run_ok corcast grow --terminals 3 --quiet -o t.swc
+    refuse_image graph.svg '\[inset i\]: of: a shows an image' \
+        $'[panel b]\ntree = t.swc\n[inset i]\nof = a\nat = 0,0\nplace = 1,1\n'
+}
+
+test_leaders_lie_on_paper_and_can_be_left_out() {
+    local drawn
+    run_ok corcast grow --terminals 300 --seed 4 --quiet -o t.swc
+    for look in 'look = journal' 'model = isosurface'; do
+        printf '[figure]\nsize = 600x600\n[panel a]\ntree = t.swc\nbackground = white\n%s\n[inset i]\nof = a\nat = 0.4,0.45\nplace = 0.85,0.85\nwidth = 12\n' "$look" >on.ini
+        { cat on.ini; echo 'leaders = off'; } >off.ini
+        run_ok corcast figure on.ini --quiet -o on.png
+        run_ok corcast figure off.ini --quiet -o off.png
+        pngtopnm on.png | ppmtopgm | pnmnoraw | tail -n +4 | tr -s ' ' '\n' | grep . >on.codes
+        pngtopnm off.png | ppmtopgm | pnmnoraw | tail -n +4 | tr -s ' ' '\n' | grep . >off.codes
+        drawn=$(paste -d' ' on.codes off.codes | awk '$1 != $2 { n++; over += $2 < 250 } END { print n + 0, over + 0 }')
+        [ "${drawn% *}" -gt 300 ] && [ "${drawn#* }" -le 16 ] || # the corners of the two frames
+             fail "expected leaders on paper alone, got $drawn pixels, and over vessels"
+    done
+}
+
+# expect_inks PLANE LEAST GREATEST: the codes of the lower left corner, which holds a scale bar alone.
+expect_inks() {
+    pamcut -left 0 -top 196 -width 60 -height 40 "$1" | pnmnoraw | tail -n +4 | tr -s ' ' '\n' | grep . | sort -n >codes
+    [ "$(head -1 codes) $(tail -1 codes)" = "$2 $3" ] ||
+        fail "expected codes from $2 to $3 in $1, got $(head -1 codes) to $(tail -1 codes)"
+}
+
+# Ghostscript separates the PDF into inks; paper has the code 255.
+test_black_type_is_black_ink_alone() {
+    local ink
+    run_ok corcast grow --terminals 30 --seed 3 --quiet -o t.swc
+    printf '[figure]\nsize = 60mmx40mm\ndpi = 150\n[panel a]\ntree = t.swc\nbackground = white\ncolor-by = radius\nlegend = on\nscale-bar = 10\n' >f.ini
+    run_ok corcast figure f.ini --quiet --cmyk-profile $CMYK -o f.pdf
+    cp f.pdf again.pdf
+    run_ok corcast figure f.ini --quiet --threads 1 --cmyk-profile $CMYK -o f.pdf
+    expect_same f.pdf again.pdf
+    pdfimages -list f.pdf | awk 'NR > 2 && $6 != "cmyk" { exit 1 }' || fail "expected CMYK, got $(pdfimages -list f.pdf)"
+    pdftotext f.pdf - | grep -q '10 mm' || fail "expected text, got $(pdftotext f.pdf -)"
+    gs -q -dSAFER -dBATCH -dNOPAUSE -sDEVICE=tiffsep -r150 -sOutputFile=f.%d.tif f.pdf || fail "ghostscript cannot read f.pdf"
+    for ink in Cyan Magenta Yellow Black; do
+        tifftopnm "f.1($ink).tif" >plane.pgm 2>/dev/null
+        expect_inks plane.pgm "$([ $ink = Black ] && echo 0 || echo 255)" 255
+        [ "$(pnmnoraw plane.pgm | tail -n +4 | tr -s ' ' '\n' | sort -u | wc -l)" -gt 20 ] || fail "expected shades of $ink"
+    done
+    run_ok corcast figure f.ini --quiet --cmyk-profile $CMYK -o f.tif
+    run_ok corcast render t.swc --quiet --size 60mmx40mm --dpi 150 --scale-bar 10 --background white --cmyk-profile $CMYK --bits 16 -o r.tif
+    for file in f.tif r.tif; do
+        for ink in 0 1 2 3; do
+            oiiotool -iconfig oiio:RawColor 1 $file --ch $ink --invert -d uint8 -o plane.pgm
+            expect_inks plane.pgm "$([ $ink = 3 ] && echo 0 || echo 255)" 255
+        done
+    done
+    run corcast figure f.ini --cmyk-profile $CMYK -o f.svg
+    expect_status 2
+    expect_sentence 'is for .tif, .jpg and .pdf'
 }
 
 run_tests "$@"

@@ -100,7 +100,7 @@ test_colors_run_with_the_radius_from_the_color_of_the_tips() {
 # What POV-Ray does not draw is left out, and said; what was asked for by an option is refused.
 test_povray_does_without_the_occlusion_of_a_look() {
     make_crossing
-    run_ok corcast scene tree.swc --input-unit mm --look atlas -o tree.pov
+    run_ok corcast scene tree.swc --input-unit mm --smooth off --look atlas -o tree.pov
     expect_sentence '--look atlas: only corcast draws ambient occlusion; the scene omits them$'
     grep -q '^// Not in this scene, .*: ambient occlusion$' tree.pov || fail "expected the header to say what is not in the scene"
     grep -q 'Fade_Farthest = 0.6' tree.pov || fail "expected the fade of the look"
@@ -108,7 +108,7 @@ test_povray_does_without_the_occlusion_of_a_look() {
     run corcast verify tree.swc --quiet --look atlas --ao 8 -o report
     expect_status 2
     expect_sentence '--ao cannot be verified'
-    run_ok corcast render tree.swc --input-unit mm --size 30x30 --look atlas --exact -o exact.ppm
+    run_ok corcast render tree.swc --input-unit mm --smooth off --size 30x30 --look atlas --exact -o exact.ppm
     expect_sentence '--look atlas: only corcast draws a graded background; --exact omits them$'
     run corcast render tree.swc --quiet --look xray --exact -o no.png
     expect_status 2

@@ -172,7 +172,7 @@ ${CMYK%/*}/srgb.icc|srgb.icc: is the profile of other colors than cyan, magenta,
 END
     run corcast render tree.swc --size 30x20 --cmyk-profile "$CMYK" -o p.png
     expect_status 2
-    expect_sentence '--cmyk-profile is for .tif and .jpg'
+    expect_sentence '--cmyk-profile is for .tif, .jpg and .pdf'
     run corcast render tree.swc --size 30x20 --quality 80 -o p.tif
     expect_status 2
     expect_sentence '--quality is for .jpg'

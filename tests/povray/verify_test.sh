@@ -721,4 +721,17 @@ test_every_look_agrees_but_for_what_is_said_to_be_left_out() {
     done
 }
 
+# The fade is part of the surfaces' texture, whatever writes that, and of the picture that is compared.
+test_fading_agrees_in_every_model() {
+    local model
+    run_ok corcast grow --quiet --terminals 8 --domain ball:20 -o tree.swc
+    printf '[fade]\nnearest = 0.2\nfarthest = 0.9\n[background]\ncolor = 0 0 1\n[light key]\n' >fading.ini
+    for model in $(corcast models | cut -f 1); do
+        run_ok corcast verify tree.swc --quiet --size 60x45 --model "$model" --view iso --projection perspective \
+            --color-by flow --look ./fading.ini -o "$model"
+        run_ok corcast verify tree.swc --quiet --size 60x45 --model "$model" --look ./fading.ini -o "$model-one"
+        grep -q 'Fade_Farthest = 0.9' "$model/scene.pov" || fail "expected the fade in the scene of $model"
+    done
+}
+
 run_tests "$@"

@@ -1,14 +1,16 @@
-/* Names what made one picture of another. */
+/* Finds a single change that explains all differences of two pictures, such as a rotation or a
+ * gain. */
 #ifndef CORCAST_COMPARE_CAUSE_CAUSE_H
 #define CORCAST_COMPARE_CAUSE_CAUSE_H
 
 #include "compare/result.h"
 
-/* Sets result->cause to a sentence about what made B of A, if that is certain.
+/* Sets result->cause to a sentence about the change that turns A into B, if that is certain.
  *
- * Causes are: turned, mirrored or with other channels; moved; blurred; brighter or darker
- * everywhere; one thing missing; other outlines, highlights or shading only. The sentence stays ""
- * if no single cause explains the difference.
+ * Changes are: turned, mirrored or channels exchanged; moved; blurred; brighter or darker
+ * everywhere; one vessel missing; different outlines, highlights or shading only. The sentence
+ * stays
+ * "" if no single change explains the difference.
  *
  * a, b     the pictures of the result, of one shape, depth and gamma.
  * Errors   STATUS_MEMORY. */

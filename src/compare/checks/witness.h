@@ -1,11 +1,12 @@
-/* Three programs have drawn one scene: which pairs agree about the segment and the depth at each
- * pixel, and which program stands alone. */
+/* Compares the id and depth planes of one scene that three programs have drawn: A, B and a third,
+ * independent renderer, the witness. If A and B disagree, the witness shows which of them is
+ * wrong. */
 #ifndef CORCAST_COMPARE_CHECKS_WITNESS_H
 #define CORCAST_COMPARE_CHECKS_WITNESS_H
 
 #include "compare/result.h"
 
-/* What one program has drawn. All members are borrowed. */
+/* The planes that one program has drawn. All members are borrowed. */
 typedef struct Testimony {
     const char *name; /* "POV-Ray" */
     const IdPlane *ids;
@@ -18,20 +19,20 @@ typedef enum WitnessPair { PAIR_SIDES, PAIR_A, PAIR_B, WITNESS_PAIRS } WitnessPa
 typedef struct Witness {
     const char *name; /* borrowed */
     char version[16];
-    double seconds; /* that both planes took */
+    double seconds; /* time to draw both planes */
     struct {
         char title[64]; /* "POV-Ray and Tachyon" */
         bool agrees;
         CompareResult *ids, *depth; /* owned */
     } pairs[WITNESS_PAIRS];
     bool agrees;        /* all three agree */
-    char sentence[160]; /* who agrees with whom, and who stands alone */
+    char sentence[160]; /* which programs agree, and which one differs from both others */
 } Witness;
 
 /* Compares A, B and the witness, in this order.
  *
- * depth_step_mm   step of the depths.
- * witness         keeps its version and seconds; release it with witness_release.
+ * depth_step_mm   smallest difference of two stored depths, mm.
+ * witness         version and seconds are set by the caller; release it with witness_release.
  * Errors          STATUS_INPUT if sizes differ; STATUS_MEMORY. */
 MUST_CHECK Status witness_compare(const Testimony three[3], double depth_step_mm, Witness *witness,
                                   Err *err);

@@ -20,13 +20,14 @@ typedef enum SuiteState {
  * states fails. */
 const char *suite_state_name(SuiteState state);
 
+/* One picture that is compared with its reference of the same name. */
 typedef struct SuiteCase {
-    char *name; /* path below the folders; owned */
-    bool is_reference, is_picture;
+    char *name;                    /* path below the folders; owned */
+    bool is_reference, is_picture; /* the file is in the folder of references; of pictures */
     SuiteState state;
     char sentence[1100];              /* why the case fails; "" if it passes */
     size_t differing, pixels, masked; /* pixels; 0 if none were compared */
-    double seconds;                   /* that this case took */
+    double seconds;                   /* duration of this case */
 } SuiteCase;
 
 typedef struct Suite {
@@ -62,7 +63,8 @@ void suite_release(Suite *suite);
 MUST_CHECK Status suite_accept(const char *reference, const char *pictures, const char *name,
                                const char *reason, Err *err);
 
-/* Appends a line for each case that is not SUITE_SAME, and one about all. */
+/* Appends a line for each case that is not SUITE_SAME, and a line of totals. `out` fails if memory
+ * runs out. */
 void suite_text(const Suite *suite, Text *out);
 /* Returns the suite as JSON. The caller releases it. Returns NULL if memory runs out. */
 json_t *suite_json(const Suite *suite);

@@ -1,4 +1,5 @@
-/* The job `check-figure`: finds what a publisher would refuse in the file of a figure. */
+/* The job `check-figure`: compares the file of a figure with the requirements of a publisher, which
+ * a preset states: size, resolution, format, colors, fonts. */
 #ifndef CORCAST_JOB_FIGURE_CHECK_FIGURE_H
 #define CORCAST_JOB_FIGURE_CHECK_FIGURE_H
 

@@ -111,7 +111,7 @@ static Status set_options(const Figure *figure, size_t i, Err *err)
 static Status prepare_panels(const Figure *figure, Err *err)
 {
     for (size_t i = 0; i < figure->plan.n; i++)
-        if (figure_is_panel(figure, i))
+        if (figure_has_tree(figure, i))
             TRY(set_options(figure, i, err));
     return STATUS_OK;
 }
@@ -121,7 +121,7 @@ static Status set_tree(const Figure *figure, size_t i, Err *err)
 {
     Section *section = figure->plan.sections[i];
     const PanelOptions *panel = section->own.options;
-    char **path = &figure->places[i].tree;
+    char **path = &figure->places[i].path;
     if (section->maker) {
         parsed_give(&section->render, madetrees_tree(&figure->plan, &figure->trees, i),
                     section->tree_name);
@@ -177,10 +177,10 @@ static Status set_scale(const Figure *figure, Err *err)
     double scale = 0;
     char height[NUMBER_TEXT_SIZE];
     for (size_t i = 0; i < figure->plan.n; i++)
-        if (figure_is_panel(figure, i))
+        if (figure_has_tree(figure, i))
             TRY(in_panel(figure->plan.sections[i], measure_panel(figure, i, &scale, err), err));
     for (size_t i = 0; i < figure->plan.n; i++)
-        if (figure_is_panel(figure, i))
+        if (figure_has_tree(figure, i))
             TRY(set_key(&figure->plan.sections[i]->render, "height",
                         number_text(scale * figure->places[i].height, height), err));
     return STATUS_OK;
@@ -190,13 +190,13 @@ static Status draw_panels(Figure *figure, Err *err)
 {
     size_t first = 0;
     for (size_t i = 0; i < figure->plan.n; i++)
-        if (figure_is_panel(figure, i))
+        if (figure_has_tree(figure, i))
             TRY(in_panel(figure->plan.sections[i], set_paths(figure, i, err), err));
     if (figure->options->same_scale)
         TRY(set_scale(figure, err));
     for (size_t i = 0; i < figure->plan.n; i++) {
         Panel *panel = &figure->panels[i];
-        if (!figure_is_panel(figure, i))
+        if (!figure_has_tree(figure, i))
             continue;
         panel->fonts = figure->sheet.fonts;
         panel->insets = figure->insets + first;
@@ -207,13 +207,31 @@ static Status draw_panels(Figure *figure, Err *err)
     return STATUS_OK;
 }
 
-/* ---- the page -------------------------------------------------------------------------------- */
-
 static FigureColor color_of(Vec3 srgb)
 {
     return (FigureColor){{(uint8_t)lround(255 * srgb.x), (uint8_t)lround(255 * srgb.y),
                           (uint8_t)lround(255 * srgb.z)}};
 }
+
+static Status read_image(Figure *figure, size_t i, Err *err)
+{
+    const PanelOptions *panel = figure->plan.sections[i]->own.options;
+    Place *place = &figure->places[i];
+    TRY(figure_path(figure->folder, panel->image, &place->path, err));
+    return figureartwork_read(place->path, color_of(figure->options->background),
+                              &figure->artworks[i], err);
+}
+
+/* Reads the pictures of other programs. */
+static Status read_images(Figure *figure, Err *err)
+{
+    for (size_t i = 0; i < figure->plan.n; i++)
+        if (figure_is_panel(figure, i) && !figure_has_tree(figure, i))
+            TRY(in_panel(figure->plan.sections[i], read_image(figure, i, err), err));
+    return STATUS_OK;
+}
+
+/* ---- the page -------------------------------------------------------------------------------- */
 
 /* Black or white, whichever is read on the paper. */
 static FigureColor ink_on(FigureColor paper)
@@ -228,7 +246,8 @@ static Status put_letter(Figure *figure, size_t i, const char *letter, FigureCol
     const FigureOptions *options = figure->options;
     const bool above = figure->places[i].title_mm > 0;
     const double em = options->text_pt * MM_PER_POINT;
-    const Rgb inside = figure->panels[i].scene.view.background;
+    const Rgb inside = figure_has_tree(figure, i) ? figure->panels[i].scene.view.background
+                                                  : rgb_of_option(options->background);
     const FigureColor around = annotation_color(inside);
     const bool is_seen = !above && memcmp(&around, &paper, sizeof paper) != 0;
     FigureBox box = figure_panel_box(figure, i);
@@ -273,16 +292,34 @@ static void automatic_letter(int number, bool upper, char out[8])
     out[k] = '\0';
 }
 
+/* Fits the image into its panel, in the middle. */
+static void put_image(Figure *figure, size_t i)
+{
+    const FigureArtwork *artwork = &figure->artworks[i];
+    const FigureBox box = figure_panel_box(figure, i);
+    const double scale =
+        fmin((box.right - box.left) / artwork->width, (box.bottom - box.top) / artwork->height);
+    const double x = (box.left + box.right) / 2, y = (box.top + box.bottom) / 2;
+    const double half_width = artwork->width * scale / 2, half_height = artwork->height * scale / 2;
+    figure_add_artwork(
+        &figure->sheet.page, artwork,
+        (FigureBox){x - half_width, y - half_height, x + half_width, y + half_height});
+}
+
 /* Adds a panel, its insets, and its annotations. The letter is the page's. */
 static Status put_panel(Figure *figure, size_t i, int number, Err *err)
 {
     Panel *panel = &figure->panels[i];
     const Place *place = &figure->places[i];
     const Letters letters = figure->options->letters;
+    const RenderOptions *render = figure->plan.sections[i]->render.options;
     Annotation annotation = panel->annotation;
+    annotation.letter = render->annotation.letter;
     char letter[8];
     const FigureBox box = figure_panel_box(figure, i);
-    if (panel->in_lines)
+    if (!figure_has_tree(figure, i))
+        put_image(figure, i);
+    else if (panel->in_lines)
         figure_add_strokes(&figure->sheet.page, &panel->strokes, (FigurePoint){box.left, box.top},
                            figure->ink);
     else
@@ -335,12 +372,25 @@ static Status put_text(Figure *figure, const Section *section, Err *err)
     return STATUS_OK;
 }
 
+/* Notes what an EPS cannot hold of the images. */
+static void say_images(const Figure *figure)
+{
+    size_t vectors = 0;
+    for (size_t i = 0; i < figure->plan.n; i++)
+        vectors += figure->artworks[i].bytes != NULL;
+    if (vectors > 0 && strcmp(file_extension(figure->options->output), "eps") == 0)
+        talk_note(
+            figure->parsed->common.talk,
+            "an .eps has no transparency: translucent parts of images become pixels of %g dpi",
+            figure->sheet.page.dpi);
+}
+
 /* Reports what the panels have lost of their trees and how they are colored. */
 static Status say_panels(const Figure *figure, Err *err)
 {
     Status status = STATUS_OK;
     for (size_t i = 0; i < figure->plan.n && status == STATUS_OK; i++)
-        if (figure_is_panel(figure, i))
+        if (figure_has_tree(figure, i))
             status = picture_say(&figure->panels[i].scene, &figure->panels[i].report,
                                  figure->parsed->common.talk, err);
     return status;
@@ -359,6 +409,7 @@ static Status fill_page(Figure *figure, Err *err)
             TRY(put_text(figure, figure->plan.sections[i], err));
     TRY(figure_check(&figure->sheet.page, err));
     sheet_say(&figure->sheet, figure->parsed->common.talk);
+    say_images(figure);
     return say_panels(figure, err);
 }
 
@@ -378,11 +429,13 @@ static Status write_pixels(const Figure *figure, Err *err)
     const FigurePage *page = &figure->sheet.page;
     const int bits = figure->press.bits;
     const unsigned scale = bits == 8 ? 1 : 257;
+    const size_t channels = figure->press.inks ? 4 : 3; /* the fourth is black ink */
     Picture picture;
     TRY(picture_init(&picture, figure_pixels(page, page->width_mm),
-                     figure_pixels(page, page->height_mm), 3, bits, err));
+                     figure_pixels(page, page->height_mm), (int)channels, bits, err));
     for (size_t i = 0; i < picture_stride(&picture) * (size_t)picture.height; i++)
-        picture_set(&picture, i, (uint16_t)(page->background.rgb[i % 3] * scale));
+        if (i % channels < 3)
+            picture_set(&picture, i, (uint16_t)(page->background.rgb[i % channels] * scale));
     Status status = figure_draw(page, 0, &picture, err);
     if (status == STATUS_OK)
         status = write_picture(figure, &picture, err);
@@ -447,10 +500,10 @@ static Status open_press(Figure *figure, Err *err)
 {
     const FigureOptions *options = figure->options;
     TRY(figure_rebase(figure->parsed, figure->folder, is_typed, err));
-    return frames_is_page(options->output)
-               ? STATUS_OK
-               : press_open(&options->press, options->output, figure->parsed->common.threads,
-                            &figure->press, err);
+    TRY(press_open(&options->press, options->output, figure->parsed->common.threads, &figure->press,
+                   err));
+    figure->sheet.page.inks = figure->press.inks;
+    return STATUS_OK;
 }
 
 /* ---- the command ----------------------------------------------------------------------------- */
@@ -486,6 +539,7 @@ static Status make_figure(Figure *figure, const char *recipe, Err *err)
     TRY(open_press(figure, err));
     TRY(madetrees_make(&figure->plan, &figure->parsed->common, figure->folder, &figure->trees,
                        err));
+    TRY(read_images(figure, err));
     TRY(draw_panels(figure, err));
     return fill_page(figure, err);
 }
@@ -507,7 +561,9 @@ void figure_done(Figure *figure)
     for (size_t i = 0; figure->panels && i < figure->plan.n; i++)
         panel_release(&figure->panels[i]);
     for (size_t i = 0; figure->places && i < figure->plan.n; i++)
-        free(figure->places[i].tree);
+        free(figure->places[i].path);
+    for (size_t i = 0; figure->artworks && i < figure->plan.n; i++)
+        figureartwork_release(&figure->artworks[i]);
     madetrees_release(&figure->trees);
     figureplan_release(&figure->plan);
     sheet_release(&figure->sheet);
@@ -517,6 +573,7 @@ void figure_done(Figure *figure)
     free(figure->places);
     free(figure->panels);
     free(figure->insets);
+    free(figure->artworks);
 }
 
 const Command command_figure = {

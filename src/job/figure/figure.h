@@ -1,4 +1,8 @@
-/* The job `figure`: draws the figure of a recipe, a page of panels. */
+/* The job `figure`: draws a page of panels that a recipe describes.
+ *
+ * A recipe [figure_plan.h] has a section per panel, inset and text. figure_make places the panels
+ * in a grid of cells, draws each as `render` does, and fills a Sheet, the page; figure_write writes
+ * the page. */
 #ifndef CORCAST_JOB_FIGURE_FIGURE_H
 #define CORCAST_JOB_FIGURE_FIGURE_H
 
@@ -24,7 +28,7 @@ typedef struct FigureOptions {
 typedef struct Place {
     int left, top, width, height;
     double title_mm; /* height of the line above the panel */
-    char *tree;      /* path of the panel's tree; NULL: the recipe makes the tree; owned */
+    char *path;      /* of the panel's tree or image; NULL: the recipe makes the tree; owned */
 } Place;
 
 /* A figure on its page. Zero it before use; release it with figure_done. */
@@ -42,7 +46,8 @@ typedef struct Figure {
     Place *places;
     Panel *panels;
     PanelInset *insets;
-    FigureColor ink; /* black or white, which is read on the paper */
+    FigureArtwork *artworks; /* the images of panels that show no tree */
+    FigureColor ink;         /* black or white, whichever contrasts with the background */
 } Figure;
 
 /* Reads the recipe that is the first operand, draws its panels, and fills the page. The recipe is a
@@ -50,8 +55,8 @@ typedef struct Figure {
  * command line take precedence over the recipe.
  *
  * figure  the caller calls figure_done even after an error.
- * Errors  STATUS_USAGE and STATUS_INPUT, naming the recipe's line or section; errors of
- * render_make; STATUS_IO; STATUS_MEMORY. */
+ * Errors  STATUS_USAGE and STATUS_INPUT, naming the recipe's line or section; the errors of
+ *         render_make; STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status figure_make(const FigureOptions *options, Parsed *parsed, Figure *figure,
                               Err *err);
 /* Writes the page to the output: .pdf, .eps, .svg, .png, .tif or .jpg. Errors: STATUS_IO,
@@ -65,6 +70,13 @@ void figure_done(Figure *figure);
 static inline bool figure_is_panel(const Figure *figure, size_t i)
 {
     return figure->plan.sections[i]->kind == SECTION_PANEL;
+}
+
+/* Returns true if section `i` is a panel that shows a tree. */
+static inline bool figure_has_tree(const Figure *figure, size_t i)
+{
+    const Section *section = figure->plan.sections[i];
+    return section->kind == SECTION_PANEL && !((const PanelOptions *)section->own.options)->image;
 }
 
 /* Places the panels in the cells of the grid, and allocates panels and insets. Errors:

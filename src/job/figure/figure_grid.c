@@ -96,6 +96,7 @@ Status figure_place_panels(Figure *figure, Err *err)
     TRY(mem_calloc(&figure->places, n, sizeof *figure->places, "panels", err));
     TRY(mem_calloc(&figure->panels, n, sizeof *figure->panels, "panels", err));
     TRY(mem_calloc(&figure->insets, n, sizeof *figure->insets, "insets", err));
+    TRY(mem_calloc(&figure->artworks, n, sizeof *figure->artworks, "images", err));
     TRY(mem_calloc(&cell, n, sizeof *cell, "panels", err));
     Status status = lay_out(figure, cell, err);
     free(cell);

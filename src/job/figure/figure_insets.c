@@ -1,8 +1,9 @@
-/* An inset is a picture of its own, drawn by the camera of its panel's, cropped; two lines lead
- * from the part that it shows to it. */
+/* An inset is a picture of its own, drawn by the camera of its panel's, cropped. Two lines, its
+ * leaders, lead from the part that it shows to it. They are interrupted where vessels are. */
 #include "job/figure/figure.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* The section of this kind and name; plan.n when there is none. */
@@ -25,6 +26,11 @@ static Status check_inset(const FigurePlan *plan, const Section *section, Err *e
     if (!inset->of || find_section(plan, SECTION_PANEL, inset->of) == plan->n)
         return err_set(err, STATUS_USAGE, "[inset %s]: of: %s%s is not the name of a panel",
                        section->name, inset->of ? "" : "nothing", inset->of ? inset->of : "");
+    const Section *panel = plan->sections[find_section(plan, SECTION_PANEL, inset->of)];
+    if (((const PanelOptions *)panel->own.options)->image)
+        return err_set(err, STATUS_USAGE,
+                       "[inset %s]: of: %s shows an image; an inset needs a tree", section->name,
+                       inset->of);
     if (!inset->has_at || !inset->has_place)
         return err_set(
             err, STATUS_USAGE,
@@ -89,19 +95,170 @@ static bool crosses(FigurePoint from, FigurePoint to, const FigureBox *box)
     return end - begin > 1e-6;
 }
 
-/* Lines from corners of the part to those of the inset that cross neither: two, where one does not
- * lie over the other. */
-static void put_ties(FigurePage *page, const FigureBox *part, const FigureBox *inset,
-                     double width_mm, FigureColor ink)
+/* Whether two lines cross. */
+static bool lines_cross(const FigurePoint a[2], const FigurePoint b[2])
 {
-    FigurePoint from[4], to[4];
+    double side[4];
+    for (int k = 0; k < 2; k++) {
+        side[k] = (a[1].x - a[0].x) * (b[k].y - a[0].y) - (a[1].y - a[0].y) * (b[k].x - a[0].x);
+        side[2 + k] = (b[1].x - b[0].x) * (a[k].y - b[0].y) - (b[1].y - b[0].y) * (a[k].x - b[0].x);
+    }
+    return side[0] * side[1] < 0 && side[2] * side[3] < 0;
+}
+
+/* ---- leaders --------------------------------------------------------------------------------- */
+
+/* The cells of a panel that vessels cover, with a narrow border around each vessel. */
+typedef struct Shadow {
+    FigureBox box; /* of the panel */
+    double cell_mm;
+    int width, height;
+    uint8_t *covered; /* owned */
+} Shadow;
+
+static const double shadow_cell_mm = 0.1, shadow_border_mm = 0.25;
+
+static bool is_covered(const Shadow *shadow, FigurePoint at)
+{
+    const double x = floor((at.x - shadow->box.left) / shadow->cell_mm);
+    const double y = floor((at.y - shadow->box.top) / shadow->cell_mm);
+    return x >= 0 && y >= 0 && x < shadow->width && y < shadow->height &&
+           shadow->covered[(size_t)y * (size_t)shadow->width + (size_t)x];
+}
+
+/* Covers a disk. `radius` is in cells, as `x` and `y`. */
+static void cover_disk(Shadow *shadow, double x, double y, double radius)
+{
+    const int top = (int)fmax(0, ceil(y - radius)),
+              bottom = (int)fmin(shadow->height - 1, y + radius);
+    for (int row = top; row <= bottom; row++) {
+        const double half = sqrt(fmax(0, radius * radius - (row - y) * (row - y)));
+        const int left = (int)fmax(0, ceil(x - half)),
+                  right = (int)fmin(shadow->width - 1, x + half);
+        if (right >= left)
+            memset(&shadow->covered[(size_t)row * (size_t)shadow->width + (size_t)left], 1,
+                   (size_t)(right - left + 1));
+    }
+}
+
+/* Returns a point's position in the shadow, in cells. */
+static FigurePoint project(const Shadow *shadow, const Camera *camera, Vec3 point)
+{
+    const Vec3 from = vec3_sub(point, camera->location);
+    const double right = vec3_dot(camera->right, camera->right);
+    const double up = vec3_dot(camera->up, camera->up);
+    return (FigurePoint){(0.5 + vec3_dot(from, camera->right) / right) * shadow->width,
+                         (0.5 - vec3_dot(from, camera->up) / up) * shadow->height};
+}
+
+/* Covers a vessel between two points by disks that are half a radius apart. */
+static void cover_vessel(Shadow *shadow, const Camera *camera, Vec3 a, Vec3 b, double radius_mm)
+{
+    const FigurePoint from = project(shadow, camera, a), to = project(shadow, camera, b);
+    const double radius =
+        radius_mm / vec3_length(camera->right) * shadow->width + shadow_border_mm / shadow->cell_mm;
+    const double length = hypot(to.x - from.x, to.y - from.y);
+    const bool is_far = fmax(from.x, to.x) < -radius || fmax(from.y, to.y) < -radius ||
+                        fmin(from.x, to.x) > shadow->width + radius ||
+                        fmin(from.y, to.y) > shadow->height + radius;
+    const int steps = is_far ? -1 : (int)fmin(1e5, ceil(2 * length / radius));
+    for (int i = 0; i <= steps; i++) {
+        const double t = steps > 0 ? (double)i / steps : 0;
+        cover_disk(shadow, from.x + t * (to.x - from.x), from.y + t * (to.y - from.y), radius);
+    }
+}
+
+static Status cast_shadow(const Scene *scene, FigureBox box, Shadow *shadow, Err *err)
+{
+    const Geometry *geometry = &scene->geometry;
+    const Camera *camera = &scene->view.camera;
+    *shadow = (Shadow){.box = box, .cell_mm = shadow_cell_mm};
+    shadow->width = (int)ceil((box.right - box.left) / shadow_cell_mm);
+    shadow->height = (int)ceil((box.bottom - box.top) / shadow_cell_mm);
+    TRY(mem_calloc(&shadow->covered, (size_t)shadow->width, (size_t)shadow->height, "leaders",
+                   err));
+    for (size_t i = 0; i < geometry->n_primitives; i++) {
+        const Primitive *vessel = &geometry->primitives[i];
+        cover_vessel(shadow, camera, vessel->a,
+                     vessel->kind == PRIMITIVE_SPHERE ? vessel->a : vessel->b,
+                     fmax(vessel->radius_mm, vessel->radius_b_mm));
+    }
+    for (size_t i = 0; i < geometry->n_segments; i++)
+        cover_vessel(shadow, camera, geometry->segments[i].a, geometry->segments[i].b,
+                     geometry->segments[i].radius_mm);
+    return STATUS_OK;
+}
+
+/* A line from a corner of the part to a corner of the inset. */
+typedef struct Leader {
+    FigurePoint at[2];
+    double length_mm, covered_mm;
+    bool possible; /* it crosses neither the part nor the inset */
+} Leader;
+
+static FigurePoint along(const Leader *leader, double mm)
+{
+    const double t = leader->length_mm > 0 ? mm / leader->length_mm : 0;
+    return (FigurePoint){leader->at[0].x + t * (leader->at[1].x - leader->at[0].x),
+                         leader->at[0].y + t * (leader->at[1].y - leader->at[0].y)};
+}
+
+static Leader make_leader(FigurePoint from, FigurePoint to, const FigureBox *part,
+                          const FigureBox *inset, const Shadow *shadow)
+{
+    Leader leader = {.at = {from, to}, .length_mm = hypot(to.x - from.x, to.y - from.y)};
+    leader.possible = !crosses(from, to, part) && !crosses(from, to, inset);
+    for (double mm = 0; leader.possible && mm < leader.length_mm; mm += shadow_cell_mm)
+        leader.covered_mm += is_covered(shadow, along(&leader, mm)) ? shadow_cell_mm : 0;
+    return leader;
+}
+
+/* Draws the parts of a leader that no vessel covers. Parts shorter than half a millimetre would
+ * look like dirt. */
+static void put_leader(FigurePage *page, const Leader *leader, const Shadow *shadow,
+                       double width_mm, FigureColor ink)
+{
+    const double shortest_mm = 0.5;
+    double begin = 0;
+    for (double mm = 0; begin < leader->length_mm; mm += shadow_cell_mm) {
+        const bool ends = mm >= leader->length_mm;
+        if (!ends && !is_covered(shadow, along(leader, mm)))
+            continue;
+        const double end = ends ? leader->length_mm : mm;
+        const FigurePoint line[] = {along(leader, begin), along(leader, end)};
+        if (end - begin >= shortest_mm || (begin == 0 && ends))
+            figure_add_line(page, line, 2, false, width_mm, ink);
+        begin = end + shadow_cell_mm;
+    }
+}
+
+/* Draws the pair of leaders of which vessels cover the least. Of pairs that are equal, the shortest
+ * is drawn. */
+static void put_leaders(FigurePage *page, const FigureBox *part, const FigureBox *inset,
+                        const Shadow *shadow, double width_mm, FigureColor ink)
+{
+    enum { CORNERS = 4, ALL = CORNERS * CORNERS };
+    FigurePoint from[CORNERS], to[CORNERS];
+    Leader all[ALL];
+    double least = HUGE_VAL;
+    int best[2] = {-1, -1};
     corners_of(part, from);
     corners_of(inset, to);
-    for (int k = 0; k < 4; k++) {
-        const FigurePoint line[] = {from[k], to[k]};
-        if (!crosses(from[k], to[k], part) && !crosses(from[k], to[k], inset))
-            figure_add_line(page, line, 2, false, width_mm, ink);
-    }
+    for (int i = 0; i < ALL; i++)
+        all[i] = make_leader(from[i / CORNERS], to[i % CORNERS], part, inset, shadow);
+    for (int i = 0; i < ALL; i++)
+        for (int k = i + 1; k < ALL; k++) {
+            const Leader *a = &all[i], *b = &all[k];
+            const double cost = 100 * (a->covered_mm + b->covered_mm) + a->length_mm + b->length_mm;
+            if (!a->possible || !b->possible || i / CORNERS == k / CORNERS ||
+                i % CORNERS == k % CORNERS || lines_cross(a->at, b->at) || cost >= least)
+                continue;
+            least = cost;
+            best[0] = i;
+            best[1] = k;
+        }
+    for (int k = 0; k < 2 && best[0] >= 0; k++)
+        put_leader(page, &all[best[k]], shadow, width_mm, ink);
 }
 
 /* Its paper covers the panel's lines. */
@@ -143,7 +300,12 @@ static Status put_inset(Figure *figure, const Section *section, size_t of, const
     figure_add_line(page, corner, CORNERS, true, line_mm, ink);
     corners_of(&shown, corner);
     figure_add_line(page, corner, CORNERS, true, line_mm, ink);
-    put_ties(page, &part, &shown, line_mm, ink);
+    if (options->leaders) {
+        Shadow shadow;
+        TRY(cast_shadow(&panel->scene, box, &shadow, err));
+        put_leaders(page, &part, &shown, &shadow, line_mm, ink);
+        free(shadow.covered);
+    }
     Scene larger = panel->scene;
     larger.view = panel_inset_view(inset, &panel->scene.view);
     const Annotation annotation = {.scale_bar_mm = options->scale_bar_mm,

@@ -18,6 +18,12 @@ static const Option panel_rows[] = {
     {.name = "title",
      SETS(TEXT, PanelOptions, title),
      .help = "line of text above the panel; *r* is italic, _{w} a subscript, ^{-3} a superscript"},
+    {.name = "image",
+     SETS(TEXT, PanelOptions, image),
+     .otherwise = "",
+     .argument = "F.pdf",
+     .help = "picture of another program that the panel shows instead of a tree: .pdf, .svg, .png, "
+             ".tif or .jpg"},
     {.name = "span",
      SETS(WHOLE, PanelOptions, span),
      FROM_TO(1, 64),
@@ -66,6 +72,9 @@ static const Option inset_rows[] = {
      .choices = corner_names,
      .help = "corner of the inset's scale bar; emptiest selects the corner where it covers the "
              "least vessels"},
+    {.name = "leaders",
+     SETS(SWITCH, InsetOptions, leaders),
+     .help = "draw two lines from the magnified part to the inset; they pass behind vessels"},
 };
 
 static const char *const aligns[] = {
@@ -105,7 +114,7 @@ static void panel_defaults(void *options)
 
 static void inset_defaults(void *options)
 {
-    *(InsetOptions *)options = (InsetOptions){.magnify = 4, .width_mm = 20};
+    *(InsetOptions *)options = (InsetOptions){.magnify = 4, .width_mm = 20, .leaders = true};
 }
 
 static const Command kinds[] = {
@@ -342,21 +351,46 @@ static Status take_line(void *user, const char *head, const char *name, const ch
     return err_set(err, STATUS_USAGE, "'%.40s' is before the first section", name);
 }
 
+/* Checks a panel that shows an image, and removes the tree that [panels] has given it. */
+static Status check_image(Section *section, Err *err)
+{
+    PanelOptions *panel = section->own.options;
+    if (section->made || find_key(&section->own, is_own, "tree")->typed)
+        return err_set(err, STATUS_USAGE, "[panel %s] has both a tree and an image", section->name);
+    for (size_t i = 0; i < section->render.n_settings; i++) {
+        const Setting *setting = &section->render.settings[i];
+        if (setting->typed && strcmp(setting->option->name, "letter") != 0)
+            return err_set(err, STATUS_USAGE, "[panel %s]: %s has no effect on an image",
+                           section->name, setting->option->name);
+    }
+    panel->tree = NULL;
+    section->maker = NULL;
+    section->arguments = NULL;
+    return STATUS_OK;
+}
+
+static Status check_panel(Section *section, Err *err)
+{
+    const PanelOptions *panel = section->own.options;
+    if (panel->image)
+        return check_image(section, err);
+    if (!panel->tree && !section->maker)
+        return err_set(err, STATUS_USAGE,
+                       "[panel %s] has no tree: give 'tree', 'grow' with options of `corcast "
+                       "grow`, or 'image'",
+                       section->name);
+    return STATUS_OK;
+}
+
 /* What holds only of the whole. */
 static Status check_plan(const FigurePlan *plan, Err *err)
 {
     size_t panels = 0;
     for (size_t i = 0; i < plan->n; i++) {
-        const Section *section = plan->sections[i];
-        const PanelOptions *panel = section->own.options;
-        if (section->kind != SECTION_PANEL)
+        if (plan->sections[i]->kind != SECTION_PANEL)
             continue;
         panels++;
-        if (!panel->tree && !section->maker)
-            return err_set(
-                err, STATUS_USAGE,
-                "[panel %s] has no tree: give 'tree', or 'grow' with options of `corcast grow`",
-                section->name);
+        TRY(check_panel(plan->sections[i], err));
     }
     return panels ? STATUS_OK : err_set(err, STATUS_USAGE, "the figure has no [panel NAME]");
 }

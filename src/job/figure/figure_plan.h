@@ -11,7 +11,9 @@
 /* The options that a panel has in addition to the options of `render`. Strings are borrowed from
  * FigurePlan.text, like the strings of the next two structs. */
 typedef struct PanelOptions {
-    const char *tree, *title; /* `tree`: the tree's file; NULL: Section.maker makes the tree */
+    const char *tree, *title; /* `tree`: the tree's file; NULL: Section.maker makes the tree, or the
+                               * panel has an image */
+    const char *image;        /* file of a picture that another program made; NULL: none */
     int span;                 /* number of columns that the panel covers */
     double aspect;            /* width / height of the panel; 0: the aspect of its cell */
 } PanelOptions;
@@ -28,6 +30,7 @@ typedef struct InsetOptions {
     double scale_bar_mm;        /* length in the tree that the inset's scale bar stands for */
     Corner scale_bar_at;        /* corner of the inset that the scale bar is in */
     bool has_at, has_place, has_scale_bar;
+    bool leaders; /* two lines lead from the magnified part to the inset */
 } InsetOptions;
 
 /* The options of a line of text on the page. */

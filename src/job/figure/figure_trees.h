@@ -1,4 +1,5 @@
-/* The trees that the recipe of a figure has made instead of naming a file. */
+/* The trees of a figure that its recipe does not read from a file: a key such as `grow =
+ * --terminals 20` names the command that makes the tree. */
 #ifndef CORCAST_JOB_FIGURE_FIGURE_TREES_H
 #define CORCAST_JOB_FIGURE_FIGURE_TREES_H
 
@@ -11,14 +12,14 @@ typedef struct MadeTrees {
     size_t n;
 } MadeTrees;
 
-/* Makes the trees, each once for all panels that show it. Of what the makers say only warnings are
- * passed on.
+/* Makes the trees, each once for all panels that show it. Of the messages of the commands only
+ * warnings are passed on.
  *
- * figure  the options of the figure: the number of threads, and who listens.
+ * figure  the options of the figure: number of threads, and the receiver of messages.
  * folder  where paths among the arguments start [figure_paths.h].
  * trees   the caller releases it even after an error.
- * Errors  naming the panel: STATUS_USAGE for a quote that is not closed, for an option that says
- *         where the tree goes, and for wrong options; errors of the makers. */
+ * Errors  naming the panel: STATUS_USAGE for a quote that is not closed, for an option that names
+ *         an output, and for wrong options; the errors of the commands. */
 MUST_CHECK Status madetrees_make(const FigurePlan *plan, const Common *figure, const char *folder,
                                  MadeTrees *trees, Err *err);
 /* Returns the tree of a section that has a maker; borrowed. */

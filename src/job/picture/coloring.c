@@ -257,10 +257,25 @@ static Status map_of_look(const Look *look, Colormap *map, Err *err)
     return STATUS_OK;
 }
 
+/* Returns the largest number of segments that begin at one node. */
+static Status most_daughters(const Tree *tree, size_t *most, Err *err)
+{
+    uint32_t *count = NULL;
+    *most = 0;
+    TRY(mem_calloc(&count, tree->n, sizeof *count, "nodes", err));
+    for (size_t i = 0; i < tree->n; i++)
+        if (tree_is_segment(tree, i) && ++count[tree->parent[i]] > *most)
+            *most = count[tree->parent[i]];
+    free(count);
+    return STATUS_OK;
+}
+
 Status coloring_by_radius(const ColoredTree *tree, const Look *look, Appearance *appearance,
                           Err *err)
 {
+    enum { MOST_DAUGHTERS = 255 }; /* POV-Ray's isosurface can color 256 vessels that meet */
     const double one_class = 1;
+    size_t most;
     const FieldScaleParams params = {.look = look,
                                      .has_ends = true,
                                      .ends = {2, 100},
@@ -273,6 +288,9 @@ Status coloring_by_radius(const ColoredTree *tree, const Look *look, Appearance 
     FieldValues radii = {0};
     Colormap map = {0};
     Status status;
+    TRY(most_daughters(tree->drawn, &most, err));
+    if (most > MOST_DAUGHTERS)
+        return stage_appearance(look, NULL, NULL, appearance, err);
     TRY_GOTO(map_of_look(look, &map, err));
     TRY_GOTO(derive_series(tree->drawn, &meta, "radius", &series, err));
     TRY_GOTO(fieldvalues_take(tree->drawn, &series, NULL, &radii, err));

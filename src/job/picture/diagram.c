@@ -215,8 +215,8 @@ void madediagram_release(MadeDiagram *made)
     free(made->color);
 }
 
-static Status write_pixels(const DiagramOptions *options, const MadeDiagram *made,
-                           const char *command, Err *err)
+static Status write_pixels(const DiagramOptions *options, MadeDiagram *made, const char *command,
+                           Err *err)
 {
     const FramesForm form = {.path = options->output,
                              .bits = made->press.bits,
@@ -225,7 +225,7 @@ static Status write_pixels(const DiagramOptions *options, const MadeDiagram *mad
                              .picture = true,
                              .dpi = options->size.dpi,
                              .provenance = command,
-                             .page = made->sheet.fonts ? (FigurePage *)&made->sheet.page : NULL,
+                             .page = made->sheet.fonts ? &made->sheet.page : NULL,
                              .colors = made->appearance.meaning};
     return frames_write(&made->pixels, &form, err);
 }
@@ -246,7 +246,7 @@ done:
     return status;
 }
 
-Status diagram_write(const void *options, const Parsed *parsed, const MadeDiagram *made, Err *err)
+Status diagram_write(const void *options, const Parsed *parsed, MadeDiagram *made, Err *err)
 {
     char *command = NULL;
     TRY(command_line_text(parsed, &command, err));

@@ -44,7 +44,7 @@ void madediagram_release(MadeDiagram *made);
 /* Writes the diagram to the file of the option `output`, which must be specified.
  *
  * Errors   the errors of frames_write and frames_write_page. */
-MUST_CHECK Status diagram_write(const void *options, const Parsed *parsed, const MadeDiagram *made,
+MUST_CHECK Status diagram_write(const void *options, const Parsed *parsed, MadeDiagram *made,
                                 Err *err);
 
 /* Makes the diagram and writes it. Errors: those of diagram_make and diagram_write. */

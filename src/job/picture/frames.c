@@ -27,7 +27,8 @@ Status frames_check_output(const char *path, bool planes, Err *err)
         if (strcmp(file_extension(path), known[i]) == 0)
             return STATUS_OK;
     (void)err_set(err, STATUS_USAGE,
-                  "-o: '%s' does not end in .png, .ppm, .tif, .jpg, .exr or .pfm", path);
+                  "-o: '%s' does not end in .png, .ppm, .tif, .jpg, .exr or .pfm%s", path,
+                  frames_is_page(path) ? "" : ", or for a page in .svg, .pdf or .eps");
     suggestion_add_extension(file_extension(path), err);
     return STATUS_USAGE;
 }
@@ -89,6 +90,12 @@ static void choose_channels(FramesWriter *writer)
             writer->channels[writer->n_channels++] = layers[i].channel;
 }
 
+/* Returns true if the fourth channel of the picture is the black ink of what is drawn over it. */
+static bool has_black(const FramesForm *form)
+{
+    return form->page && form->packing.inks && !frames_is_page(form->path);
+}
+
 static Status open_picture(FramesWriter *writer, Err *err)
 {
     const FramesForm *form = writer->form;
@@ -102,7 +109,7 @@ static Status open_picture(FramesWriter *writer, Err *err)
         notes[all.count++] = (ImageNote){"Shard", form->shard};
     ImageForm image = {.width = form->width,
                        .height = form->height,
-                       .channels = form->alpha ? 4 : 3,
+                       .channels = form->alpha || has_black(form) ? 4 : 3,
                        .bits = image_traits(form->path).floats ? 32 : form->bits,
                        .encoding = form->encoding,
                        .notes = &all,
@@ -219,12 +226,29 @@ static void keep_ids(IdPlane *whole, const IdPlane *rows, int at)
                (size_t)rows->height * stride * sizeof *rows->ids);
 }
 
+/* Draws what lies over the picture, with black ink in a channel of its own. */
+static Status write_with_black(const FramesWriter *writer, const Picture *codes, Err *err)
+{
+    const FramesForm *form = writer->form;
+    Picture rows;
+    TRY(picture_init(&rows, codes->width, codes->height, 4, codes->bits, err));
+    for (size_t i = 0; i < picture_stride(codes) * (size_t)codes->height; i++)
+        picture_set(&rows, i / 3 * 4 + i % 3, picture_code(codes, i));
+    Status status = figure_draw(form->page, form->first + writer->next, &rows, err);
+    if (status == STATUS_OK)
+        status = imagewriter_codes(writer->files[FILE_PICTURE], &rows, err);
+    picture_release(&rows);
+    return status;
+}
+
 /* Draws what lies over the picture, and hands the rows over: to a page or memory, or to the file.
  */
 static Status take_codes(FramesWriter *writer, Picture *codes, Err *err)
 {
     const FramesForm *form = writer->form;
     ImageWriter *file = writer->files[FILE_PICTURE];
+    if (file && has_black(form))
+        return write_with_black(writer, codes, err);
     if (form->page && !writer->whole.codes8)
         TRY(figure_draw(form->page, form->first + writer->next, codes, err));
     if (file)

@@ -54,14 +54,15 @@ static const Option rows[] = {
      SETS(INPUT, PressOptions, cmyk_profile),
      .group = GROUP_PRESS,
      .argument = "P.icc",
-     .when = WHEN(PACKED) | WHEN(TIFF_OR_JPEG) | WHEN(OPAQUE) | WHEN(WHOLE_SRGB),
-     .help = "TIFF and JPEG only: convert to CMYK with this ICC profile of the printing process"},
+     .when = WHEN(HAS_INKS) | WHEN(OPAQUE) | WHEN(WHOLE_SRGB),
+     .help = "TIFF, JPEG and PDF only: convert to CMYK with this ICC profile of the printing "
+             "process; black text and lines become black ink alone"},
     {.name = "cmyk-intent",
      SETS(CHOICE, PressOptions, intent),
      .choices = intents,
      .group = GROUP_PRESS,
      .needs = "cmyk-profile",
-     .when = WHEN(PACKED),
+     .when = WHEN(HAS_INKS),
      .help = "how to treat colors that cannot be printed: perceptual (shift all colors to "
              "fit), relative (change only the colors that cannot be printed)"},
 };
@@ -101,6 +102,11 @@ static bool is_of(const char *output, const char *extension, const char *other)
            strcasecmp(file_extension(output), other) == 0;
 }
 
+static bool has_inks(const char *output)
+{
+    return image_traits(output).has_profile || is_of(output, "pdf", "pdf");
+}
+
 /* The extension of the file decides how it is packed. */
 static ConditionSet unmet(const void *set, const Parsed *parsed)
 {
@@ -109,8 +115,7 @@ static ConditionSet unmet(const void *set, const Parsed *parsed)
     if (!output)
         return 0;
     return UNLESS(!frames_is_page(output), PACKED) | UNLESS(is_of(output, "tif", "tiff"), TIFF) |
-           UNLESS(is_of(output, "jpg", "jpeg"), JPEG) |
-           UNLESS(image_traits(output).has_profile, TIFF_OR_JPEG);
+           UNLESS(is_of(output, "jpg", "jpeg"), JPEG) | UNLESS(has_inks(output), HAS_INKS);
 }
 
 const OptionTable press_table = {OPTION_ROWS(rows), .settle = settle, .unmet = unmet};
@@ -148,7 +153,7 @@ Status press_open(const PressOptions *options, const char *output, int threads, 
 {
     bool floats = image_traits(output).floats;
     Press made = {.bits = floats || options->bits == 0 ? 8 : options->bits};
-    if (options->cmyk_profile && image_traits(output).has_profile)
+    if (options->cmyk_profile && has_inks(output))
         TRY(inks_read(&made.inks, options->cmyk_profile, (InkIntent)options->intent, made.bits,
                       err));
     made.packing = (ImagePacking){.compression = (ImageCompression)options->compression,

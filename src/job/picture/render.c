@@ -165,6 +165,7 @@ static Status fill_sheet(Rendering *r, Err *err)
     const FigureBox whole = {0, 0, page->width_mm, page->height_mm};
     TRY(annotation_put(&r->options->annotation, &r->scene, whole, page, err));
     sheet_say(&r->sheet, r->parsed->common.talk);
+    page->inks = r->press.inks;
     r->form.page = page;
     r->form.notes = &r->sheet.notes;
     return STATUS_OK;

@@ -20,7 +20,7 @@ typedef struct ComparedSide {
     Picture alpha;    /* zeroed if the image is opaque */
     IdPlane ids;      /* zeroed if the ids are unknown */
     Picture shown;    /* the image as 16-bit sRGB, for pictures of the difference; zeroed if not
-                       * needed,    or if image.picture is already sRGB */
+                       * needed, or if image.picture is already sRGB */
 } ComparedSide;
 
 /* The result of a comparison. Release it with comparison_release. Members marked with a kind are

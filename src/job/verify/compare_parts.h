@@ -21,6 +21,8 @@ const Picture *side_shown(const ComparedSide *side);
  * STATUS_MEMORY. */
 MUST_CHECK Status compare_noisy(const CompareOptions *options, const Parsed *parsed,
                                 NoiseResult *result, Err *err);
+/* Append the result as lines of text, or return it as JSON: a new reference, NULL if memory runs
+ * out. */
 void noise_text(const NoiseResult *result, Text *out);
 json_t *noise_json(const NoiseResult *result);
 

@@ -9,8 +9,8 @@
 typedef struct PowerOptions {
     const char *render;    /* shell command that draws a picture into the file {} */
     const char *verdict;   /* shell command that compares {a} and {b}; NULL: `judge` is the rule */
-    const char *extension; /* of the file {} */
-    const char *folder;    /* for pictures whose fault is missed; NULL: they are not kept */
+    const char *extension; /* extension of the file {} */
+    const char *folder;    /* folder for pictures whose fault is missed; NULL: not written */
     bool json;             /* for the command line: the result is printed as JSON */
     Vec3 background;       /* transparent pictures are composited over it; sRGB in [0, 1] */
     JudgeOptions judge;
@@ -19,7 +19,8 @@ typedef struct PowerOptions {
 /* Describes the operation. Its options set a PowerOptions. */
 extern const Command command_power;
 
-/* Runs the renderer twice, plants faults in the second picture, and asks the rule about each.
+/* Runs the renderer twice, plants faults of known size in copies of the second picture, and lets
+ * the rule (options->judge or options->verdict) compare each copy with the first picture.
  *
  * power   set on success; release it with power_release.
  * Errors  STATUS_USAGE if a command lacks its marks, or options exclude each other; STATUS_TOOL if

@@ -13,9 +13,11 @@ typedef struct ReportOptions {
 /* Describes the operation. Its options set a ReportOptions. */
 extern const Command command_report;
 
-/* Writes the page about the folders that are the operands, as `verify` and `compare --report` leave
- * them. Sets *agree to whether all of them agree. Errors: STATUS_INPUT if a folder has no report,
- * STATUS_USAGE if a file would be read and written, STATUS_IO, STATUS_MEMORY. */
+/* Writes one page about the operands, folders that `verify` or `compare --report` has written.
+ *
+ * agree   receives true if the verdict of every folder is "agree".
+ * Errors  STATUS_INPUT if a folder has no report; STATUS_USAGE if a file would be both read and
+ *         written; STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status report_run(const ReportOptions *options, Parsed *parsed, bool *agree, Err *err);
 
 #endif

@@ -15,8 +15,8 @@ typedef enum WitnessChoice { WITNESS_NONE, WITNESS_TACHYON } WitnessChoice;
 /* What the options of `verify` set. */
 typedef struct VerifyOptions {
     const char *folder;
-    int bits;              /* of the colors that are compared: 8 (sRGB) or 16 (linear) */
-    RenderKernels kernels; /* with which corcast draws */
+    int bits;              /* bits per channel of the compared colors: 8 (sRGB) or 16 (linear) */
+    RenderKernels kernels; /* instruction set that corcast draws with */
     WitnessChoice witness;
     int tiles; /* minimum number of tiles that POV-Ray draws the picture in */
     bool json; /* for the command line: the report is printed as JSON */
@@ -30,9 +30,9 @@ typedef struct VerifyFindings {
     CompareResult alpha;  /* of a transparent picture */
     CompareResult exact;  /* isosurfaces: POV-Ray's colors against those of the exact surface */
     SurfaceCheck surface; /* isosurfaces: where POV-Ray's root finder puts the surface */
-    Settled settled;      /* of the pixels that differ: those that are explained */
+    Settled settled;      /* differing pixels at which POV-Ray is known to be wrong */
     bool examined;        /* `settled` applies to the scene */
-    Witness witness;      /* Tachyon's testimony, if it was asked */
+    Witness witness;      /* what Tachyon drew, if options->witness is set */
 } VerifyFindings;
 
 /* Zeroed except options, common and tree, which are borrowed. All other members are owned. */
@@ -41,7 +41,7 @@ typedef struct Verification {
     const Common *common;
     const char *tree;    /* path of the tree, for sentences */
     char *name;          /* name of the tree, for the report */
-    Scene scene;         /* at the moment that is compared */
+    Scene scene;         /* the scene at the time step that is compared */
     Appearance moments;  /* appearance at all moments if the colors change with time; the scene's
                           * appearance is then a view of it */
     int frame;           /* number of the moment, from 1 on */

@@ -1,0 +1,323 @@
+/* cairo writes a PDF as a list of objects and a table of their offsets, without object streams.
+ * Colors are in three places: the operators rg and RG of content streams, the codes of images, and
+ * the ends C0 and C1 of the functions of gradients. Each object is copied with its colors replaced,
+ * and the table is written again. */
+#include "figure/pdf_inks.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <zlib.h>
+
+/* The file that is converted. */
+typedef struct PdfFile {
+    const Inks *inks;
+    const char *pdf; /* followed by a zero byte, as all bytes below */
+    size_t length;
+    Text out;
+} PdfFile;
+
+static Status broken(const char *what, Err *err)
+{
+    return err_set(err, STATUS_IO, "the page: cairo's PDF cannot be converted to inks: %s", what);
+}
+
+/* ---- colors ---------------------------------------------------------------------------------- */
+
+/* Appends the inks of a color, four numbers. */
+static void put_inks(const PdfFile *file, const double rgb[3], bool black_alone, Text *out)
+{
+    uint8_t codes[3], cmyk[4];
+    for (int c = 0; c < 3; c++)
+        codes[c] = (uint8_t)lround(255 * fmin(1, fmax(0, rgb[c])));
+    inks_convert(file->inks, codes, cmyk, 1);
+    if (black_alone && codes[0] + codes[1] + codes[2] == 0)
+        text_puts(out, "0 0 0 1");
+    else
+        for (int c = 0; c < 4; c++)
+            text_printf(out, c ? " %.4g" : "%.4g", cmyk[c] / 255.0);
+}
+
+/* Returns the position behind a string in parentheses, which begins at `at`. */
+static const char *skip_string(const char *at)
+{
+    int depth = 0;
+    do {
+        depth += *at == '(' ? 1 : *at == ')' ? -1 : 0;
+        at += *at == '\\' && at[1] ? 2 : 1;
+    } while (*at && depth > 0);
+    return at;
+}
+
+/* Appends a content stream with its operators rg and RG replaced by k and K. Strings are copied:
+ * a text may have the letters of an operator. */
+static void put_content(const PdfFile *file, const char *content, Text *out)
+{
+    const char *copied = content, *number[3] = {0};
+    for (const char *at = content; *at;) {
+        if (*at == '(') {
+            at = skip_string(at);
+            continue;
+        }
+        const size_t length = strcspn(at, " \r\n\t([<>/");
+        const bool fill = length == 2 && strncmp(at, "rg", 2) == 0;
+        if ((fill || (length == 2 && strncmp(at, "RG", 2) == 0)) && number[0]) {
+            const double rgb[3] = {atof(number[0]), atof(number[1]), atof(number[2])};
+            text_append(out, copied, (size_t)(number[0] - copied));
+            put_inks(file, rgb, true, out);
+            text_puts(out, fill ? " k" : " K");
+            copied = at + length;
+        }
+        if (length > 0) {
+            const bool is_number = isdigit((unsigned char)*at) || *at == '-' || *at == '.';
+            number[0] = is_number ? number[1] : NULL;
+            number[1] = is_number ? number[2] : NULL;
+            number[2] = is_number ? at : NULL;
+        }
+        at += length > 0 ? length : 1;
+    }
+    text_puts(out, copied);
+}
+
+/* Appends the dictionary of an object, `length` bytes, with three colors as four. */
+static void put_dictionary(const PdfFile *file, const char *at, size_t length, Text *out)
+{
+    static const char rgb_space[] = "/DeviceRGB";
+    for (const char *end = at + length; at < end;) {
+        double rgb[3];
+        int taken = 0;
+        if (strncmp(at, rgb_space, sizeof rgb_space - 1) == 0) {
+            text_puts(out, "/DeviceCMYK");
+            at += sizeof rgb_space - 1;
+        } else if ((strncmp(at, "/C0 [", 5) == 0 || strncmp(at, "/C1 [", 5) == 0) &&
+                   sscanf(at + 5, "%lf %lf %lf ]%n", &rgb[0], &rgb[1], &rgb[2], &taken) == 3 &&
+                   taken > 0) {
+            text_append(out, at, 5);
+            text_puts(out, " ");
+            put_inks(file, rgb, false, out);
+            text_puts(out, " ]");
+            at += 5 + taken;
+        } else {
+            text_append(out, at++, 1);
+        }
+    }
+}
+
+/* ---- streams --------------------------------------------------------------------------------- */
+
+static Status inflate_all(const char *from, size_t n, char **out, size_t *size, Err *err)
+{
+    for (size_t room = 4 * n + 1024;; room *= 4) {
+        char *bytes;
+        TRY(mem_calloc(&bytes, room + 1, 1, "the page", err));
+        uLongf made = room;
+        const int failed = uncompress((Bytef *)bytes, &made, (const Bytef *)from, n);
+        if (failed == Z_OK) {
+            *out = bytes;
+            *size = made;
+            return STATUS_OK;
+        }
+        free(bytes);
+        if (failed != Z_BUF_ERROR)
+            return broken("a stream is not compressed", err);
+    }
+}
+
+static Status put_deflated(const char *bytes, size_t n, Text *out, Err *err)
+{
+    uLongf size = compressBound(n);
+    char *packed;
+    TRY(mem_calloc(&packed, size, 1, "the page", err));
+    const int failed = compress((Bytef *)packed, &size, (const Bytef *)bytes, n);
+    if (failed == Z_OK)
+        text_append(out, packed, size);
+    free(packed);
+    return failed == Z_OK ? text_check(out, err) : mem_out_of("for", "the page", err);
+}
+
+/* Converts the codes of an image, or the operators of a content. */
+static Status put_colors(const PdfFile *file, bool image, const char *bytes, size_t size,
+                         Text *packed, Err *err)
+{
+    Text plain = TEXT_INIT;
+    char *cmyk = NULL;
+    Status status;
+    if (image) {
+        TRY_GOTO(mem_calloc(&cmyk, size / 3 + 1, 4, "the page", err));
+        inks_convert(file->inks, bytes, cmyk, size / 3);
+        status = put_deflated(cmyk, size / 3 * 4, packed, err);
+    } else {
+        put_content(file, bytes, &plain);
+        TRY_GOTO(text_check(&plain, err));
+        status = put_deflated(text_chars(&plain), plain.length, packed, err);
+    }
+done:
+    text_release(&plain);
+    free(cmyk);
+    return status;
+}
+
+static bool has(const char *from, const char *to, const char *word)
+{
+    const char *found = memmem(from, (size_t)(to - from), word, strlen(word));
+    return found != NULL;
+}
+
+/* Appends a stream with its colors converted, and a dictionary that states its new length. */
+static Status put_stream(PdfFile *file, const char *dictionary, const char *stream, const char *end,
+                         Err *err)
+{
+    const bool image = has(dictionary, stream, "/Subtype /Image");
+    char *bytes = NULL;
+    size_t size = 0;
+    Text packed = TEXT_INIT;
+    Status status;
+    if (has(dictionary, stream, "/DCTDecode"))
+        return err_set(err, STATUS_INPUT,
+                       "a .pdf panel holds a JPEG, whose colors cannot be converted to inks; write "
+                       "a .tif");
+    TRY(inflate_all(stream + strlen("stream\n"), (size_t)(end - stream) - strlen("stream\n"),
+                    &bytes, &size, err));
+    TRY_GOTO(put_colors(file, image, bytes, size, &packed, err));
+    const char *length = strstr(dictionary, "/Length ");
+    put_dictionary(file, dictionary, (size_t)(length - dictionary), &file->out);
+    text_printf(&file->out, "/Length %zu", packed.length);
+    length += strlen("/Length ");
+    length += strcspn(length, "\n/>");
+    put_dictionary(file, length, (size_t)(stream - length), &file->out);
+    text_puts(&file->out, "stream\n");
+    text_append(&file->out, text_chars(&packed), packed.length);
+    text_puts(&file->out, "\nendstream\n");
+done:
+    text_release(&packed);
+    free(bytes);
+    return status;
+}
+
+/* ---- objects --------------------------------------------------------------------------------- */
+
+/* Appends what follows "N 0 obj\n", up to `end`. Fonts and images of other colors stay. */
+static Status put_object(PdfFile *file, const char *body, const char *end, Err *err)
+{
+    const char *stream = memmem(body, (size_t)(end - body), "stream\n", strlen("stream\n"));
+    if (!stream) {
+        put_dictionary(file, body, (size_t)(end - body), &file->out);
+        return STATUS_OK;
+    }
+    const bool image = has(body, stream, "/Subtype /Image");
+    const bool colors = image ? has(body, stream, "/DeviceRGB")
+                              : !has(body, stream, "/Length1") && !has(body, stream, "Type0C") &&
+                                    !has(body, stream, "Type1C") && has(body, stream, "/Length ");
+    const char *last = end;
+    while (last > stream && strncmp(last, "\nendstream", strlen("\nendstream")) != 0)
+        last--;
+    if (last == stream)
+        return broken("a stream has no end", err);
+    if (colors)
+        return put_stream(file, body, stream, last, err);
+    text_append(&file->out, body, (size_t)(end - body));
+    return STATUS_OK;
+}
+
+/* Appends the profile as object `number`, and returns where it begins. */
+static Status put_profile(PdfFile *file, size_t number, size_t *offset, Err *err)
+{
+    size_t size;
+    const void *profile = inks_profile(file->inks, &size);
+    Text packed = TEXT_INIT;
+    *offset = file->out.length;
+    Status status = put_deflated(profile, size, &packed, err);
+    text_printf(&file->out,
+                "%zu 0 obj\n<< /N 4\n   /Length %zu\n   /Filter /FlateDecode\n>>\nstream\n", number,
+                packed.length);
+    if (status == STATUS_OK)
+        text_append(&file->out, text_chars(&packed), packed.length);
+    text_puts(&file->out, "\nendstream\nendobj\n");
+    text_release(&packed);
+    return status;
+}
+
+typedef struct PdfObject {
+    size_t from, to; /* offsets in the old and in the new file */
+} PdfObject;
+
+static Status put_objects(PdfFile *file, PdfObject *object, size_t n, Err *err)
+{
+    for (size_t i = 1; i < n; i++) {
+        const char *at = file->pdf + object[i].from, *body = strstr(at, " obj\n");
+        size_t next = file->length;
+        for (size_t k = 1; k < n; k++)
+            if (object[k].from > object[i].from && object[k].from < next)
+                next = object[k].from;
+        const char *end = file->pdf + next;
+        while (body && end > body && strncmp(end, "endobj", strlen("endobj")) != 0)
+            end--;
+        if (!body || end <= body)
+            return broken("an object has no end", err);
+        object[i].to = file->out.length;
+        text_printf(&file->out, "%zu 0 obj\n", i);
+        body += strlen(" obj\n");
+        if (has(body, end, "/Type /Catalog"))
+            text_printf(&file->out,
+                        "<< /OutputIntents [ << /Type /OutputIntent /S /GTS_PDFX\n"
+                        "   /OutputConditionIdentifier (Custom) /DestOutputProfile %zu 0 R >> ]\n",
+                        n);
+        body += has(body, end, "/Type /Catalog") ? strlen("<<") : 0;
+        TRY(put_object(file, body, end, err));
+        text_puts(&file->out, "endobj\n");
+    }
+    return put_profile(file, n, &object[n].to, err);
+}
+
+/* Appends the table of offsets, and the end of the file with the document's catalog. */
+static void put_table(PdfFile *file, const PdfObject *object, size_t n, const char *trailer)
+{
+    const size_t at = file->out.length;
+    text_printf(&file->out, "xref\n0 %zu\n0000000000 65535 f \n", n + 1);
+    for (size_t i = 1; i <= n; i++)
+        text_printf(&file->out, "%010zu 00000 n \n", object[i].to);
+    const char *root = strstr(trailer, "/Root");
+    text_printf(&file->out, "trailer\n<< /Size %zu\n   %.*s>>\nstartxref\n%zu\n%%%%EOF\n", n + 1,
+                root ? (int)strcspn(root, ">") : 0, root ? root : "", at);
+}
+
+static Status convert(PdfFile *file, Err *err)
+{
+    PdfObject *object = NULL;
+    const char *table = NULL, *first, *trailer;
+    size_t n = 0, at = 0;
+    Status status;
+    for (const char *c = file->pdf + file->length; c > file->pdf && !table; c--)
+        table = strncmp(c, "startxref\n", strlen("startxref\n")) == 0 ? c : NULL;
+    if (!table || sscanf(table, "startxref %zu", &at) != 1 || at >= file->length ||
+        sscanf(file->pdf + at, "xref 0 %zu", &n) != 1 || n < 2 || n > file->length)
+        return broken("it has no table", err);
+    first = strchr(strchr(file->pdf + at, '\n') + 1, '\n') + 1;
+    trailer = strstr(first, "trailer");
+    TRY(mem_calloc(&object, n + 1, sizeof *object, "the page", err));
+    for (size_t i = 0; i < n; i++) /* a line of the table has 20 bytes */
+        object[i].from = strtoul(first + 20 * i, NULL, 10);
+    text_append(&file->out, file->pdf,
+                (size_t)(strchr(strchr(file->pdf, '\n') + 1, '\n') + 1 - file->pdf));
+    TRY_GOTO(put_objects(file, object, n, err));
+    put_table(file, object, n, trailer ? trailer : "");
+    status = text_check(&file->out, err);
+done:
+    free(object);
+    return status;
+}
+
+Status pdf_to_inks(const Inks *inks, Text *pdf, Err *err)
+{
+    PdfFile file = {.inks = inks, .pdf = text_chars(pdf), .length = pdf->length, .out = TEXT_INIT};
+    Status status = convert(&file, err);
+    if (status == STATUS_OK) {
+        text_clear(pdf);
+        text_append(pdf, text_chars(&file.out), file.out.length);
+        status = text_check(pdf, err);
+    }
+    text_release(&file.out);
+    return status;
+}
