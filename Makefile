@@ -105,7 +105,7 @@ LINK = $(CC) $(OWN_LDFLAGS) $(LDFLAGS)
 VIEWER := $(or $(wildcard templates/page/viewer.js),build/viewer/viewer.js)
 LIBS := $(PACKAGE_LIBS) $(PLAIN_LIBS)
 
-.PHONY: all lib abi api-programs deps demo figures gallery validate bench bench-grow bench-render bench-view bench-compare bench-mesh bench-trees bench-large export-all verify-all coronary power power-program fit-blob optima check check-all check-quick program unit \
+.PHONY: all lib abi api-programs deps demo figures gallery hero validate bench bench-grow bench-render bench-view bench-compare bench-mesh bench-trees bench-large export-all verify-all coronary power power-program fit-blob optima check check-all check-quick program unit \
 	unit-programs layers format format-check asan tsan \
 	fuzz fuzz-programs golden-update reference install uninstall dist clean help packages libraries
 .DELETE_ON_ERROR:
@@ -130,6 +130,10 @@ figures: ## draw the figures of the paper, as pages and with POV-Ray; results in
 	$(Q).ci/deps build run
 	$(Q)$(AGAIN) all
 	$(Q)docs/figures
+
+HERO_SIZE := 1600
+hero: build/corcast ## draw docs/examples/hero.pov with POV-Ray: out/hero/hero.png, HERO_SIZE pixels wide
+	$(Q)docs/examples/hero out/hero $(HERO_SIZE)
 
 gallery: build/corcast ## redraw the pictures of docs/GALLERY.md, each with the command beside it
 	$(Q)docs/images/gallery-pictures

@@ -122,6 +122,15 @@ const char *number_text(double value, char out[NUMBER_TEXT_SIZE])
     return out;
 }
 
+const char *number_text_rounded(double value, int digits, char out[NUMBER_TEXT_SIZE])
+{
+    if (digits > 0 && isfinite(value)) {
+        snprintf(out, NUMBER_TEXT_SIZE, "%.*e", digits - 1, value);
+        value = strtod(out, NULL);
+    }
+    return number_text(value, out);
+}
+
 const char *number_text_float(float value, char out[NUMBER_TEXT_SIZE])
 {
     for (int digits = 6; digits <= 9; digits++) {

@@ -10,6 +10,9 @@ enum { NUMBER_TEXT_SIZE = 32 };
 /* Writes the shortest decimal text that converts back to the same double, with '.' as the decimal
  * point; "nan", "inf" or "-inf" if the number is not finite. Returns `out`. */
 const char *number_text(double value, char out[NUMBER_TEXT_SIZE]);
+/* Writes the number as number_text does, rounded to at most `digits` significant digits, 1 to 17;
+ * with `digits` 0 it is not rounded. Returns `out`. */
+const char *number_text_rounded(double value, int digits, char out[NUMBER_TEXT_SIZE]);
 /* Writes the shortest decimal text that converts back to the same float. Returns `out`. */
 const char *number_text_float(float value, char out[NUMBER_TEXT_SIZE]);
 

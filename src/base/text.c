@@ -290,7 +290,7 @@ void text_base64(Text *text, const void *bytes, size_t size)
 void text_number(Text *text, double value)
 {
     char number[NUMBER_TEXT_SIZE];
-    text_puts(text, number_text(value, number));
+    text_puts(text, number_text_rounded(value, text->digits, number));
 }
 
 void text_put_shell_word(Text *text, const char *word)

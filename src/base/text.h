@@ -20,6 +20,8 @@ typedef struct Text {
     size_t length;
     size_t capacity;
     int failed;   /* errno of the first failure; 0: none */
+    int digits;   /* significant digits of text_number; 0: as many as read back exactly; may be set
+                   * by anyone */
     FILE *stream; /* receives the characters; borrowed; NULL: the string stays in memory */
 } Text;
 
@@ -99,7 +101,8 @@ void text_escaped(Text *text, const char *chars);
 /* Appends `size` bytes in base64 [RFC 4648]. To append one long base64 text in several calls, every
  * size except the last must be a multiple of 3. */
 void text_base64(Text *text, const void *bytes, size_t size);
-/* Appends a number as number_text [base/number.h] formats it. */
+/* Appends a number as number_text [base/number.h] formats it, rounded to text->digits significant
+ * digits unless these are 0. */
 void text_number(Text *text, double value);
 
 #endif

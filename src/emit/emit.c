@@ -100,6 +100,9 @@ Status emit_write(const Emitter *emitter, const EmitParams *params, EmitOutput *
         TRY(emit_check_model(emitter, params->scene->geometry.model, err));
     if (params->second_file && emitter->check_name)
         TRY(emitter->check_name(params->second_file, err));
+    to->file->digits = params->digits;
+    if (to->second)
+        to->second->digits = params->digits;
     TRY(emitter->write(params, to, err));
     return params->settings ? emitter->write_settings(params, to->settings, err) : STATUS_OK;
 }

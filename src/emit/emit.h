@@ -39,8 +39,9 @@ typedef struct EmitParams {
     const char *description; /* what the scene shows, in words; line ends become blanks */
     const char *settings;    /* name of the settings file; NULL: none is written */
     int antialias;           /* samples along a side of a pixel; 1: the program's default */
-    const char *generator;   /* name and version of corcast */
-    const char *command;     /* the command line that makes the scene */
+    int digits; /* significant digits of doubles in scenes; 0: as many as read back exactly */
+    const char *generator; /* name and version of corcast */
+    const char *command;   /* the command line that makes the scene */
     bool shadows;
     bool occlusion;        /* render draws ambient occlusion; the scene only states it */
     bool ids;              /* fields: adds the paint that the id plane needs */
@@ -124,6 +125,11 @@ MUST_CHECK Status emit_write(const Emitter *emitter, const EmitParams *params, E
  * 2 of any model. Errors: STATUS_MEMORY. Cost: O(pieces), and of an isosurface without
  * params->built the cost of celltree_build. */
 MUST_CHECK Status povray_load(const EmitParams *params, double *load, Err *err);
+
+/* Appends the file that POV-Ray reads before a scene to draw depth, normals or ids instead of
+ * colors [docs/POVRAY.md, section 6]. It is the same for all scenes. Uses params->templates.
+ * Errors: those of Emitter.write. */
+MUST_CHECK Status povray_write_planes(const EmitParams *params, Text *out, Err *err);
 
 /* A box of voxels in a density file for POV-Ray. */
 typedef struct DensityBox {

@@ -1,8 +1,9 @@
-/* A model in OpenSCAD's own manner: one call for each vessel and for each place where vessels meet
- * or end, of modules that the template defines, so that all of it answers to the customizer.
+/* A model in OpenSCAD's own manner: a variable for each node and for each radius, and calls of
+ * modules that the template defines. The calls name the variables, so that a node that is moved
+ * takes its vessels, its joint and its end along.
  *
  * A scene of cylinders and balls has no nodes, but its balls lie where cylinders begin and end, to
- * the last bit: how many do tells a bifurcation from a bend and an end. */
+ * the last bit. The number of cylinders at a ball tells a bifurcation from a bend and an end. */
 #include "emit/rows.h"
 #include "emit/values.h"
 
@@ -13,14 +14,16 @@
  * vessels. */
 static const double seconds_a_primitive = 0.3;
 
-/* An end of a cylinder, and the direction in which it leaves it, unit. */
+/* An end of a cylinder. */
 typedef struct CylinderEnd {
-    Vec3 at, outwards;
+    Vec3 at;
+    uint32_t cylinder; /* index of a primitive */
+    bool is_far;       /* the end that the cylinder leads to, seen from the root */
 } CylinderEnd;
 
 typedef struct Parametric {
     const Scene *scene;
-    CylinderEnd *ends; /* sorted by position; owned */
+    CylinderEnd *ends; /* sorted by position, far ends first; owned */
     size_t n_ends;
 } Parametric;
 
@@ -35,6 +38,15 @@ static int by_place(const void *a, const void *b)
     return 0;
 }
 
+static int by_place_and_end(const void *a, const void *b)
+{
+    const CylinderEnd *p = a, *q = b;
+    int order = by_place(a, b);
+    if (order == 0 && p->is_far != q->is_far)
+        order = p->is_far ? -1 : 1;
+    return order ? order : p->cylinder < q->cylinder ? -1 : p->cylinder > q->cylinder;
+}
+
 static Status find_ends(Parametric *made, Err *err)
 {
     const Scene *scene = made->scene;
@@ -43,11 +55,10 @@ static Status find_ends(Parametric *made, Err *err)
         const Primitive *primitive = &scene->geometry.primitives[i];
         if (primitive->kind != PRIMITIVE_CYLINDER)
             continue;
-        Vec3 along = vec3_normalized(vec3_sub(primitive->b, primitive->a));
-        made->ends[made->n_ends++] = (CylinderEnd){primitive->b, along};
-        made->ends[made->n_ends++] = (CylinderEnd){primitive->a, vec3_scale(along, -1)};
+        made->ends[made->n_ends++] = (CylinderEnd){primitive->a, (uint32_t)i, false};
+        made->ends[made->n_ends++] = (CylinderEnd){primitive->b, (uint32_t)i, true};
     }
-    qsort(made->ends, made->n_ends, sizeof *made->ends, by_place);
+    qsort(made->ends, made->n_ends, sizeof *made->ends, by_place_and_end);
     return STATUS_OK;
 }
 
@@ -67,34 +78,114 @@ static size_t ends_at(const Parametric *made, Vec3 point, const CylinderEnd **fi
     return n;
 }
 
+/* ---- variables ------------------------------------------------------------------------------- */
+
+static uint32_t id_of(const Parametric *made, uint32_t cylinder)
+{
+    const Geometry *geometry = &made->scene->geometry;
+    return geometry->ids[geometry->primitives[cylinder].segment];
+}
+
+/* Appends the variable of the node of an end, the first of its node: the id of the segment that
+ * leads there, or, where none does, of the first that leaves. */
+static void put_node(Text *out, const Parametric *made, const CylinderEnd *first)
+{
+    put_text(out, first->is_far ? "p%u" : "start%u", id_of(made, first->cylinder));
+}
+
+static void put_node_at(Text *out, const Parametric *made, Vec3 at)
+{
+    const CylinderEnd *first;
+    ends_at(made, at, &first);
+    put_node(out, made, first);
+}
+
+/* Declares the variables of a cylinder: its radius, and the nodes whose name comes from it. */
+static void put_variables(Text *out, const void *context, size_t i)
+{
+    const Parametric *made = context;
+    const Primitive *primitive = &made->scene->geometry.primitives[i];
+    if (primitive->kind != PRIMITIVE_CYLINDER)
+        return;
+    const Vec3 node[] = {primitive->a, primitive->b};
+    for (int k = 0; k < 2; k++) {
+        const CylinderEnd *first;
+        ends_at(made, node[k], &first);
+        if (first->cylinder != i || first->is_far != (k == 1))
+            continue;
+        put_node(out, made, first);
+        put_text(out, " = [%v];\n", node[k]);
+    }
+    put_text(out, "r%u = %n;\n", id_of(made, (uint32_t)i), primitive->radius_mm);
+}
+
+/* Appends the ends of a cylinder as a pair of a node and a radius each. */
+static void put_ends(Text *out, const void *context, size_t i)
+{
+    const Parametric *made = context;
+    const Primitive *primitive = &made->scene->geometry.primitives[i];
+    for (int k = 0; primitive->kind == PRIMITIVE_CYLINDER && k < 2; k++) {
+        text_puts(out, "  [");
+        put_node_at(out, made, k ? primitive->b : primitive->a);
+        put_text(out, ",r%u],\n", id_of(made, (uint32_t)i));
+    }
+}
+
 /* ---- calls ----------------------------------------------------------------------------------- */
 
-/* Appends the radius, what follows it, and the color if vessels differ in color. */
-static void put_rest(Text *text, const Scene *scene, const Primitive *primitive,
-                     const Vec3 *outwards)
+/* Appends the color if vessels differ in color, and ends the call. */
+static void put_rest(Text *text, const Scene *scene, const Primitive *primitive)
 {
-    put_text(text, ",%n", primitive->radius_mm);
-    if (outwards)
-        put_text(text, ",[%v]", *outwards);
     if (scene->appearance.meaning)
         put_text(text, ",[%c]", scene->appearance.colors[primitive->segment]);
     text_puts(text, ");\n");
+}
+
+static void put_vessel(Text *out, const Parametric *made, size_t i)
+{
+    const Primitive *primitive = &made->scene->geometry.primitives[i];
+    const uint32_t id = id_of(made, (uint32_t)i);
+    put_text(out, "  vessel(%u,", id);
+    put_node_at(out, made, primitive->a);
+    text_puts(out, ",");
+    put_node_at(out, made, primitive->b);
+    put_text(out, ",r%u", id);
+    put_rest(out, made->scene, primitive);
+}
+
+/* Appends the joint at a ball: its radius is the largest of the cylinders there. */
+static void put_joint(Text *out, const Parametric *made, const Primitive *ball)
+{
+    const CylinderEnd *end;
+    const size_t n = ends_at(made, ball->a, &end);
+    if (n == 0) { /* the ball of a segment without length */
+        put_text(out, "  bifurcation([%v],%n", ball->a, ball->radius_mm);
+        put_rest(out, made->scene, ball);
+        return;
+    }
+    put_text(out, "  %s(", n == 1 ? "end" : n == 2 ? "bend" : "bifurcation");
+    put_node(out, made, end);
+    text_puts(out, n == 1 ? "," : ",max(");
+    for (size_t k = 0; k < n; k++)
+        put_text(out, k ? ",r%u" : "r%u", id_of(made, end[k].cylinder));
+    text_puts(out, n == 1 ? "," : ")");
+    if (n == 1) { /* the direction in which the vessel leaves */
+        const Primitive *cylinder = &made->scene->geometry.primitives[end->cylinder];
+        put_node(out, made, end);
+        text_puts(out, "-");
+        put_node_at(out, made, end->is_far ? cylinder->a : cylinder->b);
+    }
+    put_rest(out, made->scene, ball);
 }
 
 static void put_call(Text *out, const void *context, size_t i)
 {
     const Parametric *made = context;
     const Primitive *primitive = &made->scene->geometry.primitives[i];
-    if (primitive->kind == PRIMITIVE_CYLINDER) {
-        put_text(out, "  vessel(%u,[%v],[%v]", made->scene->geometry.ids[primitive->segment],
-                 primitive->a, primitive->b);
-        put_rest(out, made->scene, primitive, NULL);
-        return;
-    }
-    const CylinderEnd *first;
-    size_t n = ends_at(made, primitive->a, &first);
-    put_text(out, "  %s([%v]", n == 1 ? "end" : n == 2 ? "bend" : "bifurcation", primitive->a);
-    put_rest(out, made->scene, primitive, n == 1 ? &first->outwards : NULL);
+    if (primitive->kind == PRIMITIVE_CYLINDER)
+        put_vessel(out, made, i);
+    else
+        put_joint(out, made, primitive);
 }
 
 /* ---- the file -------------------------------------------------------------------------------- */
@@ -117,7 +208,7 @@ Status openscad_write(const EmitParams *params, EmitOutput *to, Err *err)
 {
     const Scene *scene = params->scene;
     Parametric made = {.scene = scene};
-    Values values = {0};
+    Values values = {.digits = params->digits};
     TRY(find_ends(&made, err));
     const Geometry *shape = &scene->geometry;
     const Box bounds = {vec3_add(shape->bounds.low, shape->origin),
@@ -130,8 +221,8 @@ Status openscad_write(const EmitParams *params, EmitOutput *to, Err *err)
     text_printf(add_value(&values, "max_radius"), "%.2g", largest_radius(scene));
     put_text(add_value(&values, "color"), "[%c]", scene->appearance.color);
     put_text(add_value(&values, "origin"), "[%v]", shape->origin);
-    put_text(add_value(&values, "low"), "[%v]", shape->bounds.low);
-    put_text(add_value(&values, "high"), "[%v]", shape->bounds.high);
+    add_list(&values, "variables", put_variables, &made, shape->n_primitives);
+    add_list(&values, "ends", put_ends, &made, shape->n_primitives);
     add_list(&values, "calls", put_call, &made, shape->n_primitives);
     to->report->openscad_s = openscad_seconds(scene);
     Status status = values_expand(&values, params, "openscad/parametric.scad", to->file, err);

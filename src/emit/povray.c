@@ -108,18 +108,17 @@ static void add_places(Values *values, const EmitParams *params)
 }
 
 /* A color map has at most 256 entries; a step of one color is two. */
-static void put_color_map(Text *text, const Appearance *appearance)
+static void put_color_map(Text *text, const ColorScale *scale)
 {
     enum { ENTRIES = COLORRAMP_ENTRIES };
-    const ColorScale *scale = &appearance->scale;
-    int steps = !appearance->colors ? 1 : colorscale_steps(scale);
+    int steps = colorscale_steps(scale);
     bool stepped = steps > 0 && steps <= ENTRIES / 2;
     int n = stepped ? steps : ENTRIES;
     for (int i = 0; i < n; i++) {
-        float rgb[3] = {appearance->color.r, appearance->color.g, appearance->color.b};
-        if (appearance->colors && stepped)
+        float rgb[3];
+        if (stepped)
             colorscale_step_color(scale, i, rgb);
-        else if (appearance->colors)
+        else
             colormap_linear(&scale->map, (double)i / (n - 1), rgb);
         for (int side = 0; side < (stepped ? 2 : 1); side++) {
             float place = (float)((double)(i + side) / (stepped ? n : n - 1));
@@ -148,7 +147,7 @@ static void add_scale(Values *values, const Appearance *appearance)
     add_number(values, "value_low", scale->range[0]);
     add_number(values, "value_high", scale->range[1]);
     add_flag(values, "value_log", scale->log);
-    put_color_map(add_value(values, "color_map"), appearance);
+    put_color_map(add_value(values, "color_map"), scale);
     add_count(values, "n_bounds", (size_t)scale->n_bounds);
     Text *bounds = add_value(values, "bounds");
     for (int i = 0; i < scale->n_bounds; i++)
@@ -157,6 +156,18 @@ static void add_scale(Values *values, const Appearance *appearance)
     put_value_map(add_value(values, "value_map"), scale);
     text_printf(add_value(values, "count"), "%d",
                 colorscale_selects_by_integer(scale) ? colorscale_steps(scale) : 0);
+}
+
+/* Appends the meaning of the colors, if values color the segments. */
+static Status put_values(Text *out, void *context, Err *err)
+{
+    const PovrayGeometry *geometry = context;
+    const Appearance *appearance = &geometry->scene->appearance;
+    Values values = {.digits = out->digits};
+    if (!appearance->meaning)
+        return text_check(out, err);
+    add_scale(&values, appearance);
+    return values_expand(&values, geometry->params, "povray/values.inc", out, err);
 }
 
 /* Appends a frame as a case of a #switch, of which POV-Ray reads one. */
@@ -174,7 +185,7 @@ static Status put_frames(Text *out, void *context, Err *err)
     const Appearance *appearance = &geometry->scene->appearance;
     if (appearance->n_frames == 0)
         return STATUS_OK;
-    Values values = {0};
+    Values values = {.digits = geometry->params->digits};
     add_count(&values, "count", appearance->n_frames);
     Text *times = add_value(&values, "times");
     for (size_t k = 0; k < appearance->n_frames; k++)
@@ -189,7 +200,7 @@ static Status put_geometry(Text *out, void *context, Err *err)
     const EmitParams *params = geometry->params;
     const Scene *scene = geometry->scene;
     const char *file = params->second_file ? params->second_file : params->file;
-    Values values = {0};
+    Values values = {.digits = params->digits};
     text_put_line(add_value(&values, "file"), file);
     add_about(&values, params, scene->geometry.bounds, scene->geometry.origin);
     put_guard(add_value(&values, "guard"), file);
@@ -197,11 +208,10 @@ static Status put_geometry(Text *out, void *context, Err *err)
     add_float(&values, "green", scene->appearance.color.g);
     add_float(&values, "blue", scene->appearance.color.b);
     add_finish(&values, &scene->appearance.finish);
-    add_flag(&values, "many_colors", scene->appearance.meaning != NULL);
     add_places(&values, params);
-    add_scale(&values, &scene->appearance);
+    add_part(&values, "values", put_values, geometry);
+    add_flag(&values, "colors", scene->appearance.meaning != NULL);
     add_part(&values, "frames", put_frames, geometry);
-    add_flag(&values, "blended", povray_blends(geometry));
     add_part(&values, "blend", put_blend_macros, geometry);
     add_part(&values, "macros", put_macros, geometry);
     add_part(&values, "tree", put_tree, geometry);
@@ -210,14 +220,22 @@ static Status put_geometry(Text *out, void *context, Err *err)
 
 /* ---- scene ----------------------------------------------------------------------------------- */
 
+/* The kinds of lights: the value of a template that is set for each, and the macro of each. */
+enum { LIGHT_PARALLEL, LIGHT_POINT, LIGHT_AREA, LIGHT_KINDS };
+static const char *const light_names[LIGHT_KINDS][2] = {
+    {"parallel", "Light_Parallel"}, {"point", "Light_Point"}, {"area", "Light_Area"}};
+
+static int light_kind(const Light *light)
+{
+    if (light->parallel)
+        return LIGHT_PARALLEL;
+    return light->samples > 1 ? LIGHT_AREA : LIGHT_POINT;
+}
+
 static void put_light(Text *text, const Light *light)
 {
-    bool area = light->samples > 1;
-    put_text(text, "  Light_%s(<%v>, ",
-             light->parallel ? "Parallel"
-             : area          ? "Area"
-                             : "Point",
-             light->location);
+    const bool area = light->samples > 1;
+    put_text(text, "  %s(<%v>, ", light_names[light_kind(light)][1], light->location);
     if (light->parallel)
         put_text(text, "<%v>, ", light->target);
     put_text(text, "<%c>", light->color);
@@ -230,13 +248,24 @@ static Status put_ground(Text *text, const Ground *ground, const EmitParams *par
 {
     if (!ground->present)
         return STATUS_OK;
-    Values values = {0};
+    Values values = {.digits = params->digits};
     put_text(add_value(&values, "normal"), "<%v>", ground->normal);
     add_number(&values, "offset", ground->offset_mm);
     put_text(add_value(&values, "color"), "<%c>", ground->color);
     add_float(&values, "ambient", ground->finish.ambient);
     add_float(&values, "diffuse", ground->finish.diffuse);
     return values_expand(&values, params, "povray/ground.inc", text, err);
+}
+
+/* Adds flags for the macros that the lights call, and for the ground. */
+static void add_light_kinds(Values *values, const View *view)
+{
+    bool has[LIGHT_KINDS] = {false};
+    for (size_t i = 0; i < view->n_lights; i++)
+        has[light_kind(&view->lights[i])] = true;
+    for (int kind = 0; kind < LIGHT_KINDS; kind++)
+        add_flag(values, light_names[kind][0], has[kind]);
+    add_flag(values, "ground", view->ground.present);
 }
 
 static Status put_lights(Text *out, void *context, Err *err)
@@ -254,7 +283,7 @@ static Status put_vessels(Text *out, void *context, Err *err)
     const PovrayGeometry *geometry = context;
     if (!geometry->params->second_file)
         return put_geometry(out, context, err);
-    Values values = {0};
+    Values values = {.digits = geometry->params->digits};
     text_puts(add_value(&values, "file"), geometry->params->second_file);
     return values_expand(&values, geometry->params, "povray/include.inc", out, err);
 }
@@ -273,13 +302,18 @@ static Status put_camera(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     const Camera *camera = &geometry->scene->view.camera;
-    Values values = {0};
+    Values values = {.digits = geometry->params->digits};
     add_flag(&values, "perspective", camera->projection == PROJECTION_PERSPECTIVE);
     put_text(add_value(&values, "location"), "<%v>", camera->location);
     put_text(add_value(&values, "look_at"), "<%v>", looked_at(geometry->scene));
+    values.digits = 0; /* POV-Ray warns of vectors that are not perpendicular to 10 digits */
     put_text(add_value(&values, "right"), "<%v>", camera->right);
     put_text(add_value(&values, "up"), "<%v>", camera->up);
     put_text(add_value(&values, "direction"), "<%v>", camera->direction);
+    /* at distance 1 of what is looked at */
+    const char *over = camera->projection == PROJECTION_PERSPECTIVE ? "" : " / Camera_Distance";
+    put_text(add_value(&values, "width"), "%n%s", vec3_length(camera->right), over);
+    put_text(add_value(&values, "height"), "%n%s", vec3_length(camera->up), over);
     return values_expand(&values, geometry->params, "povray/camera.inc", out, err);
 }
 
@@ -303,7 +337,7 @@ static Status put_graded(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     const View *view = &geometry->scene->view;
-    Values values = {0};
+    Values values = {.digits = out->digits};
     double near_mm, far_mm;
     if (!view->effects.grade.present)
         return STATUS_OK;
@@ -317,7 +351,7 @@ static Status put_fade(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     const Fade *fade = &geometry->scene->view.fade;
-    Values values = {0};
+    Values values = {.digits = out->digits};
     if (!fade_is_on(fade))
         return STATUS_OK;
     add_number(&values, "fade_nearest", fade->nearest);
@@ -332,7 +366,7 @@ static Status put_tips(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     const Appearance *appearance = &geometry->scene->appearance;
-    Values values = {0};
+    Values values = {.digits = out->digits};
     return appearance->colors && !appearance->meaning
                ? values_expand(&values, geometry->params, "povray/tips.inc", out, err)
                : STATUS_OK;
@@ -340,11 +374,9 @@ static Status put_tips(Text *out, void *context, Err *err)
 
 static Status put_scene(Text *out, PovrayGeometry *geometry, Err *err)
 {
-    Values values = {0};
     const EmitParams *params = geometry->params;
     const Scene *scene = geometry->scene;
-    double near_mm, far_mm;
-    camera_depth_range(&scene->view.camera, scene->geometry.bounds, &near_mm, &far_mm);
+    Values values = {.digits = params->digits};
     add_file(&values, params->file, ".png", "\"");
     text_put_line(add_value(&values, "geometry_file"),
                   params->second_file ? params->second_file : "the last part of this file");
@@ -358,13 +390,12 @@ static Status put_scene(Text *out, PovrayGeometry *geometry, Err *err)
     add_float(&values, "background_green", scene->view.background.g);
     add_float(&values, "background_blue", scene->view.background.b);
     text_puts(add_value(&values, "background_transmit"), scene->view.transparent ? "1" : "0");
-    add_number(&values, "depth_near", near_mm);
-    add_number(&values, "depth_far", far_mm);
-    add_part(&values, "lights", put_lights, geometry);
     add_part(&values, "graded", put_graded, geometry);
     add_part(&values, "fade", put_fade, geometry);
     add_part(&values, "tips", put_tips, geometry);
     add_part(&values, "geometry", put_vessels, geometry);
+    add_light_kinds(&values, &scene->view);
+    add_part(&values, "lights", put_lights, geometry);
     return values_expand(&values, params, "povray/scene.pov", out, err);
 }
 
@@ -439,6 +470,11 @@ done:
     return status;
 }
 
+Status povray_write_planes(const EmitParams *params, Text *out, Err *err)
+{
+    return put_template(params, "povray/planes.inc", out, err);
+}
+
 /* ---- settings -------------------------------------------------------------------------------- */
 
 /* A name without '[' is no name of a section. */
@@ -468,7 +504,7 @@ static Status put_frame_settings(Text *out, void *context, Err *err)
     size_t n = params->scene->appearance.n_frames;
     if (n == 0)
         return STATUS_OK;
-    Values values = {0};
+    Values values = {.digits = params->digits};
     add_count(&values, "count", n);
     return values_expand(&values, params, "povray/frames.ini", out, err);
 }
@@ -477,7 +513,7 @@ Status povray_write_settings(const EmitParams *params, Text *out, Err *err)
 {
     const Camera *camera = &params->scene->view.camera;
     const bool adaptive = params->antialias <= 1;
-    Values values = {0};
+    Values values = {.digits = params->digits};
     TRY(check_settings_name(params->settings, err));
     add_names(&values, params);
     add_source(&values, params);

@@ -16,10 +16,10 @@ void put_value_fraction(Text *text, const ColorScale *scale)
 {
     char low[NUMBER_TEXT_SIZE], width[NUMBER_TEXT_SIZE];
     const double *range = scale->range;
-    number_text(range[0], low);
-    number_text(scale->log ? elementary_log(range[1]) - elementary_log(range[0])
-                           : range[1] - range[0],
-                width);
+    number_text_rounded(range[0], text->digits, low);
+    number_text_rounded(scale->log ? elementary_log(range[1]) - elementary_log(range[0])
+                                   : range[1] - range[0],
+                        text->digits, width);
     if (colorscale_selects_by_integer(scale))
         text_puts(text, "x");
     else if (!(range[1] > range[0]))
@@ -44,7 +44,7 @@ void put_value_map(Text *text, const ColorScale *scale)
 {
     char slack[NUMBER_TEXT_SIZE];
     const int n = colorscale_steps(scale);
-    number_text(colorscale_tolerance(scale), slack);
+    number_text_rounded(colorscale_tolerance(scale), text->digits, slack);
     if (scale->n_bounds)
         put_bounds(text, scale);
     else if (colorscale_selects_by_integer(scale))
@@ -76,7 +76,7 @@ Status put_blend_macros(Text *out, void *context, Err *err)
     const Appearance *appearance = &geometry->scene->appearance;
     const ColorScale *scale = &appearance->scale;
     const double never = 1e30;
-    Values values = {0};
+    Values values = {.digits = geometry->params->digits};
     if (!povray_blends(geometry))
         return text_check(out, err);
     if (appearance->n_frames > 0)

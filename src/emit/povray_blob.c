@@ -232,7 +232,7 @@ done:
 Status put_blob(Text *out, PovrayGeometry *geometry, Err *err)
 {
     bool whole;
-    Values values = {0};
+    Values values = {.digits = geometry->params->digits};
     TRY(blob_is_whole(geometry, &whole, err));
     add_part(&values, "members", put_blobs, geometry);
     return put_declaration(out, geometry, whole ? "blob" : "union", &values, err);
@@ -380,10 +380,11 @@ static void extent_along(const Paints *paints, double low, double high,
                          char middle[NUMBER_TEXT_SIZE], char half[NUMBER_TEXT_SIZE])
 {
     const double grid = paints->grid_mm;
+    const int digits = paints->text->digits;
     low = floor(low / grid) * grid;
     high = ceil(high / grid) * grid;
-    number_text((low + high) / 2, middle);
-    number_text((high - low) / 2, half);
+    number_text_rounded((low + high) / 2, digits, middle);
+    number_text_rounded((high - low) / 2, digits, half);
 }
 
 /* Declares the function of a box: of those listed the largest, or the sum, where the box holds the
@@ -424,7 +425,7 @@ static Box box_of_items(const Paints *paints, size_t first, size_t n)
 static Status put_node(Paints *paints, size_t first, size_t n, Err *err)
 {
     PaintItem *items = paints->items + first;
-    Text list = TEXT_INIT;
+    Text list = {.digits = paints->text->digits};
     const Box box = box_of_items(paints, first, n);
     if (n > LEAF) {
         sort_along(paints, items, n, box_longest_axis(box));
@@ -501,7 +502,7 @@ static Status put_weights(Text *out, void *context, Err *err)
 static Status put_blend(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
-    Values values = {0};
+    Values values = {.digits = geometry->params->digits};
     if (!povray_blends(geometry))
         return text_check(out, err);
     text_printf(add_value(&values, "top"), "Fw[%zu]", count_nodes(geometry->painted.n) - 1);
@@ -550,7 +551,7 @@ Status put_blob_macros(Text *out, void *context, Err *err)
     const PovrayGeometry *geometry = context;
     size_t n = geometry->painted.n;
     bool painted = geometry->scene->appearance.colors || geometry->params->ids;
-    Values values = {0};
+    Values values = {.digits = geometry->params->digits};
     if (painted && n > MAX_PAINTED)
         return err_set(
             err, STATUS_INFEASIBLE,
@@ -558,6 +559,7 @@ Status put_blob_macros(Text *out, void *context, Err *err)
             MAX_PAINTED, n);
     add_shape(&values);
     add_flag(&values, "painted", painted);
+    add_flag(&values, "blended", povray_blends(geometry));
     Text *top = add_value(&values, "top"), *n_groups = add_value(&values, "n_groups");
     if (painted) {
         text_printf(top, "Fn[%zu]", count_nodes(n) - 1);

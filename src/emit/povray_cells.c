@@ -64,7 +64,7 @@ static void put_ends(Text *text, const Term *term, TermPart part)
 static Status put_function(Text *text, const Tmpl *template, const Term *term, int function,
                            Err *err)
 {
-    Text name = TEXT_INIT, v = TEXT_INIT, w = TEXT_INIT, ends = TEXT_INIT;
+    Text name = TEXT_INIT, v = {.digits = text->digits}, w = v, ends = v;
     text_printf(&name, "%s[%u]", function_names[function], term->segment);
     put_form(&v, term, &term->form->v);
     put_form(&w, term, &term->form->w);
@@ -215,12 +215,13 @@ Status put_cell_macros(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     ErfForm erf = geometry->cells[0].erf;
-    Values values = {0};
+    Values values = {.digits = geometry->params->digits};
     static const char *const names[ERF_TERMS] = {"erf1", "erf3", "erf5", "erf7", "erf9"};
     for (int i = 0; i < ERF_TERMS; i++)
         add_number(&values, names[i], erf_forms[erf][i]);
     add_flag(&values, "exact_erf", erf == ERF_EXACT);
     add_flag(&values, "painted", is_painted(geometry));
+    add_flag(&values, "blended", povray_blends(geometry));
     add_part(&values, "scales", put_scales, context);
     add_part(&values, "terms", put_terms, context);
     return values_expand(&values, geometry->params, "povray/isosurface.inc", out, err);
@@ -537,6 +538,7 @@ static Status put_cell_blend(CellWriter *writer, const Cell *cell, Err *err)
 static Status put_cell(Text *out, CellWriter *writer, const Cell *cell, Err *err)
 {
     const PovrayGeometry *geometry = writer->geometry;
+    const int digits = geometry->params->digits;
     const bool blended = povray_blends(geometry) && cell->count > 1;
     char max_gradient[NUMBER_TEXT_SIZE], accuracy[NUMBER_TEXT_SIZE];
     text_clear(&writer->text[CELL_PAINT]);
@@ -553,8 +555,8 @@ static Status put_cell(Text *out, CellWriter *writer, const Cell *cell, Err *err
         {"low", cell_chars(writer, CELL_LOW)},
         {"high", cell_chars(writer, CELL_HIGH)},
         {"paint", cell_chars(writer, CELL_PAINT)},
-        {"max_gradient", number_text(cell->max_gradient, max_gradient)},
-        {"accuracy", number_text(cell->accuracy, accuracy)},
+        {"max_gradient", number_text_rounded(cell->max_gradient, digits, max_gradient)},
+        {"accuracy", number_text_rounded(cell->accuracy, digits, accuracy)},
     };
     return tmpl_apply(&writer->templates[CELL_TEMPLATE], values, sizeof values / sizeof *values,
                       out, err);
@@ -565,6 +567,8 @@ static Status put_isosurfaces(Text *out, void *context, Err *err)
     const PovrayGeometry *geometry = context;
     CellWriter writer = {.geometry = geometry, .cells = &geometry->cells[geometry->object]};
     Status status;
+    for (int part = 0; part < CELL_TEXTS; part++)
+        writer.text[part].digits = out->digits;
     TRY_GOTO(
         load_templates(writer.templates, geometry->params, cell_templates, CELL_TEMPLATES, err));
     text_puts(out, "Cell_Guard()\n");
@@ -582,7 +586,7 @@ done:
 Status put_cells(Text *out, PovrayGeometry *geometry, Err *err)
 {
     bool alone = geometry->cells[geometry->object].n_cells == 0;
-    Values values = {0};
+    Values values = {.digits = geometry->params->digits};
     add_part(&values, "members", put_isosurfaces, geometry);
     return put_declaration(out, geometry, alone ? "object" : "union", &values, err);
 }

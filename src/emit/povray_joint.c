@@ -90,7 +90,7 @@ static void count_joints(const PovrayGeometry *geometry, size_t *all, size_t *wr
 Status put_joint_macros(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
-    Values values = {0};
+    Values values = {.digits = geometry->params->digits};
     size_t all, written;
     count_joints(geometry, &all, &written);
     geometry->report->joint_sides = written > MOST_EXACT ? SIDES_OF_MANY : 0;

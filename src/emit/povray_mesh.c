@@ -81,7 +81,7 @@ static Status put_lists(Text *out, void *context, Err *err)
     const PovrayItems *items = &geometry->objects[geometry->object];
     const VesselMesh *whole = &geometry->scene->geometry.mesh;
     VesselMesh mesh = *whole; /* of this object; its labels are positions in `items` */
-    Values values = {0};
+    Values values = {.digits = geometry->params->digits};
     bool is_part = items->n < geometry->scene->geometry.n_segments;
     if (is_part)
         TRY(vesselmesh_part(whole, items->index, items->n, &mesh, err));
@@ -103,7 +103,7 @@ static Status put_lists(Text *out, void *context, Err *err)
 
 Status put_mesh(Text *out, PovrayGeometry *geometry, Err *err)
 {
-    Values values = {0};
+    Values values = {.digits = geometry->params->digits};
     add_part(&values, "members", put_lists, geometry);
     return put_declaration(out, geometry, "mesh2", &values, err);
 }

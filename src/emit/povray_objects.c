@@ -137,7 +137,7 @@ static Status put_nothing_members(Text *out, void *geometry, Err *err)
 /* Declares an object of which nothing is drawn. */
 static Status put_nothing(Text *out, PovrayGeometry *geometry, Err *err)
 {
-    Values values = {0};
+    Values values = {.digits = geometry->params->digits};
     add_part(&values, "members", put_nothing_members, geometry);
     return put_declaration(out, geometry, "object", &values, err);
 }
@@ -171,7 +171,7 @@ Status put_objects(Text *out, PovrayGeometry *geometry,
         return put_nothing(out, geometry, err);
     if (geometry->n_objects == 1 || is_field(geometry))
         return put_object(out, geometry, err);
-    Values values = {0};
+    Values values = {.digits = geometry->params->digits};
     add_part(&values, "members", put_trees, geometry);
     return put_declaration(out, geometry, "Tree_Of()", &values, err);
 }

@@ -29,7 +29,7 @@ static void put_call(Text *out, const void *context, size_t i)
 Status put_primitives(Text *out, PovrayGeometry *geometry, Err *err)
 {
     const size_t n = geometry->objects[geometry->object].n;
-    Values values = {0};
+    Values values = {.digits = geometry->params->digits};
     add_list(&values, "members", put_call, geometry, n);
     return put_declaration(out, geometry, n == 1 ? "object" : "Tree_Of()", &values, err);
 }

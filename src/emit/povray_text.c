@@ -72,7 +72,7 @@ void put_matrix_arrays(Text *text, size_t n)
 Status put_matrix(Text *text, const Tmpl *matrix, char which, uint32_t number,
                   const Linear *const columns[3], Err *err)
 {
-    Text name = TEXT_INIT, numbers = TEXT_INIT;
+    Text name = TEXT_INIT, numbers = {.digits = text->digits};
     text_printf(&name, "V%c[%u]", which, number);
     for (int i = 0; i < 12; i++) {
         text_puts(&numbers, i ? "," : "");

@@ -7,7 +7,7 @@
 
 /* Appends `format`, in which each conversion stands for the next argument:
  *
- *     %s  const char *       %n  double, in the fewest digits that read back to the same double
+ *     %s  const char *       %n  double, as text_number formats it
  *     %d  int                %f  double, as %n for a float; -0 becomes 0
  *     %u  uint32_t           %v  Vec3, as x,y,z in the digits of %n; -0 becomes 0
  *     %z  size_t             %c  Rgb, as r,g,b in the digits of %f

@@ -200,7 +200,7 @@ Status tachyon_write(const EmitParams *params, EmitOutput *to, Err *err)
     const Scene *scene = params->scene;
     const View *view = &scene->view;
     double near_mm, far_mm;
-    Values values = {0};
+    Values values = {.digits = params->digits};
     camera_depth_range(&view->camera, scene->geometry.bounds, &near_mm, &far_mm);
     add_file(&values, params->file, ".ppm", "");
     add_about(&values, params, scene->geometry.bounds, scene->geometry.origin);

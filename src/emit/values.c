@@ -10,6 +10,7 @@ Text *add_value(Values *values, const char *name)
 {
     assert(values->n < VALUES_MAX);
     Text *text = &values->text[values->n];
+    text->digits = values->digits;
     values->value[values->n++].name = name;
     return text;
 }

@@ -28,8 +28,9 @@ typedef struct ValueList {
     size_t n;
 } ValueList;
 
-/* Zeroed, it has no values. values_expand releases it. */
+/* Zeroed except for `digits`, it has no values. values_expand releases it. */
 typedef struct Values {
+    int digits; /* significant digits of doubles, as Text.digits */
     TmplValue value[VALUES_MAX];
     Text text[VALUES_MAX];
     size_t n;
@@ -41,7 +42,7 @@ typedef struct Values {
 /* Adds a value, and returns its text, empty, for the caller to append to. The text is borrowed
  * until values_expand; so is `name`, in all functions below. */
 Text *add_value(Values *values, const char *name);
-/* Adds a double in the fewest digits that read back to the same double. */
+/* Adds a double in the fewest digits that read back to the same double, or in values->digits. */
 void add_number(Values *values, const char *name, double value);
 /* Adds a float in the fewest digits that read back to the same float. */
 void add_float(Values *values, const char *name, float value);

@@ -37,16 +37,18 @@ static Status add_part(const PixelRect *part, Arguments *arguments, Err *err)
 }
 
 /* Specifies every switch that a user's povray.ini could set. */
-static Status add_arguments(const void *context, const char *scene, const char *output,
-                            Arguments *arguments, Err *err)
+static Status add_arguments(const void *context, const ProgramPaths *paths, Arguments *arguments,
+                            Err *err)
 {
     const PovrayParams *params = context;
     bool alpha = params->plane == POVRAY_ALPHA, color = params->plane == POVRAY_COLOR || alpha;
     bool deep = bits_of(params) == 16;
     TRY(arguments_add(arguments, err, "%s",
                       params->program.path ? params->program.path : "povray"));
-    TRY(arguments_add(arguments, err, "+I%s", scene));
-    TRY(arguments_add(arguments, err, "+O%s", output));
+    TRY(arguments_add(arguments, err, "+I%s", paths->scene));
+    if (!color)
+        TRY(arguments_add(arguments, err, "+HI%s", paths->header));
+    TRY(arguments_add(arguments, err, "+O%s", paths->picture));
     TRY(arguments_add(arguments, err, "+W%d", params->width));
     TRY(arguments_add(arguments, err, "+H%d", params->height));
     if (params->part.width > 0)
@@ -82,8 +84,9 @@ Status povray_command(const PovrayParams *params, char **out, Err *err)
 {
     Arguments arguments = {0};
     Text line = TEXT_INIT;
-    Status status =
-        add_arguments(params, file_name(params->scene), file_name(params->output), &arguments, err);
+    const ProgramPaths paths = {file_name(params->scene), POVRAY_PLANES_FILE,
+                                file_name(params->output)};
+    Status status = add_arguments(params, &paths, &arguments, err);
     for (int i = 0; i < arguments.n; i++) {
         text_puts(&line, i ? " " : "");
         text_put_shell_word(&line, arguments.list[i]);
@@ -232,6 +235,7 @@ Status povray_draw(const PovrayParams *params, PovrayRun *run, Err *err)
     const Program program = {.name = "POV-Ray",
                              .package = "povray",
                              .scene = params->scene,
+                             .header = params->planes,
                              .output = params->output,
                              .choice = params->program,
                              .progress = params->progress,

@@ -5,7 +5,7 @@
 #include "oracle/planes.h"
 #include "oracle/program.h"
 
-/* What a run of POV-Ray draws. Scenes of corcast read the value from Corcast_Plane. */
+/* What a run of POV-Ray draws. The file PovrayParams.planes reads the value from Corcast_Plane. */
 typedef enum PovrayPlane {
     POVRAY_COLOR,
     POVRAY_DEPTH,
@@ -18,10 +18,15 @@ typedef enum PovrayPlane {
 
 enum { POVRAY_MAX_ID = 65535 };
 
+/* The name of a copy of the template povray/planes.inc beside a scene. */
+#define POVRAY_PLANES_FILE "corcast_planes.inc"
+
 /* One run of POV-Ray. All pointers are borrowed. */
 typedef struct PovrayParams {
     ProgramChoice program;     /* default: "povray" */
     const char *scene;         /* a .pov file */
+    const char *planes;        /* the template povray/planes.inc, or a copy; for all except
+                                * POVRAY_COLOR and POVRAY_ALPHA */
     const char *output;        /* the .png file that is written */
     int width, height;         /* pixels of the whole picture */
     PixelRect part;            /* only these pixels are drawn, the others are black; width 0: all */

@@ -279,7 +279,8 @@ struct PovrayTiles {
     PovrayTilesParams params;
     SceneTiles tiles;
     PlaneList planes;
-    PlaneRun *run; /* owned; the planes of the first tile, then those of the second, ... */
+    char *planes_file; /* path of POVRAY_PLANES_FILE; owned */
+    PlaneRun *run;     /* owned; the planes of the first tile, then those of the second, ... */
     size_t n_runs;
     int at_once;          /* runs that go on side by side */
     pthread_mutex_t lock; /* of the fractions, and of params.progress */
@@ -327,6 +328,7 @@ static Status prepare_run(PovrayTiles *all, size_t index, Err *err)
     run->params =
         (PovrayParams){.program = params->program,
                        .scene = ids ? tile->ids : tile->scene,
+                       .planes = all->planes_file,
                        .output = run->output,
                        .width = camera->width,
                        .height = camera->height,
@@ -340,6 +342,18 @@ static Status prepare_run(PovrayTiles *all, size_t index, Err *err)
                        .progress = report_plane,
                        .progress_context = run};
     return povray_command(&run->params, &run->command, err);
+}
+
+/* Writes the file that POV-Ray reads before the scenes to draw planes. */
+static Status write_planes_file(PovrayTiles *all, Err *err)
+{
+    Text text = TEXT_INIT;
+    TRY(file_join(all->params.folder, POVRAY_PLANES_FILE, &all->planes_file, err));
+    Status status = povray_write_planes(&all->params.emit, &text, err);
+    if (status == STATUS_OK)
+        status = file_write_text(all->planes_file, &text, err);
+    text_release(&text);
+    return status;
 }
 
 static Status prepare_runs(PovrayTiles *all, Err *err)
@@ -435,6 +449,7 @@ void povraytiles_free(PovrayTiles *tiles)
         free(tiles->run[i].command);
     }
     free(tiles->run);
+    free(tiles->planes_file);
     pthread_mutex_destroy(&tiles->lock);
     tiles_release(&tiles->tiles);
     free(tiles);
@@ -450,6 +465,7 @@ Status povraytiles_prepare(const PovrayTilesParams *params, PovrayTiles **tiles,
     TRY_GOTO(prepare_tiles(params, &made->tiles, err));
     made->planes = planes_of(&params->emit.scene->geometry, params->alpha && made->tiles.n == 1);
     made->at_once = runs_at_once(made);
+    TRY_GOTO(write_planes_file(made, err));
     TRY_GOTO(prepare_runs(made, err));
     *tiles = made;
     made = NULL;

@@ -27,8 +27,8 @@ typedef struct PovrayTilesParams {
 typedef struct PovrayTiles PovrayTiles;
 
 /* Divides the picture into tiles, and writes their scenes: scene.pov and scene.inc, or with several
- * tiles scene.tile-1.pov and so on. There is one tile if POV-Ray can hold the whole scene and
- * `min_tiles` is 1.
+ * tiles scene.tile-1.pov and so on, and POVRAY_PLANES_FILE. There is one tile if POV-Ray can hold
+ * the whole scene and `min_tiles` is 1.
  *
  * tiles   set on success; release it with povraytiles_free.
  * Errors  STATUS_INFEASIBLE if POV-Ray cannot hold the smallest tile, STATUS_USAGE if the picture

@@ -4,7 +4,8 @@
  *
  * Names: some programs do not accept every path on their command line. POV-Ray rejects line feeds
  * and letters beyond ASCII, Tachyon long paths. Therefore all files have fixed names in a private
- * folder beside the picture: a link to the scene, the picture, and POV-Ray's restart file. The
+ * folder beside the picture: links to the scene and its header, the picture, and POV-Ray's restart
+ * file. The
  * program reaches this folder through an open file handle. It runs in the scene's folder, where it
  * finds the files that the scene includes. The picture gets its final name when it is whole.
  *
@@ -67,7 +68,7 @@ static Status folder_of(const char *path, char **out, Err *err)
 /* The private folder and the paths in it. All strings are owned. The files are removed by
  * file_forget, or when a signal ends this process. */
 typedef struct Workplace {
-    char *folder, *scene, *picture, *state;
+    char *folder, *scene, *header, *picture, *state;
     int handle; /* the open folder, or -1 */
 } Workplace;
 
@@ -84,15 +85,20 @@ done:
     return status;
 }
 
-/* Creates the folder. `scene` is an absolute path; `picture` is the final path of the picture. */
-static Status open_workplace(Workplace *place, const char *scene, const char *picture, Err *err)
+/* Creates the folder. All paths are absolute; `picture` is the final path of the picture, and
+ * `header` may be NULL. */
+static Status open_workplace(Workplace *place, const char *scene, const char *header,
+                             const char *picture, Err *err)
 {
     TRY(file_temporary_folder(picture, &place->folder, err));
+    if (header)
+        TRY(add_name(place, PROGRAM_HEADER, &place->header, err));
     TRY(add_name(place, PROGRAM_SCENE, &place->scene, err));
     TRY(add_name(place, PRIVATE_PICTURE, &place->picture, err));
     TRY(add_name(place, PRIVATE_STATE, &place->state, err));
     place->handle = open(place->folder, O_PATH | O_DIRECTORY | O_CLOEXEC);
-    if (place->handle < 0 || symlink(scene, place->scene) != 0)
+    if (place->handle < 0 || symlink(scene, place->scene) != 0 ||
+        (header && symlink(header, place->header) != 0))
         return err_set(err, STATUS_IO, "%s: cannot be written: %s", picture, strerror(errno));
     return STATUS_OK;
 }
@@ -102,6 +108,7 @@ static void close_workplace(Workplace *place)
     if (place->handle >= 0)
         close(place->handle);
     file_forget(place->scene);
+    file_forget(place->header);
     file_forget(place->picture);
     file_forget(place->state);
     file_forget(place->folder);
@@ -322,6 +329,17 @@ static Status find_output(const Program *program, char **output, Err *err)
     return file_resolve(program->output, output, err);
 }
 
+/* Sets *absolute (owned) to the absolute path of a regular file. */
+static Status find_input(const char *path, char **absolute, Err *err)
+{
+    TRY(file_check_regular(path, err));
+    *absolute = realpath(path, NULL);
+    if (*absolute)
+        return STATUS_OK;
+    return err_set(err, errno == ENOMEM ? STATUS_MEMORY : STATUS_INPUT, "%s: cannot be read: %s",
+                   path, strerror(errno));
+}
+
 Status program_draw(const Program *program, Text *printed, double *seconds, Err *err)
 {
     Arguments arguments = {0};
@@ -329,19 +347,18 @@ Status program_draw(const Program *program, Text *printed, double *seconds, Err 
     ProgramProcess process = {
         .program = program, .arguments = arguments.list, .place = &place, .log.text = TEXT_INIT};
     const Text *log = &process.log.text;
-    char *scene = NULL, *folder = NULL, *output = NULL;
+    static const ProgramPaths paths = {PROGRAM_FOLDER PROGRAM_SCENE, PROGRAM_FOLDER PROGRAM_HEADER,
+                                       PROGRAM_FOLDER PRIVATE_PICTURE};
+    char *scene = NULL, *header = NULL, *folder = NULL, *output = NULL;
     const double start_s = clock_seconds();
-    TRY(file_check_regular(program->scene, err));
-    scene = realpath(program->scene, NULL);
-    if (!scene)
-        return err_set(err, errno == ENOMEM ? STATUS_MEMORY : STATUS_INPUT,
-                       "%s: cannot be read: %s", program->scene, strerror(errno));
-    Status status = STATUS_OK;
+    Status status;
+    TRY_GOTO(find_input(program->scene, &scene, err));
+    if (program->header)
+        TRY_GOTO(find_input(program->header, &header, err));
     TRY_GOTO(folder_of(scene, &folder, err));
     TRY_GOTO(find_output(program, &output, err));
-    TRY_GOTO(open_workplace(&place, scene, output, err));
-    TRY_GOTO(program->add_arguments(program->context, PROGRAM_FOLDER PROGRAM_SCENE,
-                                    PROGRAM_FOLDER PRIVATE_PICTURE, &arguments, err));
+    TRY_GOTO(open_workplace(&place, scene, header, output, err));
+    TRY_GOTO(program->add_arguments(program->context, &paths, &arguments, err));
     process.folder = folder;
     TRY_GOTO(run_program(&process, err));
     const int exit_status = WIFEXITED(process.ended) ? WEXITSTATUS(process.ended) : -1;
@@ -361,6 +378,7 @@ done:
     text_release(&process.log.text);
     free(output);
     free(folder);
+    free(header);
     free(scene);
     return status;
 }

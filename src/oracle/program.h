@@ -31,7 +31,14 @@ typedef bool ProgramProgress(double fraction, void *context);
  * program_draw opens this folder as file descriptor 3. The name of the scene in it is
  * PROGRAM_SCENE. */
 #define PROGRAM_FOLDER "/proc/self/fd/3/"
+/* The names of the scene and of its header in that folder. */
 #define PROGRAM_SCENE "scene.pov"
+#define PROGRAM_HEADER "header.inc"
+
+/* The files of a run as its command line names them. All strings are borrowed. */
+typedef struct ProgramPaths {
+    const char *scene, *header, *picture; /* header: only if the program has one */
+} ProgramPaths;
 
 enum { MAX_ARGUMENTS = 28 }; /* POV-Ray with all options has fewer */
 
@@ -53,13 +60,14 @@ typedef struct Program {
     const char *package; /* the Debian package that contains it */
     ProgramChoice choice;
     const char *scene;         /* path of the scene, a regular file with any name */
+    const char *header;        /* path of a file that is read before the scene; NULL: none */
     const char *output;        /* path of the picture, with any name */
     ProgramProgress *progress; /* called for each "(30%)" in the output; may be NULL */
     void *progress_context;
-    /* Appends the executable and its arguments. `scene` and `picture` are the paths by which the
-     * program finds them. An error ends program_draw with the same status. */
-    Status (*add_arguments)(const void *context, const char *scene, const char *picture,
-                            Arguments *arguments, Err *err);
+    /* Appends the executable and its arguments. `paths` has the paths by which the program finds
+     * its files. An error ends program_draw with the same status. */
+    Status (*add_arguments)(const void *context, const ProgramPaths *paths, Arguments *arguments,
+                            Err *err);
     /* Decides, after the program has ended, whether the file `picture` is the whole picture.
      * Errors: STATUS_TOOL, with the reason found in `output`, if it is not. */
     Status (*judge)(const void *context, const Text *output, int exit_status, const char *picture,

@@ -26,19 +26,19 @@ static const Camera *camera_of(const TachyonPlaneRun *run)
     return &run->params->emit.scene->view.camera;
 }
 
-static Status add_arguments(const void *context, const char *scene, const char *picture,
-                            Arguments *arguments, Err *err)
+static Status add_arguments(const void *context, const ProgramPaths *paths, Arguments *arguments,
+                            Err *err)
 {
     const TachyonPlaneRun *run = context;
     const TachyonParams *params = run->params;
     const bool ids = run->plane == TACHYON_ID;
     const char *const words[] = {params->program.path ? params->program.path : "tachyon",
-                                 scene,
+                                 paths->scene,
                                  ids ? "-lowshade" : "-mediumshade",
                                  "-format",
                                  ids ? "PPM" : "PPM48",
                                  "-o",
-                                 picture};
+                                 paths->picture};
     for (size_t i = 0; i < sizeof words / sizeof *words; i++)
         TRY(arguments_add(arguments, err, "%s", words[i]));
     if (params->threads == 0)

@@ -7,6 +7,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* The largest number of sections within each other. */
+enum { MAX_SECTIONS = 4 };
+
+/* A section that has begun. */
+typedef struct TmplSection {
+    const char *name; /* borrowed from the template; `length` characters */
+    size_t length;
+    bool shown; /* it and the sections around it are not left out */
+} TmplSection;
+
 typedef struct TmplExpansion {
     const char *path;
     const TmplValue *values;
@@ -14,7 +24,21 @@ typedef struct TmplExpansion {
     size_t n, n_parts;
     bool *used; /* owned; one for each value, then one for each part */
     Text *out;  /* NULL in the first pass */
+    TmplSection section[MAX_SECTIONS];
+    int n_sections;
 } TmplExpansion;
+
+/* Returns true outside of the sections that are left out. */
+static bool is_shown(const TmplExpansion *self)
+{
+    return self->n_sections == 0 || self->section[self->n_sections - 1].shown;
+}
+
+/* Returns where the next characters go; NULL if they go nowhere. */
+static Text *shown_out(const TmplExpansion *self)
+{
+    return is_shown(self) ? self->out : NULL;
+}
 
 static bool is_name_char(char c, bool first)
 {
@@ -36,16 +60,26 @@ static bool is_name(const char *name, const char *chars, size_t length)
     return strlen(name) == length && memcmp(name, chars, length) == 0;
 }
 
+/* Returns the value with this name, which then counts as used; NULL if there is none. */
+static const TmplValue *use_value(TmplExpansion *self, const char *name, size_t length)
+{
+    for (size_t i = 0; i < self->n; i++)
+        if (is_name(self->values[i].name, name, length)) {
+            self->used[i] = true;
+            return &self->values[i];
+        }
+    return NULL;
+}
+
 /* Appends the value or part with this name. *found becomes false if there is none. */
 static Status put_named(TmplExpansion *self, const char *name, size_t length, bool *found, Err *err)
 {
+    const TmplValue *value = use_value(self, name, length);
+    Text *out = shown_out(self);
     *found = true;
-    for (size_t i = 0; i < self->n; i++) {
-        if (!is_name(self->values[i].name, name, length))
-            continue;
-        self->used[i] = true;
-        if (self->out)
-            text_puts(self->out, self->values[i].text);
+    if (value) {
+        if (out)
+            text_puts(out, value->text);
         return STATUS_OK;
     }
     for (size_t i = 0; i < self->n_parts; i++) {
@@ -53,10 +87,53 @@ static Status put_named(TmplExpansion *self, const char *name, size_t length, bo
         if (!is_name(part->name, name, length))
             continue;
         self->used[self->n + i] = true;
-        return self->out ? part->put(self->out, part->context, err) : STATUS_OK;
+        return out ? part->put(out, part->context, err) : STATUS_OK;
     }
     *found = false;
     return STATUS_OK;
+}
+
+/* Begins the section that is shown if the value is set, for '?', or is not, for '!'. */
+static Status begin_section(TmplExpansion *self, char mark, const char *name, size_t length,
+                            bool *found, Err *err)
+{
+    const TmplValue *value = use_value(self, name, length);
+    *found = value != NULL;
+    if (self->n_sections == MAX_SECTIONS)
+        return err_set(err, STATUS_INPUT, "%s: more than %d sections are within each other",
+                       self->path, MAX_SECTIONS);
+    bool is_set = value && value->text && *value->text && strcmp(value->text, "0") != 0;
+    const bool shown = is_shown(self) && is_set == (mark == '?');
+    self->section[self->n_sections++] = (TmplSection){name, length, shown};
+    return STATUS_OK;
+}
+
+/* Ends the last section that has begun. */
+static Status end_section(TmplExpansion *self, const char *name, size_t length, int line, Err *err)
+{
+    const TmplSection *last = self->n_sections ? &self->section[self->n_sections - 1] : NULL;
+    if (!last || last->length != length || memcmp(last->name, name, length) != 0)
+        return err_set(err, STATUS_INPUT, "%s:%d: ${/%.*s} ends no section", self->path, line,
+                       (int)length, name);
+    self->n_sections--;
+    return STATUS_OK;
+}
+
+/* Appends what ${name} stands for, or begins or ends the section of the name, by `mark`. */
+static Status expand_name(TmplExpansion *self, char mark, const char *name, size_t length, int line,
+                          Err *err)
+{
+    bool found = true;
+    if (mark == '/')
+        return end_section(self, name, length, line, err);
+    if (mark)
+        TRY(begin_section(self, mark, name, length, &found, err));
+    else
+        TRY(put_named(self, name, length, &found, err));
+    if (found)
+        return STATUS_OK;
+    return err_set(err, STATUS_INPUT, "%s:%d: no value is given for ${%.*s}", self->path, line,
+                   (int)length, name);
 }
 
 /* Appends the replacement of the '$' at `dollar`. *next becomes the first character after it. */
@@ -64,24 +141,26 @@ static Status expand_one(TmplExpansion *self, const char *dollar, int line, cons
                          Err *err)
 {
     if (dollar[1] == '$') {
-        if (self->out)
+        if (shown_out(self))
             text_append(self->out, "$", 1);
         *next = dollar + 2;
         return STATUS_OK;
     }
     const char *name = dollar + 2;
+    char mark = dollar[1] == '{' && *name && strchr("?!/", *name) ? *name++ : '\0';
     size_t length = dollar[1] == '{' ? name_length(name) : 0;
     if (length == 0 || name[length] != '}')
         return err_set(err, STATUS_INPUT,
                        "%s:%d: '$' must begin ${name} or $$, which gives one '$'", self->path,
                        line);
-    bool found;
-    TRY(put_named(self, name, length, &found, err));
     *next = name + length + 1;
-    if (found)
-        return STATUS_OK;
-    return err_set(err, STATUS_INPUT, "%s:%d: no value is given for ${%.*s}", self->path, line,
-                   (int)length, name);
+    return expand_name(self, mark, name, length, line, err);
+}
+
+/* Returns true if the '$' at `dollar` begins or ends a section. */
+static bool is_section_mark(const char *dollar)
+{
+    return dollar[1] == '{' && dollar[2] && strchr("?!/", dollar[2]);
 }
 
 static Status expand_all(TmplExpansion *self, const char *source, Err *err)
@@ -89,15 +168,25 @@ static Status expand_all(TmplExpansion *self, const char *source, Err *err)
     int line = 1;
     for (const char *at = source; *at;) {
         size_t plain = strcspn(at, "$");
-        if (self->out)
+        if (shown_out(self))
             text_append(self->out, at, plain);
         for (size_t i = 0; i < plain; i++)
             line += at[i] == '\n';
         at += plain;
-        if (*at)
-            TRY(expand_one(self, at, line, &at, err));
+        if (!*at)
+            break;
+        const bool drops_line_end = is_section_mark(at);
+        TRY(expand_one(self, at, line, &at, err));
+        if (drops_line_end && *at == '\n') {
+            at++;
+            line++;
+        }
     }
-    return STATUS_OK;
+    if (self->n_sections == 0)
+        return STATUS_OK;
+    const TmplSection *open = &self->section[self->n_sections - 1];
+    return err_set(err, STATUS_INPUT, "%s: the section of %.*s has no end", self->path,
+                   (int)open->length, open->name);
 }
 
 static Status check_used(const TmplExpansion *self, Err *err)

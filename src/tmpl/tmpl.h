@@ -5,6 +5,10 @@
  * error, so that a template and the program always agree. Markup does the same for HTML and SVG,
  * and escapes plain text.
  *
+ * A section ${?name} ... ${/name} is left out if the value of `name` is "" or "0"; a section
+ * ${!name} ... ${/name} is left out otherwise. Sections may contain each other. A line end behind
+ * one of these marks is left out as well.
+ *
  *     const TmplValue values[] = {{"title", "A tree"}};
  *     TRY(tmpl_expand("templates/page/page.html", values, 1, &out, err)); */
 #ifndef CORCAST_TMPL_TMPL_H
@@ -33,8 +37,9 @@ void tmpl_release(Tmpl *tmpl);
  * $$ by one $.
  *
  * Errors   STATUS_INPUT, naming file, line and name, for any other $, for a name that `values`
- *          lacks, and for a value that the template does not use, so that a template and its caller
- *          always agree; STATUS_MEMORY. On failure `out` is unchanged. */
+ *          lacks, for a value that the template does not use, so that a template and its caller
+ *          always agree, and for a section that does not begin or end; STATUS_MEMORY. On failure
+ *          `out` is unchanged. */
 MUST_CHECK Status tmpl_apply(const Tmpl *tmpl, const TmplValue *values, size_t n, Text *out,
                              Err *err);
 

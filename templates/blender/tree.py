@@ -10,9 +10,22 @@
 # with a radius at each point. Bevel > Depth is 1 and must stay 1. A spline ends where the order ends
 # or the material changes. The property segment_ids has the ids of the first segments of the splines.
 # Nothing else in the scene is changed.
-import bpy
+#
+# Options: blender -P ${input} -- --scale 0.1 --camera
+# --scale sets the metres per millimetre; 0.1 suits the camera and light of Blender's default scene.
+# --camera adds a camera that frames the tree from the front, and a sun.
+import argparse
+import math
+import sys
 
-SCALE = 0.001  # metres a millimetre
+import bpy
+from mathutils import Vector
+
+OPTIONS = argparse.ArgumentParser(prog="tree.py")
+OPTIONS.add_argument("--scale", type=float, default=0.001)
+OPTIONS.add_argument("--camera", action="store_true")
+ARGUMENTS, _ = OPTIONS.parse_known_args(sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else [])
+SCALE = ARGUMENTS.scale  # metres per millimetre
 BEVEL = 6  # Bevel > Resolution: 16 sides
 ROUGHNESS = ${roughness}
 
@@ -62,3 +75,24 @@ MATERIALS = [material(name, color) for name, color in (
 ${materials})]
 
 ${vessels}
+
+
+def add_camera():
+    """Adds a camera that sees the whole tree from the front, and a sun."""
+    bpy.context.view_layer.update()
+    corners = [each.matrix_world @ Vector(corner) for each in TREE.children for corner in each.bound_box]
+    low, high = (Vector(pick(at[k] for at in corners) for k in range(3)) for pick in (min, max))
+    middle, radius = (low + high) / 2, (high - low).length / 2
+    data = bpy.data.cameras.new("tree_camera")
+    distance = 1.05 * radius / math.sin(data.angle_y / 2)
+    data.clip_start, data.clip_end = distance / 1000, 10 * distance
+    camera = add("tree_camera", data)
+    camera.location = middle - Vector((0, distance, 0))
+    camera.rotation_euler = (math.pi / 2, 0, 0)
+    bpy.context.scene.camera = camera
+    sun = add("tree_sun", bpy.data.lights.new("tree_sun", "SUN"))
+    sun.data.energy, sun.rotation_euler = 3, (0.7, 0.3, 0.4)
+
+
+if ARGUMENTS.camera:
+    add_camera()

@@ -27,18 +27,27 @@ open_ends = true;
 margin = 3; // [0.5:0.5:20]
 
 /* [Quality] */
-// Number of sides of a vessel
+// Number of sides of a vessel in the preview
+preview_sides = 24; // [6:2:64]
+// Number of sides of a vessel in the solid
 $$fn = 12; // [6:2:64]
 
 /* [Look] */
 // Color of the preview; a solid has no color
 vessel_color = ${color}; // linear
 
+/* [Nodes and radii] */
+// p7 is the node that segment 7 leads to, start7 the node where segment 7 begins if it is the root, and r7 the radius of
+// segment 7, all in mm. Vessels, joints and ends follow from them.
+${variables}
 /* [Hidden] */
-// The origin of the coordinates below, in the tree's coordinates.
+// The origin of the coordinates above, in the tree's coordinates.
 origin = ${origin};
-low = ${low};
-high = ${high};
+// The ends of all vessels, as pairs of a node and a radius, and the box around them.
+ends = [
+${ends}];
+low = [for (k = [0:2]) min([for (e = ends) e[0][k] - drawn(e[1])])];
+high = [for (k = [0:2]) max([for (e = ends) e[0][k] + drawn(e[1])])];
 
 // Special variables that control tree(): which parts it draws, and how much thicker than the tree.
 $$vessels = true;
@@ -54,7 +63,7 @@ module along(v) {
   rotate([0, acos(v[2] / norm(v)), atan2(v[1], v[0])]) children();
 }
 
-// A segment of the tree, straight from a to b; id is its id in the tree's file.
+// A segment of the tree, straight from node a to node b; id is its id in the tree's file.
 module vessel(id, a, b, radius, c = vessel_color) {
   if ($$vessels && radius >= min_radius)
     color(srgb(c)) translate(a) along(b - a) cylinder(h = norm(b - a), r = drawn(radius));
@@ -64,7 +73,7 @@ module joint(p, radius, c) {
   if ($$joints && radius >= min_radius) color(srgb(c)) translate(p) sphere(r = drawn(radius));
 }
 
-// Where three or more vessels meet; where two do; where one ends, there heading for v.
+// Where three or more vessels meet; where two do; where one ends, and leaves in the direction v.
 module bifurcation(p, radius, c = vessel_color) { joint(p, radius, c); }
 module bend(p, radius, c = vessel_color) { joint(p, radius, c); }
 module end(p, radius, v, c = vessel_color) {
@@ -93,4 +102,4 @@ module show() {
     tree($$vessels = part != "bifurcations", $$joints = part != "vessels");
 }
 
-translate(origin) show();
+translate(origin) show($$fn = $$preview ? preview_sides : $$fn);

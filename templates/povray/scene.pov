@@ -18,10 +18,6 @@ ${effects}//
 // +UA Declare=Background_Transmit=1.
 #version 3.7;
 
-// 0 draws the picture; 1 depth, 2 normals, 3 segment ids, 4 depth and ids below 65536. 1 to 4 are for comparison with
-// other renderers.
-#ifndef (Corcast_Plane) #declare Corcast_Plane = 0; #end
-
 global_settings {
   assumed_gamma 1.0
   max_trace_level 5
@@ -54,9 +50,8 @@ camera {
   up        Camera_Up * (image_height / Picture_Height)
 }
 
-// ---- light ----------------------------------------------------------------------------------
-#ifndef (Light_Intensity)  #declare Light_Intensity  = 1; #end
-#ifndef (Light_Shadows)    #declare Light_Shadows    = ${shadows}; #end
+// ---- background and shadows -----------------------------------------------------------------
+#ifndef (Light_Shadows)       #declare Light_Shadows       = ${shadows}; #end // 1: vessels cast shadows
 #ifndef (Background_Red)      #declare Background_Red      = ${background_red}; #end // linear
 #ifndef (Background_Green)    #declare Background_Green    = ${background_green}; #end
 #ifndef (Background_Blue)     #declare Background_Blue     = ${background_blue}; #end
@@ -64,59 +59,7 @@ camera {
 #ifndef (Background_Color)
   #declare Background_Color = rgbt <Background_Red, Background_Green, Background_Blue, Background_Transmit>;
 #end
-
-#macro Light_Parallel(Location, Target, Color)
-  light_source { Location, rgb Color * Light_Intensity parallel point_at Target }
-#end
-#macro Light_Point(Location, Color)
-  light_source { Location, rgb Color * Light_Intensity }
-#end
-#macro Light_Area(Location, Color, Side_A, Side_B, Samples)
-  light_source { Location, rgb Color * Light_Intensity area_light Side_A, Side_B, Samples, Samples }
-#end
-
-#if (Corcast_Plane = 0)
-  background { color Background_Color }
-${lights}
-#else
-  background { rgb 0 }
-#end
-#if (Corcast_Plane = 2)
-  #declare T_Vessel = texture { pigment { rgb 1 } finish { ambient 0 diffuse 0.5 emission 0.5 } }
-  // Signed lights along the axes turn a white finish into 0.5 + 0.5 * normal.
-  #macro Light_Axis(Axis)
-    light_source { Axis * 1e4, rgb Axis parallel point_at 0 shadowless }
-    light_source { -Axis * 1e4, rgb -Axis parallel point_at 0 shadowless }
-  #end
-  Light_Axis(x) Light_Axis(y) Light_Axis(z)
-#end
-#if (Corcast_Plane = 1 | Corcast_Plane = 4)
-  // Distance along the viewing ray, as a 32-bit fraction from Depth_Near to Depth_Far: the high half
-  // in red, the low half in green. Blue is 1 where a vessel is visible, or contains the id.
-  #declare Depth_Near = ${depth_near};
-  #declare Depth_Far  = ${depth_far};
-  #local Lx = Camera_Location.x; #local Ly = Camera_Location.y; #local Lz = Camera_Location.z;
-  #local Dx = Camera_Direction.x; #local Dy = Camera_Direction.y; #local Dz = Camera_Direction.z;
-  #if (Camera_Perspective)
-    #declare Fn_Depth = function(x, y, z) { sqrt(pow(x - Lx, 2) + pow(y - Ly, 2) + pow(z - Lz, 2)) };
-  #else
-    #declare Fn_Depth = function(x, y, z) { (x - Lx) * Dx + (y - Ly) * Dy + (z - Lz) * Dz };
-  #end
-  #declare Fn_Fraction = function(x, y, z) {
-    min(max((Fn_Depth(x, y, z) - Depth_Near) / (Depth_Far - Depth_Near), 0), 1)
-  };
-  #declare P_Depth_High = pigment {
-    function { floor(Fn_Fraction(x, y, z) * 65535) / 65535 } color_map { [0 rgb 0] [1 rgb <3, 0, 0>] }
-  };
-  #declare P_Depth_Low = pigment {
-    function { Fn_Fraction(x, y, z) * 65535 - floor(Fn_Fraction(x, y, z) * 65535) }
-    color_map { [0 rgb 0] [1 rgb <0, 3, 0>] }
-  };
-  #declare T_Vessel = texture {
-    pigment { average pigment_map { [1 P_Depth_High] [1 P_Depth_Low] [1 rgb <0, 0, 3>] } }
-    finish { ambient 0 diffuse 0 emission 1 }
-  }
-#end
+background { color Background_Color }
 
 ${graded}${fade}${tips}// ---- animation ------------------------------------------------------------------------------
 // With Turn_Clock = 1 the tree turns once about the vertical axis of the picture while clock goes from 0 to 1.
@@ -138,6 +81,31 @@ ${graded}${fade}${tips}// ---- animation ---------------------------------------
 // The file of the geometry has the defaults of the vessels' material: Vessel_Red, _Green, _Blue (linear) and
 // Vessel_Ambient, _Diffuse, _Brilliance, _Phong, _Phong_Size, _Specular, _Roughness.
 ${geometry}
+
+// ---- light ----------------------------------------------------------------------------------
+// Own_Lights, a macro without arguments that is declared before, replaces the lights${?ground} and the ground${/ground} below. It can use
+// Camera_Location, Camera_Direction, Tree_Center and Tree_Radius.
+#ifdef (Own_Lights)
+  Own_Lights()
+#else
+  #ifndef (Light_Intensity) #declare Light_Intensity = 1; #end
+${?parallel}
+  #macro Light_Parallel(Location, Target, Color)
+    light_source { Location, rgb Color * Light_Intensity parallel point_at Target }
+  #end
+${/parallel}
+${?point}
+  #macro Light_Point(Location, Color)
+    light_source { Location, rgb Color * Light_Intensity }
+  #end
+${/point}
+${?area}
+  #macro Light_Area(Location, Color, Side_A, Side_B, Samples)
+    light_source { Location, rgb Color * Light_Intensity area_light Side_A, Side_B, Samples, Samples }
+  #end
+${/area}
+${lights}#end
+
 object {
   Tree
   #if (Tree_Turn != 0) Turn_Tree() #end

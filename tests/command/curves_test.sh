@@ -172,4 +172,33 @@ test_refuses_options_of_triangles_and_a_lattice_elsewhere() {
     expect_only
 }
 
+# Blender's camera from the front sees all of the tree, which is as large as --scale says.
+test_blender_adds_a_camera_that_frames_the_tree() {
+    command -v blender >/dev/null || skip "blender is not installed"
+    run_ok corcast export "$DATA/bifurcation.swc" -o t.py --quiet
+    cat >look.py <<'END'
+import bpy
+from bpy_extras.object_utils import world_to_camera_view as view
+bpy.context.view_layer.update()
+scene, tree = bpy.context.scene, bpy.data.objects["tree"]
+at = [view(scene, scene.camera, o.matrix_world @ p.co.to_3d()) for o in tree.children
+      for s in o.data.splines for p in s.points]
+print("SEEN", all(0 < p.x < 1 and 0 < p.y < 1 and p.z > 0 for p in at),
+      max(p.y for p in at) - min(p.y for p in at) > 0.4, round(tree.scale.x, 6), scene.camera.name)
+END
+    run_ok timeout 100 blender -b -P t.py -P look.py -- --scale 0.1 --camera
+    expect_stdout '^SEEN True True 0.1 tree_camera$'
+}
+
+# A glTF file for the web is told how to become lighter, but not one that is light or was made so.
+test_a_heavy_glb_is_told_about_lod() {
+    run_ok corcast grow --terminals 150 --domain ball:20 --quiet -o t.swc
+    run_ok corcast export t.swc -o t.glb
+    grep -q -e '--lod 0.25' stderr || fail "expected a hint to --lod: $(cat stderr)"
+    run_ok corcast export t.swc --lod 0.25 -o t.glb
+    ! grep -q -e '--lod' stderr || fail "expected no hint for a lighter file"
+    run_ok corcast export "$DATA/bifurcation.swc" -o t.glb
+    ! grep -q -e '--lod' stderr || fail "expected no hint for a small file"
+}
+
 run_tests "$@"

@@ -198,9 +198,24 @@ test_each_place_is_called_what_it_is() {
     sed -i '$a5 1 12.1 -9.4 -3.1 1.71 4' fork.swc
     run_ok corcast scene fork.swc -o fork.scad
     [ "$(grep -cE '^  (vessel|bifurcation|bend|end)\(' fork.scad)" = 9 ] || fail "expected 4 vessels and 5 places"
-    grep -q '^  bifurcation(\[1.7,3.1,-0.8\],2.385);' fork.scad || fail "expected the bifurcation at node 2"
-    grep -q '^  bend(\[9.6,-6.2,-3.7\],1.71);' fork.scad || fail "expected the bend at node 4"
+    grep -q '^  bifurcation(p2,max(r2,r3,r4));' fork.scad || fail "expected the bifurcation at node 2"
+    grep -q '^  bend(p4,max(r4,r5));' fork.scad || fail "expected the bend at node 4: $(grep 'bend(p' fork.scad)"
     [ "$(grep -c '^  end(' fork.scad)" = 3 ] || fail "expected three ends"
+}
+
+# A node is written once: its vessel, joint and open end move with it, and nothing stays behind.
+test_a_moved_tip_takes_all_of_it_along() {
+    fork
+    sed 's/^4 1 .*/4 1 13.1 -2.2 4.9 1.2 2/' fork.swc >other.swc
+    run_ok corcast scene other.swc -o other.scad
+    [ "$(grep -c '9.6,-6.2,-3.7' fork.scad)" = 1 ] || fail "expected node 4 to be written once"
+    sed -e 's/^p4 = .*/p4 = [13.1,-2.2,4.9];/' -e 's/^r4 = .*/r4 = 1.2;/' fork.scad >moved.scad
+    local part
+    for part in tree wall block; do
+        scad moved.stl moved.scad "part=\"$part\""
+        scad other.stl other.scad "part=\"$part\""
+        within 1e-9 "$(volume moved.stl)" "$(volume other.stl)"
+    done
 }
 
 test_vessels_have_the_colors_that_are_asked_for() {
@@ -219,7 +234,7 @@ test_the_commands_of_the_page_run() {
         openscad*) command -v openscad >/dev/null || skip "openscad is not installed" ;;
         esac
         run_ok timeout 120 bash -c "$(sed "s|build/corcast|'$CORCAST'|; s|tests/data/||; s/fn=24/fn=5/; s/scad *#.*/scad/" <<<"$line")"
-    done < <(sed -n ':a; /\\$/{N; s/\\\n *//; ba}; s/^    \(build\/corcast\|openscad\|xvfb-run\)/\1/p' "$REPO/docs/OPENSCAD.md")
+    done < <(sed -n ':a; /\\$/{N; s/\\\n *//; ba}; s/^    \(build\/corcast\|openscad\|xvfb-run\|sed\)/\1/p' "$REPO/docs/OPENSCAD.md")
     volume tree.stl
     expect_file outline.svg
 }

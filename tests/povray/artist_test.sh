@@ -41,13 +41,16 @@ test_no_model_makes_povray_warn() {
 
 # A colored and pruned forest in the shadows of every look, and the planes that `verify` asks for.
 test_no_look_and_no_plane_makes_povray_warn() {
-    local model look plane=0
+    local model look plane=0 header
+    cp "$REPO"/templates/povray/planes.inc corcast_planes.inc
     run_ok corcast grow --quiet --terminals 40 --inlet 0,50 --inlet 0,-50 -o tree.swc
     for model in $MODELS; do
         for look in $(corcast looks | grep -v 'not in POV-Ray' | cut -f 1); do
             run_ok corcast scene tree.swc --quiet --model "$model" --look "$look" --shadows on --size 24x18 --view iso \
                 --projection perspective --color-by flow --log --classes 5 --prune-radius 0.3 -o "$model.pov"
-            draw "$model" +W24 +H18 Declare=Corcast_Plane=$((plane++ % 5))
+            header=+HIcorcast_planes.inc
+            [ $((plane % 5)) != 0 ] || header=
+            draw "$model" +W24 +H18 $header Declare=Corcast_Plane=$((plane++ % 5))
             expect_no_warning "$model"
         done
     done
@@ -361,6 +364,17 @@ test_the_studio_has_each_of_its_five() {
     done
     draw studio +W32 +H24 Declare=Studio_Skin=0
     expect_differing 20 768 studio.png Skin.png
+}
+
+# The hero scene by its one command, small: a dark red tree in the middle, before paler paper.
+test_the_hero_scene_is_drawn_by_one_command() {
+    local r g b
+    run_ok env CORCAST="$CORCAST" "$REPO/docs/examples/hero" hero 32 Declare=Hero_Quality=0
+    ! grep 'Warning:' stderr | grep -v experimental || fail "expected no warning but of subsurface"
+    read -r r g b < <(pngtopnm hero/hero.png | pamcut -left 0 -top 0 -width 32 -height 6 | pamscale -xsize 1 -ysize 1 | pnmtoplainpnm | tail -1)
+    [ "$r" -gt 140 ] && [ "$r" -gt "$b" ] && [ "$g" -gt 100 ] || fail "expected warm paper, got $r $g $b"
+    pngtopnm hero/hero.png | pamcut -left 12 -top 16 -width 8 -height 12 | pnmtoplainpnm | tail -n +4 | xargs -n 3 |
+        awk '$1 > 2 * $2 { n++ } END { exit n < 5 }' || fail "expected a red trunk in the middle"
 }
 
 test_the_background_can_be_transparent() {

@@ -273,7 +273,8 @@ static void all_kernels_agree(void **state)
         .towards = {0.48f, 0.6f, -0.64f}, .color = {1, 1, 1}, .parallel = true};
     Staged staged;
     stage(&staged, KIND_TREE, PROJECTION_ORTHOGRAPHIC);
-    const TileLook look = {staged.scene.appearance.finish, {light}, 1};
+    const TileLook look = {
+        .finish = staged.scene.appearance.finish, .lights = {light}, .n_lights = 1};
     FieldTilesParams params = {.geometry = &staged.scene.geometry,
                                .camera = &staged.scene.view.camera,
                                .grid = {.side = 1, .n_columns = 64, .n_rows = 64},

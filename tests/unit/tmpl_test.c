@@ -52,6 +52,32 @@ static void refuses(const char *source, const TmplValue *values, size_t n, const
     text_release(&out);
 }
 
+static void leaves_out_sections_by_their_values(void **state)
+{
+    (void)state;
+    const TmplValue values[] = {{"colors", "1"}, {"blended", "0"}, {"note", ""}};
+    Text out = TEXT_INIT;
+    Err err = {0};
+    assert_int_equal(
+        expand("a\n${?colors}\nb\n${?blended}\nc\n${/blended}\n${!blended}d$$${/blended}"
+               "${/colors}\ne\n${?note}${colors}${/note}${!colors}f${!blended}g"
+               "${/blended}${/colors}",
+               values, 3, &out, &err),
+        STATUS_OK);
+    assert_string_equal(out.chars, "a\nb\nd$e\n");
+    text_release(&out);
+}
+
+static void refuses_sections_that_do_not_begin_or_end(void **state)
+{
+    (void)state;
+    const TmplValue values[] = {{"a", "0"}, {"b", "1"}};
+    refuses("${?a}${?b}\n${/a}${/b}", values, 2, "build/tmpl_test.txt:2: ${/a} ends no section");
+    refuses("${a}${b}\n\n${/a}", values, 2, "build/tmpl_test.txt:3: ${/a} ends no section");
+    refuses("${a}${!b}", values, 2, "build/tmpl_test.txt: the section of b has no end");
+    refuses("${a}\n${?c}${b}${/c}", values, 2, "build/tmpl_test.txt:2: no value is given for ${c}");
+}
+
 static void names_the_line_of_a_name_without_a_value(void **state)
 {
     (void)state;
@@ -138,6 +164,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(puts_each_value_where_its_name_stands),
         cmocka_unit_test(does_not_expand_what_a_value_brings),
+        cmocka_unit_test(leaves_out_sections_by_their_values),
+        cmocka_unit_test(refuses_sections_that_do_not_begin_or_end),
         cmocka_unit_test(names_the_line_of_a_name_without_a_value),
         cmocka_unit_test(names_a_value_the_template_never_uses),
         cmocka_unit_test(refuses_a_dollar_that_starts_nothing),

@@ -6,7 +6,11 @@
 #include "job/export/scenefiles.h"
 #include "job/export/webpage.h"
 #include "job/picture/picture.h"
+#include "options/talk.h"
 #include <string.h>
+
+/* A .glb of more triangles, about 3 MB, is large for a web page. */
+enum { MANY_TRIANGLES = 100000 };
 
 #define OF_SURFACE WHEN(NO_VOLUME) | WHEN(NO_PAGE)
 
@@ -210,6 +214,9 @@ static Status export_mesh(ExportOptions *options, Parsed *parsed, FileSet *files
     TRY(work_note_files(files, &parsed->files, err));
     TRY(make_mesh(options, emitter, parsed, &mesh, err));
     Status status = meshing_write(&mesh, files, parsed, err);
+    if (status == STATUS_OK && mesh.mesh.n_triangles > MANY_TRIANGLES &&
+        options->meshing.lod == 1 && strcmp(mesh.emitter->extension, "glb") == 0)
+        talk_note(parsed->common.talk, "--lod 0.25 writes a quarter of the triangles for the web");
     meshing_release(&mesh);
     return status;
 }

@@ -4,6 +4,7 @@
 #include "job/picture/frames.h"
 #include "job/picture/picture.h"
 #include "options/talk.h"
+#include "options/templates.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -95,9 +96,13 @@ static Status check(PovrayOptions *options, const Parsed *parsed, Err *err)
 Status povray_run(PovrayOptions *options, Parsed *parsed, PovrayRun *run, Err *err)
 {
     Progress progress;
+    char *planes_file = NULL;
     TRY(check(options, parsed, err));
+    if (options->plane != POVRAY_COLOR)
+        TRY(templates_path("povray/planes.inc", &planes_file, err));
     const PovrayParams params = {.program = options->program,
                                  .scene = parsed->operands[0],
+                                 .planes = planes_file,
                                  .output = options->output,
                                  .width = options->size.pixels[0],
                                  .height = options->size.pixels[1],
@@ -111,6 +116,7 @@ Status povray_run(PovrayOptions *options, Parsed *parsed, PovrayRun *run, Err *e
     progress_start(&progress, "POV-Ray", parsed->common.talk);
     Status status = povray_draw(&params, run, err);
     progress_end(&progress);
+    free(planes_file);
     if (status == STATUS_OK)
         talk_note(parsed->common.talk, "POV-Ray %s took %.1f s", run->version, run->seconds);
     return status;
