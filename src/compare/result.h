@@ -3,13 +3,13 @@
  * Terms of the module compare:
  *   A, B       the two images: A is the reference, B is judged. Differences are B - A.
  *   code       the integer that a pixel's channel is stored as, 0 to 255 or 65535.
- *   level      1/255 of the range of codes, for images of all bit depths. Float colors are in levels
- *              of the sRGB curve, continued above 1.
+ *   level      1/255 of the range of codes, for images of all bit depths. Float colors are
+ *              in levels of the sRGB curve, continued above 1.
  *   label      what a pixel shows: the id of a segment, or 0 for the background.
- *   edge       a pixel is at an edge if one of its 8 neighbours has another label in A or in B. The
- *              pixels at edges form the band; all other pixels are the interior.
- *   settled    a differing pixel is settled if a third computation has shown that A is wrong there
- *              and B is right (compare/checks/settled.h).
+ *   edge       a pixel is at an edge if one of its 8 neighbours has another label in A or
+ *              in B. The pixels at edges form the band; all other pixels are the interior.
+ *   settled    a differing pixel is settled if a third computation has shown that A is wrong
+ *              there and B is right (compare/checks/settled.h).
  *   tier       a named, built-in tolerance (compare/rules/tolerance.h). */
 #ifndef CORCAST_COMPARE_RESULT_H
 #define CORCAST_COMPARE_RESULT_H
@@ -166,7 +166,7 @@ typedef enum MeasureId {
     MEASURE_MEDIAN,
     MEASURE_P99,
     MEASURE_MAX,
-    MEASURE_P99_PART, /* 99th percentile of depth difference / depth in A */
+    MEASURE_P99_PART,          /* 99th percentile of depth difference / depth in A */
     MEASURE_MISMATCH_FRACTION, /* pixels with different ids / all pixels */
     MEASURES
 } MeasureId;

@@ -46,16 +46,16 @@ void diagram_make_page(const DiagramStyle *style, const FigureBars *bars, Figure
                     diagram->height_mm);
 }
 
-Status diagram_draw(const DiagramStyle *style, const FigureBars *bars, int width, int height,
+Status diagram_draw(const DiagramStyle *style, const FigureBars *bars, const int size[2],
                     const int room[2], Plane *color, Err *err)
 {
-    const double wide = width - room[0], high = height - room[1];
+    const double wide = size[0] - room[0], high = size[1] - room[1];
     const double share = 1 - 2 * style->margin;
     const double width_mm = style->diagram->width_mm, height_mm = style->diagram->height_mm;
     const double scale = fmin(share * wide / width_mm, share * high / height_mm);
     const double offset[2] = {(wide - scale * width_mm) / 2, (high - scale * height_mm) / 2};
     Plane made;
-    TRY(plane_init(&made, width, height, 3, err));
+    TRY(plane_init(&made, size[0], size[1], 3, err));
     Status status = figure_draw_bars(bars, scale, offset, style->background, &made, err);
     if (status == STATUS_OK)
         *color = made;

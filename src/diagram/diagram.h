@@ -10,7 +10,7 @@
  *
  *     TRY(diagram_lay_out(&tree, 0, &diagram, err));
  *     const FigureBars bars = diagram_bars(&style);
- *     TRY(diagram_draw(&style, &bars, width, height, &color, err));
+ *     TRY(diagram_draw(&style, &bars, (int[]){width, height}, (int[]){0, 0}, &color, err));
  *     diagram_release(&diagram); */
 #ifndef CORCAST_DIAGRAM_DIAGRAM_H
 #define CORCAST_DIAGRAM_DIAGRAM_H
@@ -62,11 +62,11 @@ FigureBars diagram_bars(const DiagramStyle *style);
  * borrows `bars`. If memory runs out, figure_check reports it. */
 void diagram_make_page(const DiagramStyle *style, const FigureBars *bars, FigurePage *page);
 
-/* Draws the bars as large as the margins allow, centred, into a new plane of linear RGB, `width` x
- * `height` pixels. Leaves room[0] columns at the right and room[1] rows at the bottom empty.
+/* Draws the bars as large as the margins allow, centred, into a new plane of linear RGB, size[0] x
+ * size[1] pixels. Leaves room[0] columns at the right and room[1] rows at the bottom empty.
  * Release *color with plane_release. Errors: STATUS_MEMORY; STATUS_INPUT for sides that plane_init
  * refuses. */
-MUST_CHECK Status diagram_draw(const DiagramStyle *style, const FigureBars *bars, int width,
-                               int height, const int room[2], Plane *color, Err *err);
+MUST_CHECK Status diagram_draw(const DiagramStyle *style, const FigureBars *bars, const int size[2],
+                               const int room[2], Plane *color, Err *err);
 
 #endif

@@ -14,6 +14,8 @@ static Status put_camera(Text *out, void *context, Err *err)
     text_puts(add_value(&values, "right"), "x * Glow_Size.x");
     text_puts(add_value(&values, "up"), "y * Glow_Size.y");
     text_puts(add_value(&values, "direction"), "-z");
+    text_puts(add_value(&values, "width"), "Glow_Size.x / Camera_Distance");
+    text_puts(add_value(&values, "height"), "Glow_Size.y / Camera_Distance");
     return values_expand(&values, context, "povray/camera.inc", out, err);
 }
 

@@ -263,22 +263,20 @@ static void flatten(const Picture *from, FigureColor paper, Picture *to)
 
 static Status read_pixels(FigureArtwork *artwork, FigureColor paper, Err *err)
 {
-    Picture read, srgb;
-    TRY(picture_read(&read, artwork->path, ALPHA_KEPT, err));
+    Picture read = {0}, srgb = {0};
     Status status = STATUS_OK;
+    TRY_GOTO(picture_read(&read, artwork->path, ALPHA_KEPT, err));
     if (read.width > FIGURE_PDF_SIDE || read.height > FIGURE_PDF_SIDE)
-        status = err_set(err, STATUS_INPUT,
+        TRY_GOTO(err_set(err, STATUS_INPUT,
                          "%s: has %dx%d pixels; a panel shows at most %d pixels per side",
-                         artwork->path, read.width, read.height, FIGURE_PDF_SIDE);
-    if (status == STATUS_OK)
-        status = picture_to_srgb(&srgb, &read, read.bits, err);
-    picture_release(&read);
-    TRY(status);
+                         artwork->path, read.width, read.height, FIGURE_PDF_SIDE));
+    TRY_GOTO(picture_to_srgb(&srgb, &read, read.bits, err));
     artwork->width = srgb.width;
     artwork->height = srgb.height;
-    status = picture_init(&artwork->picture, srgb.width, srgb.height, 3, 8, err);
-    if (status == STATUS_OK)
-        flatten(&srgb, paper, &artwork->picture);
+    TRY_GOTO(picture_init(&artwork->picture, srgb.width, srgb.height, 3, 8, err));
+    flatten(&srgb, paper, &artwork->picture);
+done:
+    picture_release(&read);
     picture_release(&srgb);
     return status;
 }

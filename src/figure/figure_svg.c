@@ -52,16 +52,22 @@ static void put_corners(const FigureItem *item, Text *text)
     }
 }
 
+typedef struct SvgRun {
+    const Glyph *glyph;
+    size_t n;
+} SvgRun;
+
 /* Appends the letters of a run: an upright run of the text's own size as plain text, any other as a
  * span. `rise` is the height of the run before it. */
-static Status put_run(const SvgPage *svg, const FigureItem *item, const Glyph *glyph, size_t n,
-                      double *rise, Text *out, Err *err)
+static Status put_run(const SvgPage *svg, const FigureItem *item, const SvgRun *run, double *rise,
+                      Text *out, Err *err)
 {
+    const Glyph *glyph = run->glyph;
     const double size = item->size_pt * MM_PER_POINT, down = size * (*rise - glyph->rise);
     const bool italic = glyph->face == FACE_ITALIC || glyph->face == FACE_BOLD_ITALIC;
     Text letters = TEXT_INIT;
     Markup parts = {0};
-    for (size_t i = 0; i < n; i++)
+    for (size_t i = 0; i < run->n; i++)
         text_put_character(&letters, glyph[i].drawn);
     text_escaped(markup_raw(&parts, "text"), text_chars(&letters));
     text_release(&letters);
@@ -85,7 +91,7 @@ static Status put_runs(const SvgPage *svg, const FigureItem *item, Text *out, Er
     TRY(fonts_shape(svg->page->fonts, item->text, item->bold, &glyphs, err));
     for (size_t i = 0, n; i < glyphs.n && status == STATUS_OK; i += n) {
         n = glyphs_run(&glyphs, i);
-        status = put_run(svg, item, &glyphs.glyph[i], n, &rise, out, err);
+        status = put_run(svg, item, &(SvgRun){&glyphs.glyph[i], n}, &rise, out, err);
     }
     glyphs_release(&glyphs);
     return status;

@@ -232,8 +232,7 @@ static Status put_profile(PdfFile *file, size_t number, size_t *offset, Err *err
     text_printf(&file->out,
                 "%zu 0 obj\n<< /N 4\n   /Length %zu\n   /Filter /FlateDecode\n>>\nstream\n", number,
                 packed.length);
-    if (status == STATUS_OK)
-        text_append(&file->out, text_chars(&packed), packed.length);
+    text_add(&file->out, &packed);
     text_puts(&file->out, "\nendstream\nendobj\n");
     text_release(&packed);
     return status;
@@ -312,12 +311,12 @@ done:
 Status pdf_to_inks(const Inks *inks, Text *pdf, Err *err)
 {
     PdfFile file = {.inks = inks, .pdf = text_chars(pdf), .length = pdf->length, .out = TEXT_INIT};
-    Status status = convert(&file, err);
-    if (status == STATUS_OK) {
-        text_clear(pdf);
-        text_append(pdf, text_chars(&file.out), file.out.length);
-        status = text_check(pdf, err);
-    }
+    Status status = STATUS_OK;
+    TRY_GOTO(convert(&file, err));
+    text_clear(pdf);
+    text_add(pdf, &file.out);
+    status = text_check(pdf, err);
+done:
     text_release(&file.out);
     return status;
 }

@@ -348,10 +348,11 @@ static Status prepare_run(PovrayTiles *all, size_t index, Err *err)
 static Status write_planes_file(PovrayTiles *all, Err *err)
 {
     Text text = TEXT_INIT;
-    TRY(file_join(all->params.folder, POVRAY_PLANES_FILE, &all->planes_file, err));
-    Status status = povray_write_planes(&all->params.emit, &text, err);
-    if (status == STATUS_OK)
-        status = file_write_text(all->planes_file, &text, err);
+    Status status = STATUS_OK;
+    TRY_GOTO(file_join(all->params.folder, POVRAY_PLANES_FILE, &all->planes_file, err));
+    TRY_GOTO(povray_write_planes(&all->params.emit, &text, err));
+    status = file_write_text(all->planes_file, &text, err);
+done:
     text_release(&text);
     return status;
 }

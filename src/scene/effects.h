@@ -46,8 +46,9 @@ typedef struct Effects {
     Xray xray;
 } Effects;
 
-/* Appends the names of the effects that are on, which POV-Ray does not draw: "outlines and halos". Appends
- * nothing if a picture with these effects, and with ambient occlusion if `occlusion`, has none. */
+/* Appends the names of the effects that are on, which POV-Ray does not draw: "outlines and halos".
+ * Appends nothing if a picture with these effects, and with ambient occlusion if `occlusion`, has
+ * none. */
 void effects_list(const Effects *effects, bool occlusion, Text *out);
 
 /* Returns true if any effect is on. */

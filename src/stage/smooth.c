@@ -47,11 +47,11 @@ typedef struct Smoother {
 
 /* A segment as a curve: at t in [0, 1] it is start + chord t + t (1 - t) ((1 - t) (out - chord)
  * - t (in - chord)). */
-typedef struct Curve {
+typedef struct SmoothCurve {
     Vec3 start, chord;
     Vec3 out, in;     /* derivatives at t = 0 and 1 */
     double radius[2]; /* at t = 0 and 1, mm */
-} Curve;
+} SmoothCurve;
 
 static size_t start_of(const Smoother *smoother, size_t i)
 {
@@ -123,7 +123,7 @@ static Vec3 natural(Vec3 chord, Vec3 other_end)
 }
 
 /* Returns the curve of segment i, which must be drawn. */
-static Curve curve_of(const Smoother *smoother, size_t i)
+static SmoothCurve curve_of(const Smoother *smoother, size_t i)
 {
     const Tree *tree = smoother->tree;
     const double radius = tree->radius_mm[i];
@@ -131,7 +131,7 @@ static Curve curve_of(const Smoother *smoother, size_t i)
     const int32_t before = smoother->incoming[start];
     const int32_t after = smoother->incoming[end] == (int32_t)i ? smoother->main[end] : -1;
     const Vec3 chord = chord_of(smoother, i);
-    Curve curve = {tree->position[tree->parent[i]], chord, chord, chord, {radius, radius}};
+    SmoothCurve curve = {tree->position[tree->parent[i]], chord, chord, chord, {radius, radius}};
     if (before >= 0 && smoother->main[start] == (int32_t)i) {
         curve.out = centripetal(chord, chord_of(smoother, (size_t)before));
         curve.radius[0] = (radius + tree->radius_mm[before]) / 2;
@@ -152,14 +152,14 @@ static Curve curve_of(const Smoother *smoother, size_t i)
 }
 
 /* Returns the curve's offset from the point start + chord t. */
-static Vec3 curve_offset(const Curve *curve, double t)
+static Vec3 curve_offset(const SmoothCurve *curve, double t)
 {
     Vec3 out = vec3_sub(curve->out, curve->chord), in = vec3_sub(curve->in, curve->chord);
     return vec3_scale(vec3_add_scaled(vec3_scale(out, 1 - t), in, -t), t * (1 - t));
 }
 
 /* Returns the maximum of the lengths of two derivatives across a chord. */
-static double largest_across(const Curve *curve)
+static double largest_across(const SmoothCurve *curve)
 {
     Vec3 along = vec3_normalized(curve->chord);
     return fmax(vec3_length(vec3_cross(curve->out, along)),
@@ -170,7 +170,7 @@ static double largest_across(const Curve *curve)
  * the parameter range h is at most h^2 / 8 times the largest second derivative away from the curve,
  * and the second derivative of a cubic is largest at an end. A curve within the tolerance of its
  * chord needs one piece. */
-static double needed_for_bend(const Curve *curve, double tolerance_mm)
+static double needed_for_bend(const SmoothCurve *curve, double tolerance_mm)
 {
     Vec3 out = vec3_sub(curve->out, curve->chord), in = vec3_sub(curve->in, curve->chord);
     double bend = 2 * fmax(vec3_length(vec3_add_scaled(in, out, 2)),
@@ -186,7 +186,7 @@ typedef struct Division {
     size_t pieces;
 } Division;
 
-static Vec3 curve_point(const Curve *curve, double t)
+static Vec3 curve_point(const SmoothCurve *curve, double t)
 {
     return vec3_add(vec3_add_scaled(curve->start, curve->chord, t), curve_offset(curve, t));
 }
@@ -194,7 +194,7 @@ static Vec3 curve_point(const Curve *curve, double t)
 /* Returns the number of steps of segment i, which must be drawn. No step is shorter than
  * SHORTEST_MM after rounding: the speed along the chord may be 0 at an end, where the shortest step
  * has the length chord / steps^2. */
-static size_t count_steps(const Smoother *smoother, const Curve *curve, size_t i)
+static size_t count_steps(const Smoother *smoother, const SmoothCurve *curve, size_t i)
 {
     const double radius = smoother->tree->radius_mm[i];
     const double far_mm = vec3_length(curve->start) + vec3_length(curve->chord);
@@ -213,7 +213,7 @@ static size_t count_steps(const Smoother *smoother, const Curve *curve, size_t i
 
 /* Divides the curve of segment i. Points nearer than `space_mm` to a node with a joint are left
  * out. */
-static Division division_of(const Smoother *smoother, const Curve *curve, size_t i)
+static Division division_of(const Smoother *smoother, const SmoothCurve *curve, size_t i)
 {
     const size_t steps = count_steps(smoother, curve, i);
     const double from_start = smoother->space_mm[start_of(smoother, i)];
@@ -233,7 +233,7 @@ static Division division_of(const Smoother *smoother, const Curve *curve, size_t
 /* Makes the nodes of segment i, from `first` on. The last one is the segment's end. */
 static void put_pieces(const Smoother *smoother, size_t i, size_t first, SmoothTree *out)
 {
-    const Curve curve = curve_of(smoother, i);
+    const SmoothCurve curve = curve_of(smoother, i);
     const Division division = division_of(smoother, &curve, i);
     const double radius = smoother->tree->radius_mm[i];
     SmoothReport *report = &out->report;
@@ -264,7 +264,7 @@ static size_t count_pieces(const Smoother *smoother, size_t i)
 {
     if (!coincidence_draws(&smoother->found, i))
         return 1;
-    const Curve curve = curve_of(smoother, i);
+    const SmoothCurve curve = curve_of(smoother, i);
     return division_of(smoother, &curve, i).pieces;
 }
 

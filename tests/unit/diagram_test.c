@@ -137,7 +137,8 @@ static void pixels_add_up_to_the_area_of_the_bars(void **state)
     const DiagramStyle style = {
         .diagram = &diagram, .tree = &tree, .color = (const float(*)[3])white, .margin = 0.05};
     const FigureBars bars = diagram_bars(&style);
-    must(diagram_draw(&style, &bars, 211, 167, (const int[2]){0, 0}, &color, &err), &err);
+    must(diagram_draw(&style, &bars, (const int[2]){211, 167}, (const int[2]){0, 0}, &color, &err),
+         &err);
     double sum = 0, area = 0;
     for (size_t i = 0; i < 211 * 167; i++)
         sum += (double)color.values[3 * i + 1];

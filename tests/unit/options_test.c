@@ -1,5 +1,6 @@
 /* Options set by name have the effect of the command line, with the same error messages. */
 #include "cli/commands.h"
+#include "options/templates.h"
 #include "unit.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -219,5 +220,6 @@ int main(void)
         cmocka_unit_test(an_option_of_a_recipe_may_have_no_effect),
         cmocka_unit_test(rows_name_options_and_conditions_that_there_are),
     };
+    templates_set("templates");
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

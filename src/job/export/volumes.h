@@ -32,9 +32,9 @@ MUST_CHECK Status volumes_name(const VolumeOptions *options, const VolumeFormat 
  * filled voxels and their volume after.
  *
  * files    volumes_name has set the paths.
- * Errors   STATUS_USAGE if --spacing is not one or three numbers above 0, or if the centreline's file
- *          has no extension of a volume; the errors of stage_geometry, voxelgrid_make,
- *          volume_check, work_make, voxels_write and work_write. */
+ * Errors   STATUS_USAGE if --spacing is not one or three numbers above 0, or if the centreline's
+ * file has no extension of a volume; the errors of stage_geometry, voxelgrid_make, volume_check,
+ * work_make, voxels_write and work_write. */
 MUST_CHECK Status volumes_write(const VolumeOptions *options, const VolumeFormat *format,
                                 const PictureTree *of, FileSet *files, const Parsed *parsed,
                                 Err *err);

@@ -157,7 +157,7 @@ static void cover_vessel(Shadow *shadow, const Camera *camera, Vec3 a, Vec3 b, d
     const FigurePoint from = project(shadow, camera, a), to = project(shadow, camera, b);
     const double radius =
         radius_mm / vec3_length(camera->right) * shadow->width + shadow_border_mm / shadow->cell_mm;
-    const double length = hypot(to.x - from.x, to.y - from.y);
+    const double length = elementary_hypot(to.x - from.x, to.y - from.y);
     const bool is_far = fmax(from.x, to.x) < -radius || fmax(from.y, to.y) < -radius ||
                         fmin(from.x, to.x) > shadow->width + radius ||
                         fmin(from.y, to.y) > shadow->height + radius;
@@ -206,7 +206,7 @@ static FigurePoint along(const Leader *leader, double mm)
 static Leader make_leader(FigurePoint from, FigurePoint to, const FigureBox *part,
                           const FigureBox *inset, const Shadow *shadow)
 {
-    Leader leader = {.at = {from, to}, .length_mm = hypot(to.x - from.x, to.y - from.y)};
+    Leader leader = {.at = {from, to}, .length_mm = elementary_hypot(to.x - from.x, to.y - from.y)};
     leader.possible = !crosses(from, to, part) && !crosses(from, to, inset);
     for (double mm = 0; leader.possible && mm < leader.length_mm; mm += shadow_cell_mm)
         leader.covered_mm += is_covered(shadow, along(&leader, mm)) ? shadow_cell_mm : 0;

@@ -174,7 +174,7 @@ static Status draw_pixels(DiagramOptions *options, MadeDiagram *made, Err *err)
     TRY(picture_fits(size[0], size[1], 40, err));
     TRY(annotation_make_room(&options->annotation, made->sheet.fonts, &made->appearance,
                              &options->size, room, err));
-    TRY(diagram_draw(&made->style, &made->bars, size[0], size[1], room, &made->pixels.color, err));
+    TRY(diagram_draw(&made->style, &made->bars, size, room, &made->pixels.color, err));
     if (!options->annotation.legend)
         return STATUS_OK;
     sheet_begin(&made->sheet, size, annotation_dpi(&options->size));

@@ -67,7 +67,8 @@ typedef struct PictureOptions {
 void picture_set_defaults(PictureOptions *options);
 /* Default of --antialias for pictures that are not compared with POV-Ray's. */
 enum { PICTURE_ANTIALIAS = 3 };
-/* Default of --mesh-tolerance: maximum distance of triangles from the surface / the local radius. */
+/* Default of --mesh-tolerance: maximum distance of triangles from the surface / the local radius.
+ */
 #define MESHING_TOLERANCE 0.02
 
 /* Accepted ranges of --antialias, --prune-radius (mm) and --mesh-tolerance, for all commands. */

@@ -1,6 +1,6 @@
 /* Fading, outlines, halos and a graded background [scene/effects.h], drawn over the samples of a
- * shaded image. The image is rendered at `side` x `side` samples per pixel. effects_draw changes the
- * colors of the samples, and effects_reduce averages them to pixels. */
+ * shaded image. The image is rendered at `side` x `side` samples per pixel. effects_draw changes
+ * the colors of the samples, and effects_reduce averages them to pixels. */
 #ifndef CORCAST_RENDER_EFFECT_EFFECT_H
 #define CORCAST_RENDER_EFFECT_EFFECT_H
 
