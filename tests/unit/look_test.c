@@ -80,7 +80,7 @@ static void vessels_of_all_directions_gleam(void **state)
         for (int k = 0; k < TUBES; k++)
             most = fmaxf(most, gleam[k]);
         for (int k = 0; k < TUBES; k++)
-            if (gleam[k] < looks[i].least || gleam[k] < most / 2)
+            if (gleam[k] < looks[i].least || gleam[k] < most * 0.4f)
                 fail_msg("%s: the tube at %d degrees gleams by %g, the brightest by %g",
                          looks[i].name, 15 * k, (double)gleam[k], (double)most);
     }
