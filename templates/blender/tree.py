@@ -19,12 +19,17 @@ import math
 import sys
 
 import bpy
-from mathutils import Vector
 
-OPTIONS = argparse.ArgumentParser(prog="tree.py")
-OPTIONS.add_argument("--scale", type=float, default=0.001)
-OPTIONS.add_argument("--camera", action="store_true")
-ARGUMENTS, _ = OPTIONS.parse_known_args(sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else [])
+
+def arguments():
+    """The arguments after "--"."""
+    options = argparse.ArgumentParser(prog="tree.py")
+    options.add_argument("--scale", type=float, default=0.001)
+    options.add_argument("--camera", action="store_true")
+    return options.parse_known_args(sys.argv[sys.argv.index("--") + 1:] if "--" in sys.argv else [])[0]
+
+
+ARGUMENTS = arguments()
 SCALE = ARGUMENTS.scale  # metres per millimetre
 BEVEL = 6  # Bevel > Resolution: 16 sides
 ROUGHNESS = ${roughness}
@@ -79,6 +84,7 @@ ${vessels}
 
 def add_camera():
     """Adds a camera that sees the whole tree from the front, and a sun."""
+    from mathutils import Vector
     bpy.context.view_layer.update()
     corners = [each.matrix_world @ Vector(corner) for each in TREE.children for corner in each.bound_box]
     low, high = (Vector(pick(at[k] for at in corners) for k in range(3)) for pick in (min, max))

@@ -82,7 +82,7 @@ test_options_that_do_nothing_are_refused() {
     grow_tree 5
     run corcast diagram tree.swc --size 40x40 -o tree.svg
     expect_status 2
-    expect_sentence "--size is for pixels"
+    expect_sentence "--size is for images of pixels"
     run corcast diagram tree.swc --log -o tree.svg
     expect_status 2
     expect_sentence "--log needs --color-by"
