@@ -22,6 +22,10 @@
  * Reason of the value not recorded. */
 #define OPENSCAD_QUICK 100
 
+/* Significant digits of the numbers in a scene: enough for the same picture [docs/POVRAY.md], and
+ * short to read. `verify` writes all digits. */
+enum { EMIT_DIGITS = 9 };
+
 /* The content of a file. All pointers are borrowed. A member is read only by the emitters that its
  * comment names. */
 typedef struct EmitParams {

@@ -102,7 +102,9 @@ static Status begin_section(TmplExpansion *self, char mark, const char *name, si
     if (self->n_sections == MAX_SECTIONS)
         return err_set(err, STATUS_INPUT, "%s: more than %d sections are within each other",
                        self->path, MAX_SECTIONS);
-    bool is_set = value && value->text && *value->text && strcmp(value->text, "0") != 0;
+    if (value && !value->text)
+        return mem_out_of("for the value of a section of", self->path, err);
+    bool is_set = value && *value->text && strcmp(value->text, "0") != 0;
     const bool shown = is_shown(self) && is_set == (mark == '?');
     self->section[self->n_sections++] = (TmplSection){name, length, shown};
     return STATUS_OK;

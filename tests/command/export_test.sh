@@ -200,7 +200,7 @@ test_the_inc_that_is_exported_is_that_of_a_scene() {
     local options='--mesh-tolerance 0.1 --color-by flow --quiet'
     run_ok corcast grow --terminals 9 --domain ball:41 --inlet 0,41,0 --inlet 0,-41,0 --seed 7 --quiet -o t.swc
     # shellcheck disable=SC2086
-    run_ok corcast scene t.swc --model mesh $options -o mesh.pov
+    run_ok corcast scene t.swc --model mesh $options --look cast -o mesh.pov
     grep -vE '^//|^#declare Tree_M' mesh.inc >of-scene
     # shellcheck disable=SC2086
     run_ok corcast export t.swc $options -o mesh.inc

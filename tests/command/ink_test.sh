@@ -92,7 +92,7 @@ test_what_has_no_effect_on_lines_is_refused() {
     run_ok corcast grow --terminals 5 -o tree.swc
     run corcast render tree.swc --ink 0.2 -o lines.png
     expect_status 2
-    expect_sentence 'ink writes \.svg or \.pdf only'
+    expect_sentence 'ink writes \.svg, \.pdf or \.eps only'
     run corcast render tree.swc --ink 0.2 --color-by flow -o lines.svg
     expect_status 2
     expect_sentence 'color-by has no effect on a line drawing'

@@ -223,7 +223,7 @@ test_a_name_that_templates_lack_is_answered_with_those_there_are() {
     expect_sentence "^corcast render: --colormap: 'jet' is unknown; available: Dark2, .*, inferno, magma, plasma, romaO, vik or viridis"
     run corcast render "$DATA/bifurcation.swc" --look nosuch -o p.png
     expect_status 2
-    expect_sentence "--look: 'nosuch' is unknown; available: cast, clinical, .*, wax or xray"
+    expect_sentence "--look: 'nosuch' is unknown; available: atlas, cast, clinical, .*, wax or xray"
 }
 
 # A letter, black on nothing, and the same in white on black.

@@ -186,7 +186,7 @@ test_pruning_drops_thin_segments_from_the_picture() {
 test_fields_color_the_segments() {
     local field
     grow_tree 30
-    run_ok corcast render --exact tree.swc --size 80x80 -o plain.ppm
+    run_ok corcast render --exact tree.swc --size 80x80 --look data -o plain.ppm
     for field in radius flow velocity pressure wss reynolds level strahler branch; do
         run_ok corcast render --exact tree.swc --size 80x80 --color-by $field -o $field.ppm
         expect_differing 293 293 plain.ppm $field.ppm
@@ -685,7 +685,7 @@ test_a_pfm_that_fits_into_memory_goes_to_a_pipe() {
 test_a_picture_that_shows_nothing_is_warned_of() {
     local options away='--location 0,0,-5 --look-at 0,0,-9 --up 0,1,0 --height 10'
     printf '1 1 0 0 0 1 -1\n2 3 0 4 0 1 1\n' >tree.swc
-    for options in '' '--antialias 1' --exact '--background none' '--bits 16' '--planes id' '--look wax' '--look atlas'; do
+    for options in '' '--antialias 1' --exact '--background none' '--bits 16' '--planes id' '--look wax' '--look atlas --smooth off'; do
         run_ok corcast render tree.swc --size 20x20 $away $options -o a.png
         expect_sentence '^corcast: a\.png shows no vessel: the camera misses the tree, or the vessels are too small'
         run_ok corcast render tree.swc --size 20x20 $options -o a.png

@@ -139,7 +139,7 @@ test_keys_switch_model_color_projection_and_shadows() {
     press p
     press s
     press o 2
-    last_options | grep -q -e '--model isosurface .*--projection perspective.*--angle 30 --shadows on' ||
+    last_options | grep -q -e '--model isosurface .*--projection perspective.*--angle 30 .*--shadows on' ||
         fail "expected an isosurface in perspective with shadows: $(last_options)"
     shows_what_render_draws
     press 5

@@ -18,7 +18,7 @@ series() {
 expectations() {
     corcast convert tree.swc tree.segments.csv --fields all --quiet
     # shellcheck disable=SC2086
-    corcast render tree.swc $VIEW --size 640x500 --background '#fbfaf7' --quiet -o drawn.png
+    corcast render tree.swc $VIEW --look cast --size 640x500 --background '#fbfaf7' --quiet -o drawn.png
     # shellcheck disable=SC2086
     corcast render tree.swc $VIEW --size 640x500 --exact --planes id --quiet -o exact.png
     pngtopnm drawn.png >drawn.ppm

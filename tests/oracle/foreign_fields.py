@@ -574,7 +574,7 @@ def read_html(path):
     expect("fields", {"load", "radius", "strahler", "tree", "rank"} <= set(names), True)
     expect("units", [names["load"]["unit"], names["radius"]["unit"]], ["", "mm"])
     expect("whole", [names[name]["whole"] for name in ("load", "strahler", "rank")], [False, True, True])
-    expect("start", told["start"], {"field": "load", "map": "magma", "log": True, "low": 2, "high": 9})
+    expect("start", told["start"], {"field": "load", "map": "magma", "kind": "log", "low": 2, "high": 9})
     maps = {each["name"]: k for k, each in enumerate(told["maps"])}
     for name, low, high in (("viridis", LOW, HIGH), ("magma", (0, 0, 4), (252, 253, 191))):
         codes = block(f"map-{maps[name]}", "u1").reshape(-1, 3)

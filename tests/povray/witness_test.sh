@@ -85,7 +85,7 @@ test_tachyon_draws_the_ground_where_render_does() {
     printf '[vessel]\ncolor = 0.5 0.1 0.3\n[finish]\nambient = 0.23\ndiffuse = 0.61\nphong = 0\nspecular = 0\n' >plain.ini
     printf '[light key]\ndirection = -0.4 0.7 1\ncolor = 0.9 0.8 0.7\n' >>plain.ini
     printf '[ground]\nnormal = 0.2 0.1 1\ngap = 0.1\ncolor = 0.9 0.8 0.7\nambient = 0.3\ndiffuse = 0.5\n' >>plain.ini
-    set -- "$DATA/trifurcation.swc" --look ./plain.ini --shadows on --view iso --size 200x150 --quiet
+    set -- "$DATA/trifurcation.swc" --look ./plain.ini --shadows on --view iso --margin 0.4 --size 200x150 --quiet
     run_ok corcast scene "$@" -o right.tachyon
     run_ok corcast render "$@" --exact --antialias 1 -o ours.pfm
     for part in 0.99 1.01; do

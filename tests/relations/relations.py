@@ -77,6 +77,8 @@ def command(scene):
     triple = lambda v: ",".join(repr(x) for x in v)
     camera = ["--location", triple(scene.location), "--look-at", triple(scene.look_at), "--up", triple(scene.up)]
     camera += ["--projection", "perspective", "--angle", repr(scene.angle)] if scene.angle else ["--height", repr(scene.height)]
+    # A look that does not change with the extent of the tree, as one that fades does.
+    camera += [] if "--look" in scene.options else ["--look", os.path.join(GOLDEN, "red.ini")]
     return ["render", "t.swc", "--size", f"{scene.width_px}x{scene.height_px}", "--quiet", *camera, *scene.options]
 
 
@@ -230,7 +232,8 @@ class Pair:
 
 
 # Ways of drawing: engines, light, effects, samples.
-WAYS = [(), ("--shadows", "on"), ("--ao", "8"), ("--look", "studio", "--shadows", "on"), ("--look", "journal"),
+GOLDEN = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "golden")
+WAYS = [(), ("--shadows", "on"), ("--ao", "8"), ("--look", os.path.join(GOLDEN, "point.ini"), "--shadows", "on"), ("--look", "journal"),
         ("--look", "depth"), ("--look", "xray"), ("--antialias", "1"), ("--exact",), ("--color-by", "radius"),
         ("--min-width", "1.5"), ("--method", "trace"), ("--method", "zbuffer")]
 METHODS = {"trace": PRIMITIVES + ["blob"], "zbuffer": PRIMITIVES}

@@ -243,6 +243,9 @@ static bool is_shown(const Viewer *viewer, const Setting *setting, const Setting
     static const char *const framing[] = {"view", "turn", "margin", "angle", "height", NULL};
     const char *name = setting->option->name;
     bool perspective = viewer->options->projection == PROJECTION_PERSPECTIVE;
+    /* A key that shows a field keeps the look; render would take the look data. */
+    if (strcmp(name, "look") == 0 && viewer->options->coloring.field)
+        return true;
     if (is_one_of(name, always) || strcmp(name, perspective ? "angle" : "height") == 0)
         return true;
     return options_has_effect(parsed, setting->option, options_unmet(parsed)) &&

@@ -197,6 +197,7 @@ static Status put_mesh(const void *job, const char *command, FileSlot files[], E
                                .orders = made->orders.value,
                                .anatomy = emitter->has_colors ? &made->anatomy : NULL,
                                .ends = &made->ends,
+                               .digits = EMIT_DIGITS,
                                .command = command};
     if (emitter->of_meshes)
         TRY(put_beside(made, files, err));

@@ -162,10 +162,6 @@ void sceneresult_release(SceneResult *scene)
 
 /* ---- its files ------------------------------------------------------------------------------- */
 
-/* Significant digits of the numbers in a scene: enough for the same picture [docs/POVRAY.md], and
- * short to read. `verify` writes all digits. */
-enum { SCENE_DIGITS = 9 };
-
 /* A scene that is written. All pointers are borrowed. */
 typedef struct SceneWriting {
     const SceneOptions *options;
@@ -182,7 +178,7 @@ static Status put_scene(const void *job, const char *command, FileSlot files[], 
                                .anatomy = &made->anatomy,
                                .command = command,
                                .antialias = picture->antialias,
-                               .digits = SCENE_DIGITS,
+                               .digits = EMIT_DIGITS,
                                .shadows = picture->stage.shadows,
                                .occlusion = picture->occlusion > 0,
                                .ids = writing->options->ids,

@@ -408,7 +408,7 @@ static Status fill_page(Figure *figure, Err *err)
         if (figure->plan.sections[i]->kind == SECTION_TEXT)
             TRY(put_text(figure, figure->plan.sections[i], err));
     TRY(figure_check(&figure->sheet.page, err));
-    sheet_say(&figure->sheet, figure->parsed->common.talk);
+    TRY(sheet_say(&figure->sheet, figure->parsed->common.talk, err));
     say_images(figure);
     return say_panels(figure, err);
 }

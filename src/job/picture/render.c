@@ -164,7 +164,7 @@ static Status fill_sheet(Rendering *r, Err *err)
     TRY(status);
     const FigureBox whole = {0, 0, page->width_mm, page->height_mm};
     TRY(annotation_put(&r->options->annotation, &r->scene, whole, page, err));
-    sheet_say(&r->sheet, r->parsed->common.talk);
+    TRY(sheet_say(&r->sheet, r->parsed->common.talk, err));
     page->inks = r->press.inks;
     r->form.page = page;
     r->form.notes = &r->sheet.notes;

@@ -28,22 +28,24 @@ Status sheet_describe(Sheet *sheet, Text *description, const char *command, Err 
     return STATUS_OK;
 }
 
-void sheet_say(const Sheet *sheet, const Talk *talk)
+Status sheet_say(const Sheet *sheet, const Talk *talk, Err *err)
 {
-    enum { WARNINGS = 3 };
-    Text warnings[WARNINGS] = {TEXT_INIT}, fallback = TEXT_INIT;
-    figure_put_missing(&sheet->page, true, &warnings[0]);
-    figure_put_unclosed(&sheet->page, &warnings[1]);
-    figure_put_collisions(&sheet->page, &warnings[2]);
-    figure_put_missing(&sheet->page, false, &fallback);
-    for (int i = 0; i < WARNINGS; i++) {
-        if (warnings[i].length)
-            talk_warn(talk, "%s", text_chars(&warnings[i]));
-        text_release(&warnings[i]);
-    }
-    if (fallback.length)
-        talk_note(talk, "%s", text_chars(&fallback));
-    text_release(&fallback);
+    enum { MISSING, UNCLOSED, COLLISIONS, FALLBACK, SENTENCES };
+    Text said[SENTENCES] = {TEXT_INIT};
+    Status status = STATUS_OK;
+    figure_put_missing(&sheet->page, true, &said[MISSING]);
+    figure_put_unclosed(&sheet->page, &said[UNCLOSED]);
+    figure_put_collisions(&sheet->page, &said[COLLISIONS]);
+    figure_put_missing(&sheet->page, false, &said[FALLBACK]);
+    for (int i = 0; i < SENTENCES; i++)
+        TRY_GOTO(text_check(&said[i], err));
+    for (int i = 0; i < SENTENCES; i++)
+        if (said[i].length)
+            (i == FALLBACK ? talk_note : talk_warn)(talk, "%s", text_chars(&said[i]));
+done:
+    for (int i = 0; i < SENTENCES; i++)
+        text_release(&said[i]);
+    return status;
 }
 
 void sheet_release(Sheet *sheet)
