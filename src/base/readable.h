@@ -18,8 +18,8 @@ const char *number_readable(double value, int digits, char out[READABLE_SIZE]);
 const char *power_readable(int exponent, char out[READABLE_SIZE]);
 /* Appends a unit: "mm^-3" and "mm-3" as "mm⁻³", "um" as "µm", "ul/min" as "µl/min". */
 void text_unit(Text *text, const char *unit);
-/* Appends a text with the letters of this module as ASCII: "1.4x10^9" and "um". Other characters
- * stay as they are. */
+/* Appends a text with the letters of this module as ASCII: "1.4x10^9" and "um". Copies all other
+ * characters. */
 void text_plain(Text *text, const char *chars);
 
 #endif

@@ -13,8 +13,8 @@ extern const char help_exit_status[];
 /* Three commands for a new user, each with a comment and a newline. */
 extern const char help_first_steps[];
 
-/* Appends one line: the commands that take `--json FILE`, and those that take `--json` without a
- * value. `text` fails if memory runs out. */
+/* Appends one line that names two groups of commands: `--json FILE` writes a file, and `--json`
+ * without a value prints JSON. `text` fails if memory runs out. */
 void help_put_json_rule(Text *text);
 /* Appends the option's help, the accepted values, and the value or phrase that applies if the
  * option is not given. `plain` has the default value. `text` fails if memory runs out. */

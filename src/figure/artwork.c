@@ -1,7 +1,7 @@
 /* A page of PDF is drawn by poppler-glib, and an SVG by librsvg. Both draw on a context of cairo,
- * so that lines stay lines and letters stay letters. The two libraries and those that they need are
- * large, so they are loaded only when a figure needs them. They abort the process when memory runs
- * out. All drawing is therefore done in child processes. */
+ * so that lines stay lines and letters stay letters. Both libraries need many
+ * others, so a figure loads them only if it has such a panel. They abort the process when memory
+ * runs out. All drawing is therefore done in child processes. */
 #include "figure/artwork.h"
 
 #include <cairo-svg.h>

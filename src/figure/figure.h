@@ -193,9 +193,12 @@ void figure_add_strokes(FigurePage *page, const Strokes *strokes, FigurePoint at
 void figure_add_bars(FigurePage *page, const FigureBars *bars, FigurePoint at, double width_mm,
                      double height_mm);
 
-/* Appends a picture of another program, borrowed, that fills the box. A PDF, SVG or EPS holds the
- * vectors of a vector picture, and the pixels of the others as they are. */
+/* Appends a picture of another program, borrowed, that fills the box. In a PDF, SVG
+ * or EPS a vector picture stays vectors, and a picture of pixels keeps its pixels. */
 void figure_add_artwork(FigurePage *page, const FigureArtwork *artwork, FigureBox box);
+
+/* The markup of texts, as the help of options describes it. */
+#define FIGURE_MARKUP "*r* is italic, _{w} a subscript, ^{-3} a superscript"
 
 /* A line of text. It may have markup, which every text of a page has in the same form:
  *
@@ -217,9 +220,9 @@ void figure_add_text(FigurePage *page, const FigureText *text);
 
 /* Errors: STATUS_MEMORY if an item could not be added. */
 MUST_CHECK Status figure_check(const FigurePage *page, Err *err);
-/* Appends a sentence that lists the characters of the page that Liberation Sans lacks: if `boxed`,
- * those that no font has, else those that are drawn in DejaVu Sans. Appends nothing if there are
- * none. */
+/* Appends a sentence that lists characters of the page that Liberation Sans lacks. With `boxed` the
+ * sentence lists the characters that no font has, otherwise the characters that DejaVu Sans has.
+ * Appends nothing if the list is empty. */
 void figure_put_missing(const FigurePage *page, bool boxed, Text *out);
 
 /* Appends a sentence about the first text with a group that is not closed. Appends nothing if there

@@ -1,4 +1,4 @@
-/* The curve of a segment is a cubic Hermite curve. Its derivative at a node is that of a
+/* The curve of a segment is a cubic Hermite curve. At a node it has the derivative of a
  * centripetal Catmull-Rom spline through the previous node, the node and the next node of the main
  * path. Its component along the segment is never negative and at most twice the segment's length,
  * and its component across the segment is at most the length. A curve therefore never turns back,
@@ -35,7 +35,7 @@ typedef struct Smoother {
     const Tree *tree;
     Coincidence found;
     /* Per node that represents a junction: the thickest segment that ends there, and the main
-     * segment of those that start there; -1: none. Owned. */
+     * one of the segments that start there; -1: none. Owned. */
     int32_t *incoming, *main;
     /* Per node: points of curves nearer than this are left out, to make space for joints; 0: none.
      * Owned. */

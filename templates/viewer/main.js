@@ -111,7 +111,7 @@ function haze() { return dark.matches ? 0.25 : 0.45; }
 
 const named = (list, name) => list.find((item) => item.name === name);
 
-// Returns colors as they are shown: on a dark background lighter.
+// Returns the colors that the page shows. On a dark background they are lighter than those of the map.
 function visible(bytes) { return ground === null ? bytes : lifted(bytes, ground); }
 
 // Returns the field's scale of the kind that was selected, else of the kind that shows the field best. The scale with

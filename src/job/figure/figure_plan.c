@@ -17,7 +17,7 @@ static const Option panel_rows[] = {
      .help = "tree file that the panel shows"},
     {.name = "title",
      SETS(TEXT, PanelOptions, title),
-     .help = "line of text above the panel; *r* is italic, _{w} a subscript, ^{-3} a superscript"},
+     .help = "line of text above the panel; " FIGURE_MARKUP},
     {.name = "image",
      SETS(TEXT, PanelOptions, image),
      .otherwise = "",
@@ -81,9 +81,7 @@ static const char *const aligns[] = {
     [ALIGN_LEFT] = "left", [ALIGN_CENTER] = "center", [ALIGN_RIGHT] = "right", NULL};
 
 static const Option text_rows[] = {
-    {.name = "text",
-     SETS(TEXT, TextOptions, text),
-     .help = "one line of text; *r* is italic, _{w} a subscript, ^{-3} a superscript"},
+    {.name = "text", SETS(TEXT, TextOptions, text), .help = "one line of text; " FIGURE_MARKUP},
     {.name = "at",
      SETS(VECTOR, TextOptions, at),
      GIVEN(TextOptions, has_at),

@@ -30,7 +30,7 @@ static const Option legend_rows[] = {
      .argument = "TEXT",
      .otherwise = "name and unit of the field",
      .needs = "legend",
-     .help = "text above the legend; *r* is italic, _{w} a subscript, ^{-3} a superscript"},
+     .help = "text above the legend; " FIGURE_MARKUP},
     {.name = "text-size",
      SETS(NUMBER, Annotation, text_pt),
      FROM_TO(1, 1000),

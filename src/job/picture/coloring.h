@@ -88,11 +88,10 @@ typedef struct ColoredTree {
 MUST_CHECK Status coloring_appearance(const Coloring *coloring, const ColoredTree *tree,
                                       const Look *look, Appearance *appearance, Err *err);
 
-/* Sets the colors of the vessels from the look's color of the thinnest vessels to that of the
- * thickest, by the logarithm of the radius. The thinnest 2 % of the segments have one color. If no
- * segment has a radius, or if more segments meet at a node than POV-Ray can color, all have the
- * look's color. The appearance has no meaning that a legend
- * would show.
+/* Colors the vessels by the logarithm of the radius: the thickest have the look's `color`, the
+ * thinnest 2 % the look's `tips`. If no segment has a radius, or if more segments meet at a node
+ * than POV-Ray can color, all vessels have the look's `color`. The appearance has no meaning that a
+ * legend would show.
  *
  * appearance  set on success; release it with appearance_release.
  * Errors      STATUS_MEMORY. */

@@ -18,7 +18,7 @@
 #include "image/image.h"
 #include "options/files.h"
 
-/* Returns true if the extension of `path` is that of a page: .pdf, .eps or .svg. */
+/* Returns true if `path` ends in .pdf, .eps or .svg, the formats of pages. */
 bool frames_is_page(const char *path);
 /* Writes a page as PDF or EPS if `path` ends in .pdf or .eps, otherwise as SVG. Errors: as
  * figure_write_pdf and figure_put_svg; STATUS_IO. */

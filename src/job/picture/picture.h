@@ -108,8 +108,8 @@ MUST_CHECK Status picture_check_povray(const PictureOptions *options, Err *err);
 typedef struct PictureTree {
     const char *path;  /* the tree's file, for messages; borrowed from the Parsed */
     Tree tree;         /* without pruned segments; owned */
-    Tree whole;        /* with pruned segments; owned. Only stored if the range of colors is that of
-                        * the whole tree (RANGE_OF_TREE); else zeroed, and n is 0 */
+    Tree whole;        /* with pruned segments; owned. Only stored if the range of colors includes
+                        * pruned segments (RANGE_OF_TREE); else zeroed, and n is 0 */
     char *joined;      /* if --color-by names a file of values: the name of the tree's column that
                         * the values were read into; else NULL. Owned */
     size_t pruned;     /* number of segments that were pruned */
