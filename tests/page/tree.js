@@ -277,6 +277,7 @@ async function checkContrast() {
   for (let y = 2; y < expected.height - 2; y++)
     for (let x = 2; x < expected.width - 2; x++) if (lonelyId(ids, x, y, 1) > 0) inside.push([x, y]);
   await browser.send("Emulation.setEmulatedMedia", { features: [{ name: "prefers-color-scheme", value: "dark" }] });
+  await browser.open("about:blank"); // the page is loaded again, in the dark from its beginning
   await browser.open(expected.page, "field=wss&shade=off&panels=off&" + expected.address);
   // A computer with much to do shows the page late.
   for (let patience = 40; patience > 0 && luminance(at(await picture(), 2, 2)) > 0.5; patience--) await settled();
