@@ -22,17 +22,16 @@ static const double tissue_time_s = 0.287, part_compliance = 0.124;
 
 /* ---- lumped models --------------------------------------------------------------------------- */
 
-/* Total resistance of the outlet at node i, Pa s/mm^3. */
-static double total_resistance(const Pulse *pulse, size_t i, double outflow)
+double pulse_outlet_resistance(const Pulse *pulse, size_t i)
 {
     return (pa_from_mmhg(pulse->pressure[i]) - pulse->params.venous_pa) /
-           mm3_s_from_ml_min(outflow);
+           mm3_s_from_ml_min(pulse->outflow[i]);
 }
 
-PulseLumped pulse_lumped(const Pulse *pulse, size_t i, double outflow)
+PulseLumped pulse_lumped(const Pulse *pulse, size_t i)
 {
     const PulseParams *params = &pulse->params;
-    const double total = total_resistance(pulse, i, outflow), radius = params->tree->radius_mm[i];
+    const double total = pulse_outlet_resistance(pulse, i), radius = params->tree->radius_mm[i];
     const double stiffness = pulse_wall_stiffness(&params->wall, radius);
     const double speed = stiffness > 0 ? sqrt(stiffness / (1.5 * BLOOD_DENSITY_G_MM3)) : HUGE_VAL;
     if (params->given && !isnan(params->given[i].rp))
@@ -48,26 +47,30 @@ static PairC lumped_admittance(const PulseLumped *lumped, Pair omega)
     return pairc_inverse(z);
 }
 
-/* An outlet whose small vessels the tissue presses. *source receives J in q = Y p - J. */
-static PairC pressed_admittance(double total, const PairFrequency *at, PairC tissue, PairC *source)
+PulsePressed pulse_pressed(double total)
 {
-    const double before = part_before * total, within = part_within * total,
-                 behind = part_behind * total;
-    const double parallel = behind * (before + within) / (behind + before + within);
-    const double compliance = tissue_time_s / parallel;
+    PulsePressed made = {part_before * total, part_within * total, part_behind * total, 0, 0};
+    const double parallel = made.behind * (made.before + made.within) / total;
+    made.compliance = tissue_time_s / parallel;
+    made.arterial = part_compliance * made.compliance;
+    return made;
+}
+
+/* *source receives J in q = Y p - J. `tissue` is the pressure of the tissue. */
+static PairC pressed_admittance(const PulsePressed *at, Pair omega, PairC tissue, PairC *source)
+{
     const Pair none = {0};
-    PairC y2 = {none + 1 / behind, at->omega * compliance};
-    PairC j2 = pairc_mul((PairC){none, at->omega * compliance}, tissue);
-    PairC z1 = pairc_inverse(y2);
-    z1.re += within;
-    PairC y1 = pairc_inverse(z1), j1 = pairc_scale(y2, none + within);
+    PairC y2 = {none + 1 / at->behind, omega * at->compliance};
+    PairC j2 = pairc_mul((PairC){none, omega * at->compliance}, tissue);
+    PairC z1 = pairc_inverse(y2), j1 = pairc_scale(y2, none + at->within);
+    z1.re += at->within;
     j1.re += 1;
-    j1 = pairc_mul(j2, pairc_inverse(j1));
-    y1.im += at->omega * (part_compliance * compliance);
-    PairC z = pairc_inverse(y1), j = pairc_scale(y1, none + before);
-    z.re += before;
+    PairC y1 = pairc_inverse(z1);
+    y1.im += omega * at->arterial;
+    PairC z = pairc_inverse(y1), j = pairc_scale(y1, none + at->before);
+    z.re += at->before;
     j.re += 1;
-    *source = pairc_mul(j1, pairc_inverse(j));
+    *source = pairc_mul(j2, pairc_inverse(pairc_mul(j1, j)));
     return pairc_inverse(z);
 }
 
@@ -143,15 +146,14 @@ Status pulse_structured(const PulseParams *params, double radius_mm, double visc
 
 typedef struct Outlets {
     Pulse *pulse;
-    const double *outflow;
     size_t *node, n; /* the outlets, by rising radius and viscosity; owned */
     double largest_radius;
 } Outlets;
 
-static Status check_outlet(const Pulse *pulse, size_t i, double outflow, Err *err)
+static Status check_outlet(const Pulse *pulse, size_t i, Err *err)
 {
     const PulseParams *params = &pulse->params;
-    if (total_resistance(pulse, i, outflow) > 0)
+    if (pulse_outlet_resistance(pulse, i) > 0)
         return STATUS_OK;
     return err_set(err, STATUS_INPUT,
                    "the outlet at node %d has a mean pressure of %g mmHg, which is not above the "
@@ -164,9 +166,9 @@ static Status list_outlets(Outlets *outlets, Err *err)
     const Pulse *pulse = outlets->pulse;
     TRY(mem_calloc(&outlets->node, pulse->n, sizeof *outlets->node, "outlets", err));
     for (size_t i = 0; i < pulse->n; i++) {
-        if (!(outlets->outflow[i] > 0))
+        if (!(pulse->outflow[i] > 0))
             continue;
-        TRY(check_outlet(pulse, i, outlets->outflow[i], err));
+        TRY(check_outlet(pulse, i, err));
         outlets->node[outlets->n++] = i;
         outlets->largest_radius = fmax(outlets->largest_radius, pulse->params.tree->radius_mm[i]);
     }
@@ -234,12 +236,12 @@ static void set_lumped(const Outlets *outlets, size_t block)
     const PairFrequency at = pairfrequency(first, pulse->period_s, 0);
     for (size_t k = 0; k < outlets->n; k++) {
         const size_t i = outlets->node[k];
-        const double outflow = outlets->outflow[i];
-        const PulseLumped lumped = pulse_lumped(pulse, i, outflow);
+        const PulseLumped lumped = pulse_lumped(pulse, i);
+        const PulsePressed pressed = pulse_pressed(pulse_outlet_resistance(pulse, i));
         PairC source = pairc(0, 0);
-        PairC y = params->tissue ? pressed_admittance(total_resistance(pulse, i, outflow), &at,
-                                                      tissue_of(params, first), &source)
-                                 : lumped_admittance(&lumped, at.omega);
+        PairC y = params->tissue
+                      ? pressed_admittance(&pressed, at.omega, tissue_of(params, first), &source)
+                      : lumped_admittance(&lumped, at.omega);
         set(waves_at(outlets, block, i), y, source);
     }
 }
@@ -254,11 +256,11 @@ static Status set_block(size_t block, int worker, void *context, Err *err)
     return STATUS_OK;
 }
 
-Status pulse_set_outlets(Pulse *pulse, const double *outflow, Err *err)
+Status pulse_set_outlets(Pulse *pulse, Err *err)
 {
     const PulseParams *params = &pulse->params;
     const size_t blocks = ((size_t)params->harmonics + PAIR - 1) / PAIR;
-    Outlets outlets = {.pulse = pulse, .outflow = outflow};
+    Outlets outlets = {.pulse = pulse};
     Status status = list_outlets(&outlets, err);
     if (status == STATUS_OK && params->outlet == PULSE_STRUCTURED)
         qsort_r(outlets.node, outlets.n, sizeof *outlets.node, by_radius, params->tree->radius_mm);

@@ -98,6 +98,7 @@ typedef struct Pulse {
     size_t n;                /* number of nodes */
     double *flow, *pressure; /* per node: the steady solution, ml/min and mmHg; roots have the sum
                               * of what leaves them, and the pressure of the inlet */
+    double *outflow;         /* per node: the part of the flow that leaves the tree there, ml/min */
     double *viscosity;       /* per node: Pa s */
     PulseVessel *vessel;     /* per node; roots have zeros */
     PulseWaves *waves;       /* waves[k / PULSE_LANES * n + i]: harmonic k + 1 at node i */

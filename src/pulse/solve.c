@@ -23,15 +23,16 @@ static Status derive(const PulseParams *params, const char *name, double **value
 }
 
 /* Roots get the sum of what leaves them, and the pressure of the inlet. */
-static void fill_roots(const PulseParams *params, const double *outflow, Pulse *pulse)
+static void fill_roots(Pulse *pulse)
 {
+    const PulseParams *params = &pulse->params;
     const Tree *tree = params->tree;
     const TreeMeta *source =
         params->overrides->known[META_P_PERF] ? params->overrides : &tree->meta;
     for (size_t i = 0; i < tree->n; i++) {
         if (tree_is_segment(tree, i))
             continue;
-        pulse->flow[i] = outflow[i];
+        pulse->flow[i] = pulse->outflow[i];
         pulse->pressure[i] = source->number[META_P_PERF];
     }
     for (size_t i = 0; i < tree->n; i++)
@@ -40,16 +41,17 @@ static void fill_roots(const PulseParams *params, const double *outflow, Pulse *
 }
 
 /* Computes the flow that leaves the tree at each node, ml/min. */
-Status pulse_outflow(const PulseParams *params, double **outflow, Err *err)
+static Status find_outflow(Pulse *pulse, Err *err)
 {
+    const PulseParams *params = &pulse->params;
     const TreeMeta *source =
         params->overrides->known[META_Q_PERF] ? params->overrides : &params->tree->meta;
     double total = 0;
-    TRY(tree_flow_shares(params->tree, outflow, err));
-    for (size_t i = 0; i < params->tree->n; i++)
-        total += (*outflow)[i];
-    for (size_t i = 0; i < params->tree->n; i++)
-        (*outflow)[i] = total > 0 ? (*outflow)[i] * source->number[META_Q_PERF] / total : 0;
+    TRY(tree_flow_shares(params->tree, &pulse->outflow, err));
+    for (size_t i = 0; i < pulse->n; i++)
+        total += pulse->outflow[i];
+    for (size_t i = 0; i < pulse->n; i++)
+        pulse->outflow[i] = total > 0 ? pulse->outflow[i] * source->number[META_Q_PERF] / total : 0;
     return STATUS_OK;
 }
 
@@ -219,7 +221,7 @@ static Status check_finite(const Pulse *pulse, Err *err)
 
 /* ---- the whole ------------------------------------------------------------------------------- */
 
-static Status solve(Pulse *pulse, double **outflow, Err *err)
+static Status solve(Pulse *pulse, Err *err)
 {
     const PulseParams *params = &pulse->params;
     const Tree *tree = params->tree;
@@ -227,22 +229,20 @@ static Status solve(Pulse *pulse, double **outflow, Err *err)
     TRY(derive(params, "flow", &pulse->flow, err));
     TRY(derive(params, "pressure", &pulse->pressure, err));
     TRY(derive_viscosity(tree, params->overrides, &pulse->viscosity, err));
-    TRY(pulse_outflow(params, outflow, err));
-    fill_roots(params, *outflow, pulse);
+    TRY(find_outflow(pulse, err));
+    fill_roots(pulse);
     TRY(make_vessels(pulse, err));
     TRY(mem_check((double)blocks * (double)tree->n * sizeof *pulse->waves, "the waves", err));
     TRY(mem_calloc(&pulse->waves, blocks * tree->n, sizeof *pulse->waves, "waves", err));
-    TRY(pulse_set_outlets(pulse, *outflow, err));
+    TRY(pulse_set_outlets(pulse, err));
     threads_for(blocks, params->threads, solve_pair, pulse);
     return check_finite(pulse, err);
 }
 
 Status pulse_solve(const PulseParams *params, Pulse *pulse, Err *err)
 {
-    double *outflow = NULL;
     *pulse = (Pulse){.params = *params, .n = params->tree->n, .period_s = params->drive->period_s};
-    Status status = solve(pulse, &outflow, err);
-    free(outflow);
+    Status status = solve(pulse, err);
     if (status != STATUS_OK)
         pulse_release(pulse);
     return status;
@@ -252,6 +252,7 @@ void pulse_release(Pulse *pulse)
 {
     free(pulse->flow);
     free(pulse->pressure);
+    free(pulse->outflow);
     free(pulse->viscosity);
     free(pulse->vessel);
     free(pulse->waves);

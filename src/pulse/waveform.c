@@ -38,6 +38,8 @@ static Status check_samples(const double *times, const double *values, size_t n,
 Status waveform_sample(const double *times, const double *values, size_t n, int harmonics,
                        Waveform *out, Err *err)
 {
+    if (harmonics == 0)
+        harmonics = n > 2 * WAVEFORM_HARMONICS ? WAVEFORM_HARMONICS : ((int)n - 1) / 2;
     TRY(check_samples(times, values, n, harmonics, err));
     Waveform made = {.period_s = times[n - 1] - times[0], .harmonics = harmonics};
     for (size_t i = 0; i + 1 < n; i++) {

@@ -5,7 +5,7 @@
 #include "base/base.h"
 #include <stdbool.h>
 
-enum { WAVEFORM_MAX_HARMONICS = 64, WAVEFORM_MAX_TEXT = 200 };
+enum { WAVEFORM_MAX_HARMONICS = 64, WAVEFORM_HARMONICS = 16, WAVEFORM_MAX_TEXT = 200 };
 
 /* x(t) = mean + sum over k of Re(c_k exp(2 pi j k t / T)), c_k = re[k] + j im[k]. */
 typedef struct Waveform {
@@ -20,7 +20,8 @@ typedef struct Waveform {
  * so coarse samples do not alias.
  *
  * times      s, rising; the period is from the first to the last.
- * harmonics  are computed, in [1, WAVEFORM_MAX_HARMONICS].
+ * harmonics  are computed, in [1, WAVEFORM_MAX_HARMONICS]. 0: WAVEFORM_HARMONICS, or as many as the
+ *            samples allow.
  * Errors     STATUS_INPUT if there are fewer than 3 samples, fewer than 2 per harmonic, times that
  *            do not rise, or a last value that differs from the first by more than 1 % of the
  * range. The sentence names no file. */
