@@ -160,34 +160,70 @@ Status pulse_course(const Pulse *pulse, PulseField field, size_t frames, double 
 
 /* ---- cycles ---------------------------------------------------------------------------------- */
 
+enum { HALF = PULSE_SAMPLES / 2 };
+
+/* cos and sin of 2 pi k m / PULSE_SAMPLES, of all m up to half a cycle at one k together. */
+typedef struct Turns {
+    double cos[HALF + 1], sin[HALF + 1];
+} Turns;
+
 typedef struct Cycles {
     const Pulse *pulse;
-    const Phasor *table;
+    const Turns *turns; /* per harmonic; owned by pulse_cycles */
     PulseCycle *cycle;
 } Cycles;
 
-static void find_range(const Spectrum *spectrum, const Phasor *table, double range[2])
+/* Computes the samples of a field. Moments m and PULSE_SAMPLES - m have the same cosines, and
+ * opposite sines. */
+static void find_samples(const Spectrum *spectrum, const Turns *turns, double x[PULSE_SAMPLES])
 {
-    range[0] = HUGE_VAL;
-    range[1] = -HUGE_VAL;
-    for (int m = 0; m < PULSE_SAMPLES; m++) {
-        const double x = value_at(spectrum, table + m * spectrum->harmonics);
-        range[0] = fmin(range[0], x);
-        range[1] = fmax(range[1], x);
+    double even[HALF + 1] = {0}, odd[HALF + 1] = {0};
+    for (int k = 0; k < spectrum->harmonics; k++)
+        for (int m = 0; m <= HALF; m++) {
+            even[m] += spectrum->at[k].re * turns[k].cos[m];
+            odd[m] += spectrum->at[k].im * turns[k].sin[m];
+        }
+    for (int m = 0; m <= HALF; m++) {
+        x[m] = spectrum->mean + (even[m] - odd[m]);
+        x[(PULSE_SAMPLES - m) % PULSE_SAMPLES] = spectrum->mean + (even[m] + odd[m]);
     }
 }
 
-static void find_shear(const Spectrum *spectrum, const Phasor *table, PulseCycle *cycle)
+static void find_range(const Spectrum *spectrum, const Turns *turns, double range[2])
 {
-    double sum = 0, sizes = 0;
+    double x[PULSE_SAMPLES];
+    find_samples(spectrum, turns, x);
+    range[0] = range[1] = x[0];
+    for (int m = 1; m < PULSE_SAMPLES; m++) {
+        range[0] = x[m] < range[0] ? x[m] : range[0];
+        range[1] = x[m] > range[1] ? x[m] : range[1];
+    }
+}
+
+static void find_shear(const Spectrum *spectrum, const Turns *turns, PulseCycle *cycle)
+{
+    double x[PULSE_SAMPLES], sum = 0, sizes = 0;
+    find_samples(spectrum, turns, x);
     for (int m = 0; m < PULSE_SAMPLES; m++) {
-        const double x = value_at(spectrum, table + m * spectrum->harmonics);
-        sum += x;
-        sizes += fabs(x);
+        sum += x[m];
+        sizes += fabs(x[m]);
     }
     cycle->wss_mean = spectrum->mean;
     cycle->tawss = sizes / PULSE_SAMPLES;
-    cycle->osi = sizes > 0 ? 0.5 * (1 - fabs(sum) / sizes) : 0;
+    cycle->osi = sizes > 0 ? fmax(0.5 * (1 - fabs(sum) / sizes), 0) : 0;
+}
+
+/* The range of the area follows from that of pressure, unless the wall is viscous. */
+static double find_strain(const Cycles *cycles, size_t i, double stiffness)
+{
+    const double *pressure = cycles->cycle[i].pressure;
+    Spectrum spectrum;
+    double dilation[2];
+    if (!(cycles->pulse->params.wall_time_s > 0))
+        return stiffness > 0 ? 1.5 * pa_from_mmhg(pressure[1] - pressure[0]) / stiffness : 0;
+    make_spectrum(cycles->pulse, PULSE_DILATION, i, &spectrum);
+    find_range(&spectrum, cycles->turns, dilation);
+    return 2 * (dilation[1] - dilation[0]);
 }
 
 static void find_cycle(const Cycles *cycles, size_t i)
@@ -197,16 +233,13 @@ static void find_cycle(const Cycles *cycles, size_t i)
     const double radius = pulse->params.tree->radius_mm[i];
     const double stiffness = pulse_wall_stiffness(&pulse->params.wall, radius);
     Spectrum spectrum;
-    double dilation[2];
     make_spectrum(pulse, PULSE_PRESSURE, i, &spectrum);
-    find_range(&spectrum, cycles->table, cycle->pressure);
+    find_range(&spectrum, cycles->turns, cycle->pressure);
     make_spectrum(pulse, PULSE_FLOW, i, &spectrum);
-    find_range(&spectrum, cycles->table, cycle->flow);
+    find_range(&spectrum, cycles->turns, cycle->flow);
     make_spectrum(pulse, PULSE_WSS, i, &spectrum);
-    find_shear(&spectrum, cycles->table, cycle);
-    make_spectrum(pulse, PULSE_DILATION, i, &spectrum);
-    find_range(&spectrum, cycles->table, dilation);
-    cycle->strain = 2 * (dilation[1] - dilation[0]);
+    find_shear(&spectrum, cycles->turns, cycle);
+    cycle->strain = find_strain(cycles, i, stiffness);
     cycle->alpha = sqrt(FULL_TURN / pulse->period_s * pulse->vessel[i].womersley_s);
     cycle->wave_speed =
         stiffness > 0 ? sqrt(stiffness / (1.5 * BLOOD_DENSITY_G_MM3)) * 1e-3 : HUGE_VAL;
@@ -245,18 +278,29 @@ static void find_delays(const Pulse *pulse, PulseCycle *cycle)
             cycle[i].delay_ms = NAN;
 }
 
+static void make_turns(int harmonics, Turns *turns)
+{
+    for (int k = 0; k < harmonics; k++)
+        for (int m = 0; m <= HALF; m++) {
+            const double angle = FULL_TURN * ((k + 1) * m % PULSE_SAMPLES) / PULSE_SAMPLES;
+            turns[k].cos[m] = elementary_cos(angle);
+            turns[k].sin[m] = elementary_sin(angle);
+        }
+}
+
 Status pulse_cycles(const Pulse *pulse, int threads, PulseCycle **out, Err *err)
 {
-    Phasor *table = NULL;
+    Turns *turns = NULL;
     PulseCycle *cycle = NULL;
     Status status = STATUS_OK;
-    TRY_GOTO(make_table(pulse, PULSE_SAMPLES, &table, err));
+    TRY_GOTO(mem_calloc(&turns, (size_t)pulse->params.harmonics, sizeof *turns, "moments", err));
     TRY_GOTO(mem_calloc(&cycle, pulse->n, sizeof *cycle, "cycles", err));
-    Cycles cycles = {pulse, table, cycle};
+    make_turns(pulse->params.harmonics, turns);
+    Cycles cycles = {pulse, turns, cycle};
     threads_for(chunks_of(pulse), threads, cycles_chunk, &cycles);
     find_delays(pulse, cycle);
     *out = cycle;
 done:
-    free(table);
+    free(turns);
     return status;
 }
