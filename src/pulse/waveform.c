@@ -8,8 +8,9 @@
 
 /* ---- samples --------------------------------------------------------------------------------- */
 
+/* *range receives the largest minus the smallest value. */
 static Status check_samples(const double *times, const double *values, size_t n, int harmonics,
-                            Err *err)
+                            double *range, Err *err)
 {
     double low = values[0], high = values[0];
     if (n < 3)
@@ -22,7 +23,8 @@ static Status check_samples(const double *times, const double *values, size_t n,
         low = fmin(low, values[i]);
         high = fmax(high, values[i]);
     }
-    if (!(fabs(values[n - 1] - values[0]) <= 0.01 * (high - low)))
+    *range = high - low;
+    if (!(fabs(values[n - 1] - values[0]) <= 0.01 * *range))
         return err_set(err, STATUS_INPUT,
                        "the cycle is not closed: it begins at %g and ends at %g; the difference "
                        "may be at most 1 %% of the range",
@@ -40,7 +42,8 @@ Status waveform_sample(const double *times, const double *values, size_t n, int 
 {
     if (harmonics == 0)
         harmonics = n > 2 * WAVEFORM_HARMONICS ? WAVEFORM_HARMONICS : ((int)n - 1) / 2;
-    TRY(check_samples(times, values, n, harmonics, err));
+    double range = 0;
+    TRY(check_samples(times, values, n, harmonics, &range, err));
     Waveform made = {.period_s = times[n - 1] - times[0], .harmonics = harmonics};
     for (size_t i = 0; i + 1 < n; i++) {
         const double end = i + 2 == n ? values[0] : values[i + 1];
@@ -54,7 +57,7 @@ Status waveform_sample(const double *times, const double *values, size_t n, int 
             made.im[k] -= scale * (elementary_sin(b) - elementary_sin(a));
         }
     }
-    if (!(fabs(made.mean) > 0 && isfinite(made.mean)))
+    if (!(fabs(made.mean) > 1e-9 * range && isfinite(made.mean)))
         return err_set(err, STATUS_INPUT, "the mean of the waveform is %g; it may not be 0",
                        made.mean);
     *out = made;

@@ -137,10 +137,12 @@ static const Option rows[] = {
      SETS(NUMBER, PulsingOptions, exaggerate),
      FROM_TO(0, 1000),
      .group = GROUP_ANIMATION,
+     .when = WHEN(ANIMATED),
      .help = "films and scenes: factor of the change of the radius that is drawn"},
     {.name = "look",
      SETS(TEXT, PulsingOptions, look),
      .group = GROUP_ANIMATION,
+     .when = WHEN(ANIMATED),
      .argument = "NAME",
      .list = "looks",
      .otherwise = "",
@@ -150,6 +152,7 @@ static const Option rows[] = {
      SETS(SIZE, PulsingOptions, size),
      FROM_TO(1, 100000),
      .group = GROUP_ANIMATION,
+     .when = WHEN(ANIMATED),
      .argument = "WxH",
      .help = "films and scenes: size of the picture, pixels"},
 };
@@ -206,7 +209,7 @@ static Status check_output(const PulsingOptions *options, Err *err)
                        "-o: '%.80s' must end in .csv, .json, .pov, .png, .pvd or the extension of "
                        "a format of trees",
                        path);
-    if (kind != PULSING_TREE)
+    if (kind != PULSING_TREE || strcasecmp(file_extension(path), "pvd") == 0)
         return STATUS_OK;
     TRY(tree_format_check(path, err));
     if (!tree_format_stores(path, &column))
