@@ -29,6 +29,7 @@ enum { OBEYS_ALL = OBEYS_RUN | OBEYS_THREADS | OBEYS_SEED, OBEYS_MOST = OBEYS_RU
 const CommandRow command_rows[] = {
     {&command_grow, run_tree_maker, COMMANDS_GROW, OBEYS_ALL},
     {&command_info, run_info, COMMANDS_GROW, OBEYS_RUN},
+    {&command_coverage, run_coverage, COMMANDS_GROW, OBEYS_MOST},
     {&command_refine, run_tree_maker, COMMANDS_GROW, OBEYS_ALL},
     {&command_bifurcation, run_tree_maker, COMMANDS_GROW, OBEYS_RUN},
     {&command_study, run_study, COMMANDS_GROW, OBEYS_MOST},
