@@ -4,7 +4,8 @@
 # CC       gcc or clang
 # V=1      print the commands that run
 # JOBS     number of parallel jobs where the Makefile calls itself (default: all processors)
-# PREFIX   folder that `make install` installs into (default: /usr/local); DESTDIR goes in front of it
+# PREFIX   folder that `make install` installs into (default: /usr/local); DESTDIR goes in front of it. Give it to `make all`,
+#          too: where the system does not tell the program's path, the program looks for its templates below this folder
 # LIBDIR, PYTHONDIR   folders for the library (default: PREFIX/lib) and for corcast.py (default: PREFIX/lib/python3/dist-packages)
 # FONTS    folder that has the Liberation fonts: install links to them instead of copies
 # WERROR=1 treat warnings as errors; the checks do
@@ -355,7 +356,10 @@ $(FAILING): tests/alloc/failing.c Makefile
 	$(Q)$(CC) -D_GNU_SOURCE -std=c11 -O1 -g $(WARNINGS) -fPIC -shared -o $@ $<
 
 # Loops over pixels get faster with vectors, and growth with square roots that do not set errno.
-$(filter $(BUILD)/src/image/% $(BUILD)/src/compare/% $(BUILD)/src/grow/% $(BUILD)/src/render/raster/% $(BUILD)/src/render/light/% $(BUILD)/src/mesh/% $(BUILD)/src/render/tile/%,$(ROOM_OBJECTS)): VECTORS := $(VECTORS_$(MODE))
+$(filter $(BUILD)/src/image/% $(BUILD)/src/compare/% $(BUILD)/src/grow/% $(BUILD)/src/pulse/% $(BUILD)/src/render/raster/% $(BUILD)/src/render/light/% $(BUILD)/src/mesh/% $(BUILD)/src/render/tile/%,$(ROOM_OBJECTS)): VECTORS := $(VECTORS_$(MODE))
+
+# The program looks for its templates below this folder last.
+$(BUILD)/src/options/templates.o: OWN_CPPFLAGS += '-DCORCAST_PREFIX="$(PREFIX)"'
 
 # Kernels of pictures read no input and write to arrays of fixed size. The stack protector would cost them 2 % of their speed.
 $(filter %kernels.o %kernels.avx2.o %kernels.avx512.o,$(ROOM_OBJECTS)): HARDEN_release += -fno-stack-protector

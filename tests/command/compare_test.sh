@@ -302,7 +302,7 @@ expect_cause() {
 
 test_the_cause_is_said_where_it_is_certain() {
     run_ok corcast grow --terminals 30 --seed 3 -o tree.swc
-    run_ok corcast render --exact tree.swc --size 121x93 -o a.png
+    run_ok corcast render --exact tree.swc --size 121x93 --background white -o a.png
     pngtopnm a.png >a.ppm
     pnmflip -lr a.ppm | pnmtopng >b.png
     expect_cause 'B is A mirrored left to right'
@@ -413,6 +413,18 @@ test_two_pictures_have_a_page() {
     run corcast compare "$DATA/images/depth.exr" "$DATA/images/depth.exr" --kind depth --html depth.html
     expect_status 2
     expect_sentence '--html and --report need two pictures, not two depth planes'
+}
+
+test_a_page_states_the_date_of_SOURCE_DATE_EPOCH() {
+    printf 'P3 1 1 255 1 2 3\n' >a.ppm
+    run_ok env SOURCE_DATE_EPOCH=1764320461 "$CORCAST" compare a.ppm a.ppm --report page
+    grep -q 'Compared on 2025-11-28 09:01 UTC by' page/report.html || fail "expected the date of 1764320461"
+    cp page/report.html first.html
+    run_ok env SOURCE_DATE_EPOCH=1764320461 "$CORCAST" compare a.ppm a.ppm --report page
+    expect_same page/report.html first.html
+    run env SOURCE_DATE_EPOCH=today "$CORCAST" compare a.ppm a.ppm
+    expect_status 2
+    expect_sentence "SOURCE_DATE_EPOCH is 'today'; it must be"
 }
 
 test_reports_of_compared_pictures_are_merged() {
