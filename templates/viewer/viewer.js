@@ -1,12 +1,13 @@
-// The page's main program. It holds the state of the page, which the address of the page stores, and changes the state
-// when the user presses keys, uses the mouse or the touch screen, or changes the address. A picture is drawn only after
-// a change.
+// What pages of trees have in common. The module holds the state of the view, which the address of the page stores, and
+// changes the state when the user presses keys, uses the mouse or the touch screen, or changes the address. A picture is
+// drawn only after a change.
+//
+// A page calls begin() with its tree. A page whose tree changes calls showTree() with each new tree.
 import { Color, SRGBColorSpace, WebGLRenderer } from "three";
 import { chooseKind, hasKind, KINDS, lifted, luminance, rangeOf, Scale } from "./colors.js";
 import { drawLegend, drawScaleBar, LEGEND_HEIGHT, TITLE_HEIGHT } from "./legend.js";
 import { ink, Panel } from "./panel.js";
 import { Shade } from "./shade.js";
-import { Tree } from "./tree.js";
 import { Vessels } from "./vessels.js";
 import { View, VIEWS } from "./view.js";
 
@@ -17,25 +18,33 @@ const FORM = 0.5; // strength of light and dark on vessels whose color shows a v
 const RING = 18; // CSS pixels: smallest radius of the ring around the selected segment
 const HIT = 4; // CSS pixels: minimum width of a vessel for picking with the pointer
 
-const tree = new Tree();
-const start = tree.properties.start;
-// Soft light replaces the light of the default look, not of one that the page was made with.
-const SWITCHES = { soft: !tree.properties.look.isChosen, shade: true, haze: true, panels: true };
+const SHADE_PAUSE = 400; // ms without a new tree, after which shade is computed
+const SWITCHES = { soft: true, shade: true, haze: true, panels: true }; // on or off in an address without them
+
+// What a page does itself. A page replaces functions of this object before begin().
+export const own = {
+  addressParts: () => [], // the page's own parts of the address, as pairs of key and value
+  // Takes the page's own parts from a URLSearchParams. Returns false, or a promise of it, if another address has come.
+  readAddress: () => true,
+  command: (name) => `corcast render ${name}`, // the command that draws the tree; options are appended
+  freeBox: panelsLeave, // returns the part of the canvas that nothing covers, CSS pixels
+};
+
+let tree = null, start = null, vessels = null, panel = null, shade = null, view = null;
 const CHECKS = ["soft", "shade", "haze"];
 const state = {
-  field: null, map: null, kind: null, moment: 0, grown: 1, ...SWITCHES,
+  field: null, map: null, kind: null, moment: 0, grown: 1,
   hovered: -1, pinned: -1, // indices of segments, or -1
 };
-let scale = null, wanted = false, playing = 0, written = 0, known = location.hash;
+let scale = null, wanted = false, playing = 0, written = 0, reading = 0, known = location.hash;
 let ground = null; // luminance of a dark background, or null
+const retired = []; // what drew the tree before; it is kept until the next tree is drawn, which uses its shaders again
+const colors = { paper: null, accent: null }; // of the shader
 
 const dark = matchMedia("(prefers-color-scheme: dark)");
 const canvas = find("stage");
 const renderer = makeRenderer();
 renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
-const vessels = new Vessels(tree), panel = new Panel(tree), shade = new Shade(renderer, vessels);
-const view = new View(canvas, tree, () => { wantPicture(); wantAddress(); });
-vessels.set("open", shade.sum.texture);
 
 function makeRenderer() {
   try {
@@ -59,6 +68,7 @@ function wantPicture() {
   requestAnimationFrame(() => {
     wanted = false;
     draw();
+    retired.splice(0).forEach((old) => old.dispose());
     panel.drawScaleBar(mmPerPixel());
     panel.showRing(ring());
   });
@@ -78,7 +88,7 @@ function mmPerPixel() {
 }
 
 // Returns the part of the window that the panels leave free. The tree is drawn in its middle.
-function freeBox() {
+function panelsLeave() {
   const { innerWidth: width, innerHeight: height } = window, side = find("side").getBoundingClientRect();
   if (side.width === 0) return { left: 0, top: 0, width, height };
   const top = find("tools").getBoundingClientRect().bottom;
@@ -86,10 +96,12 @@ function freeBox() {
   return { left: side.right, top, width: width - side.right, height: height - top };
 }
 
+function fitView() { view.resize(canvas.clientWidth, canvas.clientHeight, own.freeBox()); }
+
 function resize() {
-  renderer.setSize(window.innerWidth, window.innerHeight, false);
+  renderer.setSize(canvas.clientWidth, canvas.clientHeight, false);
   panel.drawLegend();
-  view.resize(window.innerWidth, window.innerHeight, freeBox());
+  fitView();
   wantPicture();
 }
 
@@ -98,8 +110,7 @@ function takeScheme() {
   const styles = getComputedStyle(document.documentElement);
   const color = (name) => new Color().setStyle(styles.getPropertyValue(name).trim(), SRGBColorSpace);
   renderer.setClearColor(color("--paper"));
-  vessels.set("paper", color("--paper").convertLinearToSRGB());
-  vessels.set("accent", color("--accent"));
+  Object.assign(colors, { paper: color("--paper").convertLinearToSRGB(), accent: color("--accent") });
   ground = dark.matches ? luminance(color("--paper").toArray()) : null;
   show();
 }
@@ -136,6 +147,7 @@ function show() {
   scale = makeScale();
   const moment = shownMoment(), shown = state.pinned >= 0 ? state.pinned : state.hovered;
   vessels.paint(scale, visible(vessels.plain), moment);
+  for (const [name, color] of Object.entries(colors)) vessels.set(name, color);
   vessels.set("grown", state.grown);
   vessels.set("fade", state.haze ? haze() : 0);
   vessels.set("isSoft", state.soft);
@@ -147,10 +159,10 @@ function show() {
   find("project").setAttribute("aria-pressed", view.isOrthographic);
   for (const name of CHECKS) find(name).checked = state[name];
   if (state.shade && !shade.isDone) findShade();
-  find("grown").value = state.grown;
+  if (find("grown")) find("grown").value = state.grown;
   panel.showScale(scale, scale && scale.field);
   panel.showTime(scale && scale.field, moment);
-  view.resize(window.innerWidth, window.innerHeight, freeBox()); // after the panels have changed
+  fitView(); // after the panels have changed
   showSegment(shown);
   wantAddress();
 }
@@ -161,14 +173,15 @@ function showSegment(i) {
   wantPicture();
 }
 
-let finding = false;
+let finding = false, calm = 0;
 
-// Computes the ambient occlusion, a few directions per picture, so that the page stays responsive.
+// Computes the ambient occlusion, a few directions per picture, so that the page stays responsive. Waits while the tree
+// changes often.
 function findShade() {
   if (finding) return;
   finding = true;
   requestAnimationFrame(function next() {
-    for (let k = 0; k < 4; k++) shade.step();
+    for (let k = 0; k < 4 && performance.now() >= calm; k++) shade.step();
     if (!shade.isDone) return requestAnimationFrame(next);
     finding = false;
     show();
@@ -211,8 +224,8 @@ function viewOptions() {
 // Writes the state to the address, unless the user has just set another address, which is about to be read.
 function writeAddress() {
   written = 0;
-  if (location.hash !== known) return;
-  const parts = viewOptions();
+  if (location.hash !== known || reading > 0) return;
+  const parts = [...own.addressParts(), ...viewOptions()];
   if (state.field) parts.push(["field", state.field], ["map", scale.map.name], ["scale", scale.kind]);
   else if (start) parts.push(["field", "none"]);
   if (shownMoment()) parts.push(["moment", shownMoment() + 1]);
@@ -220,7 +233,7 @@ function writeAddress() {
   for (const [name, usual] of Object.entries(SWITCHES))
     if (state[name] !== usual) parts.push([name, state[name] ? "on" : "off"]);
   if (state.pinned >= 0) parts.push(["segment", tree.id[state.pinned]]);
-  const text = parts.map(([key, value]) => `${key}=${encodeURIComponent(value).replaceAll("%2C", ",")}`).join("&");
+  const text = parts.map(([key, value]) => `${key}=${encodeURIComponent(value).replaceAll("%2C", ",").replaceAll("%3A", ":")}`).join("&");
   history.replaceState(null, "", "#" + text);
   known = location.hash;
 }
@@ -241,9 +254,17 @@ function clamped(text, low, high, fallback) {
   return text !== null && Number.isFinite(value) ? Math.min(high, Math.max(low, value)) : fallback;
 }
 
-function readAddress() {
+async function readAddress() {
   known = location.hash;
   const get = new URLSearchParams(location.hash.slice(1));
+  reading++;
+  const isLast = await own.readAddress(get);
+  reading--;
+  if (isLast) takeView(get);
+}
+
+// Sets the state of the view from the address.
+function takeView(get) {
   const field = get.get("field") ?? (start && start.field);
   view.project(get.get("projection") === "orthographic");
   change({
@@ -281,7 +302,7 @@ function renderCommand() {
   if (scale) words.push(["range", scale.range.map((v) => Number(v.toPrecision(6))).join(",")]);
   if (shownMoment()) words.push(["moment", shownMoment() + 1]);
   const options = words.map(([key, value]) => `--${key} ${value}`).join(" ") + (scale && scale.log ? " --log" : "");
-  return `corcast render ${tree.properties.name} ${options} -o figure.png`;
+  return `${own.command(tree.properties.name)} ${options} -o figure.png`;
 }
 
 function showHelp() {
@@ -329,6 +350,15 @@ function drawRing(context, circle) {
   }
 }
 
+// Hands a file to the user.
+export function download(blob, name) {
+  const link = document.createElement("a");
+  link.href = URL.createObjectURL(blob);
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+}
+
 function save() {
   draw();
   const page = document.createElement("canvas"), ratio = canvas.width / canvas.clientWidth;
@@ -348,16 +378,10 @@ function save() {
     context.translate(canvas.clientWidth - margin, canvas.clientHeight - margin - 22);
     drawScaleBar(context, mmPerPixel(), 200, ink());
   }
-  page.toBlob((png) => {
-    const link = document.createElement("a");
-    link.href = URL.createObjectURL(png);
-    link.download = tree.properties.name.replace(/\.[^.]*$/, "") + ".png";
-    link.click();
-    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
-  });
+  page.toBlob((png) => download(png, tree.properties.name.replace(/\.[^.]*$/, "") + ".png"));
 }
 
-async function copy(text, button) {
+export async function copy(text, button) {
   const label = button.textContent;
   await navigator.clipboard.writeText(text);
   button.textContent = "Copied";
@@ -422,7 +446,7 @@ function key(event) {
 }
 
 function listen() {
-  const on = (id, type, action) => find(id).addEventListener(type, action);
+  const on = (id, type, action) => find(id) && find(id).addEventListener(type, action);
   on("field", "change", (e) => setField(e.target.value));
   on("map", "change", (e) => change({ map: e.target.value }));
   on("kind", "change", (e) => change({ kind: e.target.value }));
@@ -452,8 +476,37 @@ function listen() {
   dark.addEventListener("change", takeScheme);
 }
 
-find("view").append(...Object.keys(VIEWS).map((name) => new Option(name, name)));
-listen();
-resize();
-takeScheme();
-readAddress();
+// Replaces the tree of the page. The view stays; so does the selected segment, if the tree has one of its id. `origin`
+// and `look` of all trees of a page are the same.
+export function showTree(next) {
+  const pinned = state.pinned >= 0 ? next.numberOf.get(tree.id[state.pinned]) ?? -1 : -1;
+  if (vessels) retired.push(vessels, shade);
+  tree = next;
+  vessels = new Vessels(tree);
+  shade = new Shade(renderer, vessels);
+  vessels.set("open", shade.sum.texture);
+  panel.setTree(tree);
+  view.setTree(tree);
+  Object.assign(state, { pinned, hovered: -1 });
+  calm = performance.now() + SHADE_PAUSE;
+  show();
+}
+
+// Shows the whole tree, from the direction of the view.
+export function showAll() { fit(); }
+
+// Shows the first tree, by the address, and listens to the user.
+export function begin(first) {
+  start = first.properties.start;
+  SWITCHES.soft = !first.properties.look.isChosen; // soft light replaces the light of the default look alone
+  Object.assign(state, SWITCHES);
+  panel = new Panel();
+  view = new View(canvas, first, () => { wantPicture(); wantAddress(); });
+  find("view").append(...Object.keys(VIEWS).map((name) => new Option(name, name)));
+  showTree(first);
+  calm = 0;
+  listen();
+  resize();
+  takeScheme();
+  readAddress();
+}
