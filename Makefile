@@ -356,7 +356,7 @@ $(FAILING): tests/alloc/failing.c Makefile
 	$(Q)$(CC) -D_GNU_SOURCE -std=c11 -O1 -g $(WARNINGS) -fPIC -shared -o $@ $<
 
 # Loops over pixels get faster with vectors, and growth with square roots that do not set errno.
-$(filter $(BUILD)/src/image/% $(BUILD)/src/compare/% $(BUILD)/src/grow/% $(BUILD)/src/render/raster/% $(BUILD)/src/render/light/% $(BUILD)/src/mesh/% $(BUILD)/src/render/tile/%,$(ROOM_OBJECTS)): VECTORS := $(VECTORS_$(MODE))
+$(filter $(BUILD)/src/image/% $(BUILD)/src/compare/% $(BUILD)/src/grow/% $(BUILD)/src/pulse/% $(BUILD)/src/render/raster/% $(BUILD)/src/render/light/% $(BUILD)/src/mesh/% $(BUILD)/src/render/tile/%,$(ROOM_OBJECTS)): VECTORS := $(VECTORS_$(MODE))
 
 # Kernels of pictures read no input and write to arrays of fixed size. The stack protector would cost them 2 % of their speed.
 $(filter %kernels.o %kernels.avx2.o %kernels.avx512.o,$(ROOM_OBJECTS)): HARDEN_release += -fno-stack-protector

@@ -302,7 +302,7 @@ expect_cause() {
 
 test_the_cause_is_said_where_it_is_certain() {
     run_ok corcast grow --terminals 30 --seed 3 -o tree.swc
-    run_ok corcast render --exact tree.swc --size 121x93 -o a.png
+    run_ok corcast render --exact tree.swc --size 121x93 --background white -o a.png
     pngtopnm a.png >a.ppm
     pnmflip -lr a.ppm | pnmtopng >b.png
     expect_cause 'B is A mirrored left to right'
