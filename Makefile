@@ -25,7 +25,7 @@ say = $(if $(V),,@printf '  %-6s %s\n' $(1) $(2))
 # Runs this Makefile again, after `make deps` has installed packages. Adds -j only if the caller gave none.
 AGAIN = $(MAKE) --no-print-directory $(if $(filter -j%,$(MAKEFLAGS)),,-j$(JOBS))
 
-ROOMS := $(filter-out cli python,$(notdir $(patsubst %/,%,$(wildcard src/*/))))
+ROOMS := $(filter-out cli python web,$(notdir $(patsubst %/,%,$(wildcard src/*/))))
 ROOM_SOURCES := $(wildcard $(ROOMS:%=src/%/*.c) $(ROOMS:%=src/%/*/*.c))
 CLI_SOURCES := $(wildcard src/cli/*.c src/cli/*/*.c)
 TEST_SOURCES := $(wildcard tests/unit/*_test.c)
@@ -106,7 +106,7 @@ LINK = $(CC) $(OWN_LDFLAGS) $(LDFLAGS)
 VIEWER := $(or $(wildcard templates/page/viewer.js),build/viewer/viewer.js)
 LIBS := $(PACKAGE_LIBS) $(PLAIN_LIBS)
 
-.PHONY: all lib abi api-programs deps demo figures gallery hero validate bench bench-grow bench-render bench-view bench-compare bench-mesh bench-trees bench-large export-all verify-all coronary power power-program fit-blob optima check check-all check-quick program unit \
+.PHONY: all lib abi api-programs deps page demo figures gallery hero validate bench bench-grow bench-render bench-view bench-compare bench-mesh bench-trees bench-large export-all verify-all coronary power power-program fit-blob optima check check-all check-quick program unit \
 	unit-programs layers format format-check asan tsan \
 	fuzz fuzz-programs golden-update reference install uninstall dist clean help packages libraries
 .DELETE_ON_ERROR:
@@ -236,6 +236,10 @@ endif
 build/viewer/viewer.js: $(wildcard templates/viewer/*)
 	$(call say,MADE,$@)
 	$(Q)templates/viewer/bundle $(@D) || :
+
+page: build/viewer/viewer.js ## build the page that grows trees, build/grow/corcast.html
+	$(Q).ci/deps page web
+	+$(Q)$(AGAIN) -f src/web/page.mk
 
 program: $(BUILD)/corcast ## build the program of this MODE, build/MODE/corcast
 
