@@ -106,7 +106,7 @@ LINK = $(CC) $(OWN_LDFLAGS) $(LDFLAGS)
 VIEWER := $(or $(wildcard templates/page/viewer.js),build/viewer/viewer.js)
 LIBS := $(PACKAGE_LIBS) $(PLAIN_LIBS)
 
-.PHONY: all lib abi api-programs deps page demo figures gallery hero validate bench bench-grow bench-render bench-view bench-compare bench-mesh bench-trees bench-large export-all verify-all coronary power power-program fit-blob optima check check-all check-quick program unit \
+.PHONY: all lib abi api-programs deps page demo figures gallery hero validate bench bench-grow bench-render bench-view bench-compare bench-mesh bench-trees bench-large export-all verify-all coronary power power-program metamorph fit-blob optima check check-all check-quick program unit \
 	unit-programs layers format format-check asan tsan \
 	fuzz fuzz-programs golden-update reference install uninstall dist clean help packages libraries
 .DELETE_ON_ERROR:
@@ -204,6 +204,9 @@ power: ## plant faults and count which `verify` and the tests find; writes docs/
 	$(Q)JOBS=$(JOBS) tests/power/run-shared
 
 power-program: $(POWER)
+
+metamorph: build/corcast ## search for broken relations at length: planted faults, corcast (PAIRS=10000), POV-Ray, Tachyon; results in out/metamorph/
+	$(Q)tests/relations/metamorph $(PAIRS)
 
 optima: $(OPTIMA) ## find the best trees of small point sets, and count how often annealing finds them
 	$(Q)$(OPTIMA) tests/optima/sets.txt
