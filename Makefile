@@ -465,13 +465,13 @@ uninstall: ## remove the files of `make install`
 	rm -rf $(SHARE)/corcast" $(SHARE)/doc/corcast"
 
 VERSION := $(shell sed -n 's/^.define CORCAST_VERSION "\(.*\)"/\1/p' src/base/version.h)
-# What a release has beside the commit: the viewer, and the parts of three.js that it is made of, so that it can be made again.
+# What a release has beside the commit: the page that grows trees, the viewer, and the parts of three.js that it is made of, so that it can be made again.
 RELEASED := LICENSE package.json build/three.core.js build/three.module.js examples/jsm/controls/OrbitControls.js
-dist: $(VIEWER) ## pack the sources of the last commit, and the viewer, into build/corcast-VERSION.tar.gz, with the same bytes each time
+dist: $(VIEWER) page ## pack the sources of the last commit, the viewer and the page that grows trees into build/corcast-VERSION.tar.gz, with the same bytes each time
 	$(Q)mkdir -p build
 	$(Q)git archive --format=tar -o build/corcast-$(VERSION).tar --prefix=corcast-$(VERSION)/templates/page/ --add-file=$(VIEWER) \
 		$(foreach file,$(RELEASED),--prefix=corcast-$(VERSION)/templates/viewer/node_modules/three/$(filter-out ./,$(dir $(file))) --add-file=build/viewer/node_modules/three/$(file)) \
-		--prefix=corcast-$(VERSION)/ HEAD
+		--prefix=corcast-$(VERSION)/ --add-file=build/grow/corcast.html HEAD
 	$(Q)gzip -9nf build/corcast-$(VERSION).tar
 
 packages: ## build, lint and test the packages of .ci/packages; PACKAGE=wheel for one; results in build/packages/

@@ -382,9 +382,15 @@ function save() {
   page.toBlob((png) => download(png, tree.properties.name.replace(/\.[^.]*$/, "") + ".png"));
 }
 
+// Copies a text, and says so on the button. Where a browser gives no clipboard, shows the text to be copied by hand.
 export async function copy(text, button) {
   const label = button.textContent;
-  await navigator.clipboard.writeText(text);
+  try {
+    await navigator.clipboard.writeText(text);
+  } catch {
+    prompt(label, text);
+    return;
+  }
   button.textContent = "Copied";
   setTimeout(() => { button.textContent = label; }, 1200);
 }
