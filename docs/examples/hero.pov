@@ -1,4 +1,4 @@
-// A grown arterial tree as a cast of translucent resin on a warm sweep: a soft key light, a rim light from behind,
+// A grown arterial tree as a cast of translucent resin on a dark sweep: a soft key light, a rim light from behind,
 // light that bounces between the vessels (radiosity), light that enters them (subsurface), and a lens that is focused on
 // the nearest branches.
 //
@@ -19,9 +19,9 @@ global_settings {
   mm_per_unit 1
   radiosity {
     pretrace_start 0.08 pretrace_end (Hero_Quality ? 0.02 : 0.08)
-    count (Hero_Quality ? 25 : 15) nearest_count 8 error_bound 0.6 recursion_limit 1 brightness 0.7
+    count (Hero_Quality ? 20 : 15) nearest_count 8 error_bound 0.6 recursion_limit 1 brightness 1
   }
-  subsurface { samples 4, 1 }
+  subsurface { samples 2, 1 }
 }
 
 // The tree stands on its root: the root is at the origin, and the ball is above it.
@@ -31,43 +31,52 @@ camera {
   location Eye
   right -image_width / image_height * x // right-handed, as the tree is
   look_at Middle - 0.06 * R * y
-  angle 25
-  aperture 0.22 * R focal_point Middle + R * <0.1, 0, 0.75>
-  blur_samples (Hero_Quality ? 7 : 4) variance 1 / 2000 confidence 0.9
+  angle 24
+  aperture 0.1 * R focal_point Middle + R * <0.1, 0, 0.75>
+  blur_samples (Hero_Quality ? 5 : 4) variance 1 / 2000 confidence 0.9
 }
 
 #macro Soft_Light(Place, Color, Size)
   light_source {
     Middle + R * Place, rgb Color
-    area_light vnormalize(vcross(Place, y)) * Size * R, vnormalize(vcross(vcross(Place, y), Place)) * Size * R,
-      (Hero_Quality ? 4 : 3), (Hero_Quality ? 4 : 3) adaptive 0 jitter
+    #if (Size > 0)
+      area_light vnormalize(vcross(Place, y)) * Size * R, vnormalize(vcross(vcross(Place, y), Place)) * Size * R,
+        5, 5 adaptive 1 jitter
+    #end
   }
 #end
-Soft_Light(<-2.6, 4.2, 3>, 0.62 * <1, 0.94, 0.86>, 1.6)
-Soft_Light(<3.2, 1.8, -3.4>, 0.5 * <1, 0.70, 0.45>, 1) // from behind, through the vessels
+#macro Soft_Lights(Size)
+  Soft_Light(<-2.6, 4.2, 3>, 0.9 * <1, 0.94, 0.86>, 1.6 * Size)
+  Soft_Light(<3.2, 1.8, -3.4>, 1.1 * <1, 0.70, 0.45>, Size) // from behind, through the vessels
+#end
+Soft_Lights(1)
 
-background { rgb <0.45, 0.36, 0.29> }
+background { rgb <0.05, 0.06, 0.08> }
 // The sweep: a floor that bends up into a wall behind the tree.
 union {
   plane { y, 0 clipped_by { plane { -z, 3 * R } } }
   cylinder { -1e4 * x, 1e4 * x, 6 * R open translate <0, 6 * R, -3 * R>
     clipped_by { intersection { plane { z, -3 * R } plane { y, 6 * R } } } }
   plane { -z, 9 * R clipped_by { plane { -y, -6 * R } } }
-  texture { pigment { rgb <0.62, 0.50, 0.40> } finish { ambient 0 diffuse 0.85 } }
+  texture { pigment { rgb <0.13, 0.155, 0.18> } finish { ambient 0 diffuse 0.85 } }
 }
 
-object {
+light_group {
+  Soft_Lights(0)
+  object {
   Tree
   translate -Root_Position
   rotate 180 * z
   rotate 25 * y
   texture {
-    pigment { rgb <0.72, 0.05, 0.03> }
+    pigment { rgb <0.85, 0.16, 0.05> }
     finish {
       ambient 0 diffuse 0.7
       specular 0.55 roughness 0.012
-      subsurface { translucency <1.2, 0.2, 0.1> }
+      subsurface { translucency <2, 0.6, 0.25> }
     }
   }
   interior { ior 1.45 }
+  }
+  global_lights off
 }

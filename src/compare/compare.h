@@ -19,6 +19,7 @@
 #define CORCAST_COMPARE_COMPARE_H
 
 #include "compare/cause/cause.h"     // IWYU pragma: export
+#include "compare/cause/choose.h"    // IWYU pragma: export
 #include "compare/cause/power.h"     // IWYU pragma: export
 #include "compare/grade/grade.h"     // IWYU pragma: export
 #include "compare/measures/noise.h"  // IWYU pragma: export

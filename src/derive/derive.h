@@ -111,6 +111,15 @@ typedef struct TreeSummary {
  * a viscosity; else the tree's. */
 ViscosityLaw derive_viscosity_law(const Tree *tree, const TreeMeta *overrides);
 
+/* Density of blood. */
+#define BLOOD_DENSITY_G_MM3 1.05e-3
+
+/* Computes the viscosity of the blood in each segment, Pa s, in a new array of n entries, which the
+ * caller frees. Errors: STATUS_INPUT if a value is missing, with a sentence that continues "the
+ * field NAME "; STATUS_MEMORY. */
+MUST_CHECK Status derive_viscosity(const Tree *tree, const TreeMeta *overrides, double **value,
+                                   Err *err);
+
 /* Computes the summary of a tree. `overrides` as in derive_field. Errors: STATUS_MEMORY. */
 MUST_CHECK Status derive_summary(const Tree *tree, const TreeMeta *overrides, TreeSummary *summary,
                                  Err *err);

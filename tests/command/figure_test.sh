@@ -131,10 +131,29 @@ test_an_inset_shows_the_part_of_its_frame_larger() {
         cat f/plain.ini - >f/large.ini
     run_ok corcast figure f/large.ini --quiet -o large.png
     # The middle of the inset, 300 pixels wide and high, is that of its part.
-    run_ok corcast render f/tree.swc --quiet --size 1200x1200 -o whole.png
+    run_ok corcast render f/tree.swc --quiet --size 1200x1200 --background white -o whole.png
     pngtopnm whole.png | pnmcut -left 590 -top 350 -width 20 -height 20 >expected.ppm
     pngtopnm large.png | pnmcut -left 140 -top 140 -width 20 -height 20 >inset.ppm
     expect_differing 0 60 expected.ppm inset.ppm
+}
+
+# corner PICTURE: the color of the upper left pixel, as three numbers.
+corner() {
+    pngtopnm "$1" | pnmcut -left 0 -top 0 -width 1 -height 1 | pnmtoplainpnm | tail -1 | xargs
+}
+
+# The default look's paper would be a box on a white page.
+test_a_panel_that_names_no_look_has_the_color_of_the_page() {
+    printf '[figure]\nsize = 40x40\nletters = none\n[panel a]\ntree = %s/bifurcation.swc\n' "$DATA" >plain.ini
+    run_ok corcast figure plain.ini --quiet -o white.png
+    run_ok corcast figure plain.ini --quiet --background 0.2,0.4,0.6 -o blue.png
+    cp plain.ini cast.ini && echo 'look = cast' >>cast.ini
+    run_ok corcast figure cast.ini --quiet -o cast.png
+    run_ok corcast render "$DATA/bifurcation.swc" --quiet --size 40x40 -o render.png
+    [ "$(corner white.png)" = "255 255 255" ] || fail "expected white, got $(corner white.png)"
+    [ "$(corner blue.png)" = "51 102 153" ] || fail "expected the page's blue, got $(corner blue.png)"
+    [ "$(corner cast.png)" = "$(corner render.png)" ] || fail "expected cast's paper, got $(corner cast.png)"
+    [ "$(corner render.png)" != "255 255 255" ] || fail 'expected the paper of cast not to be white'
 }
 
 # The words are in the text of the page, with Unicode's superscripts, whatever is drawn for them.

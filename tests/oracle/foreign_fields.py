@@ -582,13 +582,13 @@ def read_html(path):
     expect("separate", [told["maps"][maps[name]]["separate"] for name in ("viridis", "Set1")], [False, True])
     look = told["look"]
     found = [look[key] for key in ("ambient", "diffuse", "specular", "roughness")]
-    expect("finish", found, [0.1, 0.72, 0.4, 0.03], 1e-6)
+    expect("finish", found, [0.14, 0.72, 0.5, 0.022], 1e-6)
     expect("look", look["name"], "cast")
     expect("lights", [light["point"] for light in look["lights"]], [False, False])
     expect("directions", np.array([light["direction"] for light in look["lights"]]),
-           [[-0.22, 0.3, 1], [0.9, -0.2, 0.5]], 1e-6)
+           [[-0.22, 0.3, 1], [1.3, 0.5, -0.7]], 1e-6)
     expect("colors of lights", np.array([light["color"] for light in look["lights"]]),
-           [[0.95] * 3, [0.22, 0.23, 0.26]], 1e-6)
+           [[0.97, 0.94, 0.89], [0.9, 0.7, 0.6]], 1e-6)
 
 
 def filled(points, reach):

@@ -68,8 +68,8 @@ static void vessels_of_all_directions_gleam(void **state)
     static const struct {
         const char *name;
         float least; /* part of the light that a highlight has */
-    } looks[] = {
-        {"resin", 0.15f}, {"clinical", 0.1f}, {"ivory", 0.1f}, {"wax", 0.1f}, {"dark", 0.15f}};
+    } looks[] = {{"cast", 0.15f}, {"resin", 0.15f}, {"clinical", 0.1f},
+                 {"ivory", 0.1f}, {"wax", 0.1f},    {"dark", 0.15f}};
     for (size_t i = 0; i < sizeof looks / sizeof *looks; i++) {
         char path[64];
         Look look;

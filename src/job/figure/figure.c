@@ -66,7 +66,8 @@ static const Option own[] = {
     {.name = "background",
      SETS(COLOR, FigureOptions, background),
      .group = GROUP_PAGE,
-     .help = "color of the page: a CSS name, #RRGGBB, or R,G,B each 0..1"},
+     .help = "color of the page, and of panels that name no look: a CSS name, #RRGGBB, or "
+             "R,G,B each 0..1"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);
@@ -86,6 +87,19 @@ static Status set_key(Parsed *parsed, const char *name, const char *value, Err *
     return setting_read(parsed_find(parsed, name, strlen(name)), value, err);
 }
 
+/* Gives a panel that names neither a look nor a background the color of the page: on a white page,
+ * the paper of the default look would be a box. */
+static Status set_background(const Figure *figure, Parsed *render, Err *err)
+{
+    const Vec3 page = figure->options->background;
+    char rgb[3][NUMBER_TEXT_SIZE], color[3 * NUMBER_TEXT_SIZE];
+    if (options_said(render, "look") || options_said(render, "background"))
+        return STATUS_OK;
+    snprintf(color, sizeof color, "%s,%s,%s", number_text(page.x, rgb[0]),
+             number_text(page.y, rgb[1]), number_text(page.z, rgb[2]));
+    return set_key(render, "background", color, err);
+}
+
 /* What the page says of a panel's options. Those of the recipe are no longer typed, as in recipes
  * of commands: one that has no effect on this panel is not refused. */
 static Status set_options(const Figure *figure, size_t i, Err *err)
@@ -101,6 +115,7 @@ static Status set_options(const Figure *figure, size_t i, Err *err)
     TRY(set_key(&section->render, "dpi", dpi, err));
     if (!options_said(&section->render, "text-size"))
         TRY(set_key(&section->render, "text-size", pt, err));
+    TRY(set_background(figure, &section->render, err));
     for (size_t k = 0; k < section->render.n_settings; k++)
         section->render.settings[k].typed = false;
     section->render.common.talk = figure->parsed->common.talk;
