@@ -45,6 +45,7 @@ const CommandRow command_rows[] = {
     {&command_export, export_run, COMMANDS_EXPORT, OBEYS_MOST},
     {&command_scene, scene_run, COMMANDS_EXPORT, OBEYS_MOST},
     {&command_verify, run_verify, COMMANDS_CHECK, OBEYS_MOST},
+    {&command_answer, run_answer, COMMANDS_CHECK, OBEYS_MOST},
     {&command_compare, run_compare, COMMANDS_CHECK, OBEYS_MOST},
     {&command_report, run_report, COMMANDS_CHECK, OBEYS_RUN},
     {&command_power, run_power, COMMANDS_CHECK, OBEYS_MOST},
