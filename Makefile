@@ -374,6 +374,8 @@ libraries:
 ifeq ($(and $(strip $(PACKAGE_LIBS)),$(NIFTI)),)
 	@echo 'corcast needs $(PACKAGES) $(HEADERS), OpenEXR, libnifti2 and pkg-config to build: run "make deps" first' >&2; exit 1
 endif
+	@mkdir -p $(BUILD) 2>/dev/null && test -w $(BUILD) || \
+		{ echo '$(BUILD) cannot be written to: "make program BUILD=FOLDER" builds in another folder' >&2; exit 1; }
 
 unit-programs: $(TEST_PROGRAMS) $(API_PROGRAMS) $(OPTIMA) $(ORACLE) $(FAILING)
 
