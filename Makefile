@@ -4,8 +4,9 @@
 # CC       gcc or clang
 # V=1      print the commands that run
 # JOBS     number of parallel jobs where the Makefile calls itself (default: all processors)
-# PREFIX   folder that `make install` installs into (default: /usr/local); DESTDIR goes in front of it
-# LIBDIR, PYTHONDIR   folders for the library (default: PREFIX/lib) and for corcast.py (default: PREFIX/lib/python3/dist-packages)
+# PREFIX   folder that `make install` installs into (default: /usr/local); DESTDIR goes in front of it. Give it to `make all`,
+#          too: where the system does not tell the program's path, the program looks for its templates below this folder
+# LIBDIR, PYTHONDIR   folders for the library (default: PREFIX/lib) and for the Python modules (default: PREFIX/lib/python3/dist-packages)
 # FONTS    folder that has the Liberation fonts: install links to them instead of copies
 # WERROR=1 treat warnings as errors; the checks do
 # CFLAGS, CPPFLAGS, LDFLAGS   additional flags, from the environment or the command line; they follow the Makefile's own
@@ -24,7 +25,7 @@ say = $(if $(V),,@printf '  %-6s %s\n' $(1) $(2))
 # Runs this Makefile again, after `make deps` has installed packages. Adds -j only if the caller gave none.
 AGAIN = $(MAKE) --no-print-directory $(if $(filter -j%,$(MAKEFLAGS)),,-j$(JOBS))
 
-ROOMS := $(filter-out cli python,$(notdir $(patsubst %/,%,$(wildcard src/*/))))
+ROOMS := $(filter-out cli python web,$(notdir $(patsubst %/,%,$(wildcard src/*/))))
 ROOM_SOURCES := $(wildcard $(ROOMS:%=src/%/*.c) $(ROOMS:%=src/%/*/*.c))
 CLI_SOURCES := $(wildcard src/cli/*.c src/cli/*/*.c)
 TEST_SOURCES := $(wildcard tests/unit/*_test.c)
@@ -106,7 +107,7 @@ LINK = $(CC) $(OWN_LDFLAGS) $(LDFLAGS)
 VIEWER := $(or $(wildcard templates/page/viewer.js),build/viewer/viewer.js)
 LIBS := $(PACKAGE_LIBS) $(PLAIN_LIBS)
 
-.PHONY: all lib abi api-programs deps demo figures gallery hero validate bench bench-grow bench-render bench-view bench-compare bench-mesh bench-trees bench-pulse bench-large export-all verify-all coronary power power-program fit-blob optima check check-all check-quick program unit \
+.PHONY: all lib abi api-programs deps page demo figures gallery hero validate bench bench-grow bench-render bench-view bench-compare bench-mesh bench-trees bench-pulse bench-large export-all verify-all coronary power power-program fit-blob optima check check-all check-quick program unit \
 	unit-programs layers format format-check asan tsan \
 	fuzz fuzz-programs golden-update reference install uninstall dist clean help packages libraries
 .DELETE_ON_ERROR:
@@ -244,6 +245,10 @@ build/viewer/viewer.js: $(wildcard templates/viewer/*)
 	$(call say,MADE,$@)
 	$(Q)templates/viewer/bundle $(@D) || :
 
+page: build/viewer/viewer.js ## build the page that grows trees, build/grow/corcast.html
+	$(Q).ci/deps page web
+	+$(Q)$(AGAIN) -f src/web/page.mk
+
 program: $(BUILD)/corcast ## build the program of this MODE, build/MODE/corcast
 
 $(BUILD)/corcast: $(CLI_OBJECTS) $(BUILD)/rooms.a
@@ -362,6 +367,9 @@ $(FAILING): tests/alloc/failing.c Makefile
 # Loops over pixels get faster with vectors, and growth with square roots that do not set errno.
 $(filter $(BUILD)/src/image/% $(BUILD)/src/compare/% $(BUILD)/src/grow/% $(BUILD)/src/pulse/% $(BUILD)/src/render/raster/% $(BUILD)/src/render/light/% $(BUILD)/src/mesh/% $(BUILD)/src/render/tile/%,$(ROOM_OBJECTS)): VECTORS := $(VECTORS_$(MODE))
 
+# The program looks for its templates below this folder last.
+$(BUILD)/src/options/templates.o: OWN_CPPFLAGS += '-DCORCAST_PREFIX="$(PREFIX)"'
+
 # Kernels of pictures read no input and write to arrays of fixed size. The stack protector would cost them 2 % of their speed.
 $(filter %kernels.o %kernels.avx2.o %kernels.avx512.o,$(ROOM_OBJECTS)): HARDEN_release += -fno-stack-protector
 
@@ -439,7 +447,7 @@ install: build/corcast lib build/share ## install program, library, manual pages
 	sed 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@VERSION@|$(VERSION)|; s|@PACKAGES@|$(PACKAGES)|; s|@LIBS@|$(PLAIN_LIBS)|' \
 		src/api/corcast.pc.in > $(LIBRARIES)/pkgconfig/corcast.pc"
 	install -m644 src/corcast.h $(INCLUDE)/corcast.h"
-	install -m644 src/python/corcast.py $(PYTHON)/corcast.py"
+	install -m644 src/python/corcast.py src/python/corcast_pytest.py $(PYTHON)"
 	cp -R templates $(SHARE)/corcast"
 	rm -rf $(SHARE)/corcast/templates/viewer/node_modules"
 	$(if $(FONTS),cd $(SHARE)/corcast/templates/fonts" && for font in Liberation*.ttf; do ln -sf "$(FONTS)/$$font" .; done)
@@ -457,7 +465,7 @@ uninstall: ## remove the files of `make install`
 	rm -f $(SHARE)/bash-completion/completions/corcast" $(SHARE)/zsh/site-functions/_corcast"
 	rm -f $(SHARE)/fish/vendor_completions.d/corcast.fish"
 	rm -f $(LIBRARIES)/$(SONAME)" $(LIBRARIES)/libcorcast.so" $(LIBRARIES)/libcorcast.a" $(LIBRARIES)/pkgconfig/corcast.pc"
-	rm -f $(PYTHON)/corcast.py"
+	rm -f $(PYTHON)/corcast.py" $(PYTHON)/corcast_pytest.py"
 	rm -f $(INCLUDE)/corcast.h" $(SHARE)/man/man3/corcast.h.3"
 	rm -rf $(SHARE)/corcast" $(SHARE)/doc/corcast"
 
