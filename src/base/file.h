@@ -128,6 +128,8 @@ void file_hold_standard_streams(void);
 const char *file_extension(const char *path);
 /* Replaces the extension of `path`, with its '.', by `suffix`. The caller frees *out. */
 MUST_CHECK Status file_with_suffix(const char *path, const char *suffix, char **out, Err *err);
+/* Makes a name as printf does. The caller frees *out. Errors: STATUS_MEMORY. */
+MUST_CHECK Status file_format_name(char **out, Err *err, const char *format, ...) PRINTF_LIKE(3, 4);
 /* Joins a folder and a name: "folder/name". The caller frees *out. */
 MUST_CHECK Status file_join(const char *folder, const char *name, char **out, Err *err);
 /* Returns the last component of `path`; borrowed from `path`. */
