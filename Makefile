@@ -107,7 +107,7 @@ LINK = $(CC) $(OWN_LDFLAGS) $(LDFLAGS)
 VIEWER := $(or $(wildcard templates/page/viewer.js),build/viewer/viewer.js)
 LIBS := $(PACKAGE_LIBS) $(PLAIN_LIBS)
 
-.PHONY: all lib abi api-programs deps page demo figures gallery hero validate bench bench-grow bench-render bench-view bench-compare bench-mesh bench-trees bench-pulse bench-large export-all verify-all coronary power power-program fit-blob optima check check-all check-quick program unit \
+.PHONY: all lib abi api-programs deps page demo figures gallery hero validate bench bench-grow bench-render bench-view bench-compare bench-mesh bench-trees bench-pulse bench-large export-all verify-all coronary power power-program metamorph fit-blob optima check check-all check-quick program unit \
 	unit-programs layers format format-check asan tsan \
 	fuzz fuzz-programs golden-update reference install uninstall dist clean help packages libraries
 .DELETE_ON_ERROR:
@@ -212,6 +212,9 @@ power: ## plant faults and count which `verify` and the tests find; writes docs/
 	$(Q)JOBS=$(JOBS) tests/power/run-shared
 
 power-program: $(POWER)
+
+metamorph: build/corcast ## search for broken relations at length: planted faults, corcast (PAIRS=10000), POV-Ray, Tachyon; results in out/metamorph/
+	$(Q)tests/relations/metamorph $(PAIRS)
 
 optima: $(OPTIMA) ## find the best trees of small point sets, and count how often annealing finds them
 	$(Q)$(OPTIMA) tests/optima/sets.txt
@@ -379,6 +382,8 @@ libraries:
 ifeq ($(and $(strip $(PACKAGE_LIBS)),$(NIFTI)),)
 	@echo 'corcast needs $(PACKAGES) $(HEADERS), OpenEXR, libnifti2 and pkg-config to build: run "make deps" first' >&2; exit 1
 endif
+	@mkdir -p $(BUILD) 2>/dev/null && test -w $(BUILD) || \
+		{ echo '$(BUILD) cannot be written to: "make program BUILD=FOLDER" builds in another folder' >&2; exit 1; }
 
 unit-programs: $(TEST_PROGRAMS) $(API_PROGRAMS) $(OPTIMA) $(ORACLE) $(FAILING)
 
@@ -470,13 +475,13 @@ uninstall: ## remove the files of `make install`
 	rm -rf $(SHARE)/corcast" $(SHARE)/doc/corcast"
 
 VERSION := $(shell sed -n 's/^.define CORCAST_VERSION "\(.*\)"/\1/p' src/base/version.h)
-# What a release has beside the commit: the viewer, and the parts of three.js that it is made of, so that it can be made again.
+# What a release has beside the commit: the page that grows trees, the viewer, and the parts of three.js that it is made of, so that it can be made again.
 RELEASED := LICENSE package.json build/three.core.js build/three.module.js examples/jsm/controls/OrbitControls.js
-dist: $(VIEWER) ## pack the sources of the last commit, and the viewer, into build/corcast-VERSION.tar.gz, with the same bytes each time
+dist: $(VIEWER) page ## pack the sources of the last commit, the viewer and the page that grows trees into build/corcast-VERSION.tar.gz, with the same bytes each time
 	$(Q)mkdir -p build
 	$(Q)git archive --format=tar -o build/corcast-$(VERSION).tar --prefix=corcast-$(VERSION)/templates/page/ --add-file=$(VIEWER) \
 		$(foreach file,$(RELEASED),--prefix=corcast-$(VERSION)/templates/viewer/node_modules/three/$(filter-out ./,$(dir $(file))) --add-file=build/viewer/node_modules/three/$(file)) \
-		--prefix=corcast-$(VERSION)/ HEAD
+		--prefix=corcast-$(VERSION)/ --add-file=build/grow/corcast.html HEAD
 	$(Q)gzip -9nf build/corcast-$(VERSION).tar
 
 packages: ## build, lint and test the packages of .ci/packages; PACKAGE=wheel for one; results in build/packages/
