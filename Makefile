@@ -47,6 +47,7 @@ POWER := $(BUILD)/tests/power/power
 EMBREE := $(BUILD)/tests/bench/embree
 FRAMES := $(BUILD)/tests/bench/frames
 MESHES := $(BUILD)/tests/bench/meshes
+PULSES := $(BUILD)/tests/bench/pulse
 FIT := $(BUILD)/tests/fit/fit_blob
 OPTIMA := $(BUILD)/tests/optima/optima
 FUZZ_SOURCES := $(wildcard tests/fuzz/*.c)
@@ -106,7 +107,7 @@ LINK = $(CC) $(OWN_LDFLAGS) $(LDFLAGS)
 VIEWER := $(or $(wildcard templates/page/viewer.js),build/viewer/viewer.js)
 LIBS := $(PACKAGE_LIBS) $(PLAIN_LIBS)
 
-.PHONY: all lib abi api-programs deps page demo figures gallery hero validate bench bench-grow bench-render bench-view bench-compare bench-mesh bench-trees bench-large export-all verify-all coronary power power-program metamorph fit-blob optima check check-all check-quick program unit \
+.PHONY: all lib abi api-programs deps page demo figures gallery hero validate bench bench-grow bench-render bench-view bench-compare bench-mesh bench-trees bench-pulse bench-large export-all verify-all coronary power power-program metamorph fit-blob optima check check-all check-quick program unit \
 	unit-programs layers format format-check asan tsan \
 	fuzz fuzz-programs golden-update reference install uninstall dist clean help packages libraries
 .DELETE_ON_ERROR:
@@ -181,6 +182,13 @@ bench-trees: ## time reading and writing a tree, compared with numpy and VTK; BE
 	$(Q).ci/deps build check
 	$(Q)$(AGAIN) all
 	$(Q)tests/bench/trees
+
+bench-pulse: ## time pulse waves of 16 harmonics in 10^6 segments
+	$(Q).ci/deps build
+	$(Q)$(AGAIN) all $(PULSES)
+	$(Q)mkdir -p out/bench
+	$(Q)[ -s out/bench/pulse.swc ] || build/corcast grow --quiet --domain ball:40 --terminals 500000 -o out/bench/pulse.swc
+	$(Q)$(PULSES) out/bench/pulse.swc
 
 bench-large: ## time growing, reading and drawing 10^6 terminals; BENCH=full adds 10^7
 	$(Q).ci/deps build check
@@ -313,7 +321,7 @@ $(API_PROGRAMS): $(BUILD)/tests/api/%: tests/api/%.c src/corcast.h $(BUILD)/$(SO
 
 api-programs: $(API_PROGRAMS)
 
-$(OPTIMA) $(FIT): %: %.o $(BUILD)/rooms.a
+$(OPTIMA) $(FIT) $(PULSES): %: %.o $(BUILD)/rooms.a
 	$(call say,LINK,$@)
 	$(Q)mkdir -p $(@D)
 	$(Q)$(LINK) -o $@ $^ $(LIBS)
@@ -368,12 +376,14 @@ $(BUILD)/src/options/templates.o: OWN_CPPFLAGS += '-DCORCAST_PREFIX="$(PREFIX)"'
 # Kernels of pictures read no input and write to arrays of fixed size. The stack protector would cost them 2 % of their speed.
 $(filter %kernels.o %kernels.avx2.o %kernels.avx512.o,$(ROOM_OBJECTS)): HARDEN_release += -fno-stack-protector
 
--include $(ROOM_OBJECTS:.o=.d) $(CLI_OBJECTS:.o=.d) $(TEST_OBJECTS:.o=.d) $(POWER_OBJECTS:.o=.d) $(EMBREE).d $(FRAMES).d $(MESHES).d $(FIT).d $(FUZZ_SOURCES:%.c=$(BUILD)/%.d)
+-include $(ROOM_OBJECTS:.o=.d) $(CLI_OBJECTS:.o=.d) $(TEST_OBJECTS:.o=.d) $(POWER_OBJECTS:.o=.d) $(EMBREE).d $(FRAMES).d $(MESHES).d $(PULSES).d $(FIT).d $(FUZZ_SOURCES:%.c=$(BUILD)/%.d)
 
 libraries:
 ifeq ($(and $(strip $(PACKAGE_LIBS)),$(NIFTI)),)
 	@echo 'corcast needs $(PACKAGES) $(HEADERS), OpenEXR, libnifti2 and pkg-config to build: run "make deps" first' >&2; exit 1
 endif
+	@mkdir -p $(BUILD) 2>/dev/null && test -w $(BUILD) || \
+		{ echo '$(BUILD) cannot be written to: "make program BUILD=FOLDER" builds in another folder' >&2; exit 1; }
 
 unit-programs: $(TEST_PROGRAMS) $(API_PROGRAMS) $(OPTIMA) $(ORACLE) $(FAILING)
 

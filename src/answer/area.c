@@ -15,9 +15,9 @@ static double half_length(const double side[2])
 }
 
 /* Returns the leaf's points as a polygon of its rectangle. */
-static Polygon polygon_of(const AreaLeaf *leaf)
+static LeafPolygon polygon_of(const AreaLeaf *leaf)
 {
-    Polygon polygon = {4, {-1, 1, 1, -1}, {-1, -1, 1, 1}};
+    LeafPolygon polygon = {4, {-1, 1, 1, -1}, {-1, -1, 1, 1}};
     if (!leaf->turned)
         return polygon;
     const Form x = {leaf->x, leaf->along[0], leaf->across[0], 0};
@@ -31,7 +31,7 @@ static Polygon polygon_of(const AreaLeaf *leaf)
 /* Shrinks a turned leaf to the bounds of its polygon. */
 static void fit_leaf(AreaLeaf *leaf)
 {
-    const Polygon polygon = polygon_of(leaf);
+    const LeafPolygon polygon = polygon_of(leaf);
     double low[2] = {1, 1}, high[2] = {-1, -1};
     if (!leaf->turned || polygon.n < 3)
         return;
@@ -53,7 +53,7 @@ static void fit_leaf(AreaLeaf *leaf)
 
 static void measure_leaf(AnswerWork *work, int i, int j, AreaLeaf *leaf)
 {
-    const Polygon polygon = polygon_of(leaf);
+    const LeafPolygon polygon = polygon_of(leaf);
     const double scale = fabs(leaf->along[0] * leaf->across[1] - leaf->along[1] * leaf->across[0]);
     const Beam beam = answerplan_beam(work->plan, i + 0.5 + leaf->x, j + 0.5 + leaf->y, leaf->along,
                                       leaf->across);

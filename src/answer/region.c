@@ -17,7 +17,7 @@ typedef struct PieceHit {
 } PieceHit;
 
 typedef struct Piece {
-    Polygon polygon;
+    LeafPolygon polygon;
     size_t n;
     PieceHit hits[MAX_HITS];
     bool covered; /* some hit is decided: the background is not visible */
@@ -48,14 +48,14 @@ typedef struct Region {
 
 /* ---- polygons -------------------------------------------------------------------------------- */
 
-static double value_at(Form f, const Polygon *p, int i)
+static double value_at(Form f, const LeafPolygon *p, int i)
 {
     return f.c + f.x * p->x[i] + f.y * p->y[i];
 }
 
-Polygon polygon_cut(const Polygon *p, Form f, double from)
+LeafPolygon polygon_cut(const LeafPolygon *p, Form f, double from)
 {
-    Polygon out = {0};
+    LeafPolygon out = {0};
     for (int i = 0; i < p->n; i++) {
         const int next = i + 1 < p->n ? i + 1 : 0;
         const double a = value_at(f, p, i) - from, b = value_at(f, p, next) - from;
@@ -69,19 +69,19 @@ Polygon polygon_cut(const Polygon *p, Form f, double from)
             out.y[out.n++] = p->y[i] + part * (p->y[next] - p->y[i]);
         }
         if (out.n > POLYGON_MAX - 2)
-            return (Polygon){0};
+            return (LeafPolygon){0};
     }
-    return out.n < 3 ? (Polygon){0} : out;
+    return out.n < 3 ? (LeafPolygon){0} : out;
 }
 
 /* Area and first moments. */
-typedef struct Moments {
+typedef struct PolygonMoments {
     double area, x, y;
-} Moments;
+} PolygonMoments;
 
-static Moments moments_of(const Polygon *p)
+static PolygonMoments moments_of(const LeafPolygon *p)
 {
-    Moments m = {0, 0, 0};
+    PolygonMoments m = {0, 0, 0};
     for (int i = 0; i < p->n; i++) {
         const int next = i + 1 < p->n ? i + 1 : 0;
         const double cross = p->x[i] * p->y[next] - p->x[next] * p->y[i];
@@ -89,10 +89,10 @@ static Moments moments_of(const Polygon *p)
         m.x += cross * (p->x[i] + p->x[next]) / 6;
         m.y += cross * (p->y[i] + p->y[next]) / 6;
     }
-    return m.area < 0 ? (Moments){-m.area, -m.x, -m.y} : m;
+    return m.area < 0 ? (PolygonMoments){-m.area, -m.x, -m.y} : m;
 }
 
-double polygon_area(const Polygon *p)
+double polygon_area(const LeafPolygon *p)
 {
     return moments_of(p).area;
 }
@@ -114,7 +114,7 @@ static void add_span(Region *r, double area, const ColorSpan *span)
 
 /* Adds the integral of a form over a polygon, times `weight`. Colors are neither negative nor above
  * the brightest of the scene. */
-static void add_form(Region *r, const Moments *m, const FormColor *color, double weight)
+static void add_form(Region *r, const PolygonMoments *m, const FormColor *color, double weight)
 {
     for (int c = 0; c < 3; c++) {
         const Form f = color->channels[c];
@@ -167,7 +167,7 @@ static const ColorSpan *range_of(Region *r, size_t hit)
 /* ---- shadows --------------------------------------------------------------------------------- */
 
 typedef struct ShadowPiece {
-    Polygon polygon;
+    LeafPolygon polygon;
     int n, depth;
     struct {
         uint8_t shade, pending;
@@ -182,7 +182,7 @@ typedef struct ShadowCuts {
 } ShadowCuts;
 
 /* Decides an edge over a polygon: 1 inside, -1 outside, 0 not decided. */
-static int side_of(Form edge, const Polygon *p)
+static int side_of(Form edge, const LeafPolygon *p)
 {
     double low = value_at(edge, p, 0), high = low;
     for (int i = 1; i < p->n; i++) {
@@ -195,7 +195,8 @@ static int side_of(Form edge, const Polygon *p)
 }
 
 /* Cuts a polygon at an edge. Returns the area of the strip in which it is not decided. */
-static double cut_at(Region *r, const Polygon *p, Form edge, Polygon *inside, Polygon *outside)
+static double cut_at(Region *r, const LeafPolygon *p, Form edge, LeafPolygon *inside,
+                     LeafPolygon *outside)
 {
     const double error = edge.e + 64 * FORM_U * form_span(edge);
     *inside = polygon_cut(p, edge, error);
@@ -230,7 +231,7 @@ static void add_lit(Region *r, const ShadowCuts *cuts, ShadowPiece *piece)
             first = i;
     }
     if (piece->n == 0) {
-        const Moments m = moments_of(&piece->polygon);
+        const PolygonMoments m = moments_of(&piece->polygon);
         add_form(r, &m, cuts->adds, cuts->weight);
         return;
     }
@@ -289,7 +290,7 @@ static bool list_shades(Region *r, const FormSurface *surface, const Beam *beam,
 }
 
 /* Adds what point `point` of a light adds to a polygon of a hit. */
-static void add_light(Region *r, HitLight *hit, size_t light, int point, const Polygon *polygon)
+static void add_light(Region *r, HitLight *hit, size_t light, int point, const LeafPolygon *polygon)
 {
     const AnswerPlan *plan = r->work->plan;
     const int points = plan->lights[light].points;
@@ -310,8 +311,7 @@ static void add_light(Region *r, HitLight *hit, size_t light, int point, const P
             return;
         if (own == -1) {
             shades[piece.n].n = 1;
-            shades[piece.n].edges[0] =
-                form_neg(form3_dot(hit->surface.normal, beam.unit));
+            shades[piece.n].edges[0] = form_neg(form3_dot(hit->surface.normal, beam.unit));
             shades[piece.n].edges[0].e += 0.5 * SHADOW_FROM_MM / hit->surface.hit->face->radius;
             piece.n++;
         }
@@ -331,11 +331,11 @@ static void add_light(Region *r, HitLight *hit, size_t light, int point, const P
 }
 
 /* Adds the color of one hit over a polygon. */
-static void add_hit(Region *r, size_t index, const Polygon *polygon)
+static void add_hit(Region *r, size_t index, const LeafPolygon *polygon)
 {
     const AnswerPlan *plan = r->work->plan;
     HitLight *hit = light_of(r, index);
-    const Moments m = moments_of(polygon);
+    const PolygonMoments m = moments_of(polygon);
     FormColor color = hit->surface.base;
     for (size_t i = 0; i < plan->scene->view.n_lights; i++) {
         if (hit->lit[i].dark)
@@ -354,10 +354,10 @@ static void add_hit(Region *r, size_t index, const Polygon *polygon)
 
 /* ---- visibility ------------------------------------------------------------------------------ */
 
-static void add_background(Region *r, const Polygon *polygon)
+static void add_background(Region *r, const LeafPolygon *polygon)
 {
     const Rgb paper = r->work->plan->scene->view.background;
-    const Moments m = moments_of(polygon);
+    const PolygonMoments m = moments_of(polygon);
     const FormColor color = {{form_of(rgb_channel(paper, 0), 0), form_of(rgb_channel(paper, 1), 0),
                               form_of(rgb_channel(paper, 2), 0)}};
     add_form(r, &m, &color, 1);
@@ -498,7 +498,7 @@ static void add_piece(Region *r, Piece *piece)
 }
 
 RegionSum region_integrate(AnswerWork *work, const Beam *beam, const FaceList *list,
-                           const Polygon *polygon)
+                           const LeafPolygon *polygon)
 {
     HitLight lights[MAX_HITS];
     Region region = {.work = work, .beam = beam, .lights = lights};

@@ -13,14 +13,14 @@
 enum { POLYGON_MAX = 28 };
 
 /* A convex polygon in the coordinates of a beam's rectangle, [-1, 1] in both. */
-typedef struct Polygon {
+typedef struct LeafPolygon {
     int n;
     double x[POLYGON_MAX], y[POLYGON_MAX];
-} Polygon;
+} LeafPolygon;
 
 /* Cuts the polygon to the side where f >= `from`, in value without e. */
-Polygon polygon_cut(const Polygon *polygon, Form f, double from);
-double polygon_area(const Polygon *polygon);
+LeafPolygon polygon_cut(const LeafPolygon *polygon, Form f, double from);
+double polygon_area(const LeafPolygon *polygon);
 
 /* Bounds of the integral of each channel over a region, in units of area of the beam's rectangle,
  * whose own area is 4. */
@@ -33,6 +33,6 @@ typedef struct RegionSum {
 
 /* Integrates the color over a polygon of the beam among the faces of `list`. */
 RegionSum region_integrate(AnswerWork *work, const Beam *beam, const FaceList *list,
-                           const Polygon *polygon);
+                           const LeafPolygon *polygon);
 
 #endif
