@@ -14,7 +14,7 @@
 
 extern const Command command_study, command_view, command_models, command_fields, command_looks,
     command_presets, command_colormaps, command_domains, command_formats, command_morphometries,
-    command_help, command_version;
+    command_waveforms, command_walls, command_help, command_version;
 
 /* Runs a command: reads its input, writes its files, and prints its result to standard output.
  *
@@ -22,9 +22,10 @@ extern const Command command_study, command_view, command_models, command_fields
  * Errors   of the command. */
 typedef Status RunCommand(void *options, Parsed *parsed, Err *err);
 
-RunCommand run_tree_maker, run_study, run_info, run_certify, run_render, run_povray, run_merge,
-    run_figure, run_view, run_verify, run_compare, run_report, run_power, run_check_figure,
-    run_models, run_list, run_colormaps, run_help, run_version;
+RunCommand run_tree_maker, run_study, run_info, run_coverage, run_certify, run_pulse, run_render,
+    run_povray, run_merge, run_figure, run_view, run_verify, run_compare, run_report, run_power,
+    run_check_figure, run_models, run_list, run_colormaps, run_help, run_version, run_answer,
+    run_metamorph;
 
 /* The headings of `corcast --help`, in its order. Each command is under one of them. */
 typedef enum CommandGroup {

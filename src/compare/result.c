@@ -1,6 +1,8 @@
 /* The names of planes and of classes of pixels, in files and texts. */
 #include "compare/result.h"
 
+#include <stdio.h>
+
 const char *plane_kind_name(PlaneKind kind)
 {
     static const char *const names[PLANE_KINDS] = {"color", "depth", "normal", "id"};
@@ -25,4 +27,20 @@ const char *pixel_class_name(PixelClass pixel_class)
 const char *result_title(const CompareResult *result)
 {
     return result->tolerance.title ? result->tolerance.title : plane_kind_name(result->kind);
+}
+
+void result_sentence(const CompareResult *result, char *out, size_t size)
+{
+    const PixelBox *box = &result->box;
+    const double area = (double)box->width * box->height;
+    char cause[sizeof result->cause + 40] = "";
+    if (*result->cause)
+        snprintf(cause, sizeof cause, "likely cause: %s; ", result->cause);
+    else if (box->width > 0 && 2 * area < result->values[MEASURE_PIXELS])
+        snprintf(cause, sizeof cause,
+                 "cause unknown, but all differences are in the %d x %d pixels at (%d, %d); ",
+                 box->width, box->height, box->x, box->y);
+    else if (result->kind == PLANE_COLOR)
+        snprintf(cause, sizeof cause, "cause unknown; ");
+    snprintf(out, size, "%s%s", cause, result->reason);
 }

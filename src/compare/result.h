@@ -176,6 +176,11 @@ typedef struct PixelPlace {
     uint32_t id_a, id_b; /* the segments that the pixel shows in A and in B; 0: none */
 } PixelPlace;
 
+/* A rectangle of pixels. */
+typedef struct PixelBox {
+    int x, y, width, height; /* (x, y) is the top left pixel; width 0: unknown */
+} PixelBox;
+
 /* The pixels that a result points to, as examples of the largest differences. */
 typedef enum PlaceId {
     PLACE_WORST,           /* the first pixel with the largest difference */
@@ -192,6 +197,7 @@ typedef struct Rule {
     char name[64];    /* "pixels off by more than 2 levels" */
     const char *unit; /* "ppm", "mm", "pixels" */
     double measured, allowed;
+    double of;        /* limits in ppm: the number of pixels that the limit refers to */
     bool met;         /* measured <= allowed */
     PixelPlace at;    /* an example of a pixel; x is -1 if there is none */
     char at_what[48]; /* description of `at`: "the worst, 155 levels, is" */
@@ -255,6 +261,7 @@ typedef struct CompareResult {
     bool agrees;
     char reason[400]; /* a sentence about the first rule that is not met; "" if the planes agree */
     char cause[200];  /* compare_cause's sentence about what changed A into B; "" if unknown */
+    PixelBox box;     /* set by compare_cause: the box of all pixels that differ */
     Rule rules[RULES_MAX];
     int n_rules;
     bool has_ids;                  /* id planes were compared: `places` contain ids */
@@ -275,5 +282,12 @@ static inline size_t result_count(const CompareResult *result, MeasureId id)
 /* Returns the name of what is compared: the title of the tolerance, or else the name of the plane.
  * Borrowed from `result`. */
 const char *result_title(const CompareResult *result);
+
+/* Writes why two planes differ, the cause first: "likely cause: B is A moved by (1, 0) pixels; 21.3
+ * % of the pixels are off by more than 0 levels (allowed: 0.0002 %)". If the cause of a difference
+ * of colors is unknown, it states the box of all differences, unless this box is most of the
+ * picture. */
+enum { RESULT_SENTENCE = 700 }; /* bytes that hold any sentence */
+void result_sentence(const CompareResult *result, char *out, size_t size);
 
 #endif

@@ -39,6 +39,7 @@ typedef struct Field {
  *     diameter-strahler  an order by diameters, see below
  *     branch             index of the branch, from 1, see below
  *     tree               index of the tree in a forest, from 1, in the order of the roots
+ *     type               SWC type code
  *
  * Diameter-defined Strahler orders are 1 at terminals. Elsewhere the order is m, the largest order
  * of the daughters, or m + 1 if the diameter is above (D_m + S_m + D_m+1 - S_m+1) / 2. D and S are
@@ -110,6 +111,15 @@ typedef struct TreeSummary {
 /* Returns the viscosity law: the one that the user specified; else constant, if the user specified
  * a viscosity; else the tree's. */
 ViscosityLaw derive_viscosity_law(const Tree *tree, const TreeMeta *overrides);
+
+/* Density of blood. */
+#define BLOOD_DENSITY_G_MM3 1.05e-3
+
+/* Computes the viscosity of the blood in each segment, Pa s, in a new array of n entries, which the
+ * caller frees. Errors: STATUS_INPUT if a value is missing, with a sentence that continues "the
+ * field NAME "; STATUS_MEMORY. */
+MUST_CHECK Status derive_viscosity(const Tree *tree, const TreeMeta *overrides, double **value,
+                                   Err *err);
 
 /* Computes the summary of a tree. `overrides` as in derive_field. Errors: STATUS_MEMORY. */
 MUST_CHECK Status derive_summary(const Tree *tree, const TreeMeta *overrides, TreeSummary *summary,

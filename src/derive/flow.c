@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double density_g_mm3 = 1.05e-3; /* of blood */
 /* The sentence goes on from "the field NAME ". */
 static Status need(const Tree *tree, const TreeMeta *overrides, MetaKey key, double *value,
                    Err *err)
@@ -55,6 +54,16 @@ static double viscosity_pa_s(const Blood *blood, double radius_mm)
     if (blood->law == VISCOSITY_CONSTANT)
         return blood->viscosity_pa_s;
     return viscosity_pries_pa_s(radius_mm, blood->hematocrit, blood->viscosity_pa_s);
+}
+
+Status derive_viscosity(const Tree *tree, const TreeMeta *overrides, double **value, Err *err)
+{
+    Blood blood;
+    TRY(blood_of(tree, overrides, &blood, err));
+    TRY(mem_calloc(value, tree->n, sizeof **value, "viscosities", err));
+    for (size_t i = 0; i < tree->n; i++)
+        (*value)[i] = viscosity_pa_s(&blood, tree->radius_mm[i]);
+    return STATUS_OK;
 }
 
 bool pressure_is_known(const Tree *tree, const TreeMeta *overrides)
@@ -133,7 +142,7 @@ Status field_reynolds(const Tree *tree, const TreeMeta *overrides, double *value
     TRY(field_velocity(tree, overrides, value, err));
     for (size_t i = 0; i < tree->n; i++) {
         double radius = tree->radius_mm[i];
-        value[i] *= 2 * density_g_mm3 * radius / viscosity_pa_s(&blood, radius);
+        value[i] *= 2 * BLOOD_DENSITY_G_MM3 * radius / viscosity_pa_s(&blood, radius);
     }
     return STATUS_OK;
 }

@@ -187,6 +187,7 @@ static Status put_frames(Text *out, void *context, Err *err)
         return STATUS_OK;
     Values values = {.digits = geometry->params->digits};
     add_count(&values, "count", appearance->n_frames);
+    add_flag(&values, "beats", appearance->widths != NULL);
     Text *times = add_value(&values, "times");
     for (size_t k = 0; k < appearance->n_frames; k++)
         put_text(times, k ? ",%n" : "%n", appearance->time[k]);

@@ -7,10 +7,13 @@
 static void put_primitive(Text *text, const EmitParams *params, const Primitive *primitive)
 {
     if (primitive->kind == PRIMITIVE_CYLINDER)
-        put_text(text, "Vessel_Cylinder(<%v>,<%v>,%n,", primitive->a, primitive->b,
+        put_text(text, "Vessel_Cylinder(<%v>,<%v>,%n", primitive->a, primitive->b,
                  primitive->radius_mm);
     else
-        put_text(text, "Vessel_Sphere(<%v>,%n,", primitive->a, primitive->radius_mm);
+        put_text(text, "Vessel_Sphere(<%v>,%n", primitive->a, primitive->radius_mm);
+    if (params->scene->appearance.widths)
+        put_text(text, "*Frame_Widths[%u]", primitive->segment);
+    text_puts(text, ",");
     put_paint(text, params, primitive->segment);
     text_puts(text, ")\n");
 }

@@ -19,7 +19,7 @@
 #include <stdint.h>
 #include <string.h>
 
-enum { IMAGE_MAX_SIDE = 1 << 20, IMAGE_MAX_CHANNELS = 9, IMAGE_MAX_ID = 0xffffff };
+enum { IMAGE_MAX_SIDE = 1 << 20, IMAGE_MAX_CHANNELS = 10, IMAGE_MAX_ID = 0xffffff };
 
 /* A rectangle of pixels; `left` and `top` count from 0. */
 typedef struct PixelRect {
@@ -330,6 +330,10 @@ typedef enum ImageAlpha {
  */
 MUST_CHECK Status image_read(Image *image, const char *path, ImageAlpha alpha, const char *layer,
                              Err *err);
+/* Copies a text attribute of an OpenEXR file to `text`, which has room for `size` bytes. Returns
+ * false if the file cannot be read, is no OpenEXR, or has no such attribute of less than `size`
+ * bytes. */
+bool image_exr_text(const char *path, const char *name, char *text, size_t size);
 /* As image_read. Errors: also STATUS_INPUT if the file holds floats, or if it holds codes. */
 MUST_CHECK Status picture_read(Picture *picture, const char *path, ImageAlpha alpha, Err *err);
 /* Reads a file in memory as picture_read. `name` is the file's name in errors. Errors: also

@@ -13,6 +13,7 @@ const char *const option_group_names[OPTION_GROUPS] = {
     [GROUP_INPUT] = "reading the tree",
     [GROUP_TREE] = "tree",
     [GROUP_BLOOD] = "blood",
+    [GROUP_PULSE] = "pulse waves",
     [GROUP_OPTIMUM] = "optimization",
     [GROUP_VESSELS] = "vessels",
     [GROUP_VOXELS] = "voxels",

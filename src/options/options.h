@@ -83,6 +83,7 @@ typedef enum OptionGroup {
     GROUP_FILES,
     GROUP_TREE,
     GROUP_BLOOD,
+    GROUP_PULSE,
     GROUP_OPTIMUM,
     GROUP_VESSELS,
     GROUP_VOXELS,

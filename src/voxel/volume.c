@@ -42,6 +42,14 @@ double sample_full(SampleType type)
     return samples_of[type].full;
 }
 
+void volume_labels(SampleType type, uint32_t *labels, size_t n)
+{
+    for (size_t i = 0; type == SAMPLE_16 && i < n; i++) {
+        uint16_t label = (uint16_t)labels[i];
+        memcpy((uint8_t *)labels + i * sizeof label, &label, sizeof label);
+    }
+}
+
 /* ---- headers --------------------------------------------------------------------------------- */
 
 static bool is_little_endian(void)

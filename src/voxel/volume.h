@@ -36,6 +36,10 @@ size_t sample_size(SampleType type);
  * SAMPLE_32, which only labels use. */
 double sample_full(SampleType type);
 
+/* Converts n labels in place to samples of a type: SAMPLE_16, which must hold them, or SAMPLE_32.
+ */
+void volume_labels(SampleType type, uint32_t *labels, size_t n);
+
 /* A file format: one row of `volume_formats`. */
 typedef struct VolumeFormat {
     const char *suffix;      /* end of a file's name, such as ".nii.gz" */

@@ -7,7 +7,6 @@
 #include "voxel/rows.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 /* Number of voxels per chunk, and of chunks per thread at a time. Larger ones take more memory;
  * smaller ones compress less and wait more. Changing CHUNK_VOXELS changes the bytes of files. How
@@ -121,22 +120,13 @@ static void put_claims(const VoxelWork *work, RowBlock *rows)
     }
 }
 
-/* Converts labels to 16 bits, in place. */
-static void narrow(uint32_t *labels, size_t n)
-{
-    for (size_t i = 0; i < n; i++) {
-        uint16_t label = (uint16_t)labels[i];
-        memcpy((uint8_t *)labels + i * sizeof label, &label, sizeof label);
-    }
-}
-
 static Status pack_chunk(const VoxelWork *work, VoxelChunk *chunk, Err *err)
 {
     const RowBlock *rows = &chunk->rows;
     size_t n = (size_t)(rows->n_rows * work->source.grid->n[0]);
     uint8_t *samples[VOLUMES] = {rows->values, (uint8_t *)rows->labels, rows->centreline};
-    if (rows->labels && work->streams[1]->type == SAMPLE_16)
-        narrow(rows->labels, n);
+    if (rows->labels)
+        volume_labels(work->streams[1]->type, rows->labels, n);
     for (int i = 0; i < VOLUMES; i++)
         if (work->streams[i])
             TRY(volume_pack(work->streams[i], samples[i], n * sample_size(work->streams[i]->type),

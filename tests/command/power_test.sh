@@ -115,4 +115,55 @@ test_what_cannot_be_asked_is_refused() {
     expect_only
 }
 
+# repeats N: drawn with N seeds: a tenth of the pixels are off by one to four levels.
+repeats() {
+    draw_picture
+    for seed in $(seq "$1"); do
+        awk -v seed="$seed" 'BEGIN { srand(seed) } NR == 1 { print; next }
+            { for (i = 1; i <= NF; i++) { sub(/,/, "", $i); if (rand() < 0.04) $i -= 1 + int(4 * rand()) } print }' drawn.ppm >r$seed.ppm
+    done
+}
+
+test_the_tightest_tolerance_that_repeats_agree_with_is_chosen() {
+    repeats 6
+    run_ok corcast power r?.ppm --choose c.ini --json
+    cp stdout power.json
+    expect_json power.json '.choice | .renderings == 5 and .rank == 5 and (.rate * 6 | . > 0.999 and . < 1.001)'
+    expect_json power.json '.choice.rate_95 | . > 0.4507 and . < 0.4508' # 1 - 0.05^(1/5)
+    expect_json power.json '.choice.missed == .rules[0].missed and .choice.planted == .planted'
+    expect_json power.json '.rules[0].false_alarm == false and .rules[0].missed < .rules[3].missed'
+    for i in 2 3 4 5 6; do
+        run_ok corcast compare r1.ppm r$i.ppm --tolerance c.ini
+    done
+    # One level lower, and one of the repeats at least is rejected: the tolerance is as tight as they allow.
+    awk -F ' = ' '$1 == "color_levels" { print "color_levels = " $2 - 1; next } { print }' c.ini >tighter.ini
+    for i in 2 3 4 5 6; do corcast compare r1.ppm r$i.ppm --tolerance tighter.ini >stdout || echo $i; done >rejected
+    [ -s rejected ] || fail "expected a repeat to be rejected by $(cat tighter.ini)"
+}
+
+test_a_rate_takes_as_many_repeats_as_it_needs() {
+    repeats 4
+    run corcast power r?.ppm --choose c.ini --alarms 0.2
+    expect_status 2
+    expect_sentence '3 renderings besides the reference guarantee a false alarm rate of 0.25 at best; a rate of 0.2 needs 4'
+    run_ok corcast power r?.ppm --choose c.ini --alarms 0.5
+    expect_stdout ': value 2 of 3$'
+    run corcast power r1.ppm r2.ppm --choose d.ini
+    expect_status 2
+    expect_sentence 'a reference and at least two more renderings'
+    run corcast power r1.ppm r2.ppm --render 'cp r1.ppm {}'
+    expect_sentence 'pictures are operands only with --choose'
+    pnmcut -width 9 r1.ppm >small.ppm
+    run corcast power r1.ppm r2.ppm small.ppm --choose d.ini
+    expect_sentence 'picture 3 has another size'
+}
+
+test_repeats_that_are_equal_have_a_tolerance_that_misses_nothing() {
+    repeats 1
+    cp r1.ppm r2.ppm
+    cp r1.ppm r3.ppm
+    run_ok corcast power r?.ppm --choose c.ini --json
+    expect_json stdout '.choice | .missed == 0 and .color_levels == 0 and .color_ppm == 0'
+}
+
 run_tests

@@ -103,7 +103,7 @@ END
     run env CORCAST_POVRAY="$PWD/povray.sh" "$CORCAST" verify tree.swc --background none --size 60x50 -o report
     expect_status 1
     expect_stdout '^  color   agree '
-    expect_stdout '^  alpha   differ alpha: pixels off by more than 0 levels: .* the worst, 5 levels, is at '
+    expect_stdout '^  alpha   differ alpha: .* of the pixels are off by more than 0 levels .* the worst, 5 levels, is at '
     expect_json report/report.json '.verdict == "differ" and .alpha.verdict == "differ" and (.reason | startswith("alpha: "))'
     run_ok corcast verify tree.swc --size 60x50 -o report
     expect_json report/report.json 'has("alpha") | not'

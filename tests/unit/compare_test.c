@@ -271,15 +271,18 @@ static void says_what_is_wrong_and_where(void **state)
     Pair pair = make_pair(8);
     change(&pair.b, 22, 13, 1, 31);
     CompareResult r = compare(&pair, true, tolerance_identity(0));
-    assert_string_equal(r.reason, "color: pixels off by more than 0 levels: 1175 ppm, at most 2 "
-                                  "allowed; the worst, 31 levels, is at (22, 13), segment 17");
+    assert_string_equal(r.reason, "0.118 % of the pixels are off by more than 0 levels (allowed: "
+                                  "0.0002 %, no pixel at this size); the worst, 31 levels, is at "
+                                  "(22, 13), segment 17");
     CompareResult without = compare(&pair, false, tolerance_identity(0));
     assert_non_null(strstr(without.reason, "the worst, 31 levels, is at (22, 13)"));
     pair.id_b.ids[13 * W + 11] = 0;
     Tolerance tolerance = tolerance_identity(0);
     assert_int_equal(compare_ids(&pair.id_a, &pair.id_b, &tolerance, &r, &err), STATUS_OK);
-    assert_string_equal(r.reason, "id: pixels with different ids: 1175 ppm, at most 2 allowed; the "
-                                  "first is at (11, 13), segment 29 in A and nothing in B");
+    assert_string_equal(
+        r.reason,
+        "id: 0.118 % of the pixels have different ids (allowed: 0.0002 %, "
+        "no pixel at this size); the first is at (11, 13), segment 29 in A and nothing in B");
     pair_release(&pair);
 }
 
@@ -520,7 +523,7 @@ static void measures_depth_in_mm_over_common_pixels(void **state)
     assert_int_equal(r.places[PLACE_WORST].y, 5);
     assert_int_equal(r.places[PLACE_WORST].x, 13);
     assert_false(r.agrees);
-    assert_non_null(strstr(r.reason, "pixels seen in only one image"));
+    assert_non_null(strstr(r.reason, "pixels are seen in only one image"));
     plane_release(&a);
     plane_release(&b);
 }
@@ -539,13 +542,13 @@ static void takes_percentiles_by_nearest_rank(void **state)
     assert_float_equal(r.values[MEASURE_MEDIAN], 100, 0);
     assert_float_equal(r.values[MEASURE_P99], 198, 0);
     assert_float_equal(r.values[MEASURE_MAX], 200, 0);
-    assert_string_equal(r.reason, "depth: 99th percentile of differences: 198 mm, at most 0.01 "
-                                  "allowed; the worst, 200 mm, is at (7, 9)");
+    assert_string_equal(r.reason, "depth: 99th percentile of differences: 198 mm (allowed: "
+                                  "0.01); the worst, 200 mm, is at (7, 9)");
     assert_float_equal(r.values[MEASURE_P99_PART], 0.198, 0);
     r = compare_depth(&a, &b, tolerance_surface(0));
     assert_string_equal(r.reason,
-                        "depth: 99th percentile of differences: 0.198 of the depth, at most 0.0001 "
-                        "allowed; the worst, 200 mm, is at (7, 9)");
+                        "depth: 99th percentile of differences: 0.198 of the depth (allowed: "
+                        "0.0001); the worst, 200 mm, is at (7, 9)");
     plane_release(&a);
     plane_release(&b);
 }
@@ -565,8 +568,8 @@ static void counts_nan_and_never_averages_it_in(void **state)
     assert_int_equal(r.values[MEASURE_MISSING_PIXELS] + r.values[MEASURE_EXTRA_PIXELS], 0);
     assert_float_equal(r.values[MEASURE_MAX], 0, 0);
     assert_false(r.agrees);
-    assert_string_equal(r.reason, "depth: values that are not a number: 4 pixels, at most 0 "
-                                  "allowed; the first is at (0, 0)");
+    assert_string_equal(r.reason, "depth: values that are not a number: 4 pixels (allowed: 0); "
+                                  "the first is at (0, 0)");
     assert_false(compare_depth(&a, &b, tolerance_surface(0)).agrees);
     plane_release(&a);
     plane_release(&b);

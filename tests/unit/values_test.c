@@ -146,7 +146,7 @@ static void refuses_values_that_do_not_fit(void **state)
         {"id,time,a\n7,1,2\n7,2,2\n7,1,2\n", NULL,
          ":4: segment 7 at time 1 already has a row, in line 2"},
         {"name,time,a\nbranch0_seg0,1,2\n", NULL,
-         ":2: 'branch0_seg0' names a SimVascular branch, but the tree has no column BranchId"},
+         ":2: the tree has no segment with the id branch0_seg0"},
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         Tree tree = make_tree();

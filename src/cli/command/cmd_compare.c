@@ -1,4 +1,5 @@
 /* Prints a comparison. The exit status is the verdict. */
+#include "cli/command/compare_serve.h"
 #include "cli/commands.h"
 #include "job/verify/compare.h"
 #include "options/output.h"
@@ -7,9 +8,7 @@ static Status print(const CompareOptions *options, const Comparison *comparison,
                     Err *err)
 {
     Text text = TEXT_TO(stdout);
-    if (comparison->kind == COMPARED_NOTHING)
-        return STATUS_OK;
-    if (options->json)
+    if (options->json && comparison->kind != COMPARED_NOTHING)
         return json_write(comparison_json(comparison), "-", err);
     if (!quiet)
         comparison_text(options, comparison, &text);
@@ -22,6 +21,9 @@ Status run_compare(void *options, Parsed *parsed, Err *err)
 {
     Comparison comparison;
     Status status;
+    if (((const CompareOptions *)options)->serve)
+        return parsed->n_operands == 0 ? compare_serve(err)
+                                       : err_set(err, STATUS_USAGE, "--serve takes no operands");
     TRY(compare_make(options, parsed, &comparison, err));
     TRY_GOTO(compare_write(options, parsed, &comparison, err));
     TRY_GOTO(print(options, &comparison, parsed->common.quiet, err));

@@ -8,6 +8,7 @@
 #include "job/picture/preset.h"
 #include "options/options.h"
 #include "options/templates.h"
+#include "pulse/pulse.h"
 #include "treeio/treeio.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -103,6 +104,26 @@ static Status describe_morphometry(const char *name, Text *lines, Err *err)
     return text_check(lines, err);
 }
 
+static Status describe_waveform(const char *name, Text *lines, Err *err)
+{
+    char *path = NULL;
+    Waveform waveform;
+    TRY(template_file("drive", "waveforms", name, ".ini", &path, err));
+    Status status = waveform_read_template(path, &waveform, err);
+    free(path);
+    TRY(status);
+    text_printf(lines, "%s\t%s\t%g s\t%s [%s]\n", name, waveform.is_flow ? "flow" : "pressure",
+                waveform.period_s, waveform.about, waveform.source);
+    return text_check(lines, err);
+}
+
+static Status list_walls(Text *lines, Err *err)
+{
+    for (size_t i = 0; pulse_wall_name(i); i++)
+        text_printf(lines, "%s\t%s\n", pulse_wall_name(i), pulse_wall_description(i));
+    return text_check(lines, err);
+}
+
 /* Calls `describe_name` for each file of a folder of the templates, in alphabetical order. */
 static Status list_templates(const char *folder, const char *extension,
                              Status (*describe_name)(const char *name, Text *lines, Err *err),
@@ -166,15 +187,21 @@ Status run_models(void *options, Parsed *parsed, Err *err)
     return STATUS_OK;
 }
 
+static Status list_waveforms(Text *lines, Err *err)
+{
+    return list_templates("waveforms", ".ini", describe_waveform, lines, err);
+}
+
 Status run_list(void *options, Parsed *parsed, Err *err)
 {
     (void)options;
     static const struct {
         const Command *command;
         ListNames *names;
-    } lists[] = {{&command_fields, list_fields},   {&command_looks, list_looks},
-                 {&command_domains, list_domains}, {&command_formats, list_formats},
-                 {&command_presets, list_presets}, {&command_morphometries, list_morphometries}};
+    } lists[] = {{&command_fields, list_fields},       {&command_looks, list_looks},
+                 {&command_domains, list_domains},     {&command_formats, list_formats},
+                 {&command_presets, list_presets},     {&command_morphometries, list_morphometries},
+                 {&command_waveforms, list_waveforms}, {&command_walls, list_walls}};
     size_t i = 0;
     while (lists[i].command != parsed->command)
         i++;
@@ -207,3 +234,10 @@ const Command command_morphometries = {
     .name = "morphometries",
     .summary = "list the published data sets, the values of `info --morphometry`",
     .operands = ""};
+const Command command_waveforms = {
+    .name = "waveforms",
+    .summary = "list the cycles of pressure and flow, the values of `pulse --drive`",
+    .operands = ""};
+const Command command_walls = {.name = "walls",
+                               .summary = "list the laws of the wall, the values of `pulse --wall`",
+                               .operands = ""};

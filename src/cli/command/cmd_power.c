@@ -4,12 +4,18 @@
 #include "options/output.h"
 #include <stdio.h>
 
-static Status print(const PowerOptions *options, const Power *power, Err *err)
+static Status print(const PowerOptions *options, const PowerReport *report, Err *err)
 {
     Text text = TEXT_TO(stdout);
+    if (options->json && options->choose)
+        return json_write(
+            json_with(power_json(&report->power), "choice", choice_json(&report->choice)), "-",
+            err);
     if (options->json)
-        return json_write(power_json(power), "-", err);
-    power_text(power, &text);
+        return json_write(power_json(&report->power), "-", err);
+    power_text(&report->power, &text);
+    if (options->choose)
+        choice_text(&report->choice, &text);
     Status status = text_flush(&text, err);
     text_release(&text);
     return status;
@@ -17,11 +23,12 @@ static Status print(const PowerOptions *options, const Power *power, Err *err)
 
 Status run_power(void *options, Parsed *parsed, Err *err)
 {
-    Power power;
-    TRY(power_run(options, parsed, &power, err));
-    Status status = print(options, &power, err);
-    if (status == STATUS_OK && power.alarm[0])
+    const PowerOptions *own = options;
+    PowerReport report;
+    TRY(power_run(own, parsed, &report, err));
+    Status status = print(own, &report, err);
+    if (status == STATUS_OK && !own->choose && report.power.alarm[0])
         status = STATUS_DIFFERS;
-    power_release(&power);
+    power_release(&report.power);
     return status;
 }

@@ -27,6 +27,32 @@ static void take_row(const Picture *a, const Picture *b, int y, size_t step, siz
     }
 }
 
+/* Widens the box by the pixels of row y that differ. */
+static void add_row_to_box(const Picture *a, const Picture *b, int y, PixelBox *box)
+{
+    int left = 0, right = a->width - 1;
+    while (picture_rows_equal(a, b, y, left, 1))
+        left++;
+    while (picture_rows_equal(a, b, y, right, 1))
+        right--;
+    if (box->width == 0) {
+        *box = (PixelBox){left, y, right - left + 1, 1};
+        return;
+    }
+    int end = box->x + box->width > right + 1 ? box->x + box->width : right + 1;
+    box->x = left < box->x ? left : box->x;
+    box->width = end - box->x;
+    box->height = y + 1 - box->y;
+}
+
+static void find_box(const Picture *a, const Picture *b, PixelBox *box)
+{
+    *box = (PixelBox){0};
+    for (int y = 0; y < a->height; y++)
+        if (!picture_rows_equal(a, b, y, 0, a->width))
+            add_row_to_box(a, b, y, box);
+}
+
 static void choose_samples(const Picture *a, const Picture *b, size_t differing, Samples *samples)
 {
     size_t step = (differing + CAUSE_SAMPLES - 1) / CAUSE_SAMPLES, seen = 0;
@@ -288,6 +314,7 @@ Status compare_cause(const Picture *a, const Picture *b, CompareResult *result, 
     if (result->values[MEASURE_DIFFERING_PIXELS] == 0)
         return STATUS_OK;
     Samples samples;
+    find_box(a, b, &result->box);
     choose_samples(a, b, result_count(result, MEASURE_DIFFERING_PIXELS), &samples);
     find_turn(a, b, &samples, &out);
     if (!*out.text)

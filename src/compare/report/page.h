@@ -49,10 +49,10 @@ MUST_CHECK Status report_thumbnail(Picture *out, const Picture *picture, Err *er
 #define REPORT_CASE_END "<!-- case: end -->\n"
 
 /* A page about cases. All members are borrowed. `title`, `heading` and `sentence` are text; `rows`,
- * `cases` and `power` are markup. */
+ * `cases`, `power` and `others`, a list of cases without pictures, are markup. */
 typedef struct ReportFrame {
     const char *title, *heading, *sentence;
-    const Text *rows, *cases, *power;
+    const Text *rows, *cases, *power, *others;
     size_t n_cases;
     bool agrees;
 } ReportFrame;
@@ -61,6 +61,13 @@ typedef struct ReportFrame {
  * parts. */
 MUST_CHECK Status report_write_frame(const ReportFrame *frame, const char *templates,
                                      const char *path, Err *err);
+/* Appends the row of a case and its section, with the marks above. `heat` is the difference
+ * picture. */
+MUST_CHECK Status report_parts(const ReportCase *report, const Picture *heat, const char *templates,
+                               Text *row, Text *section, Err *err);
+/* Appends a row or a section as that of the case with this number, from 1. `folder` is the folder
+ * of the case; NULL: none is shown. */
+void report_put_part(Text *out, const char *part, size_t size, size_t number, const char *folder);
 /* Writes the page to `path`; `heat` is the difference picture. */
 MUST_CHECK Status report_page(const ReportCase *report, const Picture *heat, const char *templates,
                               const char *path, Err *err);

@@ -6,6 +6,7 @@
 #include "compare/checks/surface_check.h"
 #include "compare/checks/witness.h"
 #include "compare/result.h"
+#include "compare/suite/suite.h"
 
 /* ---- one comparison -------------------------------------------------------------------------- */
 
@@ -39,6 +40,8 @@ typedef struct ReportCase {
     const char *name;  /* of the scene: "demo"; one line */
     const char *model; /* "rounded"; "": none */
     ReportSide a, b;
+    const char *sentence;        /* replaces the sentence about the verdict; NULL: none does */
+    const char *accept;          /* shell command that accepts B as the reference; NULL: none */
     const char *const *commands; /* how to repeat the report, one per line */
     size_t n_commands;
     const CompareResult *planes[PLANE_KINDS]; /* NULL: not compared; PLANE_COLOR is required */
@@ -80,5 +83,13 @@ typedef struct ReportMerge {
  * STATUS_MEMORY. */
 MUST_CHECK Status report_merge(const ReportMerge *merge, const char *path, bool *all_agree,
                                Err *err);
+
+/* ---- a folder of pictures -------------------------------------------------------------------- */
+
+/* Writes one page about a suite that was judged: all cases that fail, each with the command that
+ * accepts it, and the unused files. Pictures are read and compared again. Errors: STATUS_INPUT;
+ * STATUS_IO; STATUS_MEMORY. */
+MUST_CHECK Status suite_write_page(const Suite *suite, const SuiteFolders *folders,
+                                   const char *templates, const char *path, Err *err);
 
 #endif

@@ -97,21 +97,18 @@ static const char *const marks[MARKS] = {[MARK_CASE] = "\"" REPORT_FIRST_CASE "\
                                          [MARK_LINK] = "\"#" REPORT_FIRST_CASE "\"",
                                          [MARK_FOLDER] = REPORT_FOLDER};
 
-static void append_mark(Text *out, int mark, const MergedCase *merged)
+static void append_mark(Text *out, int mark, size_t number, const char *folder)
 {
-    if (mark == MARK_FOLDER) {
+    if (mark != MARK_FOLDER) {
+        text_printf(out, "\"%scase-%zu\"", mark == MARK_LINK ? "#" : "", number);
+    } else if (folder) {
         text_puts(out, " in ");
-        text_escaped(out, merged->folder);
-    } else {
-        text_printf(out, "\"%scase-%zu\"", mark == MARK_LINK ? "#" : "", merged->number);
+        text_escaped(out, folder);
     }
 }
 
-/* Appends a part, with all marks filled in. */
-static void append_part(Text *out, const PagePart *whole, const MergedCase *merged)
+void report_put_part(Text *out, const char *part, size_t size, size_t number, const char *folder)
 {
-    const char *part = whole->start;
-    size_t size = whole->size;
     while (size > 0) {
         const char *first = NULL;
         int mark = 0;
@@ -126,7 +123,7 @@ static void append_part(Text *out, const PagePart *whole, const MergedCase *merg
         text_append(out, part, before);
         if (!first)
             return;
-        append_mark(out, mark, merged);
+        append_mark(out, mark, number, folder);
         size_t skip = before + strlen(marks[mark]);
         part += skip;
         size -= skip;
@@ -219,8 +216,9 @@ static Status write_page(const MergedCase *cases, size_t n, const Text *power,
     Text rows = TEXT_INIT, sections = TEXT_INIT, heading = TEXT_INIT;
     size_t differing = 0;
     for (size_t i = 0; i < n; i++) {
-        append_part(&rows, &cases[i].row, &cases[i]);
-        append_part(&sections, &cases[i].section, &cases[i]);
+        const MergedCase *one = &cases[i];
+        report_put_part(&rows, one->row.start, one->row.size, one->number, one->folder);
+        report_put_part(&sections, one->section.start, one->section.size, one->number, one->folder);
         differing += cases[i].severity > 0;
     }
     if (differing)
@@ -234,6 +232,7 @@ static Status write_page(const MergedCase *cases, size_t n, const Text *power,
                                .rows = &rows,
                                .cases = &sections,
                                .power = power,
+                               .others = &TEXT_INIT,
                                .n_cases = n,
                                .agrees = differing == 0};
     Status status = report_write_frame(&frame, templates, path, err);

@@ -13,7 +13,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/utsname.h>
-#include <time.h>
 
 static const char *class_of(bool agrees)
 {
@@ -73,13 +72,15 @@ static void put_sentence(const ReportCase *report, Text *sentence)
         return;
     }
     bool alone = compared == 1 || !differing;
+    char whole[RESULT_SENTENCE];
+    if (!color->agrees && reason == color->reason) {
+        result_sentence(color, whole, sizeof whole);
+        reason = whole;
+    }
     if (!alone)
         text_printf(sentence, "%d of %d planes differ%s. First, ", differing, compared,
                     differing == 1 ? "s" : "");
     text_printf(sentence, "%c%s.", alone ? toupper((unsigned char)*reason) : *reason, reason + 1);
-    if (!color->agrees)
-        text_printf(sentence, " Likely cause: %s.",
-                    *color->cause ? color->cause : "not identified");
 }
 
 /* What tells the case from others of the same tree and model: the options of its command. */
@@ -199,14 +200,10 @@ static void put_origin(Text *out)
 #else
     static const char compiler[] = "gcc " __VERSION__;
 #endif
-    char day[40] = "";
+    char date[DATE_TEXT_SIZE];
     struct utsname machine = {0};
-    struct tm utc;
-    time_t now = time(NULL);
-    if (gmtime_r(&now, &utc))
-        strftime(day, sizeof day, "%Y-%m-%d %H:%M UTC", &utc);
     uname(&machine);
-    text_printf(out, "Compared on %s by corcast %s, compiled by %s, on %s %s.", day,
+    text_printf(out, "Compared on %s by corcast %s, compiled by %s, on %s %s.", clock_date(date),
                 CORCAST_VERSION, compiler, machine.sysname, machine.machine);
 }
 
@@ -229,7 +226,11 @@ static void fill_words(const ReportCase *report, Markup *parts)
     text_puts(markup_text(parts, "model"), report->model);
     text_puts(markup_text(parts, "class"), class_of(agrees));
     text_puts(markup_text(parts, "verdict"), verdict_of(agrees));
-    put_sentence(report, markup_text(parts, "sentence"));
+    if (report->sentence)
+        text_puts(markup_text(parts, "sentence"), report->sentence);
+    else
+        put_sentence(report, markup_text(parts, "sentence"));
+    text_puts(markup_text(parts, "accept"), report->accept ? report->accept : "");
     text_puts(markup_text(parts, "options"), options_of(report));
     text_printf(markup_text(parts, "size"), "%d × %d", report->a.picture->width,
                 report->a.picture->height);
@@ -303,6 +304,13 @@ done:
     return status;
 }
 
+Status report_parts(const ReportCase *report, const Picture *heat, const char *templates, Text *row,
+                    Text *section, Err *err)
+{
+    TRY(put_row(report, templates, row, err));
+    return put_case(report, heat, templates, section, err);
+}
+
 /* ---------------------------------------------------------------------------------------- page */
 
 Status report_write_frame(const ReportFrame *frame, const char *templates, const char *path,
@@ -315,9 +323,10 @@ Status report_write_frame(const ReportFrame *frame, const char *templates, const
     text_puts(markup_text(&parts, "verdict"), verdict_of(frame->agrees));
     text_puts(markup_text(&parts, "heading"), frame->heading);
     text_puts(markup_text(&parts, "sentence"), frame->sentence);
-    text_puts(markup_text(&parts, "table_hidden"), frame->n_cases == 1 ? " hidden" : "");
+    text_puts(markup_text(&parts, "table_hidden"), frame->n_cases < 2 ? " hidden" : "");
     text_add(markup_raw(&parts, "rows"), frame->rows);
     text_add(markup_raw(&parts, "cases"), frame->cases);
+    text_add(markup_raw(&parts, "others"), frame->others);
     text_add(markup_raw(&parts, "power"), frame->power);
     Status status = STATUS_OK;
     TRY_GOTO(markup_put(&parts, templates, "report.html", &page, err));
@@ -333,8 +342,7 @@ Status report_page(const ReportCase *report, const Picture *heat, const char *te
     Text row = TEXT_INIT, section = TEXT_INIT, title = TEXT_INIT, heading = TEXT_INIT;
     bool agrees = report_agrees(report);
     Status status = STATUS_OK;
-    TRY_GOTO(put_row(report, templates, &row, err));
-    TRY_GOTO(put_case(report, heat, templates, &section, err));
+    TRY_GOTO(report_parts(report, heat, templates, &row, &section, err));
     text_printf(&title, "%s: the pictures %s", report->name, verdict_of(agrees));
     if (*report->model)
         text_printf(&heading, "%s and %s", report->b.name, report->a.name);
@@ -346,6 +354,7 @@ Status report_page(const ReportCase *report, const Picture *heat, const char *te
                                .rows = &row,
                                .cases = &section,
                                .power = &TEXT_INIT,
+                               .others = &TEXT_INIT,
                                .n_cases = 1,
                                .agrees = agrees};
     status = report_write_frame(&frame, templates, path, err);

@@ -18,17 +18,15 @@ void compare_text(const CompareResult *result, Text *out)
 {
     const Check check = check_plane(result);
     const char *table = NULL;
-    bool cause_known = *result->cause;
-    if (result->agrees)
+    char sentence[RESULT_SENTENCE];
+    if (result->agrees) {
         text_printf(out, "agree (tier %s): %zu of %zu pixels differ\n", result->tolerance.tier,
                     result_count(result, MEASURE_DIFFERING_PIXELS),
                     result_count(result, MEASURE_PIXELS));
-    else
-        text_printf(out, "differ (tier %s): %s%s%s\n", result->tolerance.tier, result->reason,
-                    cause_known || result->kind == PLANE_COLOR ? "; " : "",
-                    cause_known                   ? result->cause
-                    : result->kind == PLANE_COLOR ? "cause unknown"
-                                                  : "");
+    } else {
+        result_sentence(result, sentence, sizeof sentence);
+        text_printf(out, "differ (tier %s): %s\n", result->tolerance.tier, sentence);
+    }
     for (int i = 0; i < check.n_rules; i++) {
         const Rule *rule = &check.rules[i];
         text_printf(out, "  %-6s %-52s %.6g of %.6g %s\n", rule->met ? "met" : "broken", rule->name,

@@ -52,6 +52,7 @@ static void add_rule(CompareResult *result, const Measure *measure)
     *rule = (Rule){.unit = row->unit,
                    .measured = row->ppm_of ? ppm(value, values[row->ppm_of]) : value,
                    .allowed = allowed,
+                   .of = row->ppm_of ? values[row->ppm_of] : 0,
                    .at = result->places[row->at]};
     rule->met = !(rule->measured > allowed);
     name_rule(result, row, rule);
@@ -89,21 +90,51 @@ static void describe_place(const CompareResult *result, const PixelPlace *place,
 }
 
 /* To three digits, as people read it, or to as many as tell it from what is allowed. */
-static void describe_measured(const Rule *rule, char *out, size_t size)
+static void describe_measured(double value, double allowed, char out[32])
 {
-    double value = rule->measured;
     bool whole = (value == floor(value) || fabs(value) >= 1000) && fabs(value) < 1e15;
-    snprintf(out, size, whole ? "%.0f" : "%.3g", value);
-    if (strtod(out, NULL) <= rule->allowed)
-        snprintf(out, size, "%.6g", value);
+    snprintf(out, 32, whole ? "%.0f" : "%.3g", value);
+    if (strtod(out, NULL) <= allowed * (1 + 1e-12)) /* `allowed` may be a rounded quotient */
+        snprintf(out, 32, "%.6g", value);
+}
+
+/* "21.3 % of the pixels are off by more than 0 levels (allowed: 0.0002 %, no pixel at this size)"
+ */
+static int describe_fraction(const Rule *rule, char *out, size_t size)
+{
+    static const char *const verbs[][2] = {
+        {"off", "are off"},
+        {"with ", "have "},
+        {"seen ", "are seen "},
+        {"that pixelmatch reports ", "are reported by pixelmatch "}};
+    char measured[32];
+    const char *rest = strstr(rule->name, "pixels ") + strlen("pixels "), *verb = "";
+    const int subject = (int)(rest - rule->name) - 1;
+    for (size_t i = 0; i < sizeof verbs / sizeof *verbs && !*verb; i++)
+        if (strncmp(rest, verbs[i][0], strlen(verbs[i][0])) == 0) {
+            rest += strlen(verbs[i][0]);
+            verb = verbs[i][1];
+        }
+    describe_measured(rule->measured / 1e4, rule->allowed / 1e4, measured);
+    return snprintf(out, size, "%s %% of the %.*s %s%s (allowed: %.6g %%%s)", measured, subject,
+                    rule->name, verb, rest, rule->allowed / 1e4,
+                    rule->allowed > 0 && rule->of > 0 && rule->allowed * rule->of < 1e6
+                        ? ", no pixel at this size"
+                        : "");
 }
 
 void rule_sentence(const CompareResult *result, const Rule *rule, char *out, size_t size)
 {
     char place[120], measured[32];
-    describe_measured(rule, measured, sizeof measured);
-    int length = snprintf(out, size, "%s: %s: %s%s%s, at most %.6g allowed", result_title(result),
-                          rule->name, measured, *rule->unit ? " " : "", rule->unit, rule->allowed);
+    const bool is_plain = result->kind == PLANE_COLOR && !result->tolerance.title;
+    int length = is_plain ? 0 : snprintf(out, size, "%s: ", result_title(result));
+    if (strcmp(rule->unit, "ppm") == 0) {
+        length += describe_fraction(rule, out + length, size - (size_t)length);
+    } else {
+        describe_measured(rule->measured, rule->allowed, measured);
+        length += snprintf(out + length, size - (size_t)length, "%s: %s%s%s (allowed: %.6g)",
+                           rule->name, measured, *rule->unit ? " " : "", rule->unit, rule->allowed);
+    }
     if (rule->at.x < 0)
         return;
     describe_place(result, &rule->at, place, sizeof place);

@@ -20,6 +20,7 @@ static const Option own[] = {
      .argument = "S.pov|S.scad|S.tachyon",
      .help = "scene for POV-Ray (S.pov, with the geometry in S.inc beside it), model for OpenSCAD "
              "(S.scad) or scene for Tachyon (S.tachyon)"},
+    {BEAT_OPTION(SceneOptions, picture.beat), .when = WHEN(POVRAY)},
     {.name = "ids",
      SETS(SWITCH, SceneOptions, ids),
      .group = GROUP_POVRAY,
@@ -55,6 +56,11 @@ static Status check(const SceneOptions *options, const Emitter *emitter, Err *er
         return err_set(err, STATUS_USAGE,
                        "--ini writes a file beside S.pov; it cannot be used with standard output");
     TRY(picture_check_povray(picture, err));
+    if (picture->beat > 0 && picture->coloring.frame == 0 &&
+        !model_is_of(model, MODEL_CYLINDERS | MODEL_BALLS))
+        return err_set(err, STATUS_USAGE,
+                       "--beat is for --model rounded and cylinders, unless --moment selects one "
+                       "frame");
     return emit_check_model(emitter, model, err);
 }
 
@@ -102,6 +108,10 @@ static Status make_scene(const PictureOptions *picture, const Parsed *parsed, Sc
     PictureReport report;
     TRY(picture_scene_of(picture, &made->source, parsed, &made->scene, &made->anatomy, &report,
                          err));
+    Appearance *appearance = &made->scene.appearance;
+    if (picture->beat > 0 && appearance->n_frames > 0)
+        TRY(picture_widths(picture, &made->source.of, appearance->n_frames, &appearance->widths,
+                           err));
     TRY(picture_say(&made->scene, &report, parsed->common.talk, err));
     return made->emitter->has_view
                ? picture_say_effects(picture, "the scene omits them", parsed->common.talk, err)

@@ -181,6 +181,19 @@ static Status grow_to(const AnimationSubject *subject, double part, Scene *grown
     return status;
 }
 
+/* The frame of a series, with the radii of that frame. */
+static Status beat_at(const AnimationSubject *subject, int number, Scene *shown, Scene *grown,
+                      Err *err)
+{
+    PictureOptions options = *subject->options;
+    options.coloring.frame = number;
+    TRY(picture_geometry(&options, subject->source, subject->common, &grown->geometry, NULL, err));
+    shown->geometry = grown->geometry;
+    shown->view =
+        view_moved(&shown->view, vec3_sub(subject->whole->geometry.origin, grown->geometry.origin));
+    return STATUS_OK;
+}
+
 Status animation_scene(const Animation *animation, const AnimationSubject *subject, int number,
                        Scene *shown, Scene *grown, Err *err)
 {
@@ -192,8 +205,10 @@ Status animation_scene(const Animation *animation, const AnimationSubject *subje
     if (animation->kind == ANIMATION_TURN)
         shown->view = view_turned(&whole->view, box_center(whole->geometry.bounds),
                                   whole->view.camera.up, angle);
-    if (animation->kind != ANIMATION_GROWTH)
+    if (!animation_moves(animation, subject->options))
         return STATUS_OK;
+    if (animation->kind == ANIMATION_SERIES)
+        return beat_at(subject, number, shown, grown, err);
     TRY(grow_to(subject, (double)number / animation->n, grown, err));
     *shown = *grown;
     return STATUS_OK;

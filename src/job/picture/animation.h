@@ -66,12 +66,20 @@ typedef struct AnimationSubject {
     const Scene *whole; /* the scene of the fully grown tree */
 } AnimationSubject;
 
+/* Returns true if the pictures have geometries of their own: growth, and the frames of a series in
+ * which vessels beat. */
+static inline bool animation_moves(const Animation *animation, const PictureOptions *options)
+{
+    return animation->kind == ANIMATION_GROWTH ||
+           (animation->kind == ANIMATION_SERIES && options->beat > 0);
+}
+
 /* Makes the scene of picture `number`.
  *
  * shown   borrows from the whole scene and from *grown.
- * grown   for growth, receives the geometry and colors of this picture; zeroed before; release
- *         it with scene_release. Other kinds leave it unchanged.
- * Errors  as picture_geometry; STATUS_MEMORY. */
+ * grown   if animation_moves, receives the geometry and for growth the colors of this picture;
+ * zeroed before; release it with scene_release. Otherwise it stays unchanged. Errors  as
+ * picture_geometry; STATUS_MEMORY. */
 MUST_CHECK Status animation_scene(const Animation *animation, const AnimationSubject *subject,
                                   int number, Scene *shown, Scene *grown, Err *err);
 

@@ -622,9 +622,63 @@ ViewParams picture_view_params(const PictureOptions *options, const PictureSourc
     return params;
 }
 
+Status picture_widths(const PictureOptions *options, const PictureTree *tree, size_t frames,
+                      double **widths, Err *err)
+{
+    FieldSeries series;
+    const TreeMeta said = blood_said(&options->coloring.blood);
+    if (derive_series(&tree->tree, &said, "dilation", &series, NULL) != STATUS_OK)
+        return err_set(err, STATUS_INPUT,
+                       "--beat: the tree has no series dilation; corcast pulse T -o P.vtp --fields "
+                       "dilation,wss writes one");
+    if (series.frames != frames) {
+        fieldseries_release(&series);
+        return err_set(err, STATUS_INPUT,
+                       "--beat: the series dilation has %zu frames, and the colors have %zu",
+                       series.frames, frames);
+    }
+    for (size_t k = 0; k < frames * tree->tree.n; k++) {
+        const double dilation = series.field.value[k];
+        series.field.value[k] = fmax(1 + options->beat * (isnan(dilation) ? 0 : dilation), 0.05);
+    }
+    *widths = series.field.value;
+    series.field.value = NULL;
+    fieldseries_release(&series);
+    return STATUS_OK;
+}
+
+/* Makes the geometry of one frame of a beating tree. */
+static Status beating_geometry(const PictureOptions *options, const PictureSource *source,
+                               const Common *common, Geometry *geometry, StageReport *report,
+                               Err *err)
+{
+    const Tree *tree = &source->of.tree;
+    PictureOptions still = *options;
+    PictureSource at = *source;
+    Series series;
+    double *widths = NULL, *radius = NULL;
+    Status status = STATUS_OK;
+    still.beat = 0;
+    TRY(tree_series(tree, "dilation", &series, err));
+    const size_t frames = series.n, frame = (size_t)options->coloring.frame - 1;
+    series_release(&series);
+    TRY_GOTO(picture_widths(options, &source->of, frames, &widths, err));
+    TRY_GOTO(mem_calloc(&radius, tree->n, sizeof *radius, "radii", err));
+    for (size_t i = 0; i < tree->n; i++)
+        radius[i] = tree->radius_mm[i] * (frame < frames ? widths[frame * tree->n + i] : 1);
+    at.of.tree.radius_mm = radius;
+    status = picture_geometry(&still, &at, common, geometry, report, err);
+done:
+    free(widths);
+    free(radius);
+    return status;
+}
+
 Status picture_geometry(const PictureOptions *options, const PictureSource *source,
                         const Common *common, Geometry *geometry, StageReport *report, Err *err)
 {
+    if (options->beat > 0 && options->coloring.frame > 0)
+        return beating_geometry(options, source, common, geometry, report, err);
     const SceneModel model = (SceneModel)options->model;
     Progress progress;
     const GeometryParams params = {.model = model,

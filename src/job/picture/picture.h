@@ -48,6 +48,8 @@ typedef struct PictureOptions {
     bool omits_effects; /* leaves out the effects of the look, which POV-Ray does not draw */
     bool by_tiles;      /* the geometry is only rendered tile by tile; saves memory, see
                          * GeometryParams.implied_ends */
+    double beat;        /* vessels have the radius (1 + beat * dilation), where the tree has the
+                         * series dilation; 0: they do not beat */
     double prune_radius_mm; /* segments thinner than this radius are removed; 0: none */
     const char *look;       /* name in templates/looks, or path of a look file */
     Look look_file;         /* the look, without `background`; set by picture_table.settle */
@@ -104,6 +106,14 @@ MUST_CHECK Status picture_check_povray(const PictureOptions *options, Err *err);
     .help = "draw vessels as smooth curves through the nodes, with radii that taper from node to " \
             "node, instead of straight segments"
 
+/* Fills the option --beat, which sets the double at `path`. */
+#define BEAT_OPTION(Type, path)                                                                    \
+    .name = "beat", SETS(NUMBER, Type, path), FROM_TO(0, 1000), .group = GROUP_ANIMATION,          \
+    .needs = "color-by",                                                                           \
+    .help =                                                                                        \
+        "draw the beat of the vessels: the tree's series dilation, times this factor, changes "    \
+        "the radii; 0 draws the radii of the tree"
+
 /* A tree that has been read for drawing. Release it with picture_tree_release. */
 typedef struct PictureTree {
     const char *path;  /* the tree's file, for messages; borrowed from the Parsed */
@@ -138,6 +148,15 @@ void picture_say_smooth(const SmoothReport *report, const Talk *talk);
  * nothing. */
 ColoredTree picture_colored_tree(const PictureTree *tree);
 
+/* Computes the factors of all radii in all frames from the tree's series dilation, frame by frame.
+ *
+ * frames   number of frames of the colors.
+ * widths   receives frames * n numbers; the caller frees them.
+ * Errors   STATUS_INPUT if the tree has no such series, or it has another number of frames, or a
+ *          radius would not be above 0. STATUS_MEMORY. */
+MUST_CHECK Status picture_widths(const PictureOptions *options, const PictureTree *tree,
+                                 size_t frames, double **widths, Err *err);
+
 /* The input of a picture: a tree and a look. Release it with picture_source_release. */
 typedef struct PictureSource {
     PictureTree of;
@@ -168,12 +187,13 @@ bool picture_is_transparent(const PictureOptions *options);
  * the domain of `source`. */
 ViewParams picture_view_params(const PictureOptions *options, const PictureSource *source);
 
-/* Makes the geometry of a picture.
+/* Makes the geometry of a picture. With options->beat, radii are those of the frame
+ * options->coloring.frame; 0: those of the tree.
  *
  * common     provides the number of threads, and receives progress reports.
  * geometry   borrows nothing; release it with geometry_release.
  * report     may be NULL.
- * Errors     the errors of stage_geometry. */
+ * Errors     the errors of stage_geometry and picture_widths. */
 MUST_CHECK Status picture_geometry(const PictureOptions *options, const PictureSource *source,
                                    const Common *common, Geometry *geometry, StageReport *report,
                                    Err *err);

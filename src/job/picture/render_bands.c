@@ -168,7 +168,7 @@ static Status draw_number(Rendering *r, int number, const FramesForm *form, Err 
     const AnimationSubject subject = {&r->options->picture, &r->parsed->common, &r->source,
                                       &r->scene};
     Scene shown, grown = {0};
-    const bool grows = r->animation.kind == ANIMATION_GROWTH;
+    const bool grows = animation_moves(&r->animation, &r->options->picture);
     Renderer *young = NULL;
     bool empty;
     Status status;

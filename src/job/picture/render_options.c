@@ -96,6 +96,7 @@ static const Option own[] = {
      .when = WHEN(SURFACES),
      .help = "draw one image per time step of values that change with time, for all steps or steps "
              "A to B"},
+    {BEAT_OPTION(RenderOptions, picture.beat), .when = WHEN(SURFACES)},
     {.name = "turntable",
      SETS(WHOLE, RenderOptions, animation.turn),
      .group = GROUP_ANIMATION,

@@ -14,6 +14,8 @@ void comparison_release(Comparison *comparison)
     sides_release(comparison->sides);
     ledger_release(&comparison->ledger);
     suite_release(&comparison->suite);
+    plane_release(&comparison->distances);
+    text_release(&comparison->accepted);
     free(comparison->tier);
 }
 
@@ -78,12 +80,17 @@ static Status check_operands(const CompareOptions *options, const Parsed *parsed
         return check_given(options, plane_of(options, parsed), err);
     if (options->reference && parsed->n_operands != 1)
         return err_set(err, STATUS_USAGE,
-                       "--reference takes one operand, a folder of pictures; two were given");
+                       "--reference takes one operand, a folder of pictures; %d were given",
+                       parsed->n_operands);
     if (!options->reference && parsed->n_operands != 2)
         return err_set(err, STATUS_USAGE,
                        "give two files, A and B, or --reference DIR and one folder");
     if (!options->accept != !options->reason || (options->reason && !*options->reason))
         return err_set(err, STATUS_USAGE, "--accept and --reason must be given together");
+    if (!options->machine != !options->expires || (options->label && !options->machine))
+        return err_set(err, STATUS_USAGE, "%s",
+                       options->label ? "--as needs --machine and --expires"
+                                      : "--machine and --expires must be given together");
     return STATUS_OK;
 }
 
@@ -220,17 +227,27 @@ static Status compare_pair(CompareOptions *options, const Parsed *parsed, Compar
 static Status compare_folders(const CompareOptions *options, const Parsed *parsed, Comparison *made,
                               Err *err)
 {
-    const char *folder = parsed->operands[0];
     const Rgb ground = rgb_of_option(options->background);
     const float background[3] = {ground.r, ground.g, ground.b};
-    Tolerance tolerance;
     made->agrees = true;
     made->kind = options->accept ? COMPARED_NOTHING : COMPARED_SUITES;
-    if (options->accept)
-        return suite_accept(options->reference, folder, options->accept, options->reason, err);
-    TRY(compare_tolerance(&options->judge, options->depth_mm, &tolerance, &made->tier, err));
-    const SuiteFolders folders = {options->reference, folder, &tolerance, background};
-    TRY(suite_judge(&made->suite, &folders, parsed->common.threads, err));
+    memcpy(made->background, background, sizeof background);
+    TRY(compare_tolerance(&options->judge, options->depth_mm, &made->tolerances[0], &made->tier,
+                          err));
+    made->tolerances[1] = options->judge.has_tier ? made->tolerances[0] : tolerance_none();
+    made->folders = (SuiteFolders){.reference = options->reference,
+                                   .pictures = parsed->operands[0],
+                                   .only = options->only,
+                                   .tolerance = &made->tolerances[0],
+                                   .case_tolerance = &made->tolerances[1],
+                                   .background = made->background};
+    const int threads = parsed->common.threads;
+    if (options->accept) {
+        const Acceptance accepted = {options->accept, options->reason, options->label,
+                                     options->machine, options->expires};
+        return suite_accept(&made->folders, &accepted, threads, &made->accepted, err);
+    }
+    TRY(suite_judge(&made->suite, &made->folders, threads, err));
     made->agrees = made->suite.agrees;
     return STATUS_OK;
 }
@@ -239,6 +256,8 @@ static Status compare_any(CompareOptions *options, const Parsed *parsed, Compari
 {
     if (options->reference)
         return compare_folders(options, parsed, made, err);
+    if (!is_given(options) && answerfile_is(parsed->operands[0]))
+        return compare_answer(options, parsed, made, err);
     if (!options->noise && !options->variance)
         return compare_pair(options, parsed, made, err);
     made->kind = COMPARED_NOISE;
@@ -249,15 +268,13 @@ static Status compare_any(CompareOptions *options, const Parsed *parsed, Compari
 
 Status compare_make(CompareOptions *options, Parsed *parsed, Comparison *comparison, Err *err)
 {
-    Comparison made = {0};
     const double start_s = clock_seconds();
+    *comparison = (Comparison){0};
     TRY(check_operands(options, parsed, err));
-    Status status = compare_any(options, parsed, &made, err);
-    made.seconds = clock_seconds() - start_s;
-    if (status == STATUS_OK)
-        *comparison = made;
-    else
-        comparison_release(&made);
+    Status status = compare_any(options, parsed, comparison, err);
+    comparison->seconds = clock_seconds() - start_s;
+    if (status != STATUS_OK)
+        comparison_release(comparison);
     return status;
 }
 
@@ -283,10 +300,14 @@ void comparison_text(const CompareOptions *options, const Comparison *comparison
     case COMPARED_NOISE:
         noise_text(&comparison->noise, out);
         break;
+    case COMPARED_ANSWER:
+        answergrade_text(&comparison->grade, out);
+        break;
     case COMPARED_SUITES:
         suite_text(&comparison->suite, out);
         break;
     case COMPARED_NOTHING:
+        text_add(out, &comparison->accepted);
         break;
     }
 }
@@ -298,6 +319,8 @@ json_t *comparison_json(const Comparison *comparison)
         return compare_json(&comparison->result);
     case COMPARED_NOISE:
         return noise_json(&comparison->noise);
+    case COMPARED_ANSWER:
+        return answergrade_json(&comparison->grade);
     case COMPARED_SUITES:
         return suite_json(&comparison->suite);
     case COMPARED_NOTHING:
@@ -316,8 +339,11 @@ const Command command_compare = {
         "  corcast compare a.exr b.exr --metrics on --tolerance mine.ini\n"
         "  corcast compare a.depth.pfm b.depth.pfm --depth-mm 0.01\n"
         "  corcast compare reference.png mine.png --html page.html\n"
+        "  corcast compare answer.exr mine.png\n"
         "  corcast compare --reference references drawn --tier B --junit junit.xml\n"
-        "  corcast compare --reference references drawn --accept a.png --reason 'new lamp'\n"
+        "  corcast compare --reference references drawn --html page.html\n"
+        "  corcast compare --reference references drawn --accept 'a.png,detail/*' --reason 'new "
+        "lamp'\n"
         "\ntiers of agreement:\n"
         "  A        identical: colors, ids and depths differ in at most 2 pixels per million;\n"
         "           images of fewer than 500,000 pixels: in at most one pixel, by one 8-bit level\n"
@@ -326,7 +352,7 @@ const Command command_compare = {
         "  surface  equal up to the iterative search for a surface: 99.5 % of the colors within\n"
         "           2 levels, 99 % of the depths within 0.01 mm, nothing missing\n"
         "  none     everything is measured; only values that are not numbers (NaN) fail\n",
-    .min_operands = 1,
+    .min_operands = 0,
     .max_operands = 2,
     .size = sizeof(CompareOptions),
     .set_defaults = compare_set_defaults,

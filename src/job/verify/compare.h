@@ -9,6 +9,7 @@
 typedef enum ComparisonKind {
     COMPARED_PAIR,   /* two images or planes */
     COMPARED_NOISE,  /* two noisy images, with --noise or --variance */
+    COMPARED_ANSWER, /* an image and an answer, or two answers */
     COMPARED_SUITES, /* two folders, with --reference */
     COMPARED_NOTHING /* a reference was accepted, with --accept */
 } ComparisonKind;
@@ -34,8 +35,15 @@ typedef struct Comparison {
     CompareResult result;  /* COMPARED_PAIR */
     Ledger ledger;         /* COMPARED_PAIR of integer pictures with ids: one entry per segment */
     NoiseResult noise;     /* COMPARED_NOISE */
+    AnswerGrade grade;     /* COMPARED_ANSWER */
+    Plane distances;       /* COMPARED_ANSWER with options->heat: distance of each pixel */
     Suite suite;           /* COMPARED_SUITES */
-    char *tier;            /* name of the tolerance if it is from a file, else NULL; owned */
+    SuiteFolders folders;  /* COMPARED_SUITES; borrows the strings of the options */
+    Tolerance
+        tolerances[2];   /* COMPARED_SUITES: of the suite, and for the tolerance files of cases */
+    float background[3]; /* COMPARED_SUITES */
+    Text accepted;       /* COMPARED_NOTHING: a line per accepted case */
+    char *tier;          /* name of the tolerance if it is from a file, else NULL; owned */
 } Comparison;
 
 /* The command line of the operation. Its options set a CompareOptions. */
@@ -65,8 +73,8 @@ MUST_CHECK Status compare_write(const CompareOptions *options, const Parsed *par
 void comparison_release(Comparison *comparison);
 
 /* Appends the verdict of two images as one line, followed by all measures if options->metrics is
- * true. Appends the result of a noise test or of two folders as text. Appends nothing for
- * COMPARED_NOTHING. */
+ * true. Appends the result of a noise test or of two folders as text. Appends the accepted
+ * cases for COMPARED_NOTHING. */
 void comparison_text(const CompareOptions *options, const Comparison *comparison, Text *out);
 /* Returns the verdict and all measures as JSON: a new reference, which the caller releases. Returns
  * NULL for COMPARED_NOTHING, and if memory runs out. */

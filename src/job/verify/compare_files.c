@@ -129,12 +129,41 @@ static Status write_pair(const CompareOptions *options, const Parsed *parsed,
     return status;
 }
 
+/* Writes the page of a suite, or the folder with page, JSON and JUnit XML, or both. */
+static Status write_suite(const CompareOptions *options, const Parsed *parsed,
+                          const Comparison *comparison, Err *err)
+{
+    char *templates = NULL, *paths[3] = {NULL, NULL, NULL};
+    static const char *const names[3] = {"report.html", "report.json", "junit.xml"};
+    const Suite *suite = &comparison->suite;
+    Status status;
+    TRY(write_text(options->junit, put_junit, comparison, parsed->operands[0], err));
+    TRY_GOTO(templates_path("report", &templates, err));
+    if (options->page)
+        TRY_GOTO(suite_write_page(suite, &comparison->folders, templates, options->page, err));
+    if (!options->report)
+        goto done;
+    TRY_GOTO(file_make_folder(options->report, err));
+    for (int i = 0; i < 3; i++)
+        TRY_GOTO(file_join(options->report, names[i], &paths[i], err));
+    TRY_GOTO(suite_write_page(suite, &comparison->folders, templates, paths[0], err));
+    TRY_GOTO(json_write(suite_json(suite), paths[1], err));
+    status = write_text(paths[2], put_junit, comparison, parsed->operands[0], err);
+done:
+    for (int i = 0; i < 3; i++)
+        free(paths[i]);
+    free(templates);
+    return status;
+}
+
 Status compare_write(const CompareOptions *options, const Parsed *parsed,
                      const Comparison *comparison, Err *err)
 {
     if (comparison->kind == COMPARED_PAIR)
         return write_pair(options, parsed, comparison, err);
     if (comparison->kind == COMPARED_SUITES)
-        return write_text(options->junit, put_junit, comparison, parsed->operands[0], err);
+        return write_suite(options, parsed, comparison, err);
+    if (comparison->distances.values)
+        return compare_write_distances(options->heat, comparison, err);
     return STATUS_OK;
 }

@@ -15,6 +15,11 @@ static const Option own[] = {
      SETS(OUTPUT, CompareOptions, junit),
      .argument = "FILE.xml",
      .help = "write the result as JUnit XML, one test case per rule"},
+    {.name = "serve",
+     SETS(FLAG, CompareOptions, serve),
+     .excludes = "json reference",
+     .help = "answer questions of a test runner: read a JSON object per line from standard input, "
+             "write a JSON object per line to standard output"},
     {.name = "kind",
      SETS(CHOICE, CompareOptions, kind),
      .choices = kinds,
@@ -47,16 +52,42 @@ static const Option own[] = {
      .argument = "DIR",
      .help = "compare each image in the folder A with the image of the same name in DIR (give no "
              "B); an image that only one folder has counts as a difference"},
+    {.name = "only",
+     SETS(TEXT, CompareOptions, only),
+     .argument = "PATTERN",
+     .needs = "reference",
+     .excludes = "accept",
+     .help = "with --reference: compare only these images: names or wildcards (*, ?), separated by "
+             "commas"},
     {.name = "accept",
      SETS(TEXT, CompareOptions, accept),
-     .argument = "CASE",
+     .argument = "PATTERN",
      .needs = "reference",
-     .help = "with --reference: copy the image of this name from the folder A over its reference"},
+     .help = "with --reference: copy images from the folder A over their references: names, "
+             "wildcards (*, ?) or all, separated by commas; wildcards and all select the images "
+             "that differ"},
     {.name = "reason",
      SETS(TEXT, CompareOptions, reason),
      .argument = "TEXT",
-     .needs = "reference",
-     .help = "with --accept: why the image is accepted; stored in DIR/accepted.tsv"},
+     .needs = "accept",
+     .help = "why the images are accepted; stored in DIR/accepted.tsv"},
+    {.name = "as",
+     SETS(TEXT, CompareOptions, label),
+     .argument = "LABEL",
+     .needs = "accept",
+     .help = "store the accepted image as a further reference, NAME.ref-LABEL; an image agrees if "
+             "it agrees with any of its references"},
+    {.name = "machine",
+     SETS(TEXT, CompareOptions, machine),
+     .argument = "TEXT",
+     .needs = "accept",
+     .help = "machine or driver that drew the accepted image; stored in NAME.references.ini"},
+    {.name = "expires",
+     SETS(TEXT, CompareOptions, expires),
+     .argument = "DATE",
+     .needs = "accept",
+     .help = "last day of the accepted reference, such as 2027-03-01, or never; the comparison "
+             "fails after it"},
     {.name = "layer",
      SETS(TEXT, CompareOptions, layer),
      .argument = "NAME",
@@ -119,14 +150,13 @@ static const Option own[] = {
      SETS(OUTPUT, CompareOptions, page),
      .is_told = true,
      .argument = "PAGE.html",
-     .when = WHEN(TWO_PICTURES),
-     .help = "write a web page about the two images: swipe, blink, zoom, differences, numbers"},
+     .help = "write a web page about the two images, or about all that differ in two folders: "
+             "swipe, blink, zoom, differences, numbers, commands that accept"},
     {.name = "report",
      SETS(FOLDER, CompareOptions, report),
      .is_told = true,
-     .when = WHEN(TWO_PICTURES),
-     .help = "write the page of --html, JSON, JUnit XML and the heat map to the folder DIR, for "
-             "`corcast report`"},
+     .help = "write the page of --html, JSON, JUnit XML and, of two images, the heat map to the "
+             "folder DIR; `corcast report` joins such folders of two images"},
 };
 
 static ConditionSet unmet(const void *set, const Parsed *parsed)

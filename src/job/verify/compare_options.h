@@ -45,10 +45,15 @@ typedef struct CompareOptions {
     const char *report;                                              /* output folder */
     const char *reference; /* folder of reference images; the operand is then the folder of the
                             * images that are judged */
-    const char *accept, *reason;  /* case whose image replaces its reference, and the reason */
+    const char *only;      /* pattern of the cases that are compared; NULL: all */
+    const char *accept, *reason; /* pattern of the cases that are accepted, and the reason */
+    const char *label, *machine,
+        *expires;                 /* with `accept`: label of a further reference; the machine
+                                   * and the last day that are stored with a reference */
     const char *noise, *variance; /* test of noisy images: paths of other renderings, separated by
                                    * commas, or a file of variances per pixel */
     double alarms;                /* false alarm rate of the noise test, in (0, 1) */
+    bool serve;                   /* the command line answers questions from standard input */
     bool json;                    /* the command line prints the result as JSON */
     bool metrics, has_metrics;    /* perceptual measures are computed; `metrics` is specified */
     double depth_mm;              /* maximum difference of depths; 0: not specified */

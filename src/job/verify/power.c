@@ -21,6 +21,19 @@ static const Option own[] = {
      .otherwise = "",
      .help = "shell command of another comparison program, to be measured too; it must return exit "
              "status 0 if the PNG files {a} and {b} agree"},
+    {.name = "choose",
+     SETS(OUTPUT, PowerOptions, choose),
+     .argument = "FILE.ini",
+     .excludes = "render verdict tier tolerance levels ppm pixelmatch",
+     .help = "choose the tightest tolerance that the operands, a reference and repeated renderings "
+             "of its scene, agree with, and write it to this file, such as NAME.tolerance.ini"},
+    {.name = "alarms",
+     SETS(NUMBER, PowerOptions, alarms),
+     FROM_TO(0, 0.5),
+     .group = GROUP_JUDGE,
+     .needs = "choose",
+     .otherwise = "1 / number of operands",
+     .help = "false alarm rate that the chosen tolerance may have, a fraction"},
     {.name = "extension",
      SETS(TEXT, PowerOptions, extension),
      .argument = "EXT",
@@ -205,6 +218,39 @@ static Status keep_missed(void *context, const PowerCase *missed, const Picture 
 
 /* ---- the operation --------------------------------------------------------------------------- */
 
+/* Chooses a tolerance from the operands, writes it, and measures its power. */
+static Status choose(const PowerOptions *options, const Parsed *parsed, PowerReport *report,
+                     Err *err)
+{
+    const size_t n = (size_t)parsed->n_operands;
+    Picture *pictures;
+    Text ini = TEXT_INIT;
+    Status status = STATUS_OK;
+    TRY(mem_calloc(&pictures, n, sizeof *pictures, "pictures", err));
+    for (size_t i = 0; i < n; i++)
+        TRY_GOTO(read_drawn(options, parsed->operands[i], &pictures[i], err));
+    TRY_GOTO(choose_tolerance(pictures, n, options->alarms, parsed->common.threads, &report->choice,
+                              err));
+    choice_ini(&report->choice, &ini);
+    TRY_GOTO(file_write_text(options->choose, &ini, err));
+    Tolerance tolerance = choice_tolerance(&report->choice);
+    const PowerRule rule = {.name = "chosen", .differs = tolerance_differs, .context = &tolerance};
+    const PowerInput input = {.reference = &pictures[0],
+                              .drawn = &pictures[1],
+                              .rule = &rule,
+                              .keep = options->folder ? keep_missed : NULL,
+                              .keep_context = (void *)(uintptr_t)options->folder};
+    if (options->folder)
+        TRY_GOTO(file_make_folder(options->folder, err));
+    status = power_measure(&input, parsed->common.threads, &report->power, err);
+done:
+    for (size_t i = 0; i < n; i++)
+        picture_release(&pictures[i]);
+    free(pictures);
+    text_release(&ini);
+    return status;
+}
+
 static Status measure(const PowerOptions *options, const PowerFiles *place, const Parsed *parsed,
                       Power *power, Err *err)
 {
@@ -238,9 +284,17 @@ done:
     return status;
 }
 
-/* Checks that the commands have their marks. */
-static Status check(const PowerOptions *options, Err *err)
+/* Checks that the commands have their marks, and that there are operands only where they are used.
+ */
+static Status check(const PowerOptions *options, const Parsed *parsed, Err *err)
 {
+    if (options->choose && parsed->n_operands < 3)
+        return err_set(err, STATUS_USAGE,
+                       "--choose needs a reference and at least two more renderings of its scene");
+    if (options->choose)
+        return STATUS_OK;
+    if (parsed->n_operands > 0)
+        return err_set(err, STATUS_USAGE, "pictures are operands only with --choose FILE.ini");
     if (!options->render || !strstr(options->render, "{}"))
         return err_set(err, STATUS_USAGE,
                        "--render needs a command with {} in place of the output file, such as "
@@ -252,13 +306,16 @@ static Status check(const PowerOptions *options, Err *err)
     return STATUS_OK;
 }
 
-Status power_run(const PowerOptions *options, Parsed *parsed, Power *power, Err *err)
+Status power_run(const PowerOptions *options, Parsed *parsed, PowerReport *report, Err *err)
 {
     PowerFiles place = {0};
     Status status;
-    TRY(check(options, err));
+    *report = (PowerReport){0};
+    TRY(check(options, parsed, err));
+    if (options->choose)
+        return choose(options, parsed, report, err);
     TRY_GOTO(open_place(&place, options->extension, err));
-    status = measure(options, &place, parsed, power, err);
+    status = measure(options, &place, parsed, &report->power, err);
 done:
     close_place(&place);
     return status;
@@ -267,12 +324,14 @@ done:
 const Command command_power = {
     .name = "power",
     .summary = "measure which faults in an image a comparison fails to detect",
-    .operands = "--render COMMAND",
+    .operands = "--render COMMAND | REFERENCE R1 R2 ... --choose FILE.ini",
     .examples =
         "  corcast power --render 'povray scene.pov +O{} -D +W320 +H240' --levels 2 --ppm 100\n"
         "  corcast power --render 'blender -b s.blend -o //{}' --verdict 'idiff -fail 0.016 "
         "-failpercent 1 {a} {b}'\n"
         "  corcast power --render 'cp picture.png {}' --pixelmatch 0.1 -o missed\n"
+        "  corcast power references/front.png run*/front.png --choose "
+        "references/front.tolerance.ini\n"
         "\nThe command plants faults of 22 kinds, each in several sizes, in the image. For each "
         "kind the "
         "table\nstates the smallest size that your tolerance detects, beside published tolerances "
@@ -280,7 +339,7 @@ const Command command_power = {
         "other\nprograms. The exit status is 1 if your tolerance rejects a second rendering of the "
         "same "
         "scene.\n",
-    .max_operands = 0,
+    .max_operands = MAX_OPERANDS,
     .size = sizeof(PowerOptions),
     .set_defaults = set_defaults,
     .tables = {{&own_table, 0}, {&judge_options, offsetof(PowerOptions, judge)}},

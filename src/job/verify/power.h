@@ -11,6 +11,8 @@ typedef struct PowerOptions {
     const char *verdict;   /* shell command that compares {a} and {b}; NULL: `judge` is the rule */
     const char *extension; /* extension of the file {} */
     const char *folder;    /* folder for pictures whose fault is missed; NULL: not written */
+    const char *choose;    /* file for the chosen tolerance; NULL: nothing is chosen */
+    double alarms;         /* with `choose`: accepted false alarm rate; 0: the lowest possible */
     bool json;             /* for the command line: the result is printed as JSON */
     Vec3 background;       /* transparent pictures are composited over it; sRGB in [0, 1] */
     JudgeOptions judge;
@@ -19,12 +21,23 @@ typedef struct PowerOptions {
 /* Describes the operation. Its options set a PowerOptions. */
 extern const Command command_power;
 
+/* The result of the operation. */
+typedef struct PowerReport {
+    Power power;
+    Choice choice; /* with options->choose, else zeroed */
+} PowerReport;
+
 /* Runs the renderer twice, plants faults of known size in copies of the second picture, and lets
  * the rule (options->judge or options->verdict) compare each copy with the first picture.
  *
- * power   set on success; release it with power_release.
+ * With options->choose, the operands are a reference and repeated renderings. It chooses a
+ * tolerance from them, writes it to that file, and plants the faults in a copy of the first repeat.
+ *
+ * report  set on success; release report->power with power_release.
  * Errors  STATUS_USAGE if a command lacks its marks, or options exclude each other; STATUS_TOOL if
- *         the renderer fails; STATUS_INPUT; STATUS_IO; STATUS_MEMORY. */
-MUST_CHECK Status power_run(const PowerOptions *options, Parsed *parsed, Power *power, Err *err);
+ *         the renderer fails; STATUS_INPUT, also if there are too few renderings for the rate;
+ *         STATUS_IO; STATUS_MEMORY. */
+MUST_CHECK Status power_run(const PowerOptions *options, Parsed *parsed, PowerReport *report,
+                            Err *err);
 
 #endif

@@ -293,18 +293,14 @@ static int32_t key_of(const ValuesReader *reader, const TreeColumn *branches, si
 }
 
 /* Lists the nodes of each key. Keys are ids or, by the name in the first row, numbers of branches.
- */
+ * In a tree without the column BranchId, the number of a branch is the id of its one segment. */
 static Status index_nodes(ValuesReader *reader, const char *name, Err *err)
 {
     const Tree *tree = reader->tree;
     IndexLists *nodes = &reader->nodes;
-    const TreeColumn *branches = NULL;
     int32_t n_keys = 0, key;
     reader->of_branches = branch_of(name) != NONE;
-    if (reader->of_branches && !(branches = tree_column(tree, "BranchId")))
-        return err_set(err, STATUS_INPUT,
-                       "'%.40s' names a SimVascular branch, but the tree has no column BranchId",
-                       name);
+    const TreeColumn *branches = reader->of_branches ? tree_column(tree, "BranchId") : NULL;
     for (size_t i = 0; i < tree->n; i++)
         if (key_of(reader, branches, i) >= n_keys)
             n_keys = key_of(reader, branches, i) + 1;

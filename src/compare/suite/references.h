@@ -1,0 +1,58 @@
+/* The accepted references of a case, and the file that lists them. Private to the module compare.
+ *
+ * The reference of the case views/front.png is the file of that name in the folder of references.
+ * Further references, such as views/front.ref-gpu.png, and facts about any of them are listed in
+ * views/front.references.ini, with one section per file:
+ *
+ *     [front.ref-gpu.png]
+ *     reason  = driver 550 rounds the shadows differently
+ *     machine = ci-gpu
+ *     expires = 2027-03-01
+ *
+ * All three keys are required. `expires` is the last day, in UTC, on which the reference holds, or
+ * "never". */
+#ifndef CORCAST_COMPARE_SUITE_REFERENCES_H
+#define CORCAST_COMPARE_SUITE_REFERENCES_H
+
+#include "base/base.h"
+
+/* Ends of the names of files that belong to a case, and the mark in the name of a further
+ * reference. */
+#define MASK_SUFFIX ".mask.png"
+#define TOLERANCE_SUFFIX ".tolerance.ini"
+#define REFERENCES_SUFFIX ".references.ini"
+#define REFERENCE_MARK ".ref-"
+
+/* One accepted reference. All strings are owned by the list. */
+typedef struct Reference {
+    const char *name;                       /* file name, without a folder */
+    const char *reason, *machine, *expires; /* NULL: the reference is not listed in the file */
+} Reference;
+
+typedef struct References {
+    Reference *items; /* owned; the first is the file with the name of the case */
+    size_t n, capacity;
+    char *text; /* owned; strings of the file point into it */
+} References;
+
+/* Reads the references of a case: the file with its name, and those that its list names.
+ *
+ * case_path    path of the case in the folder of references; must outlive *references.
+ * references   release it with references_release, also after an error.
+ * Errors       STATUS_INPUT, with file and line, for a name that is not a reference of this case,
+ * an unknown or missing key, and a bad date; STATUS_IO; STATUS_MEMORY. */
+MUST_CHECK Status references_read(References *references, const char *case_path, Err *err);
+void references_release(References *references);
+
+/* Returns true if the last day of the reference is over. */
+bool reference_is_expired(const Reference *reference);
+/* Checks a date: "2027-03-01", or "never". Errors: STATUS_INPUT. */
+MUST_CHECK Status reference_check_date(const char *date, Err *err);
+
+/* Changes the list of a case: removes the entry of the reference `name`, if there is one, and
+ * appends `entry` unless it is NULL. Other lines stay. A list without entries is removed.
+ * Errors: STATUS_IO, STATUS_MEMORY. */
+MUST_CHECK Status references_store(const char *case_path, const char *name, const Reference *entry,
+                                   Err *err);
+
+#endif

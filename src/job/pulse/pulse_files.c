@@ -1,0 +1,212 @@
+/* The files that `pulse` writes. */
+#include "job/pulse/pulse_files.h"
+
+#include "job/pulse/pulsing.h"
+#include "treeio/treeio.h"
+#include <stdlib.h>
+#include <strings.h>
+
+Phasor pulse_root_impedance(const Pulse *pulse, size_t i, int k)
+{
+    const double unit = mmhg_from_pa(1) * 1e3; /* mmHg s/ml in 1 Pa s/mm^3 */
+    if (k == 0)
+        return (Phasor){
+            (pulse->pressure[i] - mmhg_from_pa(pulse->params.venous_pa)) * 60 / pulse->flow[i], 0};
+    const Phasor p = pulse_pressure(pulse, i, k), q = pulse_flow(pulse, i, k);
+    const double size = (q.re * q.re + q.im * q.im) / unit;
+    return (Phasor){(p.re * q.re + p.im * q.im) / size, (p.im * q.re - p.re * q.im) / size};
+}
+
+void pulse_root_range(const Pulse *pulse, size_t i, double range[2])
+{
+    Waveform at = {.period_s = pulse->period_s,
+                   .mean = pulse->pressure[i],
+                   .harmonics = pulse->params.harmonics};
+    range[0] = HUGE_VAL;
+    range[1] = -HUGE_VAL;
+    for (int k = 1; k <= at.harmonics; k++) {
+        const Phasor p = pulse_pressure(pulse, i, k);
+        at.re[k] = mmhg_from_pa(p.re);
+        at.im[k] = mmhg_from_pa(p.im);
+    }
+    for (int m = 0; m < PULSE_SAMPLES; m++) {
+        const double p = waveform_at(&at, at.period_s * m / PULSE_SAMPLES);
+        range[0] = fmin(range[0], p);
+        range[1] = fmax(range[1], p);
+    }
+}
+
+/* ---- tables ---------------------------------------------------------------------------------- */
+
+typedef Status PutTable(const Pulsing *made, Text *text, Err *err);
+
+static Status write_table(const Pulsing *made, const char *path, PutTable *put, Err *err)
+{
+    OutFile file;
+    TRY(outfile_open(&file, path, err));
+    Text text = TEXT_TO(file.stream);
+    Status status = put(made, &text, err);
+    if (status == STATUS_OK)
+        status = text_flush(&text, err);
+    text_release(&text);
+    if (status == STATUS_OK)
+        return outfile_commit(&file, err);
+    if (status == STATUS_IO)
+        err_prefix(err, "%s: ", path);
+    outfile_discard(&file);
+    return status;
+}
+
+static void put_numbers(Text *text, const double *numbers, size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        text_puts(text, ",");
+        text_number(text, numbers[i]);
+    }
+}
+
+static Status put_summary(const Pulsing *made, Text *text, Err *err)
+{
+    const Pulse *pulse = &made->pulse;
+    text_puts(text, "id,pressure_mean [mmHg],pressure_min [mmHg],pressure_max [mmHg],"
+                    "pressure_pulse [mmHg],flow_mean [ml/min],flow_min [ml/min],flow_max [ml/min],"
+                    "flow_pulse [ml/min],wss_mean [Pa],tawss [Pa],osi,alpha,wave_speed [m/s],"
+                    "delay [ms],area_strain,velocity_over_wave_speed\n");
+    for (size_t i = 0; i < made->tree.n; i++) {
+        const PulseCycle *c = &made->cycles[i];
+        const double row[] = {
+            pulse->pressure[i], c->pressure[0], c->pressure[1], c->pressure[1] - c->pressure[0],
+            pulse->flow[i],     c->flow[0],     c->flow[1],     c->flow[1] - c->flow[0],
+            c->wss_mean,        c->tawss,       c->osi,         c->alpha,
+            c->wave_speed,      c->delay_ms,    c->strain,      c->mach};
+        if (!tree_is_segment(&made->tree, i))
+            continue;
+        text_printf(text, "%d", made->tree.id[i]);
+        put_numbers(text, row, sizeof row / sizeof *row);
+        text_puts(text, "\n");
+    }
+    return text_check(text, err);
+}
+
+static Status put_impedance(const Pulsing *made, Text *text, Err *err)
+{
+    const Pulse *pulse = &made->pulse;
+    text_puts(text, "root,harmonic,frequency [Hz],size [mmHg s/ml],phase [deg]\n");
+    for (size_t i = 0; i < made->tree.n; i++)
+        for (int k = 0; !tree_is_segment(&made->tree, i) && k <= pulse->params.harmonics; k++) {
+            const Phasor z = pulse_root_impedance(pulse, i, k);
+            const double row[] = {k / pulse->period_s, elementary_hypot(z.re, z.im),
+                                  elementary_atan2(z.im, z.re) / DEGREE};
+            text_printf(text, "%d,%d", made->tree.id[i], k);
+            put_numbers(text, row, sizeof row / sizeof *row);
+            text_puts(text, "\n");
+        }
+    return text_check(text, err);
+}
+
+/* ---- fields over time ------------------------------------------------------------------------ */
+
+/* The name of a field at frame m: "wss_0.0333". */
+static void name_frame(const Pulsing *made, PulseField field, size_t m, char out[64])
+{
+    char time[NUMBER_TEXT_SIZE];
+    const double t = made->pulse.period_s * (double)m / (double)made->options->frames;
+    snprintf(out, 64, "%s_%s", pulse_fields[field].name, number_text_rounded(t, 6, time));
+}
+
+static Status add_field(Pulsing *made, PulseField field, Err *err)
+{
+    const size_t frames = made->options->frames;
+    double **column = NULL;
+    Status status = STATUS_OK;
+    TRY(mem_check((double)frames * (double)made->tree.n * sizeof(double), "the frames", err));
+    TRY(mem_calloc(&column, frames, sizeof *column, "frames", err));
+    for (size_t m = 0; m < frames; m++) {
+        char name[64];
+        name_frame(made, field, m, name);
+        TRY_GOTO(tree_set_column(&made->tree, name, pulse_fields[field].unit, &column[m], err));
+    }
+    status = pulse_course(&made->pulse, field, frames, column, made->parsed->common.threads, err);
+done:
+    free(column);
+    return status;
+}
+
+Status pulsing_add_columns(Pulsing *made, Err *err)
+{
+    const PulsingOutput kind = pulsing_output(made->options->output);
+    const bool beats = kind == PULSING_FILM || kind == PULSING_SCENE;
+    bool has_dilation = false;
+    for (size_t f = 0; f < (beats ? 1 : made->n_fields); f++) {
+        TRY(add_field(made, made->field[f], err));
+        has_dilation = has_dilation || made->field[f] == PULSE_DILATION;
+    }
+    return beats && !has_dilation ? add_field(made, PULSE_DILATION, err) : STATUS_OK;
+}
+
+/* Finds the columns that pulsing_add_columns has set. */
+static Status find_columns(const Pulsing *made, const TreeColumn ***out, size_t *n, Err *err)
+{
+    const size_t frames = made->options->frames;
+    *n = made->n_fields * frames;
+    TRY(mem_calloc(out, *n, sizeof **out, "columns", err));
+    for (size_t k = 0; k < *n; k++) {
+        char name[64];
+        name_frame(made, made->field[k / frames], k % frames, name);
+        (*out)[k] = tree_column(&made->tree, name);
+    }
+    return STATUS_OK;
+}
+
+static Status put_values(const Pulsing *made, Text *text, Err *err)
+{
+    const TreeColumn **column;
+    size_t n;
+    TRY(find_columns(made, &column, &n, err));
+    text_puts(text, "id");
+    for (size_t k = 0; k < n; k++)
+        text_printf(text, *column[k]->unit ? ",%s [%s]" : ",%s", column[k]->name, column[k]->unit);
+    text_puts(text, "\n");
+    for (size_t i = 0; i < made->tree.n; i++) {
+        if (!tree_is_segment(&made->tree, i))
+            continue;
+        text_printf(text, "%d", made->tree.id[i]);
+        for (size_t k = 0; k < n; k++)
+            put_numbers(text, &column[k]->value[i], 1);
+        text_puts(text, "\n");
+    }
+    free(column);
+    return text_check(text, err);
+}
+
+static Status put_deck(const Pulsing *made, Text *text, Err *err)
+{
+    enum { POINTS = 201 };
+    return pulse_put_deck(&made->pulse, POINTS, text, err);
+}
+
+static Status write_output(Pulsing *made, const char *path, Err *err)
+{
+    const PulsingOutput kind = pulsing_output(path);
+    if (kind == PULSING_DECK)
+        return write_table(made, path, put_deck, err);
+    TRY(pulsing_add_columns(made, err));
+    if (kind == PULSING_VALUES)
+        return write_table(made, path, put_values, err);
+    return strcasecmp(file_extension(path), "pvd") == 0 ? tree_write_moments(&made->tree, path, err)
+                                                        : tree_write(&made->tree, path, err);
+}
+
+Status pulsing_write(Pulsing *made, Err *err)
+{
+    const PulsingOptions *options = made->options;
+    if (options->summary)
+        TRY(write_table(made, options->summary, put_summary, err));
+    if (options->impedance)
+        TRY(write_table(made, options->impedance, put_impedance, err));
+    if (!options->output)
+        return STATUS_OK;
+    const PulsingOutput kind = pulsing_output(options->output);
+    return kind == PULSING_FILM || kind == PULSING_SCENE ? STATUS_OK
+                                                         : write_output(made, options->output, err);
+}

@@ -1,0 +1,543 @@
+/* Options, waveforms and outlets are read before anything is computed. */
+#include "job/pulse/pulsing.h"
+
+#include "job/pulse/pulse_files.h"
+#include "options/output.h"
+#include "options/reading.h"
+#include "options/templates.h"
+#include "treeio/treeio.h"
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+static const char *const drive_kinds[] = {"pressure", "flow", NULL};
+
+static const Option rows[] = {
+    {.name = "output",
+     SETS(OUTPUT, PulsingOptions, output),
+     .argument = "V.csv|T.vtp|T.pvd|D.json|S.pov|F%04d.png",
+     .help = "values over time (.csv), the tree with values over time (.vtp and others, .pvd), a "
+             "deck of svZeroDSolver (.json), or the beating tree as a scene of POV-Ray (.pov) or "
+             "as pictures"},
+    {.name = "summary",
+     SETS(OUTPUT, PulsingOptions, summary),
+     .argument = "FILE.csv",
+     .otherwise = "",
+     .help = "write one row per segment: ranges of pressure and flow, TAWSS, OSI, delay"},
+    {.name = "impedance",
+     SETS(OUTPUT, PulsingOptions, impedance),
+     .argument = "FILE.csv",
+     .otherwise = "",
+     .help = "write the input impedance of each root by frequency"},
+    {.name = "json", SETS(FLAG, PulsingOptions, json), .help = "print the report as JSON"},
+    {.name = "fields",
+     SETS(TEXT, PulsingOptions, fields),
+     .group = GROUP_FILES,
+     .argument = "all|NAME,...",
+     .help = "quantities to write: pressure, flow, velocity, wss, dilation (change of the radius / "
+             "radius); a film shows the first"},
+    {.name = "frames",
+     SETS(COUNT, PulsingOptions, frames),
+     FROM_TO(2, 2000),
+     .group = GROUP_FILES,
+     .help = "number of moments in one cycle, evenly spaced"},
+    {.name = "drive",
+     SETS(TEXT, PulsingOptions, drive),
+     .group = GROUP_PULSE,
+     .argument = "NAME|FILE.csv",
+     .list = "waveforms",
+     .help = "cycle at the inlets, scaled to their means: a template, or a CSV file with the "
+             "columns time (s) and value"},
+    {.name = "drive-is",
+     SETS(CHOICE, PulsingOptions, drive_is),
+     GIVEN(PulsingOptions, has_drive_is),
+     .choices = drive_kinds,
+     .group = GROUP_PULSE,
+     .otherwise = "from the template; pressure for a file",
+     .help = "quantity of a --drive file"},
+    {.name = "period",
+     SETS(NUMBER, PulsingOptions, period_s),
+     GIVEN(PulsingOptions, has_period),
+     FROM_TO(1e-3, 100),
+     .unit = "s",
+     .group = GROUP_PULSE,
+     .otherwise = "from the template; a file states its own",
+     .help = "duration of the cycle, for a --drive template"},
+    {.name = "pulse-pressure",
+     SETS(NUMBER, PulsingOptions, range_mmhg),
+     FROM_TO(RANGE_ABOVE_0, 1000),
+     .unit = "mmHg",
+     .group = GROUP_PULSE,
+     .otherwise = "from the waveform",
+     .help = "range of the pressure at the inlets, for a --drive of pressure"},
+    {.name = "harmonics",
+     SETS(WHOLE, PulsingOptions, harmonics),
+     GIVEN(PulsingOptions, has_harmonics),
+     FROM_TO(1, WAVEFORM_MAX_HARMONICS),
+     .group = GROUP_PULSE,
+     .otherwise = "16, or as many as the waveform has",
+     .help = "number of harmonics of the heart rate"},
+    {.name = "wall",
+     SETS(TEXT, PulsingOptions, wall),
+     .group = GROUP_PULSE,
+     .argument = "NAME|K1,K2,K3",
+     .list = "walls",
+     .help = "stiffness of the wall by radius r, mm: a law, or E h / r = K1 exp(K2 r) + K3 in Pa, "
+             "1/mm and Pa"},
+    {.name = "wall-time",
+     SETS(NUMBER, PulsingOptions, wall_time_s),
+     FROM_TO(0, 10),
+     .unit = "s",
+     .group = GROUP_PULSE,
+     .help = "relaxation time of a viscoelastic wall; 0 is elastic"},
+    {.name = "outlets",
+     SETS(TEXT, PulsingOptions, outlets),
+     .group = GROUP_PULSE,
+     .argument = "rcr|structured|FILE.csv",
+     .help = "what is behind the outlets: resistances and a compliance, a structured tree of "
+             "Olufsen, or a CSV file with the columns id, rp, c, rd (mmHg s/ml and ml/mmHg)"},
+    {.name = "outlet-time",
+     SETS(NUMBER, PulsingOptions, outlet_time_s),
+     FROM_TO(0, 100),
+     .unit = "s",
+     .group = GROUP_PULSE,
+     .help = "rcr: compliance times resistance of each outlet; 0 is a resistance alone"},
+    {.name = "outlet-radius",
+     SETS(NUMBER, PulsingOptions, outlet_radius_mm),
+     FROM_TO(1e-4, 100),
+     .unit = "mm",
+     .group = GROUP_PULSE,
+     .help = "structured: vessels end below this radius"},
+    {.name = "venous-pressure",
+     SETS(NUMBER, PulsingOptions, venous_mmhg),
+     FROM_TO(-100, 1000),
+     .unit = "mmHg",
+     .group = GROUP_PULSE,
+     .help = "pressure behind the outlets"},
+    {.name = "tissue-pressure",
+     SETS(TEXT, PulsingOptions, tissue),
+     .group = GROUP_PULSE,
+     .argument = "NAME|FILE.csv",
+     .list = "waveforms",
+     .help = "pressure that contracting muscle exerts on small vessels: a template, or a CSV file "
+             "with the columns time (s) and pressure (mmHg)"},
+    {.name = "tissue-share",
+     SETS(NUMBER, PulsingOptions, tissue_share),
+     FROM_TO(0, 2),
+     .group = GROUP_PULSE,
+     .needs = "tissue-pressure",
+     .help = "fraction of --tissue-pressure that reaches the vessels"},
+    {.name = "ventricle",
+     SETS(RANGE, PulsingOptions, ventricle),
+     .unit = "mmHg",
+     .group = GROUP_PULSE,
+     .needs = "tissue-pressure",
+     .help = "lowest and highest pressure of a --tissue-pressure template"},
+    {.name = "exaggerate",
+     SETS(NUMBER, PulsingOptions, exaggerate),
+     FROM_TO(0, 1000),
+     .group = GROUP_ANIMATION,
+     .when = WHEN(ANIMATED),
+     .help = "films and scenes: factor of the change of the radius that is drawn"},
+    {.name = "look",
+     SETS(TEXT, PulsingOptions, look),
+     .group = GROUP_ANIMATION,
+     .when = WHEN(ANIMATED),
+     .argument = "NAME",
+     .list = "looks",
+     .otherwise = "",
+     .help = "films and scenes: look of the vessels; sections [render] and [scene] of a recipe set "
+             "everything else"},
+    {.name = "size",
+     SETS(SIZE, PulsingOptions, size),
+     FROM_TO(1, 100000),
+     .group = GROUP_ANIMATION,
+     .when = WHEN(ANIMATED),
+     .argument = "WxH",
+     .help = "films and scenes: size of the picture, pixels"},
+};
+
+static void set_defaults(void *options)
+{
+    *(PulsingOptions *)options = (PulsingOptions){.fields = "pressure",
+                                                  .drive = "aortic-pressure",
+                                                  .wall = "adan",
+                                                  .outlets = "rcr",
+                                                  .frames = 24,
+                                                  .harmonics = 16,
+                                                  .outlet_time_s = 1,
+                                                  .outlet_radius_mm = 0.03,
+                                                  .venous_mmhg = 5,
+                                                  .tissue_share = 0.75,
+                                                  .ventricle = {.at = {5, 120}},
+                                                  .exaggerate = 10,
+                                                  .size = {.pixels = {1000, 1000}}};
+}
+
+static bool is_csv(const char *path)
+{
+    return strcasecmp(file_extension(path), "csv") == 0;
+}
+
+PulsingOutput pulsing_output(const char *path)
+{
+    static const char *const pictures[] = {"png", "tif", "jpg", "exr", "ppm", "pfm", NULL};
+    const char *extension = file_extension(path);
+    if (strcasecmp(extension, "csv") == 0)
+        return PULSING_VALUES;
+    if (strcasecmp(extension, "json") == 0)
+        return PULSING_DECK;
+    if (strcasecmp(extension, "pov") == 0)
+        return PULSING_SCENE;
+    if (is_one_of(extension, pictures))
+        return PULSING_FILM;
+    return strcmp(path, "-") != 0 && tree_format_known(path) ? PULSING_TREE : PULSING_UNKNOWN;
+}
+
+static Status check_output(const PulsingOptions *options, Err *err)
+{
+    const TreeColumn column = {.name = (char[]){"wss_0.1"}, .unit = (char[]){"Pa"}};
+    const char *path = options->output;
+    if (!path && !options->summary && !options->impedance && !options->json)
+        return err_set(err, STATUS_USAGE,
+                       "pulse writes nothing; give -o, --summary, --impedance or --json");
+    if (!path)
+        return STATUS_OK;
+    const PulsingOutput kind = pulsing_output(path);
+    if (kind == PULSING_UNKNOWN)
+        return err_set(err, STATUS_USAGE,
+                       "-o: '%.80s' must end in .csv, .json, .pov, .png, .pvd or the extension of "
+                       "a format of trees",
+                       path);
+    if (kind != PULSING_TREE || strcasecmp(file_extension(path), "pvd") == 0)
+        return STATUS_OK;
+    TRY(tree_format_check(path, err));
+    if (!tree_format_stores(path, &column))
+        return err_set(err, STATUS_USAGE, "-o: the format of '%.80s' cannot store values over time",
+                       path);
+    return STATUS_OK;
+}
+
+/* ---- what options name ----------------------------------------------------------------------- */
+
+static Status find_field(const char *name, PulseField *field, Err *err)
+{
+    for (int f = 0; f < PULSE_FIELDS; f++)
+        if (strcmp(name, pulse_fields[f].name) == 0) {
+            *field = (PulseField)f;
+            return STATUS_OK;
+        }
+    return err_set(err, STATUS_USAGE,
+                   "--fields: '%.40s' is not pressure, flow, velocity, wss, dilation or all", name);
+}
+
+static Status read_fields(Pulsing *made, Err *err)
+{
+    char *copy, *rest = NULL;
+    bool chosen[PULSE_FIELDS] = {false};
+    PulseField field;
+    TRY(mem_strdup(&copy, made->options->fields, err));
+    Status status = STATUS_OK;
+    for (char *name = strtok_r(copy, ",", &rest); name; name = strtok_r(NULL, ",", &rest)) {
+        const bool all = strcmp(name, "all") == 0;
+        if (!all)
+            TRY_GOTO(find_field(name, &field, err));
+        for (int f = 0; f < PULSE_FIELDS; f++)
+            if ((all || (PulseField)f == field) && !chosen[f]) {
+                chosen[f] = true;
+                made->field[made->n_fields++] = (PulseField)f;
+            }
+    }
+    if (made->n_fields == 0)
+        status = err_set(err, STATUS_USAGE, "--fields: name at least one quantity");
+done:
+    free(copy);
+    return status;
+}
+
+/* Reads a waveform by the value of an option. *is_file receives whether it is the user's. */
+static Status read_waveform(Pulsing *made, const char *option, const char *value, Waveform *out,
+                            bool *is_file, Err *err)
+{
+    const PulsingOptions *options = made->options;
+    char *path, role[32];
+    *is_file = is_csv(value);
+    snprintf(role, sizeof role, "--%s", option);
+    if (*is_file) {
+        TRY(files_read(&made->parsed->files, role, value, err));
+        return waveform_read(value, options->has_harmonics ? options->harmonics : 0, out, err);
+    }
+    TRY(template_file(option, "waveforms", value, ".ini", &path, err));
+    Status status = waveform_read_template(path, out, err);
+    free(path);
+    TRY(status);
+    if (options->has_period)
+        out->period_s = options->period_s;
+    return STATUS_OK;
+}
+
+static Status read_drive(Pulsing *made, Err *err)
+{
+    const PulsingOptions *options = made->options;
+    Waveform *drive = &made->drive;
+    bool is_file;
+    TRY(read_waveform(made, "drive", options->drive, drive, &is_file, err));
+    if (is_file && options->has_period)
+        return err_set(err, STATUS_USAGE,
+                       "--period is for a --drive template; %s lasts %g s by its own times",
+                       options->drive, drive->period_s);
+    if (!is_file && options->has_drive_is && (options->drive_is == 1) != drive->is_flow)
+        return err_set(err, STATUS_USAGE, "--drive-is: the template %s is a %s", options->drive,
+                       drive_kinds[drive->is_flow]);
+    if (is_file)
+        drive->is_flow = options->drive_is == 1;
+    if (drive->is_flow && options->range_mmhg > 0)
+        return err_set(err, STATUS_USAGE, "--pulse-pressure is for a --drive of pressure");
+    return STATUS_OK;
+}
+
+/* Scales the pressure of the tissue to Pa. */
+static Status read_tissue(Pulsing *made, Err *err)
+{
+    const PulsingOptions *options = made->options;
+    Waveform *tissue = &made->tissue;
+    bool is_file;
+    if (!options->tissue)
+        return STATUS_OK;
+    if (strcmp(options->outlets, "rcr") != 0)
+        return err_set(err, STATUS_USAGE, "--tissue-pressure needs --outlets rcr");
+    TRY(read_waveform(made, "tissue-pressure", options->tissue, tissue, &is_file, err));
+    if (fabs(tissue->period_s - made->drive.period_s) > 1e-6 * made->drive.period_s && is_file)
+        return err_set(err, STATUS_INPUT,
+                       "%s lasts %g s, but the cycle of --drive lasts %g s; both must be equal",
+                       options->tissue, tissue->period_s, made->drive.period_s);
+    const double *ends = options->ventricle.at;
+    double factor = pa_from_mmhg(options->tissue_share);
+    if (!is_file)
+        factor *= (ends[1] - ends[0]) / waveform_range(tissue);
+    for (int k = 1; k <= tissue->harmonics; k++) {
+        tissue->re[k] *= factor;
+        tissue->im[k] *= factor;
+    }
+    return STATUS_OK;
+}
+
+static Status read_wall(const PulsingOptions *options, PulseWall *wall, Err *err)
+{
+    if (pulse_wall_parse(options->wall, wall))
+        return STATUS_OK;
+    return err_set(err, STATUS_USAGE,
+                   "--wall: '%.40s' is neither a law that `corcast walls` lists nor K1,K2,K3",
+                   options->wall);
+}
+
+/* Takes the columns rp, c and rd of `values`, whose nodes are the tree's. */
+static Status take_given(const Tree *values, PulseLumped *given, const char *path, Err *err)
+{
+    const TreeColumn *column[] = {tree_column(values, "rp"), tree_column(values, "c"),
+                                  tree_column(values, "rd")};
+    const double s = pa_from_mmhg(1) * 1e-3; /* Pa s/mm^3 in 1 mmHg s/ml */
+    if (!column[0] || !column[1] || !column[2])
+        return err_set(err, STATUS_INPUT, "%s: the file must have the columns id, rp, c and rd",
+                       path);
+    for (size_t i = 0; i < values->n; i++) {
+        const double rp = column[0]->value[i], c = column[1]->value[i], rd = column[2]->value[i];
+        given[i] = (PulseLumped){.rp = rp * s, .c = c / s, .rd = rd * s};
+        if (!isnan(rp) && !(rp >= 0 && c >= 0 && rd > 0))
+            return err_set(err, STATUS_INPUT,
+                           "%s: outlet %d has rp %g, c %g and rd %g; rp and c must be 0 or more, "
+                           "and rd above 0",
+                           path, values->id[i], rp, c, rd);
+    }
+    return STATUS_OK;
+}
+
+static Status read_outlets(Pulsing *made, PulseParams *params, Err *err)
+{
+    const char *outlets = made->options->outlets;
+    Tree *tree = &made->tree, values = {.n = tree->n, .id = tree->id};
+    params->outlet = strcmp(outlets, "structured") == 0 ? PULSE_STRUCTURED : PULSE_RCR;
+    if (params->outlet == PULSE_STRUCTURED || strcmp(outlets, "rcr") == 0)
+        return STATUS_OK;
+    if (!is_csv(outlets))
+        return err_set(err, STATUS_USAGE, "--outlets: '%.60s' is not rcr, structured or a FILE.csv",
+                       outlets);
+    TRY(files_read(&made->parsed->files, "--outlets", outlets, err));
+    Status status = STATUS_OK;
+    TRY_GOTO(mem_calloc(&made->given, tree->n, sizeof *made->given, "outlets", err));
+    TRY_GOTO(tree_read_values(&values, outlets, NULL, NULL, err));
+    TRY_GOTO(take_given(&values, made->given, outlets, err));
+    params->given = made->given;
+done:
+    values.id = NULL; /* the tree's */
+    tree_release(&values);
+    return status;
+}
+
+/* ---- the result ------------------------------------------------------------------------------ */
+
+static int count_harmonics(const Pulsing *made)
+{
+    const int asked = made->options->harmonics;
+    int known = made->drive.harmonics;
+    if (made->options->tissue && made->tissue.harmonics > known)
+        known = made->tissue.harmonics;
+    return asked < known ? asked : known;
+}
+
+static void widen(double range[2], double value)
+{
+    range[0] = fmin(range[0], value);
+    range[1] = fmax(range[1], value);
+}
+
+static void summarize(Pulsing *made)
+{
+    const Tree *tree = &made->tree;
+    PulsingReport report = {
+        .alpha = {HUGE_VAL, 0}, .wave_speed = {HUGE_VAL, 0}, .lowest_mmhg = HUGE_VAL};
+    size_t segments = 0, oscillating = 0, reversing = 0;
+    for (size_t i = 0; i < tree->n; i++) {
+        const PulseCycle *cycle = &made->cycles[i];
+        if (!tree_is_segment(tree, i))
+            continue;
+        segments++;
+        widen(report.alpha, cycle->alpha);
+        widen(report.wave_speed, cycle->wave_speed);
+        report.strain = fmax(report.strain, cycle->strain);
+        report.mach = fmax(report.mach, cycle->mach);
+        report.osi = fmax(report.osi, cycle->osi);
+        report.lowest_mmhg = fmin(report.lowest_mmhg, cycle->pressure[0]);
+        oscillating += cycle->osi > 0.1;
+        reversing += cycle->flow[0] < 0;
+    }
+    report.oscillating = (double)oscillating / (double)(segments ? segments : 1);
+    report.reversing = (double)reversing / (double)(segments ? segments : 1);
+    pulse_root_range(&made->pulse, 0, report.inlet_mmhg);
+    made->report = report;
+}
+
+/* Warns where the model does not hold. */
+static void warn(const Pulsing *made)
+{
+    const PulsingReport *report = &made->report;
+    const Talk *talk = made->parsed->common.talk;
+    if (report->strain > 0.3)
+        talk_warn(talk,
+                  "the area of a vessel changes by %.2g of its mean; above 0.3 a linear model is "
+                  "not accurate; use a stiffer --wall or a lower --pulse-pressure",
+                  report->strain);
+    if (report->mach > 0.25)
+        talk_warn(talk,
+                  "blood reaches %.2g of the wave speed; above 0.25 a linear model is not accurate",
+                  report->mach);
+    if (report->lowest_mmhg < made->options->venous_mmhg)
+        talk_warn(talk,
+                  "pressure falls to %.3g mmHg, below the venous pressure, where vessels would "
+                  "collapse; drive the tree by pressure, or raise --outlet-time",
+                  report->lowest_mmhg);
+}
+
+static Status solve(Pulsing *made, Err *err)
+{
+    const PulsingOptions *options = made->options;
+    Parsed *parsed = made->parsed;
+    const TreeMeta said = blood_said(&options->blood);
+    PulseParams params = {.tree = &made->tree,
+                          .overrides = &said,
+                          .drive = &made->drive,
+                          .drive_is_flow = made->drive.is_flow,
+                          .range_pa = pa_from_mmhg(options->range_mmhg),
+                          .wall_time_s = options->wall_time_s,
+                          .outlet_time_s = options->outlet_time_s,
+                          .venous_pa = pa_from_mmhg(options->venous_mmhg),
+                          .min_radius_mm = options->outlet_radius_mm,
+                          .tissue = options->tissue ? &made->tissue : NULL,
+                          .threads = parsed->common.threads};
+    TRY(read_wall(options, &params.wall, err));
+    TRY(read_drive(made, err));
+    TRY(read_tissue(made, err));
+    params.harmonics = count_harmonics(made);
+    TRY(reading_tree(parsed, parsed->operands[0], &made->tree, NULL, err));
+    TRY(blood_settle(&options->blood, parsed, &made->tree, err));
+    TRY(read_outlets(made, &params, err));
+    Status status = pulse_solve(&params, &made->pulse, err);
+    if (status == STATUS_INPUT)
+        err_prefix(err, "%s: ", parsed->operands[0]);
+    TRY(status);
+    made->pulse.params.overrides = NULL;
+    return pulse_cycles(&made->pulse, parsed->common.threads, &made->cycles, err);
+}
+
+Status pulsing_make(void *options, Parsed *parsed, Pulsing *made, Err *err)
+{
+    *made = (Pulsing){.options = options, .parsed = parsed};
+    TRY(check_output(made->options, err));
+    TRY(read_fields(made, err));
+    TRY(solve(made, err));
+    summarize(made);
+    warn(made);
+    return STATUS_OK;
+}
+
+void pulsing_release(Pulsing *made)
+{
+    pulse_release(&made->pulse);
+    tree_release(&made->tree);
+    free(made->given);
+    free(made->cycles);
+}
+
+/* ---- JSON ------------------------------------------------------------------------------------ */
+
+json_t *pulsing_json(const Pulsing *made)
+{
+    const PulsingReport *report = &made->report;
+    const Pulse *pulse = &made->pulse;
+    const Phasor z = pulse_root_impedance(pulse, 0, 1);
+    const JsonMember members[] = {
+        {"period_s", json_number(pulse->period_s)},
+        {"harmonics", json_count((uint64_t)pulse->params.harmonics)},
+        {"drive", json_text(made->options->drive)},
+        {"drive_is", json_text(drive_kinds[made->drive.is_flow])},
+        {"womersley", json_numbers(report->alpha, 2)},
+        {"wave_speed_m_s", json_numbers(report->wave_speed, 2)},
+        {"inlet_pressure_mmhg", json_numbers(report->inlet_mmhg, 2)},
+        {"impedance_mmhg_s_ml", json_numbers((double[]){z.re, z.im}, 2)},
+        {"resistance_mmhg_s_ml", json_number(pulse_root_impedance(pulse, 0, 0).re)},
+        {"osi_max", json_number(report->osi)},
+        {"oscillating_fraction", json_number(report->oscillating)},
+        {"reversing_fraction", json_number(report->reversing)},
+        {"area_strain_max", json_number(report->strain)},
+        {"velocity_over_wave_speed_max", json_number(report->mach)},
+    };
+    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+}
+
+/* The output's kind decides which options have an effect. */
+static ConditionSet unmet(const void *set, const Parsed *parsed)
+{
+    (void)parsed;
+    const PulsingOptions *options = set;
+    const PulsingOutput kind = options->output ? pulsing_output(options->output) : PULSING_UNKNOWN;
+    return UNLESS(kind == PULSING_FILM || kind == PULSING_SCENE, ANIMATED);
+}
+
+static const OptionTable table = {OPTION_ROWS(rows), .unmet = unmet};
+
+const Command command_pulse = {
+    .name = "pulse",
+    .summary = "compute pulse waves in a tree: pressure, flow and wall shear stress over a cycle",
+    .operands = "T.swc -o V.csv|T.vtp|T.pvd|D.json|S.pov|F%04d.png",
+    .examples = "  corcast pulse tree.swc -o pulse.csv --fields wss\n"
+                "  corcast pulse tree.swc --summary cycle.csv --impedance z.csv\n"
+                "  corcast pulse tree.swc -o beat%04d.png --fields wss --exaggerate 20\n"
+                "  corcast pulse tree.swc -o beat.pov\n"
+                "  corcast pulse tree.swc -o deck.json --outlet-time 1.5\n",
+    .min_operands = 1,
+    .max_operands = 1,
+    .reads_tree = true,
+    .size = sizeof(PulsingOptions),
+    .set_defaults = set_defaults,
+    .tables = {{&table, 0}, {&blood_table, offsetof(PulsingOptions, blood)}},
+};

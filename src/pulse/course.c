@@ -1,0 +1,306 @@
+/* Fields over time: for each segment the amplitudes of a field are made of those of pressure and
+ * flow, and summed over the harmonics at each moment. Segments are independent of each other, and
+ * each sum has a fixed order, so results do not depend on threads. */
+#include "pulse/solve.h"
+#include "pulse/twoport.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+const struct PulseFieldRow pulse_fields[PULSE_FIELDS] = {
+    [PULSE_PRESSURE] = {"pressure", "mmHg", "pressure"},
+    [PULSE_FLOW] = {"flow", "ml/min", "flow"},
+    [PULSE_VELOCITY] = {"velocity", "mm/s", "mean velocity over the cross-section"},
+    [PULSE_WSS] = {"wss", "Pa", "wall shear stress"},
+    [PULSE_DILATION] = {"dilation", "", "change of the radius / mean radius"},
+};
+
+/* Segments that one call of a worker computes. */
+enum { CHUNK = 4096 };
+
+static size_t chunks_of(const Pulse *pulse)
+{
+    return (pulse->n + CHUNK - 1) / CHUNK;
+}
+
+static size_t chunk_end(const Pulse *pulse, size_t chunk)
+{
+    const size_t end = (chunk + 1) * CHUNK;
+    return end < pulse->n ? end : pulse->n;
+}
+
+/* cos and sin of 2 pi k m / n, of all k at one m together: [m * harmonics + k - 1]. */
+static Status make_table(const Pulse *pulse, size_t n, Phasor **table, Err *err)
+{
+    const size_t harmonics = (size_t)pulse->params.harmonics;
+    TRY(mem_alloc(table, n * harmonics, sizeof **table, "moments", err));
+    for (size_t m = 0; m < n; m++)
+        for (size_t k = 1; k <= harmonics; k++) {
+            const double angle = FULL_TURN * (double)(k * m % n) / (double)n;
+            (*table)[m * harmonics + k - 1] =
+                (Phasor){elementary_cos(angle), elementary_sin(angle)};
+        }
+    return STATUS_OK;
+}
+
+/* A field of one segment. */
+typedef struct Spectrum {
+    double mean;
+    int harmonics;
+    Phasor at[WAVEFORM_MAX_HARMONICS + PAIR]; /* harmonic k is at[k - 1] */
+} Spectrum;
+
+static double value_at(const Spectrum *spectrum, const Phasor *turn)
+{
+    double x = spectrum->mean;
+    for (int k = 0; k < spectrum->harmonics; k++)
+        x += spectrum->at[k].re * turn[k].re - spectrum->at[k].im * turn[k].im;
+    return x;
+}
+
+/* Multiplies the amplitudes of flow by `factor` times the friction factor. */
+static void shear_spectrum(const Pulse *pulse, size_t i, double factor, Spectrum *out)
+{
+    for (int k = 0; k < out->harmonics; k += PAIR) {
+        const PairFrequency at = pairfrequency(k + 1, pulse->period_s, 0);
+        const PairC friction = pair_friction(at.omega * pulse->vessel[i].womersley_s);
+        for (int lane = 0; lane < PAIR; lane++) {
+            Phasor *x = &out->at[k + lane];
+            const double re = friction.re[lane] * factor, im = friction.im[lane] * factor;
+            *x = (Phasor){x->re * re - x->im * im, x->re * im + x->im * re};
+        }
+    }
+}
+
+/* Multiplies the amplitudes of pressure by half the distensibility of the wall, which a viscous
+ * wall delays. */
+static void dilation_spectrum(const Pulse *pulse, double radius, Spectrum *out)
+{
+    const double stiffness = pulse_wall_stiffness(&pulse->params.wall, radius);
+    const double half = stiffness > 0 ? 0.75 / stiffness : 0;
+    for (int k = 1; k <= out->harmonics; k++) {
+        const double delayed = FULL_TURN * k / pulse->period_s * pulse->params.wall_time_s;
+        const double re = half / (1 + delayed * delayed), im = -delayed * re;
+        Phasor *x = &out->at[k - 1];
+        *x = (Phasor){x->re * re - x->im * im, x->re * im + x->im * re};
+    }
+    out->mean = 0;
+}
+
+static void scale_spectrum(Spectrum *out, double factor)
+{
+    for (int k = 0; k < out->harmonics; k++)
+        out->at[k] = (Phasor){out->at[k].re * factor, out->at[k].im * factor};
+}
+
+/* Makes the spectrum of a field at segment i. The steady means are those of derive. */
+static void make_spectrum(const Pulse *pulse, PulseField field, size_t i, Spectrum *out)
+{
+    const double radius = pulse->params.tree->radius_mm[i], area = PI * radius * radius;
+    const bool of_pressure = field == PULSE_PRESSURE || field == PULSE_DILATION;
+    const double q = mm3_s_from_ml_min(pulse->flow[i]);
+    out->harmonics = pulse->params.harmonics;
+    for (int k = 1; k <= out->harmonics + out->harmonics % PAIR; k++)
+        out->at[k - 1] = of_pressure ? pulse_pressure(pulse, i, k) : pulse_flow(pulse, i, k);
+    if (field == PULSE_PRESSURE) {
+        out->mean = pulse->pressure[i];
+        scale_spectrum(out, mmhg_from_pa(1));
+    } else if (field == PULSE_FLOW) {
+        out->mean = pulse->flow[i];
+        scale_spectrum(out, ml_min_from_mm3_s(1));
+    } else if (field == PULSE_VELOCITY) {
+        out->mean = q / area;
+        scale_spectrum(out, 1 / area);
+    } else if (field == PULSE_WSS) {
+        const double viscosity = pulse->viscosity[i];
+        out->mean = 4 * viscosity * q / (PI * radius * radius * radius);
+        shear_spectrum(pulse, i, 4 * viscosity / (area * radius), out);
+    } else {
+        dilation_spectrum(pulse, radius, out);
+    }
+}
+
+/* ---- frames ---------------------------------------------------------------------------------- */
+
+typedef struct Course {
+    const Pulse *pulse;
+    PulseField field;
+    size_t frames;
+    double *const *column;
+    const Phasor *table;
+} Course;
+
+static void fill_chunk(size_t chunk, int worker, void *context)
+{
+    (void)worker;
+    const Course *course = context;
+    const Pulse *pulse = course->pulse;
+    for (size_t i = chunk * CHUNK; i < chunk_end(pulse, chunk); i++) {
+        const bool is_segment = tree_is_segment(pulse->params.tree, i);
+        Spectrum spectrum;
+        if (is_segment)
+            make_spectrum(pulse, course->field, i, &spectrum);
+        for (size_t m = 0; m < course->frames; m++)
+            course->column[m][i] =
+                is_segment ? value_at(&spectrum, course->table + m * (size_t)spectrum.harmonics)
+                           : (double)NAN;
+    }
+}
+
+Status pulse_course(const Pulse *pulse, PulseField field, size_t frames, double *const *column,
+                    int threads, Err *err)
+{
+    Phasor *table;
+    TRY(make_table(pulse, frames, &table, err));
+    Course course = {pulse, field, frames, column, table};
+    threads_for(chunks_of(pulse), threads, fill_chunk, &course);
+    free(table);
+    return STATUS_OK;
+}
+
+/* ---- cycles ---------------------------------------------------------------------------------- */
+
+enum { HALF = PULSE_SAMPLES / 2 };
+
+/* cos and sin of 2 pi k m / PULSE_SAMPLES, of all m up to half a cycle at one k together. */
+typedef struct Turns {
+    double cos[HALF + 1], sin[HALF + 1];
+} Turns;
+
+typedef struct CycleJob {
+    const Pulse *pulse;
+    const Turns *turns; /* per harmonic; owned by pulse_cycles */
+    PulseCycle *cycle;
+} CycleJob;
+
+/* Computes the samples of a field. Moments m and PULSE_SAMPLES - m have the same cosines, and
+ * opposite sines. */
+static void find_samples(const Spectrum *spectrum, const Turns *turns, double x[PULSE_SAMPLES])
+{
+    double even[HALF + 1] = {0}, odd[HALF + 1] = {0};
+    for (int k = 0; k < spectrum->harmonics; k++)
+        for (int m = 0; m <= HALF; m++) {
+            even[m] += spectrum->at[k].re * turns[k].cos[m];
+            odd[m] += spectrum->at[k].im * turns[k].sin[m];
+        }
+    for (int m = 0; m <= HALF; m++) {
+        x[m] = spectrum->mean + (even[m] - odd[m]);
+        x[(PULSE_SAMPLES - m) % PULSE_SAMPLES] = spectrum->mean + (even[m] + odd[m]);
+    }
+}
+
+static void find_range(const Spectrum *spectrum, const Turns *turns, double range[2])
+{
+    double x[PULSE_SAMPLES];
+    find_samples(spectrum, turns, x);
+    range[0] = range[1] = x[0];
+    for (int m = 1; m < PULSE_SAMPLES; m++) {
+        range[0] = x[m] < range[0] ? x[m] : range[0];
+        range[1] = x[m] > range[1] ? x[m] : range[1];
+    }
+}
+
+static void find_shear(const Spectrum *spectrum, const Turns *turns, PulseCycle *cycle)
+{
+    double x[PULSE_SAMPLES], sum = 0, sizes = 0;
+    find_samples(spectrum, turns, x);
+    for (int m = 0; m < PULSE_SAMPLES; m++) {
+        sum += x[m];
+        sizes += fabs(x[m]);
+    }
+    cycle->wss_mean = spectrum->mean;
+    cycle->tawss = sizes / PULSE_SAMPLES;
+    cycle->osi = sizes > 0 ? fmax(0.5 * (1 - fabs(sum) / sizes), 0) : 0;
+}
+
+/* The range of the area follows from that of pressure, unless the wall is viscous. */
+static double find_strain(const CycleJob *cycles, size_t i, double stiffness)
+{
+    const double *pressure = cycles->cycle[i].pressure;
+    Spectrum spectrum;
+    double dilation[2];
+    if (!(cycles->pulse->params.wall_time_s > 0))
+        return stiffness > 0 ? 1.5 * pa_from_mmhg(pressure[1] - pressure[0]) / stiffness : 0;
+    make_spectrum(cycles->pulse, PULSE_DILATION, i, &spectrum);
+    find_range(&spectrum, cycles->turns, dilation);
+    return 2 * (dilation[1] - dilation[0]);
+}
+
+static void find_cycle(const CycleJob *cycles, size_t i)
+{
+    const Pulse *pulse = cycles->pulse;
+    PulseCycle *cycle = &cycles->cycle[i];
+    const double radius = pulse->params.tree->radius_mm[i];
+    const double stiffness = pulse_wall_stiffness(&pulse->params.wall, radius);
+    Spectrum spectrum;
+    make_spectrum(pulse, PULSE_PRESSURE, i, &spectrum);
+    find_range(&spectrum, cycles->turns, cycle->pressure);
+    make_spectrum(pulse, PULSE_FLOW, i, &spectrum);
+    find_range(&spectrum, cycles->turns, cycle->flow);
+    make_spectrum(pulse, PULSE_WSS, i, &spectrum);
+    find_shear(&spectrum, cycles->turns, cycle);
+    cycle->strain = find_strain(cycles, i, stiffness);
+    cycle->alpha = sqrt(FULL_TURN / pulse->period_s * pulse->vessel[i].womersley_s);
+    cycle->wave_speed =
+        stiffness > 0 ? sqrt(stiffness / (1.5 * BLOOD_DENSITY_G_MM3)) * 1e-3 : HUGE_VAL;
+    const double most = mm3_s_from_ml_min(fmax(fabs(cycle->flow[0]), fabs(cycle->flow[1])));
+    cycle->mach = most / (PI * radius * radius) * 1e-3 / cycle->wave_speed;
+}
+
+static void cycles_chunk(size_t chunk, int worker, void *context)
+{
+    (void)worker;
+    const CycleJob *cycles = context;
+    for (size_t i = chunk * CHUNK; i < chunk_end(cycles->pulse, chunk); i++)
+        if (tree_is_segment(cycles->pulse->params.tree, i))
+            find_cycle(cycles, i);
+}
+
+/* The phase is followed segment by segment from the root, so that it does not wrap. */
+static void find_delays(const Pulse *pulse, PulseCycle *cycle)
+{
+    const Tree *tree = pulse->params.tree;
+    const PulseCycle none = {{NAN, NAN}, {NAN, NAN}, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
+    for (size_t i = 0; i < tree->n; i++) {
+        if (!tree_is_segment(tree, i)) {
+            cycle[i] = none;
+            cycle[i].delay_ms = 0;
+            continue;
+        }
+        const size_t before = (size_t)tree->parent[i];
+        const Phasor p = pulse_pressure(pulse, i, 1), from = pulse_pressure(pulse, before, 1);
+        const double turn =
+            elementary_atan2(p.im * from.re - p.re * from.im, p.re * from.re + p.im * from.im);
+        cycle[i].delay_ms = cycle[before].delay_ms - turn / FULL_TURN * pulse->period_s * 1e3;
+    }
+    for (size_t i = 0; i < tree->n; i++)
+        if (!tree_is_segment(tree, i))
+            cycle[i].delay_ms = NAN;
+}
+
+static void make_turns(int harmonics, Turns *turns)
+{
+    for (int k = 0; k < harmonics; k++)
+        for (int m = 0; m <= HALF; m++) {
+            const double angle = FULL_TURN * ((k + 1) * m % PULSE_SAMPLES) / PULSE_SAMPLES;
+            turns[k].cos[m] = elementary_cos(angle);
+            turns[k].sin[m] = elementary_sin(angle);
+        }
+}
+
+Status pulse_cycles(const Pulse *pulse, int threads, PulseCycle **out, Err *err)
+{
+    Turns *turns = NULL;
+    PulseCycle *cycle = NULL;
+    Status status = STATUS_OK;
+    TRY_GOTO(mem_calloc(&turns, (size_t)pulse->params.harmonics, sizeof *turns, "moments", err));
+    TRY_GOTO(mem_calloc(&cycle, pulse->n, sizeof *cycle, "cycles", err));
+    make_turns(pulse->params.harmonics, turns);
+    CycleJob cycles = {pulse, turns, cycle};
+    threads_for(chunks_of(pulse), threads, cycles_chunk, &cycles);
+    find_delays(pulse, cycle);
+    *out = cycle;
+done:
+    free(turns);
+    return status;
+}

@@ -1,0 +1,76 @@
+/* The two-port of a vessel for two harmonics at a time. Private to the module pulse.
+ *
+ * A PairR holds one real number for each of the two harmonics. It is a vector of two doubles, which
+ * every x86-64 processor has, so that all processors give the same bits. */
+#ifndef CORCAST_PULSE_TWOPORT_H
+#define CORCAST_PULSE_TWOPORT_H
+
+#include "pulse/pulse.h"
+
+enum { PAIR = PULSE_LANES };
+
+typedef double PairR __attribute__((vector_size(8 * PAIR)));
+
+/* A complex number per harmonic. */
+typedef struct PairC {
+    PairR re, im;
+} PairC;
+
+/* What two harmonics have in common in all vessels. */
+typedef struct PairFrequency {
+    PairR omega;     /* angular frequency, 1/s */
+    PairC compliant; /* j omega / (1 + j omega t_w), t_w the relaxation time of the wall */
+    int n_terms;     /* minimum number of terms of the continued fraction, for alpha 0 */
+} PairFrequency;
+
+/* The two-port of a vessel, multiplied by `scale`: p_in = (a p_out + b q_out) / scale, q_in = (c
+ * p_out + a q_out) / scale. The scale is 1 unless cosh would overflow. */
+typedef struct PairPort {
+    PairC a, b, c;
+    PairR scale;
+} PairPort;
+
+static inline PairC pairc(double re, double im)
+{
+    return (PairC){(PairR){0} + re, (PairR){0} + im};
+}
+
+static inline PairC pairc_add(PairC x, PairC y)
+{
+    return (PairC){x.re + y.re, x.im + y.im};
+}
+
+static inline PairC pairc_mul(PairC x, PairC y)
+{
+    return (PairC){x.re * y.re - x.im * y.im, x.re * y.im + x.im * y.re};
+}
+
+static inline PairC pairc_scale(PairC x, PairR k)
+{
+    return (PairC){x.re * k, x.im * k};
+}
+
+static inline PairC pairc_inverse(PairC x)
+{
+    PairR k = 1 / (x.re * x.re + x.im * x.im);
+    return (PairC){x.re * k, -x.im * k};
+}
+
+/* Makes the frequencies of harmonics `first` and first + 1, counted from 1. */
+PairFrequency pairfrequency(int first, double period_s, double wall_time_s);
+
+/* Computes the friction factor H. `u` is alpha^2, the squared Womersley number, of each harmonic.
+ */
+PairC pair_friction(PairR u);
+
+/* Computes the two-port of a vessel. */
+PairPort pair_port(const PulseVessel *vessel, const PairFrequency *at);
+
+/* Returns the admittance at the inlet of a vessel whose outlet has the admittance `load`. */
+static inline PairC pairport_load(const PairPort *port, PairC load, PairC *inverse)
+{
+    *inverse = pairc_inverse(pairc_add(port->a, pairc_mul(port->b, load)));
+    return pairc_mul(pairc_add(port->c, pairc_mul(port->a, load)), *inverse);
+}
+
+#endif
