@@ -107,21 +107,6 @@ static float rounded_up(double value)
     return (double)near < value ? nextafterf(near, INFINITY) : near;
 }
 
-/* The width in sRGB, in plain doubles: the state is not part of what is proven. */
-static double srgb(double linear)
-{
-    const double v = linear < 0 ? 0 : linear > 1 ? 1 : linear;
-    return v <= 0.0031308 ? 12.92 * v : 1.055 * elementary_pow(v, 1 / 2.4) - 0.055;
-}
-
-static double width_of(const ColorSpan *span)
-{
-    double width = 0;
-    for (int c = 0; c < 3; c++)
-        width = fmax(width, srgb(span->high[c]) - srgb(span->low[c]));
-    return width;
-}
-
 static void store(const AnswerPlan *plan, const ColorSpan *span, const Center *center,
                   float *values)
 {
@@ -130,14 +115,16 @@ static void store(const AnswerPlan *plan, const ColorSpan *span, const Center *c
         values[ANSWER_LOW + c] = rounded_down(span->low[c]);
         values[ANSWER_HIGH + c] = rounded_up(span->high[c]);
     }
-    values[ANSWER_STATE] = width_of(span) <= plan->params.width ? ANSWER_DECIDED : ANSWER_UNDECIDED;
+    values[ANSWER_STATE] = span_width(span) <= plan->params.width ? ANSWER_DECIDED
+                           : plan->params.pattern > 0             ? ANSWER_UNDECIDED
+                                                                  : ANSWER_OVER_BUDGET;
     values[ANSWER_ID] =
         center->face == UINT32_MAX ? 0 : (float)ids[plan->faces[center->face].segment];
     values[ANSWER_NEAR] = rounded_down(center->near);
     values[ANSWER_FAR] = rounded_up(center->far);
 }
 
-static void answer_pixel(AnswerWork *work, int i, int j, float *values)
+static Status answer_pixel(AnswerWork *work, int i, int j, float *values, Err *err)
 {
     const AnswerPlan *plan = work->plan;
     Center center;
@@ -150,9 +137,16 @@ static void answer_pixel(AnswerWork *work, int i, int j, float *values)
     }
     if (plan->has_ground)
         work->pixel.faces[work->pixel.n++] = (uint32_t)plan->n;
-    const ColorSpan span = pattern_answer(work, i, j, &center);
+    const Beam ray = answerplan_ray(plan, i + 0.5, j + 0.5);
+    ColorSpan span;
+    find_center(work, &ray, &center);
+    if (plan->params.pattern > 0)
+        span = pattern_answer(work, i, j);
+    else
+        TRY(area_answer(work, i, j, &span, err));
     store(plan, &span, &center, values);
     work->undecided += values[ANSWER_STATE] != ANSWER_DECIDED;
+    return STATUS_OK;
 }
 
 /* Lists the faces in a tile. */
@@ -190,7 +184,7 @@ static Status answer_tile(size_t tile, int worker, void *context, Err *err)
     for (int j = top; j < top + height; j++)
         for (int i = left; i < left + width; i++) {
             const size_t pixel = (size_t)j * (size_t)camera->width + (size_t)i;
-            answer_pixel(work, i, j, job->plane.values + pixel * ANSWER_CHANNELS);
+            TRY(answer_pixel(work, i, j, job->plane.values + pixel * ANSWER_CHANNELS, err));
         }
     return STATUS_OK;
 }
@@ -216,6 +210,8 @@ static void release_works(AnswerJob *job)
         free(job->works[i].tile.faces);
         free(job->works[i].pixel.faces);
         free(job->works[i].blockers.faces);
+        ARRAY_RELEASE(&job->works[i].leaves);
+        ARRAY_RELEASE(&job->works[i].heap);
     }
     free(job->works);
 }

@@ -9,6 +9,17 @@ enum {
     MAX_HITS = 48   /* most hits of a beam that are looked at; with more, the color is unknown */
 };
 
+/* Part of a pixel: the points of the rectangle that are in the square of `clip`. Pixels from the
+ * pixel's center. */
+typedef struct AreaLeaf {
+    double x, y, across[2], along[2]; /* centre and half sides; ey is across a vessel */
+    double clip[4];                   /* left, right, top, bottom */
+    double low[3], high[3];           /* of the integral, in pixels */
+    double turn[2];                   /* unit, across the wall that it shows alone; 0: none */
+    bool turned;
+    bool is_mixed; /* shows other faces than one wall, or is wide because of strips along cuts */
+} AreaLeaf;
+
 /* The workspace of a thread. */
 typedef struct AnswerWork {
     const AnswerPlan *plan;
@@ -17,6 +28,8 @@ typedef struct AnswerWork {
     FaceHit hits[MAX_HITS];
     LightBlocker blocker;
     size_t beams, undecided;
+    ARRAY(AreaLeaf) leaves; /* of a pixel; owned */
+    Heap heap;              /* of leaves, the widest first */
 } AnswerWork;
 
 /* A proven interval of colors. */
@@ -29,6 +42,11 @@ ColorSpan span_any(const AnswerPlan *plan);
 /* Returns the span of a form's values, cut to the colors of the scene. */
 ColorSpan span_of(const AnswerPlan *plan, const FormColor *color);
 void span_include(ColorSpan *span, const ColorSpan *other);
+/* Returns the largest width of a channel in sRGB, in plain doubles: widths choose what is refined
+ * and what counts as decided, and are not part of what is proven. */
+double span_width(const ColorSpan *span);
+/* Sets the slopes of the sRGB curve at the middle of each channel. */
+void span_slopes(const ColorSpan *span, double slopes[3]);
 
 /* The first hits of a beam: work->hits[0..n) may be visible. */
 typedef struct Seen {
@@ -46,10 +64,12 @@ typedef struct Center {
     double near, far; /* bounds of its depth, mm; infinite: no vessel is hit */
 } Center;
 
-/* Returns the color of a single ray, and what it finds if `center` is not NULL. */
-ColorSpan ray_answer(AnswerWork *work, const Beam *beam, const FaceList *list, Center *center);
+/* Finds what a ray hits first. */
+void find_center(AnswerWork *work, const Beam *ray, Center *center);
 
 /* Computes the answer of a pixel by the pattern. */
-ColorSpan pattern_answer(AnswerWork *work, int i, int j, Center *center);
+ColorSpan pattern_answer(AnswerWork *work, int i, int j);
+/* Computes the area answer of a pixel. Errors: STATUS_MEMORY. */
+MUST_CHECK Status area_answer(AnswerWork *work, int i, int j, ColorSpan *out, Err *err);
 
 #endif

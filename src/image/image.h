@@ -372,10 +372,14 @@ typedef struct ImageFacts {
     const char *colors;               /* "rgb", "grey", "cmyk", "another" */
     const char *compression;          /* "lzw", "deflate", "none", "jpeg", "packbits", "another" */
     char profile[IMAGE_PROFILE_NAME]; /* its name; "": none */
+    double ink_percent; /* "cmyk": maximum sum of the four inks of a pixel, 0 to 400; of a JPEG,
+                         * whose pixels are rounded, of the mean of a block of 8 x 8 pixels. 0 for
+                         * tiles and for planes of single inks, which are not read */
 } ImageFacts;
 
-/* Finds the properties of a file without reading its pixels. Errors: STATUS_INPUT, naming the file,
- * if it is of none of these formats or its header is broken; STATUS_MEMORY. */
+/* Finds the properties of a file. Reads no pixels, except those of CMYK for ink_percent. Errors:
+ * STATUS_INPUT, naming the file, if it is of none of these formats or its header is broken;
+ * STATUS_MEMORY. */
 MUST_CHECK Status image_facts(const char *path, ImageFacts *out, Err *err);
 
 /* Appends the names and versions of the libraries that read and write images. */

@@ -52,6 +52,51 @@ test_planted_faults_are_found() {
     expect_file distances.png
 }
 
+test_our_other_renderers_are_certified() {
+    local options
+    for options in '--model rounded' '--model cylinders --projection perspective'; do
+        # shellcheck disable=SC2086
+        make_answer "$DATA/trifurcation.swc" 3 --shadows on $options
+        # shellcheck disable=SC2086
+        run_ok corcast render "$DATA/trifurcation.swc" --size 160x160 --ao 0 --shadows on $options --method raster -o raster.png
+        expect_certified raster.png
+        # shellcheck disable=SC2086
+        run_ok corcast render "$DATA/trifurcation.swc" --size 160x160 --ao 0 --shadows on $options -o tiles.png
+        expect_certified tiles.png
+    done
+}
+
+test_area_answers_of_two_ways_intersect_and_decide_all_pixels() {
+    local tree=$DATA/trifurcation.swc options
+    for options in '--model rounded --shadows on' '--model cylinders --projection perspective --view iso --shadows on'; do
+        # shellcheck disable=SC2086
+        run_ok corcast answer "$tree" --size 48x48 --area $options -o turned.exr
+        expect_stdout ' 2304 of 2304 pixels decided to 1/510'
+        # shellcheck disable=SC2086
+        run_ok corcast answer "$tree" --size 48x48 --area --squares --width 1/1500 $options -o squares.exr
+        expect_stdout ' 2304 of 2304 pixels decided to 1/1500'
+        run corcast compare turned.exr squares.exr
+        expect_status 0
+    done
+}
+
+# Vessels thinner than a pixel are drawn by coverage. Their pictures are not exact, but nearer to the
+# area answer than samples are.
+test_thin_vessels_are_near_their_area_answers() {
+    run_ok corcast grow --terminals 100 --seed 5 -o tree.swc
+    run_ok corcast answer tree.swc --size 60x60 --area --shadows off -o answer.exr
+    run_ok corcast render tree.swc --size 60x60 --shadows off -o covered.png
+    run corcast compare answer.exr covered.png --json
+    cp stdout covered.json
+    run_ok corcast render tree.swc --size 60x60 --shadows off --exact --antialias 3 -o sampled.png
+    run corcast compare answer.exr sampled.png --json
+    cp stdout sampled.json
+    expect_json covered.json '.worst_levels | fabs < 22'
+    expect_json covered.json '[.mean_red, .mean_green, .mean_blue] | map(fabs) | max < 0.06'
+    jq -se '.[0].outside < 0.7 * .[1].outside and (.[0].worst_levels | fabs) < 0.5 * (.[1].worst_levels | fabs)' \
+        covered.json sampled.json >/dev/null || fail "expected coverage to be nearer to the areas than samples"
+}
+
 test_answers_of_one_scene_are_consistent_and_others_are_refused() {
     make_answer "$DATA/trifurcation.swc" 2 --shadows on
     cp answer.exr first.exr

@@ -35,6 +35,12 @@ static const Option own[] = {
      FROM_TO(1, 10000000),
      .needs = "area",
      .help = "most parts that a pixel is divided into before it counts as over budget"},
+    {.name = "squares",
+     SETS(FLAG, AnswerOptions, squares),
+     .group = GROUP_RUN,
+     .needs = "area",
+     .help = "for tests only: divide pixels into squares, not into parts along vessels; slower, "
+             "and the intervals must intersect"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);
@@ -120,6 +126,7 @@ static Status make(AnswerOptions *options, Parsed *parsed, Answer *answer, Err *
     Progress progress;
     AnswerParams params = {.pattern = options->area ? 0 : options->pattern,
                            .leaves = options->leaves,
+                           .squares = options->squares,
                            .shadows = options->picture.stage.shadows,
                            .threads = parsed->common.threads,
                            .progress = progress_report,

@@ -11,7 +11,7 @@ typedef struct AnswerOptions {
     const char *output;
     const char *width; /* greatest width of a decided interval: "1/510" or a number */
     int pattern;
-    bool area, has_pattern;
+    bool area, has_pattern, squares;
     int leaves;
     PictureOptions picture;
 } AnswerOptions;

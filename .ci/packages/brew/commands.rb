@@ -1,4 +1,4 @@
-# commands FORMULA PREFIX: prints the shell commands by which a formula installs and tests a program below PREFIX, so that
+# commands.rb FORMULA PREFIX: prints the shell commands by which a formula installs and tests a program below PREFIX, so that
 # they can run where there is no Homebrew.
 require "pathname"
 require "shellwords"

@@ -1,4 +1,4 @@
-"""check RECIPE SOURCE: checks a recipe of format 1: its keys, its requirements, and that its licence files exist."""
+"""check.py RECIPE SOURCE: checks a recipe of format 1: its keys, its requirements, and that its licence files exist."""
 import pathlib
 import sys
 
