@@ -5,7 +5,8 @@
 
 #include "compare/result.h"
 
-/* Sets result->box to the box of all pixels that differ, and result->cause to a sentence about the change that turns A into B, if that is certain.
+/* Sets result->box to the box of all pixels that differ, and result->cause to a sentence about the
+ * change that turns A into B, if that is certain.
  *
  * Changes are: turned, mirrored or channels exchanged; moved; blurred; brighter or darker
  * everywhere; one vessel missing; different outlines, highlights or shading only. The sentence
