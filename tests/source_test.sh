@@ -164,22 +164,38 @@ test_make_help_names_every_public_target() {
 }
 
 test_make_install_puts_program_templates_and_documents_under_the_prefix() {
-    run_ok make -C "$REPO" --no-print-directory install "DESTDIR=$PWD/stage" PREFIX=/opt/corcast
-    expect_file stage/opt/corcast/bin/corcast
-    expect_file stage/opt/corcast/share/corcast/templates/povray/scene.pov
-    (cd stage/opt/corcast/share/doc/corcast &&
+    run_ok make -C "$REPO" --no-print-directory install "DESTDIR=$PWD/stage" "PREFIX=/opt/my corcast"
+    expect_file "stage/opt/my corcast"/bin/corcast
+    expect_file "stage/opt/my corcast"/share/corcast/templates/povray/scene.pov
+    (cd "stage/opt/my corcast"/share/doc/corcast &&
         for linked in $(grep -o '](docs/[^)#]*' README.md | cut -c 3- | grep -v '/decisions$'); do
             [ -s "$linked" ] || fail "expected $linked, which README links to, to be installed"
         done) || exit 1
     grow_tree 5
-    run_ok stage/opt/corcast/bin/corcast scene tree.swc -o installed.pov
+    run_ok "stage/opt/my corcast"/bin/corcast scene tree.swc -o installed.pov
     if /usr/bin/python3 -c 'import numpy' 2>/dev/null; then
-        run_ok env -u CORCAST_TEMPLATES -u CORCAST_LIBRARY PYTHONPATH=stage/opt/corcast/lib/python3/dist-packages PYTHONDONTWRITEBYTECODE=1 \
+        run_ok env -u CORCAST_TEMPLATES -u CORCAST_LIBRARY PYTHONPATH="stage/opt/my corcast/lib/python3/dist-packages" PYTHONDONTWRITEBYTECODE=1 \
             /usr/bin/python3 -c 'import corcast; corcast.read("tree.swc").render(look="journal", size=(40, 30)).save("installed.png")'
     fi
-    [ ! -e "$REPO/build/viewer/viewer.js" ] || run_ok stage/opt/corcast/bin/corcast export tree.swc -o installed.html
-    run_ok make -C "$REPO" --no-print-directory uninstall "DESTDIR=$PWD/stage" PREFIX=/opt/corcast
+    [ ! -e "$REPO/build/viewer/viewer.js" ] || run_ok "stage/opt/my corcast"/bin/corcast export tree.swc -o installed.html
+    run_ok make -C "$REPO" --no-print-directory uninstall "DESTDIR=$PWD/stage" "PREFIX=/opt/my corcast"
     [ -z "$(find stage -type f)" ] || fail "expected nothing to be left, found $(find stage -type f)"
+}
+
+test_an_object_has_the_same_bytes_in_every_folder() {
+    local folder
+    mkdir one two
+    for folder in one two; do
+        cp -R "$REPO/Makefile" "$REPO/src" "$folder"
+        run_ok env CCACHE_DISABLE=1 make -C "$folder" --no-print-directory build/release/src/base/text.o
+    done
+    expect_same one/build/release/src/base/text.o two/build/release/src/base/text.o
+}
+
+test_a_build_folder_that_cannot_be_written_to_is_refused() {
+    run make -C "$REPO" --no-print-directory BUILD=/proc/corcast program
+    expect_status 2
+    grep -q '^/proc/corcast cannot be written to: "make program BUILD=FOLDER" builds in another folder$' stderr || fail "expected a way out$(said)"
 }
 
 test_make_dist_packs_what_is_committed_into_the_same_bytes() {

@@ -1,11 +1,24 @@
-/* Clocks for measuring how long work takes. Only differences of two readings have a meaning. */
+/* Clocks for measuring how long work takes, of which only differences of two readings have a
+ * meaning; and the date that outputs state. */
 #ifndef CORCAST_BASE_CLOCK_H
 #define CORCAST_BASE_CLOCK_H
+
+#include <stdbool.h>
 
 /* Returns the reading, in seconds, of a monotonic clock: it never runs backwards, even if the time
  * of day is changed. */
 double clock_seconds(void);
 /* Returns the processor time, in seconds, that this process has used in all its threads. */
 double clock_cpu_seconds(void);
+
+enum { DATE_TEXT_SIZE = 40 };
+
+/* Sets the date that clock_date writes in the calling thread, as the text of an integer: seconds
+ * since 1970-01-01 UTC, 0 to 253402300799 (the year 9999). NULL, the initial
+ * value, stands for the time of the call of clock_date. Returns false, and sets nothing, for any
+ * other text. Source: SOURCE_DATE_EPOCH of reproducible-builds.org. */
+bool clock_set_date(const char *seconds);
+/* Writes a date and a time of day in UTC, such as "2026-11-28 09:00 UTC". Returns `out`. */
+const char *clock_date(char out[DATE_TEXT_SIZE]);
 
 #endif

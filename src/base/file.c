@@ -28,7 +28,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { MAX_TEMPORARIES = 64, MAX_GROUPS = 8 };
+enum { MAX_TEMPORARIES = 64, MAX_GROUPS = 32 };
 static _Atomic(char *) temporaries[MAX_TEMPORARIES];
 static _Atomic pid_t groups[MAX_GROUPS]; /* to be killed; 0: none */
 
@@ -356,53 +356,16 @@ Status file_check_regular(const char *path, Err *err)
                    S_ISDIR(about.st_mode) ? "folder" : "pipe or a device");
 }
 
-const char *file_name(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
-const char *file_extension(const char *path)
-{
-    const char *name = file_name(path);
-    const char *dot = strrchr(name, '.');
-    return dot && dot != name ? dot + 1 : "";
-}
-
 double file_bytes(const char *path)
 {
     struct stat about;
     return stat(path, &about) == 0 ? (double)about.st_size : 0;
 }
 
-static Status format_owned(char **out, Err *err, const char *format, ...) PRINTF_LIKE(3, 4);
-static Status format_owned(char **out, Err *err, const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    Status status = mem_vprintf(out, "a file's name", err, format, arguments);
-    va_end(arguments);
-    return status;
-}
-
-Status file_with_suffix(const char *path, const char *suffix, char **out, Err *err)
-{
-    const char *extension = file_extension(path);
-    size_t stem = *extension ? (size_t)(extension - 1 - path) : strlen(path);
-    return format_owned(out, err, "%.*s%s", (int)stem, path, suffix);
-}
-
-Status file_join(const char *folder, const char *name, char **out, Err *err)
-{
-    size_t length = strlen(folder);
-    const char *slash = length && folder[length - 1] == '/' ? "" : "/";
-    return format_owned(out, err, "%s%s%s", folder, slash, name);
-}
-
 /* folder/.corcast.XXXXXX of the folder that `path` is in: no longer than any name may be. */
 static Status temporary_name(const char *path, char **name, Err *err)
 {
-    return format_owned(name, err, "%.*s.corcast.XXXXXX", (int)(file_name(path) - path), path);
+    return file_format_name(name, err, "%.*s.corcast.XXXXXX", (int)(file_name(path) - path), path);
 }
 
 /* Frees `name` on failure. */
@@ -507,7 +470,7 @@ Status file_resolve(const char *path, char **out, Err *err)
         target[length] = '\0';
         char *next = NULL;
         int folder = target[0] == '/' ? 0 : (int)(file_name(at) - at);
-        Status status = format_owned(&next, err, "%.*s%s", folder, at, target);
+        Status status = file_format_name(&next, err, "%.*s%s", folder, at, target);
         free(at);
         TRY(status);
         at = next;

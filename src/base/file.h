@@ -114,7 +114,7 @@ MUST_CHECK Status file_make_folder(const char *path, Err *err);
  * main calls it, once. The table of temporary names is a global: a handler can reach nothing else.
  */
 void file_clean_up_on_signals(void);
-/* Registers a process group, at most eight at a time: a signal that ends the program then kills the
+/* Registers a process group, at most 32 at a time: a signal that ends the program then kills the
  * group first, so that the group makes no more files. file_spare_on_signal cancels it. */
 void file_kill_on_signal(pid_t group);
 void file_spare_on_signal(pid_t group);
@@ -128,6 +128,8 @@ void file_hold_standard_streams(void);
 const char *file_extension(const char *path);
 /* Replaces the extension of `path`, with its '.', by `suffix`. The caller frees *out. */
 MUST_CHECK Status file_with_suffix(const char *path, const char *suffix, char **out, Err *err);
+/* Makes a name as printf does. The caller frees *out. Errors: STATUS_MEMORY. */
+MUST_CHECK Status file_format_name(char **out, Err *err, const char *format, ...) PRINTF_LIKE(3, 4);
 /* Joins a folder and a name: "folder/name". The caller frees *out. */
 MUST_CHECK Status file_join(const char *folder, const char *name, char **out, Err *err);
 /* Returns the last component of `path`; borrowed from `path`. */

@@ -163,6 +163,11 @@ void system_run_anywhere(const ProcessorSet *allowed)
 
 #endif
 
+void system_join_thread(pthread_t thread)
+{
+    pthread_join(thread, NULL);
+}
+
 /* ---- memory -----------------------------------------------------------------------------------
  */
 

@@ -4,7 +4,9 @@
 #ifndef CORCAST_BASE_SYSTEM_H
 #define CORCAST_BASE_SYSTEM_H
 
+#ifndef __wasi__ /* has no threads: system_start_thread fails */
 #include <pthread.h>
+#endif
 #include <sched.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -40,6 +42,8 @@ int system_processors(ProcessorSet *allowed);
  * can be started. */
 bool system_start_thread(pthread_t *thread, const ProcessorSet *allowed, int number,
                          void *(*run)(void *), void *argument);
+/* Waits until a thread that system_start_thread has started has ended. */
+void system_join_thread(pthread_t thread);
 
 /* Lets the calling thread run on all of `allowed` again. */
 void system_run_anywhere(const ProcessorSet *allowed);

@@ -9,7 +9,6 @@
 #include "base/system.h"
 
 #include <locale.h>
-#include <pthread.h>
 #include <stdatomic.h>
 
 enum { MAX_THREADS = 256 };
@@ -77,5 +76,5 @@ void threads_for(size_t count, int threads, void (*body)(size_t index, int worke
     workers[0] = (LoopWorker){&loop, 0};
     run(&workers[0]);
     for (int i = 1; i < started; i++)
-        pthread_join(handles[i], NULL);
+        system_join_thread(handles[i]);
 }

@@ -45,9 +45,11 @@ const CommandRow command_rows[] = {
     {&command_export, export_run, COMMANDS_EXPORT, OBEYS_MOST},
     {&command_scene, scene_run, COMMANDS_EXPORT, OBEYS_MOST},
     {&command_verify, run_verify, COMMANDS_CHECK, OBEYS_MOST},
+    {&command_answer, run_answer, COMMANDS_CHECK, OBEYS_MOST},
     {&command_compare, run_compare, COMMANDS_CHECK, OBEYS_MOST},
     {&command_report, run_report, COMMANDS_CHECK, OBEYS_RUN},
     {&command_power, run_power, COMMANDS_CHECK, OBEYS_MOST},
+    {&command_metamorph, run_metamorph, COMMANDS_CHECK, OBEYS_MOST},
     {&command_check_figure, run_check_figure, COMMANDS_CHECK, OBEYS_RUN},
     {&command_models, run_models, COMMANDS_LIST, 0},
     {&command_fields, run_list, COMMANDS_LIST, 0},
@@ -132,12 +134,26 @@ static Status run(Parsed *parsed, Err *err)
     return status;
 }
 
+/* The library reads no environment, so these variables are read here. */
+static Status read_environment(Err *err)
+{
+    static const char date[] = "SOURCE_DATE_EPOCH";
+    (void)templates_set(getenv("CORCAST_TEMPLATES"));
+    if (clock_set_date(getenv(date)))
+        return STATUS_OK;
+    return err_set(
+        err, STATUS_USAGE,
+        "%s is '%s'; it must be the seconds since 1970-01-01 UTC as an integer from 0 to "
+        "253402300799",
+        date, getenv(date));
+}
+
 Status command_run(const Command *command, int argc, char **argv, Err *err)
 {
     Parsed parsed;
+    TRY(read_environment(err));
     TRY(parsed_init(&parsed, command, err));
     parsed.find_command = command_find;
-    (void)templates_set(getenv("CORCAST_TEMPLATES"));
     Screen screen;
     Status status = options_parse(&parsed, argc, argv, err);
     Talk talk = screen_talk(&screen, parsed.common.quiet);

@@ -10,6 +10,7 @@
  * rules/       tiers of agreement; judge the numbers
  * checks/      of a scene: settled pixels, the place of a surface, a third program as witness
  * cause/       guess the cause; plant faults in pictures, to see what a tolerance finds
+ * grade/       grade a picture by proven intervals of its pixels
  * suite/       compare a folder of pictures with a folder of references
  * report/      write JSON, text, JUnit XML, pictures and pages
  *
@@ -20,6 +21,7 @@
 #include "compare/cause/cause.h"     // IWYU pragma: export
 #include "compare/cause/choose.h"    // IWYU pragma: export
 #include "compare/cause/power.h"     // IWYU pragma: export
+#include "compare/grade/grade.h"     // IWYU pragma: export
 #include "compare/measures/noise.h"  // IWYU pragma: export
 #include "compare/measures/planes.h" // IWYU pragma: export
 #include "compare/report/pictures.h" // IWYU pragma: export

@@ -4,6 +4,28 @@
  * would read the voxels of a file a.nii, if there is one, so the file is opened here. */
 #include "domain/mask.h"
 
+#ifdef CORCAST_PAGE /* the page that grows trees [web/] reads no files */
+
+static Status refuse(const char *path, Err *err)
+{
+    return err_set(err, STATUS_INPUT, "%s: cannot be read: a page in a browser reads no files",
+                   path);
+}
+
+Status mask_read_picture(Mask *mask, const char *path, double mm, Err *err)
+{
+    (void)mask, (void)mm;
+    return refuse(path, err);
+}
+
+Status mask_read_nifti(Mask *mask, const char *path, Err *err)
+{
+    (void)mask;
+    return refuse(path, err);
+}
+
+#else
+
 #include "image/image.h"
 #include <errno.h>
 #include <nifti/nifti2_io.h>
@@ -302,3 +324,5 @@ Status mask_read_nifti(Mask *mask, const char *path, Err *err)
     nifti_set_debug_level(0);
     return read_image(mask, path, err);
 }
+
+#endif

@@ -13,6 +13,7 @@
     FORMAT(named, ending, holds, writer, .of_lines = true, .has_colors = true, __VA_ARGS__)
 
 const Emitter emitters[] = {
+#ifndef CORCAST_PAGE /* the page that grows trees [web/] writes STL alone */
     FORMAT("povray", "pov", "a scene for POV-Ray 3.7", povray_write, .has_view = true,
            .elements = MODEL_ELEMENTS, .second_extension = "inc", .second_holds = "the geometry",
            .settings_extension = "ini", .check_name = povray_check_name,
@@ -23,7 +24,9 @@ const Emitter emitters[] = {
            .elements = MODEL_CYLINDERS | MODEL_BALLS | MODEL_TRIANGLES),
     OF_MESHES("polyhedron", "scad", "one closed surface for OpenSCAD", openscad_write_mesh,
               .binary = false),
+#endif
     OF_MESHES("stl", "stl", "triangles for printers and CAD", stl_write, .binary = true),
+#ifndef CORCAST_PAGE
     OF_MESHES("stl-parts", "stl", "triangles of named parts for solvers", stl_write_parts,
               .has_parts = true, .option = "parts"),
     OF_MESHES("vtp", "vtp", "triangles of named parts for VTK and SimVascular", vtp_write_mesh,
@@ -42,6 +45,7 @@ const Emitter emitters[] = {
     OF_LINES("lattice", "3mf", "a lattice of beams for printers", lattice_write, .binary = true,
              .option = "lattice"),
     OF_MESHES("mesh2", "inc", "a mesh2 for POV-Ray 3.7", povray_write_mesh, .has_colors = true),
+#endif
     {0},
 };
 

@@ -447,3 +447,31 @@ const ImageDecoder exr_decoder = {.format = "OpenEXR",
                                   .decode = decode,
                                   .release = release,
                                   .has_layers = true};
+
+/* ---- attributes ------------------------------------------------------------------------------ */
+
+static void on_silent_error(exr_const_context_t context, exr_result_t code, const char *message)
+{
+    (void)context;
+    (void)code;
+    (void)message;
+}
+
+bool image_exr_text(const char *path, const char *name, char *text, size_t size)
+{
+    exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    exr_context_t context;
+    const char *value;
+    int32_t length;
+    setup.error_handler_fn = on_silent_error;
+    if (exr_start_read(&context, path, &setup) != EXR_ERR_SUCCESS)
+        return false;
+    const bool found = exr_attr_get_string(context, 0, name, &length, &value) == EXR_ERR_SUCCESS &&
+                       (size_t)length < size;
+    if (found) {
+        memcpy(text, value, (size_t)length);
+        text[length] = '\0';
+    }
+    exr_finish(&context);
+    return found;
+}

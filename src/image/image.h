@@ -19,7 +19,7 @@
 #include <stdint.h>
 #include <string.h>
 
-enum { IMAGE_MAX_SIDE = 1 << 20, IMAGE_MAX_CHANNELS = 9, IMAGE_MAX_ID = 0xffffff };
+enum { IMAGE_MAX_SIDE = 1 << 20, IMAGE_MAX_CHANNELS = 10, IMAGE_MAX_ID = 0xffffff };
 
 /* A rectangle of pixels; `left` and `top` count from 0. */
 typedef struct PixelRect {
@@ -330,6 +330,10 @@ typedef enum ImageAlpha {
  */
 MUST_CHECK Status image_read(Image *image, const char *path, ImageAlpha alpha, const char *layer,
                              Err *err);
+/* Copies a text attribute of an OpenEXR file to `text`, which has room for `size` bytes. Returns
+ * false if the file cannot be read, is no OpenEXR, or has no such attribute of less than `size`
+ * bytes. */
+bool image_exr_text(const char *path, const char *name, char *text, size_t size);
 /* As image_read. Errors: also STATUS_INPUT if the file holds floats, or if it holds codes. */
 MUST_CHECK Status picture_read(Picture *picture, const char *path, ImageAlpha alpha, Err *err);
 MUST_CHECK Status plane_read(Plane *plane, const char *path, ImageAlpha alpha, Err *err);
@@ -368,10 +372,14 @@ typedef struct ImageFacts {
     const char *colors;               /* "rgb", "grey", "cmyk", "another" */
     const char *compression;          /* "lzw", "deflate", "none", "jpeg", "packbits", "another" */
     char profile[IMAGE_PROFILE_NAME]; /* its name; "": none */
+    double ink_percent; /* "cmyk": maximum sum of the four inks of a pixel, 0 to 400; of a JPEG,
+                         * whose pixels are rounded, of the mean of a block of 8 x 8 pixels. 0 for
+                         * tiles and for planes of single inks, which are not read */
 } ImageFacts;
 
-/* Finds the properties of a file without reading its pixels. Errors: STATUS_INPUT, naming the file,
- * if it is of none of these formats or its header is broken; STATUS_MEMORY. */
+/* Finds the properties of a file. Reads no pixels, except those of CMYK for ink_percent. Errors:
+ * STATUS_INPUT, naming the file, if it is of none of these formats or its header is broken;
+ * STATUS_MEMORY. */
 MUST_CHECK Status image_facts(const char *path, ImageFacts *out, Err *err);
 
 /* Appends the names and versions of the libraries that read and write images. */

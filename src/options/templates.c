@@ -1,5 +1,7 @@
 /* The folder of templates is the one that the caller has set, or is looked for where the program or
- * the library that holds this code is: beside the build folder, or where `make install` puts it. */
+ * the library that holds this code is: beside the build folder, or where `make install` puts it.
+ * Where the system does not tell the path of this code, as on Linux without /proc, it is looked for
+ * below the prefix of the build. */
 #include "options/templates.h"
 
 #include <dirent.h>
@@ -46,6 +48,17 @@ static Status take_chosen(char **folder, Err *err)
                    chosen);
 }
 
+/* Sets *folder to the folder `path` of `parent` if it exists, to NULL if it does not. */
+static Status try_folder(const char *parent, const char *path, char **folder, Err *err)
+{
+    TRY(file_join(parent, path, folder, err));
+    if (!is_folder(*folder)) {
+        free(*folder);
+        *folder = NULL;
+    }
+    return STATUS_OK;
+}
+
 Status templates_folder(char **folder, Err *err)
 {
     static const struct {
@@ -56,22 +69,22 @@ Status templates_folder(char **folder, Err *err)
                   {1, "templates"},
                   {0, "share/corcast/templates"}};
     char self[PATH_MAX];
+    char *found = NULL;
     if (chosen && *chosen)
         return take_chosen(folder, err);
-    for (size_t i = 0;
-         i < sizeof places / sizeof *places && (i > 0 || system_own_file(self, sizeof self)); i++) {
-        char *path = NULL;
+    const size_t n = system_own_file(self, sizeof self) ? sizeof places / sizeof *places : 0;
+    for (size_t i = 0; i < n && !found; i++) {
         cut_components(self, places[i].up);
-        TRY(file_join(self, places[i].path, &path, err));
-        if (is_folder(path)) {
-            *folder = path;
-            return STATUS_OK;
-        }
-        free(path);
+        TRY(try_folder(self, places[i].path, &found, err));
     }
-    return err_set(err, STATUS_IO,
-                   "the templates folder was found neither beside the program nor where it is "
-                   "installed; name it in CORCAST_TEMPLATES");
+    if (!found)
+        TRY(try_folder(CORCAST_PREFIX, "share/corcast/templates", &found, err));
+    if (!found)
+        return err_set(err, STATUS_IO,
+                       "the templates folder was found neither beside the program nor in "
+                       "'" CORCAST_PREFIX "/share/corcast'; name it in CORCAST_TEMPLATES");
+    *folder = found;
+    return STATUS_OK;
 }
 
 /* Appends the names, without their extension, of the files in the folder that have it, `between`

@@ -55,6 +55,7 @@ typedef struct Format {
     TreeStores *stores; /* of the columns that are lost, those that are not; NULL: none */
     unsigned takes;     /* bits of the options of reading */
     FileForm form;
+    bool names_files;       /* the file refers to other files */
     TreeDetect *detect;     /* NULL: nothing tells */
     TreeRead *read;         /* one of a tree ... */
     GraphRead *read_graph;  /* ... or this one of a network; with both, `detect` tells trees */
@@ -75,6 +76,7 @@ static const Format formats[] = {
      .form = {.name = "an SWC file", .most_bytes = MOST_BYTES, .is_text = true},
      .read = swc_read,
      .write = swc_write},
+#ifndef CORCAST_PAGE /* the page that grows trees [web/] writes SWC alone */
     {.name = "CSV of segments",
      .loses = IS_NETWORK | LOSES_ROOT_VALUES,
      .description = "a segment a line: both ends, radius, length, any columns of values",
@@ -124,6 +126,7 @@ static const Format formats[] = {
      .description = "ParaView's index of files, a moment each, whose arrays become series",
      .extensions = {"pvd"},
      .form = {.name = "a PVD file", .most_bytes = 1e8, .is_text = true},
+     .names_files = true,
      .detect = pvd_detect,
      .read = pvd_read},
     {.name = "GXL",
@@ -210,6 +213,7 @@ static const Format formats[] = {
      .detect = amira_detect,
      .read_graph = amira_read,
      .keywords = amira_keywords},
+#endif
 };
 
 enum { N_FORMATS = sizeof formats / sizeof *formats };
@@ -652,7 +656,7 @@ static Status read_any(Tree *tree, const char *path, const MemoryFile *file,
     Status status = STATUS_OK;
     TRY_GOTO(open_source(&source, path, file, said->format, err));
     made.format = source.format->name;
-    if (file && source.format->read == pvd_read)
+    if (file && source.format->names_files)
         TRY_GOTO(err_set(
             err, STATUS_USAGE,
             "%s: a PVD file cannot be read from memory, because it refers to other files", path));

@@ -35,7 +35,11 @@ export function ink() {
 }
 
 export class Panel {
-  constructor(tree) {
+  constructor() {
+    find("kind").append(...Object.entries(KINDS).map(([kind, words]) => option(kind, words)));
+  }
+
+  setTree(tree) {
     this.tree = tree;
     const { properties, segments, low, high } = tree;
     find("name").textContent = properties.name;
@@ -43,9 +47,8 @@ export class Panel {
     find("summary").textContent = `${segments.length.toLocaleString("en")} segments, ${sides}\u00a0mm`;
     const words = ({ title, unit }) => title + (unit ? ` (${unit})` : "");
     const fields = tree.fields.map((field) => option(field.name, words(field)));
-    find("field").append(option("", "one color"), ...fields);
-    find("map").append(...tree.maps.map(({ name }) => option(name, name)));
-    find("kind").append(...Object.entries(KINDS).map(([kind, words]) => option(kind, words)));
+    find("field").replaceChildren(option("", "one color"), ...fields);
+    find("map").replaceChildren(...tree.maps.map(({ name }) => option(name, name)));
     find("made").textContent = `${properties.generator}: ${properties.command}`;
   }
 
@@ -91,9 +94,11 @@ export class Panel {
       width: `${2 * radius}px`, height: `${2 * radius}px` });
   }
 
-  // Shows the slider of times for a field that changes with time, and hides it for any other field.
+  // Shows the slider of times for a field that changes with time, and hides it for any other field. A page of grown trees
+  // has none.
   showTime(field, moment) {
     const times = field ? field.times : [];
+    if (!find("time")) return;
     find("time").hidden = times.length < 2;
     if (times.length < 2) return;
     find("moment").max = times.length - 1;

@@ -76,6 +76,12 @@ export class Shade {
     this.shadows = new Scene();
   }
 
+  dispose() {
+    const { segments, depths } = this.material.uniforms;
+    for (const owned of [this.sum, this.map, this.material, segments.value, depths.value, this.sky.children[0].geometry])
+      owned.dispose();
+  }
+
   get isDone() { return this.done === DIRECTIONS; }
 
   // Adds the light of the next direction. Returns false if all directions are done.

@@ -1,5 +1,5 @@
-// The tree that the page holds: the numbers of its nodes, unpacked once, and what is derived from them. Node i, unless
-// it is a root, is the distal end of segment i, a cylinder with round ends. Coordinates are in mm relative to `origin`.
+// A tree: the numbers of its nodes, and what is derived from them. Node i, unless it is a root, is the distal end of
+// segment i, a cylinder with round ends. Coordinates are in mm relative to `origin`.
 
 const NONE = 0xffff; // in a field of 16-bit integers: no value
 
@@ -15,11 +15,28 @@ function block(id, Numbers) {
   return new Numbers(bytes.buffer);
 }
 
+function readField(k, { whole }) {
+  const packed = block("field-" + k, whole ? Uint16Array : Float32Array);
+  return whole ? Float32Array.from(packed, (v) => (v === NONE ? NaN : v)) : packed;
+}
+
+// Reads the tree of a page that `corcast export` has written [src/page/blocks.c]. Returns what Tree takes.
+export function readPage() {
+  const properties = JSON.parse(text("properties"));
+  return {
+    properties,
+    position: block("position", Float32Array), // x, y, z per node
+    radius: block("radius", Float32Array), // per node
+    parent: block("parent", Uint32Array), // index per node; a root has its own
+    id: block("id", Uint32Array), // per node
+    fields: properties.fields.map((field, k) => ({ ...field, values: readField(k, field) })), // NaN: no value
+    maps: properties.maps.map((map, k) => ({ ...map, bytes: block("map-" + k, Uint8Array) })),
+  };
+}
+
 class Field {
-  constructor(properties, k, { n, segments }) {
-    const packed = block("field-" + k, properties.whole ? Uint16Array : Float32Array);
+  constructor(properties, { n, segments }) {
     Object.assign(this, properties);
-    this.values = properties.whole ? Float32Array.from(packed, (v) => (v === NONE ? NaN : v)) : packed;
     const isShown = new Uint8Array(n);
     for (const i of segments) isShown[i] = 1;
     this.finite = this.values.filter((value, at) => isShown[at % n] && Number.isFinite(value)); // at all times
@@ -33,18 +50,12 @@ class Field {
 }
 
 export class Tree {
-  constructor() {
-    this.properties = JSON.parse(text("properties"));
-    this.position = block("position", Float32Array);
-    this.radius = block("radius", Float32Array);
-    this.parent = block("parent", Uint32Array);
-    this.id = block("id", Uint32Array);
+  constructor(source) {
+    Object.assign(this, source);
     this.n = this.radius.length;
     this.findSegments();
     this.measure();
-    this.fields = this.properties.fields.map((properties, k) => new Field(properties, k, this))
-      .filter((field) => field.finite.length > 0);
-    this.maps = this.properties.maps.map((map, k) => ({ ...map, bytes: block("map-" + k, Uint8Array) }));
+    this.fields = source.fields.map((properties) => new Field(properties, this)).filter((field) => field.finite.length > 0);
   }
 
   // Finds the segments that have a length and a radius, the index of each by its id, and the daughters of each node.
@@ -72,6 +83,7 @@ export class Tree {
           this.low[c] = Math.min(this.low[c], position[3 * node + c] - radius[i]);
           this.high[c] = Math.max(this.high[c], position[3 * node + c] + radius[i]);
         }
+    this.half = Math.hypot(...this.high.map((h, c) => Math.max(Math.abs(h), Math.abs(this.low[c])))); // of a ball around it
     this.pathLength = new Float32Array(n);
     this.longest = 0;
     for (let i = 0; i < n; i++) {

@@ -99,7 +99,7 @@ export class Vessels {
     this.scene = new Scene();
     this.scene.add(this.mesh);
     this.mesh.frustumCulled = false;
-    this.set("halfDiagonal", Math.hypot(...tree.high.map((h, c) => h - tree.low[c])) / 2);
+    this.set("halfDiagonal", tree.half);
     this.plain = Uint8Array.from(encoded(look.color));
   }
 
@@ -118,6 +118,10 @@ export class Vessels {
     aim(this.depths.uniforms, camera, height);
     renderer.render(this.scene, camera);
     this.mesh.material = this.material;
+  }
+
+  dispose() {
+    for (const owned of [this.material, this.depths, this.mesh.geometry]) owned.dispose();
   }
 
   // Colors all segments by a scale and the values at one time. If `scale` is null, uses the color `plain`.

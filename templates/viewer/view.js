@@ -24,9 +24,8 @@ function towardsEye(turn, rise) {
 export class View {
   constructor(canvas, tree, changed) {
     this.canvas = canvas;
-    this.tree = tree;
     this.changed = changed;
-    this.half = Math.hypot(...tree.high.map((h, c) => h - tree.low[c])) / 2;
+    this.setTree(tree);
     this.perspective = new PerspectiveCamera(ANGLE, 1, 0.1, 10);
     this.orthographic = new OrthographicCamera(-0.5, 0.5, 0.5, -0.5, 0, 10);
     this.camera = this.perspective;
@@ -40,6 +39,11 @@ export class View {
     const settle = () => { this.controls.enableDamping = !still.matches; };
     still.addEventListener("change", settle);
     settle();
+  }
+
+  setTree(tree) {
+    this.tree = tree;
+    this.half = tree.half;
   }
 
   get isOrthographic() { return this.camera === this.orthographic; }

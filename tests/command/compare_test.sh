@@ -416,6 +416,18 @@ test_two_pictures_have_a_page() {
     expect_sentence '--html and --report need two pictures, not two depth planes'
 }
 
+test_a_page_states_the_date_of_SOURCE_DATE_EPOCH() {
+    printf 'P3 1 1 255 1 2 3\n' >a.ppm
+    run_ok env SOURCE_DATE_EPOCH=1764320461 "$CORCAST" compare a.ppm a.ppm --report page
+    grep -q 'Compared on 2025-11-28 09:01 UTC by' page/report.html || fail "expected the date of 1764320461"
+    cp page/report.html first.html
+    run_ok env SOURCE_DATE_EPOCH=1764320461 "$CORCAST" compare a.ppm a.ppm --report page
+    expect_same page/report.html first.html
+    run env SOURCE_DATE_EPOCH=today "$CORCAST" compare a.ppm a.ppm
+    expect_status 2
+    expect_sentence "SOURCE_DATE_EPOCH is 'today'; it must be"
+}
+
 test_reports_of_compared_pictures_are_merged() {
     picture 100 >a.ppm
     picture 131 >b.ppm

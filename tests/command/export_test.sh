@@ -81,6 +81,8 @@ test_smooth_vessels_are_in_every_kind_of_file() {
         grep -q 'smooth: 15 segments are drawn as' stderr || fail "expected the number of pieces of $file"
         ! cmp -s $file straight || fail "expected other vessels in $file"
     done
+    run_ok corcast export "$DATA/bifurcation.swc" --smooth --model rounded -o rounded.stl
+    expect_file rounded.stl
     run_ok corcast info tree.centreline.vtp
     expect_stdout '8 terminals, 7 bifurcations, 1 root'
     run corcast export tree.swc --smooth -o page.html

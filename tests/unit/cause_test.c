@@ -537,9 +537,9 @@ static void names_a_rotation_and_its_angle(void **state)
     (void)state;
     Shot shot = plain;
     shot.angle = 0.02;
-    expect_cause(&shot, "B is A rotated by 1.15 degrees counterclockwise");
+    expect_cause(&shot, "B is A rotated by 1.1 degrees counterclockwise");
     shot.angle = -0.02;
-    expect_cause(&shot, "B is A rotated by 1.15 degrees clockwise");
+    expect_cause(&shot, "B is A rotated by 1.1 degrees clockwise");
 }
 
 static void names_noise_and_its_size(void **state)

@@ -4,6 +4,7 @@
 #include "mesh/lattice/octree.h"
 #include "mesh/proof/boxpairs.h"
 #include "mesh/proof/meshcheck.h"
+#include "mesh/regions/junctionfield.h"
 #include "mesh/regions/nearpairs.h"
 #include "stage/stage.h"
 #include "treeio/treeio.h"
@@ -560,6 +561,45 @@ static void fine_steps_of_a_round_body_keep_its_volume(void **state)
     release(&made);
 }
 
+/* Returns the largest difference of normals in a ball of 0.45 mm at (0.05, 0, 1.3), on the wall of
+ * capsules from a[i] to b[i]. */
+static double crease_at_the_wall(const Vec3 *a, const Vec3 *b, const double *radius_mm, uint32_t n)
+{
+    PotentialTerm terms[MOST];
+    uint32_t first[MOST + 1] = {0}, members[MOST];
+    LocalFieldPool pool = {0};
+    LocalField all;
+    NarrowField near;
+    Err err = {0};
+    for (uint32_t i = 0; i < n; i++) {
+        terms[i] = potentialterm_make(a[i], b[i], radius_mm[i], i, BODY_ROUND);
+        members[i] = i;
+        first[i + 1] = i + 1;
+    }
+    const JunctionField field = {terms, n, first, members, n};
+    const FieldBalls balls = {vec3(0.05, 0, 1.3), 1.2, 0.45};
+    assert_int_equal(localfield_all(&field, &pool, &all, &err), STATUS_OK);
+    assert_int_equal(localfield_narrow(&field, &pool, &all, &balls, &near, &err), STATUS_OK);
+    localfieldpool_release(&pool);
+    return near.bounds.max_normal_difference;
+}
+
+/* The cap between two pieces of a chain is inside them; that of a free end and a side branch make
+ * creases. */
+static void caps_that_other_vessels_cover_make_no_crease(void **state)
+{
+    (void)state;
+    const Vec3 a[] = {{-1.7, 0, 0}, {-0.9, 0, 0}, {-0.3, 0, 0}, {0.4, 0, 0}, {1.1, 0, 0}};
+    const Vec3 b[] = {{-0.9, 0, 0}, {-0.3, 0, 0}, {0.4, 0, 0}, {1.1, 0, 0}, {1.9, 0, 0}};
+    const double even[] = {1.3, 1.3, 1.3, 1.3, 1.3}, tapered[] = {1.3, 1.299, 1.298, 1.297, 1.296};
+    assert_true(crease_at_the_wall(a, b, even, 5) < 1e-3);
+    const double taper = crease_at_the_wall(a, b, tapered, 5);
+    assert_true(taper > 0.03 &&
+                taper < 0.12); /* the step's ring turns by 2 sqrt(2 / 1300) at most */
+    const Vec3 branch_a[] = {{-1.7, 0, 0}, {0, 0, 0}}, branch_b[] = {{1.9, 0, 0}, {0, 0.3, 4.1}};
+    assert_true(crease_at_the_wall(branch_a, branch_b, (double[]){1.3, 0.4}, 2) > 0.9);
+}
+
 static void triangles_that_pierce_touch_or_fold_are_found(void **state)
 {
     (void)state;
@@ -673,6 +713,7 @@ int main(void)
         cmocka_unit_test(no_triangle_lies_far_above_the_bottom_of_a_narrow_groove),
         cmocka_unit_test(the_wall_of_a_round_body_is_that_of_cylinders_and_balls),
         cmocka_unit_test(fine_steps_of_a_round_body_keep_its_volume),
+        cmocka_unit_test(caps_that_other_vessels_cover_make_no_crease),
         cmocka_unit_test(triangles_that_pierce_touch_or_fold_are_found),
         cmocka_unit_test(triangles_about_a_point_may_cross_or_not),
         cmocka_unit_test(zones_in_which_triangles_cross_are_made_again),

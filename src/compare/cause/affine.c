@@ -321,7 +321,7 @@ static void say_scaled(const Affine *map, const Picture *a, Sentence *out)
                  "size",
                  size[0], size[1], fmax(left, 0), fmax(top, 0));
     else
-        snprintf(out->text, out->size, "B is A %s by a factor of %.4g%s",
+        snprintf(out->text, out->size, "B is A %s by a factor of %.3g%s",
                  factor > 1 ? "enlarged" : "reduced", factor,
                  centered ? ", about its middle" : ", and moved");
 }
@@ -344,10 +344,10 @@ static void say_map(const Affine *map, const Picture *a, Sentence *out)
     }
     if (fabs(stretch) > fmax(seen, 0.1 * fabs(turn)))
         return;
-    int length = snprintf(out->text, out->size, "B is A rotated by %.2f degrees %s", fabs(degrees),
+    int length = snprintf(out->text, out->size, "B is A rotated by %.2g degrees %s", fabs(degrees),
                           degrees > 0 ? "counterclockwise" : "clockwise");
     if (fabs(scale - 1) > seen)
-        snprintf(out->text + length, out->size - (size_t)length, " and %s by a factor of %.4g",
+        snprintf(out->text + length, out->size - (size_t)length, " and %s by a factor of %.3g",
                  scale < 1 ? "enlarged" : "reduced", 1 / scale);
     else if (fabs(map->shift[0]) > 0.5 || fabs(map->shift[1]) > 0.5)
         snprintf(out->text + length, out->size - (size_t)length, " and moved");

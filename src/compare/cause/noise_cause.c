@@ -80,6 +80,7 @@ static void add_channel(const NoiseImages *self, int x, int y, int c, WhitenessS
         return;
     int column = GRID * x / self->a->width, row = GRID * y / self->a->height;
     sums->n++;
+    sums->differing += d != 0;
     sums->d += d;
     sums->dd += d * d;
     sums->cell_dd[row][column] += d * d;
@@ -126,7 +127,7 @@ static bool is_even(const WhitenessSums *sums, double variance)
 
 static bool is_noise(const WhitenessSums *sums)
 {
-    if (sums->n < ENOUGH || sums->dd == 0 ||
+    if (sums->n < ENOUGH || 4 * sums->differing < sums->n ||
         (sums->clipped > ENOUGH && sums->changed < 0.15 * sums->clipped))
         return false;
     const double variance = sums->dd / sums->n, slack = 0.06 + 3 / sqrt(sums->n);

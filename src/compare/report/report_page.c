@@ -13,7 +13,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/utsname.h>
-#include <time.h>
 
 static const char *class_of(bool agrees)
 {
@@ -201,14 +200,10 @@ static void put_origin(Text *out)
 #else
     static const char compiler[] = "gcc " __VERSION__;
 #endif
-    char day[40] = "";
+    char date[DATE_TEXT_SIZE];
     struct utsname machine = {0};
-    struct tm utc;
-    time_t now = time(NULL);
-    if (gmtime_r(&now, &utc))
-        strftime(day, sizeof day, "%Y-%m-%d %H:%M UTC", &utc);
     uname(&machine);
-    text_printf(out, "Compared on %s by corcast %s, compiled by %s, on %s %s.", day,
+    text_printf(out, "Compared on %s by corcast %s, compiled by %s, on %s %s.", clock_date(date),
                 CORCAST_VERSION, compiler, machine.sysname, machine.machine);
 }
 

@@ -24,6 +24,21 @@ static const Option rows[] = {
      .list = "fields",
      .when = WHEN(TREE),
      .help = "computed fields to add to the tree file as columns: all, or a list of names"},
+    {.name = "smooth",
+     SETS(FLAG, TreeConversion, smooth),
+     .group = GROUP_TREE,
+     .when = WHEN(TREE),
+     .help = "remove the steps of measured centrelines by Taubin's filter; ends and bifurcations "
+             "stay, other nodes move by at most a quarter of their radius"},
+    {.name = "step",
+     SETS(NUMBER, TreeConversion, step_mm),
+     FROM_TO(1e-6, 1e6),
+     .group = GROUP_TREE,
+     .unit = "mm",
+     .otherwise = "as in the file",
+     .when = WHEN(TREE),
+     .help = "divide each branch into segments of this length, or a little more or less; a radius "
+             "becomes that of a tube with the same resistance"},
 };
 
 const OptionTable treeconversion_table = OPTION_TABLE(rows);
@@ -51,10 +66,10 @@ static Status join_values(const TreeConversion *conversion, Parsed *parsed, Tree
     return status;
 }
 
-/* Radius and length are in all files, as numbers or as where segments end. */
+/* Radius, type and length are in files of trees already, as numbers or as where segments end. */
 static bool is_in_files(const char *name)
 {
-    return strcmp(name, "radius") == 0 || strcmp(name, "length") == 0;
+    return strcmp(name, "radius") == 0 || strcmp(name, "length") == 0 || strcmp(name, "type") == 0;
 }
 
 static Status add_field(Tree *tree, const TreeMeta *said, const char *name, Err *err)
@@ -125,11 +140,41 @@ static Status join_fields(const TreeConversion *conversion, const Parsed *parsed
                                                   : add_list(tree, &said, conversion->fields, err);
 }
 
+/* Smooths and resamples the centrelines, and reports what this changed. */
+static Status reshape(const TreeConversion *conversion, const Talk *talk, Tree *tree, Err *err)
+{
+    const CentrelineSums before = centreline_sums(tree);
+    if (!conversion->smooth && conversion->step_mm == 0)
+        return STATUS_OK;
+    if (conversion->smooth) {
+        SmoothMoves moves;
+        TRY(tree_smooth(tree, &moves, err));
+        talk_note(talk,
+                  "smoothed: nodes moved by up to %.3g mm, %.3g radii; moves that were limited to "
+                  "%g radii: %zu",
+                  moves.most_mm, moves.most_radii, SMOOTH_MOST_RADII, moves.held);
+    }
+    if (conversion->step_mm > 0) {
+        Tree resampled;
+        TRY(tree_resampled(tree, conversion->step_mm, &resampled, err));
+        talk_note(talk, "resampled: %zu nodes became %zu", tree->n, resampled.n);
+        tree_release(tree);
+        *tree = resampled;
+    }
+    const CentrelineSums after = centreline_sums(tree);
+    talk_note(talk, "length changed by %+.3g %%, volume by %+.3g %%, sum of l / r^4 by %+.3g %%",
+              100 * (after.length_mm / before.length_mm - 1),
+              100 * (after.volume_mm3 / before.volume_mm3 - 1),
+              100 * (after.resistance / before.resistance - 1));
+    return STATUS_OK;
+}
+
 Status convert_tree_make(const TreeConversion *conversion, Parsed *parsed, Tree *tree, Err *err)
 {
     *tree = (Tree){0};
     TRY(reading_tree(parsed, parsed->operands[0], tree, NULL, err));
     TRY(join_values(conversion, parsed, tree, err));
+    TRY(reshape(conversion, parsed->common.talk, tree, err));
     TRY(join_fields(conversion, parsed, tree, err));
     tree_renumber(tree);
     return STATUS_OK;

@@ -14,6 +14,7 @@ void comparison_release(Comparison *comparison)
     sides_release(comparison->sides);
     ledger_release(&comparison->ledger);
     suite_release(&comparison->suite);
+    plane_release(&comparison->distances);
     text_release(&comparison->accepted);
     free(comparison->tier);
 }
@@ -255,6 +256,8 @@ static Status compare_any(CompareOptions *options, const Parsed *parsed, Compari
 {
     if (options->reference)
         return compare_folders(options, parsed, made, err);
+    if (!is_given(options) && answerfile_is(parsed->operands[0]))
+        return compare_answer(options, parsed, made, err);
     if (!options->noise && !options->variance)
         return compare_pair(options, parsed, made, err);
     made->kind = COMPARED_NOISE;
@@ -297,6 +300,9 @@ void comparison_text(const CompareOptions *options, const Comparison *comparison
     case COMPARED_NOISE:
         noise_text(&comparison->noise, out);
         break;
+    case COMPARED_ANSWER:
+        answergrade_text(&comparison->grade, out);
+        break;
     case COMPARED_SUITES:
         suite_text(&comparison->suite, out);
         break;
@@ -313,6 +319,8 @@ json_t *comparison_json(const Comparison *comparison)
         return compare_json(&comparison->result);
     case COMPARED_NOISE:
         return noise_json(&comparison->noise);
+    case COMPARED_ANSWER:
+        return answergrade_json(&comparison->grade);
     case COMPARED_SUITES:
         return suite_json(&comparison->suite);
     case COMPARED_NOTHING:
@@ -331,6 +339,7 @@ const Command command_compare = {
         "  corcast compare a.exr b.exr --metrics on --tolerance mine.ini\n"
         "  corcast compare a.depth.pfm b.depth.pfm --depth-mm 0.01\n"
         "  corcast compare reference.png mine.png --html page.html\n"
+        "  corcast compare answer.exr mine.png\n"
         "  corcast compare --reference references drawn --tier B --junit junit.xml\n"
         "  corcast compare --reference references drawn --html page.html\n"
         "  corcast compare --reference references drawn --accept 'a.png,detail/*' --reason 'new "

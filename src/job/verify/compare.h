@@ -9,6 +9,7 @@
 typedef enum ComparisonKind {
     COMPARED_PAIR,   /* two images or planes */
     COMPARED_NOISE,  /* two noisy images, with --noise or --variance */
+    COMPARED_ANSWER, /* an image and an answer, or two answers */
     COMPARED_SUITES, /* two folders, with --reference */
     COMPARED_NOTHING /* a reference was accepted, with --accept */
 } ComparisonKind;
@@ -34,6 +35,8 @@ typedef struct Comparison {
     CompareResult result;  /* COMPARED_PAIR */
     Ledger ledger;         /* COMPARED_PAIR of integer pictures with ids: one entry per segment */
     NoiseResult noise;     /* COMPARED_NOISE */
+    AnswerGrade grade;     /* COMPARED_ANSWER */
+    Plane distances;       /* COMPARED_ANSWER with options->heat: distance of each pixel */
     Suite suite;           /* COMPARED_SUITES */
     SuiteFolders folders;  /* COMPARED_SUITES; borrows the strings of the options */
     Tolerance

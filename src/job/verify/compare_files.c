@@ -163,5 +163,7 @@ Status compare_write(const CompareOptions *options, const Parsed *parsed,
         return write_pair(options, parsed, comparison, err);
     if (comparison->kind == COMPARED_SUITES)
         return write_suite(options, parsed, comparison, err);
+    if (comparison->distances.values)
+        return compare_write_distances(options->heat, comparison, err);
     return STATUS_OK;
 }

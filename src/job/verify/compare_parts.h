@@ -26,4 +26,12 @@ MUST_CHECK Status compare_noisy(const CompareOptions *options, const Parsed *par
 void noise_text(const NoiseResult *result, Text *out);
 json_t *noise_json(const NoiseResult *result);
 
+/* Grades image B by the answer A, or checks the answers A and B against each other. Errors:
+ * STATUS_USAGE for an option without effect; STATUS_INPUT if sizes, scenes or patterns differ, or a
+ * file is bad; STATUS_MEMORY. */
+MUST_CHECK Status compare_answer(const CompareOptions *options, const Parsed *parsed,
+                                 Comparison *made, Err *err);
+/* Writes the picture of distances. Errors: STATUS_IO, STATUS_MEMORY. */
+MUST_CHECK Status compare_write_distances(const char *path, const Comparison *made, Err *err);
+
 #endif

@@ -13,6 +13,8 @@ static const double significant = 0.1 * FIELD_LEVEL;
 static const double out_of_reach = 3.4;
 /* Factor on the radius of the ball: surfaces bend away from the planes that approximate them. */
 static const double crease_slack = 1.2;
+/* In units of the radius: a cap this far outside a capsule is inside it but for rounding. */
+static const double cap_rounding = 1e-9;
 static const double inv_sqrt_pi = 0.56418958354775628695;
 
 PotentialTerm potentialterm_make(Vec3 a, Vec3 b, double radius_mm, uint32_t segment,
@@ -318,6 +320,52 @@ static bool walls_meet(const NearWall *a, const NearWall *b, double radius_mm)
     return cosine < -0.5 || apart <= (1 - cosine * cosine) * radius_mm * radius_mm;
 }
 
+/* Returns how far the round cap at one end of a capsule is outside the capsule `cover`, along the
+ * outward direction of the end, in units of the radius. A capsule that continues the first one
+ * covers its cap, all but a ring if the radius decreases or the direction turns. 1: not covered. */
+static double cap_beside(Vec3 end, Vec3 outward, double radius_mm, const PotentialTerm *cover)
+{
+    const TermPlace place = place_in(cover, end);
+    const double short_of =
+        (sqrt(distance2(&place)) / cover->k + radius_mm - cover->radius_mm) / radius_mm;
+    if (short_of < cap_rounding)
+        return 0;
+    const double cosine = vec3_dot(outward, cover->axis) * (place.u < place.v ? 1 : -1);
+    if (short_of > 0.5 || cosine <= 0)
+        return 1;
+    return fmin(1, sqrt(2 * short_of) + sqrt(fmax(0, 1 - cosine * cosine)));
+}
+
+/* Returns the wall of the i-th term. The wall of a place beyond an end of the segment is the cap's
+ * tangent plane, or the last one that no other term covers. `outside` is HUGE_VAL if the whole part
+ * of the surface that may be in the ball is covered. */
+static NearWall find_wall(const JunctionField *field, const LocalFieldPool *pool,
+                          const LocalField *part, uint32_t i, Vec3 center, double radius_mm)
+{
+    const uint32_t *terms = &pool->terms[part->first_term];
+    const PotentialTerm *term = &field->terms[terms[i]];
+    const TermPlace place = place_in(term, center);
+    const double beyond = fmax(0, fmax(-place.u, -place.v)) / term->k;
+    const Vec3 from = from_nearest(term, &place);
+    double cap = 1;
+    NearWall wall = {vec3_normalized(from), vec3_length(from) - term->radius_mm};
+    if (beyond == 0)
+        return wall;
+    const Vec3 outward = place.u < 0 ? vec3_scale(term->axis, -1) : term->axis;
+    for (uint32_t k = 0; k < part->n_terms; k++)
+        if (k != i)
+            cap = fmin(cap, cap_beside(vec3_sub(center, from), outward, term->radius_mm,
+                                       &field->terms[terms[k]]));
+    if (beyond <= cap * vec3_length(from))
+        return wall;
+    wall.normal = vec3_add_scaled(vec3_scale(vec3_normalized(place.across), sqrt(1 - cap * cap)),
+                                  outward, cap);
+    wall.outside = beyond <= cap * term->radius_mm + radius_mm
+                       ? vec3_dot(from, wall.normal) - term->radius_mm
+                       : HUGE_VAL;
+    return wall;
+}
+
 /* Returns the maximum difference of the normals of surfaces that meet in the ball. */
 static double find_crease(const JunctionField *field, const LocalFieldPool *pool,
                           const LocalField *part, Vec3 center, double radius_mm)
@@ -328,10 +376,9 @@ static double find_crease(const JunctionField *field, const LocalFieldPool *pool
     for (uint32_t i = 0; i < part->n_terms && n < MAX_LOCAL_TERMS; i++) {
         if (pool->work[i].upper < FIELD_LEVEL || pool->work[i].lower > FIELD_LEVEL)
             continue;
-        const PotentialTerm *term = &field->terms[pool->terms[part->first_term + i]];
-        TermPlace place = place_in(term, center);
-        Vec3 from = from_nearest(term, &place);
-        walls[n] = (NearWall){vec3_normalized(from), vec3_length(from) - term->radius_mm};
+        walls[n] = find_wall(field, pool, part, i, center, crease_slack * radius_mm);
+        if (walls[n].outside == HUGE_VAL)
+            continue;
         for (uint32_t k = 0; k < n; k++)
             if (walls_meet(&walls[k], &walls[n], crease_slack * radius_mm))
                 most = fmax(most, vec3_distance(walls[k].normal, walls[n].normal));

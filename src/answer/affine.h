@@ -1,0 +1,241 @@
+/* Affine arithmetic over a rectangle of the picture: numbers with a proven error.
+ *
+ * A Form encloses a quantity that varies over a rectangle whose points have the coordinates ex and
+ * ey in [-1, 1]: at each point the quantity is in [v - e, v + e], where v = c + x ex + y ey. A
+ * constant has x = y = 0; a single ray is a rectangle of which only the centre counts, so all its
+ * forms are constants.
+ *
+ * Rounding: IEEE 754 bounds the error of each operation by U times its result, U = 2^-53. Each
+ * function adds to e a multiple of U times the magnitudes of what it has rounded, and
+ * FORM_TINY, which bounds underflow. e itself is a sum of fewer than 30 terms, none of them
+ * negative, so that a factor of 1 + 64 U covers its own rounding. docs/ANSWERS.md, section 3, has
+ * the bounds of each operation.
+ *
+ * Infinite and NaN errors are allowed: they enclose everything. Comparisons are written so that
+ * NaN decides nothing. */
+#ifndef CORCAST_ANSWER_AFFINE_H
+#define CORCAST_ANSWER_AFFINE_H
+
+#include "base/base.h"
+#include <math.h>
+#include <stdbool.h>
+
+#define FORM_U 0x1p-53
+#define FORM_TINY 1e-300
+
+typedef struct Form {
+    double c, x, y, e; /* e >= 0 */
+} Form;
+
+/* A vector of forms. */
+typedef struct Form3 {
+    Form x, y, z;
+} Form3;
+
+/* Returns the form of an exact number, or of a number with an error. */
+static inline Form form_of(double c, double e)
+{
+    return (Form){c, 0, 0, e};
+}
+
+static inline bool form_is_constant(Form f)
+{
+    return f.x == 0 && f.y == 0;
+}
+
+/* Returns a bound of |v| over the rectangle, without e. */
+static inline double form_span(Form f)
+{
+    return fabs(f.c) + fabs(f.x) + fabs(f.y);
+}
+
+/* Return bounds of all values over the rectangle. */
+static inline double form_low(Form f)
+{
+    const double low = f.c - (fabs(f.x) + fabs(f.y) + f.e) * (1 + 8 * FORM_U);
+    return low - 4 * FORM_U * fabs(low) - FORM_TINY;
+}
+
+static inline double form_high(Form f)
+{
+    const double high = f.c + (fabs(f.x) + fabs(f.y) + f.e) * (1 + 8 * FORM_U);
+    return high + 4 * FORM_U * fabs(high) + FORM_TINY;
+}
+
+/* Returns a bound of |value| over the rectangle. */
+static inline double form_most(Form f)
+{
+    return (form_span(f) + f.e) * (1 + 8 * FORM_U) + FORM_TINY;
+}
+
+/* Adds the error of operations whose rounded terms sum up to `rounded` in magnitude. */
+static inline Form form_rounded(Form f, double rounded)
+{
+    f.e = (f.e + FORM_U * rounded + FORM_TINY) * (1 + 64 * FORM_U);
+    return f;
+}
+
+static inline Form form_neg(Form f)
+{
+    return (Form){-f.c, -f.x, -f.y, f.e};
+}
+
+static inline Form form_add(Form a, Form b)
+{
+    const Form sum = {a.c + b.c, a.x + b.x, a.y + b.y, a.e + b.e};
+    return form_rounded(sum, form_span(sum));
+}
+
+static inline Form form_sub(Form a, Form b)
+{
+    return form_add(a, form_neg(b));
+}
+
+/* Returns f times an exact number. */
+static inline Form form_scale(Form f, double by)
+{
+    const Form product = {f.c * by, f.x * by, f.y * by, f.e * fabs(by)};
+    return form_rounded(product, form_span(product));
+}
+
+/* The product of two varying forms. ex^2 and ey^2 are in [0, 1]: half of their factors goes into c,
+ * half into e. */
+static inline Form form_mul_varying(Form a, Form b)
+{
+    const double xx = a.x * b.x, yy = a.y * b.y, xy = a.x * b.y + a.y * b.x;
+    const double span_a = form_span(a), span_b = form_span(b);
+    const Form product = {a.c * b.c + 0.5 * (xx + yy), a.c * b.x + a.x * b.c, a.c * b.y + a.y * b.c,
+                          0.5 * (fabs(xx) + fabs(yy)) + fabs(xy) + a.e * (span_b + b.e) +
+                              b.e * span_a};
+    return form_rounded(product, 8 * span_a * span_b);
+}
+
+/* The product of a form and a constant. */
+static inline Form form_mul_constant(Form a, Form b)
+{
+    const double factor = fabs(b.c), span = form_span(a);
+    const Form product = {a.c * b.c, a.x * b.c, a.y * b.c, a.e * (factor + b.e) + b.e * span};
+    return form_rounded(product, 2 * factor * span);
+}
+
+static inline Form form_mul(Form a, Form b)
+{
+    return form_is_constant(b)   ? form_mul_constant(a, b)
+           : form_is_constant(a) ? form_mul_constant(b, a)
+                                 : form_mul_varying(a, b);
+}
+
+/* Encloses a function over [low, high] by the line of this slope whose offset is in [bottom, top]:
+ * returns it as a form of f, which lies in [low, high]. */
+static inline Form form_line(Form f, double slope, double bottom, double top)
+{
+    const double offset = 0.5 * (bottom + top);
+    const Form line = {slope * f.c + offset, slope * f.x, slope * f.y,
+                       fabs(slope) * f.e + 0.5 * fabs(top - bottom)};
+    return form_rounded(line, 4 * (fabs(slope) * form_span(f) + fabs(bottom) + fabs(top)));
+}
+
+/* Returns sqrt(max(f, 0)) where f >= 0; where f < 0 the result is not defined. */
+static inline Form form_sqrt(Form f)
+{
+    const double low = form_low(f), high = form_high(f);
+    if (high <= 0)
+        return form_of(0, 0);
+    const double s = low > 0 ? sqrt(low) * (1 - 4 * FORM_U) : 0, t = sqrt(high) * (1 + 4 * FORM_U);
+    const double slope = 1 / (s + t), chord = s * t * slope;
+    return form_rounded(form_line(f, slope, chord, chord + (t - s) * (t - s) * 0.25 * slope),
+                        8 * (t + fabs(slope) * form_most(f)));
+}
+
+/* Returns 1 / f; an infinite error if f may be 0. */
+static inline Form form_inverse(Form f)
+{
+    double low = form_low(f), high = form_high(f);
+    if (high < 0)
+        return form_neg(form_inverse(form_neg(f)));
+    if (!(low > 0))
+        return form_of(0, (double)INFINITY);
+    const double slope = -1 / (low * high), top = (low + high) * -slope;
+    return form_rounded(form_line(f, slope, 2 * sqrt(-slope), top),
+                        16 * (top + fabs(slope) * high));
+}
+
+/* Returns a form that encloses both. */
+static inline Form form_hull(Form a, Form b)
+{
+    const Form mean = {0.5 * (a.c + b.c), 0.5 * (a.x + b.x), 0.5 * (a.y + b.y),
+                       0.5 * (fabs(a.c - b.c) + fabs(a.x - b.x) + fabs(a.y - b.y)) +
+                           fmax(a.e, b.e)};
+    return form_rounded(mean, 2 * (form_span(a) + form_span(b)));
+}
+
+/* Returns max(f, 0). */
+static inline Form form_positive(Form f)
+{
+    const double low = form_low(f), high = form_high(f);
+    if (low >= 0)
+        return f;
+    if (!(high > 0))
+        return high <= 0 ? form_of(0, 0) : f;
+    /* Convex: below its chord, above the line of the chord's slope through 0. */
+    const double slope = high / (high - low);
+    return form_rounded(form_line(f, slope, 0, -low * slope), 8 * (high - low));
+}
+
+/* Returns f cut to [low, high], for a quantity that is known to lie there. */
+static inline Form form_known(Form f, double low, double high)
+{
+    if (form_low(f) >= low && form_high(f) <= high)
+        return f;
+    if (fabs(f.x) + fabs(f.y) < f.e && isfinite(f.e)) { /* little is lost with the slopes */
+        const double from = fmax(form_low(f), low), to = fmin(form_high(f), high);
+        return form_rounded(form_of(0.5 * (from + to), 0.5 * fabs(to - from)),
+                            fabs(from) + fabs(to));
+    }
+    return isfinite(f.e) ? f : form_of(0.5 * (low + high), 0.5 * (high - low));
+}
+
+/* Returns max(f, 0) to a power, exponent > 0, for f <= 1. */
+Form form_power(Form f, double exponent);
+
+/* ---- vectors --------------------------------------------------------------------------------- */
+
+static inline Form3 form3_of(double x, double y, double z)
+{
+    return (Form3){form_of(x, 0), form_of(y, 0), form_of(z, 0)};
+}
+
+static inline Form3 form3_add(Form3 a, Form3 b)
+{
+    return (Form3){form_add(a.x, b.x), form_add(a.y, b.y), form_add(a.z, b.z)};
+}
+
+static inline Form3 form3_sub(Form3 a, Form3 b)
+{
+    return (Form3){form_sub(a.x, b.x), form_sub(a.y, b.y), form_sub(a.z, b.z)};
+}
+
+static inline Form3 form3_mul(Form3 a, Form by)
+{
+    return (Form3){form_mul(a.x, by), form_mul(a.y, by), form_mul(a.z, by)};
+}
+
+static inline Form form3_dot(Form3 a, Form3 b)
+{
+    return form_add(form_add(form_mul(a.x, b.x), form_mul(a.y, b.y)), form_mul(a.z, b.z));
+}
+
+static inline Form3 form3_cross(Form3 a, Form3 b)
+{
+    return (Form3){form_sub(form_mul(a.y, b.z), form_mul(a.z, b.y)),
+                   form_sub(form_mul(a.z, b.x), form_mul(a.x, b.z)),
+                   form_sub(form_mul(a.x, b.y), form_mul(a.y, b.x))};
+}
+
+/* Returns |a|. */
+static inline Form form3_length(Form3 a)
+{
+    return form_sqrt(form3_dot(a, a));
+}
+
+#endif

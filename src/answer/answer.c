@@ -1,0 +1,248 @@
+/* Tiles are the unit of work. Each pixel is computed on its own from what its tile shows, so that
+ * neither tiles nor threads change the result. */
+#include "answer/answer.h"
+
+#include "answer/answertile.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct AnswerJob {
+    AnswerPlan plan;
+    AnswerWork *works; /* per thread; owned */
+    int threads, columns, rows;
+    Plane plane;
+} AnswerJob;
+
+/* ---- digest ---------------------------------------------------------------------------------- */
+
+static void add_numbers(Hash *hash, const double *numbers, size_t n)
+{
+    hash_add(hash, numbers, n * sizeof *numbers);
+}
+
+static void add_vector(Hash *hash, Vec3 v)
+{
+    add_numbers(hash, (const double[]){v.x, v.y, v.z}, 3);
+}
+
+static void add_rgb(Hash *hash, Rgb color)
+{
+    add_vector(hash, vec3((double)color.r, (double)color.g, (double)color.b));
+}
+
+static void add_finish(Hash *hash, const Finish *f)
+{
+    const double numbers[] = {(double)f->ambient,  (double)f->diffuse,    (double)f->brilliance,
+                              (double)f->phong,    (double)f->phong_size, (double)f->specular,
+                              (double)f->roughness};
+    add_numbers(hash, numbers, sizeof numbers / sizeof *numbers);
+}
+
+static void add_view(Hash *hash, const View *view, bool shadows)
+{
+    const Camera *camera = &view->camera;
+    add_numbers(hash, (const double[]){camera->projection, camera->width, camera->height, shadows},
+                4);
+    const Vec3 vectors[] = {camera->location, camera->right, camera->up, camera->direction,
+                            view->ground.normal};
+    for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++)
+        add_vector(hash, vectors[i]);
+    for (size_t i = 0; i < view->n_lights; i++) {
+        const Light *light = &view->lights[i];
+        add_vector(hash, light->location);
+        add_vector(hash, light->target);
+        add_vector(hash, light->sides[0]);
+        add_vector(hash, light->sides[1]);
+        add_rgb(hash, light->color);
+        add_numbers(hash, (const double[]){light->parallel, light->casts_shadows, light->samples},
+                    3);
+    }
+    add_numbers(hash, (const double[]){view->ground.present, view->ground.offset_mm}, 2);
+    add_rgb(hash, view->ground.color);
+    add_finish(hash, &view->ground.finish);
+    add_rgb(hash, view->background);
+    add_numbers(hash,
+                (const double[]){view->fade.nearest, view->fade.farthest, view->fade.near_mm,
+                                 view->fade.far_mm},
+                4);
+}
+
+HashText answer_scene_hash(const Scene *scene, bool shadows)
+{
+    const Geometry *geometry = &scene->geometry;
+    Hash hash;
+    hash_begin(&hash);
+    hash_add_text(&hash, models[geometry->model].name);
+    for (size_t i = 0; i < geometry->n_primitives; i++) {
+        const Primitive *primitive = &geometry->primitives[i];
+        add_vector(&hash, primitive->a);
+        add_vector(&hash, primitive->b);
+        add_numbers(&hash, (const double[]){primitive->kind, primitive->radius_mm}, 2);
+        add_rgb(&hash, appearance_color(&scene->appearance, primitive->segment));
+    }
+    for (size_t i = 0; i < geometry->n_segments; i++) {
+        const FieldSegment *segment = &geometry->segments[i];
+        add_vector(&hash, segment->a);
+        add_vector(&hash, segment->b);
+        add_numbers(&hash, &segment->radius_mm, 1);
+        add_rgb(&hash, appearance_color(&scene->appearance, segment->segment));
+    }
+    add_finish(&hash, &scene->appearance.finish);
+    add_view(&hash, &scene->view, shadows);
+    return hash_text(&hash);
+}
+
+/* ---- pixels ---------------------------------------------------------------------------------- */
+
+static float rounded_down(double value)
+{
+    const float near = (float)value;
+    return (double)near > value ? nextafterf(near, -INFINITY) : near;
+}
+
+static float rounded_up(double value)
+{
+    const float near = (float)value;
+    return (double)near < value ? nextafterf(near, INFINITY) : near;
+}
+
+static void store(const AnswerPlan *plan, const ColorSpan *span, const Center *center,
+                  float *values)
+{
+    const uint32_t *ids = plan->scene->geometry.ids;
+    for (int c = 0; c < 3; c++) {
+        values[ANSWER_LOW + c] = rounded_down(span->low[c]);
+        values[ANSWER_HIGH + c] = rounded_up(span->high[c]);
+    }
+    values[ANSWER_STATE] = span_width(span) <= plan->params.width ? ANSWER_DECIDED
+                           : plan->params.pattern > 0             ? ANSWER_UNDECIDED
+                                                                  : ANSWER_OVER_BUDGET;
+    values[ANSWER_ID] =
+        center->face == UINT32_MAX ? 0 : (float)ids[plan->faces[center->face].segment];
+    values[ANSWER_NEAR] = rounded_down(center->near);
+    values[ANSWER_FAR] = rounded_up(center->far);
+}
+
+static Status answer_pixel(AnswerWork *work, int i, int j, float *values, Err *err)
+{
+    const AnswerPlan *plan = work->plan;
+    Center center;
+    work->pixel.n = 0;
+    for (size_t k = 0; k < work->tile.n; k++) {
+        const uint32_t face = work->tile.faces[k];
+        const PixelRect *on = &plan->screen[face];
+        if (i >= on->left && i < on->left + on->width && j >= on->top && j < on->top + on->height)
+            work->pixel.faces[work->pixel.n++] = face;
+    }
+    if (plan->has_ground)
+        work->pixel.faces[work->pixel.n++] = (uint32_t)plan->n;
+    const Beam ray = answerplan_ray(plan, i + 0.5, j + 0.5);
+    ColorSpan span;
+    find_center(work, &ray, &center);
+    if (plan->params.pattern > 0)
+        span = pattern_answer(work, i, j);
+    else
+        TRY(area_answer(work, i, j, &span, err));
+    store(plan, &span, &center, values);
+    work->undecided += values[ANSWER_STATE] != ANSWER_DECIDED;
+    return STATUS_OK;
+}
+
+/* Lists the faces in a tile. */
+static void list_tile(AnswerWork *work, const PixelRect *tile)
+{
+    work->tile.n = 0;
+    for (size_t k = 0; k < work->plan->n; k++) {
+        const PixelRect *on = &work->plan->screen[k];
+        if (on->left < tile->left + tile->width && tile->left < on->left + on->width &&
+            on->top < tile->top + tile->height && tile->top < on->top + on->height)
+            work->tile.faces[work->tile.n++] = (uint32_t)k;
+    }
+}
+
+static Status report(const AnswerJob *job, size_t tile, int worker, Err *err)
+{
+    const AnswerParams *params = &job->plan.params;
+    if (worker != 0 || !params->progress)
+        return STATUS_OK;
+    const double part = (double)tile / ((double)job->columns * job->rows);
+    return params->progress(part, params->progress_context) ? STATUS_OK : err_cancelled(err);
+}
+
+static Status answer_tile(size_t tile, int worker, void *context, Err *err)
+{
+    AnswerJob *job = context;
+    AnswerWork *work = &job->works[worker];
+    const Camera *camera = &job->plan.scene->view.camera;
+    const int left = (int)(tile % (size_t)job->columns) * TILE_SIDE;
+    const int top = (int)(tile / (size_t)job->columns) * TILE_SIDE;
+    const int width = camera->width - left < TILE_SIDE ? camera->width - left : TILE_SIDE;
+    const int height = camera->height - top < TILE_SIDE ? camera->height - top : TILE_SIDE;
+    TRY(report(job, tile, worker, err));
+    list_tile(work, &(PixelRect){left, top, width, height});
+    for (int j = top; j < top + height; j++)
+        for (int i = left; i < left + width; i++) {
+            const size_t pixel = (size_t)j * (size_t)camera->width + (size_t)i;
+            TRY(answer_pixel(work, i, j, job->plane.values + pixel * ANSWER_CHANNELS, err));
+        }
+    return STATUS_OK;
+}
+
+static Status make_works(AnswerJob *job, Err *err)
+{
+    job->threads = job->plan.params.threads > 0 ? job->plan.params.threads : threads_available();
+    TRY(mem_calloc(&job->works, (size_t)job->threads, sizeof *job->works, "workspaces", err));
+    for (int i = 0; i < job->threads; i++) {
+        AnswerWork *work = &job->works[i];
+        work->plan = &job->plan;
+        FaceList *lists[] = {&work->tile, &work->pixel, &work->blockers};
+        for (size_t k = 0; k < sizeof lists / sizeof *lists; k++)
+            TRY(mem_calloc(&lists[k]->faces, job->plan.n + 1, sizeof *lists[k]->faces, "faces",
+                           err));
+    }
+    return STATUS_OK;
+}
+
+static void release_works(AnswerJob *job)
+{
+    for (int i = 0; job->works && i < job->threads; i++) {
+        free(job->works[i].tile.faces);
+        free(job->works[i].pixel.faces);
+        free(job->works[i].blockers.faces);
+        ARRAY_RELEASE(&job->works[i].leaves);
+        ARRAY_RELEASE(&job->works[i].heap);
+    }
+    free(job->works);
+}
+
+Status answer_make(const Scene *scene, const AnswerParams *params, Answer *out, Err *err)
+{
+    const Camera *camera = &scene->view.camera;
+    AnswerJob job = {.columns = (camera->width + TILE_SIDE - 1) / TILE_SIDE,
+                     .rows = (camera->height + TILE_SIDE - 1) / TILE_SIDE};
+    Status status;
+    TRY_GOTO(answerplan_make(scene, params, &job.plan, err));
+    TRY_GOTO(make_works(&job, err));
+    TRY_GOTO(plane_init(&job.plane, camera->width, camera->height, ANSWER_CHANNELS, err));
+    TRY_GOTO(
+        threads_try((size_t)job.columns * (size_t)job.rows, job.threads, answer_tile, &job, err));
+    Answer made = {.plane = job.plane, .scene = answer_scene_hash(scene, params->shadows)};
+    for (int i = 0; i < job.threads; i++) {
+        made.beams += job.works[i].beams;
+        made.undecided += job.works[i].undecided;
+    }
+    *out = made;
+    job.plane = (Plane){0};
+done:
+    plane_release(&job.plane);
+    release_works(&job);
+    answerplan_release(&job.plan);
+    return status;
+}
+
+void answer_release(Answer *answer)
+{
+    plane_release(&answer->plane);
+    *answer = (Answer){0};
+}

@@ -1,0 +1,271 @@
+/* Everything here is exact or has a proven error, except the pixels that a face covers and the
+ * boxes of the search tree: those are computed in plain doubles and widened by far more than their
+ * rounding errors. */
+#include "answer/answerplan.h"
+
+#include <stdlib.h>
+
+/* Widening of the pixels that a face covers. Positions in pixels have errors near 1e-9. */
+static const double screen_pad_px = 1e-4;
+/* Widening of boxes, of the diagonal of the scene. */
+static const double box_pad = 1e-7;
+
+/* ---- assumptions ----------------------------------------------------------------------------- */
+
+static Status check_effects(const View *view, Err *err)
+{
+    const Effects *effects = &view->effects;
+    const char *what = effects->outline.width_px > 0 ? "outlines"
+                       : effects->halo.width_px > 0  ? "halos"
+                       : effects->xray.per_mm > 0    ? "an x-ray"
+                       : effects->grade.present      ? "a graded background"
+                       : view->transparent           ? "a transparent background"
+                                                     : NULL;
+    if (!what)
+        return STATUS_OK;
+    return err_set(err, STATUS_USAGE, "`look`: %s has no answer; take a look without it", what);
+}
+
+/* Returns the smallest product of the box's points and a direction. */
+static double least_along(Box box, Vec3 direction)
+{
+    return (direction.x > 0 ? box.low.x : box.high.x) * direction.x +
+           (direction.y > 0 ? box.low.y : box.high.y) * direction.y +
+           (direction.z > 0 ? box.low.z : box.high.z) * direction.z;
+}
+
+static Status check_camera(const AnswerPlan *plan, Err *err)
+{
+    const Camera *camera = &plan->scene->view.camera;
+    const double at = vec3_dot(camera->location, camera->direction);
+    for (size_t i = 0; i < plan->n; i++)
+        if (!(least_along(plan->faces[i].box, camera->direction) > at + plan->pad_mm))
+            return err_set(err, STATUS_USAGE,
+                           "`location`: a vessel is not in front of the camera (segment %u); "
+                           "answers need all vessels in front of it",
+                           plan->scene->geometry.ids[plan->faces[i].segment]);
+    return STATUS_OK;
+}
+
+/* Vessels must be in front of the plane from which parallel light comes. */
+static Status check_lights(const AnswerPlan *plan, Err *err)
+{
+    const View *view = &plan->scene->view;
+    const Box bounds = plan->scene->geometry.bounds;
+    for (size_t i = 0; i < view->n_lights; i++) {
+        const Light *light = &view->lights[i];
+        const Vec3 away = vec3_sub(light->target, light->location);
+        if (light->parallel && plan->params.shadows && light->casts_shadows &&
+            !(least_along(bounds, away) > vec3_dot(light->location, away)))
+            return err_set(err, STATUS_USAGE,
+                           "`look`: light %zu is parallel and begins behind a vessel; answers need "
+                           "it before all vessels",
+                           i + 1);
+    }
+    return STATUS_OK;
+}
+
+/* ---- making ---------------------------------------------------------------------------------- */
+
+static Form3 exact(Vec3 v)
+{
+    return form3_of(v.x, v.y, v.z);
+}
+
+static Status make_tree(AnswerPlan *plan, Err *err)
+{
+    const Box bounds = plan->scene->geometry.bounds;
+    plan->pad_mm = box_pad * vec3_distance(bounds.low, bounds.high);
+    Box *boxes;
+    TRY(mem_calloc(&boxes, plan->n, sizeof *boxes, "boxes", err));
+    for (size_t i = 0; i < plan->n; i++)
+        boxes[i] = box_padded(plan->faces[i].box, plan->pad_mm);
+    const Status status = boxtree_build(boxes, plan->n, &plan->tree, err);
+    free(boxes);
+    return status;
+}
+
+/* Makes the frames of all walls for a constant direction. */
+static Status make_frames(const AnswerPlan *plan, Form3 direction, WallFrame **frames, Err *err)
+{
+    TRY(mem_calloc(frames, plan->n + 1, sizeof **frames, "frames", err));
+    const Beam beam = beam_of(form3_of(0, 0, 0), direction);
+    for (size_t i = 0; i < plan->n; i++)
+        if (plan->faces[i].kind == FACE_WALL)
+            (*frames)[i] = wall_frame(&plan->faces[i], &beam);
+    return STATUS_OK;
+}
+
+static Status make_lights(AnswerPlan *plan, Err *err)
+{
+    const View *view = &plan->scene->view;
+    for (size_t i = 0; i < view->n_lights; i++) {
+        const Light *light = &view->lights[i];
+        LightRays *rays = &plan->lights[i];
+        rays->light = light;
+        rays->points = plan->params.shadows && light->casts_shadows ? light_points(light) : 0;
+        if (!light->parallel)
+            continue;
+        rays->towards =
+            beam_of(form3_of(0, 0, 0), form3_sub(exact(light->location), exact(light->target)))
+                .unit;
+        TRY(make_frames(plan, rays->towards, &rays->frames, err));
+    }
+    return STATUS_OK;
+}
+
+/* Returns the pixels that the corners of a box span, which contain what is in the box. */
+static PixelRect box_on_screen(const Camera *camera, Box box)
+{
+    double low_x = (double)INFINITY, high_x = -low_x, low_y = low_x, high_y = -low_x;
+    for (int i = 0; i < 8; i++) {
+        const Vec3 corner = {i & 1 ? box.low.x : box.high.x, i & 2 ? box.low.y : box.high.y,
+                             i & 4 ? box.low.z : box.high.z};
+        const CameraPoint at = camera_point(camera, corner);
+        low_x = fmin(low_x, at.x);
+        high_x = fmax(high_x, at.x);
+        low_y = fmin(low_y, at.y);
+        high_y = fmax(high_y, at.y);
+    }
+    const double left = fmin(fmax(floor(low_x - screen_pad_px), -1), camera->width);
+    const double top = fmin(fmax(floor(low_y - screen_pad_px), -1), camera->height);
+    const double right = fmin(fmax(ceil(high_x + screen_pad_px), -1), camera->width);
+    const double bottom = fmin(fmax(ceil(high_y + screen_pad_px), -1), camera->height);
+    return (PixelRect){(int)left, (int)top, (int)(right - left), (int)(bottom - top)};
+}
+
+static Status make_screen(AnswerPlan *plan, Err *err)
+{
+    TRY(mem_calloc(&plan->screen, plan->n + 1, sizeof *plan->screen, "rectangles", err));
+    for (size_t i = 0; i < plan->n; i++)
+        plan->screen[i] = box_on_screen(&plan->scene->view.camera, plan->faces[i].box);
+    return STATUS_OK;
+}
+
+/* Bounds the colors of a finish: all lights shine fully, on a pigment of this color. */
+static double most_of(const Finish *finish, double pigment, double light)
+{
+    return (pigment * (double)finish->ambient +
+            light * (pigment * (double)finish->diffuse + (double)finish->phong +
+                     (double)finish->specular)) *
+           (1 + 1e-6);
+}
+
+static void bound_colors(AnswerPlan *plan)
+{
+    const Scene *scene = plan->scene;
+    const View *view = &scene->view;
+    for (int c = 0; c < 3; c++) {
+        double light = 0, pigment = 0;
+        for (size_t i = 0; i < view->n_lights; i++)
+            light += rgb_channel(view->lights[i].color, c);
+        for (size_t i = 0; i < plan->n; i++) {
+            const Rgb color = appearance_color(&scene->appearance, plan->faces[i].segment);
+            pigment = box_max(pigment, rgb_channel(color, c));
+        }
+        plan->most[c] = box_max(rgb_channel(view->background, c),
+                                most_of(&scene->appearance.finish, pigment, light));
+        if (plan->has_ground)
+            plan->most[c] =
+                box_max(plan->most[c],
+                        most_of(&view->ground.finish, rgb_channel(view->ground.color, c), light));
+    }
+}
+
+Status answerplan_make(const Scene *scene, const AnswerParams *params, AnswerPlan *plan, Err *err)
+{
+    const Geometry *geometry = &scene->geometry;
+    *plan =
+        (AnswerPlan){.scene = scene, .params = *params, .has_ground = scene->view.ground.present};
+    if (!model_is_of(geometry->model, MODEL_CYLINDERS | MODEL_BALLS))
+        return err_set(err, STATUS_USAGE, "`model`: %s has no answers yet; take %s",
+                       models[geometry->model].name, models_of(MODEL_CYLINDERS | MODEL_BALLS).text);
+    TRY(check_effects(&scene->view, err));
+    TRY(faces_make(geometry, &scene->view.ground, &plan->faces, &plan->n, err));
+    plan->n -= plan->has_ground;
+    TRY(make_tree(plan, err));
+    TRY(check_camera(plan, err));
+    TRY(check_lights(plan, err));
+    TRY(make_lights(plan, err));
+    TRY(make_screen(plan, err));
+    bound_colors(plan);
+    return scene->view.camera.projection == PROJECTION_ORTHOGRAPHIC
+               ? make_frames(plan, answerplan_ray(plan, 0, 0).direction, &plan->frames, err)
+               : STATUS_OK;
+}
+
+void answerplan_release(AnswerPlan *plan)
+{
+    for (size_t i = 0; i < VIEW_MAX_LIGHTS; i++)
+        free(plan->lights[i].frames);
+    boxtree_release(&plan->tree);
+    free(plan->faces);
+    free(plan->frames);
+    free(plan->screen);
+    *plan = (AnswerPlan){0};
+}
+
+/* ---- beams ----------------------------------------------------------------------------------- */
+
+/* Positions are fractions of the picture. The error covers the rounding of renderers, so that the
+ * answer holds for the positions that they compute. */
+Beam answerplan_beam(const AnswerPlan *plan, double x, double y, const double along[2],
+                     const double across[2])
+{
+    const Camera *camera = &plan->scene->view.camera;
+    const double error = 0x1p-50 * (1 + fabs(x / camera->width) + fabs(y / camera->height));
+    const Form right = {x / camera->width - 0.5, along[0] / camera->width,
+                        across[0] / camera->width, error};
+    const Form up = {0.5 - y / camera->height, -along[1] / camera->height,
+                     -across[1] / camera->height, error};
+    const Form3 offset =
+        form3_add(form3_mul(exact(camera->right), right), form3_mul(exact(camera->up), up));
+    Beam beam;
+    if (camera->projection == PROJECTION_PERSPECTIVE) {
+        beam = beam_of(exact(camera->location), form3_add(exact(camera->direction), offset));
+    } else {
+        beam = beam_of(form3_add(exact(camera->location), offset), exact(camera->direction));
+        beam.frames = plan->frames;
+    }
+    return beam;
+}
+
+/* Narrows [*near, *far] to the part of the path from `from` that is in the slab. */
+static bool clip(double from, double rate, double low, double high, double *near, double *far)
+{
+    if (fabs(rate) < 1e-300)
+        return from >= low && from <= high;
+    const double a = (low - from) / rate, b = (high - from) / rate;
+    *near = box_max(*near, box_min(a, b));
+    *far = box_min(*far, box_max(a, b));
+    return *near <= *far;
+}
+
+static bool path_meets(const Box *box, Vec3 from, double reach, Vec3 towards, double far)
+{
+    double near = 0;
+    return clip(from.x, towards.x, box->low.x - reach, box->high.x + reach, &near, &far) &&
+           clip(from.y, towards.y, box->low.y - reach, box->high.y + reach, &near, &far) &&
+           clip(from.z, towards.z, box->low.z - reach, box->high.z + reach, &near, &far);
+}
+
+void answerplan_blockers(const AnswerPlan *plan, Vec3 from, double reach, Vec3 towards, double far,
+                         FaceList *list)
+{
+    uint32_t stack[BOXTREE_DEPTH + 2];
+    int top = 0;
+    list->n = 0;
+    stack[top++] = 0;
+    while (top > 0) {
+        const uint32_t index = stack[--top];
+        const BoxNode *node = &plan->tree.nodes[index];
+        if (!path_meets(&node->box, from, reach, towards, far))
+            continue;
+        for (uint32_t i = 0; i < node->n_items; i++)
+            list->faces[list->n++] = plan->tree.items[node->first + i];
+        if (node->n_items == 0) {
+            stack[top++] = node->first;
+            stack[top++] = index + 1;
+        }
+    }
+}

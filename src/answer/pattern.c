@@ -1,0 +1,263 @@
+/* Answers of single rays. A ray is a beam without extent, so that its forms are numbers with errors
+ * near 1e-13. An edge that is nearer to the ray than that leaves the ray undecided: its color is
+ * then the hull of all colors that are possible. */
+#include "answer/answertile.h"
+
+#include <math.h>
+
+ColorSpan span_any(const AnswerPlan *plan)
+{
+    ColorSpan span;
+    for (int c = 0; c < 3; c++) {
+        span.low[c] = 0;
+        span.high[c] = plan->most[c];
+    }
+    return span;
+}
+
+/* Comparisons with NaN are false, so that an unknown bound stays that of span_any. */
+ColorSpan span_of(const AnswerPlan *plan, const FormColor *color)
+{
+    ColorSpan span = span_any(plan);
+    for (int c = 0; c < 3; c++) {
+        const double low = form_low(color->channels[c]), high = form_high(color->channels[c]);
+        if (low > span.low[c])
+            span.low[c] = low;
+        if (high < span.high[c])
+            span.high[c] = high;
+    }
+    return span;
+}
+
+void span_include(ColorSpan *span, const ColorSpan *other)
+{
+    for (int c = 0; c < 3; c++) {
+        span->low[c] = box_min(span->low[c], other->low[c]);
+        span->high[c] = box_max(span->high[c], other->high[c]);
+    }
+}
+
+static double srgb(double linear)
+{
+    const double v = linear < 0 ? 0 : linear > 1 ? 1 : linear;
+    return v <= 0.0031308 ? 12.92 * v : 1.055 * elementary_pow(v, 1 / 2.4) - 0.055;
+}
+
+double span_width(const ColorSpan *span)
+{
+    double width = 0;
+    for (int c = 0; c < 3; c++)
+        width = box_max(width, srgb(span->high[c]) - srgb(span->low[c]));
+    return width;
+}
+
+void span_slopes(const ColorSpan *span, double slopes[3])
+{
+    for (int c = 0; c < 3; c++) {
+        const double v = 0.5 * (span->low[c] + span->high[c]);
+        slopes[c] = v <= 0.0031308 ? 12.92 : 1.055 / 2.4 * elementary_pow(v, 1 / 2.4 - 1);
+    }
+}
+
+/* ---- first hits ------------------------------------------------------------------------------ */
+
+/* Returns the depth behind which no ray of the beam sees anything. */
+static double farthest_seen(const AnswerWork *work, size_t n)
+{
+    double far = (double)INFINITY;
+    for (size_t i = 0; i < n; i++)
+        if (work->hits[i].pending == 0 && form_high(work->hits[i].depth) < far)
+            far = form_high(work->hits[i].depth);
+    return far;
+}
+
+/* The frame of a hit may be its own. */
+static void copy_hit(FaceHit *to, const FaceHit *from)
+{
+    if (to == from)
+        return;
+    *to = *from;
+    if (from->frame == &from->own_frame)
+        to->frame = &to->own_frame;
+}
+
+/* Returns true if hit `index` is a ball behind the wall of its capsule. */
+static bool is_behind_wall(const AnswerWork *work, size_t n, size_t index)
+{
+    if (work->hits[index].face->kind != FACE_BALL)
+        return false;
+    for (size_t i = 0; i < n; i++)
+        if (work->hits[i].pending == 0 &&
+            faces_form_capsule(work->hits[i].face, work->hits[index].face))
+            return true;
+    return false;
+}
+
+static size_t drop_hidden(AnswerWork *work, size_t n)
+{
+    const double far = farthest_seen(work, n);
+    size_t kept = 0;
+    for (size_t i = 0; i < n; i++)
+        if (!(form_low(work->hits[i].depth) > far) && !is_behind_wall(work, n, i))
+            copy_hit(&work->hits[kept++], &work->hits[i]);
+    return kept;
+}
+
+Seen tile_look(AnswerWork *work, const Beam *beam, const FaceList *list)
+{
+    Seen seen = {0};
+    for (size_t i = 0; i < list->n; i++) {
+        const uint32_t face = list->faces[i];
+        if (seen.n == MAX_HITS)
+            seen.n = drop_hidden(work, seen.n);
+        if (seen.n == MAX_HITS) {
+            seen.crowded = true;
+            return seen;
+        }
+        seen.n += face_hit(&work->plan->faces[face], face, beam, &work->hits[seen.n]);
+    }
+    seen.n = drop_hidden(work, seen.n);
+    for (size_t i = 0; i < seen.n; i++)
+        seen.covered = seen.covered || work->hits[i].pending == 0;
+    return seen;
+}
+
+/* ---- colors ---------------------------------------------------------------------------------- */
+
+/* Counts the points of a light that are surely visible from a surface, and those that may be. */
+static void count_visible(AnswerWork *work, const FormSurface *surface, size_t light, int *sure,
+                          int *may)
+{
+    const AnswerPlan *plan = work->plan;
+    const Vec3 from = vec3(surface->point.x.c, surface->point.y.c, surface->point.z.c);
+    const double reach = box_max(
+        form_high(surface->point.x) - from.x,
+        box_max(form_high(surface->point.y) - from.y, form_high(surface->point.z) - from.z));
+    const bool parallel = plan->lights[light].light->parallel;
+    *sure = *may = 0;
+    for (int k = 0; k < plan->lights[light].points; k++) {
+        const Beam beam = light_beam(plan, surface, light, k);
+        int blocked = ground_blocks(plan, surface, &beam, light);
+        if (plan->lights[light].points > 1 && blocked == 0)
+            blocked = own_solid_blocks(surface, &beam);
+        if (!(reach < plan->pad_mm))
+            blocked = blocked == 1 ? 1 : -1;
+        const Vec3 towards = vec3(beam.direction.x.c, beam.direction.y.c, beam.direction.z.c);
+        work->blockers.n = 0;
+        if (blocked != 1)
+            answerplan_blockers(plan, from, 0, towards, parallel ? (double)INFINITY : 1 + 1e-6,
+                                &work->blockers);
+        for (size_t i = 0; i < work->blockers.n && blocked != 1; i++)
+            if (blocker_at(plan, surface, &beam, light, work->blockers.faces[i], &work->blocker))
+                blocked = work->blocker.hit.pending == 0 && work->blocker.pending == 0 ? 1 : -1;
+        *sure += blocked == 0;
+        *may += blocked != 1;
+    }
+}
+
+/* Returns the fraction of a light that reaches a surface, as a form. */
+static Form visible_part(AnswerWork *work, const FormSurface *surface, size_t light, bool faces)
+{
+    const int points = work->plan->lights[light].points;
+    int sure = points, may = points;
+    if (points == 0)
+        return form_of(1, 0);
+    if (faces)
+        count_visible(work, surface, light, &sure, &may);
+    else
+        sure = 0;
+    const Form part = form_of(0.5 * (sure + may) / points, 0.5 * (may - sure) / points);
+    return form_rounded(part, 4);
+}
+
+static ColorSpan hit_color(AnswerWork *work, const Beam *beam, const FaceHit *hit)
+{
+    const AnswerPlan *plan = work->plan;
+    const FormSurface surface = surface_at(plan, beam, hit);
+    FormColor color = surface.base;
+    for (size_t light = 0; light < plan->scene->view.n_lights; light++) {
+        const Lit lit = light_at(plan, &surface, light);
+        if (lit.dark)
+            continue;
+        const Form part = visible_part(work, &surface, light, lit.faces);
+        for (int c = 0; c < 3; c++)
+            color.channels[c] = form_add(color.channels[c], form_mul(lit.adds.channels[c], part));
+    }
+    return span_of(plan, &color);
+}
+
+/* ---- rays ------------------------------------------------------------------------------------ */
+
+/* The face is set only if it is certain. */
+void find_center(AnswerWork *work, const Beam *ray, Center *center)
+{
+    const Seen found = tile_look(work, ray, &work->pixel), *seen = &found;
+    const FaceHit *hits = work->hits;
+    const double nothing = (double)INFINITY;
+    const Face *first = NULL;
+    bool sure = seen->covered && !seen->crowded;
+    *center = (Center){UINT32_MAX, nothing, seen->n > 0 ? 0 : nothing};
+    for (size_t i = 0; i < seen->n; i++) {
+        const Form depth = form_mul(hits[i].depth, ray->length);
+        sure = sure && hits[i].face->kind != FACE_GROUND &&
+               (!first || first->segment == hits[i].face->segment);
+        first = hits[i].face;
+        if (first->kind == FACE_GROUND)
+            continue;
+        center->near = box_min(center->near, form_low(depth));
+        center->far = box_max(center->far, form_high(depth));
+    }
+    if (sure)
+        center->face = (uint32_t)(first - work->plan->faces);
+    else
+        center->far = nothing;
+}
+
+/* Returns the color of a single ray. */
+static ColorSpan ray_answer(AnswerWork *work, const Beam *beam)
+{
+    const AnswerPlan *plan = work->plan;
+    const Seen seen = tile_look(work, beam, &work->pixel);
+    const Rgb paper = plan->scene->view.background;
+    ColorSpan span = {.low = {rgb_channel(paper, 0), rgb_channel(paper, 1), rgb_channel(paper, 2)}};
+    work->beams++;
+    for (int c = 0; c < 3; c++)
+        span.high[c] = span.low[c];
+    if (seen.crowded)
+        return span_any(plan);
+    for (size_t i = 0; i < seen.n; i++) {
+        const ColorSpan color = hit_color(work, beam, &work->hits[i]);
+        if (i == 0 && seen.covered)
+            span = color;
+        else
+            span_include(&span, &color);
+    }
+    return span;
+}
+
+ColorSpan pattern_answer(AnswerWork *work, int i, int j)
+{
+    const int n = work->plan->params.pattern;
+    const double x = i + 0.5, y = j + 0.5;
+    double offsets[ANSWER_MAX_PATTERN];
+    Beam beam = answerplan_ray(work->plan, x, y);
+    ColorSpan sum = ray_answer(work, &beam);
+    if (n < 2)
+        return sum;
+    camera_sample_offsets(n, offsets);
+    for (int row = 0; row < n; row++)
+        for (int column = 0; column < n; column++) {
+            beam = answerplan_ray(work->plan, x + offsets[column], y + offsets[row]);
+            const ColorSpan span = ray_answer(work, &beam);
+            for (int c = 0; c < 3; c++) {
+                sum.low[c] += span.low[c];
+                sum.high[c] += span.high[c];
+            }
+        }
+    /* Sums of at most 4000 terms have relative errors below 1e-12. */
+    for (int c = 0; c < 3; c++) {
+        sum.low[c] *= (1 - 1e-12) / (n * n + 1);
+        sum.high[c] *= (1 + 1e-12) / (n * n + 1);
+    }
+    return sum;
+}

@@ -1,0 +1,249 @@
+/* Codes stand for all colors that round to them: code c for [c - 1/2, c + 1/2]. The picture is
+ * inside if the code's interval and the proven one have a color in common. Both are compared in
+ * sRGB, in which codes are even, or in the encoding that a picture states. */
+#include "compare/grade/grade.h"
+
+#include <math.h>
+#include <string.h>
+
+bool answerfile_is(const char *path)
+{
+    char pattern[16];
+    return image_exr_text(path, "answer", pattern, sizeof pattern);
+}
+
+static Status read_layer(Plane *plane, const char *path, const char *layer, Err *err)
+{
+    Image image = {0};
+    TRY(image_read(&image, path, ALPHA_REFUSED, layer, err));
+    *plane = image.plane;
+    return STATUS_OK;
+}
+
+Status answerfile_read(AnswerFile *answer, const char *path, Err *err)
+{
+    *answer = (AnswerFile){0};
+    TRY(read_layer(&answer->low, path, "lo", err));
+    TRY(read_layer(&answer->high, path, "hi", err));
+    TRY(read_layer(&answer->state, path, "state", err));
+    if (answer->low.channels != 3 || answer->high.channels != 3 || answer->state.channels != 1 ||
+        !image_exr_text(path, "answer", answer->pattern, sizeof answer->pattern) ||
+        !image_exr_text(path, "answerScene", answer->scene, sizeof answer->scene) ||
+        !image_exr_text(path, "answerWidth", answer->width, sizeof answer->width))
+        return err_set(err, STATUS_INPUT, "%s: is no complete answer of `corcast answer`", path);
+    return STATUS_OK;
+}
+
+void answerfile_release(AnswerFile *answer)
+{
+    plane_release(&answer->low);
+    plane_release(&answer->high);
+    plane_release(&answer->state);
+}
+
+/* ---- colors ---------------------------------------------------------------------------------- */
+
+/* Returns the level of a linear color: sRGB, or linear^gamma, times 255. */
+static double level_of(double linear, double gamma)
+{
+    const double v = linear > 0 ? linear : 0;
+    if (gamma != 0)
+        return 255 * (gamma == 1 ? v : elementary_pow(v, gamma));
+    return 255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * elementary_pow(v, 1 / 2.4) - 0.055);
+}
+
+/* An interval of levels. */
+typedef struct Levels {
+    double low, high;
+} Levels;
+
+/* Returns the levels that a value of the image stands for. */
+static Levels levels_of_image(const Image *image, size_t pixel, int channel)
+{
+    const Picture *picture = &image->picture;
+    const Plane *plane = &image->plane;
+    const int channels = plane->values ? plane->channels : picture->channels;
+    const size_t at = pixel * (size_t)channels + (size_t)(channels < 3 ? 0 : channel);
+    if (plane->values) {
+        const double level = level_of((double)plane->values[at], 0);
+        return (Levels){level, level};
+    }
+    const double step = picture->bits == 8 ? 1 : 1.0 / 257,
+                 level = picture_code(picture, at) * step;
+    return (Levels){level - step / 2, level + step / 2};
+}
+
+/* Returns the levels of an answer; those of codes are cut to what codes can be. */
+static Levels levels_of_answer(const AnswerFile *answer, const Image *image, size_t at)
+{
+    Levels levels = {level_of((double)answer->low.values[at], image->picture.gamma),
+                     level_of((double)answer->high.values[at], image->picture.gamma)};
+    if (image->plane.values)
+        return levels;
+    levels.low = fmin(levels.low, 255);
+    levels.high = fmin(levels.high, 255);
+    return levels;
+}
+
+/* Returns the distance of two intervals; positive if `found` is above. NaN is infinitely far. */
+static double distance_of(Levels found, Levels answer)
+{
+    return found.low > answer.high   ? found.low - answer.high
+           : found.high < answer.low ? found.high - answer.low
+           : found.low <= found.high ? 0
+                                     : (double)INFINITY;
+}
+
+/* ---- grading --------------------------------------------------------------------------------- */
+
+/* Adds a pixel, whose channels have these distances. Returns the worst of them. */
+static double add_pixel(AnswerGrade *grade, const double distances[3], int x, int y)
+{
+    double worst = 0, sum = 0;
+    for (int c = 0; c < 3; c++) {
+        const double distance = distances[c];
+        if (fabs(distance) <= ANSWERGRADE_SLACK)
+            continue;
+        sum += distance;
+        grade->mean[c] += distance;
+        if (fabs(distance) > fabs(worst))
+            worst = distance;
+        if (fabs(distance) > fabs(grade->worst)) {
+            grade->worst = distance;
+            grade->x = x;
+            grade->y = y;
+            grade->channel = c;
+        }
+    }
+    grade->outside += worst != 0;
+    grade->brighter += worst != 0 && sum > 0;
+    grade->darker += worst != 0 && !(sum > 0);
+    return worst;
+}
+
+static void finish(AnswerGrade *grade)
+{
+    for (int c = 0; c < 3; c++)
+        grade->mean[c] /= (double)grade->pixels;
+    grade->certified = grade->outside == 0 && grade->undecided < grade->pixels;
+}
+
+static Status check_size(const AnswerFile *answer, int width, int height, Err *err)
+{
+    if (width == answer->low.width && height == answer->low.height)
+        return STATUS_OK;
+    return err_set(err, STATUS_INPUT,
+                   "the answer has %d x %d pixels and the picture %d x %d; both must have one size",
+                   answer->low.width, answer->low.height, width, height);
+}
+
+Status answergrade_image(const AnswerFile *answer, const Image *image, AnswerGrade *grade,
+                         Plane *distances, Err *err)
+{
+    const bool floats = image->plane.values;
+    const int width = floats ? image->plane.width : image->picture.width;
+    const int height = floats ? image->plane.height : image->picture.height;
+    TRY(check_size(answer, width, height, err));
+    if (distances)
+        TRY(plane_init(distances, width, height, 1, err));
+    AnswerGrade made = {.pixels = (size_t)width * (size_t)height};
+    for (size_t pixel = 0; pixel < made.pixels; pixel++) {
+        double apart[3];
+        for (int c = 0; c < 3; c++)
+            apart[c] = distance_of(levels_of_image(image, pixel, c),
+                                   levels_of_answer(answer, image, 3 * pixel + (size_t)c));
+        const double worst =
+            add_pixel(&made, apart, (int)(pixel % (size_t)width), (int)(pixel / (size_t)width));
+        made.undecided += answer->state.values[pixel] != 0;
+        if (distances)
+            distances->values[pixel] = (float)worst;
+    }
+    finish(&made);
+    *grade = made;
+    return STATUS_OK;
+}
+
+Status answergrade_answers(const AnswerFile *a, const AnswerFile *b, AnswerGrade *grade, Err *err)
+{
+    TRY(check_size(a, b->low.width, b->low.height, err));
+    if (strcmp(a->scene, b->scene) != 0)
+        return err_set(err, STATUS_INPUT, "the two answers are of different scenes");
+    if (strcmp(a->pattern, b->pattern) != 0)
+        return err_set(err, STATUS_INPUT,
+                       "the two answers are of different patterns, %s and %s; they may differ",
+                       a->pattern, b->pattern);
+    AnswerGrade made = {.pixels = (size_t)a->low.width * (size_t)a->low.height};
+    for (size_t pixel = 0; pixel < made.pixels; pixel++) {
+        double apart[3];
+        for (int c = 0; c < 3; c++) {
+            const size_t at = 3 * pixel + (size_t)c;
+            const Levels of_a = {level_of((double)a->low.values[at], 0),
+                                 level_of((double)a->high.values[at], 0)};
+            const Levels of_b = {level_of((double)b->low.values[at], 0),
+                                 level_of((double)b->high.values[at], 0)};
+            apart[c] = distance_of(of_b, of_a);
+        }
+        (void)add_pixel(&made, apart, (int)(pixel % (size_t)a->low.width),
+                        (int)(pixel / (size_t)a->low.width));
+        made.undecided += a->state.values[pixel] != 0 || b->state.values[pixel] != 0;
+    }
+    finish(&made);
+    *grade = made;
+    return STATUS_OK;
+}
+
+/* ---- reports --------------------------------------------------------------------------------- */
+
+Status answergrade_picture(const Plane *distances, Picture *out, Err *err)
+{
+    const double full = 8; /* levels; visible differences begin near 2 */
+    TRY(picture_init(out, distances->width, distances->height, 3, 8, err));
+    for (size_t i = 0; i < (size_t)out->width * (size_t)out->height; i++) {
+        const double distance = (double)distances->values[i];
+        const double part = fmin(fabs(distance) / full, 1);
+        const uint8_t strong = (uint8_t)(distance == 0 ? 230 : 255);
+        const uint8_t weak = (uint8_t)(distance == 0 ? 230 : 200 * (1 - part));
+        out->codes8[3 * i] = distance >= 0 ? strong : weak;
+        out->codes8[3 * i + 1] = weak;
+        out->codes8[3 * i + 2] = distance <= 0 ? strong : weak;
+    }
+    return STATUS_OK;
+}
+
+static const char *const channel_names[] = {"red", "green", "blue"};
+
+void answergrade_text(const AnswerGrade *grade, Text *out)
+{
+    text_printf(out, "%s: %zu of %zu pixels outside; %zu undecided\n",
+                grade->certified ? "certified" : "not certified", grade->outside, grade->pixels,
+                grade->undecided);
+    if (grade->outside == 0)
+        return;
+    text_printf(out,
+                "worst: %.3g levels too %s in %s at column %d, row %d; %zu pixels are brighter, "
+                "%zu darker\n",
+                fabs(grade->worst), grade->worst > 0 ? "bright" : "dark",
+                channel_names[grade->channel], grade->x, grade->y, grade->brighter, grade->darker);
+    text_printf(out, "mean distance: red %+.3g, green %+.3g, blue %+.3g levels\n", grade->mean[0],
+                grade->mean[1], grade->mean[2]);
+}
+
+json_t *answergrade_json(const AnswerGrade *grade)
+{
+    const JsonMember members[] = {
+        {"certified", json_boolean(grade->certified)},
+        {"pixels", json_count(grade->pixels)},
+        {"outside", json_count(grade->outside)},
+        {"undecided", json_count(grade->undecided)},
+        {"brighter", json_count(grade->brighter)},
+        {"darker", json_count(grade->darker)},
+        {"worst_levels", json_number(grade->worst)},
+        {"worst_column", json_count((size_t)grade->x)},
+        {"worst_row", json_count((size_t)grade->y)},
+        {"worst_channel", json_text(channel_names[grade->channel])},
+        {"mean_red", json_number(grade->mean[0])},
+        {"mean_green", json_number(grade->mean[1])},
+        {"mean_blue", json_number(grade->mean[2])},
+    };
+    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+}

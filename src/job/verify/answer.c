@@ -1,0 +1,183 @@
+/* The scene is that of `verify`, without a moved camera: lengths, colors and lights are those that
+ * `render` draws. */
+#include "job/verify/answer.h"
+
+#include "options/output.h"
+#include "options/talk.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const Option own[] = {
+    {.name = "output",
+     SETS(OUTPUT, AnswerOptions, output),
+     .argument = "A.exr",
+     .help = "answer: an OpenEXR file with two bounds of each color, by which compare grades "
+             "pictures"},
+    {.name = "pattern",
+     SETS(WHOLE, AnswerOptions, pattern),
+     GIVEN(AnswerOptions, has_pattern),
+     FROM_TO(1, ANSWER_MAX_PATTERN),
+     .help = "answer for the mean over N x N samples per pixel and its center, the samples of "
+             "render --exact --antialias N and of POV-Ray's +A0.0 +AM1 +RN; 1: the center alone"},
+    {.name = "area",
+     SETS(FLAG, AnswerOptions, area),
+     .excludes = "pattern",
+     .clash = " are two answers; one can be asked",
+     .help = "answer for the mean over the whole area of each pixel"},
+    {.name = "width",
+     SETS(TEXT, AnswerOptions, width),
+     .argument = "W",
+     .help = "width in sRGB from 0 to 1 up to which the interval of a pixel is decided: a number "
+             "or a fraction such as 1/510, half a level of 8 bits"},
+    {.name = "leaves",
+     SETS(WHOLE, AnswerOptions, leaves),
+     FROM_TO(1, 10000000),
+     .needs = "area",
+     .help = "most parts that a pixel is divided into before it counts as over budget"},
+    {.name = "squares",
+     SETS(FLAG, AnswerOptions, squares),
+     .group = GROUP_RUN,
+     .needs = "area",
+     .help = "for tests only: divide pixels into squares, not into parts along vessels; slower, "
+             "and the intervals must intersect"},
+};
+
+static const OptionTable own_table = OPTION_TABLE(own);
+
+static void set_defaults(void *options)
+{
+    AnswerOptions *own_options = options;
+    picture_set_defaults(&own_options->picture);
+    own_options->pattern = 1;
+    own_options->width = "1/510";
+    own_options->leaves = 20000;
+}
+
+/* Reads a number or a fraction of two numbers. */
+static Status read_width(const char *text, double *width, Err *err)
+{
+    char *end;
+    const double first = strtod(text, &end);
+    const double second = *end == '/' ? strtod(end + 1, &end) : 1;
+    *width = first / second;
+    if (*end == '\0' && end > text && *width >= 1e-12 && *width <= 1)
+        return STATUS_OK;
+    return err_set(err, STATUS_USAGE,
+                   "--width is '%s'; it must be a number or a fraction from 1e-12 to 1, such as "
+                   "1/510",
+                   text);
+}
+
+static Status check(const AnswerOptions *options, Err *err)
+{
+    const PictureOptions *picture = &options->picture;
+    const char *extension = file_extension(options->output);
+    if (strcmp(extension, "exr") != 0)
+        return err_set(err, STATUS_USAGE, "-o: '%s' does not end in .exr", options->output);
+    if (picture->has_antialias)
+        return err_set(err, STATUS_USAGE,
+                       "--antialias has no effect on an answer; give --pattern %d",
+                       picture->antialias);
+    if (picture->occlusion > 0)
+        return err_set(err, STATUS_USAGE,
+                       "--ao: ambient occlusion has no answer, because its definition is a method; "
+                       "give --ao 0");
+    return picture_fits(picture->size.pixels[0], picture->size.pixels[1],
+                        ANSWER_CHANNELS * sizeof(float) + 8, err);
+}
+
+static Status write(const AnswerOptions *options, const Parsed *parsed, const Answer *answer,
+                    const char *command, Err *err)
+{
+    static const ImageChannel channels[ANSWER_CHANNELS] = {
+        {"lo.R", true}, {"lo.G", true},    {"lo.B", true}, {"hi.R", true}, {"hi.G", true},
+        {"hi.B", true}, {"state.V", true}, {"id.V", true}, {"Z.lo", true}, {"Z.hi", true}};
+    char pattern[16] = "area";
+    if (!options->area)
+        snprintf(pattern, sizeof pattern, "%d", options->pattern);
+    const ImageNote notes[] = {{"Software", GENERATOR},
+                               {"Comment", command},
+                               {"answer", pattern},
+                               {"answerWidth", options->width},
+                               {"answerScene", answer->scene.hex}};
+    const ImageNotes all = {.notes = notes, .count = sizeof notes / sizeof *notes};
+    const ImageForm form = {.width = answer->plane.width,
+                            .height = answer->plane.height,
+                            .channels = ANSWER_CHANNELS,
+                            .bits = 32,
+                            .encoding = ENCODING_LINEAR,
+                            .notes = &all,
+                            .packing = {.threads = parsed->common.threads},
+                            .named = channels};
+    ImageWriter *writer;
+    TRY(imagewriter_open(&writer, options->output, &form, err));
+    const Status status = imagewriter_floats(writer, &answer->plane, err);
+    if (status == STATUS_OK)
+        return imagewriter_commit(writer, err);
+    imagewriter_discard(writer);
+    return status;
+}
+
+static Status make(AnswerOptions *options, Parsed *parsed, Answer *answer, Err *err)
+{
+    PictureReport made;
+    Scene scene;
+    Progress progress;
+    AnswerParams params = {.pattern = options->area ? 0 : options->pattern,
+                           .leaves = options->leaves,
+                           .squares = options->squares,
+                           .shadows = options->picture.stage.shadows,
+                           .threads = parsed->common.threads,
+                           .progress = progress_report,
+                           .progress_context = &progress};
+    TRY(read_width(options->width, &params.width, err));
+    TRY(picture_scene(&options->picture, parsed, &scene, &made, err));
+    Status status = picture_check_ids(&scene.geometry, parsed->operands[0], err);
+    if (status == STATUS_OK)
+        status = picture_say(&scene, &made, parsed->common.talk, err);
+    if (status == STATUS_OK) {
+        progress_start(&progress, "proving", parsed->common.talk);
+        status = answer_make(&scene, &params, answer, err);
+        progress_end(&progress);
+    }
+    scene_release(&scene);
+    return status;
+}
+
+Status answer_run(AnswerOptions *options, Parsed *parsed, AnswerReport *report, Err *err)
+{
+    const double start_s = clock_cpu_seconds();
+    Answer answer = {0};
+    char *command = NULL;
+    Status status;
+    TRY(check(options, err));
+    TRY_GOTO(command_line_text(parsed, &command, err));
+    TRY_GOTO(make(options, parsed, &answer, err));
+    TRY_GOTO(write(options, parsed, &answer, command, err));
+    *report = (AnswerReport){.pixels = (size_t)answer.plane.width * (size_t)answer.plane.height,
+                             .undecided = answer.undecided,
+                             .beams = answer.beams,
+                             .cpu_s = clock_cpu_seconds() - start_s,
+                             .scene = answer.scene};
+done:
+    free(command);
+    answer_release(&answer);
+    return status;
+}
+
+const Command command_answer = {
+    .name = "answer",
+    .summary = "prove an interval for each pixel of a picture",
+    .operands = "T.swc -o A.exr",
+    .examples = "  corcast answer tree.swc --pattern 3 -o tree.answer.exr\n"
+                "  corcast render tree.swc --exact --antialias 3 -o tree.png\n"
+                "  corcast compare tree.answer.exr tree.png\n",
+    .min_operands = 1,
+    .max_operands = 1,
+    .needs_output = true,
+    .reads_tree = true,
+    .size = sizeof(AnswerOptions),
+    .set_defaults = set_defaults,
+    .tables = {{&own_table, 0}, PICTURE_TABLES(AnswerOptions, picture)},
+};

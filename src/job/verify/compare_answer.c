@@ -1,0 +1,79 @@
+/* Grades a picture by an answer, or checks two answers against each other. */
+#include "job/verify/compare_parts.h"
+
+#include "job/picture/coloring.h"
+#include "options/talk.h"
+#include <string.h>
+
+/* Options that have no effect on grades are refused. */
+static Status check(const Parsed *parsed, bool two_answers, Err *err)
+{
+    for (size_t i = 0; i < parsed->n_settings; i++) {
+        const Setting *setting = &parsed->settings[i];
+        const char *name = setting->option->name;
+        const bool of_picture = strcmp(name, "output") == 0 || strcmp(name, "background") == 0;
+        const bool effect = setting_is_common(parsed, setting) || strcmp(name, "json") == 0 ||
+                            (of_picture && !two_answers);
+        if (setting->typed && !effect)
+            return err_set(err, STATUS_USAGE, "--%s has no effect if A is an answer", name);
+    }
+    return STATUS_OK;
+}
+
+static Status grade_picture(const CompareOptions *options, const Parsed *parsed, Comparison *made,
+                            Err *err)
+{
+    const Rgb ground = rgb_of_option(options->background);
+    const float background[3] = {ground.r, ground.g, ground.b};
+    Image image = {0};
+    AnswerFile answer = {0};
+    Status status;
+    TRY_GOTO(answerfile_read(&answer, parsed->operands[0], err));
+    TRY_GOTO(image_read(&image, parsed->operands[1], ALPHA_KEPT, NULL, err));
+    if (image.lossy)
+        talk_note(parsed->common.talk, "%s is lossy (%s): compression has changed its colors",
+                  parsed->operands[1], image.lossy);
+    TRY_GOTO(image_composite(&image, background, err));
+    status = answergrade_image(&answer, &image, &made->grade,
+                               options->heat ? &made->distances : NULL, err);
+done:
+    answerfile_release(&answer);
+    image_release(&image);
+    return status;
+}
+
+static Status grade_answer(const Parsed *parsed, Comparison *made, Err *err)
+{
+    AnswerFile a = {0}, b = {0};
+    Status status;
+    TRY_GOTO(answerfile_read(&a, parsed->operands[0], err));
+    TRY_GOTO(answerfile_read(&b, parsed->operands[1], err));
+    status = answergrade_answers(&a, &b, &made->grade, err);
+done:
+    answerfile_release(&a);
+    answerfile_release(&b);
+    return status;
+}
+
+Status compare_answer(const CompareOptions *options, const Parsed *parsed, Comparison *made,
+                      Err *err)
+{
+    const bool two_answers = answerfile_is(parsed->operands[1]);
+    made->kind = COMPARED_ANSWER;
+    Status status = check(parsed, two_answers, err);
+    if (status == STATUS_OK)
+        status = two_answers ? grade_answer(parsed, made, err)
+                             : grade_picture(options, parsed, made, err);
+    made->agrees = made->grade.certified;
+    return status;
+}
+
+Status compare_write_distances(const char *path, const Comparison *made, Err *err)
+{
+    Picture picture = {0};
+    Status status = answergrade_picture(&made->distances, &picture, err);
+    if (status == STATUS_OK)
+        status = picture_write(&picture, path, ENCODING_SRGB, NULL, NULL, err);
+    picture_release(&picture);
+    return status;
+}

@@ -1,0 +1,36 @@
+# Builds the page that grows trees, build/grow/corcast.html: `make page` calls this file. The program is compiled twice,
+# with and without vectors, by clang for WASI [docs/decisions/wasm.md].
+OUT := build/grow
+SYSROOT := $(or $(WASI_SYSROOT),/usr)
+CLANG := $(or $(WASI_CC),clang)
+# Modules that growing, refining, measuring and triangulating need. What needs an operating system or a library is in
+# src/web/host.c instead.
+MODULES := base geom tree treeio domain grow derive options scene stage mesh print emit field job job/tree web
+ABSENT := src/base/file.c src/base/isolated.c src/base/json.c src/base/system.c
+SOURCES := $(filter-out $(ABSENT),$(wildcard $(MODULES:%=src/%/*.c) $(patsubst %,src/%/*/*.c,$(filter-out job job/tree,$(MODULES))))) \
+	$(wildcard src/job/export/*.c) $(addprefix src/job/picture/,picture.c coloring.c placing.c) \
+	$(addprefix src/image/,colorscale.c encoding.c colormap.c)
+FLAGS := --target=wasm32-wasi --sysroot=$(SYSROOT) -std=c11 -O3 -DCORCAST_PAGE '-DCORCAST_PREFIX=""' -D_GNU_SOURCE -D_WASI_EMULATED_PROCESS_CLOCKS -Isrc \
+	-ffunction-sections -fdata-sections -fno-math-errno -fno-trapping-math -Wall -Wno-unused
+# With vectors, clang 14 gives src/mesh/lattice/octree.c other cells than the native program has. The cause is not known.
+# So meshes are compiled without.
+LIMITS := -Wl,--gc-sections,--stack-first,-z,stack-size=1048576,--strip-all
+
+$(OUT)/corcast.html: $(OUT)/made/simd.wasm $(OUT)/made/plain.wasm $(wildcard templates/grow/* templates/viewer/* templates/colormaps/*) \
+		templates/page/page.html templates/looks/cast.ini build/viewer/viewer.js
+	@printf '  %-6s %s\n' MADE $@
+	@templates/grow/bundle $(OUT)
+
+define MODULE
+$(OUT)/made/$(1).wasm: $(SOURCES:%.c=$(OUT)/$(1)/%.o)
+	@printf '  %-6s %s\n' LINK $$@
+	@mkdir -p $$(@D)
+	@$(CLANG) $(FLAGS) -mexec-model=reactor $(LIMITS) -o $$@ $$^ -lwasi-emulated-process-clocks
+$(OUT)/$(1)/%.o: %.c
+	@printf '  %-6s %s\n' WASM $$<
+	@mkdir -p $$(@D)
+	@$(CLANG) $(FLAGS) $$(if $$(filter src/mesh/%,$$<),,$(2)) -ffp-contract=off -MMD -MP -c -o $$@ $$<
+-include $(SOURCES:%.c=$(OUT)/$(1)/%.d)
+endef
+$(eval $(call MODULE,simd,-msimd128))
+$(eval $(call MODULE,plain,))
