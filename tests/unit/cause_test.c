@@ -531,15 +531,15 @@ static void names_nothing_that_no_sentence_is_about(void **state)
     expect_cause(&shot, NULL);
 }
 
-/* 0.02 radians. */
+/* 0.04 radians. */
 static void names_a_rotation_and_its_angle(void **state)
 {
     (void)state;
     Shot shot = plain;
-    shot.angle = 0.02;
-    expect_cause(&shot, "B is A rotated by 1.1 degrees counterclockwise");
-    shot.angle = -0.02;
-    expect_cause(&shot, "B is A rotated by 1.1 degrees clockwise");
+    shot.angle = 0.04;
+    expect_cause(&shot, "B is A rotated by 2.3 degrees counterclockwise");
+    shot.angle = -0.04;
+    expect_cause(&shot, "B is A rotated by 2.3 degrees clockwise");
 }
 
 static void names_noise_and_its_size(void **state)
