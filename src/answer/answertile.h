@@ -29,6 +29,7 @@ typedef struct AnswerWork {
     LightBlocker blocker;
     size_t beams, undecided;
     ARRAY(AreaLeaf) leaves; /* of a pixel; owned */
+    Text *record;           /* receives the parts of leaves; NULL: nobody; borrowed */
     Heap heap;              /* of leaves, the widest first */
 } AnswerWork;
 

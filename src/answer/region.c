@@ -1,7 +1,7 @@
 /* A piece of the polygon holds the hits that may be visible in it, each with the set of its edges
  * that are not decided there. Light is additive, so shadows of each light cut the piece on their
  * own. Where a bound is NaN, nothing is decided, and the piece takes the range of all colors. */
-#include "answer/region.h"
+#include "answer/certificate.h"
 
 #include <math.h>
 
@@ -105,6 +105,7 @@ static const double area_error = 1e-13;
 /* Adds an area that has any color of a span. */
 static void add_span(Region *r, double area, const ColorSpan *span)
 {
+    certificate_put_span(r->work->record, area, span);
     for (int c = 0; c < 3; c++) {
         r->sum.low[c] += area * span->low[c];
         r->sum.high[c] += area * span->high[c];
@@ -114,8 +115,10 @@ static void add_span(Region *r, double area, const ColorSpan *span)
 
 /* Adds the integral of a form over a polygon, times `weight`. Colors are neither negative nor above
  * the brightest of the scene. */
-static void add_form(Region *r, const PolygonMoments *m, const FormColor *color, double weight)
+static void add_form(Region *r, const LeafPolygon *polygon, const FormColor *color, double weight)
 {
+    const PolygonMoments moments = moments_of(polygon), *m = &moments;
+    certificate_put_form(r->work->record, polygon, color, weight);
     for (int c = 0; c < 3; c++) {
         const Form f = color->channels[c];
         const double value = f.c * m->area + f.x * m->x + f.y * m->y;
@@ -231,8 +234,7 @@ static void add_lit(Region *r, const ShadowCuts *cuts, ShadowPiece *piece)
             first = i;
     }
     if (piece->n == 0) {
-        const PolygonMoments m = moments_of(&piece->polygon);
-        add_form(r, &m, cuts->adds, cuts->weight);
+        add_form(r, &piece->polygon, cuts->adds, cuts->weight);
         return;
     }
     first = first < piece->n ? first : 0;
@@ -335,7 +337,6 @@ static void add_hit(Region *r, size_t index, const LeafPolygon *polygon)
 {
     const AnswerPlan *plan = r->work->plan;
     HitLight *hit = light_of(r, index);
-    const PolygonMoments m = moments_of(polygon);
     FormColor color = hit->surface.base;
     for (size_t i = 0; i < plan->scene->view.n_lights; i++) {
         if (hit->lit[i].dark)
@@ -346,7 +347,7 @@ static void add_hit(Region *r, size_t index, const LeafPolygon *polygon)
         for (int k = 0; k < plan->lights[i].points; k++)
             add_light(r, hit, i, k, polygon);
     }
-    add_form(r, &m, &color, 1);
+    add_form(r, polygon, &color, 1);
     const uint32_t wall = r->work->hits[index].face->kind == FACE_WALL ? (uint32_t)index + 1 : 0;
     r->sum.is_mixed = r->sum.is_mixed || !wall || (r->sum.walls && r->sum.walls != wall);
     r->sum.walls = r->sum.is_mixed ? 0 : wall;
@@ -357,10 +358,9 @@ static void add_hit(Region *r, size_t index, const LeafPolygon *polygon)
 static void add_background(Region *r, const LeafPolygon *polygon)
 {
     const Rgb paper = r->work->plan->scene->view.background;
-    const PolygonMoments m = moments_of(polygon);
     const FormColor color = {{form_of(rgb_channel(paper, 0), 0), form_of(rgb_channel(paper, 1), 0),
                               form_of(rgb_channel(paper, 2), 0)}};
-    add_form(r, &m, &color, 1);
+    add_form(r, polygon, &color, 1);
 }
 
 /* Returns the range of all colors that a piece may have. */

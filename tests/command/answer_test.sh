@@ -112,6 +112,23 @@ test_answers_of_one_scene_are_consistent_and_others_are_refused() {
     expect_sentence '160 x 160 pixels and the picture 160 x 120'
 }
 
+# The checker computes rays with 50 digits and sums in exact fractions, and shares no code.
+test_certificates_are_proved_and_changed_ones_are_not() {
+    local tree=$DATA/trifurcation.swc check=$REPO/tests/oracle/check_answer.py options
+    for options in '--pattern 2' '--pattern 1 --model cylinders --projection perspective --view iso' '--area'; do
+        # shellcheck disable=SC2086
+        run_ok corcast answer "$tree" --size 40x40 --shadows on $options -o a.exr --certificate proof.json
+        run python3 "$check" proof.json 1
+        expect_status 0
+        expect_stdout '^2[34] of 2[34] pixels proved$'
+    done
+    run_ok corcast answer "$tree" --size 40x40 --shadows on --pattern 2 -o a.exr --certificate proof.json
+    sed 's/"location":\[\([-0-9.]*\)/"location":[\1001/' proof.json >changed.json
+    run python3 "$check" changed.json
+    expect_status 1
+    expect_stdout 'the mean of its samples is outside'
+}
+
 test_scenes_without_an_answer_are_refused_by_the_option() {
     local tree=$DATA/trifurcation.swc
     refuse() {
