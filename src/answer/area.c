@@ -60,8 +60,8 @@ void arealeaf_measure(AnswerWork *work, int i, int j, AreaLeaf *leaf)
         sum = region_integrate(work, &beam, &work->pixel, &polygon);
     work->beams++;
     for (int c = 0; c < 3; c++) {
-        leaf->low[c] = sum.low[c] * scale * (1 - 1e-14);
-        leaf->high[c] = sum.high[c] * scale * (1 + 1e-14);
+        leaf->low[c] = scale * (sum.low[c] - 1e-14 * fabs(sum.low[c]));
+        leaf->high[c] = scale * (sum.high[c] + 1e-14 * fabs(sum.high[c]));
         width += sum.high[c] - sum.low[c];
     }
     leaf->is_mixed = !sum.walls || sum.strips > 0.5 * width;
@@ -152,9 +152,9 @@ static ColorSpan span_of_leaves(const AnswerPlan *plan, const AreaLeaf *leaves, 
         }
     /* Each leaf's area has an error below 1e-13 of a pixel. */
     for (int c = 0; c < 3; c++) {
-        const double error = 1e-13 * (double)heap->n * plan->most[c];
-        span.low[c] = box_max(span.low[c] * (1 - 1e-11) - error, 0);
-        span.high[c] = box_min(span.high[c] * (1 + 1e-11) + error, plan->most[c]);
+        const double error = (1e-13 * (double)heap->n + 1e-11) * plan->most[c];
+        span.low[c] = box_max(span.low[c] - error, plan->least[c]);
+        span.high[c] = box_min(span.high[c] + error, plan->most[c]);
     }
     return span;
 }
@@ -201,7 +201,8 @@ Status area_answer(AnswerWork *work, int i, int j, ColorSpan *out, Err *err)
     static const double slopes[3] = {1, 1, 1};
     AreaLeaf whole = {.across = {0, 0.5}, .along = {0.5, 0}};
     Heap *heap = &work->heap;
-    work->leaves.n = heap->n = 0;
+    work->leaves.n = heap->n = work->n_cached = work->n_cached_faces = 0;
+    work->whole = answerplan_beam(work->plan, i + 0.5, j + 0.5, whole.along, whole.across);
     arealeaf_measure(work, i, j, &whole);
     TRY(ARRAY_PUSH(&work->leaves, "leaves", err, whole));
     TRY(push(work, heap, 0, slopes, err));

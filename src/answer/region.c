@@ -123,10 +123,11 @@ static void add_form(Region *r, const LeafPolygon *polygon, const FormColor *col
         const Form f = color->channels[c];
         const double value = f.c * m->area + f.x * m->x + f.y * m->y;
         const double error = f.e * m->area + area_error * form_span(f);
+        const double least = r->work->plan->least[c] * m->area;
         const double most = r->work->plan->most[c] * m->area;
         const double low = value - error, high = value + error;
-        r->sum.low[c] += low > 0 ? weight * low : 0;
-        r->sum.high[c] += high < most ? weight * high : weight * most;
+        r->sum.low[c] += weight * (low > least ? low : least);
+        r->sum.high[c] += weight * (high < most ? high : most);
     }
 }
 
@@ -160,9 +161,14 @@ static const ColorSpan *range_of(Region *r, size_t hit)
             continue;
         const ColorSpan adds = span_of(plan, &light->lit[i].adds);
         for (int c = 0; c < 3; c++) {
-            light->range.low[c] += plan->lights[i].points > 0 ? 0 : adds.low[c];
-            light->range.high[c] = box_min(light->range.high[c] + adds.high[c], plan->most[c]);
+            const bool may_block = plan->lights[i].points > 0;
+            light->range.low[c] += may_block ? box_min(adds.low[c], 0) : adds.low[c];
+            light->range.high[c] += may_block ? box_max(adds.high[c], 0) : adds.high[c];
         }
+    }
+    for (int c = 0; c < 3; c++) {
+        light->range.low[c] = box_max(light->range.low[c], plan->least[c]);
+        light->range.high[c] = box_min(light->range.high[c], plan->most[c]);
     }
     return &light->range;
 }
@@ -180,7 +186,7 @@ typedef struct ShadowPiece {
 typedef struct ShadowCuts {
     const Shade *shades;
     const FormColor *adds;
-    ColorSpan range; /* from 0 to what the light adds */
+    ColorSpan range; /* of what the light adds, blocked or not, times the weight */
     double weight;
 } ShadowCuts;
 
@@ -239,11 +245,8 @@ static void add_lit(Region *r, const ShadowCuts *cuts, ShadowPiece *piece)
     }
     first = first < piece->n ? first : 0;
     const int edge = __builtin_ctz(piece->items[first].pending);
-    ColorSpan part = cuts->range;
-    for (int c = 0; c < 3; c++)
-        part.high[c] *= cuts->weight;
     if (r->cuts >= MAX_CUTS || piece->depth >= MAX_DEPTH) {
-        add_span(r, polygon_area(&piece->polygon), &part);
+        add_span(r, polygon_area(&piece->polygon), &cuts->range);
         return;
     }
     ShadowPiece inside = *piece, outside = *piece;
@@ -251,33 +254,68 @@ static void add_lit(Region *r, const ShadowCuts *cuts, ShadowPiece *piece)
     add_span(r,
              cut_at(r, &piece->polygon, cuts->shades[piece->items[first].shade].edges[edge],
                     &inside.polygon, &outside.polygon),
-             &part);
+             &cuts->range);
     inside.items[first].pending &= (uint8_t) ~(1 << edge);
     outside.items[first] = outside.items[--outside.n];
     add_lit(r, cuts, &inside);
     add_lit(r, cuts, &outside);
 }
 
-/* Lists the blockers of a light beam. Returns false if there are too many. */
+/* Lists the faces that may block the light on a surface. Returns false if its extent is not
+ * known. */
+static bool find_blockers(AnswerWork *work, const FormSurface *surface, const Beam *beam,
+                          size_t light)
+{
+    const Form3 p = surface->point;
+    const Vec3 from = vec3(p.x.c, p.y.c, p.z.c);
+    const Vec3 towards = vec3(beam->direction.x.c, beam->direction.y.c, beam->direction.z.c);
+    const double reach =
+        box_max(form_high(p.x) - from.x, box_max(form_high(p.y) - from.y, form_high(p.z) - from.z));
+    const bool parallel = work->plan->lights[light].light->parallel;
+    if (!isfinite(reach))
+        return false;
+    answerplan_blockers(work->plan, from, reach, towards, parallel ? (double)INFINITY : 1 + 1e-6,
+                        &work->blockers);
+    return true;
+}
+
+/* Finds the blockers of a face for all of the pixel, once. Returns NULL if they cannot be kept. */
+static const CachedBlockers *cached_blockers(AnswerWork *work, const Face *face, size_t light)
+{
+    const AnswerPlan *plan = work->plan;
+    for (size_t i = 0; i < work->n_cached; i++)
+        if (work->cached[i].face == face && work->cached[i].light == light)
+            return &work->cached[i];
+    FaceHit hit;
+    if (work->n_cached == MAX_CACHED || plan->lights[light].points > 1 ||
+        !face_hit(face, (size_t)(face - plan->faces), &work->whole, &hit))
+        return NULL;
+    const FormSurface surface = surface_at(plan, &work->whole, &hit);
+    const Beam beam = light_beam(plan, &surface, light, 0);
+    if (!find_blockers(work, &surface, &beam, light) ||
+        work->n_cached_faces + work->blockers.n > CACHE_FACES)
+        return NULL;
+    CachedBlockers *made = &work->cached[work->n_cached++];
+    *made = (CachedBlockers){face, light, work->n_cached_faces, work->blockers.n};
+    for (size_t i = 0; i < made->n; i++)
+        work->cached_faces[work->n_cached_faces++] = work->blockers.faces[i];
+    return made;
+}
+
+/* Lists the blockers of a light beam with their edges. Returns false if there are too many. */
 static bool list_shades(Region *r, const FormSurface *surface, const Beam *beam, size_t light,
                         Shade *shades, int *n)
 {
     AnswerWork *work = r->work;
-    const AnswerPlan *plan = work->plan;
-    const Vec3 from = vec3(surface->point.x.c, surface->point.y.c, surface->point.z.c);
-    const Vec3 towards = vec3(beam->direction.x.c, beam->direction.y.c, beam->direction.z.c);
-    const double reach = box_max(
-        form_high(surface->point.x) - from.x,
-        box_max(form_high(surface->point.y) - from.y, form_high(surface->point.z) - from.z));
-    const bool parallel = plan->lights[light].light->parallel;
-    *n = 0;
-    if (!isfinite(reach))
+    const CachedBlockers *cached = cached_blockers(work, surface->hit->face, light);
+    if (!cached && !find_blockers(work, surface, beam, light))
         return false;
-    answerplan_blockers(plan, from, reach, towards, parallel ? (double)INFINITY : 1 + 1e-6,
-                        &work->blockers);
-    for (size_t i = 0; i < work->blockers.n; i++) {
+    const uint32_t *faces = cached ? work->cached_faces + cached->begin : work->blockers.faces;
+    const size_t count = cached ? cached->n : work->blockers.n;
+    *n = 0;
+    for (size_t i = 0; i < count; i++) {
         LightBlocker *blocker = &work->blocker;
-        if (!blocker_at(plan, surface, beam, light, work->blockers.faces[i], blocker))
+        if (!blocker_at(work->plan, surface, beam, light, faces[i], blocker))
             continue;
         if (*n == MAX_BLOCKERS)
             return false;
@@ -302,8 +340,10 @@ static void add_light(Region *r, HitLight *hit, size_t light, int point, const L
     ShadowPiece piece = {.polygon = *polygon};
     const Beam beam = light_beam(plan, &hit->surface, light, point);
     const int ground = ground_blocks(plan, &hit->surface, &beam, light);
-    for (int c = 0; c < 3; c++)
-        cuts.range.low[c] = 0;
+    for (int c = 0; c < 3; c++) {
+        cuts.range.low[c] = cuts.weight * box_min(cuts.range.low[c], 0);
+        cuts.range.high[c] = cuts.weight * box_max(cuts.range.high[c], 0);
+    }
     if (ground == 1)
         return;
     const bool few = list_shades(r, &hit->surface, &beam, light, shades, &piece.n);
@@ -319,10 +359,7 @@ static void add_light(Region *r, HitLight *hit, size_t light, int point, const L
         }
     }
     if (!few || ground == -1 || piece.n > MAX_BLOCKERS) {
-        ColorSpan part = cuts.range;
-        for (int c = 0; c < 3; c++)
-            part.high[c] *= cuts.weight;
-        add_span(r, polygon_area(polygon), &part);
+        add_span(r, polygon_area(polygon), &cuts.range);
         return;
     }
     for (int i = 0; i < piece.n; i++) {
