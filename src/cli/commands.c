@@ -138,9 +138,9 @@ static Status run(Parsed *parsed, Err *err)
 /* The library reads no environment, so these variables are read here. */
 static Status read_environment(Err *err)
 {
-    static const char date[] = "SOURCE_DATE_EPOCH";
+    const char *date = getenv("SOURCE_DATE_EPOCH");
     (void)templates_set(getenv("CORCAST_TEMPLATES"));
-    if (clock_set_date(getenv(date)))
+    if (clock_set_date(date && *date ? date : NULL))
         return STATUS_OK;
     return err_set(
         err, STATUS_USAGE,
