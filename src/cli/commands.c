@@ -49,6 +49,7 @@ const CommandRow command_rows[] = {
     {&command_compare, run_compare, COMMANDS_CHECK, OBEYS_MOST},
     {&command_report, run_report, COMMANDS_CHECK, OBEYS_RUN},
     {&command_power, run_power, COMMANDS_CHECK, OBEYS_MOST},
+    {&command_suite, run_suite, COMMANDS_CHECK, OBEYS_MOST},
     {&command_metamorph, run_metamorph, COMMANDS_CHECK, OBEYS_MOST},
     {&command_check_figure, run_check_figure, COMMANDS_CHECK, OBEYS_RUN},
     {&command_models, run_models, COMMANDS_LIST, 0},
@@ -137,9 +138,9 @@ static Status run(Parsed *parsed, Err *err)
 /* The library reads no environment, so these variables are read here. */
 static Status read_environment(Err *err)
 {
-    static const char date[] = "SOURCE_DATE_EPOCH";
+    const char *date = getenv("SOURCE_DATE_EPOCH");
     (void)templates_set(getenv("CORCAST_TEMPLATES"));
-    if (clock_set_date(getenv(date)))
+    if (clock_set_date(date && *date ? date : NULL))
         return STATUS_OK;
     return err_set(
         err, STATUS_USAGE,

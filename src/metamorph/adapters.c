@@ -2,7 +2,8 @@
  * All numbers are written with as many digits as they need to be read back exactly. */
 #include "metamorph/adapters.h"
 
-#include <string.h>
+#include "oracle/shell.h"
+#include <stdio.h>
 
 static const double palette[TRIAL_COLORS][3] = {
     {1, 0.5, 0.25}, {0.25, 0.75, 1}, {0.5, 1, 0.5}, {0.75, 0.25, 0.75}};
@@ -303,42 +304,23 @@ const TrialAdapter trial_adapters[TRIAL_FORMATS] = {
     [TRIAL_SWC] = {"swc", "png", {1 << SHAPE_NODE, 20}, write_swc},
 };
 
-/* Appends the replacement of the mark at the start of `at`. Returns the mark's length; 0: `at`
- * starts with no mark. */
-static size_t put_mark(const char *at, const TrialScene *scene, const TrialFiles *files, Text *out)
-{
-    static const char *const marks[] = {"{scene}", "{picture}", "{width}", "{height}", "{camera}"};
-    size_t i = 0;
-    while (i < 5 && strncmp(at, marks[i], strlen(marks[i])) != 0)
-        i++;
-    if (i == 5)
-        return 0;
-    if (i < 2)
-        text_put_shell_word(out, i == 0 ? files->scene : files->picture);
-    else if (i < 4)
-        text_printf(out, "%d", i == 2 ? scene->width_px : scene->height_px);
-    else
-        put_camera(scene, out);
-    return strlen(marks[i]);
-}
-
 void trial_command(const char *command, TrialFormat format, const TrialScene *scene,
                    const TrialFiles *files, Text *out)
 {
-    const bool has_marks = strstr(command, "{scene}") != NULL;
-    for (const char *at = command; *at;) {
-        const size_t length = put_mark(at, scene, files, out);
-        if (length == 0)
-            text_append(out, at, 1);
-        at += length ? length : 1;
+    Text camera = TEXT_INIT;
+    char width[16], height[16];
+    snprintf(width, sizeof width, "%d", scene->width_px);
+    snprintf(height, sizeof height, "%d", scene->height_px);
+    put_camera(scene, &camera);
+    if (text_chars(&camera)) {
+        const ShellMark marks[] = {{"{scene}", files->scene, false},
+                                   {"{picture}", files->picture, false},
+                                   {"{camera}", text_chars(&camera), true},
+                                   {"{width}", width, true},
+                                   {"{height}", height, true}};
+        shell_fill_marks(command, marks, 5, format == TRIAL_SWC ? 3 : 2, out);
+    } else {
+        text_puts(out, NULL);
     }
-    if (has_marks)
-        return;
-    text_puts(out, " ");
-    text_put_shell_word(out, files->scene);
-    text_puts(out, " ");
-    text_put_shell_word(out, files->picture);
-    text_puts(out, " ");
-    if (format == TRIAL_SWC)
-        put_camera(scene, out);
+    text_release(&camera);
 }

@@ -20,6 +20,34 @@ size_t shell_fill(const char *command, const char *mark, const char *path, Text 
     return n;
 }
 
+static void put_mark(const ShellMark *mark, Text *out)
+{
+    if (mark->is_words)
+        text_puts(out, mark->text);
+    else
+        text_put_shell_word(out, mark->text);
+}
+
+void shell_fill_marks(const char *command, const ShellMark *marks, size_t n, size_t appended,
+                      Text *out)
+{
+    const bool has_marks = strstr(command, marks[0].mark) != NULL;
+    for (const char *at = command; *at;) {
+        size_t i = 0;
+        while (i < n && strncmp(at, marks[i].mark, strlen(marks[i].mark)) != 0)
+            i++;
+        if (i < n)
+            put_mark(&marks[i], out);
+        else
+            text_append(out, at, 1);
+        at += i < n ? strlen(marks[i].mark) : 1;
+    }
+    for (size_t i = 0; i < appended && !has_marks; i++) {
+        text_puts(out, " ");
+        put_mark(&marks[i], out);
+    }
+}
+
 /* Runs `command` in this process. Its output goes to the file descriptor `output`; -1: it is
  * dropped. */
 static void become_command(const char *command, int output)

@@ -8,6 +8,17 @@
  * number of marks. */
 size_t shell_fill(const char *command, const char *mark, const char *path, Text *out);
 
+/* A mark of a command, such as "{scene}", and what replaces it. Borrowed. */
+typedef struct ShellMark {
+    const char *mark, *text;
+    bool is_words; /* `text` is several words of the shell; false: one word, which is quoted */
+} ShellMark;
+
+/* Appends `command` with all marks replaced. If the first mark is missing in `command`, the texts
+ * of the first `appended` marks are appended. */
+void shell_fill_marks(const char *command, const ShellMark *marks, size_t n, size_t appended,
+                      Text *out);
+
 /* How a command ended. */
 typedef struct ShellEnd {
     int exit_status; /* 127 if a signal ended it */
