@@ -47,6 +47,7 @@ POWER := $(BUILD)/tests/power/power
 EMBREE := $(BUILD)/tests/bench/embree
 FRAMES := $(BUILD)/tests/bench/frames
 MESHES := $(BUILD)/tests/bench/meshes
+PULSES := $(BUILD)/tests/bench/pulse
 FIT := $(BUILD)/tests/fit/fit_blob
 OPTIMA := $(BUILD)/tests/optima/optima
 FUZZ_SOURCES := $(wildcard tests/fuzz/*.c)
@@ -106,7 +107,7 @@ LINK = $(CC) $(OWN_LDFLAGS) $(LDFLAGS)
 VIEWER := $(or $(wildcard templates/page/viewer.js),build/viewer/viewer.js)
 LIBS := $(PACKAGE_LIBS) $(PLAIN_LIBS)
 
-.PHONY: all lib abi api-programs deps page demo figures gallery hero validate bench bench-grow bench-render bench-view bench-compare bench-mesh bench-trees bench-large export-all verify-all coronary power power-program fit-blob optima check check-all check-quick program unit \
+.PHONY: all lib abi api-programs deps page demo figures gallery hero validate bench bench-grow bench-render bench-view bench-compare bench-mesh bench-trees bench-pulse bench-large export-all verify-all coronary power power-program metamorph fit-blob optima check check-all check-quick program unit \
 	unit-programs layers format format-check asan tsan \
 	fuzz fuzz-programs golden-update reference install uninstall dist clean help packages libraries
 .DELETE_ON_ERROR:
@@ -182,6 +183,13 @@ bench-trees: ## time reading and writing a tree, compared with numpy and VTK; BE
 	$(Q)$(AGAIN) all
 	$(Q)tests/bench/trees
 
+bench-pulse: ## time pulse waves of 16 harmonics in 10^6 segments
+	$(Q).ci/deps build
+	$(Q)$(AGAIN) all $(PULSES)
+	$(Q)mkdir -p out/bench
+	$(Q)[ -s out/bench/pulse.swc ] || build/corcast grow --quiet --domain ball:40 --terminals 500000 -o out/bench/pulse.swc
+	$(Q)$(PULSES) out/bench/pulse.swc
+
 bench-large: ## time growing, reading and drawing 10^6 terminals; BENCH=full adds 10^7
 	$(Q).ci/deps build check
 	$(Q)$(AGAIN) all
@@ -204,6 +212,9 @@ power: ## plant faults and count which `verify` and the tests find; writes docs/
 	$(Q)JOBS=$(JOBS) tests/power/run-shared
 
 power-program: $(POWER)
+
+metamorph: build/corcast ## search for broken relations at length: planted faults, corcast (PAIRS=10000), POV-Ray, Tachyon; results in out/metamorph/
+	$(Q)tests/relations/metamorph $(PAIRS)
 
 optima: $(OPTIMA) ## find the best trees of small point sets, and count how often annealing finds them
 	$(Q)$(OPTIMA) tests/optima/sets.txt
@@ -310,7 +321,7 @@ $(API_PROGRAMS): $(BUILD)/tests/api/%: tests/api/%.c src/corcast.h $(BUILD)/$(SO
 
 api-programs: $(API_PROGRAMS)
 
-$(OPTIMA) $(FIT): %: %.o $(BUILD)/rooms.a
+$(OPTIMA) $(FIT) $(PULSES): %: %.o $(BUILD)/rooms.a
 	$(call say,LINK,$@)
 	$(Q)mkdir -p $(@D)
 	$(Q)$(LINK) -o $@ $^ $(LIBS)
@@ -357,7 +368,7 @@ $(FAILING): tests/alloc/failing.c Makefile
 	$(Q)$(CC) -D_GNU_SOURCE -std=c11 -O1 -g $(WARNINGS) -fPIC -shared -o $@ $<
 
 # Loops over pixels get faster with vectors, and growth with square roots that do not set errno.
-$(filter $(BUILD)/src/image/% $(BUILD)/src/compare/% $(BUILD)/src/grow/% $(BUILD)/src/pulse/% $(BUILD)/src/render/raster/% $(BUILD)/src/render/light/% $(BUILD)/src/mesh/% $(BUILD)/src/render/tile/%,$(ROOM_OBJECTS)): VECTORS := $(VECTORS_$(MODE))
+$(filter $(BUILD)/src/answer/% $(BUILD)/src/image/% $(BUILD)/src/compare/% $(BUILD)/src/grow/% $(BUILD)/src/pulse/% $(BUILD)/src/render/raster/% $(BUILD)/src/render/light/% $(BUILD)/src/mesh/% $(BUILD)/src/render/tile/%,$(ROOM_OBJECTS)): VECTORS := $(VECTORS_$(MODE))
 
 # The program looks for its templates below this folder last.
 $(BUILD)/src/options/templates.o: OWN_CPPFLAGS += '-DCORCAST_PREFIX="$(PREFIX)"'
@@ -365,7 +376,7 @@ $(BUILD)/src/options/templates.o: OWN_CPPFLAGS += '-DCORCAST_PREFIX="$(PREFIX)"'
 # Kernels of pictures read no input and write to arrays of fixed size. The stack protector would cost them 2 % of their speed.
 $(filter %kernels.o %kernels.avx2.o %kernels.avx512.o,$(ROOM_OBJECTS)): HARDEN_release += -fno-stack-protector
 
--include $(ROOM_OBJECTS:.o=.d) $(CLI_OBJECTS:.o=.d) $(TEST_OBJECTS:.o=.d) $(POWER_OBJECTS:.o=.d) $(EMBREE).d $(FRAMES).d $(MESHES).d $(FIT).d $(FUZZ_SOURCES:%.c=$(BUILD)/%.d)
+-include $(ROOM_OBJECTS:.o=.d) $(CLI_OBJECTS:.o=.d) $(TEST_OBJECTS:.o=.d) $(POWER_OBJECTS:.o=.d) $(EMBREE).d $(FRAMES).d $(MESHES).d $(PULSES).d $(FIT).d $(FUZZ_SOURCES:%.c=$(BUILD)/%.d)
 
 libraries:
 ifeq ($(and $(strip $(PACKAGE_LIBS)),$(NIFTI)),)
@@ -464,13 +475,13 @@ uninstall: ## remove the files of `make install`
 	rm -rf $(SHARE)/corcast" $(SHARE)/doc/corcast"
 
 VERSION := $(shell sed -n 's/^.define CORCAST_VERSION "\(.*\)"/\1/p' src/base/version.h)
-# What a release has beside the commit: the viewer, and the parts of three.js that it is made of, so that it can be made again.
+# What a release has beside the commit: the page that grows trees, the viewer, and the parts of three.js that it is made of, so that it can be made again.
 RELEASED := LICENSE package.json build/three.core.js build/three.module.js examples/jsm/controls/OrbitControls.js
-dist: $(VIEWER) ## pack the sources of the last commit, and the viewer, into build/corcast-VERSION.tar.gz, with the same bytes each time
+dist: $(VIEWER) page ## pack the sources of the last commit, the viewer and the page that grows trees into build/corcast-VERSION.tar.gz, with the same bytes each time
 	$(Q)mkdir -p build
 	$(Q)git archive --format=tar -o build/corcast-$(VERSION).tar --prefix=corcast-$(VERSION)/templates/page/ --add-file=$(VIEWER) \
 		$(foreach file,$(RELEASED),--prefix=corcast-$(VERSION)/templates/viewer/node_modules/three/$(filter-out ./,$(dir $(file))) --add-file=build/viewer/node_modules/three/$(file)) \
-		--prefix=corcast-$(VERSION)/ HEAD
+		--prefix=corcast-$(VERSION)/ --add-file=build/grow/corcast.html HEAD
 	$(Q)gzip -9nf build/corcast-$(VERSION).tar
 
 packages: ## build, lint and test the packages of .ci/packages; PACKAGE=wheel for one; results in build/packages/

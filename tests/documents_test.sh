@@ -189,7 +189,8 @@ END
 test_the_numbers_of_fields_and_joints_are_those_of_the_source() {
     agree METHODS.md <<'END'
 1 mmHg = 133.322387415 Pa @ units.h @ mmhg * 133.322387415;
-rho = 1.05 · 10⁻³ g/mm³ @ flow.c @ density_g_mm3 = 1.05e-3;
+rho = 1.05 · 10⁻³ g/mm³ @ derive.h @ BLOOD_DENSITY_G_MM3 1.05e-3
+0.32 R, 0.52 R and 0.16 R @ pulse_outlets.c @ part_before = 0.32, part_within = 0.52, part_behind = 0.16;
 `m = 6 exp(-0.085 D) + 3.2 - 2.44 exp(-0.06 D^0.645)` @ viscosity.c @ 6 * elementary_exp(-0.085 * diameter) + 3.2 - 2.44 * elementary_exp(-0.06 * elementary_pow(diameter, 0.645));
 Nothing passes at D <= 1.1 @ viscosity.c @ wall_layer = 1.1;
 it ends when at most 1 % of the vessels change @ diameter_orders.c @ assign(vessels, bin, largest, made) * 100 <= vessels->n;

@@ -2,7 +2,7 @@
  * neither tiles nor threads change the result. */
 #include "answer/answer.h"
 
-#include "answer/answertile.h"
+#include "answer/certificate.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -107,21 +107,6 @@ static float rounded_up(double value)
     return (double)near < value ? nextafterf(near, INFINITY) : near;
 }
 
-/* The width in sRGB, in plain doubles: the state is not part of what is proven. */
-static double srgb(double linear)
-{
-    const double v = linear < 0 ? 0 : linear > 1 ? 1 : linear;
-    return v <= 0.0031308 ? 12.92 * v : 1.055 * elementary_pow(v, 1 / 2.4) - 0.055;
-}
-
-static double width_of(const ColorSpan *span)
-{
-    double width = 0;
-    for (int c = 0; c < 3; c++)
-        width = fmax(width, srgb(span->high[c]) - srgb(span->low[c]));
-    return width;
-}
-
 static void store(const AnswerPlan *plan, const ColorSpan *span, const Center *center,
                   float *values)
 {
@@ -130,17 +115,19 @@ static void store(const AnswerPlan *plan, const ColorSpan *span, const Center *c
         values[ANSWER_LOW + c] = rounded_down(span->low[c]);
         values[ANSWER_HIGH + c] = rounded_up(span->high[c]);
     }
-    values[ANSWER_STATE] = width_of(span) <= plan->params.width ? ANSWER_DECIDED : ANSWER_UNDECIDED;
+    values[ANSWER_STATE] = span_width(span) <= plan->params.width ? ANSWER_DECIDED
+                           : plan->params.pattern > 0             ? ANSWER_UNDECIDED
+                                                                  : ANSWER_OVER_BUDGET;
     values[ANSWER_ID] =
         center->face == UINT32_MAX ? 0 : (float)ids[plan->faces[center->face].segment];
     values[ANSWER_NEAR] = rounded_down(center->near);
     values[ANSWER_FAR] = rounded_up(center->far);
 }
 
-static void answer_pixel(AnswerWork *work, int i, int j, float *values)
+/* Lists the faces in a pixel, of those in its tile. */
+static void list_pixel(AnswerWork *work, int i, int j)
 {
     const AnswerPlan *plan = work->plan;
-    Center center;
     work->pixel.n = 0;
     for (size_t k = 0; k < work->tile.n; k++) {
         const uint32_t face = work->tile.faces[k];
@@ -150,9 +137,27 @@ static void answer_pixel(AnswerWork *work, int i, int j, float *values)
     }
     if (plan->has_ground)
         work->pixel.faces[work->pixel.n++] = (uint32_t)plan->n;
-    const ColorSpan span = pattern_answer(work, i, j, &center);
-    store(plan, &span, &center, values);
+}
+
+static Status pixel_span(AnswerWork *work, int i, int j, ColorSpan *span, Err *err)
+{
+    if (work->plan->params.pattern == 0)
+        return area_answer(work, i, j, span, err);
+    *span = pattern_answer(work, i, j);
+    return STATUS_OK;
+}
+
+static Status answer_pixel(AnswerWork *work, int i, int j, float *values, Err *err)
+{
+    const Beam ray = answerplan_ray(work->plan, i + 0.5, j + 0.5);
+    Center center;
+    ColorSpan span;
+    list_pixel(work, i, j);
+    find_center(work, &ray, &center);
+    TRY(pixel_span(work, i, j, &span, err));
+    store(work->plan, &span, &center, values);
     work->undecided += values[ANSWER_STATE] != ANSWER_DECIDED;
+    return STATUS_OK;
 }
 
 /* Lists the faces in a tile. */
@@ -190,9 +195,34 @@ static Status answer_tile(size_t tile, int worker, void *context, Err *err)
     for (int j = top; j < top + height; j++)
         for (int i = left; i < left + width; i++) {
             const size_t pixel = (size_t)j * (size_t)camera->width + (size_t)i;
-            answer_pixel(work, i, j, job->plane.values + pixel * ANSWER_CHANNELS);
+            TRY(answer_pixel(work, i, j, job->plane.values + pixel * ANSWER_CHANNELS, err));
         }
     return STATUS_OK;
+}
+
+/* Writes the claims of pixels that lie evenly among those that show a vessel at their center. */
+static Status certify(AnswerJob *job, Err *err)
+{
+    AnswerWork *work = &job->works[0];
+    const AnswerParams *params = &job->plan.params;
+    const size_t width = (size_t)job->plane.width, n = width * (size_t)job->plane.height;
+    size_t shown = 0, seen = 0;
+    for (size_t pixel = 0; pixel < n; pixel++)
+        shown += !isinf(job->plane.values[pixel * ANSWER_CHANNELS + ANSWER_NEAR]);
+    const size_t step = shown / (size_t)params->certified + 1;
+    certificate_put_scene(&job->plan, params->certificate);
+    for (size_t pixel = 0; pixel < n; pixel++) {
+        const int i = (int)(pixel % width), j = (int)(pixel / width);
+        ColorSpan span;
+        if (isinf(job->plane.values[pixel * ANSWER_CHANNELS + ANSWER_NEAR]) || seen++ % step != 0)
+            continue;
+        list_tile(work, &(PixelRect){i, j, 1, 1});
+        list_pixel(work, i, j);
+        TRY(pixel_span(work, i, j, &span, err));
+        certificate_put_pixel(work, i, j, &span, params->certificate);
+    }
+    text_printf(params->certificate, "null]}\n");
+    return text_check(params->certificate, err);
 }
 
 static Status make_works(AnswerJob *job, Err *err)
@@ -216,6 +246,8 @@ static void release_works(AnswerJob *job)
         free(job->works[i].tile.faces);
         free(job->works[i].pixel.faces);
         free(job->works[i].blockers.faces);
+        ARRAY_RELEASE(&job->works[i].leaves);
+        ARRAY_RELEASE(&job->works[i].heap);
     }
     free(job->works);
 }
@@ -231,6 +263,8 @@ Status answer_make(const Scene *scene, const AnswerParams *params, Answer *out, 
     TRY_GOTO(plane_init(&job.plane, camera->width, camera->height, ANSWER_CHANNELS, err));
     TRY_GOTO(
         threads_try((size_t)job.columns * (size_t)job.rows, job.threads, answer_tile, &job, err));
+    if (params->certificate)
+        TRY_GOTO(certify(&job, err));
     Answer made = {.plane = job.plane, .scene = answer_scene_hash(scene, params->shadows)};
     for (int i = 0; i < job.threads; i++) {
         made.beams += job.works[i].beams;

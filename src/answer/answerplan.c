@@ -158,7 +158,7 @@ static void bound_colors(AnswerPlan *plan)
     for (int c = 0; c < 3; c++) {
         double light = 0, pigment = 0;
         for (size_t i = 0; i < view->n_lights; i++)
-            light += rgb_channel(view->lights[i].color, c);
+            light += fabs(rgb_channel(view->lights[i].color, c));
         for (size_t i = 0; i < plan->n; i++) {
             const Rgb color = appearance_color(&scene->appearance, plan->faces[i].segment);
             pigment = box_max(pigment, rgb_channel(color, c));
@@ -169,6 +169,10 @@ static void bound_colors(AnswerPlan *plan)
             plan->most[c] =
                 box_max(plan->most[c],
                         most_of(&view->ground.finish, rgb_channel(view->ground.color, c), light));
+        plan->least[c] = 0;
+        for (size_t i = 0; i < view->n_lights; i++)
+            if (rgb_channel(view->lights[i].color, c) < 0)
+                plan->least[c] = -plan->most[c];
     }
 }
 
@@ -190,7 +194,7 @@ Status answerplan_make(const Scene *scene, const AnswerParams *params, AnswerPla
     TRY(make_screen(plan, err));
     bound_colors(plan);
     return scene->view.camera.projection == PROJECTION_ORTHOGRAPHIC
-               ? make_frames(plan, answerplan_beam(plan, 0, 0, 0, 0).direction, &plan->frames, err)
+               ? make_frames(plan, answerplan_ray(plan, 0, 0).direction, &plan->frames, err)
                : STATUS_OK;
 }
 
@@ -209,14 +213,17 @@ void answerplan_release(AnswerPlan *plan)
 
 /* Positions are fractions of the picture. The error covers the rounding of renderers, so that the
  * answer holds for the positions that they compute. */
-Beam answerplan_beam(const AnswerPlan *plan, double x, double y, double half_x, double half_y)
+Beam answerplan_beam(const AnswerPlan *plan, double x, double y, const double along[2],
+                     const double across[2])
 {
     const Camera *camera = &plan->scene->view.camera;
     const double error = 0x1p-50 * (1 + fabs(x / camera->width) + fabs(y / camera->height));
-    const Form across = {x / camera->width - 0.5, half_x / camera->width, 0, error};
-    const Form up = {0.5 - y / camera->height, 0, -half_y / camera->height, error};
+    const Form right = {x / camera->width - 0.5, along[0] / camera->width,
+                        across[0] / camera->width, error};
+    const Form up = {0.5 - y / camera->height, -along[1] / camera->height,
+                     -across[1] / camera->height, error};
     const Form3 offset =
-        form3_add(form3_mul(exact(camera->right), across), form3_mul(exact(camera->up), up));
+        form3_add(form3_mul(exact(camera->right), right), form3_mul(exact(camera->up), up));
     Beam beam;
     if (camera->projection == PROJECTION_PERSPECTIVE) {
         beam = beam_of(exact(camera->location), form3_add(exact(camera->direction), offset));

@@ -28,8 +28,10 @@ typedef struct AnswerPlan {
     WallFrame *frames; /* per face, for an orthographic camera; NULL in perspective */
     PixelRect *screen; /* per face: the pixels that its box covers */
     LightRays lights[VIEW_MAX_LIGHTS];
-    double most[3]; /* no color of a channel is above this */
-    double pad_mm;  /* the boxes of the search tree are this much larger than the faces */
+    /* Bounds of each channel of every color, and of what each light adds: `least` is 0 unless a
+     * light has a negative color. */
+    double least[3], most[3];
+    double pad_mm; /* the boxes of the search tree are this much larger than the faces */
 } AnswerPlan;
 
 /* Prepares a scene. Release *plan with answerplan_release, even after an error. Errors:
@@ -38,9 +40,16 @@ MUST_CHECK Status answerplan_make(const Scene *scene, const AnswerParams *params
                                   Err *err);
 void answerplan_release(AnswerPlan *plan);
 
-/* Returns the beam of the rays through a rectangle of the picture: pixels from the left and upper
- * edges. Its centre is (x, y), its half sides are `half_x` and `half_y`. */
-Beam answerplan_beam(const AnswerPlan *plan, double x, double y, double half_x, double half_y);
+/* Returns the beam of the rays through a rectangle of the picture around (x, y), pixels from the
+ * left and upper edges. The point (ex, ey) of its forms is at (x, y) + ex along + ey across. */
+Beam answerplan_beam(const AnswerPlan *plan, double x, double y, const double along[2],
+                     const double across[2]);
+/* Returns the beam of a single ray. */
+static inline Beam answerplan_ray(const AnswerPlan *plan, double x, double y)
+{
+    static const double none[2] = {0, 0};
+    return answerplan_beam(plan, x, y, none, none);
+}
 
 /* Faces that the rays of a beam may hit. */
 typedef struct FaceList {

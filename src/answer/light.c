@@ -190,10 +190,6 @@ int ground_blocks(const AnswerPlan *plan, const FormSurface *s, const Beam *beam
                : -1;
 }
 
-/* Renderers do not look for blockers within SHADOW_FROM_MM of a surface. A ray that leaves its own
- * solid within that path, whose length is at least 2 radius cosine, may be blocked or not. */
-#define SHADOW_FROM_MM 1.01e-3
-
 int own_solid_blocks(const FormSurface *s, const Beam *beam)
 {
     const Form facing = form3_dot(s->normal, beam->unit);

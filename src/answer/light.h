@@ -51,6 +51,10 @@ bool blocker_at(const AnswerPlan *plan, const FormSurface *surface, const Beam *
 int ground_blocks(const AnswerPlan *plan, const FormSurface *surface, const Beam *beam,
                   size_t light);
 
+/* Renderers do not look for blockers within SHADOW_FROM_MM of a surface. A ray that leaves its own
+ * solid within that path, whose length is at least 2 radius cosine, may be blocked or not. */
+#define SHADOW_FROM_MM 1.01e-3
+
 /* Returns the same of the solid that the surface belongs to, which blocks the rays that begin
  * inwards: those to points of a light behind the surface, of which other points are before it. */
 int own_solid_blocks(const FormSurface *surface, const Beam *beam);

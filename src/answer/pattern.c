@@ -9,7 +9,7 @@ ColorSpan span_any(const AnswerPlan *plan)
 {
     ColorSpan span;
     for (int c = 0; c < 3; c++) {
-        span.low[c] = 0;
+        span.low[c] = plan->least[c];
         span.high[c] = plan->most[c];
     }
     return span;
@@ -34,6 +34,28 @@ void span_include(ColorSpan *span, const ColorSpan *other)
     for (int c = 0; c < 3; c++) {
         span->low[c] = box_min(span->low[c], other->low[c]);
         span->high[c] = box_max(span->high[c], other->high[c]);
+    }
+}
+
+static double srgb(double linear)
+{
+    const double v = linear < 0 ? 0 : linear > 1 ? 1 : linear;
+    return v <= 0.0031308 ? 12.92 * v : 1.055 * elementary_pow(v, 1 / 2.4) - 0.055;
+}
+
+double span_width(const ColorSpan *span)
+{
+    double width = 0;
+    for (int c = 0; c < 3; c++)
+        width = box_max(width, srgb(span->high[c]) - srgb(span->low[c]));
+    return width;
+}
+
+void span_slopes(const ColorSpan *span, double slopes[3])
+{
+    for (int c = 0; c < 3; c++) {
+        const double v = 0.5 * (span->low[c] + span->high[c]);
+        slopes[c] = v <= 0.0031308 ? 12.92 : 1.055 / 2.4 * elementary_pow(v, 1 / 2.4 - 1);
     }
 }
 
@@ -166,16 +188,17 @@ static ColorSpan hit_color(AnswerWork *work, const Beam *beam, const FaceHit *hi
 
 /* ---- rays ------------------------------------------------------------------------------------ */
 
-/* Sets the bounds of the first vessel's depth, and its face if that is certain. */
-static void set_center(const AnswerPlan *plan, const Seen *seen, const FaceHit *hits,
-                       const Beam *beam, Center *center)
+/* The face is set only if it is certain. */
+void find_center(AnswerWork *work, const Beam *ray, Center *center)
 {
+    const Seen found = tile_look(work, ray, &work->pixel), *seen = &found;
+    const FaceHit *hits = work->hits;
     const double nothing = (double)INFINITY;
     const Face *first = NULL;
     bool sure = seen->covered && !seen->crowded;
     *center = (Center){UINT32_MAX, nothing, seen->n > 0 ? 0 : nothing};
     for (size_t i = 0; i < seen->n; i++) {
-        const Form depth = form_mul(hits[i].depth, beam->length);
+        const Form depth = form_mul(hits[i].depth, ray->length);
         sure = sure && hits[i].face->kind != FACE_GROUND &&
                (!first || first->segment == hits[i].face->segment);
         first = hits[i].face;
@@ -185,22 +208,21 @@ static void set_center(const AnswerPlan *plan, const Seen *seen, const FaceHit *
         center->far = box_max(center->far, form_high(depth));
     }
     if (sure)
-        center->face = (uint32_t)(first - plan->faces);
+        center->face = (uint32_t)(first - work->plan->faces);
     else
         center->far = nothing;
 }
 
-ColorSpan ray_answer(AnswerWork *work, const Beam *beam, const FaceList *list, Center *center)
+/* Returns the color of a single ray. */
+static ColorSpan ray_answer(AnswerWork *work, const Beam *beam)
 {
     const AnswerPlan *plan = work->plan;
-    const Seen seen = tile_look(work, beam, list);
+    const Seen seen = tile_look(work, beam, &work->pixel);
     const Rgb paper = plan->scene->view.background;
     ColorSpan span = {.low = {rgb_channel(paper, 0), rgb_channel(paper, 1), rgb_channel(paper, 2)}};
     work->beams++;
     for (int c = 0; c < 3; c++)
         span.high[c] = span.low[c];
-    if (center)
-        set_center(plan, &seen, work->hits, beam, center);
     if (seen.crowded)
         return span_any(plan);
     for (size_t i = 0; i < seen.n; i++) {
@@ -213,20 +235,20 @@ ColorSpan ray_answer(AnswerWork *work, const Beam *beam, const FaceList *list, C
     return span;
 }
 
-ColorSpan pattern_answer(AnswerWork *work, int i, int j, Center *center)
+ColorSpan pattern_answer(AnswerWork *work, int i, int j)
 {
     const int n = work->plan->params.pattern;
     const double x = i + 0.5, y = j + 0.5;
     double offsets[ANSWER_MAX_PATTERN];
-    Beam beam = answerplan_beam(work->plan, x, y, 0, 0);
-    ColorSpan sum = ray_answer(work, &beam, &work->pixel, center);
+    Beam beam = answerplan_ray(work->plan, x, y);
+    ColorSpan sum = ray_answer(work, &beam);
     if (n < 2)
         return sum;
     camera_sample_offsets(n, offsets);
     for (int row = 0; row < n; row++)
         for (int column = 0; column < n; column++) {
-            beam = answerplan_beam(work->plan, x + offsets[column], y + offsets[row], 0, 0);
-            const ColorSpan span = ray_answer(work, &beam, &work->pixel, NULL);
+            beam = answerplan_ray(work->plan, x + offsets[column], y + offsets[row]);
+            const ColorSpan span = ray_answer(work, &beam);
             for (int c = 0; c < 3; c++) {
                 sum.low[c] += span.low[c];
                 sum.high[c] += span.high[c];
@@ -234,8 +256,8 @@ ColorSpan pattern_answer(AnswerWork *work, int i, int j, Center *center)
         }
     /* Sums of at most 4000 terms have relative errors below 1e-12. */
     for (int c = 0; c < 3; c++) {
-        sum.low[c] *= (1 - 1e-12) / (n * n + 1);
-        sum.high[c] *= (1 + 1e-12) / (n * n + 1);
+        sum.low[c] = (sum.low[c] - 1e-12 * fabs(sum.low[c])) / (n * n + 1);
+        sum.high[c] = (sum.high[c] + 1e-12 * fabs(sum.high[c])) / (n * n + 1);
     }
     return sum;
 }

@@ -28,7 +28,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-enum { MAX_TEMPORARIES = 64, MAX_GROUPS = 8 };
+enum { MAX_TEMPORARIES = 64, MAX_GROUPS = 32 };
 static _Atomic(char *) temporaries[MAX_TEMPORARIES];
 static _Atomic pid_t groups[MAX_GROUPS]; /* to be killed; 0: none */
 

@@ -114,7 +114,7 @@ MUST_CHECK Status file_make_folder(const char *path, Err *err);
  * main calls it, once. The table of temporary names is a global: a handler can reach nothing else.
  */
 void file_clean_up_on_signals(void);
-/* Registers a process group, at most eight at a time: a signal that ends the program then kills the
+/* Registers a process group, at most 32 at a time: a signal that ends the program then kills the
  * group first, so that the group makes no more files. file_spare_on_signal cancels it. */
 void file_kill_on_signal(pid_t group);
 void file_spare_on_signal(pid_t group);

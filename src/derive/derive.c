@@ -22,6 +22,14 @@ static Status field_length(const Tree *tree, const TreeMeta *overrides, double *
     return STATUS_OK;
 }
 
+static Status field_type(const Tree *tree, const TreeMeta *overrides, double *value, Err *err)
+{
+    (void)overrides, (void)err;
+    for (size_t i = 0; i < tree->n; i++)
+        value[i] = tree->type[i];
+    return STATUS_OK;
+}
+
 /* A field: its name, unit ("" for pure numbers), title in legends (NULL: the name), description in
  * lists, and the function that computes it. */
 typedef struct FieldRule {
@@ -45,6 +53,8 @@ static const FieldRule rules[] = {
     {"branch", "", "main branch", "number of the branch; a branch follows the thickest daughter",
      field_branch},
     {"tree", "", NULL, "number of the tree in a forest", field_tree},
+    {"type", "", "SWC type", "SWC type code of the segment; in some files the name of its artery",
+     field_type},
 };
 
 enum { N_RULES = sizeof rules / sizeof *rules };

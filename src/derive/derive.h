@@ -39,6 +39,7 @@ typedef struct Field {
  *     diameter-strahler  an order by diameters, see below
  *     branch             index of the branch, from 1, see below
  *     tree               index of the tree in a forest, from 1, in the order of the roots
+ *     type               SWC type code
  *
  * Diameter-defined Strahler orders are 1 at terminals. Elsewhere the order is m, the largest order
  * of the daughters, or m + 1 if the diameter is above (D_m + S_m + D_m+1 - S_m+1) / 2. D and S are

@@ -336,6 +336,10 @@ MUST_CHECK Status image_read(Image *image, const char *path, ImageAlpha alpha, c
 bool image_exr_text(const char *path, const char *name, char *text, size_t size);
 /* As image_read. Errors: also STATUS_INPUT if the file holds floats, or if it holds codes. */
 MUST_CHECK Status picture_read(Picture *picture, const char *path, ImageAlpha alpha, Err *err);
+/* Reads a file in memory as picture_read. `name` is the file's name in errors. Errors: also
+ * STATUS_INPUT if the format is unknown. */
+MUST_CHECK Status picture_decode(Picture *picture, const char *name, const void *bytes, size_t size,
+                                 Err *err);
 MUST_CHECK Status plane_read(Plane *plane, const char *path, ImageAlpha alpha, Err *err);
 
 /* Composites an image with alpha over a background, red, green and blue from 0 to 1, in linear
@@ -372,10 +376,14 @@ typedef struct ImageFacts {
     const char *colors;               /* "rgb", "grey", "cmyk", "another" */
     const char *compression;          /* "lzw", "deflate", "none", "jpeg", "packbits", "another" */
     char profile[IMAGE_PROFILE_NAME]; /* its name; "": none */
+    double ink_percent; /* "cmyk": maximum sum of the four inks of a pixel, 0 to 400; of a JPEG,
+                         * whose pixels are rounded, of the mean of a block of 8 x 8 pixels. 0 for
+                         * tiles and for planes of single inks, which are not read */
 } ImageFacts;
 
-/* Finds the properties of a file without reading its pixels. Errors: STATUS_INPUT, naming the file,
- * if it is of none of these formats or its header is broken; STATUS_MEMORY. */
+/* Finds the properties of a file. Reads no pixels, except those of CMYK for ink_percent. Errors:
+ * STATUS_INPUT, naming the file, if it is of none of these formats or its header is broken;
+ * STATUS_MEMORY. */
 MUST_CHECK Status image_facts(const char *path, ImageFacts *out, Err *err);
 
 /* Appends the names and versions of the libraries that read and write images. */

@@ -1,5 +1,5 @@
-/* The properties of PNG, TIFF and JPEG files come from the libraries that read them. No pixel is
- * decoded. Of other files only the format is found. */
+/* The properties of PNG, TIFF and JPEG files come from the libraries that read them. Pixels
+ * are decoded for the total ink of CMYK only. Of other files only the format is found. */
 #include "image/formats.h"
 
 #include <stdlib.h>

@@ -49,6 +49,8 @@ typedef struct JpegReader {
     struct jpeg_decompress_struct jpeg;
     struct jpeg_error_mgr errors;
     JOCTET *profile; /* owned */
+    uint8_t *row;    /* owned; of get_facts */
+    uint32_t *sums;  /* owned; of get_facts: per block of a row of blocks, the sum of its codes */
 } JpegReader;
 
 static bool jpeg_is(const ImageBytes *file)
@@ -72,6 +74,8 @@ static void release_reader(void *work)
     JpegReader *self = work;
     jpeg_destroy_decompress(&self->jpeg);
     free(self->profile);
+    free(self->row);
+    free(self->sums);
 }
 
 static unsigned number_at(const uint8_t *at, int n, bool little)
@@ -161,9 +165,35 @@ static Status decode(void *work, Err *err)
     return self->errors.num_warnings > 0 ? guard_failure(err) : STATUS_OK;
 }
 
+/* Finds the maximum of the total ink of a block of 8 x 8 pixels that is whole. Codes are inverted
+ * after an Adobe marker. */
+static Status measure_ink(JpegReader *self, Err *err)
+{
+    enum { INKS = 4, BLOCK = DCTSIZE, FULL = 255 * BLOCK * BLOCK };
+    struct jpeg_decompress_struct *jpeg = &self->jpeg;
+    const size_t blocks = jpeg->image_width / BLOCK;
+    uint32_t most = 0;
+    TRY(mem_calloc(&self->row, (size_t)jpeg->image_width * INKS, 1, "a row of a JPEG", err));
+    TRY(mem_calloc(&self->sums, blocks + 1, sizeof *self->sums, "a row of a JPEG", err));
+    jpeg->out_color_space = JCS_CMYK;
+    jpeg_start_decompress(jpeg);
+    while (jpeg->output_scanline < jpeg->output_height) {
+        jpeg_read_scanlines(jpeg, &self->row, 1);
+        for (size_t i = 0; i < blocks * BLOCK * INKS; i++)
+            self->sums[i / (BLOCK * INKS)] +=
+                jpeg->saw_Adobe_marker ? 255u - self->row[i] : self->row[i];
+        for (size_t k = 0; k < blocks && jpeg->output_scanline % BLOCK == 0; k++) {
+            most = self->sums[k] > most ? self->sums[k] : most;
+            self->sums[k] = 0;
+        }
+    }
+    jpeg_finish_decompress(jpeg);
+    self->input.facts.ink_percent = 100.0 * most / FULL;
+    return self->errors.num_warnings > 0 ? guard_failure(err) : STATUS_OK;
+}
+
 static Status get_facts(void *work, Err *err)
 {
-    (void)err;
     static const double per_unit[] = {0, 1, MM_PER_INCH / 10};
     JpegReader *self = work;
     struct jpeg_decompress_struct *jpeg = &self->jpeg;
@@ -183,7 +213,7 @@ static Status get_facts(void *work, Err *err)
         facts->dpi = jpeg->X_density * per_unit[jpeg->density_unit];
     if (jpeg_read_icc_profile(jpeg, &self->profile, &size))
         image_profile_name(self->profile, size, facts->profile);
-    return STATUS_OK;
+    return jpeg->num_components == 4 ? measure_ink(self, err) : STATUS_OK;
 }
 
 const ImageDecoder jpeg_decoder = {.format = "JPEG",

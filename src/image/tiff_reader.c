@@ -11,6 +11,7 @@
 #include "image/tiff_stream.h"
 
 #include <Imath/half.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <tiffio.h>
@@ -539,6 +540,36 @@ static double resolution(TIFF *handle)
     return (double)per_unit * (unit == RESUNIT_CENTIMETER ? MM_PER_INCH / 10 : 1);
 }
 
+/* Finds the maximum of the total ink of a pixel, if the rows hold interleaved inks. */
+static Status measure_ink(TiffReader *self, Err *err)
+{
+    enum { INKS = 4 };
+    TIFF *handle = self->tiff.handle;
+    const int bits = self->input.facts.bits;
+    uint16_t samples, planes;
+    double most = 0;
+    TIFFGetFieldDefaulted(handle, TIFFTAG_SAMPLESPERPIXEL, &samples);
+    TIFFGetFieldDefaulted(handle, TIFFTAG_PLANARCONFIG, &planes);
+    const size_t row_bytes = (size_t)self->width * samples * (size_t)(bits / 8);
+    if (samples < INKS || planes != PLANARCONFIG_CONTIG || (bits != 8 && bits != 16) ||
+        TIFFIsTiled(handle) || (size_t)TIFFScanlineSize(handle) != row_bytes)
+        return STATUS_OK;
+    TRY(mem_calloc(&self->part, row_bytes, 1, "a row of a TIFF", err));
+    for (uint32_t y = 0; y < self->height; y++) {
+        if (TIFFReadScanline(handle, self->part, y, 0) != 1)
+            return guard_failure(err);
+        for (size_t x = 0; x < self->width; x++) {
+            double sum = 0;
+            for (size_t i = x * samples; i < x * samples + INKS; i++)
+                sum += bits == 8 ? ((const uint8_t *)self->part)[i] / 255.0
+                                 : ((const uint16_t *)self->part)[i] / 65535.0;
+            most = fmax(most, sum);
+        }
+    }
+    self->input.facts.ink_percent = 100 * most;
+    return STATUS_OK;
+}
+
 static Status get_facts(void *work, Err *err)
 {
     TiffReader *self = work;
@@ -564,7 +595,8 @@ static Status get_facts(void *work, Err *err)
     if (TIFFGetField(handle, TIFFTAG_ICCPROFILE, &size, &profile))
         image_profile_name(profile, size, facts->profile);
     facts->pages = TIFFNumberOfDirectories(handle);
-    return STATUS_OK;
+    TIFFSetDirectory(handle, 0);
+    return photometric == PHOTOMETRIC_SEPARATED ? measure_ink(self, err) : STATUS_OK;
 }
 
 const ImageDecoder tiff_decoder = {.format = "TIFF",

@@ -54,7 +54,9 @@ static const Option rows[] = {
     {.name = "repair-radii",
      SETS(FLAG, ReadOptions, repair_radii),
      .group = GROUP_INPUT,
-     .help = "replace each radius that is negative or not a number by the parent's radius"},
+     .help =
+         "fill each radius that is missing, 0, negative or not a number from its neighbours along "
+         "the branch"},
     {.name = "radius-array",
      SETS(TEXT, ReadOptions, radius_array),
      .group = GROUP_INPUT,
@@ -106,7 +108,7 @@ static void say_cuts(const Talk *talk, const TreeReading *reading)
 static void say_radii(const Talk *talk, const char *path, const TreeReading *reading)
 {
     if (reading->repaired_radii > 0)
-        talk_note(talk, "%s: radii replaced by those of the parents: %zu", path,
+        talk_note(talk, "%s: radii filled from their neighbours: %zu", path,
                   reading->repaired_radii);
     if (reading->given_radius > 0)
         talk_note(talk, "%s: segments without a radius that got --radius: %zu", path,

@@ -167,11 +167,11 @@ typedef struct Turns {
     double cos[HALF + 1], sin[HALF + 1];
 } Turns;
 
-typedef struct Cycles {
+typedef struct CycleJob {
     const Pulse *pulse;
     const Turns *turns; /* per harmonic; owned by pulse_cycles */
     PulseCycle *cycle;
-} Cycles;
+} CycleJob;
 
 /* Computes the samples of a field. Moments m and PULSE_SAMPLES - m have the same cosines, and
  * opposite sines. */
@@ -214,7 +214,7 @@ static void find_shear(const Spectrum *spectrum, const Turns *turns, PulseCycle 
 }
 
 /* The range of the area follows from that of pressure, unless the wall is viscous. */
-static double find_strain(const Cycles *cycles, size_t i, double stiffness)
+static double find_strain(const CycleJob *cycles, size_t i, double stiffness)
 {
     const double *pressure = cycles->cycle[i].pressure;
     Spectrum spectrum;
@@ -226,7 +226,7 @@ static double find_strain(const Cycles *cycles, size_t i, double stiffness)
     return 2 * (dilation[1] - dilation[0]);
 }
 
-static void find_cycle(const Cycles *cycles, size_t i)
+static void find_cycle(const CycleJob *cycles, size_t i)
 {
     const Pulse *pulse = cycles->pulse;
     PulseCycle *cycle = &cycles->cycle[i];
@@ -250,7 +250,7 @@ static void find_cycle(const Cycles *cycles, size_t i)
 static void cycles_chunk(size_t chunk, int worker, void *context)
 {
     (void)worker;
-    const Cycles *cycles = context;
+    const CycleJob *cycles = context;
     for (size_t i = chunk * CHUNK; i < chunk_end(cycles->pulse, chunk); i++)
         if (tree_is_segment(cycles->pulse->params.tree, i))
             find_cycle(cycles, i);
@@ -296,7 +296,7 @@ Status pulse_cycles(const Pulse *pulse, int threads, PulseCycle **out, Err *err)
     TRY_GOTO(mem_calloc(&turns, (size_t)pulse->params.harmonics, sizeof *turns, "moments", err));
     TRY_GOTO(mem_calloc(&cycle, pulse->n, sizeof *cycle, "cycles", err));
     make_turns(pulse->params.harmonics, turns);
-    Cycles cycles = {pulse, turns, cycle};
+    CycleJob cycles = {pulse, turns, cycle};
     threads_for(chunks_of(pulse), threads, cycles_chunk, &cycles);
     find_delays(pulse, cycle);
     *out = cycle;

@@ -159,12 +159,12 @@ static void drive_root(const Pulse *pulse, size_t root, int first, PulseWaves *a
     PairC admittance = load(at->q_re, at->q_im), source = load(at->p_re, at->p_im);
     PairC drive = drive_of(params, first), p, q;
     if (params->drive_is_flow) {
-        q = pairc_scale(drive, (Pair){0} + mm3_s_from_ml_min(pulse->flow[root]));
+        q = pairc_scale(drive, (PairR){0} + mm3_s_from_ml_min(pulse->flow[root]));
         p = pairc_mul(pairc_add(q, source), pairc_inverse(admittance));
     } else {
         double mean = params->range_pa > 0 ? 1 : pa_from_mmhg(pulse->pressure[root]);
-        p = pairc_scale(drive, (Pair){0} + mean);
-        q = pairc_add(pairc_mul(admittance, p), pairc_scale(source, (Pair){0} - 1));
+        p = pairc_scale(drive, (PairR){0} + mean);
+        q = pairc_add(pairc_mul(admittance, p), pairc_scale(source, (PairR){0} - 1));
     }
     store(at->p_re, at->p_im, p);
     store(at->q_re, at->q_im, q);
@@ -288,5 +288,5 @@ TwoPort pulse_twoport(const PulseVessel *vessel, double period_s, double wall_ti
 
 Phasor pulse_friction(double alpha)
 {
-    return first_of(pair_friction((Pair){0} + alpha * alpha), 1);
+    return first_of(pair_friction((PairR){0} + alpha * alpha), 1);
 }

@@ -37,14 +37,14 @@ static int count_terms(double alpha2)
     return terms < most ? (int)terms : most;
 }
 
-PairC pair_friction(Pair u)
+PairC pair_friction(PairR u)
 {
     const double alpha2 = fmax(u[0], u[PAIR - 1]);
     const int n = count_terms(alpha2), recurrence = alpha2 < 1e4 ? RECURRENCE : 0;
     PairC v = pairc(4 + 2 * n, 0), before = pairc(1, 0);
     int m = n - 1;
     for (; m >= recurrence; m--) {
-        Pair s = u / (v.re * v.re + v.im * v.im);
+        PairR s = u / (v.re * v.re + v.im * v.im);
         v = (PairC){4 + 2 * m + s * v.im, s * v.re};
     }
     for (; m >= 0; m--) {
@@ -53,7 +53,7 @@ PairC pair_friction(Pair u)
         v = next;
     }
     v = pairc_mul(v, pairc_inverse(before));
-    return pairc_scale(v, (Pair){0} + 0.25);
+    return pairc_scale(v, (PairR){0} + 0.25);
 }
 
 /* Sums the series of *a = cosh sqrt(t) - 1 and *s = sinh sqrt(t) / sqrt(t). */
@@ -61,23 +61,23 @@ static void sum_series(PairC t, PairC *a, PairC *s)
 {
     PairC even = pairc(1, 0), odd = pairc(1, 0);
     for (int k = SERIES_TERMS; k > 1; k--) {
-        even = pairc_scale(pairc_mul(t, even), (Pair){0} + 1.0 / (2 * k * (2 * k - 1)));
-        odd = pairc_scale(pairc_mul(t, odd), (Pair){0} + 1.0 / (2 * k * (2 * k + 1)));
+        even = pairc_scale(pairc_mul(t, even), (PairR){0} + 1.0 / (2 * k * (2 * k - 1)));
+        odd = pairc_scale(pairc_mul(t, odd), (PairR){0} + 1.0 / (2 * k * (2 * k + 1)));
         even.re += 1;
         odd.re += 1;
     }
-    *a = pairc_scale(pairc_mul(t, even), (Pair){0} + 0.5);
-    *s = pairc_scale(pairc_mul(t, odd), (Pair){0} + 1.0 / 6);
+    *a = pairc_scale(pairc_mul(t, even), (PairR){0} + 0.5);
+    *s = pairc_scale(pairc_mul(t, odd), (PairR){0} + 1.0 / 6);
     s->re += 1;
 }
 
 /* Doubles the argument: a(4 t) = 2 a (a + 2) for a = cosh - 1, s(4 t) = s(t) (1 + a(t)). Both are
  * multiplied by *scale, which becomes small where they grow. */
-static void double_argument(PairC *a, PairC *s, Pair *scale)
+static void double_argument(PairC *a, PairC *s, PairR *scale)
 {
     PairC beyond = {a->re + 2 * *scale, a->im}, cosh = {a->re + *scale, a->im};
     *s = pairc_mul(*s, cosh);
-    *a = pairc_scale(pairc_mul(*a, beyond), (Pair){0} + 2);
+    *a = pairc_scale(pairc_mul(*a, beyond), (PairR){0} + 2);
     *scale *= *scale;
     for (int lane = 0; lane < PAIR; lane++) {
         double size = fmax(fabs(a->re[lane]), fabs(a->im[lane]));
@@ -92,21 +92,21 @@ static void double_argument(PairC *a, PairC *s, Pair *scale)
 
 static double largest(PairC t)
 {
-    Pair size = t.re * t.re + t.im * t.im;
+    PairR size = t.re * t.re + t.im * t.im;
     return sqrt(fmax(size[0], size[PAIR - 1]));
 }
 
 PairPort pair_port(const PulseVessel *vessel, const PairFrequency *at)
 {
-    PairPort port = {.scale = (Pair){0} + 1};
-    PairC z =
-        pairc_scale(pair_friction(at->omega * vessel->womersley_s), (Pair){0} + vessel->resistance);
+    PairPort port = {.scale = (PairR){0} + 1};
+    PairC z = pairc_scale(pair_friction(at->omega * vessel->womersley_s),
+                          (PairR){0} + vessel->resistance);
     z.im += at->omega * vessel->inertance;
-    PairC y = pairc_scale(at->compliant, (Pair){0} + vessel->compliance), t = pairc_mul(z, y), s;
+    PairC y = pairc_scale(at->compliant, (PairR){0} + vessel->compliance), t = pairc_mul(z, y), s;
     int doublings = 0;
     for (double size = largest(t); size > series_reach && size < HUGE_VAL; size /= 4)
         doublings++;
-    sum_series(pairc_scale(t, (Pair){0} + ldexp(1, -2 * doublings)), &port.a, &s);
+    sum_series(pairc_scale(t, (PairR){0} + ldexp(1, -2 * doublings)), &port.a, &s);
     for (int k = 0; k < doublings; k++)
         double_argument(&port.a, &s, &port.scale);
     port.a.re += port.scale;

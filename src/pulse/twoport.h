@@ -1,7 +1,7 @@
 /* The two-port of a vessel for two harmonics at a time. Private to the module pulse.
  *
- * A Pair holds one number for each of the two harmonics. It is a vector of two doubles, which every
- * x86-64 processor has, so that all processors give the same bits. */
+ * A PairR holds one real number for each of the two harmonics. It is a vector of two doubles, which
+ * every x86-64 processor has, so that all processors give the same bits. */
 #ifndef CORCAST_PULSE_TWOPORT_H
 #define CORCAST_PULSE_TWOPORT_H
 
@@ -9,16 +9,16 @@
 
 enum { PAIR = PULSE_LANES };
 
-typedef double Pair __attribute__((vector_size(8 * PAIR)));
+typedef double PairR __attribute__((vector_size(8 * PAIR)));
 
 /* A complex number per harmonic. */
 typedef struct PairC {
-    Pair re, im;
+    PairR re, im;
 } PairC;
 
 /* What two harmonics have in common in all vessels. */
 typedef struct PairFrequency {
-    Pair omega;      /* angular frequency, 1/s */
+    PairR omega;     /* angular frequency, 1/s */
     PairC compliant; /* j omega / (1 + j omega t_w), t_w the relaxation time of the wall */
     int n_terms;     /* minimum number of terms of the continued fraction, for alpha 0 */
 } PairFrequency;
@@ -27,12 +27,12 @@ typedef struct PairFrequency {
  * p_out + a q_out) / scale. The scale is 1 unless cosh would overflow. */
 typedef struct PairPort {
     PairC a, b, c;
-    Pair scale;
+    PairR scale;
 } PairPort;
 
 static inline PairC pairc(double re, double im)
 {
-    return (PairC){(Pair){0} + re, (Pair){0} + im};
+    return (PairC){(PairR){0} + re, (PairR){0} + im};
 }
 
 static inline PairC pairc_add(PairC x, PairC y)
@@ -45,14 +45,14 @@ static inline PairC pairc_mul(PairC x, PairC y)
     return (PairC){x.re * y.re - x.im * y.im, x.re * y.im + x.im * y.re};
 }
 
-static inline PairC pairc_scale(PairC x, Pair k)
+static inline PairC pairc_scale(PairC x, PairR k)
 {
     return (PairC){x.re * k, x.im * k};
 }
 
 static inline PairC pairc_inverse(PairC x)
 {
-    Pair k = 1 / (x.re * x.re + x.im * x.im);
+    PairR k = 1 / (x.re * x.re + x.im * x.im);
     return (PairC){x.re * k, -x.im * k};
 }
 
@@ -61,7 +61,7 @@ PairFrequency pairfrequency(int first, double period_s, double wall_time_s);
 
 /* Computes the friction factor H. `u` is alpha^2, the squared Womersley number, of each harmonic.
  */
-PairC pair_friction(Pair u);
+PairC pair_friction(PairR u);
 
 /* Computes the two-port of a vessel. */
 PairPort pair_port(const PulseVessel *vessel, const PairFrequency *at);

@@ -66,12 +66,12 @@ Status waveform_sample(const double *times, const double *values, size_t n, int 
 
 /* ---- CSV ------------------------------------------------------------------------------------- */
 
-typedef struct Samples {
+typedef struct WaveSamples {
     ARRAY(double) times, values;
-} Samples;
+} WaveSamples;
 
 /* Reads a line "time,value". Titles may come first. */
-static Status take_sample(char *line, Samples *samples, Err *err)
+static Status take_sample(char *line, WaveSamples *samples, Err *err)
 {
     char *rest = line;
     const char *time_text = text_field(&rest), *value_text = time_text ? text_field(&rest) : NULL;
@@ -86,7 +86,7 @@ static Status take_sample(char *line, Samples *samples, Err *err)
     return ARRAY_PUSH(&samples->values, "samples", err, value);
 }
 
-static Status read_samples(const char *path, char *bytes, Samples *samples, Err *err)
+static Status read_samples(const char *path, char *bytes, WaveSamples *samples, Err *err)
 {
     size_t number = 0;
     for (char *rest = bytes, *line; (line = text_line(&rest));) {
@@ -105,7 +105,7 @@ static Status read_samples(const char *path, char *bytes, Samples *samples, Err 
 Status waveform_read(const char *path, int harmonics, Waveform *out, Err *err)
 {
     static const FileForm form = {.name = "a waveform", .most_bytes = 1e8, .is_text = true};
-    Samples samples = {0};
+    WaveSamples samples = {0};
     char *bytes = NULL;
     size_t size;
     Status status = STATUS_OK;

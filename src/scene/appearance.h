@@ -43,8 +43,8 @@ typedef struct Appearance {
      * another, of n_segments entries each. */
     double *time; /* per frame: its time, rising; NULL: colors do not change */
     size_t n_frames, n_segments;
-    double
-        *widths; /* as `values`: factors of the radii, for vessels that beat; NULL: they do not */
+    /* As `values`: factors of the radii, for vessels that beat; NULL: they do not. */
+    double *widths;
 } Appearance;
 
 /* Frees the arrays and zeroes *appearance. */

@@ -56,6 +56,7 @@ void reading_release(TreeReading *reading)
         free(reading->note[i]);
     free(reading->note);
     free(reading->root);
+    free(reading->repaired);
     free(reading->network.cut);
     *reading = (TreeReading){0};
 }
@@ -80,7 +81,7 @@ Status reading_refuse_radius(const char *what, const char *text, Err *err)
 {
     return err_set(err, STATUS_INPUT,
                    "the %s is '%.40s'; it must be a finite number of 0 or more "
-                   "(`repair_radii` uses the parent's radius)",
+                   "(`repair_radii` fills it from its neighbours)",
                    what, text);
 }
 
@@ -111,29 +112,120 @@ static Status fill_roots(Tree *tree, bool zeros, Err *err)
     return STATUS_OK;
 }
 
+/* ---- repairing radii ------------------------------------------------------------------------- */
+
+static bool is_gap(double radius)
+{
+    return !(radius > 0);
+}
+
+/* Fills gaps between segments with a radius evenly along the branch, by the middles of the
+ * segments; at the ends of the branch, with the nearest radius. Returns false if no segment of the
+ * branch has a radius. `middle` has room for a number per segment. */
+static bool fill_within(Tree *tree, const int32_t *node, size_t n, double *middle)
+{
+    double length = 0, before = NAN;
+    size_t known = n; /* the last segment with a radius of its own; n: none */
+    for (size_t i = 0; i < n; i++) {
+        double own = tree_segment_length(tree, (size_t)node[i]), radius = tree->radius_mm[node[i]];
+        middle[i] = length + own / 2;
+        length += own;
+        if (is_gap(radius))
+            continue;
+        for (size_t k = known == n ? 0 : known + 1; k < i; k++) {
+            double span = known == n ? 0 : middle[i] - middle[known];
+            double part = span > 0 ? (middle[k] - middle[known]) / span : 1;
+            tree->radius_mm[node[k]] = known == n ? radius : before + part * (radius - before);
+        }
+        known = i;
+        before = radius;
+    }
+    for (size_t k = known == n ? n : known + 1; k < n; k++)
+        tree->radius_mm[node[k]] = before;
+    return known < n;
+}
+
+/* Returns the thinner of the radii next to a branch without radii: its parent's, and the thickest
+ * daughter's, which `thickest` has per node. Returns `otherwise` if both are gaps. */
+static double radius_beside(const Tree *tree, const int32_t *node, size_t n, const double *thickest,
+                            double otherwise)
+{
+    int32_t start = tree->parent[node[0]];
+    double up = tree_is_segment(tree, (size_t)start) ? tree->radius_mm[start] : 0;
+    double down = thickest[node[n - 1]];
+    if (is_gap(up) && is_gap(down))
+        return otherwise;
+    return is_gap(up) ? down : is_gap(down) ? up : fmin(up, down);
+}
+
+static double median_radius(const Tree *tree, double *radius)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < tree->n; i++)
+        if (tree_is_segment(tree, i) && !is_gap(tree->radius_mm[i]))
+            radius[n++] = tree->radius_mm[i];
+    return n > 0 ? select_number(radius, n, n / 2) : (double)NAN;
+}
+
+static Status list_gaps(TreeReading *reading, const Tree *tree, Err *err)
+{
+    TRY(mem_calloc(&reading->repaired, tree->n, sizeof *reading->repaired, "ids", err));
+    for (size_t i = 0; i < tree->n; i++)
+        if (tree_is_segment(tree, i) && is_gap(tree->radius_mm[i]))
+            reading->repaired[reading->repaired_radii++] = tree->id[i];
+    return STATUS_OK;
+}
+
+/* Fills all gaps. Branches are in the order of the tree, so that the parent of one is filled. */
+static Status repair(TreeReading *reading, Tree *tree, Err *err)
+{
+    Branches branches = {0};
+    double *thickest = NULL, *middle = NULL;
+    Status status;
+    TRY_GOTO(mem_calloc(&thickest, tree->n, sizeof *thickest, "radii", err));
+    TRY_GOTO(mem_calloc(&middle, tree->n, sizeof *middle, "radii", err));
+    double otherwise = median_radius(tree, middle);
+    TRY_GOTO(branches_find(tree, &branches, err));
+    if (!isnan(otherwise))
+        TRY_GOTO(list_gaps(reading, tree, err));
+    for (size_t i = 0; i < tree->n; i++)
+        if (tree_is_segment(tree, i) && tree->radius_mm[i] > thickest[tree->parent[i]])
+            thickest[tree->parent[i]] = tree->radius_mm[i];
+    for (size_t k = 0, at = 0; k < branches.n; at = branches.end[k++]) {
+        const int32_t *node = branches.node + at;
+        size_t n = branches.end[k] - at;
+        if (!fill_within(tree, node, n, middle))
+            for (size_t i = 0; i < n; i++)
+                tree->radius_mm[node[i]] = radius_beside(tree, node, n, thickest, otherwise);
+    }
+done:
+    branches_release(&branches);
+    free(thickest);
+    free(middle);
+    return status;
+}
+
 Status reading_fill_radii(TreeReading *reading, const ReadOptions *options, Tree *tree, Err *err)
 {
     if (!options->repair_radii && options->radius_mm == 0)
         return STATUS_OK;
     TRY(fill_roots(tree, false, err));
+    if (options->repair_radii)
+        TRY(repair(reading, tree, err));
     for (size_t i = 0; i < tree->n; i++) {
         double *radius = &tree->radius_mm[i];
         if (!tree_is_segment(tree, i))
             continue;
-        if (options->repair_radii && isnan(*radius) && tree->radius_mm[tree->parent[i]] > 0) {
-            *radius = tree->radius_mm[tree->parent[i]];
-            reading->repaired_radii++;
-        }
-        if (options->radius_mm > 0 && !(*radius > 0)) {
+        if (options->radius_mm > 0 && is_gap(*radius)) {
             *radius = options->radius_mm;
             reading->given_radius++;
         }
         if (isnan(*radius))
             return err_set(err, STATUS_INPUT,
-                           "node %d has no radius, and no ancestor has one; `radius` gives one",
+                           "node %d has no radius, and no other node has one; `radius` gives one",
                            tree->id[i]);
     }
-    return fill_roots(tree, options->radius_mm > 0, err);
+    return fill_roots(tree, true, err);
 }
 
 /* Counts the nodes of each component. Roots that have no reason yet get ROOT_STATED. */

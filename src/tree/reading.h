@@ -39,7 +39,7 @@ typedef struct ReadOptions {
     const char *format;        /* main extension of the format, "vtk"; NULL: by name and content */
     double radius_mm;          /* radius of segments for which the file states none or 0; 0: files
                                 * must state radii */
-    bool repair_radii;         /* replace negative and infinite radii by the parent's */
+    bool repair_radii;         /* fill radii that are negative, infinite, 0 or missing */
 } ReadOptions;
 
 /* Factors that convert the coordinates and radii of a file to mm. */
@@ -105,7 +105,8 @@ typedef struct TreeReading {
                                          * last: k or more */
     size_t without_radius;              /* count of segments with radius 0 */
     size_t given_radius;                /* count of segments that got ReadOptions.radius_mm */
-    size_t repaired_radii;              /* count of segments that got the radius of their parent */
+    size_t repaired_radii;              /* count of segments whose radius was repaired */
+    int32_t *repaired;                  /* their ids; NULL: there are none; owned */
     double median_radius_mm;            /* of all segments; 0 if there are none */
     LengthUnit unit;                    /* the unit that was used for coordinates and radii */
     bool unit_is_stated;                /* options or the file state the unit */
@@ -135,8 +136,14 @@ MUST_CHECK Status reading_radius(const ReadOptions *options, double *radius, Err
  * `what`. The caller adds file and record. */
 MUST_CHECK Status reading_refuse_radius(const char *what, const char *text, Err *err);
 
-/* Replaces missing radii, NAN or 0, according to the options, and counts them in *reading. Errors:
- * STATUS_INPUT if neither a node nor its ancestors have a radius. Cost: O(n). */
+/* Replaces missing radii, NAN or 0, according to the options, and counts them in *reading.
+ *
+ * A repaired radius is interpolated along its branch between the nearest radii; at an end of the
+ * branch it is the nearest radius. A branch without any radius takes the thinner one of its parent
+ * and its thickest daughter or, if both lack one, the median of the tree.
+ *
+ * Errors  STATUS_INPUT if there is no radius at all; STATUS_MEMORY.
+ * Cost    O(n). */
 MUST_CHECK Status reading_fill_radii(TreeReading *reading, const ReadOptions *options, Tree *tree,
                                      Err *err);
 

@@ -10,15 +10,17 @@
 
 #include "base/base.h"
 #include "geom/geom.h"
-#include "tree/builder.h"   // IWYU pragma: export
-#include "tree/graph.h"     // IWYU pragma: export
-#include "tree/idindex.h"   // IWYU pragma: export
-#include "tree/meta.h"      // IWYU pragma: export
-#include "tree/outlets.h"   // IWYU pragma: export
-#include "tree/pairs.h"     // IWYU pragma: export
-#include "tree/reading.h"   // IWYU pragma: export
-#include "tree/series.h"    // IWYU pragma: export
-#include "tree/viscosity.h" // IWYU pragma: export
+#include "tree/branches.h"   // IWYU pragma: export
+#include "tree/builder.h"    // IWYU pragma: export
+#include "tree/centreline.h" // IWYU pragma: export
+#include "tree/graph.h"      // IWYU pragma: export
+#include "tree/idindex.h"    // IWYU pragma: export
+#include "tree/meta.h"       // IWYU pragma: export
+#include "tree/outlets.h"    // IWYU pragma: export
+#include "tree/pairs.h"      // IWYU pragma: export
+#include "tree/reading.h"    // IWYU pragma: export
+#include "tree/series.h"     // IWYU pragma: export
+#include "tree/viscosity.h"  // IWYU pragma: export
 #include <stdbool.h>
 #include <stdint.h>
 

@@ -10,8 +10,10 @@ ABSENT := src/base/file.c src/base/isolated.c src/base/json.c src/base/system.c
 SOURCES := $(filter-out $(ABSENT),$(wildcard $(MODULES:%=src/%/*.c) $(patsubst %,src/%/*/*.c,$(filter-out job job/tree,$(MODULES))))) \
 	$(wildcard src/job/export/*.c) $(addprefix src/job/picture/,picture.c coloring.c placing.c) \
 	$(addprefix src/image/,colorscale.c encoding.c colormap.c)
-FLAGS := --target=wasm32-wasi --sysroot=$(SYSROOT) -std=c11 -O3 -DCORCAST_PAGE -D_GNU_SOURCE -D_WASI_EMULATED_PROCESS_CLOCKS -Isrc \
+FLAGS := --target=wasm32-wasi --sysroot=$(SYSROOT) -std=c11 -O3 -DCORCAST_PAGE '-DCORCAST_PREFIX=""' -D_GNU_SOURCE -D_WASI_EMULATED_PROCESS_CLOCKS -Isrc \
 	-ffunction-sections -fdata-sections -fno-math-errno -fno-trapping-math -Wall -Wno-unused
+# With vectors, clang 14 gives src/mesh/lattice/octree.c other cells than the native program has. The cause is not known.
+# So meshes are compiled without.
 LIMITS := -Wl,--gc-sections,--stack-first,-z,stack-size=1048576,--strip-all
 
 $(OUT)/corcast.html: $(OUT)/made/simd.wasm $(OUT)/made/plain.wasm $(wildcard templates/grow/* templates/viewer/* templates/colormaps/*) \
@@ -24,10 +26,10 @@ $(OUT)/made/$(1).wasm: $(SOURCES:%.c=$(OUT)/$(1)/%.o)
 	@printf '  %-6s %s\n' LINK $$@
 	@mkdir -p $$(@D)
 	@$(CLANG) $(FLAGS) -mexec-model=reactor $(LIMITS) -o $$@ $$^ -lwasi-emulated-process-clocks
-$(OUT)/$(1)/%.o: %.c src/web/page.mk
+$(OUT)/$(1)/%.o: %.c
 	@printf '  %-6s %s\n' WASM $$<
 	@mkdir -p $$(@D)
-	@$(CLANG) $(FLAGS) $(2) -ffp-contract=off -MMD -MP -c -o $$@ $$<
+	@$(CLANG) $(FLAGS) $$(if $$(filter src/mesh/%,$$<),,$(2)) -ffp-contract=off -MMD -MP -c -o $$@ $$<
 -include $(SOURCES:%.c=$(OUT)/$(1)/%.d)
 endef
 $(eval $(call MODULE,simd,-msimd128))

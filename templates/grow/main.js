@@ -399,15 +399,14 @@ own.freeBox = function freeBox() {
 };
 
 async function open() {
-  if (typeof WebAssembly !== "object") {
-    find("failed").textContent = "This browser cannot grow trees: the page needs WebAssembly.";
-    find("failed").hidden = false;
-    return;
-  }
+  if (typeof WebAssembly !== "object") throw new Error("the page needs WebAssembly");
   grower = new Grower(await WebAssembly.compile(decoded(WebAssembly.validate(Uint8Array.from(WITH_VECTORS)) ? simd : plain)));
   find("shape").append(...Object.keys(SIZES).map((name) => new Option(name, name)));
   listen();
   begin(treeOf(await grower.ask({ wants: "tree", options: "terminals=1\n", origin: [0, 0, 0] })));
 }
 
-open();
+open().catch(({ message }) => {
+  find("failed").textContent = `This browser cannot grow trees: ${message}.`;
+  find("failed").hidden = false;
+});

@@ -37,10 +37,11 @@ const state = {
   hovered: -1, pinned: -1, // indices of segments, or -1
 };
 let scale = null, wanted = false, playing = 0, written = 0, reading = 0, known = location.hash;
-let ground = null; // luminance of a dark background, or null
+let ground = null; // luminance of a dark background, or null if the background is light
 const retired = []; // what drew the tree before; it is kept until the next tree is drawn, which uses its shaders again
 const colors = { paper: null, accent: null }; // of the shader
 
+// Only takeScheme reads `dark.matches`: Chromium sends no change event if a script reads the new value before.
 const dark = matchMedia("(prefers-color-scheme: dark)");
 const canvas = find("stage");
 const renderer = makeRenderer();
@@ -116,7 +117,7 @@ function takeScheme() {
 }
 
 // Returns how strongly the farthest vessels fade. On a dark background they must fade less to stay visible.
-function haze() { return dark.matches ? 0.25 : 0.45; }
+function haze() { return ground === null ? 0.45 : 0.25; }
 
 // ---- what is shown ------------------------------------------------------------------------------
 
@@ -152,8 +153,8 @@ function show() {
   vessels.set("fade", state.haze ? haze() : 0);
   vessels.set("isSoft", state.soft);
   vessels.set("form", scale ? FORM : 1);
-  vessels.set("rim", dark.matches ? 0.12 : 0);
-  vessels.set("edge", state.soft && !dark.matches ? EDGE : 0);
+  vessels.set("rim", ground === null ? 0 : 0.12);
+  vessels.set("edge", state.soft && ground === null ? EDGE : 0);
   vessels.set("shade", state.shade && shade.isDone ? SHADE : 0);
   document.body.classList.toggle("bare", !state.panels);
   find("project").setAttribute("aria-pressed", view.isOrthographic);
@@ -381,9 +382,15 @@ function save() {
   page.toBlob((png) => download(png, tree.properties.name.replace(/\.[^.]*$/, "") + ".png"));
 }
 
+// Copies a text, and says so on the button. Where a browser gives no clipboard, shows the text to be copied by hand.
 export async function copy(text, button) {
   const label = button.textContent;
-  await navigator.clipboard.writeText(text);
+  try {
+    await navigator.clipboard.writeText(text);
+  } catch {
+    prompt(label, text);
+    return;
+  }
   button.textContent = "Copied";
   setTimeout(() => { button.textContent = label; }, 1200);
 }

@@ -203,6 +203,37 @@ test_faults_of_pages_are_named() {
     expect_sentence 'pdfinfo is not installed; it is part of poppler-utils'
 }
 
+# A page of 80 x 60 mm whose upper half has the ink of a PDF's operator, such as "1 1 1 0.4 k".
+page_of_ink() {
+    local drawing="$1 0 85 227 85 re f"
+    printf '%%PDF-1.4\n1 0 obj<</Type/Catalog/Pages 2 0 R>>endobj\n2 0 obj<</Type/Pages/Kids[3 0 R]/Count 1>>endobj\n'
+    printf '3 0 obj<</Type/Page/Parent 2 0 R/MediaBox[0 0 227 170]/Contents 4 0 R>>endobj\n'
+    printf '4 0 obj<</Length %d>>stream\n%s\nendstream endobj\ntrailer<</Root 1 0 R>>\n' ${#drawing} "$drawing"
+}
+
+# The expected sums of the pixels are OpenImageIO's.
+test_the_total_ink_of_pixels_and_pages_is_checked() {
+    local ink
+    ppmmake rgb:05/05/14 945 709 >dark.ppm
+    run_ok corcast convert dark.ppm dark.tif --dpi 500 --cmyk-profile "$CMYK"
+    run_ok corcast convert dark.ppm dark.jpg --dpi 500 --cmyk-profile "$CMYK"
+    ink=$(oiiotool --iconfig oiio:RawColor 1 dark.tif --chsum --printstats | awk '/Stats Max/ { printf "%.0f", 100 * $3 }')
+    [ "$ink" -gt 200 ] || fail "expected a dark picture, got $ink %"
+    taken elsevier dark.tif
+    refused elsevier dark.tif "total ink: $ink %; the maximum is 180 %" --ink 180
+    refused elsevier dark.jpg "total ink: $ink %; the maximum is 180 %" --ink 180
+    taken elsevier dark.tif --ink "$ink"
+    page_of_ink '1 1 1 0.4 k' >rich.pdf
+    refused elsevier rich.pdf 'total ink: 340 %; the maximum is 320 %'
+    page_of_ink '0.8 0.8 0.8 0.4 k' >poor.pdf
+    taken elsevier poor.pdf
+    page_of_ink '0.1 0 0.2 rg' >rgb.pdf
+    taken elsevier rgb.pdf --ink 201
+    run corcast check-figure rich.pdf --preset elsevier --ink 401
+    expect_status 2
+    expect_sentence '--ink: .*401.*'
+}
+
 test_what_nobody_can_check_is_said() {
     printf '%%!PS-Adobe-3.0 EPSF-3.0\n' >f.eps
     run corcast check-figure f.eps --preset plos

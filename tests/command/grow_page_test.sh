@@ -55,7 +55,10 @@ test_the_program_of_the_page_writes_the_bytes_of_the_native_program_with_and_wit
     need_page
     command -v node >node.path || skip "nodejs is not installed"
     expectations 15
-    run node "$REPO/tests/page/grow_bytes.js" "$REPO/build/grow" expected.json
+    run_ok corcast grow --terminals 12 --domain ball:9 --quiet -o T.swc
+    run_ok corcast export T.swc --lod 0.5 --quiet -o T.stl
+    jq --arg sha256 "$(sha256sum <T.stl | cut -d ' ' -f 1)" '. + {stl: {address: "terminals=12&domain=ball:9", $sha256}}' expected.json >all.json
+    run node "$REPO/tests/page/grow_bytes.js" "$REPO/build/grow" all.json
     [ "$status" -eq 0 ] || fail "$(head -5 stdout | tr '\n' ';')$(said)"
 }
 

@@ -87,12 +87,12 @@ test_bad_radii_are_repaired_when_asked() {
     printf '1 3 0 0 0 2 -1\n2 3 0 10 0 1.5 1\n3 3 0 20 0 -0.14 2\n4 3 5 20 0 NaN 3\n5 3 9 20 0 1 4\n' >bad.swc
     run corcast info bad.swc
     expect_status 2
-    expect_sentence "bad.swc:3: the radius is '-0.14'; .* \(--repair-radii uses the parent's radius\)"
+    expect_sentence "bad.swc:3: the radius is '-0.14'; .* \(--repair-radii fills it from its neighbours\)"
     run corcast convert --repair-radii bad.swc good.swc
     expect_status 0
-    expect_sentence 'bad.swc: radii replaced by those of the parents: 2'
-    [ "$(awk '/^[0-9]/ { printf "%s ", $6 }' good.swc)" = "2 1.5 1.5 1.5 1 " ] ||
-        fail "expected the parents' radii: $(cat good.swc)"
+    expect_sentence 'bad.swc: radii filled from their neighbours: 2'
+    [ "$(awk '/^[0-9]/ { printf "%.4f ", $6 }' good.swc)" = "2.0000 1.5000 1.2727 1.1023 1.0000 " ] ||
+        fail "expected radii between those of the neighbours: $(cat good.swc)"
     printf 'id,parent,x_mm,y_mm,z_mm,radius_mm\n1,,0,0,0,inf\n2,1,0,0,9,2\n3,2,0,0,12,-1\n' >bad.csv
     run_ok corcast convert --quiet --repair-radii bad.csv good.swc
     [ "$(awk '/^[0-9]/ { printf "%s ", $6 }' good.swc)" = "2 2 2 " ] || fail "expected 2 throughout: $(cat good.swc)"

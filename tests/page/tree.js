@@ -277,7 +277,6 @@ async function checkContrast() {
   for (let y = 2; y < expected.height - 2; y++)
     for (let x = 2; x < expected.width - 2; x++) if (lonelyId(ids, x, y, 1) > 0) inside.push([x, y]);
   await browser.send("Emulation.setEmulatedMedia", { features: [{ name: "prefers-color-scheme", value: "dark" }] });
-  await browser.open("about:blank"); // the page is loaded again, in the dark from its beginning
   await browser.open(expected.page, "field=wss&shade=off&panels=off&" + expected.address);
   // A computer with much to do shows the page late.
   for (let patience = 40; patience > 0 && luminance(at(await picture(), 2, 2)) > 0.5; patience--) await settled();
@@ -297,7 +296,9 @@ async function checkContrast() {
 async function checkSchemes() {
   const colors = new Set();
   for (const value of ["light", "dark"]) {
-    await browser.send("Emulation.setEmulatedMedia", { features: [{ name: "prefers-color-scheme", value }] });
+    await Promise.all([ // the page draws itself again before it receives the change of the scheme
+      browser.send("Emulation.setEmulatedMedia", { features: [{ name: "prefers-color-scheme", value }] }),
+      evaluate("dispatchEvent(new Event('hashchange'))")]);
     await settled();
     colors.add(String(at(await picture(), 2, Math.round(expected.height / 2))));
   }

@@ -338,7 +338,7 @@ static void refuses_what_no_tree_can_be_made_of(void **state)
     const GraphPoint bad = {.position = {0, 0, 0}, .radius = -0.5};
     assert_int_equal(graph_point(&net.graph, &bad, &net.err), STATUS_INPUT);
     assert_string_equal(net.err.text, "the radius is '-0.5'; it must be a finite number of 0 or "
-                                      "more (`repair_radii` uses the parent's radius)");
+                                      "more (`repair_radii` fills it from its neighbours)");
 }
 
 int main(void)

@@ -5,6 +5,37 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+/* Prints a number as people write it, to the right of a column of this width, or with a negative
+ * width to the left. */
+static void print_number(int width, double value, int digits)
+{
+    char text[READABLE_SIZE];
+    int blanks = abs(width);
+    for (const char *at = number_readable(value, digits, text); *at; at++)
+        blanks -= (*at & 0xC0) != 0x80; /* the first byte of a character */
+    blanks = blanks > 0 ? blanks : 0;
+    printf("%*s%s%*s", width > 0 ? blanks : 0, "", text, width < 0 ? blanks : 0, "");
+}
+
+static void print_mean(double mean, double deviation)
+{
+    print_number(10, mean, 4);
+    printf(" ± ");
+    print_number(-9, deviation, 3);
+}
+
+/* Prints a unit as people write it, after `before`. */
+static Status print_unit(const char *before, const char *unit, Err *err)
+{
+    Text text = TEXT_INIT;
+    text_unit(&text, unit);
+    Status status = text_check(&text, err);
+    if (status == STATUS_OK)
+        printf("%s%s", before, text_chars(&text));
+    text_release(&text);
+    return status;
+}
+
 /* ---- summary --------------------------------------------------------------------------------- */
 
 static void print_gamma(const LogCurve *gamma)
@@ -25,9 +56,9 @@ static void print_summary(const char *path, const TreeSummary *summary)
            summary->bifurcations, summary->bifurcations == 1 ? "" : "s", summary->roots,
            summary->roots == 1 ? "" : "s");
     printf("  total length  %s mm\n", READABLE(summary->total_length_mm, 6));
-    printf("  volume        %s mm\xC2\xB3\n", READABLE(summary->volume_mm3, 6));
+    printf("  volume        %s mm³\n", READABLE(summary->volume_mm3, 6));
     if (summary->has.target)
-        printf("  target        %s (sum of length * radius^%g)\n", READABLE(summary->target, 6),
+        printf("  target        %s (sum of length × radius^%g)\n", READABLE(summary->target, 6),
                summary->lambda);
     print_gamma(&summary->gamma);
     printf("  radius        %s mm at the root", READABLE(summary->root_radius_mm, 6));
@@ -62,8 +93,10 @@ static Status print_column(const Tree *tree, size_t k, bool *printed, Err *err)
             return err_set(err, status, "out of memory: no room for a series");
     }
     printf("%.*s", series.n ? (int)(length < 40 ? length : 40) : 40, column->name);
-    if (*column->unit)
-        printf(" (%.40s)", column->unit);
+    if (*column->unit) {
+        TRY(print_unit(" (", column->unit, err));
+        printf(")");
+    }
     if (series.n)
         printf(": %zu frames, %g to %g", series.n, series.frame[0].time,
                series.frame[series.n - 1].time);
@@ -162,50 +195,54 @@ static void print_degrees(const TreeReading *reading)
     printf("\n");
 }
 
-static void print_unit(const TreeReading *reading)
+static Status print_read_unit(const TreeReading *reading, Err *err)
 {
     if (reading->median_radius_mm > 0)
         printf("  median radius %s mm\n", READABLE(reading->median_radius_mm, 6));
-    printf("  unit          %s, %s", length_unit_names[reading->unit],
-           reading->unit_is_stated ? "given" : "assumed");
-    if (reading->median_radius_mm > 0)
-        printf("; radii look like %s", reading->has_plausible_unit
-                                           ? length_unit_names[reading->plausible_unit]
-                                           : "no vessel's");
+    TRY(print_unit("  unit          ", length_unit_names[reading->unit], err));
+    printf(", %s", reading->unit_is_stated ? "given" : "assumed");
+    if (reading->median_radius_mm > 0 && reading->has_plausible_unit)
+        TRY(print_unit("; radii look like ", length_unit_names[reading->plausible_unit], err));
+    else if (reading->median_radius_mm > 0)
+        printf("; radii look like no vessel's");
     printf("%s\n", reading->looks_like_voxels ? ", and coordinates like voxels" : "");
     if (reading->without_radius > 0)
         printf("  no radius     %zu segment%s\n", reading->without_radius,
                ending(reading->without_radius));
+    return STATUS_OK;
 }
 
-static void print_reading(const TreeReading *reading)
+static Status print_reading(const TreeReading *reading, Err *err)
 {
     if (reading->is_network)
         print_network(reading);
     print_roots(reading);
     print_degrees(reading);
-    print_unit(reading);
+    TRY(print_read_unit(reading, err));
     for (size_t i = 0; i < reading->n_notes; i++)
         printf("  %s %s\n", i ? "             " : "assumed      ", reading->note[i]);
+    return STATUS_OK;
 }
 
 /* ---- statistics ------------------------------------------------------------------------------ */
 
 static void print_table(const char *title, const char *number, const StatisticsTable *table)
 {
-    printf("\n%s\n  %5s %9s %9s  %-23s %-23s\n", title, number, "vessels", "elements", "radius, mm",
+    printf("\n%s\n  %5s %9s %9s  %-22s %-22s\n", title, number, "vessels", "elements", "radius, mm",
            "length, mm");
     for (size_t i = 0; i < table->n; i++) {
         const StatisticsRow *row = &table->row[i];
-        printf("  %5d %9zu %9zu  %10.4g +- %-9.3g %10.4g +- %-9.3g\n", row->number, row->vessels,
-               row->elements, row->radius_mm.mean, row->radius_mm.sd, row->length_mm.mean,
-               row->length_mm.sd);
+        printf("  %5d %9zu %9zu  ", row->number, row->vessels, row->elements);
+        print_mean(row->radius_mm.mean, row->radius_mm.sd);
+        printf(" ");
+        print_mean(row->length_mm.mean, row->length_mm.sd);
+        printf("\n");
     }
 }
 
 static void print_ratios(const OrderRatios *ratios)
 {
-    printf("  from order to order: number / %.3f, diameter * %.3f, length * %.3f\n", ratios->number,
+    printf("  from order to order: number ÷ %.3f, diameter × %.3f, length × %.3f\n", ratios->number,
            ratios->diameter, ratios->length);
 }
 
@@ -225,13 +262,13 @@ static void print_connectivity(const TreeStatistics *statistics)
 
 static void print_spread(const char *title, const BifurcationSpread *spread)
 {
-    printf("  %-33s %.3f +- %.3f, median %.3f (%zu)\n", title, spread->mean, spread->sd,
+    printf("  %-33s %.3f ± %.3f, median %.3f (%zu)\n", title, spread->mean, spread->sd,
            spread->median, spread->count);
 }
 
 static void print_statistics(const TreeStatistics *statistics)
 {
-    print_table("By bifurcation level (mean +- standard deviation of the vessels)", "level",
+    print_table("By bifurcation level (mean ± standard deviation of the vessels)", "level",
                 &statistics->by_level);
     print_table("By Strahler order (of the elements)", "order", &statistics->by_strahler);
     print_ratios(&statistics->strahler_ratios);
@@ -241,10 +278,10 @@ static void print_statistics(const TreeStatistics *statistics)
     print_connectivity(statistics);
     if (!statistics->diameter_orders_converged)
         printf("  the orders still changed after %d rounds\n", statistics->diameter_rounds);
-    printf("\nBifurcations (mean +- standard deviation)\n");
+    printf("\nBifurcations (mean ± standard deviation)\n");
     print_spread("symmetry, r_thinnest / r_thickest", &statistics->symmetry);
-    print_spread("area ratio, sum of r^2 / r_parent^2", &statistics->area_ratio);
-    printf("  total volume %s mm\xC2\xB3 in %zu vessels\n", READABLE(statistics->volume_mm3, 6),
+    print_spread("area ratio, sum of r² / r_parent²", &statistics->area_ratio);
+    printf("  total volume %s mm³ in %zu vessels\n", READABLE(statistics->volume_mm3, 6),
            statistics->vessels);
 }
 
@@ -257,16 +294,18 @@ static void print_pair(const MorphometryPair *pair)
         printf("  %-27s %5d %9d", name, pair->order, pair->published_order);
     else
         printf("  %-27s %5s %9s", name, "all", "all");
-    printf("  %10.4g  %10.4g +- %-9.3g %s\n", pair->value, pair->published.mean, pair->room,
-           pair->agrees ? "pass" : "fail");
+    printf("  ");
+    print_number(10, pair->value, 4);
+    printf("  ");
+    print_mean(pair->published.mean, pair->room);
+    printf(" %s\n", pair->agrees ? "pass" : "fail");
 }
 
 static void print_morphometry(const Morphometry *table, const MorphometryComparison *comparison)
 {
     printf("\nBeside %s\n", table->source);
-    printf(
-        "  (+- the published standard deviation or, where there is none, %g %%; lengths in mm)\n",
-        100 * MORPHOMETRY_ROOM);
+    printf("  (± the published standard deviation or, where there is none, %g %%; lengths in mm)\n",
+           100 * MORPHOMETRY_ROOM);
     printf("  %-27s %5s %9s  %10s  %s\n", "of the elements", "order", "published", "this tree",
            "published");
     for (size_t i = 0; i < comparison->n; i++)
@@ -280,7 +319,7 @@ static Status print(const InfoReport *report, Err *err)
 {
     print_summary(report->name, &report->summary);
     TRY(print_columns(&report->tree, err));
-    print_reading(&report->reading);
+    TRY(print_reading(&report->reading, err));
     if (report->has_statistics)
         print_statistics(&report->statistics);
     if (report->has_morphometry)

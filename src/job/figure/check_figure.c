@@ -7,6 +7,7 @@
 #include "job/job.h"
 #include "options/output.h"
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const Option own[] = {
@@ -20,6 +21,13 @@ static const Option own[] = {
      .choices = content_kinds,
      .help = "content of the figure, which sets the required resolution: halftone (shaded images), "
              "combination (shaded images with lines or text in their pixels), line (lines only)"},
+    {.name = "ink",
+     SETS(NUMBER, CheckFigureOptions, ink_percent),
+     GIVEN(CheckFigureOptions, has_ink),
+     FROM_TO(1, 400),
+     .unit = "%",
+     .otherwise = "the preset's",
+     .help = "maximum total ink of a CMYK figure: cyan, magenta, yellow and black of a pixel"},
     {.name = "json",
      SETS(FLAG, CheckFigureOptions, json),
      .help = "print the result as JSON on standard output"},
@@ -31,6 +39,7 @@ static const OptionTable own_table = OPTION_TABLE(own);
 typedef struct Check {
     const Preset *preset;
     ContentKind kind;
+    double ink_percent; /* 0: any */
     const char *path;
     FigureFindings *found;
 } Check;
@@ -109,6 +118,13 @@ static void check_colors(Check *check, const char *colors, const char *profile)
         refuse(check, "profile: \"%s\"; the preset accepts sRGB", profile);
 }
 
+/* 1 % is what rounding to 8 bits may give. */
+static void check_ink(Check *check, double percent)
+{
+    if (check->ink_percent > 0 && percent > check->ink_percent + 1)
+        refuse(check, "total ink: %.0f %%; the maximum is %g %%", percent, check->ink_percent);
+}
+
 static void check_picture(Check *check, const ImageFacts *facts)
 {
     const Preset *preset = check->preset;
@@ -125,6 +141,7 @@ static void check_picture(Check *check, const ImageFacts *facts)
         refuse(check, "compression: %s; the preset accepts %s", facts->compression,
                preset->compression);
     check_colors(check, facts->colors, facts->profile);
+    check_ink(check, facts->ink_percent);
     text_puts(&check->found->unchecked, "text in the pixels and its size\n");
 }
 
@@ -132,13 +149,18 @@ static void check_picture(Check *check, const ImageFacts *facts)
 
 typedef void TakeLine(Check *check, char *line, int number);
 
-/* Has a program of poppler's look at the file, and `take` at each line that it says. */
-static Status ask(Check *check, const char *program, TakeLine *take, Err *err)
+/* Has a program of poppler's read the file, and `take` each line of its output. `operand` follows
+ * the file; NULL: none. */
+static Status ask(Check *check, const char *program, const char *operand, TakeLine *take, Err *err)
 {
     Text command = TEXT_INIT;
     char line[1024];
     text_printf(&command, "LC_ALL=C %s -- ", program);
     put_shell_operand(&command, check->path);
+    if (operand) {
+        text_puts(&command, " ");
+        put_shell_operand(&command, operand);
+    }
     text_puts(&command, " 2>/dev/null");
     Status status = text_check(&command, err);
     FILE *answer = status == STATUS_OK ? popen(text_chars(&command), "r") : NULL;
@@ -212,12 +234,50 @@ static void take_image(Check *check, char *line, int number)
         refuse(check, "bits: %d per channel; the maximum is %g", bits, check->preset->bits);
 }
 
+static void take_nothing(Check *check, char *line, int number)
+{
+    (void)check, (void)line, (void)number;
+}
+
+/* Has the page drawn in the four inks, to `folder`. Poppler converts RGB to at most 200 %. */
+static Status measure_page(Check *check, const char *folder, Err *err)
+{
+    char *page = NULL, *file = NULL;
+    ImageFacts facts = {0};
+    Status status;
+    TRY_GOTO(file_join(folder, "page", &page, err));
+    TRY_GOTO(file_join(folder, "page.jpg", &file, err));
+    TRY_GOTO(ask(check, "pdftoppm -jpegcmyk -r 150 -singlefile", page, take_nothing, err));
+    TRY_GOTO(image_facts(file, &facts, err));
+    check_ink(check, facts.ink_percent);
+done:
+    free(page);
+    free(file);
+    return status;
+}
+
+static Status check_page_ink(Check *check, Err *err)
+{
+    char *folder = NULL, *beside = NULL;
+    const char *parent = getenv("TMPDIR");
+    if (check->ink_percent == 0)
+        return STATUS_OK;
+    TRY(file_join(parent && *parent ? parent : "/tmp", "ink", &beside, err));
+    Status status = file_temporary_folder(beside, &folder, err);
+    free(beside);
+    TRY(status);
+    status = measure_page(check, folder, err);
+    file_forget(folder);
+    return status;
+}
+
 static Status check_pdf(Check *check, Err *err)
 {
     text_puts(&check->found->unchecked, "size of text, colors of lines and text\n");
-    TRY(ask(check, "pdfinfo", take_info, err));
-    TRY(ask(check, "pdffonts", take_font, err));
-    return ask(check, "pdfimages -list", take_image, err);
+    TRY(ask(check, "pdfinfo", NULL, take_info, err));
+    TRY(ask(check, "pdffonts", NULL, take_font, err));
+    TRY(ask(check, "pdfimages -list", NULL, take_image, err));
+    return check_page_ink(check, err);
 }
 
 /* ---- the command ----------------------------------------------------------------------------- */
@@ -249,7 +309,11 @@ Status check_figure_make(const CheckFigureOptions *options, const char *path,
     if (!options->preset)
         return err_set(err, STATUS_USAGE, "--preset is missing; run `corcast presets` for a list");
     TRY(preset_read(options->preset, &preset, err));
-    Check check = {.preset = &preset, .kind = options->kind, .path = path, .found = findings};
+    Check check = {.preset = &preset,
+                   .kind = options->kind,
+                   .ink_percent = options->has_ink ? options->ink_percent : preset.ink_percent,
+                   .path = path,
+                   .found = findings};
     Status status = check_file(&check, err);
     preset_release(&preset);
     TRY(status);

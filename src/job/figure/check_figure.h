@@ -9,6 +9,8 @@
 typedef struct CheckFigureOptions {
     const char *preset; /* name in templates/presets, or a path; must be specified */
     ContentKind kind;
+    double ink_percent; /* maximum sum of the four inks; used if has_ink is set */
+    bool has_ink;
     bool json; /* read by the caller only: the findings are printed as JSON */
 } CheckFigureOptions;
 

@@ -33,6 +33,7 @@ static const struct {
     {"file", "compression", false, offsetof(Preset, compression)},
     {"file", "colors", false, offsetof(Preset, colors)},
     {"file", "bits", true, offsetof(Preset, bits)},
+    {"file", "ink", true, offsetof(Preset, ink_percent)},
     {"file", "megabytes", true, offsetof(Preset, megabytes)},
     {"text", "least", true, offsetof(Preset, least_pt)},
     {"text", "most", true, offsetof(Preset, most_pt)},

@@ -32,6 +32,7 @@ typedef struct Preset {
     const char *colors;              /* accepted color modes: "rgb grey cmyk" */
     const char *compression;         /* of a TIFF: "any", or a value of --compression */
     double bits;                     /* maximum bits per channel */
+    double ink_percent;              /* maximum sum of the four inks of a CMYK figure */
     double megabytes;                /* the file must be smaller, MB of 10^6 bytes */
     double least_pt, most_pt;        /* minimum and maximum font size, points */
     const char *text_form;           /* "live" (text with fonts), "outlined" (curves) or "any" */

@@ -24,6 +24,28 @@ static const Option rows[] = {
      .list = "fields",
      .when = WHEN(TREE),
      .help = "computed fields to add to the tree file as columns: all, or a list of names"},
+    {.name = "smooth",
+     SETS(FLAG, TreeConversion, smooth),
+     .group = GROUP_TREE,
+     .when = WHEN(TREE),
+     .help = "remove the steps of measured centrelines by Taubin's filter; ends and bifurcations "
+             "stay, other nodes move by at most a quarter of their radius"},
+    {.name = "step",
+     SETS(NUMBER, TreeConversion, step_mm),
+     FROM_TO(1e-6, 1e6),
+     .group = GROUP_TREE,
+     .unit = "mm",
+     .otherwise = "as in the file",
+     .when = WHEN(TREE),
+     .help = "divide each branch into segments of this length, or a little more or less; a radius "
+             "becomes that of a tube with the same resistance"},
+    {.name = "centreline-arrays",
+     SETS(FLAG, TreeConversion, centreline_arrays),
+     .group = GROUP_FILES,
+     .when = WHEN(TREE),
+     .help = "add columns named as the arrays of SimVascular's and VMTK's centrelines: "
+             "MaximumInscribedSphereRadius, CenterlineSectionArea, BranchId, BifurcationId, Path, "
+             "GlobalNodeId"},
 };
 
 const OptionTable treeconversion_table = OPTION_TABLE(rows);
@@ -51,10 +73,10 @@ static Status join_values(const TreeConversion *conversion, Parsed *parsed, Tree
     return status;
 }
 
-/* Radius and length are in all files, as numbers or as where segments end. */
+/* Radius, type and length are in files of trees already, as numbers or as where segments end. */
 static bool is_in_files(const char *name)
 {
-    return strcmp(name, "radius") == 0 || strcmp(name, "length") == 0;
+    return strcmp(name, "radius") == 0 || strcmp(name, "length") == 0 || strcmp(name, "type") == 0;
 }
 
 static Status add_field(Tree *tree, const TreeMeta *said, const char *name, Err *err)
@@ -125,12 +147,96 @@ static Status join_fields(const TreeConversion *conversion, const Parsed *parsed
                                                   : add_list(tree, &said, conversion->fields, err);
 }
 
+/* Smooths and resamples the centrelines, and reports what this changed. */
+static Status reshape(const TreeConversion *conversion, const Talk *talk, Tree *tree, Err *err)
+{
+    const CentrelineSums before = centreline_sums(tree);
+    if (!conversion->smooth && conversion->step_mm == 0)
+        return STATUS_OK;
+    if (conversion->smooth) {
+        SmoothMoves moves;
+        TRY(tree_smooth(tree, &moves, err));
+        talk_note(talk,
+                  "smoothed: nodes moved by up to %.3g mm, %.3g radii; moves that were limited to "
+                  "%g radii: %zu",
+                  moves.most_mm, moves.most_radii, SMOOTH_MOST_RADII, moves.held);
+    }
+    if (conversion->step_mm > 0) {
+        Tree resampled;
+        TRY(tree_resampled(tree, conversion->step_mm, &resampled, err));
+        talk_note(talk, "resampled: %zu nodes became %zu", tree->n, resampled.n);
+        tree_release(tree);
+        *tree = resampled;
+    }
+    const CentrelineSums after = centreline_sums(tree);
+    talk_note(talk, "length changed by %+.3g %%, volume by %+.3g %%, sum of l / r^4 by %+.3g %%",
+              100 * (after.length_mm / before.length_mm - 1),
+              100 * (after.volume_mm3 / before.volume_mm3 - 1),
+              100 * (after.resistance / before.resistance - 1));
+    return STATUS_OK;
+}
+
+/* The columns of --centreline-arrays. */
+typedef enum CentrelineArray {
+    SPHERE_RADIUS,
+    SECTION_AREA,
+    BRANCH_ID,
+    BIFURCATION_ID,
+    PATH,
+    GLOBAL_NODE_ID,
+    CENTRELINE_ARRAYS
+} CentrelineArray;
+
+/* Fills the columns. Branches count from 0; no point is inside a bifurcation, so BifurcationId is
+ * -1; Path is the length from the start of the branch. */
+static void fill_arrays(const Tree *tree, const Branches *branches, double *const value[])
+{
+    for (size_t i = 0; i < tree->n; i++) {
+        value[SPHERE_RADIUS][i] = tree->radius_mm[i];
+        value[SECTION_AREA][i] = PI * tree->radius_mm[i] * tree->radius_mm[i];
+        value[BRANCH_ID][i] = value[PATH][i] = 0;
+        value[BIFURCATION_ID][i] = -1;
+        value[GLOBAL_NODE_ID][i] = (double)i;
+    }
+    for (size_t k = 0, at = 0; k < branches->n; k++) {
+        double path = 0;
+        for (; at < branches->end[k]; at++) {
+            size_t node = (size_t)branches->node[at];
+            path += tree_segment_length(tree, node);
+            value[BRANCH_ID][node] = (double)k;
+            value[PATH][node] = path;
+        }
+    }
+}
+
+/* The names are exact, so the columns have no units: lengths are in mm, areas in mm^2. */
+static Status add_arrays(Tree *tree, Err *err)
+{
+    static const char *const names[CENTRELINE_ARRAYS] = {"MaximumInscribedSphereRadius",
+                                                         "CenterlineSectionArea",
+                                                         "BranchId",
+                                                         "BifurcationId",
+                                                         "Path",
+                                                         "GlobalNodeId"};
+    double *value[CENTRELINE_ARRAYS];
+    Branches branches;
+    for (int k = 0; k < CENTRELINE_ARRAYS; k++)
+        TRY(tree_set_column(tree, names[k], "", &value[k], err));
+    TRY(branches_find(tree, &branches, err));
+    fill_arrays(tree, &branches, value);
+    branches_release(&branches);
+    return STATUS_OK;
+}
+
 Status convert_tree_make(const TreeConversion *conversion, Parsed *parsed, Tree *tree, Err *err)
 {
     *tree = (Tree){0};
     TRY(reading_tree(parsed, parsed->operands[0], tree, NULL, err));
     TRY(join_values(conversion, parsed, tree, err));
+    TRY(reshape(conversion, parsed->common.talk, tree, err));
     TRY(join_fields(conversion, parsed, tree, err));
+    if (conversion->centreline_arrays)
+        TRY(add_arrays(tree, err));
     tree_renumber(tree);
     return STATUS_OK;
 }

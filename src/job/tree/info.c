@@ -10,6 +10,7 @@
 typedef struct InfoOptions {
     bool json, stats, bound;
     const char *morphometry; /* NULL: beside none */
+    const char *output;      /* CSV file for the statistics; NULL: none */
     BloodOptions blood;
 } InfoOptions;
 
@@ -20,6 +21,13 @@ static const Option own[] = {
     {.name = "stats",
      SETS(FLAG, InfoOptions, stats),
      .help = "also print radius and length by level and by Strahler order, and branching ratios"},
+    {.name = "output",
+     SETS(OUTPUT, InfoOptions, output),
+     .argument = "S.csv",
+     .otherwise = "",
+     .needs = "stats",
+     .help =
+         "with --stats: also write the statistics as CSV, a row per level or order and quantity"},
     {.name = "bound",
      SETS(FLAG, InfoOptions, bound),
      .group = GROUP_OPTIMUM,
@@ -64,13 +72,85 @@ static Status measure(const InfoOptions *options, InfoReport *report, Err *err)
     return options->morphometry ? compare(options->morphometry, report, err) : STATUS_OK;
 }
 
+/* ---- statistics as CSV ----------------------------------------------------------------------- */
+
+/* Appends a row. A count has no standard deviation: sd is NAN. */
+static void put_row(Text *text, const char *table, int number, const char *quantity, Spread spread)
+{
+    text_printf(text, "%s,", table);
+    if (number >= 0)
+        text_printf(text, "%d", number);
+    text_printf(text, ",%s,", quantity);
+    if (!isnan(spread.mean))
+        text_printf(text, "%.9g", spread.mean);
+    text_puts(text, ",");
+    if (!isnan(spread.sd))
+        text_printf(text, "%.9g", spread.sd);
+    text_puts(text, "\n");
+}
+
+static void put_count(Text *text, const char *table, int number, const char *quantity, double count)
+{
+    put_row(text, table, number, quantity, (Spread){count, NAN});
+}
+
+/* The standard deviation of a single value is unknown. */
+static void put_table(Text *text, const char *name, const StatisticsTable *table)
+{
+    for (size_t i = 0; i < table->n; i++) {
+        const StatisticsRow *row = &table->row[i];
+        double sd = row->elements > 1 ? 1 : (double)NAN;
+        put_count(text, name, row->number, "vessels", (double)row->vessels);
+        put_count(text, name, row->number, "elements", (double)row->elements);
+        put_row(text, name, row->number, "radius_mm",
+                (Spread){row->radius_mm.mean, sd * row->radius_mm.sd});
+        put_row(text, name, row->number, "length_mm",
+                (Spread){row->length_mm.mean, sd * row->length_mm.sd});
+    }
+}
+
+static void put_ratios(Text *text, const char *name, const OrderRatios *ratios)
+{
+    put_count(text, name, -1, "number_ratio", ratios->number);
+    put_count(text, name, -1, "diameter_ratio", ratios->diameter);
+    put_count(text, name, -1, "length_ratio", ratios->length);
+}
+
+static Status write_statistics(const TreeStatistics *statistics, const char *path, Err *err)
+{
+    const size_t n = statistics->by_diameter_strahler.n;
+    const BifurcationSpread *symmetry = &statistics->symmetry, *area = &statistics->area_ratio;
+    char name[40];
+    Text text = TEXT_INIT;
+    text_puts(&text, "table,number,quantity,mean,sd\n");
+    put_count(&text, "tree", -1, "vessels", (double)statistics->vessels);
+    put_count(&text, "tree", -1, "volume_mm3", statistics->volume_mm3);
+    put_row(&text, "tree", -1, "symmetry", (Spread){symmetry->mean, symmetry->sd});
+    put_row(&text, "tree", -1, "area_ratio", (Spread){area->mean, area->sd});
+    put_table(&text, "level", &statistics->by_level);
+    put_table(&text, "strahler", &statistics->by_strahler);
+    put_ratios(&text, "strahler", &statistics->strahler_ratios);
+    put_table(&text, "diameter-strahler", &statistics->by_diameter_strahler);
+    put_ratios(&text, "diameter-strahler", &statistics->diameter_strahler_ratios);
+    for (size_t i = 0; i < n * n; i++) {
+        snprintf(name, sizeof name, "daughters_of_order_%zu", i % n + 1);
+        if (i % n <= i / n)
+            put_count(&text, "diameter-strahler", (int)(i / n) + 1, name, statistics->daughters[i]);
+    }
+    Status status = file_write_text(path, &text, err);
+    text_release(&text);
+    return status;
+}
+
 Status info_make(void *options, Parsed *parsed, InfoReport *report, Err *err)
 {
     const InfoOptions *own_options = options;
     *report = (InfoReport){.name = parsed->operands[0]};
     TRY(reading_tree(parsed, report->name, &report->tree, &report->reading, err));
     TRY(blood_settle(&own_options->blood, parsed, &report->tree, err));
-    return measure(own_options, report, err);
+    TRY(measure(own_options, report, err));
+    return own_options->output ? write_statistics(&report->statistics, own_options->output, err)
+                               : STATUS_OK;
 }
 
 void inforeport_release(InfoReport *report)
@@ -86,9 +166,10 @@ void inforeport_release(InfoReport *report)
 const Command command_info = {
     .name = "info",
     .summary = "count, measure and check a tree",
-    .operands = "T.swc [--stats] [--json]",
+    .operands = "T.swc [--stats [-o S.csv]] [--json]",
     .examples = "  corcast info tree.swc\n"
                 "  corcast info tree.swc --json | jq .volume_mm3\n"
+                "  corcast info tree.swc --stats -o statistics.csv\n"
                 "  corcast info tree.swc --stats --json | jq .stats.by_strahler\n"
                 "  corcast info coronary.swc --morphometry kassab-lad\n",
     .min_operands = 1,

@@ -36,6 +36,14 @@ static json_t *degrees_json(const TreeReading *reading)
     return list;
 }
 
+static json_t *repaired_json(const TreeReading *reading)
+{
+    json_t *list = json_array();
+    for (size_t i = 0; reading->repaired && i < reading->repaired_radii; i++)
+        list = json_with_item(list, json_integer(reading->repaired[i]));
+    return list;
+}
+
 static json_t *notes_json(const TreeReading *reading)
 {
     json_t *list = json_array();
@@ -72,6 +80,7 @@ static json_t *reading_json(const TreeReading *reading)
         {"segments_without_radius", json_count(reading->without_radius)},
         {"given_radii", json_count(reading->given_radius)},
         {"repaired_radii", json_count(reading->repaired_radii)},
+        {"repaired_ids", repaired_json(reading)},
         {"near_ends", json_count(reading->network.near_ends)},
         {"near_ends_mm", json_number(reading->network.near_mm)},
         {"unit", json_text(length_unit_names[reading->unit])},

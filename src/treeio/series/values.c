@@ -292,8 +292,8 @@ static int32_t key_of(const ValuesReader *reader, const TreeColumn *branches, si
     return value >= 0 && value <= TREE_MAX_ID && value == floor(value) ? (int32_t)value : NONE;
 }
 
-/* Lists the nodes of each key. Keys are ids or, by the name in the first row, numbers of branches; in
- * a tree without the column BranchId, the number of a branch is the id of its one segment. */
+/* Lists the nodes of each key. Keys are ids or, by the name in the first row, numbers of branches.
+ * In a tree without the column BranchId, the number of a branch is the id of its one segment. */
 static Status index_nodes(ValuesReader *reader, const char *name, Err *err)
 {
     const Tree *tree = reader->tree;

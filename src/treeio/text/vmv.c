@@ -7,7 +7,6 @@
  *
  * VessMorphoVis writes strands away from the root. If at most one line enters every vertex, strands
  * are assumed to be written so. In other files their direction means nothing. */
-#include "treeio/branches.h"
 #include "treeio/comments.h"
 #include "treeio/formats.h"
 #include "treeio/text/dialect.h"

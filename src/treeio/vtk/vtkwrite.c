@@ -7,7 +7,6 @@
  * which vtktree.c finds the tree again. The tree's metadata are lines of text in the field data.
  * Both kinds of files have the arrays of one table. Numbers pass through one buffer, for trees of
  * any size. */
-#include "treeio/branches.h"
 #include "treeio/comments.h"
 #include "treeio/formats.h"
 #include "treeio/vtk/vtkdata.h"

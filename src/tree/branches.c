@@ -1,6 +1,6 @@
 /* Counts children, and stores each only child at its parent. A branch then follows only children
  * from each segment that is not the only child of a segment. */
-#include "treeio/branches.h"
+#include "tree/tree.h"
 
 #include <stdlib.h>
 

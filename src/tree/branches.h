@@ -1,8 +1,12 @@
-/* Divides a tree into branches, for formats that store polylines. */
-#ifndef CORCAST_TREEIO_BRANCHES_H
-#define CORCAST_TREEIO_BRANCHES_H
+/* Divides a tree into branches. */
+#ifndef CORCAST_TREE_BRANCHES_H
+#define CORCAST_TREE_BRANCHES_H
 
-#include "tree/tree.h"
+#include "base/base.h"
+#include <stddef.h>
+#include <stdint.h>
+
+typedef struct Tree Tree;
 
 /* A branch is a longest chain of segments without a bifurcation inside. It begins at a root or at a
  * bifurcation. A segment is given by the index of the node at its end. Branch k consists of the

@@ -40,9 +40,9 @@ PulseLumped pulse_lumped(const Pulse *pulse, size_t i)
     return (PulseLumped){.rp = rp, .rd = total - rp, .c = params->outlet_time_s / total};
 }
 
-static PairC lumped_admittance(const PulseLumped *lumped, Pair omega)
+static PairC lumped_admittance(const PulseLumped *lumped, PairR omega)
 {
-    PairC z = pairc_inverse((PairC){(Pair){0} + 1 / lumped->rd, omega * lumped->c});
+    PairC z = pairc_inverse((PairC){(PairR){0} + 1 / lumped->rd, omega * lumped->c});
     z.re += lumped->rp;
     return pairc_inverse(z);
 }
@@ -57,9 +57,9 @@ PulsePressed pulse_pressed(double total)
 }
 
 /* *source receives J in q = Y p - J. `tissue` is the pressure of the tissue. */
-static PairC pressed_admittance(const PulsePressed *at, Pair omega, PairC tissue, PairC *source)
+static PairC pressed_admittance(const PulsePressed *at, PairR omega, PairC tissue, PairC *source)
 {
-    const Pair none = {0};
+    const PairR none = {0};
     PairC y2 = {none + 1 / at->behind, omega * at->compliance};
     PairC j2 = pairc_mul((PairC){none, omega * at->compliance}, tissue);
     PairC z1 = pairc_inverse(y2), j1 = pairc_scale(y2, none + at->within);
@@ -80,8 +80,8 @@ static PairC pressed_admittance(const PulsePressed *at, Pair omega, PairC tissue
 typedef struct Structured {
     const PulseParams *params;
     PairFrequency at;
-    PairC
-        *row; /* admittances of the vessels with one power of ALPHA, by the power of BETA; owned */
+    /* Admittances of the vessels with one power of ALPHA, by the power of BETA; owned. */
+    PairC *row;
 } Structured;
 
 /* Powers of `factor` that bring a radius below the minimum. */

@@ -1,0 +1,28 @@
+/* Prints what the search found. The exit status tells whether a relation is broken. */
+#include "cli/commands.h"
+#include "job/verify/metamorph_job.h"
+#include "options/output.h"
+#include <stdio.h>
+
+static Status print(const MetamorphOptions *options, const Metamorph *result, Err *err)
+{
+    Text text = TEXT_TO(stdout);
+    if (options->json)
+        return json_write(metamorph_json(result), "-", err);
+    metamorph_text(result, &text);
+    Status status = text_flush(&text, err);
+    text_release(&text);
+    return status;
+}
+
+Status run_metamorph(void *options, Parsed *parsed, Err *err)
+{
+    Metamorph result = {0};
+    Status status = metamorph_make(options, parsed, &result, err);
+    if (status == STATUS_OK)
+        status = print(options, &result, err);
+    if (status == STATUS_OK && result.causes.n > 0)
+        status = STATUS_DIFFERS;
+    metamorph_release(&result);
+    return status;
+}

@@ -1,0 +1,28 @@
+/* Prints the score card. The exit status tells whether all pictures are certified. */
+#include "cli/commands.h"
+#include "job/verify/tubesuite.h"
+#include "options/output.h"
+#include <stdio.h>
+
+static Status print(const TubeSuiteOptions *options, const TubeSuite *suite, Err *err)
+{
+    Text text = TEXT_TO(stdout);
+    if (options->json)
+        return json_write(tubesuite_json(suite), "-", err);
+    tubesuite_text(suite, &text);
+    Status status = text_flush(&text, err);
+    text_release(&text);
+    return status;
+}
+
+Status run_suite(void *options, Parsed *parsed, Err *err)
+{
+    TubeSuite suite = {0};
+    Status status = tubesuite_run(options, parsed, &suite, err);
+    if (status == STATUS_OK)
+        status = print(options, &suite, err);
+    if (status == STATUS_OK && suite.certified < suite.cases.n)
+        status = STATUS_DIFFERS;
+    tubesuite_release(&suite);
+    return status;
+}

@@ -1,0 +1,144 @@
+/* Scenes and pictures of the search are in a temporary folder inside the output folder. */
+#include "job/verify/metamorph_job.h"
+
+#include "options/output.h"
+#include <stdlib.h>
+
+static const char *const formats[] = {"pov", "tachyon", "swc", NULL};
+
+static const Option own[] = {
+    {.name = "render",
+     SETS(TEXT, MetamorphOptions, render),
+     .argument = "COMMAND",
+     .help = "shell command that renders the file {scene} into the PNG, PPM, TIFF or EXR file "
+             "{picture} of {width} x {height} pixels; without {scene}, both files are appended; "
+             "for the format swc, {camera} stands for camera options as `corcast render` has them"},
+    {.name = "format",
+     SETS(CHOICE, MetamorphOptions, format),
+     .choices = formats,
+     .help = "format of the scenes: pov or tachyon (shapes), or swc (trees)"},
+    {.name = "relations",
+     SETS(TEXT, MetamorphOptions, relations),
+     .argument = "LIST",
+     .otherwise = "all",
+     .help = "relations to test, separated by commas, such as scale-up,translation"},
+    {.name = "seconds",
+     SETS(NUMBER, MetamorphOptions, seconds),
+     FROM_TO(0.001, 1e6),
+     .unit = "s",
+     .help = "duration of the search; confirming, shrinking and reports take longer"},
+    {.name = "pairs",
+     SETS(COUNT, MetamorphOptions, max_pairs),
+     FROM_TO(0, 1e9),
+     .argument = "N",
+     .help = "maximum number of pairs; 0: no limit"},
+    {.name = "seed",
+     SETS(SEED, MetamorphOptions, seed),
+     .help = "seed of the scenes; the same seed gives the same pairs"},
+    {.name = "timeout",
+     SETS(NUMBER, MetamorphOptions, timeout_s),
+     FROM_TO(0.1, 1e5),
+     .unit = "s",
+     .help = "a rendering that takes longer is ended and counts as refused"},
+    {.name = "jobs",
+     SETS(WHOLE, MetamorphOptions, jobs),
+     FROM_TO(1, TRIAL_JOBS),
+     .aside = true,
+     .argument = "N",
+     .help = "renderings that run at the same time"},
+    {.name = "output",
+     SETS(FOLDER, MetamorphOptions, folder),
+     .argument = "DIR",
+     .help = "folder for metamorph.json and a folder for each cause"},
+    {.name = "json",
+     SETS(FLAG, MetamorphOptions, json),
+     .help = "print the result as JSON on standard output"},
+};
+
+static const OptionTable own_table = OPTION_TABLE(own);
+
+static void set_defaults(void *options)
+{
+    MetamorphOptions *metamorph = options;
+    metamorph->seconds = 60;
+    metamorph->timeout_s = 20;
+    metamorph->jobs = 16;
+    metamorph->seed = 1;
+}
+
+static Status write_result(const MetamorphOptions *options, const Metamorph *result, Err *err)
+{
+    char *path = NULL;
+    TRY(file_join(options->folder, "metamorph.json", &path, err));
+    Status status = json_write(metamorph_json(result), path, err);
+    free(path);
+    return status;
+}
+
+/* The commands may change the folder, so that the scenes have absolute paths. */
+static Status make_folders(const MetamorphOptions *options, char **scenes, Err *err)
+{
+    char *beside = NULL, *absolute = NULL;
+    Status status;
+    TRY_GOTO(file_make_folder(options->folder, err));
+    absolute = realpath(options->folder, NULL);
+    if (!absolute)
+        TRY_GOTO(err_set(err, STATUS_IO, "%s: the folder no longer exists", options->folder));
+    TRY_GOTO(file_join(absolute, "scenes", &beside, err));
+    status = file_temporary_folder(beside, scenes, err);
+done:
+    free(absolute);
+    free(beside);
+    return status;
+}
+
+Status metamorph_make(const MetamorphOptions *options, Parsed *parsed, Metamorph *result, Err *err)
+{
+    Progress progress;
+    char *scenes = NULL;
+    Status status;
+    if (!options->render || !*options->render)
+        return err_set(err, STATUS_USAGE,
+                       "--render needs a command, such as --render 'povray +I{scene} +O{picture} "
+                       "+W{width} +H{height} -D'");
+    if (!options->folder)
+        return err_set(err, STATUS_USAGE, "--output needs the folder that receives the reports");
+    progress_start(&progress, "testing", parsed->common.talk);
+    TRY_GOTO(make_folders(options, &scenes, err));
+    const MetamorphParams params = {
+        .renderer = {options->render, options->format, scenes, options->timeout_s, options->jobs},
+        .relations = options->relations,
+        .seed = options->seed,
+        .max_pairs = options->max_pairs,
+        .seconds = options->seconds,
+        .output = options->folder,
+        .progress = progress_report,
+        .progress_context = &progress};
+    TRY_GOTO(metamorph_run(&params, result, err));
+    status = write_result(options, result, err);
+done:
+    progress_end(&progress);
+    file_forget(scenes);
+    return status;
+}
+
+const Command command_metamorph = {
+    .name = "metamorph",
+    .summary = "find defects of a renderer from pairs of scenes that must give the same picture",
+    .operands = "--render COMMAND -o DIR",
+    .examples =
+        "  corcast metamorph --render 'povray +I{scene} +O{picture} +W{width} +H{height} -D +WT1' "
+        "-o povray\n"
+        "  corcast metamorph --format tachyon --render 'tachyon {scene} -numthreads 1 -format PPM "
+        "-o {picture}' -o tachyon\n"
+        "  corcast metamorph --format swc --render 'corcast render {scene} {camera} -o {picture} "
+        "-q' -o self\n"
+        "\nThe command draws pairs of random scenes. The second scene of a pair is the first one "
+        "with a\nchange whose effect on the picture is known, such as a translation of scene and "
+        "camera. A pair\nwhose pictures differ is confirmed with two more cameras, shrunk, and "
+        "reported in DIR/CAUSE.\nThe exit status is 1 if a cause was found.\n",
+    .max_operands = 0,
+    .size = sizeof(MetamorphOptions),
+    .set_defaults = set_defaults,
+    .tables = {{&own_table, 0}},
+};

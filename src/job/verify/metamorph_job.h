@@ -1,0 +1,34 @@
+/* The operation `metamorph`: finds defects of a renderer from pairs of scenes that must give the
+ * same picture. */
+#ifndef CORCAST_JOB_VERIFY_METAMORPH_JOB_H
+#define CORCAST_JOB_VERIFY_METAMORPH_JOB_H
+
+#include "metamorph/metamorph.h"
+#include "options/options.h"
+
+/* What the options of `metamorph` set. */
+typedef struct MetamorphOptions {
+    const char *render;    /* shell command that draws a scene */
+    const char *folder;    /* output folder */
+    const char *relations; /* names, separated by commas; NULL: all */
+    TrialFormat format;
+    uint64_t seed;
+    double seconds, timeout_s;
+    size_t max_pairs; /* 0: no limit */
+    int jobs;         /* drawings at the same time */
+    bool json;        /* for the command line: the result is printed as JSON */
+} MetamorphOptions;
+
+/* Describes the operation. Its options set a MetamorphOptions. */
+extern const Command command_metamorph;
+
+/* Searches for broken relations, and writes the folder of each cause and metamorph.json into
+ * options->folder, which is created if it is missing.
+ *
+ * result  zeroed before; release it with metamorph_release even after an error. A broken relation
+ *         is not an error.
+ * Errors  those of metamorph_run; STATUS_USAGE if --render or --output is missing. */
+MUST_CHECK Status metamorph_make(const MetamorphOptions *options, Parsed *parsed, Metamorph *result,
+                                 Err *err);
+
+#endif

@@ -1,0 +1,71 @@
+/* The operation `suite`: a renderer draws the scenes of the tube suite, and each picture is graded
+ * by the proven answer of its scene. */
+#ifndef CORCAST_JOB_VERIFY_TUBESUITE_H
+#define CORCAST_JOB_VERIFY_TUBESUITE_H
+
+#include "compare/compare.h"
+#include "options/options.h"
+
+/* The formats in which scenes are handed to the renderer. */
+typedef enum TubeFormat {
+    SUITE_POV,
+    SUITE_TACHYON,
+    SUITE_JSON,
+    SUITE_SWC,
+    SUITE_FORMATS
+} TubeFormat;
+
+/* What the options of `suite` set. */
+typedef struct TubeSuiteOptions {
+    const char *render; /* shell command that draws a scene */
+    const char *folder; /* output folder */
+    const char *title;  /* name of the renderer on the score card; NULL: the command */
+    TubeFormat format;
+    double levels; /* a pixel this far from its interval is right */
+    double timeout_s;
+    int jobs;
+    bool json; /* for the command line: the card is printed as JSON */
+} TubeSuiteOptions;
+
+/* A scene of the suite and its grade. */
+typedef struct TubeCase {
+    char *name, *group, *look, *options, *tree; /* owned; as in templates/suite/scenes.ini */
+    int rows;                                   /* of the tree */
+    bool drawn;                                 /* the renderer drew a picture of the right size */
+    char reason[400];                           /* why it is not drawn */
+    size_t wrong;      /* pixels that are farther than options->levels from their intervals */
+    bool certified;    /* it is drawn, and no pixel is wrong */
+    AnswerGrade grade; /* of a picture that is drawn */
+} TubeCase;
+
+/* The score card. Zeroed: empty. Release with tubesuite_release. */
+typedef struct TubeSuite {
+    const TubeSuiteOptions *options; /* borrowed */
+    ARRAY(TubeCase) cases;
+    size_t drawn, certified;
+} TubeSuite;
+
+enum { SUITE_PIXELS = 64 }; /* side of the pictures */
+
+extern const Command command_suite;
+
+void tubesuite_release(TubeSuite *suite);
+
+/* Writes the scenes into options->folder/scenes, lets the renderer draw them, and grades the
+ * pictures. Writes NAME.png and NAME.distance.png for each scene, suite.json and index.html.
+ *
+ * suite   zeroed before; release it even after an error. A picture that is not certified is not an
+ *         error.
+ * Errors  STATUS_TOOL if no scene is drawn; STATUS_USAGE; STATUS_INPUT; STATUS_IO; STATUS_MEMORY.
+ */
+MUST_CHECK Status tubesuite_run(const TubeSuiteOptions *options, Parsed *parsed, TubeSuite *suite,
+                                Err *err);
+
+/* Appends the card as text: a sentence, and a line for each scene that is not certified. */
+void tubesuite_text(const TubeSuite *suite, Text *out);
+/* Returns the card as JSON: a new reference; NULL if memory runs out. */
+json_t *tubesuite_json(const TubeSuite *suite);
+/* Appends the card as a page. Pictures are named relative to the folder. */
+void tubesuite_page(const TubeSuite *suite, Text *out);
+
+#endif

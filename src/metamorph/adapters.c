@@ -1,0 +1,326 @@
+/* A format is a row of the table at the end: what it can hold, and a function that writes a scene.
+ * All numbers are written with as many digits as they need to be read back exactly. */
+#include "metamorph/adapters.h"
+
+#include "oracle/shell.h"
+#include <stdio.h>
+
+static const double palette[TRIAL_COLORS][3] = {
+    {1, 0.5, 0.25}, {0.25, 0.75, 1}, {0.5, 1, 0.5}, {0.75, 0.25, 0.75}};
+
+/* Adding 0 turns -0 into 0. */
+static void put_point(Text *out, Vec3 v, const char *between)
+{
+    text_number(out, v.x + 0);
+    text_puts(out, between);
+    text_number(out, v.y + 0);
+    text_puts(out, between);
+    text_number(out, v.z + 0);
+}
+
+static Vec3 right_of(const TrialScene *scene)
+{
+    return vec3_normalized(vec3_cross(scene->direction, scene->up));
+}
+
+static double picture_width(const TrialScene *scene)
+{
+    return scene->height * scene->width_px / scene->height_px;
+}
+
+/* ---- POV-Ray --------------------------------------------------------------------------------- */
+
+static void pov_vector(Text *out, const char *name, Vec3 v)
+{
+    text_printf(out, "%s<", name);
+    put_point(out, v, ", ");
+    text_puts(out, ">");
+}
+
+static void pov_number(Text *out, const char *before, double value)
+{
+    text_puts(out, before);
+    text_number(out, value);
+}
+
+static void pov_camera(const TrialScene *scene, Text *out)
+{
+    text_puts(out, scene->perspective ? "camera {" : "camera { orthographic");
+    pov_vector(out, " location ", scene->location);
+    pov_vector(out, " direction ", vec3_normalized(scene->direction));
+    pov_vector(out, " up ", vec3_scale(vec3_normalized(scene->up), scene->height));
+    pov_vector(out, " right ", vec3_scale(right_of(scene), picture_width(scene)));
+    text_puts(out, " }\n");
+}
+
+static void pov_light(const TrialScene *scene, const TrialLight *light, Text *out)
+{
+    pov_vector(out, "light_source { ", light->at);
+    pov_number(out, " color rgb ", light->brightness);
+    if (light->parallel)
+        pov_vector(out, " parallel point_at ", light->target);
+    text_puts(out, scene->shadows ? " }\n" : " shadowless }\n");
+}
+
+/* A torus of POV-Ray turns about y; the rows of the matrix are the images of x, y and z. */
+static void pov_torus(const TrialShape *shape, Text *out)
+{
+    const Vec3 axis = shape->at[1], next = vec3(axis.z, axis.x, axis.y);
+    pov_number(out, "torus { ", shape->radius[0]);
+    pov_number(out, ", ", shape->radius[1]);
+    text_puts(out, " matrix <");
+    put_point(out, next, ", ");
+    text_puts(out, ", ");
+    put_point(out, axis, ", ");
+    text_puts(out, ", ");
+    put_point(out, vec3_cross(next, axis), ", ");
+    text_puts(out, ", ");
+    put_point(out, shape->at[0], ", ");
+    text_puts(out, ">");
+}
+
+static void pov_blob(const TrialShape *shape, Text *out)
+{
+    const int n = shape->form & FORM_CANCELLED ? 4 : 2;
+    text_puts(out, "blob { threshold 0.25");
+    for (int i = 0; i < n; i++) {
+        pov_vector(out, " sphere { ", i == 1 ? shape->at[1] : shape->at[0]);
+        pov_number(out, ", ", shape->radius[0]);
+        text_puts(out, i == 3 ? ", -1 }" : ", 1 }");
+    }
+}
+
+/* All its lengths are multiples of the radius, so that they scale with the scene. */
+static void pov_isosurface(const TrialShape *shape, Text *out)
+{
+    static const char *const axes[] = {"x", "y", "z"};
+    const double radius = shape->radius[0];
+    text_puts(out, "isosurface { function {");
+    for (int i = 0; i < 3; i++) {
+        text_printf(out, " pow(%s - (", axes[i]);
+        text_number(out, vec3_component(shape->at[0], i) + 0);
+        text_puts(out, "), 2) +");
+    }
+    pov_number(out, " -", radius * radius);
+    pov_number(out, " } max_gradient ", 4 * radius);
+    pov_number(out, " accuracy ", radius * (shape->form & FORM_FINE ? 0x1p-16 : 0x1p-12));
+    pov_vector(out, " contained_by { sphere { ", shape->at[0]);
+    pov_number(out, ", ", radius * (shape->form & FORM_WIDE ? 1.5625 : 1.25));
+    text_puts(out, " } }");
+}
+
+static void pov_points(const TrialShape *shape, const char *name, int n, Text *out)
+{
+    text_printf(out, "%s {", name);
+    for (int i = 0; i < n; i++) {
+        pov_vector(out, i ? ", " : " ", shape->at[i]);
+        if (shape->kind == SHAPE_CONE)
+            pov_number(out, ", ", shape->radius[i]);
+    }
+    if (shape->kind == SHAPE_SPHERE || shape->kind == SHAPE_CYLINDER)
+        pov_number(out, ", ", shape->radius[0]);
+}
+
+/* A sphere about at[0] that holds the whole shape, with a radius that scales exactly. */
+static double bounding_radius(const TrialShape *shape)
+{
+    double reach = 2 * (shape->radius[0] + shape->radius[1]);
+    for (int i = 1; i < 3 && shape->kind != SHAPE_TORUS && shape->kind != SHAPE_SPHERE; i++) {
+        const Vec3 apart = vec3_sub(shape->at[i], shape->at[0]);
+        reach += fabs(apart.x) + fabs(apart.y) + fabs(apart.z);
+    }
+    return reach;
+}
+
+static void pov_shape(const TrialShape *shape, Text *out)
+{
+    static const char *const names[SHAPE_KINDS] = {[SHAPE_SPHERE] = "sphere",
+                                                   [SHAPE_CYLINDER] = "cylinder",
+                                                   [SHAPE_CONE] = "cone",
+                                                   [SHAPE_TRIANGLE] = "triangle"};
+    const int points = shape->kind == SHAPE_SPHERE ? 1 : shape->kind == SHAPE_TRIANGLE ? 3 : 2;
+    if (shape->kind == SHAPE_TORUS)
+        pov_torus(shape, out);
+    else if (shape->kind == SHAPE_BLOB)
+        pov_blob(shape, out);
+    else if (shape->kind == SHAPE_ISOSURFACE)
+        pov_isosurface(shape, out);
+    else
+        pov_points(shape, names[shape->kind], points, out);
+    if (shape->form & FORM_STURM)
+        text_puts(out, " sturm");
+    text_puts(out, " pigment { color rgb ");
+    const double *color = palette[shape->color];
+    pov_vector(out, "", vec3(color[0], color[1], color[2]));
+    text_puts(out, " }");
+    if (shape->form & FORM_BOUNDED) {
+        pov_vector(out, " bounded_by { sphere { ", shape->at[0]);
+        pov_number(out, ", ", bounding_radius(shape));
+        text_puts(out, " } }");
+    }
+    text_puts(out, " }\n");
+}
+
+static void write_pov(const TrialScene *scene, Text *out)
+{
+    text_puts(out, "#version 3.7;\nglobal_settings { assumed_gamma 1 }\n"
+                   "#default { finish { ambient 0.25 diffuse 0.75 } }\n");
+    pov_camera(scene, out);
+    for (int i = 0; i < scene->n_lights; i++)
+        pov_light(scene, &scene->lights[i], out);
+    if (scene->is_union)
+        text_puts(out, "union {\n");
+    for (int i = 0; i < scene->n_shapes; i++)
+        pov_shape(&scene->shapes[i], out);
+    if (scene->is_union)
+        text_puts(out, "}\n");
+}
+
+/* ---- Tachyon --------------------------------------------------------------------------------- */
+
+static void tachyon_vector(Text *out, const char *name, Vec3 v)
+{
+    text_printf(out, "%s ", name);
+    put_point(out, v, " ");
+}
+
+/* The picture's edges. Tachyon counts pixels from 1 at the lower left corner, and its right is
+ * our left. */
+static void tachyon_camera(const TrialScene *scene, Text *out)
+{
+    const double wide = picture_width(scene), x = 0.5 / scene->width_px, y = 0.5 / scene->height_px;
+    const double edges[] = {(0.5 + x) * wide, (x - 0.5) * wide, (-0.5 - y) * scene->height,
+                            (0.5 - y) * scene->height};
+    text_printf(out,
+                "RESOLUTION %d %d\nSHADER_MODE %s END_SHADER_MODE\nCAMERA\n  PROJECTION %s\n"
+                "  ZOOM 1 ASPECTRATIO 1 ANTIALIASING 0 RAYDEPTH 1\n",
+                scene->width_px, scene->height_px, scene->shadows ? "FULL" : "MEDIUM",
+                scene->perspective ? "PERSPECTIVE" : "ORTHOGRAPHIC");
+    tachyon_vector(out, "  CENTER", scene->location);
+    tachyon_vector(out, "\n  VIEWDIR", vec3_normalized(scene->direction));
+    tachyon_vector(out, "\n  UPDIR", vec3_normalized(scene->up));
+    text_puts(out, "\n  FRUSTUM");
+    for (int i = 0; i < 4; i++) {
+        text_puts(out, " ");
+        text_number(out, edges[i]);
+    }
+    text_puts(out, "\nEND_CAMERA\nBACKGROUND 0 0 0\n");
+}
+
+static void tachyon_light(const TrialLight *light, Text *out)
+{
+    if (light->parallel)
+        tachyon_vector(out, "DIRECTIONAL_LIGHT DIRECTION",
+                       vec3_normalized(vec3_sub(light->target, light->at)));
+    else
+        tachyon_vector(out, "LIGHT CENTER", light->at);
+    text_puts(out, light->parallel ? " COLOR" : " RAD 0 COLOR");
+    const double b = light->brightness;
+    tachyon_vector(out, "", vec3(b, b, b));
+    text_puts(out, "\n");
+}
+
+/* Cylinders are open. */
+static void tachyon_shape(const TrialShape *shape, Text *out)
+{
+    static const char *const names[3] = {" V0", " V1", " V2"};
+    if (shape->kind == SHAPE_SPHERE)
+        tachyon_vector(out, "SPHERE CENTER", shape->at[0]);
+    if (shape->kind == SHAPE_CYLINDER) {
+        tachyon_vector(out, "FCYLINDER BASE", shape->at[0]);
+        tachyon_vector(out, " APEX", shape->at[1]);
+    }
+    if (shape->kind == SHAPE_TRIANGLE)
+        text_puts(out, "TRI");
+    else
+        text_puts(out, " RAD ");
+    for (int i = 0; i < 3 && shape->kind == SHAPE_TRIANGLE; i++)
+        tachyon_vector(out, names[i], shape->at[i]);
+    if (shape->kind != SHAPE_TRIANGLE)
+        text_number(out, shape->radius[0]);
+    text_printf(out, " c%d\n", shape->color);
+}
+
+static void write_tachyon(const TrialScene *scene, Text *out)
+{
+    text_puts(out, "BEGIN_SCENE\n");
+    tachyon_camera(scene, out);
+    for (int i = 0; i < scene->n_lights; i++)
+        tachyon_light(&scene->lights[i], out);
+    for (int i = 0; i < TRIAL_COLORS; i++) {
+        text_printf(out, "TEXDEF c%d AMBIENT 0.25 DIFFUSE 0.75 SPECULAR 0 OPACITY 1 COLOR", i);
+        tachyon_vector(out, "", vec3(palette[i][0], palette[i][1], palette[i][2]));
+        text_puts(out, " TEXFUNC 0\n");
+    }
+    for (int i = 0; i < scene->n_shapes; i++)
+        tachyon_shape(&scene->shapes[i], out);
+    text_puts(out, "END_SCENE\n");
+}
+
+/* ---- trees ----------------------------------------------------------------------------------- */
+
+static void write_swc(const TrialScene *scene, Text *out)
+{
+    for (int i = 0; i < scene->n_shapes; i++) {
+        const TrialShape *shape = &scene->shapes[i];
+        text_printf(out, "%d 3 ", shape->id);
+        put_point(out, shape->at[0], " ");
+        text_puts(out, " ");
+        text_number(out, shape->radius[0]);
+        text_printf(out, " %d\n", shape->parent);
+    }
+}
+
+static void put_camera(const TrialScene *scene, Text *out)
+{
+    text_puts(out, "--location ");
+    put_point(out, scene->location, ",");
+    text_puts(out, " --look-at ");
+    put_point(out, vec3_add(scene->location, scene->direction), ",");
+    text_puts(out, " --up ");
+    put_point(out, scene->up, ",");
+    if (scene->perspective) {
+        text_puts(out, " --projection perspective --angle 30");
+    } else {
+        text_puts(out, " --height ");
+        text_number(out, scene->height);
+    }
+    text_printf(out, " --size %dx%d --shadows %s", scene->width_px, scene->height_px,
+                scene->shadows ? "on" : "off");
+}
+
+/* ---- table and commands ---------------------------------------------------------------------- */
+
+enum {
+    KINDS_TACHYON = 1 << SHAPE_SPHERE | 1 << SHAPE_CYLINDER | 1 << SHAPE_TRIANGLE,
+    KINDS_POV =
+        KINDS_TACHYON | 1 << SHAPE_CONE | 1 << SHAPE_TORUS | 1 << SHAPE_BLOB | 1 << SHAPE_ISOSURFACE
+};
+
+const TrialAdapter trial_adapters[TRIAL_FORMATS] = {
+    [TRIAL_POV] = {"pov", "png", {KINDS_POV, 20}, write_pov},
+    /* Tachyon reads single precision: 24 binary digits. */
+    [TRIAL_TACHYON] = {"tachyon", "ppm", {KINDS_TACHYON, 10}, write_tachyon},
+    [TRIAL_SWC] = {"swc", "png", {1 << SHAPE_NODE, 20}, write_swc},
+};
+
+void trial_command(const char *command, TrialFormat format, const TrialScene *scene,
+                   const TrialFiles *files, Text *out)
+{
+    Text camera = TEXT_INIT;
+    char width[16], height[16];
+    snprintf(width, sizeof width, "%d", scene->width_px);
+    snprintf(height, sizeof height, "%d", scene->height_px);
+    put_camera(scene, &camera);
+    if (text_chars(&camera)) {
+        const ShellMark marks[] = {{"{scene}", files->scene, false},
+                                   {"{picture}", files->picture, false},
+                                   {"{camera}", text_chars(&camera), true},
+                                   {"{width}", width, true},
+                                   {"{height}", height, true}};
+        shell_fill_marks(command, marks, 5, format == TRIAL_SWC ? 3 : 2, out);
+    } else {
+        text_puts(out, NULL);
+    }
+    text_release(&camera);
+}

@@ -1,0 +1,252 @@
+/* Pairs are drawn in batches. A failing pair is confirmed first. If its relation has a known cause
+ * whose kinds of shapes it contains, these shapes are left out: only a pair that still fails can
+ * have a new cause. A new cause is shrunk, and its name is made from what is left. */
+#include "metamorph/metamorph.h"
+
+#include "metamorph/reports.h"
+#include <stdio.h>
+#include <string.h>
+
+enum { BATCH = 16 };
+
+typedef struct Search {
+    const MetamorphParams *params;
+    Metamorph *result;
+    Random random;
+    int chosen[MAX_RELATIONS]; /* indices of relations */
+    int n_chosen;
+    double start_s;
+    size_t pairs;              /* drawn so far */
+    bool is_shown;             /* a first picture had two colors */
+    char reason[TRIAL_REASON]; /* why the last scene was not drawn */
+} Search;
+
+void metamorph_release(Metamorph *result)
+{
+    ARRAY_RELEASE(&result->causes);
+}
+
+/* ---- relations ------------------------------------------------------------------------------- */
+
+/* Returns true if `name` is one of the words of `list`, separated by commas. */
+static bool is_listed(const char *list, const char *name)
+{
+    const size_t length = strlen(name);
+    for (const char *at = list; at; at = strchr(at, ',')) {
+        at += *at == ',';
+        if (strncmp(at, name, length) == 0 && (at[length] == ',' || at[length] == '\0'))
+            return true;
+    }
+    return false;
+}
+
+static Status choose_relations(Search *search, Err *err)
+{
+    const MetamorphParams *params = search->params;
+    const char *wanted = params->relations;
+    int n_words = wanted != NULL;
+    for (const char *at = wanted; at && *at; at++)
+        n_words += *at == ',';
+    for (int i = 0; relations[i].name; i++)
+        if (relations[i].formats >> params->renderer.format & 1 &&
+            (!wanted || is_listed(wanted, relations[i].name)))
+            search->chosen[search->n_chosen++] = i;
+    if (!wanted || search->n_chosen == n_words)
+        return STATUS_OK;
+    Text names = TEXT_INIT;
+    for (int i = 0; relations[i].name; i++)
+        if (relations[i].formats >> params->renderer.format & 1)
+            text_printf(&names, "%s%s", names.length ? ", " : "", relations[i].name);
+    const char *list = text_chars(&names);
+    const Status status =
+        err_set(err, STATUS_USAGE, "`relations`: \"%s\" is not a list of relations of %s: %s",
+                wanted, trial_adapters[params->renderer.format].name, list ? list : "");
+    text_release(&names);
+    return status;
+}
+
+/* ---- causes ---------------------------------------------------------------------------------- */
+
+static void name_cause(const TrialPair *pair, const PairVerdict *verdict, char *name)
+{
+    const unsigned kinds = trial_kinds(&pair->first);
+    int length = snprintf(name, CAUSE_NAME, "%s", pair->relation->name);
+    for (int kind = 0; kind < SHAPE_KINDS; kind++)
+        if (kinds >> kind & 1)
+            length +=
+                snprintf(name + length, CAUSE_NAME - (size_t)length, "-%s", shape_kind_names[kind]);
+    snprintf(name + length, CAUSE_NAME - (size_t)length, "%s%s-%s",
+             pair->first.shadows ? "-shadows" : "", pair->first.perspective ? "-perspective" : "",
+             verdict_names[verdict->kind]);
+}
+
+/* Returns true if the pair can have this cause. */
+static bool explains(const MetamorphCause *cause, const TrialPair *pair, const PairVerdict *verdict)
+{
+    const TrialScene *small = &cause->pair.first;
+    return cause->pair.relation == pair->relation && cause->verdict.kind == verdict->kind &&
+           (trial_kinds(small) & ~trial_kinds(&pair->first)) == 0 &&
+           small->shadows <= pair->first.shadows && small->perspective <= pair->first.perspective;
+}
+
+/* Leaves out the shapes of the kinds that a known cause has. Returns false if no shape is left. */
+static bool without_kinds(TrialScene *scene, unsigned kinds)
+{
+    for (int i = scene->n_shapes - 1; i >= 0; i--)
+        if (kinds >> scene->shapes[i].kind & 1)
+            trial_remove(scene, i, i + 1);
+    return scene->n_shapes > 0;
+}
+
+/* Counts the pair for each known cause that can explain it, and leaves out the shapes of these
+ * causes. *is_new receives true if the pair, or what is left of it, still fails. */
+static Status strip_known(Search *search, TrialPair *pair, PairVerdict *verdict, bool *is_new,
+                          Err *err)
+{
+    unsigned kinds = 0;
+    for (size_t i = 0; i < search->result->causes.n; i++) {
+        MetamorphCause *cause = &search->result->causes.items[i];
+        if (!explains(cause, pair, verdict))
+            continue;
+        kinds |= trial_kinds(&cause->pair.first);
+        cause->confirmed++;
+    }
+    *is_new = kinds == 0;
+    if (kinds == 0 || !without_kinds(&pair->first, kinds))
+        return STATUS_OK;
+    TRY(pairs_judge(&search->params->renderer, pair, 1, verdict, err));
+    if (verdict_fails(verdict))
+        TRY(pair_confirm(&search->params->renderer, pair, verdict->kind, is_new, err));
+    return STATUS_OK;
+}
+
+static bool is_smaller(const MetamorphCause *a, const MetamorphCause *b)
+{
+    const TrialScene *p = &a->pair.first, *q = &b->pair.first;
+    return p->n_shapes != q->n_shapes ? p->n_shapes < q->n_shapes
+                                      : p->width_px * p->height_px < q->width_px * q->height_px;
+}
+
+/* Adds a cause, or counts it for the known one with its name and keeps the smaller pair. */
+static Status add_cause(Metamorph *result, const MetamorphCause *cause, Err *err)
+{
+    for (size_t i = 0; i < result->causes.n; i++) {
+        MetamorphCause *known = &result->causes.items[i];
+        if (strcmp(known->name, cause->name) != 0)
+            continue;
+        const size_t confirmed = known->confirmed + 1;
+        if (is_smaller(cause, known))
+            *known = *cause;
+        known->confirmed = confirmed;
+        return STATUS_OK;
+    }
+    return ARRAY_PUSH(&result->causes, "causes", err, *cause);
+}
+
+static Status examine(Search *search, const TrialPair *failing, const PairVerdict *found,
+                      RelationCount *count, Err *err)
+{
+    MetamorphCause cause = {.pair = *failing, .verdict = *found, .confirmed = 1};
+    const TrialRenderer *renderer = &search->params->renderer;
+    bool is_new = false;
+    TRY(pair_confirm(renderer, failing, found->kind, &is_new, err));
+    if (!is_new)
+        return STATUS_OK;
+    count->confirmed++;
+    TRY(strip_known(search, &cause.pair, &cause.verdict, &is_new, err));
+    if (!is_new)
+        return STATUS_OK;
+    TRY(pair_shrink(renderer, &cause.pair, &cause.verdict, err));
+    name_cause(&cause.pair, &cause.verdict, cause.name);
+    return add_cause(search->result, &cause, err);
+}
+
+/* ---- search ---------------------------------------------------------------------------------- */
+
+/* Makes a pair about whose first scene the relation makes a promise. */
+static void make_pair(Search *search, const Relation *relation, TrialPair *pair)
+{
+    const TrialFormat format = search->params->renderer.format;
+    TrialScene second;
+    *pair = (TrialPair){.relation = relation, .format = format};
+    do {
+        pair->seed = random_bits(&search->random);
+        trial_make(&search->random, &trial_adapters[format].limits, &pair->first);
+    } while (!pair_second(pair, &second));
+}
+
+static Status judge_batch(Search *search, const Relation *relation, size_t n, Err *err)
+{
+    TrialPair pairs[BATCH];
+    PairVerdict verdicts[BATCH];
+    RelationCount *count = &search->result->counts[relation - relations];
+    const double start_s = clock_seconds();
+    for (size_t i = 0; i < n; i++)
+        make_pair(search, relation, &pairs[i]);
+    TRY(pairs_judge(&search->params->renderer, pairs, n, verdicts, err));
+    for (size_t i = 0; i < n; i++) {
+        count->pairs++;
+        count->none += verdicts[i].kind == VERDICT_NONE;
+        count->failed += verdict_fails(&verdicts[i]);
+        if (verdicts[i].kind == VERDICT_NONE)
+            snprintf(search->reason, TRIAL_REASON, "%s", verdicts[i].reason);
+        else
+            search->is_shown = search->is_shown || !verdicts[i].is_empty;
+        if (verdict_fails(&verdicts[i]))
+            TRY(examine(search, &pairs[i], &verdicts[i], count, err));
+    }
+    search->pairs += n;
+    count->seconds += clock_seconds() - start_s;
+    return STATUS_OK;
+}
+
+/* Ends the search if the renderer draws most scenes not at all, or nothing is visible. */
+static Status check_renderer(const Search *search, Err *err)
+{
+    size_t none = 0;
+    for (int i = 0; i < MAX_RELATIONS; i++)
+        none += search->result->counts[i].none;
+    if (2 * none > search->pairs)
+        return err_set(err, STATUS_TOOL, "`render`: the renderer drew %zu of %zu scenes: %s",
+                       search->pairs - none, search->pairs, search->reason);
+    if (!search->is_shown)
+        return err_set(err, STATUS_TOOL,
+                       "`render`: the renderer drew nothing: each of %zu pictures has one color",
+                       search->pairs);
+    return STATUS_OK;
+}
+
+static bool is_over(const Search *search)
+{
+    const MetamorphParams *params = search->params;
+    return (params->max_pairs > 0 && search->pairs >= params->max_pairs) ||
+           clock_seconds() - search->start_s >= params->seconds;
+}
+
+static Status run_search(Search *search, Err *err)
+{
+    const MetamorphParams *params = search->params;
+    for (int turn = 0; turn == 0 || !is_over(search); turn++) {
+        const size_t left = params->max_pairs ? params->max_pairs - search->pairs : BATCH;
+        const double passed = (clock_seconds() - search->start_s) / params->seconds;
+        if (params->progress && !params->progress(fmin(passed, 1), params->progress_context))
+            return err_cancelled(err);
+        const Relation *relation = &relations[search->chosen[turn % search->n_chosen]];
+        TRY(judge_batch(search, relation, left < BATCH ? left : BATCH, err));
+        TRY(check_renderer(search, err));
+    }
+    return STATUS_OK;
+}
+
+Status metamorph_run(const MetamorphParams *params, Metamorph *result, Err *err)
+{
+    Search search = {.params = params, .result = result, .start_s = clock_seconds()};
+    result->format = params->renderer.format;
+    random_seed(&search.random, params->seed);
+    TRY(choose_relations(&search, err));
+    TRY(run_search(&search, err));
+    for (size_t i = 0; i < result->causes.n; i++)
+        TRY(cause_report(&result->causes.items[i], params, err));
+    result->seconds = clock_seconds() - search.start_s;
+    return STATUS_OK;
+}
