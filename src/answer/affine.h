@@ -118,7 +118,7 @@ static inline Form form_mul_constant(Form a, Form b)
     return form_rounded(product, 2 * factor * span);
 }
 
-static inline Form form_mul(Form a, Form b)
+static inline __attribute__((always_inline)) Form form_mul(Form a, Form b)
 {
     return form_is_constant(b)   ? form_mul_constant(a, b)
            : form_is_constant(a) ? form_mul_constant(b, a)

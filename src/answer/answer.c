@@ -2,7 +2,7 @@
  * neither tiles nor threads change the result. */
 #include "answer/answer.h"
 
-#include "answer/answertile.h"
+#include "answer/certificate.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -124,10 +124,10 @@ static void store(const AnswerPlan *plan, const ColorSpan *span, const Center *c
     values[ANSWER_FAR] = rounded_up(center->far);
 }
 
-static Status answer_pixel(AnswerWork *work, int i, int j, float *values, Err *err)
+/* Lists the faces in a pixel, of those in its tile. */
+static void list_pixel(AnswerWork *work, int i, int j)
 {
     const AnswerPlan *plan = work->plan;
-    Center center;
     work->pixel.n = 0;
     for (size_t k = 0; k < work->tile.n; k++) {
         const uint32_t face = work->tile.faces[k];
@@ -137,14 +137,25 @@ static Status answer_pixel(AnswerWork *work, int i, int j, float *values, Err *e
     }
     if (plan->has_ground)
         work->pixel.faces[work->pixel.n++] = (uint32_t)plan->n;
-    const Beam ray = answerplan_ray(plan, i + 0.5, j + 0.5);
+}
+
+static Status pixel_span(AnswerWork *work, int i, int j, ColorSpan *span, Err *err)
+{
+    if (work->plan->params.pattern == 0)
+        return area_answer(work, i, j, span, err);
+    *span = pattern_answer(work, i, j);
+    return STATUS_OK;
+}
+
+static Status answer_pixel(AnswerWork *work, int i, int j, float *values, Err *err)
+{
+    const Beam ray = answerplan_ray(work->plan, i + 0.5, j + 0.5);
+    Center center;
     ColorSpan span;
+    list_pixel(work, i, j);
     find_center(work, &ray, &center);
-    if (plan->params.pattern > 0)
-        span = pattern_answer(work, i, j);
-    else
-        TRY(area_answer(work, i, j, &span, err));
-    store(plan, &span, &center, values);
+    TRY(pixel_span(work, i, j, &span, err));
+    store(work->plan, &span, &center, values);
     work->undecided += values[ANSWER_STATE] != ANSWER_DECIDED;
     return STATUS_OK;
 }
@@ -189,6 +200,31 @@ static Status answer_tile(size_t tile, int worker, void *context, Err *err)
     return STATUS_OK;
 }
 
+/* Writes the claims of pixels that lie evenly among those that show a vessel at their center. */
+static Status certify(AnswerJob *job, Err *err)
+{
+    AnswerWork *work = &job->works[0];
+    const AnswerParams *params = &job->plan.params;
+    const size_t width = (size_t)job->plane.width, n = width * (size_t)job->plane.height;
+    size_t shown = 0, seen = 0;
+    for (size_t pixel = 0; pixel < n; pixel++)
+        shown += !isinf(job->plane.values[pixel * ANSWER_CHANNELS + ANSWER_NEAR]);
+    const size_t step = shown / (size_t)params->certified + 1;
+    certificate_put_scene(&job->plan, params->certificate);
+    for (size_t pixel = 0; pixel < n; pixel++) {
+        const int i = (int)(pixel % width), j = (int)(pixel / width);
+        ColorSpan span;
+        if (isinf(job->plane.values[pixel * ANSWER_CHANNELS + ANSWER_NEAR]) || seen++ % step != 0)
+            continue;
+        list_tile(work, &(PixelRect){i, j, 1, 1});
+        list_pixel(work, i, j);
+        TRY(pixel_span(work, i, j, &span, err));
+        certificate_put_pixel(work, i, j, &span, params->certificate);
+    }
+    text_printf(params->certificate, "null]}\n");
+    return text_check(params->certificate, err);
+}
+
 static Status make_works(AnswerJob *job, Err *err)
 {
     job->threads = job->plan.params.threads > 0 ? job->plan.params.threads : threads_available();
@@ -227,6 +263,8 @@ Status answer_make(const Scene *scene, const AnswerParams *params, Answer *out, 
     TRY_GOTO(plane_init(&job.plane, camera->width, camera->height, ANSWER_CHANNELS, err));
     TRY_GOTO(
         threads_try((size_t)job.columns * (size_t)job.rows, job.threads, answer_tile, &job, err));
+    if (params->certificate)
+        TRY_GOTO(certify(&job, err));
     Answer made = {.plane = job.plane, .scene = answer_scene_hash(scene, params->shadows)};
     for (int i = 0; i < job.threads; i++) {
         made.beams += job.works[i].beams;

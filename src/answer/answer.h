@@ -25,7 +25,9 @@ typedef struct AnswerParams {
     int leaves;   /* area answers: most leaves per pixel */
     bool squares; /* area answers: leaves are squares, not turned along vessels; for tests */
     bool shadows;
-    int threads;                                      /* 0: all processors */
+    int certified; /* number of pixels that show a vessel whose claims are written to certificate */
+    Text *certificate; /* receives JSON; NULL: no certificate; borrowed */
+    int threads;       /* 0: all processors */
     bool (*progress)(double fraction, void *context); /* as RenderParams.progress; NULL: none */
     void *progress_context;
 } AnswerParams;

@@ -158,7 +158,7 @@ static void bound_colors(AnswerPlan *plan)
     for (int c = 0; c < 3; c++) {
         double light = 0, pigment = 0;
         for (size_t i = 0; i < view->n_lights; i++)
-            light += rgb_channel(view->lights[i].color, c);
+            light += fabs(rgb_channel(view->lights[i].color, c));
         for (size_t i = 0; i < plan->n; i++) {
             const Rgb color = appearance_color(&scene->appearance, plan->faces[i].segment);
             pigment = box_max(pigment, rgb_channel(color, c));
@@ -169,6 +169,10 @@ static void bound_colors(AnswerPlan *plan)
             plan->most[c] =
                 box_max(plan->most[c],
                         most_of(&view->ground.finish, rgb_channel(view->ground.color, c), light));
+        plan->least[c] = 0;
+        for (size_t i = 0; i < view->n_lights; i++)
+            if (rgb_channel(view->lights[i].color, c) < 0)
+                plan->least[c] = -plan->most[c];
     }
 }
 

@@ -28,8 +28,10 @@ typedef struct AnswerPlan {
     WallFrame *frames; /* per face, for an orthographic camera; NULL in perspective */
     PixelRect *screen; /* per face: the pixels that its box covers */
     LightRays lights[VIEW_MAX_LIGHTS];
-    double most[3]; /* no color of a channel is above this */
-    double pad_mm;  /* the boxes of the search tree are this much larger than the faces */
+    /* Bounds of each channel of every color, and of what each light adds: `least` is 0 unless a
+     * light has a negative color. */
+    double least[3], most[3];
+    double pad_mm; /* the boxes of the search tree are this much larger than the faces */
 } AnswerPlan;
 
 /* Prepares a scene. Release *plan with answerplan_release, even after an error. Errors:

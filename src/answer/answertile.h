@@ -20,15 +20,28 @@ typedef struct AreaLeaf {
     bool is_mixed; /* shows other faces than one wall, or is wide because of strips along cuts */
 } AreaLeaf;
 
+/* The blockers of a face for a light, as seen from a pixel: blockers.faces[begin..begin + n). */
+typedef struct CachedBlockers {
+    const Face *face;
+    size_t light, begin, n;
+} CachedBlockers;
+
+enum { MAX_CACHED = 32, CACHE_FACES = 4096 };
+
 /* The workspace of a thread. */
 typedef struct AnswerWork {
     const AnswerPlan *plan;
     FaceList tile, pixel; /* faces in the tile, and in the pixel */
     FaceList blockers;
+    CachedBlockers cached[MAX_CACHED]; /* of the present pixel's area answer */
+    size_t n_cached, n_cached_faces;
+    uint32_t cached_faces[CACHE_FACES];
+    Beam whole; /* of the present pixel's area answer: all its rays */
     FaceHit hits[MAX_HITS];
     LightBlocker blocker;
     size_t beams, undecided;
     ARRAY(AreaLeaf) leaves; /* of a pixel; owned */
+    Text *record;           /* receives the parts of leaves; NULL: nobody; borrowed */
     Heap heap;              /* of leaves, the widest first */
 } AnswerWork;
 

@@ -14,8 +14,7 @@ static double half_length(const double side[2])
     return sqrt(side[0] * side[0] + side[1] * side[1]);
 }
 
-/* Returns the leaf's points as a polygon of its rectangle. */
-static LeafPolygon polygon_of(const AreaLeaf *leaf)
+LeafPolygon arealeaf_polygon(const AreaLeaf *leaf)
 {
     LeafPolygon polygon = {4, {-1, 1, 1, -1}, {-1, -1, 1, 1}};
     if (!leaf->turned)
@@ -28,32 +27,30 @@ static LeafPolygon polygon_of(const AreaLeaf *leaf)
     return polygon_cut(&polygon, form_neg(y), -leaf->clip[3]);
 }
 
-/* Shrinks a turned leaf to the bounds of its polygon. */
+/* Shrinks a turned leaf to the bounds of its polygon along the vessel. */
 static void fit_leaf(AreaLeaf *leaf)
 {
-    const LeafPolygon polygon = polygon_of(leaf);
-    double low[2] = {1, 1}, high[2] = {-1, -1};
+    const LeafPolygon polygon = arealeaf_polygon(leaf);
+    double low = 1, high = -1;
     if (!leaf->turned || polygon.n < 3)
         return;
     for (int i = 0; i < polygon.n; i++) {
-        low[0] = box_min(low[0], polygon.x[i]);
-        high[0] = box_max(high[0], polygon.x[i]);
-        low[1] = box_min(low[1], polygon.y[i]);
-        high[1] = box_max(high[1], polygon.y[i]);
+        low = box_min(low, polygon.x[i]);
+        high = box_max(high, polygon.x[i]);
     }
-    /* Rectangles overlap by far more than corners are rounded; polygons do not change. */
+    /* Not beyond the ends: there the other half begins, if the leaf was halved along the vessel. */
     const double pad = 1e-9;
-    const double mid[2] = {0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])};
-    const double half[2] = {box_min(0.5 * (high[0] - low[0]) + pad, 1), 1};
-    leaf->x += mid[0] * leaf->along[0];
-    leaf->y += mid[0] * leaf->along[1];
-    leaf->along[0] *= half[0];
-    leaf->along[1] *= half[0];
+    const double from = box_max(low - pad, -1), to = box_min(high + pad, 1);
+    const double mid = 0.5 * (from + to), half = 0.5 * (to - from);
+    leaf->x += mid * leaf->along[0];
+    leaf->y += mid * leaf->along[1];
+    leaf->along[0] *= half;
+    leaf->along[1] *= half;
 }
 
-static void measure_leaf(AnswerWork *work, int i, int j, AreaLeaf *leaf)
+void arealeaf_measure(AnswerWork *work, int i, int j, AreaLeaf *leaf)
 {
-    const LeafPolygon polygon = polygon_of(leaf);
+    const LeafPolygon polygon = arealeaf_polygon(leaf);
     const double scale = fabs(leaf->along[0] * leaf->across[1] - leaf->along[1] * leaf->across[0]);
     const Beam beam = answerplan_beam(work->plan, i + 0.5 + leaf->x, j + 0.5 + leaf->y, leaf->along,
                                       leaf->across);
@@ -63,8 +60,8 @@ static void measure_leaf(AnswerWork *work, int i, int j, AreaLeaf *leaf)
         sum = region_integrate(work, &beam, &work->pixel, &polygon);
     work->beams++;
     for (int c = 0; c < 3; c++) {
-        leaf->low[c] = sum.low[c] * scale * (1 - 1e-14);
-        leaf->high[c] = sum.high[c] * scale * (1 + 1e-14);
+        leaf->low[c] = scale * (sum.low[c] - 1e-14 * fabs(sum.low[c]));
+        leaf->high[c] = scale * (sum.high[c] + 1e-14 * fabs(sum.high[c]));
         width += sum.high[c] - sum.low[c];
     }
     leaf->is_mixed = !sum.walls || sum.strips > 0.5 * width;
@@ -155,9 +152,9 @@ static ColorSpan span_of_leaves(const AnswerPlan *plan, const AreaLeaf *leaves, 
         }
     /* Each leaf's area has an error below 1e-13 of a pixel. */
     for (int c = 0; c < 3; c++) {
-        const double error = 1e-13 * (double)heap->n * plan->most[c];
-        span.low[c] = box_max(span.low[c] * (1 - 1e-11) - error, 0);
-        span.high[c] = box_min(span.high[c] * (1 + 1e-11) + error, plan->most[c]);
+        const double error = (1e-13 * (double)heap->n + 1e-11) * plan->most[c];
+        span.low[c] = box_max(span.low[c] - error, plan->least[c]);
+        span.high[c] = box_min(span.high[c] + error, plan->most[c]);
     }
     return span;
 }
@@ -190,7 +187,7 @@ static Status refine(AnswerWork *work, int i, int j, Heap *heap, ColorSpan *span
             const int n = divide(&work->leaves.items[widest], parts);
             TRY(ARRAY_RESERVE(&work->leaves, 4, "leaves", err));
             for (int p = 0; p < n; p++) {
-                measure_leaf(work, i, j, &parts[p]);
+                arealeaf_measure(work, i, j, &parts[p]);
                 const size_t at = p == 0 ? widest : work->leaves.n++;
                 work->leaves.items[at] = parts[p];
                 TRY(push(work, heap, at, slopes, err));
@@ -204,8 +201,9 @@ Status area_answer(AnswerWork *work, int i, int j, ColorSpan *out, Err *err)
     static const double slopes[3] = {1, 1, 1};
     AreaLeaf whole = {.across = {0, 0.5}, .along = {0.5, 0}};
     Heap *heap = &work->heap;
-    work->leaves.n = heap->n = 0;
-    measure_leaf(work, i, j, &whole);
+    work->leaves.n = heap->n = work->n_cached = work->n_cached_faces = 0;
+    work->whole = answerplan_beam(work->plan, i + 0.5, j + 0.5, whole.along, whole.across);
+    arealeaf_measure(work, i, j, &whole);
     TRY(ARRAY_PUSH(&work->leaves, "leaves", err, whole));
     TRY(push(work, heap, 0, slopes, err));
     return refine(work, i, j, heap, out, err);

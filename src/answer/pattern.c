@@ -9,7 +9,7 @@ ColorSpan span_any(const AnswerPlan *plan)
 {
     ColorSpan span;
     for (int c = 0; c < 3; c++) {
-        span.low[c] = 0;
+        span.low[c] = plan->least[c];
         span.high[c] = plan->most[c];
     }
     return span;
@@ -256,8 +256,8 @@ ColorSpan pattern_answer(AnswerWork *work, int i, int j)
         }
     /* Sums of at most 4000 terms have relative errors below 1e-12. */
     for (int c = 0; c < 3; c++) {
-        sum.low[c] *= (1 - 1e-12) / (n * n + 1);
-        sum.high[c] *= (1 + 1e-12) / (n * n + 1);
+        sum.low[c] = (sum.low[c] - 1e-12 * fabs(sum.low[c])) / (n * n + 1);
+        sum.high[c] = (sum.high[c] + 1e-12 * fabs(sum.high[c])) / (n * n + 1);
     }
     return sum;
 }

@@ -1,7 +1,7 @@
 /* A piece of the polygon holds the hits that may be visible in it, each with the set of its edges
  * that are not decided there. Light is additive, so shadows of each light cut the piece on their
  * own. Where a bound is NaN, nothing is decided, and the piece takes the range of all colors. */
-#include "answer/region.h"
+#include "answer/certificate.h"
 
 #include <math.h>
 
@@ -105,6 +105,7 @@ static const double area_error = 1e-13;
 /* Adds an area that has any color of a span. */
 static void add_span(Region *r, double area, const ColorSpan *span)
 {
+    certificate_put_span(r->work->record, area, span);
     for (int c = 0; c < 3; c++) {
         r->sum.low[c] += area * span->low[c];
         r->sum.high[c] += area * span->high[c];
@@ -114,16 +115,19 @@ static void add_span(Region *r, double area, const ColorSpan *span)
 
 /* Adds the integral of a form over a polygon, times `weight`. Colors are neither negative nor above
  * the brightest of the scene. */
-static void add_form(Region *r, const PolygonMoments *m, const FormColor *color, double weight)
+static void add_form(Region *r, const LeafPolygon *polygon, const FormColor *color, double weight)
 {
+    const PolygonMoments moments = moments_of(polygon), *m = &moments;
+    certificate_put_form(r->work->record, polygon, color, weight);
     for (int c = 0; c < 3; c++) {
         const Form f = color->channels[c];
         const double value = f.c * m->area + f.x * m->x + f.y * m->y;
         const double error = f.e * m->area + area_error * form_span(f);
+        const double least = r->work->plan->least[c] * m->area;
         const double most = r->work->plan->most[c] * m->area;
         const double low = value - error, high = value + error;
-        r->sum.low[c] += low > 0 ? weight * low : 0;
-        r->sum.high[c] += high < most ? weight * high : weight * most;
+        r->sum.low[c] += weight * (low > least ? low : least);
+        r->sum.high[c] += weight * (high < most ? high : most);
     }
 }
 
@@ -157,9 +161,14 @@ static const ColorSpan *range_of(Region *r, size_t hit)
             continue;
         const ColorSpan adds = span_of(plan, &light->lit[i].adds);
         for (int c = 0; c < 3; c++) {
-            light->range.low[c] += plan->lights[i].points > 0 ? 0 : adds.low[c];
-            light->range.high[c] = box_min(light->range.high[c] + adds.high[c], plan->most[c]);
+            const bool may_block = plan->lights[i].points > 0;
+            light->range.low[c] += may_block ? box_min(adds.low[c], 0) : adds.low[c];
+            light->range.high[c] += may_block ? box_max(adds.high[c], 0) : adds.high[c];
         }
+    }
+    for (int c = 0; c < 3; c++) {
+        light->range.low[c] = box_max(light->range.low[c], plan->least[c]);
+        light->range.high[c] = box_min(light->range.high[c], plan->most[c]);
     }
     return &light->range;
 }
@@ -177,7 +186,7 @@ typedef struct ShadowPiece {
 typedef struct ShadowCuts {
     const Shade *shades;
     const FormColor *adds;
-    ColorSpan range; /* from 0 to what the light adds */
+    ColorSpan range; /* of what the light adds, blocked or not, times the weight */
     double weight;
 } ShadowCuts;
 
@@ -231,17 +240,13 @@ static void add_lit(Region *r, const ShadowCuts *cuts, ShadowPiece *piece)
             first = i;
     }
     if (piece->n == 0) {
-        const PolygonMoments m = moments_of(&piece->polygon);
-        add_form(r, &m, cuts->adds, cuts->weight);
+        add_form(r, &piece->polygon, cuts->adds, cuts->weight);
         return;
     }
     first = first < piece->n ? first : 0;
     const int edge = __builtin_ctz(piece->items[first].pending);
-    ColorSpan part = cuts->range;
-    for (int c = 0; c < 3; c++)
-        part.high[c] *= cuts->weight;
     if (r->cuts >= MAX_CUTS || piece->depth >= MAX_DEPTH) {
-        add_span(r, polygon_area(&piece->polygon), &part);
+        add_span(r, polygon_area(&piece->polygon), &cuts->range);
         return;
     }
     ShadowPiece inside = *piece, outside = *piece;
@@ -249,33 +254,68 @@ static void add_lit(Region *r, const ShadowCuts *cuts, ShadowPiece *piece)
     add_span(r,
              cut_at(r, &piece->polygon, cuts->shades[piece->items[first].shade].edges[edge],
                     &inside.polygon, &outside.polygon),
-             &part);
+             &cuts->range);
     inside.items[first].pending &= (uint8_t) ~(1 << edge);
     outside.items[first] = outside.items[--outside.n];
     add_lit(r, cuts, &inside);
     add_lit(r, cuts, &outside);
 }
 
-/* Lists the blockers of a light beam. Returns false if there are too many. */
+/* Lists the faces that may block the light on a surface. Returns false if its extent is not
+ * known. */
+static bool find_blockers(AnswerWork *work, const FormSurface *surface, const Beam *beam,
+                          size_t light)
+{
+    const Form3 p = surface->point;
+    const Vec3 from = vec3(p.x.c, p.y.c, p.z.c);
+    const Vec3 towards = vec3(beam->direction.x.c, beam->direction.y.c, beam->direction.z.c);
+    const double reach =
+        box_max(form_high(p.x) - from.x, box_max(form_high(p.y) - from.y, form_high(p.z) - from.z));
+    const bool parallel = work->plan->lights[light].light->parallel;
+    if (!isfinite(reach))
+        return false;
+    answerplan_blockers(work->plan, from, reach, towards, parallel ? (double)INFINITY : 1 + 1e-6,
+                        &work->blockers);
+    return true;
+}
+
+/* Finds the blockers of a face for all of the pixel, once. Returns NULL if they cannot be kept. */
+static const CachedBlockers *cached_blockers(AnswerWork *work, const Face *face, size_t light)
+{
+    const AnswerPlan *plan = work->plan;
+    for (size_t i = 0; i < work->n_cached; i++)
+        if (work->cached[i].face == face && work->cached[i].light == light)
+            return &work->cached[i];
+    FaceHit hit;
+    if (work->n_cached == MAX_CACHED || plan->lights[light].points > 1 ||
+        !face_hit(face, (size_t)(face - plan->faces), &work->whole, &hit))
+        return NULL;
+    const FormSurface surface = surface_at(plan, &work->whole, &hit);
+    const Beam beam = light_beam(plan, &surface, light, 0);
+    if (!find_blockers(work, &surface, &beam, light) ||
+        work->n_cached_faces + work->blockers.n > CACHE_FACES)
+        return NULL;
+    CachedBlockers *made = &work->cached[work->n_cached++];
+    *made = (CachedBlockers){face, light, work->n_cached_faces, work->blockers.n};
+    for (size_t i = 0; i < made->n; i++)
+        work->cached_faces[work->n_cached_faces++] = work->blockers.faces[i];
+    return made;
+}
+
+/* Lists the blockers of a light beam with their edges. Returns false if there are too many. */
 static bool list_shades(Region *r, const FormSurface *surface, const Beam *beam, size_t light,
                         Shade *shades, int *n)
 {
     AnswerWork *work = r->work;
-    const AnswerPlan *plan = work->plan;
-    const Vec3 from = vec3(surface->point.x.c, surface->point.y.c, surface->point.z.c);
-    const Vec3 towards = vec3(beam->direction.x.c, beam->direction.y.c, beam->direction.z.c);
-    const double reach = box_max(
-        form_high(surface->point.x) - from.x,
-        box_max(form_high(surface->point.y) - from.y, form_high(surface->point.z) - from.z));
-    const bool parallel = plan->lights[light].light->parallel;
-    *n = 0;
-    if (!isfinite(reach))
+    const CachedBlockers *cached = cached_blockers(work, surface->hit->face, light);
+    if (!cached && !find_blockers(work, surface, beam, light))
         return false;
-    answerplan_blockers(plan, from, reach, towards, parallel ? (double)INFINITY : 1 + 1e-6,
-                        &work->blockers);
-    for (size_t i = 0; i < work->blockers.n; i++) {
+    const uint32_t *faces = cached ? work->cached_faces + cached->begin : work->blockers.faces;
+    const size_t count = cached ? cached->n : work->blockers.n;
+    *n = 0;
+    for (size_t i = 0; i < count; i++) {
         LightBlocker *blocker = &work->blocker;
-        if (!blocker_at(plan, surface, beam, light, work->blockers.faces[i], blocker))
+        if (!blocker_at(work->plan, surface, beam, light, faces[i], blocker))
             continue;
         if (*n == MAX_BLOCKERS)
             return false;
@@ -300,8 +340,10 @@ static void add_light(Region *r, HitLight *hit, size_t light, int point, const L
     ShadowPiece piece = {.polygon = *polygon};
     const Beam beam = light_beam(plan, &hit->surface, light, point);
     const int ground = ground_blocks(plan, &hit->surface, &beam, light);
-    for (int c = 0; c < 3; c++)
-        cuts.range.low[c] = 0;
+    for (int c = 0; c < 3; c++) {
+        cuts.range.low[c] = cuts.weight * box_min(cuts.range.low[c], 0);
+        cuts.range.high[c] = cuts.weight * box_max(cuts.range.high[c], 0);
+    }
     if (ground == 1)
         return;
     const bool few = list_shades(r, &hit->surface, &beam, light, shades, &piece.n);
@@ -317,10 +359,7 @@ static void add_light(Region *r, HitLight *hit, size_t light, int point, const L
         }
     }
     if (!few || ground == -1 || piece.n > MAX_BLOCKERS) {
-        ColorSpan part = cuts.range;
-        for (int c = 0; c < 3; c++)
-            part.high[c] *= cuts.weight;
-        add_span(r, polygon_area(polygon), &part);
+        add_span(r, polygon_area(polygon), &cuts.range);
         return;
     }
     for (int i = 0; i < piece.n; i++) {
@@ -335,7 +374,6 @@ static void add_hit(Region *r, size_t index, const LeafPolygon *polygon)
 {
     const AnswerPlan *plan = r->work->plan;
     HitLight *hit = light_of(r, index);
-    const PolygonMoments m = moments_of(polygon);
     FormColor color = hit->surface.base;
     for (size_t i = 0; i < plan->scene->view.n_lights; i++) {
         if (hit->lit[i].dark)
@@ -346,7 +384,7 @@ static void add_hit(Region *r, size_t index, const LeafPolygon *polygon)
         for (int k = 0; k < plan->lights[i].points; k++)
             add_light(r, hit, i, k, polygon);
     }
-    add_form(r, &m, &color, 1);
+    add_form(r, polygon, &color, 1);
     const uint32_t wall = r->work->hits[index].face->kind == FACE_WALL ? (uint32_t)index + 1 : 0;
     r->sum.is_mixed = r->sum.is_mixed || !wall || (r->sum.walls && r->sum.walls != wall);
     r->sum.walls = r->sum.is_mixed ? 0 : wall;
@@ -357,10 +395,9 @@ static void add_hit(Region *r, size_t index, const LeafPolygon *polygon)
 static void add_background(Region *r, const LeafPolygon *polygon)
 {
     const Rgb paper = r->work->plan->scene->view.background;
-    const PolygonMoments m = moments_of(polygon);
     const FormColor color = {{form_of(rgb_channel(paper, 0), 0), form_of(rgb_channel(paper, 1), 0),
                               form_of(rgb_channel(paper, 2), 0)}};
-    add_form(r, &m, &color, 1);
+    add_form(r, polygon, &color, 1);
 }
 
 /* Returns the range of all colors that a piece may have. */

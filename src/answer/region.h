@@ -35,4 +35,10 @@ typedef struct RegionSum {
 RegionSum region_integrate(AnswerWork *work, const Beam *beam, const FaceList *list,
                            const LeafPolygon *polygon);
 
+/* Returns the leaf's points as a polygon of its rectangle. */
+LeafPolygon arealeaf_polygon(const AreaLeaf *leaf);
+/* Integrates over a leaf of the pixel (i, j), among the faces of work->pixel, and sets its bounds
+ * and how it is divided next. */
+void arealeaf_measure(AnswerWork *work, int i, int j, AreaLeaf *leaf);
+
 #endif

@@ -76,7 +76,7 @@ double coverage_quantile(const CoverageReport *report, double part);
 
 /* The distances in trees grown in a volume, as multiples of the spacing of their terminals s =
  * (volume / terminals)^(1/3). Measured in grown trees of 5,000 and 500,000 terminals, which agree
- * to 1 %. */
+ * to 1 % in the first two; the largest void, a single place, differs by 13 %. */
 #define COVERAGE_LAW_MEAN 0.377
 #define COVERAGE_LAW_95 0.675
 #define COVERAGE_LAW_LARGEST 1.23

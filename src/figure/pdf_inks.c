@@ -84,13 +84,16 @@ static void put_content(const PdfFile *file, const char *content, Text *out)
 /* Appends the dictionary of an object, `length` bytes, with three colors as four. */
 static void put_dictionary(const PdfFile *file, const char *at, size_t length, Text *out)
 {
-    static const char rgb_space[] = "/DeviceRGB";
+    static const char rgb_space[] = "/DeviceRGB", jpeg_filter[] = "/DCTDecode";
     for (const char *end = at + length; at < end;) {
         double rgb[3];
         int taken = 0;
         if (strncmp(at, rgb_space, sizeof rgb_space - 1) == 0) {
             text_puts(out, "/DeviceCMYK");
             at += sizeof rgb_space - 1;
+        } else if (strncmp(at, jpeg_filter, sizeof jpeg_filter - 1) == 0) {
+            text_puts(out, "/FlateDecode"); /* what put_deflated writes */
+            at += sizeof jpeg_filter - 1;
         } else if ((strncmp(at, "/C0 [", 5) == 0 || strncmp(at, "/C1 [", 5) == 0) &&
                    sscanf(at + 5, "%lf %lf %lf ]%n", &rgb[0], &rgb[1], &rgb[2], &taken) == 3 &&
                    taken > 0) {
@@ -165,6 +168,20 @@ static bool has(const char *from, const char *to, const char *word)
     return found != NULL;
 }
 
+/* Sets *out to the codes of a JPEG, which have three channels. */
+static Status decode_jpeg(const char *from, size_t n, char **out, size_t *size, Err *err)
+{
+    Picture picture;
+    TRY(picture_decode(&picture, "a JPEG of a .pdf panel", from, n, err));
+    if (picture.channels != 3) {
+        picture_release(&picture);
+        return broken("a JPEG in RGB has another number of colors", err);
+    }
+    *size = picture_stride(&picture) * (size_t)picture.height;
+    *out = (char *)picture.codes8;
+    return STATUS_OK;
+}
+
 /* Appends a stream with its colors converted, and a dictionary that states its new length. */
 static Status put_stream(PdfFile *file, const char *dictionary, const char *stream, const char *end,
                          Err *err)
@@ -174,12 +191,9 @@ static Status put_stream(PdfFile *file, const char *dictionary, const char *stre
     size_t size = 0;
     Text packed = TEXT_INIT;
     Status status;
-    if (has(dictionary, stream, "/DCTDecode"))
-        return err_set(err, STATUS_INPUT,
-                       "a .pdf panel holds a JPEG, whose colors cannot be converted to inks; write "
-                       "a .tif");
-    TRY(inflate_all(stream + strlen("stream\n"), (size_t)(end - stream) - strlen("stream\n"),
-                    &bytes, &size, err));
+    stream += strlen("stream\n");
+    TRY((has(dictionary, stream, "/DCTDecode") ? decode_jpeg : inflate_all)(
+        stream, (size_t)(end - stream), &bytes, &size, err));
     TRY_GOTO(put_colors(file, image, bytes, size, &packed, err));
     const char *length = strstr(dictionary, "/Length ");
     put_dictionary(file, dictionary, (size_t)(length - dictionary), &file->out);
@@ -187,7 +201,6 @@ static Status put_stream(PdfFile *file, const char *dictionary, const char *stre
     length += strlen("/Length ");
     length += strcspn(length, "\n/>");
     put_dictionary(file, length, (size_t)(stream - length), &file->out);
-    text_puts(&file->out, "stream\n");
     text_append(&file->out, text_chars(&packed), packed.length);
     text_puts(&file->out, "\nendstream\n");
 done:

@@ -12,7 +12,7 @@
  *
  * inks     of 8 bits.
  * pdf      receives the result; unchanged after an error.
- * Errors   STATUS_INPUT if the page holds a JPEG, whose colors are not converted; STATUS_IO if the
+ * Errors   STATUS_INPUT if the page holds a JPEG that cannot be read; STATUS_IO if the
  *          file is not as cairo 1.16 writes it; STATUS_MEMORY. */
 MUST_CHECK Status pdf_to_inks(const Inks *inks, Text *pdf, Err *err);
 

@@ -336,6 +336,10 @@ MUST_CHECK Status image_read(Image *image, const char *path, ImageAlpha alpha, c
 bool image_exr_text(const char *path, const char *name, char *text, size_t size);
 /* As image_read. Errors: also STATUS_INPUT if the file holds floats, or if it holds codes. */
 MUST_CHECK Status picture_read(Picture *picture, const char *path, ImageAlpha alpha, Err *err);
+/* Reads a file in memory as picture_read. `name` is the file's name in errors. Errors: also
+ * STATUS_INPUT if the format is unknown. */
+MUST_CHECK Status picture_decode(Picture *picture, const char *name, const void *bytes, size_t size,
+                                 Err *err);
 MUST_CHECK Status plane_read(Plane *plane, const char *path, ImageAlpha alpha, Err *err);
 
 /* Composites an image with alpha over a background, red, green and blue from 0 to 1, in linear

@@ -20,8 +20,9 @@ void image_put_libraries(Text *text)
     const char *tiff = TIFFGetVersion(); /* "LIBTIFF, Version 4.5.0\n..." */
     tiff += strcspn(tiff, "0123456789");
     exr_get_library_version(&major, &minor, &patch, &extra);
-    text_printf(text, "libpng %s, libdeflate " LIBDEFLATE_VERSION_STRING ", libtiff %.*s, ",
-                png_get_libpng_ver(NULL), (int)strspn(tiff, "0123456789."), tiff);
+    /* The name and the number in one string would look as if a copy of zlib were in the program. */
+    text_printf(text, "libpng %s, libdeflate %s, libtiff %.*s, ", png_get_libpng_ver(NULL),
+                LIBDEFLATE_VERSION_STRING, (int)strspn(tiff, "0123456789."), tiff);
     int lcms = cmsGetEncodedCMMversion(); /* 2140 */
     text_puts(text, "libjpeg-turbo " TEXT_OF(LIBJPEG_TURBO_VERSION) ", ");
     int webp = WebPGetDecoderVersion(); /* 0x010204 */

@@ -25,6 +25,14 @@ inputs() {
     run_ok corcast render --exact tree.swc --size 21x15 --planes depth,normal,id --model cylinders --height 70 -o b.png
 }
 
+test_failed_allocations_in_coverage_and_centrelines() {
+    inputs
+    fail_each 5 many coverage ../tree.swc --spacing 9 -o d.nii.gz --territories l.nii --summary s.csv --json j.json
+    fail_each 5 one convert ../tree.swc --smooth --step 9 --centreline-arrays o.vtp
+    fail_each 20 many export ../tree.swc --extend 0.5 --mesh-tolerance 0.5 -o m.vtp
+    fail_each 5 one info ../tree.swc --stats -o s.csv
+}
+
 test_failed_allocations_in_grow() {
     inputs
     fail_each 1 many grow --terminals 9 -o o.swc --json o.json

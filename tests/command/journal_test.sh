@@ -258,4 +258,34 @@ test_black_type_is_black_ink_alone() {
     expect_sentence 'is for .tif, .jpg and .pdf'
 }
 
+# page_of_jpeg FILE.jpg WIDTH HEIGHT: a PDF page that this JPEG fills.
+page_of_jpeg() {
+    printf '%%PDF-1.4\n1 0 obj<</Type/Catalog/Pages 2 0 R>>endobj\n2 0 obj<</Type/Pages/Kids[3 0 R]/Count 1>>endobj\n'
+    printf '3 0 obj<</Type/Page/Parent 2 0 R/MediaBox[0 0 64 48]/Contents 4 0 R/Resources<</XObject<</I 5 0 R>>>>>>endobj\n'
+    printf '4 0 obj<</Length 22>>stream\n64 0 0 48 0 0 cm /I Do\nendstream endobj\n5 0 obj<</Type/XObject/Subtype/Image/Width %d/Height %d' "$2" "$3"
+    printf '/ColorSpace/DeviceRGB/BitsPerComponent 8/Filter/DCTDecode/Length %d>>stream\n' "$(stat -c %s "$1")"
+    cat "$1"
+    printf '\nendstream endobj\ntrailer<</Root 1 0 R>>\n'
+}
+
+# Ghostscript separates the panel and the TIFF of the same color into the same inks.
+test_a_jpeg_of_a_panel_becomes_inks() {
+    local ink
+    ppmmake rgb:c8/28/1e 64 48 | pnmtojpeg -quality 100 >red.jpg
+    page_of_jpeg red.jpg 64 48 >red.pdf
+    printf '[figure]\nsize = 64mmx48mm\nmargin = 0\nletters = none\n[panel a]\nimage = red.pdf\n' >f.ini
+    run_ok corcast figure f.ini --quiet --cmyk-profile $CMYK -o f.pdf
+    pdfimages -list f.pdf | awk 'NR > 2 && $6 == "cmyk" { n++ } END { exit n != 1 }' ||
+        fail "expected one CMYK image, got $(pdfimages -list f.pdf)"
+    run_ok corcast convert red.jpg red.tif --cmyk-profile $CMYK
+    gs -q -dSAFER -dBATCH -dNOPAUSE -sDEVICE=tiffsep -r20 -sOutputFile=f.%d.tif f.pdf || fail "ghostscript cannot read f.pdf"
+    for ink in 0:Cyan 1:Magenta 2:Yellow 3:Black; do
+        oiiotool -iconfig oiio:RawColor 1 red.tif --ch ${ink%:*} --invert -d uint8 -o plane.pgm
+        tifftopnm "f.1(${ink#*:}).tif" 2>/dev/null | pnmcut -left 20 -top 15 -width 1 -height 1 | pnmnoraw | tail -1 >found
+        pnmcut -left 20 -top 15 -width 1 -height 1 plane.pgm | pnmnoraw | tail -1 >expected
+        [ "$(($(cat found) - $(cat expected)))" -ge -1 ] && [ "$(($(cat found) - $(cat expected)))" -le 1 ] ||
+            fail "expected $(cat expected) of ${ink#*:}, got $(cat found)"
+    done
+}
+
 run_tests "$@"

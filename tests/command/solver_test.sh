@@ -238,4 +238,41 @@ test_the_geometry_for_gmsh_names_every_surface_and_volume() {
     [ ! -e v.geo ] || fail "expected no geometry for gmsh beside a VTP"
 }
 
+test_extensions_lengthen_ends_along_their_axes() {
+    run_ok corcast grow --terminals 7 --domain disc:12 --seed 2 -o t.swc --quiet
+    run_ok corcast export t.swc --mesh-tolerance 0.2 -o a.vtp --quiet
+    printf 'id,radii\n6,2\n13,0\n' >some.csv
+    run_ok corcast export t.swc --mesh-tolerance 0.2 --extend 3 --extend-inlet 5 --extend-outlet some.csv -o b.vtp --quiet
+    paste -d, <(sed 1d a.ends.csv) <(sed 1d b.ends.csv) | awk -F, '{
+        radii = $3 == 13 ? 0 : $3 == 6 ? 2 : $1 == "inlet" ? 5 : 3
+        if ($1 != $13 || $10 != $22 || $12 != $24) exit 1
+        for (k = 4; k < 7; k++) if (($(k + 12) - $k - radii * $10 * $(k + 3))^2 > 1e-16) exit 1
+        if (($25 - radii * $10)^2 > 1e-16 || (radii > 0) != ($26 > 0)) exit 1
+        volume += radii * $10 * $11
+    } END { print volume; exit NR != 8 }' >volume || fail "ends: $(cat a.ends.csv b.ends.csv)"
+    jq -s --argjson more "$(cat volume)" '(.[1].volume_mm3 - .[0].volume_mm3) / $more | . > 0.99 and . < 1.01' \
+        a.vtp.json b.vtp.json | grep -qx true || fail "the volumes differ by other than that of the extensions"
+    run corcast export t.swc --extend 60 -o c.vtp
+    expect_status 2
+    expect_sentence 'extension of outlet 6 by 60 radii meets segment 14 .* the longest that fits is 36\.[0-9] radii'
+    printf 'id,radii\n4,2\n' >no.csv
+    run corcast export t.swc --extend-outlet no.csv -o c.vtp
+    expect_status 2
+    expect_sentence 'segment 4 is no outlet'
+    run corcast export t.swc --extend -1 -o c.vtp
+    expect_status 2
+    run corcast export t.swc --extend 2 -o c.glb
+    expect_status 2
+    expect_sentence 'named parts'
+}
+
+test_centrelines_have_the_arrays_of_simvascular() {
+    printf '%s\n' '1 3 0 0 0 1 -1' '2 3 3 0 0 0.5 1' '3 3 4 1 0 0.4 2' '4 3 4 -1 0 0.3 2' >t.swc
+    run_ok corcast convert t.swc t.csv --step 1 --centreline-arrays --quiet
+    sed -n 1p t.csv | tr -d '"' | grep -q 'MaximumInscribedSphereRadius,CenterlineSectionArea,BranchId,BifurcationId,Path,GlobalNodeId' ||
+        fail "header: $(head -1 t.csv)"
+    [ "$(sed 1d t.csv | cut -d, -f10-13 | tr '\n' ' ')" = '0,-1,0,0 0,-1,1,1 0,-1,2,2 0,-1,3,3 1,-1,1.4142135623730951,4 2,-1,1.4142135623730951,5 ' ] ||
+        fail "arrays: $(cat t.csv)"
+}
+
 run_tests "$@"

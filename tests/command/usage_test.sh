@@ -171,7 +171,7 @@ test_lists_hold_what_options_take() {
         expect_status 2
         ! grep -q 'unknown shape' stderr || fail "expected the shape $name to be known$(said)"
     done
-    [ "$(corcast models | wc -l) $(corcast fields | wc -l)" = "6 12" ] || fail "expected 6 models and 12 fields"
+    [ "$(corcast models | wc -l) $(corcast fields | wc -l)" = "6 13" ] || fail "expected 6 models and 13 fields"
     corcast fields | grep -q "^wss	Pa	wall shear stress$" || fail "expected the unit of wss"
     ls "$REPO/templates/colormaps" | sed -n 's/\.txt$//p' | LC_ALL=C sort >expected
     corcast colormaps | cut -f 1 >listed

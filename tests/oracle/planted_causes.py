@@ -1,14 +1,16 @@
 #!/usr/bin/env python3
 """Plants known faults in pictures and says which cause `compare` names: planted_causes.py CORCAST
 [PICTURE.ppm ...]. Prints a table of Markdown; exit status 1 when a cause is named that was not
-planted. scipy moves, blurs and turns."""
+planted. scipy moves, blurs and turns; Pillow compresses and changes hues."""
 import collections
+import io
 import json
 import subprocess
 import sys
 import tempfile
 
 import numpy as np
+from PIL import Image, ImageEnhance
 from scipy import ndimage
 
 
@@ -90,6 +92,44 @@ def hue_turned(codes, degrees):
                              [third + root, third - root, c + third]])
 
 
+def as_image(codes):
+    return Image.fromarray(np.clip(np.rint(codes), 0, 255).astype(np.uint8))
+
+
+def compressed(codes, quality, subsampling=2):
+    file = io.BytesIO()
+    as_image(codes).save(file, "JPEG", quality=quality, subsampling=subsampling)
+    return np.asarray(Image.open(file)).astype(float)
+
+
+def enhanced(codes, factor):
+    """The saturation of Pillow."""
+    return np.asarray(ImageEnhance.Color(as_image(codes)).enhance(factor)).astype(float)
+
+
+def hue_of_hsv(codes, steps):
+    """The hue of Pillow's HSV, in steps of 360 / 256 degrees."""
+    h, s, v = as_image(codes).convert("HSV").split()
+    return np.asarray(Image.merge("HSV", (h.point(lambda x: (x + steps) % 256), s, v)).convert("RGB")).astype(float)
+
+
+def warped(codes, degrees=0, scale=1, at=(0.5, 0.5), order=3):
+    """Turned clockwise and enlarged about a place, a fraction of the sides."""
+    c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    matrix = np.array([[c, -s], [s, c]]) / scale
+    middle = np.array([at[1] * (codes.shape[0] - 1), at[0] * (codes.shape[1] - 1)])
+    return np.stack([ndimage.affine_transform(codes[:, :, k], matrix, middle - matrix @ middle, order=order, mode="nearest")
+                     for k in range(3)], axis=2)
+
+
+def cropped(codes, part):
+    """A window of the picture, `part` of its sides, enlarged to its size by Pillow."""
+    height, width = codes.shape[:2]
+    left, top = int(0.3 * (1 - part) * width), int(0.8 * (1 - part) * height)
+    box = (left, top, left + int(part * width), top + int(part * height))
+    return np.asarray(as_image(codes).crop(box).resize((width, height), Image.BICUBIC)).astype(float)
+
+
 def in_part(codes, made, rows, columns):
     """`made` in a part of the picture, whose sides are fractions of it, and `codes` elsewhere; `codes` alone where
     nothing is elsewhere that `made` changes, as then it is no fault of a part."""
@@ -119,7 +159,11 @@ MOVED, BLURRED, TONE, GAMMA = "moved", "blurred", "gain or offset", "gamma or en
 TURNED, CHANNELS, MISSING = "turned or mirrored", "channels", "one thing missing"
 BACKGROUND, ROUNDING, NONE = "background", "rounding", "unknown"
 CURVE, SHADING, COLORS = "some other curve", "shading", "other colors"
+HUE, SATURATION, NOISE, JPEG = "hue", "saturation", "noise", "JPEG"
+ROTATED, ZOOMED, CROPPED = "rotated", "zoomed", "cropped"
 WORDS = [
+    ("clockwise", ROTATED), ("cropped", CROPPED), ("enlarged", ZOOMED), ("reduced", ZOOMED),
+    ("hues", HUE), ("saturation", SATURATION), ("JPEG", JPEG), ("with noise", NOISE),
     ("moved by", MOVED), ("blurred", BLURRED), ("power of", GAMMA), ("encoded", GAMMA),
     ("negative", GAMMA), ("made brighter", TONE), ("made darker", TONE), ("mirrored", TURNED),
     ("flipped", TURNED), ("rotated by", TURNED), ("exchanged", CHANNELS), ("channels in", CHANNELS),
@@ -155,11 +199,11 @@ FAULTS = [
     ("the lower half darker", SHADING, in_light(lambda l: np.where(ramp(l, 0) > 0.5, 0.8 * l, l))),
     ("a curve", CURVE, lambda c: 255 * (0.9 * c / 255) ** 1.3), ("a sine", CURVE, lambda c: 255 * np.sin(c / 255 * 1.5)),
     # Other colors, which no sentence is about.
-    ("desaturated a little", COLORS, lambda c: mixed(c, 0.1)), ("desaturated a little", COLORS, lambda c: mixed(c, 0.2)),
-    ("desaturated", COLORS, lambda c: mixed(c, 0.5)), ("grey", COLORS, lambda c: mixed(c, 1)),
-    ("saturated", COLORS, lambda c: mixed(c, -0.3)), ("desaturated in light", COLORS, in_light(lambda l: mixed(l, 0.3))),
-    ("hue turned a little", COLORS, lambda c: hue_turned(c, 5)), ("hue turned a little", COLORS, lambda c: hue_turned(c, -12)),
-    ("hue turned", COLORS, lambda c: hue_turned(c, 40)), ("hue turned by half", COLORS, lambda c: hue_turned(c, 180)),
+    ("desaturated a little", SATURATION, lambda c: mixed(c, 0.1)), ("desaturated a little", SATURATION, lambda c: mixed(c, 0.2)),
+    ("desaturated", SATURATION, lambda c: mixed(c, 0.5)), ("grey", SATURATION, lambda c: mixed(c, 1)),
+    ("saturated", SATURATION, lambda c: mixed(c, -0.3)), ("desaturated in light", SATURATION, in_light(lambda l: mixed(l, 0.3))),
+    ("hue turned a little", HUE, lambda c: hue_turned(c, 5)), ("hue turned a little", HUE, lambda c: hue_turned(c, -12)),
+    ("hue turned", HUE, lambda c: hue_turned(c, 40)), ("hue turned by half", HUE, lambda c: hue_turned(c, 180)),
     ("recolored", COLORS, lambda c: recolored(c, (0.3, 0.9, 1.6))),
     ("recolored nearly grey", COLORS, lambda c: recolored(c, (1, 1.03, 0.98))),
     ("warmer white", COLORS, lambda c: c * [1.04, 1, 0.9]),
@@ -189,9 +233,37 @@ FAULTS = [
     ("blurred, and darker", NONE, lambda c: 0.95 * blurred(c, 1)), ("blurred, and noise", NONE, lambda c: noisy(blurred(c, 1), 4, 7)),
     ("red for blue, and brighter", NONE, lambda c: 1.1 * c[:, :, [2, 1, 0]] - 12),
     # What no sentence is about.
-    ("noise", NONE, lambda c: noisy(c, 4, 1)), ("much noise", NONE, lambda c: noisy(c, 30, 2)),
-    ("turned by less than a degree", NONE, lambda c: ndimage.rotate(c, 0.7, reshape=False, order=3, mode="nearest")),
-    ("scaled", NONE, lambda c: ndimage.affine_transform(c, np.diag([1.01, 1.01, 1]), order=1, mode="nearest")),
+    ("noise", NOISE, lambda c: noisy(c, 4, 1)), ("much noise", NOISE, lambda c: noisy(c, 30, 2)),
+    ("turned by less than a degree", ROTATED, lambda c: ndimage.rotate(c, 0.7, reshape=False, order=3, mode="nearest")),
+    ("rotated", ROTATED, lambda c: warped(c, 1)), ("rotated", ROTATED, lambda c: warped(c, -3, order=1)),
+    ("rotated", ROTATED, lambda c: warped(c, 6)), ("rotated about a corner", ROTATED, lambda c: warped(c, 0.5, at=(0, 0))),
+    ("scaled", ZOOMED, lambda c: ndimage.affine_transform(c, np.diag([1.01, 1.01, 1]), order=1, mode="nearest")),
+    ("enlarged", ZOOMED, lambda c: warped(c, scale=1.03)), ("enlarged", ZOOMED, lambda c: warped(c, scale=1.15, order=1)),
+    ("reduced", ZOOMED, lambda c: warped(c, scale=0.95)),
+    ("cropped and enlarged", CROPPED, lambda c: cropped(c, 0.95)), ("cropped and enlarged", CROPPED, lambda c: cropped(c, 0.8)),
+    ("rotated and enlarged", ROTATED, lambda c: warped(c, 2, 1.04)),
+    ("JPEG", JPEG, lambda c: compressed(c, 90)), ("JPEG", JPEG, lambda c: compressed(c, 75)), ("JPEG", JPEG, lambda c: compressed(c, 40)),
+    ("JPEG without subsampling", JPEG, lambda c: compressed(c, 85, 0)),
+    ("saturation of Pillow", SATURATION, lambda c: enhanced(c, 0.6)), ("saturation of Pillow", SATURATION, lambda c: enhanced(c, 1.3)),
+    ("hue of HSV", HUE, lambda c: hue_of_hsv(c, 20)), ("hue of HSV", HUE, lambda c: hue_of_hsv(c, -60)),
+    ("little noise", NOISE, lambda c: noisy(c, 1.5, 8)),
+    ("grey noise", NOISE, lambda c: c + np.random.default_rng(9).normal(0, 5, c.shape[:2])[..., None]),
+    ("half rotated", NONE, lambda c: in_part(c, warped(c, 2), WHOLE, HALF)),
+    ("half enlarged", NONE, lambda c: in_part(c, warped(c, scale=1.05), HALF, WHOLE)),
+    ("half noisy", NONE, lambda c: in_part(c, noisy(c, 6, 10), WHOLE, HALF)),
+    ("half another hue", NONE, lambda c: in_part(c, hue_turned(c, 30), WHOLE, HALF)),
+    ("a quarter compressed", NONE, lambda c: in_part(c, compressed(c, 40), HALF, HALF)),
+    ("rotated, and noise", NONE, lambda c: noisy(warped(c, 1), 6, 11)), ("rotated, and brighter", NONE, lambda c: 1.06 * warped(c, 1) - 3),
+    ("enlarged, and another hue", NONE, lambda c: hue_turned(warped(c, scale=1.03), 25)),
+    ("moved, and compressed", NONE, lambda c: compressed(moved(c, 2, 1), 60)),
+    ("blurred, and compressed", NONE, lambda c: compressed(blurred(c, 1.2), 60)),
+    ("another hue and saturation", COLORS, lambda c: mixed(hue_turned(c, 40), 0.4)),
+    ("another hue, and noise", NONE, lambda c: noisy(hue_turned(c, 40), 5, 12)),
+    ("sheared", NONE, lambda c: np.stack([ndimage.affine_transform(c[:, :, k], [[1, 0.03], [0, 1]], order=3, mode="nearest") for k in range(3)], axis=2)),
+    ("a swirl", NONE, lambda c: np.stack([ndimage.map_coordinates(c[:, :, k], np.indices(c.shape[:2]) + 2 * np.sin(np.indices(c.shape[:2])[::-1] / 17),
+                                                                  order=1, mode="nearest") for k in range(3)], axis=2)),
+    ("noise that is blurred", NONE, lambda c: c + blurred(np.random.default_rng(13).normal(0, 20, c.shape), 1)),
+    ("stripes", NONE, lambda c: c + 6 * np.sin(np.indices(c.shape)[1])),
     ("few levels", CURVE, lambda c: quantised(c, 17)),
     ("a ghost", NONE, lambda c: np.roll(c.reshape(-1), 3 * 41).reshape(c.shape) * 0.5 + c * 0.5),
 ]

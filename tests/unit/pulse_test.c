@@ -5,15 +5,25 @@
 
 #include "derive/derive.h"
 #include <complex.h>
-#undef I
+#undef I /* a float */
 #include <stdlib.h>
 #include <string.h>
 
-static const double complex I = CMPLX(0, 1);
+/* CMPLX is not in every C library. */
+static double complex complex_of(double re, double im)
+{
+    const union {
+        double part[2];
+        double complex z;
+    } made = {{re, im}};
+    return made.z;
+}
+
+#define I complex_of(0, 1)
 
 static double complex z_of(Phasor x)
 {
-    return CMPLX(x.re, x.im);
+    return complex_of(x.re, x.im);
 }
 
 static void assert_near(double complex value, double complex expected, double tolerance)
@@ -254,7 +264,7 @@ static void waves_conserve_flow_and_power(void **state)
         }
         assert_near(flow[0], z_of(pulse_flow(&pulse, 0, k)), 3e-15);
         assert_near(power, power_of(z_of(pulse_pressure(&pulse, 0, k)), flow[0]), 5e-14);
-        const double complex drive = pa_from_mmhg(96) / 2.5 * CMPLX(cycle.re[k], cycle.im[k]);
+        const double complex drive = pa_from_mmhg(96) / 2.5 * complex_of(cycle.re[k], cycle.im[k]);
         assert_near(z_of(pulse_pressure(&pulse, 0, k)), drive, 1e-15);
         free(flow);
     }
@@ -382,7 +392,7 @@ static void tissue_pressure_moves_blood(void **state)
     const double ra = 0.32 * r, ram = 0.52 * r, rv = 0.16 * r;
     const double cim = 0.287 * (1 / rv + 1 / (ra + ram)), ca = 0.124 * cim;
     /* Nodes m, between Ra and Ram, and n, behind Ram; the pressure at the root is 0. */
-    const double complex pim = CMPLX(tissue.re[k], tissue.im[k]), before = z_of(port.b) + ra;
+    const double complex pim = complex_of(tissue.re[k], tissue.im[k]), before = z_of(port.b) + ra;
     const double complex mm = 1 / before + 1 / ram + I * omega * ca, mn = -1 / ram,
                          nn = 1 / ram + 1 / rv + I * omega * cim, from = I * omega * cim * pim;
     const double complex m = -mn * from / (mm * nn - mn * mn);

@@ -1,4 +1,6 @@
 """Marks the wheel as one for a platform, and for every Python 3: its library is loaded by ctypes."""
+import os
+
 from setuptools import setup
 from setuptools.dist import Distribution
 from wheel.bdist_wheel import bdist_wheel
@@ -12,10 +14,11 @@ class PlatformDistribution(Distribution):
 
 
 class PlatformWheel(bdist_wheel):
-    """A wheel whose tag names the platform alone."""
+    """A wheel whose tag names the platform and its glibc alone."""
 
     def get_tag(self):
-        return "py3", "none", super().get_tag()[2]
+        glibc = os.confstr("CS_GNU_LIBC_VERSION").split()[1].replace(".", "_")
+        return "py3", "none", super().get_tag()[2].replace("linux_", f"manylinux_{glibc}_")
 
 
 setup(distclass=PlatformDistribution, cmdclass={"bdist_wheel": PlatformWheel})

@@ -28,6 +28,9 @@ static void print(const Pulsing *made)
     printf("  linear model  radii and resistances do not change over the cycle; areas would change "
            "by up to %.3g %%, blood reaches %.3g %% of the wave speed\n",
            100 * report->strain, 100 * report->mach);
+    if (made->options->output && pulsing_draws(made->options->output))
+        printf("  drawn         changes of the radius are exaggerated %g times\n",
+               made->options->exaggerate);
 }
 
 /* Sets the options of render or scene. Sections of the recipe can replace them. */
@@ -78,9 +81,7 @@ Status run_pulse(void *options, Parsed *parsed, Err *err)
     Status status = STATUS_OK;
     TRY_GOTO(pulsing_make(options, parsed, &made, err));
     TRY_GOTO(pulsing_write(&made, err));
-    const char *output = made.options->output;
-    const PulsingOutput kind = output ? pulsing_output(output) : PULSING_UNKNOWN;
-    if (kind == PULSING_FILM || kind == PULSING_SCENE)
+    if (made.options->output && pulsing_draws(made.options->output))
         TRY_GOTO(draw(&made, err));
     if (made.options->json)
         status = json_write(pulsing_json(&made), "-", err);

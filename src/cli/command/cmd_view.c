@@ -178,12 +178,15 @@ static size_t field_number(const char *field)
 /* Fields that the tree has not got are passed over. */
 static Status use_next_field(Viewer *viewer, Err *err)
 {
-    const char **field = &viewer->options->coloring.field;
     size_t none = field_number(NULL);
-    for (size_t number = field_number(*field);;) {
+    for (size_t number = field_number(viewer->options->coloring.field);;) {
         number = number == none ? 0 : number + 1;
-        *field = derive_field_name(number);
-        Status status = make_appearance(viewer, err);
+        Status status = picture_use_field(viewer->options, viewer->parsed,
+                                          derive_field_name(number), &viewer->source, err);
+        if (status == STATUS_OK)
+            status = make_appearance(viewer, err);
+        if (status == STATUS_OK)
+            status = aim(viewer, err); /* the look's lights */
         if (number == none || (status != STATUS_INPUT && status != STATUS_USAGE)) {
             set_title(viewer);
             return status;
@@ -243,9 +246,6 @@ static bool is_shown(const Viewer *viewer, const Setting *setting, const Setting
     static const char *const framing[] = {"view", "turn", "margin", "angle", "height", NULL};
     const char *name = setting->option->name;
     bool perspective = viewer->options->projection == PROJECTION_PERSPECTIVE;
-    /* A key that shows a field keeps the look; render would take the look data. */
-    if (strcmp(name, "look") == 0 && viewer->options->coloring.field)
-        return true;
     if (is_one_of(name, always) || strcmp(name, perspective ? "angle" : "height") == 0)
         return true;
     return options_has_effect(parsed, setting->option, options_unmet(parsed)) &&

@@ -328,5 +328,13 @@ Status compare_cause(const Picture *a, const Picture *b, CompareResult *result, 
         TRY(cause_tone(a, b, &samples, &out, err));
     if (!*out.text && !partly_moved)
         TRY(cause_warp(a, b, &samples, &shift, &out, err));
+    if (!*out.text)
+        cause_hue(a, b, &samples, &out);
+    if (!*out.text && !partly_moved)
+        TRY(cause_affine(a, b, &out, err));
+    if (!*out.text)
+        TRY(cause_jpeg(a, b, &out, err));
+    if (!*out.text)
+        cause_noise(a, b, &out);
     return *out.text ? STATUS_OK : cause_place(a, b, &samples, result, &out, err);
 }

@@ -8,8 +8,9 @@
 /* Finds the box of all pixels that differ, and the change that turns A into B. Sets result->box,
  * and sets result->cause to a sentence about the change if the change is certain.
  *
- * Changes are: turned, mirrored or channels exchanged; moved; blurred; brighter or darker
- * everywhere; one vessel missing; different outlines, highlights or shading only. The sentence
+ * Changes are: mirrored or channels exchanged; moved, rotated, enlarged or cropped; blurred;
+ * brighter or darker everywhere; another hue or saturation; compressed as JPEG; noise; one vessel
+ * missing; different outlines, highlights or shading only. The sentence
  * stays "" if no single change explains the difference.
  *
  * a, b     the pictures of the result, of one shape, depth and gamma.

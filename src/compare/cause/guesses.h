@@ -68,6 +68,17 @@ MUST_CHECK Status cause_warp(const Picture *a, const Picture *b, const Samples *
  * Errors   STATUS_MEMORY. */
 MUST_CHECK Status cause_tone(const Picture *a, const Picture *b, const Samples *samples,
                              Sentence *out, Err *err);
+/* Tests whether B is A with another saturation, or with all hues turned by one angle. */
+void cause_hue(const Picture *a, const Picture *b, const Samples *samples, Sentence *out);
+/* Tests whether B is A rotated, enlarged or reduced, or cropped and enlarged.
+ *
+ * Errors   STATUS_MEMORY.
+ * Cost     O(pixels). */
+MUST_CHECK Status cause_affine(const Picture *a, const Picture *b, Sentence *out, Err *err);
+/* Tests whether B is A compressed as JPEG with the tables of libjpeg. Errors: STATUS_MEMORY. */
+MUST_CHECK Status cause_jpeg(const Picture *a, const Picture *b, Sentence *out, Err *err);
+/* Tests whether B is A plus noise that is independent in each pixel. */
+void cause_noise(const Picture *a, const Picture *b, Sentence *out);
 /* Tests whether only the color of the background differs.
  *
  * Errors   STATUS_MEMORY. */

@@ -5,7 +5,8 @@
  * - The background differs when nothing else does but outlines against it, with which it is mixed.
  * - One thing is missing when the background took its place: the pixels seen in A only are one
  *   region, which in A borders on background for three quarters of its rim (a cut end does, a worn
- *   outline borders on what is left), and next to nothing else differs.
+ *   outline borders on what is left), and next to nothing else differs. A region that touches three
+ *   sides of the picture is a part of the picture.
  * - Outlines differ when the pixels that differ have neighbours of quite other colors in both
  *   pictures, and there are others within the outlines to tell, most of which have the
  *   same codes: of things a few pixels wide nothing can be said.
@@ -196,7 +197,9 @@ static void say_lack(const Picture *a, const Picture *b, const CompareResult *re
         Lack lack = find_lack(&labels, pictures, side);
         bool one = 20 * result->values[MEASURE_LARGEST_REGION] >= 19 * (double)lack.pixels;
         bool only = 20 * lack.pixels >= 19 * differing;
-        if (lack.pixels >= 9 && one && only && 4 * lack.background >= 3 * lack.rim)
+        int sides = (lack.left == 0) + (lack.top == 0) + (lack.right == labels.width - 1) +
+                    (lack.bottom == labels.height - 1);
+        if (sides < 3 && lack.pixels >= 9 && one && only && 4 * lack.background >= 3 * lack.rim)
             snprintf(out->text, out->size,
                      "an object, or a part of one, is in %s only (%zu pixels, from (%d, %d) to "
                      "(%d, %d)); %zu other pixels differ",

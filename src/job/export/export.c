@@ -178,19 +178,20 @@ static Status plan_mesh(ExportOptions *options, const Emitter **emitter, Err *er
 
 /* Reads the tree, and divides its segments into smooth curves if --smooth is on. `properties` are
  * those of the model that is exported. */
-static Status read_tree(const ExportOptions *options, unsigned properties, const Parsed *parsed,
+static Status read_tree(const ExportOptions *options, unsigned properties, Parsed *parsed,
                         PictureTree *of, Err *err)
 {
     TRY(picture_read_tree(&options->meshing.coloring, options->prune_radius_mm, parsed, of, err));
-    Status status =
-        options->smooth ? picture_smooth_tree(of, model_with(properties), err) : STATUS_OK;
+    Status status = extension_apply(&options->extension, parsed, &of->tree, err);
+    if (status == STATUS_OK && options->smooth)
+        status = picture_smooth_tree(of, model_with(properties), err);
     if (status != STATUS_OK)
         picture_tree_release(of);
     picture_say_smooth(&of->smooth.report, parsed->common.talk);
     return status;
 }
 
-static Status make_mesh(const ExportOptions *options, const Emitter *emitter, const Parsed *parsed,
+static Status make_mesh(const ExportOptions *options, const Emitter *emitter, Parsed *parsed,
                         MeshResult *mesh, Err *err)
 {
     PictureTree of;
@@ -198,7 +199,7 @@ static Status make_mesh(const ExportOptions *options, const Emitter *emitter, co
     return meshing_make(emitter, &options->meshing, &of, &parsed->common, mesh, err);
 }
 
-Status mesh_make(ExportOptions *options, const Parsed *parsed, MeshResult *mesh, Err *err)
+Status mesh_make(ExportOptions *options, Parsed *parsed, MeshResult *mesh, Err *err)
 {
     const Emitter *emitter;
     TRY(plan_mesh(options, &emitter, err));
@@ -318,6 +319,7 @@ const Command command_export = {
                 "  corcast export tree.swc --color-by strahler -o tree.glb\n"
                 "  corcast export tree.swc --mesh-tolerance 0.05 -o tree.ply\n"
                 "  corcast export tree.swc --parts -o tree.stl\n"
+                "  corcast export tree.swc --extend 5 -o tree.vtp\n"
                 "  corcast export tree.swc --color-by flow -o tree.py\n"
                 "  corcast export tree.swc --spacing 0.1 --labels segment -o tree.nii.gz\n"
                 "  corcast export tree.swc --color-by flow -o tree.html\n",
@@ -329,5 +331,6 @@ const Command command_export = {
     .set_defaults = set_defaults,
     .tables = {{&own_table, 0},
                {&volume_table, offsetof(ExportOptions, volume)},
+               {&extension_table, offsetof(ExportOptions, extension)},
                COLORING_TABLES(ExportOptions, meshing.coloring)},
 };

@@ -2,6 +2,7 @@
 #ifndef CORCAST_JOB_EXPORT_EXPORT_H
 #define CORCAST_JOB_EXPORT_EXPORT_H
 
+#include "job/export/extension.h"
 #include "job/export/meshing.h"
 #include "job/export/volumes.h"
 #include "options/options.h"
@@ -16,6 +17,7 @@ typedef struct ExportOptions {
     double wall_mm;         /* 0: none */
     MeshingOptions meshing;
     VolumeOptions volume;
+    ExtensionOptions extension;
 } ExportOptions;
 
 /* Describes the operation. Its options set an ExportOptions. */
@@ -28,8 +30,7 @@ extern const Command command_export;
  * mesh     borrows from `options` and `parsed`; release it with meshing_release.
  * Errors   STATUS_USAGE if an option has no effect on the format, or if the output has no known
  *          extension; those of picture_read_tree and meshing_make. */
-MUST_CHECK Status mesh_make(ExportOptions *options, const Parsed *parsed, MeshResult *mesh,
-                            Err *err);
+MUST_CHECK Status mesh_make(ExportOptions *options, Parsed *parsed, MeshResult *mesh, Err *err);
 
 /* Exports a tree to options->output and to the files beside it.
  *

@@ -140,7 +140,10 @@ static Status triangulate(const MeshingOptions *options, const Common *common, M
 Status meshing_make(const Emitter *emitter, const MeshingOptions *options, PictureTree *of,
                     const Common *common, MeshResult *out, Err *err)
 {
-    MeshResult made = {.emitter = emitter, .of = *of, .print = options->print};
+    MeshResult made = {.emitter = emitter,
+                       .of = *of,
+                       .said = blood_said(&options->coloring.blood),
+                       .print = options->print};
     Status status;
     *of = (PictureTree){0};
     TRY_GOTO(take_vessels(&made, (VesselBody)options->body, common->talk, err));
@@ -182,7 +185,8 @@ static Status put_beside(const MeshResult *made, FileSlot files[], Err *err)
         solver_gmsh(&made->ends, file_name(files[SCENE_FILE].path), &files[MESH_GMSH].text);
     if (!made->emitter->has_parts)
         return STATUS_OK;
-    TRY(solver_ends(&made->ends, &made->of.tree, &made->vessels, &files[MESH_ENDS].text, err));
+    TRY(solver_ends(&made->ends, &made->of.tree, &made->vessels, &made->said,
+                    &files[MESH_ENDS].text, err));
     return solver_centerline(&made->of.tree, picture_pieces(&made->of), &made->vessels,
                              &files[MESH_CENTERLINE].text, err);
 }

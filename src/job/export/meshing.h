@@ -33,6 +33,7 @@ typedef struct SegmentList {
 typedef struct MeshResult {
     const Emitter *emitter; /* the format that the surface was made for */
     PictureTree of;         /* the tree */
+    TreeMeta said;          /* values of the blood that options give; owns nothing */
     VesselTree vessels;     /* the tree's segments, as they were triangulated */
     VesselMesh mesh;        /* the triangles; empty if the emitter writes lines */
     MeshReport report;      /* the facts about the mesh */

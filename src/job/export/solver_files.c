@@ -2,6 +2,8 @@
  * from the vessels, which may have been made thinner, and longer at their ends. */
 #include "job/export/solver_files.h"
 
+#include "derive/derive.h"
+#include "job/export/extension.h"
 #include "treeio/treeio.h"
 #include <stdlib.h>
 #include <string.h>
@@ -30,13 +32,44 @@ static void put_vector(Vec3 v, Text *out)
     }
 }
 
-Status solver_ends(const MeshEnds *ends, const Tree *tree, const VesselTree *vessels, Text *out,
-                   Err *err)
+/* Computes the wall shear stress of each segment, Pa. *wss is empty if the flow or the viscosity is
+ * unknown. */
+static Status find_wss(const Tree *tree, const TreeMeta *said, Field *wss, Err *err)
 {
-    double *parts;
-    TRY(find_flow_parts(tree, &parts, err));
+    *wss = (Field){0};
+    Status status = derive_rule(tree, said, "wss", wss, err);
+    return status == STATUS_INPUT ? STATUS_OK : status;
+}
+
+/* Appends the length of an end's extension, and the pressure drop of steady flow along it, mmHg: 2
+ * wss L / r. */
+static void put_extension(const MeshEnd *end, size_t node, const Tree *tree, const Field *wss,
+                          Text *out)
+{
+    size_t at = end->is_inlet ? (size_t)tree->parent[node] : node;
+    double length = tree_column(tree, extension_column)->value[at];
+    text_puts(out, ",");
+    text_number(out, length);
+    text_puts(out, ",");
+    if (wss->value && isfinite(wss->value[node]))
+        text_number(out, 2 * wss->value[node] * length / tree->radius_mm[node]);
+}
+
+Status solver_ends(const MeshEnds *ends, const Tree *tree, const VesselTree *vessels,
+                   const TreeMeta *said, Text *out, Err *err)
+{
+    const bool is_extended = tree_column(tree, extension_column);
+    double *parts = NULL;
+    Field wss;
+    TRY(find_wss(tree, said, &wss, err));
+    Status status = find_flow_parts(tree, &parts, err);
+    if (status != STATUS_OK) {
+        field_release(&wss);
+        return status;
+    }
     text_puts(out, "name,face,id,x_mm,y_mm,z_mm,normal_x,normal_y,normal_z,radius_mm,area_mm2,"
-                   "flow_part\n");
+                   "flow_part");
+    text_puts(out, is_extended ? ",extension_mm,extension_drop_mmhg\n" : "\n");
     for (size_t i = 0; i < ends->n; i++) {
         const MeshEnd *end = &ends->ends[i];
         text_printf(out, "%s,%zu,%u,", end->name, ends->n_walls + i + 1,
@@ -49,8 +82,13 @@ Status solver_ends(const MeshEnds *ends, const Tree *tree, const VesselTree *ves
         text_puts(out, ",");
         if (!end->is_ring)
             text_number(out, parts[vessels->segments[end->segment].segment]);
+        if (is_extended && !end->is_ring)
+            put_extension(end, vessels->segments[end->segment].segment, tree, &wss, out);
+        else if (is_extended)
+            text_puts(out, ",,");
         text_puts(out, "\n");
     }
+    field_release(&wss);
     free(parts);
     return text_check(out, err);
 }

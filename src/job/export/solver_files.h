@@ -9,9 +9,10 @@
 #include "tree/tree.h"
 
 /* Appends the ends as CSV, one row per end; docs/FORMATS.md describes the columns. `vessels` are
- * the segments of `tree` that the mesh was made of. Errors: STATUS_MEMORY. */
+ * the segments of `tree` that the mesh was made of; `said` are values that options give. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status solver_ends(const MeshEnds *ends, const Tree *tree, const VesselTree *vessels,
-                              Text *out, Err *err);
+                              const TreeMeta *said, Text *out, Err *err);
 
 /* Appends the tree as a VTP file, with the radii and the end points of the segments in `vessels`.
  * If `smooth` is not NULL, these are its pieces, which the file has instead of the tree's segments,

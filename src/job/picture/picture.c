@@ -260,15 +260,23 @@ static ConditionSet unmet(const void *set, const Parsed *parsed)
            UNLESS(field, FIELD_IDS);
 }
 
+#define DEFAULT_LOOK "cast"
+
+/* Reads the look. Colors that mean something must be those of the legend, so a field has a look of
+ * its own. */
+static Status read_look(PictureOptions *options, const Parsed *parsed, Err *err)
+{
+    if (!options_said(parsed, "look"))
+        options->look = options->coloring.field ? "data" : DEFAULT_LOOK;
+    return coloring_read_look(options->look, &options->look_file, err);
+}
+
 /* Reads the look, and takes from it what no option specifies. A height needs an orthographic
- * picture, so it overrules the look as well. Colors that mean something must be those of the
- * legend, so a field has a look of its own. */
+ * picture, so it overrules the look as well. */
 static Status settle(void *set, const Parsed *parsed, Err *err)
 {
     PictureOptions *options = set;
-    if (options->coloring.field && !options_said(parsed, "look"))
-        options->look = "data";
-    TRY(coloring_read_look(options->look, &options->look_file, err));
+    TRY(read_look(options, parsed, err));
     const LookOptions *proposed = &options->look_file.options;
     if (!options->has_smooth)
         options->smooth = proposed->smooth;
@@ -290,7 +298,7 @@ void picture_set_defaults(PictureOptions *picture)
                                 .tolerance = MESHING_TOLERANCE,
                                 .size = {.pixels = {1000, 1000}},
                                 .antialias = 1,
-                                .look = "cast"};
+                                .look = DEFAULT_LOOK};
     coloring_set_defaults(&picture->coloring);
 }
 
@@ -576,6 +584,14 @@ Status picture_read_source(const PictureOptions *options, const Parsed *parsed,
     else
         picture_source_release(&made);
     return status;
+}
+
+Status picture_use_field(PictureOptions *options, const Parsed *parsed, const char *field,
+                         PictureSource *source, Err *err)
+{
+    options->coloring.field = field;
+    TRY(read_look(options, parsed, err));
+    return take_look(options, parsed, &source->look, err);
 }
 
 void picture_source_release(PictureSource *source)

@@ -173,6 +173,13 @@ typedef struct PictureSource {
  *          does not state it; the errors of picture_read_tree and tree_domain_box. */
 MUST_CHECK Status picture_read_source(const PictureOptions *options, const Parsed *parsed,
                                       PictureSource *source, Err *err);
+/* Colors the vessels by another field, or by none if it is NULL. The look changes with the field
+ * unless an option specifies it; its proposals for shadows, occlusion and projection are not taken.
+ *
+ * field    borrowed by `options`.
+ * Errors   STATUS_USAGE if the look has fixed colors; the errors of coloring_read_look. */
+MUST_CHECK Status picture_use_field(PictureOptions *options, const Parsed *parsed,
+                                    const char *field, PictureSource *source, Err *err);
 void picture_source_release(PictureSource *source);
 /* Returns true if the options specify a transparent background. */
 bool picture_is_transparent(const PictureOptions *options);

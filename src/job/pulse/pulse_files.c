@@ -134,8 +134,7 @@ done:
 
 Status pulsing_add_columns(Pulsing *made, Err *err)
 {
-    const PulsingOutput kind = pulsing_output(made->options->output);
-    const bool beats = kind == PULSING_FILM || kind == PULSING_SCENE;
+    const bool beats = pulsing_draws(made->options->output);
     bool has_dilation = false;
     for (size_t f = 0; f < (beats ? 1 : made->n_fields); f++) {
         TRY(add_field(made, made->field[f], err));
@@ -188,8 +187,14 @@ static Status put_deck(const Pulsing *made, Text *text, Err *err)
 static Status write_output(Pulsing *made, const char *path, Err *err)
 {
     const PulsingOutput kind = pulsing_output(path);
-    if (kind == PULSING_DECK)
-        return write_table(made, path, put_deck, err);
+    if (kind == PULSING_DECK) {
+        TRY(write_table(made, path, put_deck, err));
+        talk_note(
+            made->parsed->common.talk,
+            "the deck has one vessel per segment; svZeroDSolver took 16 s for 999 vessels and "
+            "154 s for 3,999");
+        return STATUS_OK;
+    }
     TRY(pulsing_add_columns(made, err));
     if (kind == PULSING_VALUES)
         return write_table(made, path, put_values, err);

@@ -519,8 +519,7 @@ static ConditionSet unmet(const void *set, const Parsed *parsed)
 {
     (void)parsed;
     const PulsingOptions *options = set;
-    const PulsingOutput kind = options->output ? pulsing_output(options->output) : PULSING_UNKNOWN;
-    return UNLESS(kind == PULSING_FILM || kind == PULSING_SCENE, ANIMATED);
+    return UNLESS(options->output && pulsing_draws(options->output), ANIMATED);
 }
 
 static const OptionTable table = {OPTION_ROWS(rows), .unmet = unmet};

@@ -59,6 +59,11 @@ typedef enum PulsingOutput {
     PULSING_UNKNOWN
 } PulsingOutput;
 PulsingOutput pulsing_output(const char *path);
+/* Returns true for films and scenes. */
+static inline bool pulsing_draws(const char *path)
+{
+    return pulsing_output(path) == PULSING_FILM || pulsing_output(path) == PULSING_SCENE;
+}
 
 /* Solves the tree that is the first operand.
  *

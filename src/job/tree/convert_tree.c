@@ -39,6 +39,13 @@ static const Option rows[] = {
      .when = WHEN(TREE),
      .help = "divide each branch into segments of this length, or a little more or less; a radius "
              "becomes that of a tube with the same resistance"},
+    {.name = "centreline-arrays",
+     SETS(FLAG, TreeConversion, centreline_arrays),
+     .group = GROUP_FILES,
+     .when = WHEN(TREE),
+     .help = "add columns named as the arrays of SimVascular's and VMTK's centrelines: "
+             "MaximumInscribedSphereRadius, CenterlineSectionArea, BranchId, BifurcationId, Path, "
+             "GlobalNodeId"},
 };
 
 const OptionTable treeconversion_table = OPTION_TABLE(rows);
@@ -169,6 +176,58 @@ static Status reshape(const TreeConversion *conversion, const Talk *talk, Tree *
     return STATUS_OK;
 }
 
+/* The columns of --centreline-arrays. */
+typedef enum CentrelineArray {
+    SPHERE_RADIUS,
+    SECTION_AREA,
+    BRANCH_ID,
+    BIFURCATION_ID,
+    PATH,
+    GLOBAL_NODE_ID,
+    CENTRELINE_ARRAYS
+} CentrelineArray;
+
+/* Fills the columns. Branches count from 0; no point is inside a bifurcation, so BifurcationId is
+ * -1; Path is the length from the start of the branch. */
+static void fill_arrays(const Tree *tree, const Branches *branches, double *const value[])
+{
+    for (size_t i = 0; i < tree->n; i++) {
+        value[SPHERE_RADIUS][i] = tree->radius_mm[i];
+        value[SECTION_AREA][i] = PI * tree->radius_mm[i] * tree->radius_mm[i];
+        value[BRANCH_ID][i] = value[PATH][i] = 0;
+        value[BIFURCATION_ID][i] = -1;
+        value[GLOBAL_NODE_ID][i] = (double)i;
+    }
+    for (size_t k = 0, at = 0; k < branches->n; k++) {
+        double path = 0;
+        for (; at < branches->end[k]; at++) {
+            size_t node = (size_t)branches->node[at];
+            path += tree_segment_length(tree, node);
+            value[BRANCH_ID][node] = (double)k;
+            value[PATH][node] = path;
+        }
+    }
+}
+
+/* The names are exact, so the columns have no units: lengths are in mm, areas in mm^2. */
+static Status add_arrays(Tree *tree, Err *err)
+{
+    static const char *const names[CENTRELINE_ARRAYS] = {"MaximumInscribedSphereRadius",
+                                                         "CenterlineSectionArea",
+                                                         "BranchId",
+                                                         "BifurcationId",
+                                                         "Path",
+                                                         "GlobalNodeId"};
+    double *value[CENTRELINE_ARRAYS];
+    Branches branches;
+    for (int k = 0; k < CENTRELINE_ARRAYS; k++)
+        TRY(tree_set_column(tree, names[k], "", &value[k], err));
+    TRY(branches_find(tree, &branches, err));
+    fill_arrays(tree, &branches, value);
+    branches_release(&branches);
+    return STATUS_OK;
+}
+
 Status convert_tree_make(const TreeConversion *conversion, Parsed *parsed, Tree *tree, Err *err)
 {
     *tree = (Tree){0};
@@ -176,6 +235,8 @@ Status convert_tree_make(const TreeConversion *conversion, Parsed *parsed, Tree 
     TRY(join_values(conversion, parsed, tree, err));
     TRY(reshape(conversion, parsed->common.talk, tree, err));
     TRY(join_fields(conversion, parsed, tree, err));
+    if (conversion->centreline_arrays)
+        TRY(add_arrays(tree, err));
     tree_renumber(tree);
     return STATUS_OK;
 }

@@ -7,11 +7,12 @@
 #include "tree/tree.h"
 
 typedef struct TreeConversion {
-    const char *values; /* "FILE" or "FILE:COLUMN": columns that a file brings; NULL: none */
-    const char *fields; /* "all" or "NAME,...": fields to derive as columns; NULL: none */
-    bool smooth;        /* smooth the centrelines */
-    double step_mm;     /* length of the segments after resampling; 0: as in the file */
-    BloodOptions blood; /* has an effect with `fields` alone */
+    const char *values;     /* "FILE" or "FILE:COLUMN": columns that a file brings; NULL: none */
+    const char *fields;     /* "all" or "NAME,...": fields to derive as columns; NULL: none */
+    bool smooth;            /* smooth the centrelines */
+    bool centreline_arrays; /* add columns named as in SimVascular's and VMTK's centrelines */
+    double step_mm;         /* length of the segments after resampling; 0: as in the file */
+    BloodOptions blood;     /* has an effect with `fields` alone */
 } TreeConversion;
 
 extern const OptionTable treeconversion_table; /* sets a TreeConversion except its `blood` */

@@ -35,6 +35,12 @@ static const Option own[] = {
      FROM_TO(1, 10000000),
      .needs = "area",
      .help = "most parts that a pixel is divided into before it counts as over budget"},
+    {.name = "certificate",
+     SETS(OUTPUT, AnswerOptions, certificate),
+     .argument = "C.json",
+     .help =
+         "write the scene's numbers and the claims behind 24 pixels as JSON, for a checker that "
+         "shares no code with corcast"},
     {.name = "squares",
      SETS(FLAG, AnswerOptions, squares),
      .group = GROUP_RUN,
@@ -119,7 +125,8 @@ static Status write(const AnswerOptions *options, const Parsed *parsed, const An
     return status;
 }
 
-static Status make(AnswerOptions *options, Parsed *parsed, Answer *answer, Err *err)
+static Status make(AnswerOptions *options, Parsed *parsed, Answer *answer, Text *certificate,
+                   Err *err)
 {
     PictureReport made;
     Scene scene;
@@ -127,6 +134,8 @@ static Status make(AnswerOptions *options, Parsed *parsed, Answer *answer, Err *
     AnswerParams params = {.pattern = options->area ? 0 : options->pattern,
                            .leaves = options->leaves,
                            .squares = options->squares,
+                           .certified = 24,
+                           .certificate = options->certificate ? certificate : NULL,
                            .shadows = options->picture.stage.shadows,
                            .threads = parsed->common.threads,
                            .progress = progress_report,
@@ -150,10 +159,13 @@ Status answer_run(AnswerOptions *options, Parsed *parsed, AnswerReport *report, 
     const double start_s = clock_cpu_seconds();
     Answer answer = {0};
     char *command = NULL;
+    Text certificate = TEXT_INIT;
     Status status;
     TRY(check(options, err));
     TRY_GOTO(command_line_text(parsed, &command, err));
-    TRY_GOTO(make(options, parsed, &answer, err));
+    TRY_GOTO(make(options, parsed, &answer, &certificate, err));
+    if (options->certificate)
+        TRY_GOTO(file_write_text(options->certificate, &certificate, err));
     TRY_GOTO(write(options, parsed, &answer, command, err));
     *report = (AnswerReport){.pixels = (size_t)answer.plane.width * (size_t)answer.plane.height,
                              .undecided = answer.undecided,
@@ -162,6 +174,7 @@ Status answer_run(AnswerOptions *options, Parsed *parsed, AnswerReport *report, 
                              .scene = answer.scene};
 done:
     free(command);
+    text_release(&certificate);
     answer_release(&answer);
     return status;
 }

@@ -9,6 +9,7 @@
 /* The options of `answer`. Strings are borrowed from the parsed command line. */
 typedef struct AnswerOptions {
     const char *output;
+    const char *certificate; /* file of the claims of some pixels; NULL: none */
     const char *width; /* greatest width of a decided interval: "1/510" or a number */
     int pattern;
     bool area, has_pattern, squares;

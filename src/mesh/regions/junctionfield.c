@@ -336,12 +336,11 @@ static double cap_beside(Vec3 end, Vec3 outward, double radius_mm, const Potenti
     return fmin(1, sqrt(2 * short_of) + sqrt(fmax(0, 1 - cosine * cosine)));
 }
 
-/* Sets the wall of the i-th term. The wall of a place beyond an end of the segment is the cap's
- * tangent plane, or the last one that no other term covers. Returns false if the whole part of the
- * surface that may be in the ball is covered. */
-static bool find_wall(const JunctionField *field, const LocalFieldPool *pool,
-                      const LocalField *part, uint32_t i, Vec3 center, double radius_mm,
-                      NearWall *wall)
+/* Returns the wall of the i-th term. The wall of a place beyond an end of the segment is the cap's
+ * tangent plane, or the last one that no other term covers. `outside` is HUGE_VAL if the whole part
+ * of the surface that may be in the ball is covered. */
+static NearWall find_wall(const JunctionField *field, const LocalFieldPool *pool,
+                          const LocalField *part, uint32_t i, Vec3 center, double radius_mm)
 {
     const uint32_t *terms = &pool->terms[part->first_term];
     const PotentialTerm *term = &field->terms[terms[i]];
@@ -349,20 +348,22 @@ static bool find_wall(const JunctionField *field, const LocalFieldPool *pool,
     const double beyond = fmax(0, fmax(-place.u, -place.v)) / term->k;
     const Vec3 from = from_nearest(term, &place);
     double cap = 1;
-    *wall = (NearWall){vec3_normalized(from), vec3_length(from) - term->radius_mm};
+    NearWall wall = {vec3_normalized(from), vec3_length(from) - term->radius_mm};
     if (beyond == 0)
-        return true;
+        return wall;
     const Vec3 outward = place.u < 0 ? vec3_scale(term->axis, -1) : term->axis;
     for (uint32_t k = 0; k < part->n_terms; k++)
         if (k != i)
             cap = fmin(cap, cap_beside(vec3_sub(center, from), outward, term->radius_mm,
                                        &field->terms[terms[k]]));
     if (beyond <= cap * vec3_length(from))
-        return true;
-    wall->normal = vec3_add_scaled(vec3_scale(vec3_normalized(place.across), sqrt(1 - cap * cap)),
-                                   outward, cap);
-    wall->outside = vec3_dot(from, wall->normal) - term->radius_mm;
-    return beyond <= cap * term->radius_mm + radius_mm;
+        return wall;
+    wall.normal = vec3_add_scaled(vec3_scale(vec3_normalized(place.across), sqrt(1 - cap * cap)),
+                                  outward, cap);
+    wall.outside = beyond <= cap * term->radius_mm + radius_mm
+                       ? vec3_dot(from, wall.normal) - term->radius_mm
+                       : HUGE_VAL;
+    return wall;
 }
 
 /* Returns the maximum difference of the normals of surfaces that meet in the ball. */
@@ -375,7 +376,8 @@ static double find_crease(const JunctionField *field, const LocalFieldPool *pool
     for (uint32_t i = 0; i < part->n_terms && n < MAX_LOCAL_TERMS; i++) {
         if (pool->work[i].upper < FIELD_LEVEL || pool->work[i].lower > FIELD_LEVEL)
             continue;
-        if (!find_wall(field, pool, part, i, center, crease_slack * radius_mm, &walls[n]))
+        walls[n] = find_wall(field, pool, part, i, center, crease_slack * radius_mm);
+        if (walls[n].outside == HUGE_VAL)
             continue;
         for (uint32_t k = 0; k < n; k++)
             if (walls_meet(&walls[k], &walls[n], crease_slack * radius_mm))

@@ -1,0 +1,382 @@
+/* Rotated, enlarged, or cropped and enlarged: one linear map takes each pixel of B to a place in A.
+ * Its six numbers are found by Gauss-Newton [Lucas and Kanade 1981], first on copies of the
+ * pictures that are reduced to few pixels, where the displacements are small, then on larger
+ * ones. The map is named if it leaves less than a twenty-fifth of the squares in the whole picture
+ * and less than an eighth in each of its quarters, and if what is flat keeps its codes. */
+#include "compare/cause/guesses.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { NUMBERS = 6, STEPS = 10, COARSEST = 20, FINEST = 700, LEVELS_MAX = 12, MARGIN = 4 };
+
+/* Planes of one size: the channels, or their mean, in levels. */
+typedef struct Planes {
+    float *values; /* owned */
+    int width, height, channels;
+} Planes;
+
+/* The place in A of pixel (x, y) of B: a linear map of the distances from the middle of the
+ * picture, plus the middle and a shift. */
+typedef struct Affine {
+    double m[2][2], shift[2];
+} Affine;
+
+static float *value_at(const Planes *planes, int x, int y, int c)
+{
+    return planes->values +
+           ((size_t)y * (size_t)planes->width + (size_t)x) * (size_t)planes->channels + c;
+}
+
+static Status planes_init(Planes *planes, int width, int height, int channels, Err *err)
+{
+    *planes = (Planes){.width = width, .height = height, .channels = channels};
+    return mem_calloc(&planes->values, (size_t)width * (size_t)height * (size_t)channels,
+                      sizeof *planes->values, "pixels", err);
+}
+
+/* Smooths by the binomial filter 1 4 6 4 1 along both axes. */
+static Status smooth(Planes *planes, Err *err)
+{
+    static const float taps[5] = {0.0625F, 0.25F, 0.375F, 0.25F, 0.0625F};
+    const int width = planes->width, height = planes->height, channels = planes->channels;
+    for (int axis = 0; axis < 2; axis++) {
+        Planes out;
+        TRY(planes_init(&out, width, height, channels, err));
+        for (int y = 0; y < height; y++)
+            for (int x = 0; x < width; x++)
+                for (int k = -2; k <= 2; k++) {
+                    int u = axis ? x : x + k, v = axis ? y + k : y;
+                    u = u < 0 ? 0 : u < width ? u : width - 1;
+                    v = v < 0 ? 0 : v < height ? v : height - 1;
+                    for (int c = 0; c < channels; c++)
+                        *value_at(&out, x, y, c) += taps[k + 2] * *value_at(planes, u, v, c);
+                }
+        free(planes->values);
+        *planes = out;
+    }
+    return STATUS_OK;
+}
+
+static Status planes_of(Planes *planes, const Picture *picture, bool is_mean, Err *err)
+{
+    const float level = picture->bits == 8 ? 1 : 1 / 257.0F;
+    const int channels = picture->channels;
+    TRY(planes_init(planes, picture->width, picture->height, is_mean ? 1 : channels, err));
+    size_t n = (size_t)picture->width * (size_t)picture->height;
+    for (size_t i = 0; i < n; i++)
+        for (int c = 0; c < channels; c++) {
+            float value = level * picture_code(picture, i * (size_t)channels + (size_t)c);
+            if (is_mean)
+                planes->values[i] += value / (float)channels;
+            else
+                planes->values[i * (size_t)channels + (size_t)c] = value;
+        }
+    return STATUS_OK;
+}
+
+/* Halves both sides: a pixel is the mean of four. */
+static Status halve(const Planes *from, Planes *to, Err *err)
+{
+    TRY(planes_init(to, from->width / 2, from->height / 2, 1, err));
+    for (int y = 0; y < to->height; y++)
+        for (int x = 0; x < to->width; x++)
+            *value_at(to, x, y, 0) =
+                (*value_at(from, 2 * x, 2 * y, 0) + *value_at(from, 2 * x + 1, 2 * y, 0) +
+                 *value_at(from, 2 * x, 2 * y + 1, 0) + *value_at(from, 2 * x + 1, 2 * y + 1, 0)) /
+                4;
+    return STATUS_OK;
+}
+
+/* ---- the map --------------------------------------------------------------------------------- */
+
+/* The size of the whole picture, and how many of its pixels a pixel of the level is wide. */
+typedef struct LevelFrame {
+    double middle[2], scale;
+} LevelFrame;
+
+/* Sets the distances of a pixel of B from the middle, and its place in A, in pixels of the level.
+ */
+static void place_in_a(const Affine *map, const LevelFrame *frame, int x, int y, double from[2],
+                       double to[2])
+{
+    from[0] = (x + 0.5) * frame->scale - frame->middle[0];
+    from[1] = (y + 0.5) * frame->scale - frame->middle[1];
+    for (int i = 0; i < 2; i++) {
+        double at = map->m[i][0] * from[0] + map->m[i][1] * from[1] + map->shift[i];
+        to[i] = (at + frame->middle[i]) / frame->scale - 0.5;
+    }
+}
+
+/* The value between pixels, linearly, and its slopes; false outside of the picture. */
+static bool sample(const Planes *planes, const double at[2], int c, double out[3])
+{
+    int x = (int)floor(at[0]), y = (int)floor(at[1]);
+    if (x < 1 || y < 1 || x + 2 >= planes->width || y + 2 >= planes->height)
+        return false;
+    double u = at[0] - x, v = at[1] - y;
+    double p = (double)*value_at(planes, x, y, c), q = (double)*value_at(planes, x + 1, y, c);
+    double r = (double)*value_at(planes, x, y + 1, c),
+           s = (double)*value_at(planes, x + 1, y + 1, c);
+    out[0] = (1 - v) * ((1 - u) * p + u * q) + v * ((1 - u) * r + u * s);
+    out[1] = (1 - v) * (q - p) + v * (s - r);
+    out[2] = (1 - u) * (r - p) + u * (s - q);
+    return true;
+}
+
+/* Solves the normal equations in place by elimination. Returns false if they are singular. */
+static bool solve(double matrix[NUMBERS][NUMBERS + 1], double out[NUMBERS])
+{
+    for (int i = 0; i < NUMBERS; i++) {
+        if (!(matrix[i][i] > 1e-12))
+            return false;
+        for (int k = i + 1; k < NUMBERS; k++) {
+            double factor = matrix[k][i] / matrix[i][i];
+            for (int j = i; j <= NUMBERS; j++)
+                matrix[k][j] -= factor * matrix[i][j];
+        }
+    }
+    for (int i = NUMBERS; i-- > 0;) {
+        out[i] = matrix[i][NUMBERS];
+        for (int j = i + 1; j < NUMBERS; j++)
+            out[i] -= matrix[i][j] * out[j];
+        out[i] /= matrix[i][i];
+    }
+    return true;
+}
+
+/* Improves the map by one step. Returns the largest change at an end of the picture, in pixels of
+ * the level; -1 if there is no step. */
+static double improve(const Planes *a, const Planes *b, const LevelFrame *frame, Affine *map)
+{
+    double normal[NUMBERS][NUMBERS + 1] = {{0}}, step[NUMBERS], from[2], to[2], value[3];
+    for (int y = 0; y < b->height; y++)
+        for (int x = 0; x < b->width; x++) {
+            place_in_a(map, frame, x, y, from, to);
+            if (!sample(a, to, 0, value))
+                continue;
+            const double rest = (double)*value_at(b, x, y, 0) - value[0];
+            const double slopes[NUMBERS] = {value[1] * from[0], value[1] * from[1], value[1],
+                                            value[2] * from[0], value[2] * from[1], value[2]};
+            for (int i = 0; i < NUMBERS; i++) {
+                for (int k = 0; k < NUMBERS; k++)
+                    normal[i][k] += slopes[i] * slopes[k];
+                normal[i][NUMBERS] += slopes[i] * rest;
+            }
+        }
+    if (!solve(normal, step))
+        return -1;
+    for (int i = 0; i < 2; i++) {
+        map->m[i][0] += frame->scale * step[3 * i];
+        map->m[i][1] += frame->scale * step[3 * i + 1];
+        map->shift[i] += frame->scale * step[3 * i + 2];
+    }
+    return fmax(fabs(step[2]), fabs(step[5])) +
+           fmax(fabs(step[0]) + fabs(step[3]), fabs(step[1]) + fabs(step[4])) *
+               fmax(frame->middle[0], frame->middle[1]);
+}
+
+/* ---- what the map leaves --------------------------------------------------------------------- */
+
+/* Squares of B - A before and after the map, of each quarter of the picture; of pixels in flat
+ * parts after the map. */
+typedef struct Leavings {
+    double before[2][2], after[2][2], flat, flat_n, pixels;
+    double rest[3], shown[3]; /* per channel: the sum of B - A after the map, and the number of
+                               * pixels at which A is neither black nor white */
+} Leavings;
+
+static void add_leavings(const Planes planes[2], const LevelFrame *frame, const Affine *map, int x,
+                         int y, Leavings *sums)
+{
+    const Planes *a = &planes[0], *b = &planes[1];
+    double from[2], to[2], value[3];
+    place_in_a(map, frame, x, y, from, to);
+    const int row = 2 * y / b->height, column = 2 * x / b->width;
+    for (int c = 0; c < b->channels; c++) {
+        if (!sample(a, to, c, value))
+            return;
+        const double is = (double)*value_at(b, x, y, c), was = (double)*value_at(a, x, y, c);
+        const double rest = is - value[0];
+        sums->before[row][column] += (is - was) * (is - was);
+        sums->after[row][column] += rest * rest;
+        sums->rest[c] += rest;
+        sums->shown[c] += value[0] > 2 && value[0] < 253;
+        const double slope = fmax(fabs((double)*value_at(b, x + 1, y, c) - is),
+                                  fabs((double)*value_at(b, x, y + 1, c) - is));
+        if (fabs(value[1]) < 1 && fabs(value[2]) < 1 && slope < 1) {
+            sums->flat += rest * rest;
+            sums->flat_n++;
+        }
+    }
+    sums->pixels++;
+}
+
+/* Returns true if no channel is brighter or darker by 3 levels, on the mean of what is
+ * shown. Interpolation that rings and is clipped changes it by up to 2. */
+static bool keeps_tones(const Leavings *sums)
+{
+    for (int c = 0; c < 3; c++)
+        if (fabs(sums->rest[c]) > 3 * fmax(sums->shown[c], 1))
+            return false;
+    return true;
+}
+
+static bool explains(const Planes planes[2], const LevelFrame *frame, const Affine *map)
+{
+    const Planes *b = &planes[1];
+    Leavings found = {0}, *sums = &found;
+    for (int y = MARGIN; y < b->height - MARGIN; y++)
+        for (int x = MARGIN; x < b->width - MARGIN; x++)
+            add_leavings(planes, frame, map, x, y, sums);
+    double before = 0, after = 0;
+    for (int i = 0; i < 4; i++) {
+        before += sums->before[i / 2][i % 2];
+        after += sums->after[i / 2][i % 2];
+    }
+    if (!(before > 0) || 25 * after > before ||
+        2 * sums->pixels < (double)b->width * (double)b->height)
+        return false;
+    for (int i = 0; i < 4; i++) {
+        double here = sums->before[i / 2][i % 2];
+        if (here > 0.02 * before && 8 * sums->after[i / 2][i % 2] > here)
+            return false;
+    }
+    return sums->flat <= 0.5 * fmax(sums->flat_n, 1) && keeps_tones(sums);
+}
+
+/* ---- the search --------------------------------------------------------------------------------
+ */
+
+static bool is_sane(const Affine *map)
+{
+    double determinant = map->m[0][0] * map->m[1][1] - map->m[0][1] * map->m[1][0];
+    return determinant > 0.25 && determinant < 4;
+}
+
+/* Finds the map from reduced pictures to larger ones. */
+static Status find_map(const Picture *a, const Picture *b, Affine *map, bool *found, Err *err)
+{
+    Planes levels[2][LEVELS_MAX] = {{{0}}};
+    int n = 1, last = 0;
+    const LevelFrame whole = {{a->width / 2.0, a->height / 2.0}, 1};
+    Status status = STATUS_OK;
+    *map = (Affine){.m = {{1, 0}, {0, 1}}};
+    *found = true;
+    for (int side = 0; side < 2; side++) {
+        TRY_GOTO(planes_of(&levels[side][0], side ? b : a, true, err));
+        TRY_GOTO(smooth(&levels[side][0], err));
+    }
+    while (n < LEVELS_MAX && levels[0][n - 1].width >= 2 * COARSEST &&
+           levels[0][n - 1].height >= 2 * COARSEST) {
+        for (int side = 0; side < 2; side++) {
+            TRY_GOTO(halve(&levels[side][n - 1], &levels[side][n], err));
+            TRY_GOTO(smooth(&levels[side][n], err));
+        }
+        n++;
+    }
+    for (int level = n; level-- > 0 && *found;) {
+        LevelFrame frame = whole;
+        frame.scale = (double)(1 << level);
+        if (level + 1 < n && levels[0][level].width > FINEST)
+            break;
+        double change = 1;
+        for (int i = 0; i < STEPS && change > 0.005; i++)
+            change = improve(&levels[0][level], &levels[1][level], &frame, map);
+        *found = change >= 0 && is_sane(map);
+        last = level;
+    }
+    if (*found) { /* before the channels are looked at */
+        LevelFrame frame = whole;
+        frame.scale = (double)(1 << last);
+        const Planes both[2] = {levels[0][last], levels[1][last]};
+        *found = explains(both, &frame, map);
+    }
+done:
+    for (int i = 0; i < LEVELS_MAX; i++) {
+        free(levels[0][i].values);
+        free(levels[1][i].values);
+    }
+    return status;
+}
+
+static Status try_map(const Picture *a, const Picture *b, const Affine *map, bool *fits, Err *err)
+{
+    Planes planes[2] = {{0}, {0}};
+    const LevelFrame whole = {{b->width / 2.0, b->height / 2.0}, 1};
+    Status status = STATUS_OK;
+    for (int side = 0; side < 2; side++) {
+        TRY_GOTO(planes_of(&planes[side], side ? b : a, false, err));
+        TRY_GOTO(smooth(&planes[side], err));
+    }
+    *fits = explains(planes, &whole, map);
+done:
+    free(planes[0].values);
+    free(planes[1].values);
+    return status;
+}
+
+/* ---- words ----------------------------------------------------------------------------------- */
+
+static void say_scaled(const Affine *map, const Picture *a, Sentence *out)
+{
+    const double size[2] = {map->m[0][0] * a->width, map->m[1][1] * a->height};
+    const double left = a->width / 2.0 + map->shift[0] - size[0] / 2,
+                 top = a->height / 2.0 + map->shift[1] - size[1] / 2;
+    const bool centered = fabs(map->shift[0]) < 0.5 && fabs(map->shift[1]) < 0.5;
+    const bool inside = left > -0.5 && top > -0.5 && left + size[0] < a->width + 0.5 &&
+                        top + size[1] < a->height + 0.5;
+    const double factor = 2 / (map->m[0][0] + map->m[1][1]);
+    if (inside && !centered)
+        snprintf(out->text, out->size,
+                 "B is A cropped to about %.0f x %.0f pixels at (%.0f, %.0f) and enlarged to its "
+                 "size",
+                 size[0], size[1], fmax(left, 0), fmax(top, 0));
+    else
+        snprintf(out->text, out->size, "B is A %s by a factor of %.3g%s",
+                 factor > 1 ? "enlarged" : "reduced", factor,
+                 centered ? ", about its middle" : ", and moved");
+}
+
+/* Names a map whose rotation, or whose change of size, moves the corners by SEEN pixels. */
+static void say_map(const Affine *map, const Picture *a, Sentence *out)
+{
+    const double seen = 0.3 / (elementary_hypot(a->width, a->height) / 2);
+    const double turn = (map->m[1][0] - map->m[0][1]) / 2, skew = map->m[1][0] + map->m[0][1];
+    const double stretch = map->m[0][0] - map->m[1][1],
+                 scale = sqrt(map->m[0][0] * map->m[1][1] - map->m[0][1] * map->m[1][0]);
+    const bool turned = fabs(turn) > seen,
+               scaled = fabs(map->m[0][0] - 1) > seen || fabs(map->m[1][1] - 1) > seen;
+    const double degrees = elementary_atan2(turn, (map->m[0][0] + map->m[1][1]) / 2) / DEGREE;
+    if (fabs(skew) > fmax(seen, 0.1 * fabs(turn)) || (!turned && !scaled))
+        return;
+    if (!turned) {
+        say_scaled(map, a, out);
+        return;
+    }
+    if (fabs(stretch) > fmax(seen, 0.1 * fabs(turn)))
+        return;
+    int length = snprintf(out->text, out->size, "B is A rotated by %.2g degrees %s", fabs(degrees),
+                          degrees > 0 ? "counterclockwise" : "clockwise");
+    if (fabs(scale - 1) > seen)
+        snprintf(out->text + length, out->size - (size_t)length, " and %s by a factor of %.3g",
+                 scale < 1 ? "enlarged" : "reduced", 1 / scale);
+    else if (fabs(map->shift[0]) > 0.5 || fabs(map->shift[1]) > 0.5)
+        snprintf(out->text + length, out->size - (size_t)length, " and moved");
+}
+
+Status cause_affine(const Picture *a, const Picture *b, Sentence *out, Err *err)
+{
+    Affine map;
+    bool found, fits = false;
+    if (a->width < 2 * COARSEST || a->height < 2 * COARSEST)
+        return STATUS_OK;
+    TRY(find_map(a, b, &map, &found, err));
+    if (found)
+        TRY(try_map(a, b, &map, &fits, err));
+    if (fits)
+        say_map(&map, a, out);
+    return STATUS_OK;
+}

@@ -1,0 +1,242 @@
+/* Another hue or another saturation: one map of colors takes every pixel of A to the pixel of B,
+ * and leaves greys as they are. Each map has one number. It is found on the samples and named if
+ * it fits all pixels: of those that differ by more than the rounding of codes, 49 of 50 come within
+ * it, and no more are driven away. A saturation moves colors away from a grey of the pixel itself;
+ * programs differ in the grey that they take, and in whether they compute in codes or in light. */
+#include "compare/cause/guesses.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+typedef enum ColorMap {
+    TO_LUMA_601, /* saturation; the grey has the luma of the pixel */
+    TO_LUMA_709,
+    TO_MEAN,
+    TO_MAX,    /* as in HSV */
+    TO_MIDDLE, /* the middle between the largest and the smallest channel, as in HSL */
+    SATURATIONS,
+    AROUND_GREY = SATURATIONS, /* hue; a rotation about the axis of greys */
+    AT_LUMA,                   /* the matrix of hue-rotate in CSS, which keeps the luma */
+    HEXAGON,                   /* the hue of HSV and HSL */
+    COLOR_MAPS
+} ColorMap;
+
+/* A map with its number, in codes or in light. */
+typedef struct MapOf {
+    ColorMap map;
+    bool in_light;
+    double number; /* factor of the saturation, or degrees */
+} MapOf;
+
+static double encode(double level)
+{
+    return 255 * (double)srgb_encode((float)fmin(fmax(level, 0), 1));
+}
+
+static double grey_of(ColorMap map, const double c[3])
+{
+    double high = fmax(c[0], fmax(c[1], c[2])), low = fmin(c[0], fmin(c[1], c[2]));
+    switch (map) {
+    case TO_LUMA_601:
+        return 0.299 * c[0] + 0.587 * c[1] + 0.114 * c[2];
+    case TO_LUMA_709:
+        return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
+    case TO_MAX:
+        return high;
+    case TO_MIDDLE:
+        return (high + low) / 2;
+    default:
+        return (c[0] + c[1] + c[2]) / 3;
+    }
+}
+
+/* Turns the hue of HSV: chroma and lightness stay. */
+static void turn_hexagon(const double c[3], double degrees, double out[3])
+{
+    double high = fmax(c[0], fmax(c[1], c[2])), low = fmin(c[0], fmin(c[1], c[2]));
+    double chroma = high - low, hue = 0;
+    if (chroma > 0)
+        hue = high == c[0]   ? (c[1] - c[2]) / chroma
+              : high == c[1] ? 2 + (c[2] - c[0]) / chroma
+                             : 4 + (c[0] - c[1]) / chroma;
+    for (int i = 0; i < 3; i++) {
+        double at = fmod(hue + degrees / 60 + (double[]){0, 4, 2}[i] + 12, 6);
+        out[i] = low + chroma * fmin(fmax(fabs(at - 3) - 1, 0), 1);
+    }
+}
+
+/* Turns a color about a point on the axis of greys that has its luma by these weights, in the plane
+ * of equal luma, so that the weights (1, 1, 1) / 3 give a rotation. */
+static void turn_at_luma(const double c[3], double degrees, bool by_luma, double out[3])
+{
+    static const double weights[2][3] = {{1 / 3.0, 1 / 3.0, 1 / 3.0}, {0.213, 0.715, 0.072}};
+    const double *w = weights[by_luma], cosine = elementary_cos(degrees * DEGREE),
+                 sine = elementary_sin(degrees * DEGREE), third = 0.5773502691896258;
+    const double luma = w[0] * c[0] + w[1] * c[1] + w[2] * c[2];
+    /* What CSS adds for the sine, and the cross product with the axis of greys. */
+    static const double css[3][3] = {
+        {-0.213, -0.715, 0.928}, {0.143, 0.140, -0.283}, {-0.787, 0.715, 0.072}};
+    for (int i = 0; i < 3; i++) {
+        double across = third * (c[(i + 2) % 3] - c[(i + 1) % 3]);
+        if (by_luma)
+            across = css[i][0] * c[0] + css[i][1] * c[1] + css[i][2] * c[2];
+        out[i] = luma + cosine * (c[i] - luma) + sine * across;
+    }
+}
+
+static void apply_map(const MapOf *map, const double c[3], double out[3])
+{
+    if (map->map < SATURATIONS) {
+        double grey = grey_of(map->map, c);
+        for (int i = 0; i < 3; i++)
+            out[i] = grey + map->number * (c[i] - grey);
+    } else if (map->map == HEXAGON) {
+        turn_hexagon(c, map->number, out);
+    } else {
+        turn_at_luma(c, map->number, map->map == AT_LUMA, out);
+    }
+}
+
+/* ---- fits ------------------------------------------------------------------------------------ */
+
+typedef struct ColorFit {
+    size_t beyond, misfits, colored;
+    double squares;
+} ColorFit;
+
+/* Levels that a map may leave: programs round hues of HSV to 8 bits. */
+static double slack_of(const MapOf *map)
+{
+    return map->map == HEXAGON ? 4.01 : 2.01;
+}
+
+static void levels_at(const Picture *picture, size_t pixel, double out[3])
+{
+    for (size_t c = 0; c < 3; c++)
+        out[c] = picture_code(picture, 3 * pixel + c) / (picture->bits == 8 ? 255.0 : 65535.0);
+}
+
+/* Adds a pixel. Channels at which B is clipped are not compared. */
+static void add_pixel(const MapOf *map, const Picture *a, const Picture *b, size_t pixel,
+                      ColorFit *fit)
+{
+    double from[3], to[3], mapped[3], worst = 0, off = 0;
+    const double slack = slack_of(map);
+    levels_at(a, pixel, from);
+    levels_at(b, pixel, to);
+    const double chroma =
+        fmax(from[0], fmax(from[1], from[2])) - fmin(from[0], fmin(from[1], from[2]));
+    double in[3] = {from[0], from[1], from[2]};
+    for (int c = 0; map->in_light && c < 3; c++)
+        in[c] = (double)srgb_decode((float)from[c]);
+    apply_map(map, in, mapped);
+    for (int c = 0; c < 3; c++) {
+        double is = 255 * to[c], was = 255 * from[c];
+        double expected = map->in_light ? encode(mapped[c]) : 255 * fmin(fmax(mapped[c], 0), 1);
+        worst = fmax(worst, fabs(expected - is));
+        off = fmax(off, fabs(is - was));
+        fit->squares += (expected - is) * (expected - is);
+    }
+    fit->colored += chroma > 16 / 255.0;
+    fit->beyond += off > slack;
+    fit->misfits += worst > slack;
+}
+
+static ColorFit fit_samples(const MapOf *map, const Picture *a, const Picture *b,
+                            const Samples *samples)
+{
+    ColorFit fit = {0};
+    for (int i = 0; i < samples->n; i++)
+        add_pixel(map, a, b, (size_t)samples->at[i].y * (size_t)a->width + (size_t)samples->at[i].x,
+                  &fit);
+    return fit;
+}
+
+static ColorFit fit_all(const MapOf *map, const Picture *a, const Picture *b)
+{
+    ColorFit fit = {0};
+    size_t n = (size_t)a->width * (size_t)a->height;
+    for (size_t i = 0; i < n; i++)
+        add_pixel(map, a, b, i, &fit);
+    return fit;
+}
+
+static bool fits(const ColorFit *fit)
+{
+    return fit->beyond >= 16 && fit->colored >= 16 && 50 * fit->misfits <= fit->beyond;
+}
+
+/* ---- the number of a map --------------------------------------------------------------------- */
+
+static double squares_of(MapOf *map, double number, const Picture *a, const Picture *b,
+                         const Samples *samples)
+{
+    map->number = number;
+    return fit_samples(map, a, b, samples).squares;
+}
+
+/* Finds the number that leaves the least squares: on a grid, then by golden section. */
+static void find_number(MapOf *map, const Picture *a, const Picture *b, const Samples *samples)
+{
+    const bool is_hue = map->map >= SATURATIONS;
+    const double from = is_hue ? -180 : 0, step = is_hue ? 6 : 0.1, golden = 0.6180339887498949;
+    double best = from, least = squares_of(map, from, a, b, samples);
+    for (int i = 1; i < (is_hue ? 60 : 31); i++) {
+        double squares = squares_of(map, from + i * step, a, b, samples);
+        if (squares < least) {
+            least = squares;
+            best = from + i * step;
+        }
+    }
+    double low = best - step, high = best + step;
+    for (int i = 0; i < 16; i++) {
+        double inner = high - golden * (high - low), outer = low + golden * (high - low);
+        if (squares_of(map, inner, a, b, samples) < squares_of(map, outer, a, b, samples))
+            high = outer;
+        else
+            low = inner;
+    }
+    map->number = (low + high) / 2;
+}
+
+static void say(const MapOf *map, Sentence *out)
+{
+    if (map->map >= SATURATIONS)
+        snprintf(out->text, out->size, "B is A with its hues turned by %.0f degrees", map->number);
+    else if (map->number < 0.01)
+        snprintf(out->text, out->size, "B is A in grey: its saturation is 0");
+    else
+        snprintf(out->text, out->size, "B is A with its saturation changed by a factor of %.2f%s",
+                 map->number, map->in_light ? " in linear light" : "");
+}
+
+/* Returns true if the samples that are grey in A, which no map changes, are too many for any fit.
+ */
+static bool changes_greys(const Picture *a, const Samples *samples)
+{
+    int grey = 0;
+    for (int i = 0; i < samples->n; i++) {
+        double c[3];
+        levels_at(a, (size_t)samples->at[i].y * (size_t)a->width + (size_t)samples->at[i].x, c);
+        grey += fmax(c[0], fmax(c[1], c[2])) - fmin(c[0], fmin(c[1], c[2])) <= 2 / 255.0;
+    }
+    return 10 * grey > samples->n;
+}
+
+void cause_hue(const Picture *a, const Picture *b, const Samples *samples, Sentence *out)
+{
+    if (a->channels != 3 || a->gamma != 0 || changes_greys(a, samples))
+        return;
+    for (ColorMap kind = 0; kind < COLOR_MAPS && !*out->text; kind++)
+        for (int in_light = 0; in_light < 2 && !*out->text; in_light++) {
+            MapOf map = {.map = kind, .in_light = in_light};
+            find_number(&map, a, b, samples);
+            ColorFit fit = fit_samples(&map, a, b, samples);
+            if (!fits(&fit) || (kind < SATURATIONS && fabs(map.number - 1) < 0.02))
+                continue;
+            fit = fit_all(&map, a, b);
+            if (fits(&fit))
+                say(&map, out);
+        }
+}

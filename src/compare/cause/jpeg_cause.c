@@ -1,0 +1,166 @@
+/* Compressed as JPEG: the cosine transform of each 8 x 8 block of A, rounded to multiples of the
+ * steps of a quality, gives B. The steps are those of the table of the standard [ITU-T T.81, annex
+ * K], scaled as libjpeg scales it by a quality from 1 to 100. The luma is compared alone, because
+ * colors may be subsampled, and only where no channel of B is black or white, where it may be
+ * clipped. */
+#include "compare/cause/guesses.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { SIDE = 8, CELLS = SIDE * SIDE, BLOCKS = 400, QUALITIES = 100 };
+
+static const unsigned char luma_steps[CELLS] = {
+    16, 11, 10, 16, 24,  40,  51,  61,  12, 12, 14, 19, 26,  58,  60,  55,
+    14, 13, 16, 24, 40,  57,  69,  56,  14, 17, 22, 29, 51,  87,  80,  62,
+    18, 22, 37, 56, 68,  109, 103, 77,  24, 35, 55, 64, 81,  104, 113, 92,
+    49, 64, 78, 87, 103, 121, 120, 101, 72, 92, 95, 98, 112, 100, 103, 99};
+
+/* A block of both pictures, in levels of luma. */
+typedef struct Block {
+    double a[CELLS], b[CELLS], coefficients[CELLS]; /* the last: the cosine transform of `a` */
+    bool clipped[CELLS];
+} Block;
+
+typedef struct JpegBlocks {
+    Block *blocks; /* owned */
+    size_t n;
+    double cosines[SIDE][SIDE]; /* [frequency][place] */
+} JpegBlocks;
+
+static double step_of(int quality, int i)
+{
+    int scale = quality < 50 ? 5000 / quality : 200 - 2 * quality;
+    int step = (luma_steps[i] * scale + 50) / 100;
+    return step < 1 ? 1 : step > 255 ? 255 : step;
+}
+
+static double luma_at(const Picture *picture, size_t pixel)
+{
+    const size_t at = pixel * (size_t)picture->channels;
+    const double level = picture->bits == 8 ? 1 : 1 / 257.0;
+    if (picture->channels == 1)
+        return level * picture_code(picture, at);
+    return level * (0.299 * picture_code(picture, at) + 0.587 * picture_code(picture, at + 1) +
+                    0.114 * picture_code(picture, at + 2));
+}
+
+static bool is_clipped(const Picture *picture, size_t pixel)
+{
+    const int most = picture->bits == 8 ? 255 : 65535;
+    for (size_t c = 0; c < (size_t)picture->channels; c++) {
+        int code = picture_code(picture, pixel * (size_t)picture->channels + c);
+        if (code == 0 || code == most)
+            return true;
+    }
+    return false;
+}
+
+/* The cosine transform of a block, or its inverse. */
+static void transform(const JpegBlocks *self, const double in[CELLS], bool inverse,
+                      double out[CELLS])
+{
+    double rows[CELLS] = {0};
+    for (int y = 0; y < SIDE; y++)
+        for (int x = 0; x < SIDE; x++)
+            for (int u = 0; u < SIDE; u++)
+                rows[y * SIDE + u] +=
+                    (inverse ? self->cosines[x][u] : self->cosines[u][x]) * in[y * SIDE + x];
+    for (int v = 0; v < SIDE; v++)
+        for (int u = 0; u < SIDE; u++) {
+            double sum = 0;
+            for (int y = 0; y < SIDE; y++)
+                sum += (inverse ? self->cosines[y][v] : self->cosines[v][y]) * rows[y * SIDE + u];
+            out[v * SIDE + u] = sum;
+        }
+}
+
+/* Returns true if A changes in a block: a flat one tells nothing. */
+static bool has_detail(const Picture *a, int left, int top)
+{
+    const size_t channels = (size_t)a->channels,
+                 first = (size_t)top * (size_t)a->width + (size_t)left;
+    for (int y = 0; y < SIDE; y++)
+        for (int x = 0; x < SIDE; x++) {
+            size_t at = (first + (size_t)y * (size_t)a->width + (size_t)x) * channels;
+            for (size_t c = 0; c < channels; c++)
+                if (picture_code(a, at + c) != picture_code(a, first * channels + c))
+                    return true;
+        }
+    return false;
+}
+
+static void take_block(JpegBlocks *self, const Picture *a, const Picture *b, int left, int top)
+{
+    Block *block = &self->blocks[self->n++];
+    for (int i = 0; i < CELLS; i++) {
+        size_t pixel = (size_t)(top + i / SIDE) * (size_t)a->width + (size_t)(left + i % SIDE);
+        block->a[i] = round(luma_at(a, pixel)) - 128; /* libjpeg transforms integers */
+        block->b[i] = luma_at(b, pixel) - 128;
+        block->clipped[i] = is_clipped(b, pixel);
+    }
+    transform(self, block->a, false, block->coefficients);
+}
+
+/* Takes BLOCKS blocks with detail, spread over the picture. */
+static Status take_blocks(JpegBlocks *self, const Picture *a, const Picture *b, Err *err)
+{
+    size_t n = 0, seen = 0;
+    TRY(mem_calloc(&self->blocks, BLOCKS, sizeof *self->blocks, "blocks", err));
+    for (int u = 0; u < SIDE; u++)
+        for (int x = 0; x < SIDE; x++)
+            self->cosines[u][x] = sqrt((u ? 2 : 1) / (double)SIDE) *
+                                  elementary_cos(PI * (2 * x + 1) * u / (2 * SIDE));
+    for (int y = 0; y + SIDE <= a->height; y += SIDE)
+        for (int x = 0; x + SIDE <= a->width; x += SIDE)
+            n += has_detail(a, x, y);
+    for (int y = 0; y + SIDE <= a->height; y += SIDE)
+        for (int x = 0; x + SIDE <= a->width; x += SIDE)
+            if (has_detail(a, x, y) && seen++ * BLOCKS / n >= self->n && self->n < BLOCKS)
+                take_block(self, a, b, x, y);
+    return STATUS_OK;
+}
+
+/* Pixels that differ by more than rounding, and those that the compression of A leaves so. */
+typedef struct JpegFit {
+    size_t beyond, misfits;
+} JpegFit;
+
+static void add_fit(const JpegBlocks *self, const Block *block, int quality, JpegFit *fit)
+{
+    const double slack = 1.5; /* levels; codes, colors and transforms are rounded */
+    double rounded[CELLS], made[CELLS];
+    for (int i = 0; i < CELLS; i++) {
+        double step = step_of(quality, i);
+        rounded[i] = step * round(block->coefficients[i] / step);
+    }
+    transform(self, rounded, true, made);
+    for (int i = 0; i < CELLS; i++)
+        if (!block->clipped[i]) {
+            fit->beyond += fabs(block->b[i] - block->a[i]) > slack;
+            fit->misfits += fabs(block->b[i] - made[i]) > slack;
+        }
+}
+
+Status cause_jpeg(const Picture *a, const Picture *b, Sentence *out, Err *err)
+{
+    JpegBlocks self = {0};
+    double least = 0.2; /* other qualities than the right one leave more than 0.8 */
+    int found = 0;
+    TRY(take_blocks(&self, a, b, err));
+    for (int quality = 1; quality <= QUALITIES; quality++) {
+        JpegFit fit = {0};
+        for (size_t i = 0; i < self.n; i++)
+            add_fit(&self, &self.blocks[i], quality, &fit);
+        double part = fit.beyond >= 64 ? (double)fit.misfits / (double)fit.beyond : 1;
+        if (part < least) {
+            least = part;
+            found = quality;
+        }
+    }
+    free(self.blocks);
+    if (found)
+        snprintf(out->text, out->size, "B is A compressed as JPEG (quality about %d)", found);
+    return STATUS_OK;
+}

@@ -1,0 +1,168 @@
+/* Noise: the differences of neighbours, and of pixels and what they show, are independent. Codes
+ * that are or become black or white may be clipped, and are left out. */
+#include "compare/cause/guesses.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { LAGS = 6, GRID = 4, CELL = 8, ENOUGH = 400 };
+static const int lags[LAGS][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}, {2, 0}, {0, 2}};
+
+/* Sums over the channels of all pixels that are not clipped; d is B - A in levels. */
+typedef struct WhitenessSums {
+    double n, d, dd;
+    double differing;                    /* codes that differ */
+    double clipped, changed;             /* codes of A that are black or white; those that differ */
+    double lagged[LAGS], lagged_n[LAGS]; /* products of neighbours */
+    double slope[3], slopes[3]; /* products of d with the slope of A across, the slope of A down,
+                                 * and with the sum of the neighbours less A; their squares */
+    double edge_dd, edge_n;     /* where A changes by more than EDGE levels */
+    double cell_dd[GRID][GRID], cell_n[GRID][GRID]; /* of parts of the picture */
+    double blocks,
+        blocks_of; /* squares of the sums of whole blocks; what independence makes them */
+} WhitenessSums;
+
+typedef struct NoiseImages {
+    const Picture *a, *b;
+    double levels; /* levels of a code */
+} NoiseImages;
+
+static int code_of(const Picture *picture, int x, int y, int c)
+{
+    size_t pixel = (size_t)y * (size_t)picture->width + (size_t)x;
+    return picture_code(picture, pixel * (size_t)picture->channels + (size_t)c);
+}
+
+static bool is_clipped(int code, int most)
+{
+    return code <= most / 128 || code >= most - most / 128;
+}
+
+/* Sets *d to the difference in levels; false for a clipped code and outside of the picture. */
+static bool difference_at(const NoiseImages *self, int x, int y, int c, double *d)
+{
+    const Picture *a = self->a;
+    if (x < 0 || y < 0 || x >= a->width || y >= a->height)
+        return false;
+    int most = a->bits == 8 ? 255 : 65535, from = code_of(a, x, y, c),
+        to = code_of(self->b, x, y, c);
+    *d = (to - from) * self->levels;
+    return !is_clipped(from, most) && !is_clipped(to, most);
+}
+
+/* Adds what the difference has to do with the slopes and the curvature of A. */
+static void add_slopes(const NoiseImages *self, int x, int y, int c, double d, WhitenessSums *sums)
+{
+    const Picture *a = self->a;
+    if (x < 1 || y < 1 || x + 1 >= a->width || y + 1 >= a->height)
+        return;
+    int left = code_of(a, x - 1, y, c), right = code_of(a, x + 1, y, c);
+    int up = code_of(a, x, y - 1, c), down = code_of(a, x, y + 1, c);
+    const double slopes[3] = {(right - left) * self->levels, (down - up) * self->levels,
+                              (left + right + up + down - 4 * code_of(a, x, y, c)) * self->levels};
+    for (int i = 0; i < 3; i++) {
+        sums->slope[i] += d * slopes[i];
+        sums->slopes[i] += slopes[i] * slopes[i];
+    }
+    if (fabs(slopes[0]) + fabs(slopes[1]) > 32) {
+        sums->edge_dd += d * d;
+        sums->edge_n++;
+    }
+}
+
+static void add_channel(const NoiseImages *self, int x, int y, int c, WhitenessSums *sums)
+{
+    double d, other;
+    int from = code_of(self->a, x, y, c), most = self->a->bits == 8 ? 255 : 65535;
+    sums->clipped += from == 0 || from == most;
+    sums->changed += (from == 0 || from == most) && from != code_of(self->b, x, y, c);
+    if (!difference_at(self, x, y, c, &d))
+        return;
+    int column = GRID * x / self->a->width, row = GRID * y / self->a->height;
+    sums->n++;
+    sums->differing += d != 0;
+    sums->d += d;
+    sums->dd += d * d;
+    sums->cell_dd[row][column] += d * d;
+    sums->cell_n[row][column]++;
+    for (int i = 0; i < LAGS; i++)
+        if (difference_at(self, x + lags[i][0], y + lags[i][1], c, &other)) {
+            sums->lagged[i] += d * other;
+            sums->lagged_n[i]++;
+        }
+    add_slopes(self, x, y, c, d, sums);
+}
+
+/* Adds the square of the sum over a block, which is the sum of the squares if all are
+ * independent. */
+static void add_block(const NoiseImages *self, int left, int top, int c, WhitenessSums *sums)
+{
+    double sum = 0, squares = 0, d;
+    int n = 0;
+    for (int y = top; y < top + CELL; y++)
+        for (int x = left; x < left + CELL; x++)
+            if (difference_at(self, x, y, c, &d)) {
+                sum += d;
+                squares += d * d;
+                n++;
+            }
+    if (n < CELL * CELL / 4)
+        return;
+    sums->blocks += sum * sum;
+    sums->blocks_of += squares;
+}
+
+/* Returns true if no part of the picture has much more or less of it than the whole. */
+static bool is_even(const WhitenessSums *sums, double variance)
+{
+    for (int row = 0; row < GRID; row++)
+        for (int column = 0; column < GRID; column++) {
+            double n = sums->cell_n[row][column];
+            double ratio = n > 0 ? sums->cell_dd[row][column] / n / variance : 1;
+            if (n >= ENOUGH / 2.0 && (ratio < 0.25 || ratio > 4))
+                return false;
+        }
+    return true;
+}
+
+static bool is_noise(const WhitenessSums *sums)
+{
+    if (sums->n < ENOUGH || 4 * sums->differing < sums->n ||
+        (sums->clipped > ENOUGH && sums->changed < 0.15 * sums->clipped))
+        return false;
+    const double variance = sums->dd / sums->n, slack = 0.06 + 3 / sqrt(sums->n);
+    for (int i = 0; i < LAGS; i++)
+        if (fabs(sums->lagged[i]) > slack * variance * fmax(sums->lagged_n[i], 1))
+            return false;
+    for (int i = 0; i < 3; i++)
+        if (fabs(sums->slope[i]) > slack * sqrt(sums->dd * sums->slopes[i]))
+            return false;
+    const double edges = sums->edge_n > 50 ? sums->edge_dd / sums->edge_n / variance : 1;
+    return fabs(sums->d) <= slack * sqrt(variance) * sums->n && edges > 0.4 && edges < 2.5 &&
+           sums->blocks > 0.6 * sums->blocks_of && sums->blocks < 1.6 * sums->blocks_of &&
+           is_even(sums, variance);
+}
+
+void cause_noise(const Picture *a, const Picture *b, Sentence *out)
+{
+    const NoiseImages self = {a, b, a->bits == 8 ? 1 : 1 / 257.0};
+    WhitenessSums sums = {0};
+    /* Of a large picture, bands of whole blocks. */
+    const int bands = 1 + (int)((double)a->width * a->height / 1e6);
+    for (int y = 0; y < a->height; y++) {
+        if (y / CELL % bands != 0)
+            continue;
+        for (int x = 0; x < a->width; x++)
+            for (int c = 0; c < a->channels; c++) {
+                add_channel(&self, x, y, c, &sums);
+                if (y % CELL == 0 && x % CELL == 0 && y + CELL <= a->height && x + CELL <= a->width)
+                    add_block(&self, x, y, c, &sums);
+            }
+    }
+    if (is_noise(&sums))
+        snprintf(out->text, out->size,
+                 "B is A with noise that is independent in each pixel (standard deviation about "
+                 "%.2g levels)",
+                 sqrt(sums.dd / sums.n));
+}

@@ -1,0 +1,246 @@
+/* Ends are circles at right angles to straight segments, so an extension is a longer segment: it
+ * needs no transition to a circle, and the mesh has no kink. */
+#include "job/export/extension.h"
+
+#include "treeio/treeio.h"
+#include <stdlib.h>
+#include <string.h>
+
+const char extension_column[] = "extension";
+
+static const Range length_range = {0, 100};
+
+static const Option rows[] = {
+    {.name = "extend",
+     SETS(NUMBER, ExtensionOptions, all),
+     .group = GROUP_VESSELS,
+     .range = &length_range,
+     .argument = "N",
+     .otherwise = "",
+     .when = WHEN(NAMED_PARTS) | WHEN(NO_VOLUME) | WHEN(NO_PAGE),
+     .excludes = "smooth",
+     .help = "lengthen each vessel end along its axis by N of its radii, for flow solvers; files "
+             "with named parts only"},
+    {.name = "extend-inlet",
+     SETS(NUMBER, ExtensionOptions, inlet),
+     GIVEN(ExtensionOptions, has_inlet),
+     .group = GROUP_VESSELS,
+     .range = &length_range,
+     .argument = "N",
+     .otherwise = "as --extend",
+     .when = WHEN(NAMED_PARTS) | WHEN(NO_VOLUME) | WHEN(NO_PAGE),
+     .excludes = "smooth",
+     .help = "lengthen the inlets by N radii"},
+    {.name = "extend-outlet",
+     SETS(TEXT, ExtensionOptions, outlet),
+     .group = GROUP_VESSELS,
+     .argument = "N|FILE.csv",
+     .otherwise = "as --extend",
+     .when = WHEN(NAMED_PARTS) | WHEN(NO_VOLUME) | WHEN(NO_PAGE),
+     .excludes = "smooth",
+     .help = "lengthen the outlets by N radii, or each by the number of a CSV file with the "
+             "columns id and radii"},
+};
+
+const OptionTable extension_table = OPTION_TABLE(rows);
+
+/* ---- lengths --------------------------------------------------------------------------------- */
+
+/* Reads the lengths of outlets from a file; outlets without a row keep theirs. */
+static Status read_lengths(const char *path, Parsed *parsed, const Tree *tree,
+                           const int32_t *children, double *radii, Err *err)
+{
+    Tree copy = {0};
+    Status status;
+    TRY_GOTO(files_read(&parsed->files, "--extend-outlet", path, err));
+    TRY_GOTO(tree_pruned(tree, 0, &copy, err));
+    TRY_GOTO(tree_read_values(&copy, path, "radii", NULL, err));
+    const double *value = tree_column(&copy, "radii")->value;
+    for (size_t i = 0; i < tree->n; i++) {
+        if (isnan(value[i]))
+            continue;
+        if (children[i] > 0 || !tree_is_segment(tree, i))
+            status = err_set(err, STATUS_INPUT, "%s: segment %d is no outlet", path, tree->id[i]);
+        else if (!range_has(length_range, value[i]))
+            status = err_set(err, STATUS_INPUT,
+                             "%s: the extension of outlet %d is %g radii; it must be 0 to 100",
+                             path, tree->id[i], value[i]);
+        if (status != STATUS_OK)
+            goto done;
+        radii[i] = value[i];
+    }
+done:
+    tree_release(&copy);
+    return status;
+}
+
+/* Sets the length of the extension of each end, in radii; 0 at other nodes. */
+static Status choose_lengths(const ExtensionOptions *options, Parsed *parsed, const Tree *tree,
+                             const int32_t *children, double *radii, Err *err)
+{
+    double inlet = options->has_inlet ? options->inlet : options->all, outlet = options->all;
+    bool is_number = options->outlet && number_parse(options->outlet, &outlet);
+    if (is_number && !range_has(length_range, outlet))
+        return err_set(err, STATUS_USAGE, "--extend-outlet: %g is not a number from 0 to 100",
+                       outlet);
+    for (size_t i = 0; i < tree->n; i++)
+        if (!tree_is_segment(tree, i))
+            radii[i] = children[i] == 1 ? inlet : 0;
+        else
+            radii[i] = children[i] == 0 ? outlet : 0;
+    return options->outlet && !is_number
+               ? read_lengths(options->outlet, parsed, tree, children, radii, err)
+               : STATUS_OK;
+}
+
+/* ---- where they meet others ------------------------------------------------------------------ */
+
+/* An extension, or a segment. */
+typedef struct Capsule {
+    Vec3 from, along;
+    double radius;
+    size_t segment; /* index of the segment, or of the one that it extends */
+    size_t node;    /* of an extension: the end's node */
+} Capsule;
+
+/* Returns the gap between two capsules, the first only as far as the fraction `part`. The distance
+ * of a point on one axis from the other axis is a convex function of its position. */
+static double gap(const Capsule *a, double part, const Capsule *b)
+{
+    double low = 0, high = part;
+    for (int i = 0; i < 60; i++) {
+        double t[2] = {low + (high - low) / 3, high - (high - low) / 3}, d[2];
+        for (int k = 0; k < 2; k++) {
+            Vec3 at = vec3_sub(vec3_add_scaled(a->from, a->along, t[k]), b->from);
+            d[k] = vec3_distance2_along(at, b->along);
+        }
+        *(d[0] < d[1] ? &high : &low) = t[d[0] < d[1]];
+    }
+    Vec3 at = vec3_sub(vec3_add_scaled(a->from, a->along, high), b->from);
+    return sqrt(vec3_distance2_along(at, b->along)) - a->radius - b->radius;
+}
+
+/* Returns true if the extension, as far as the fraction `part`, meets another vessel. A vessel that
+ * overlaps the end itself, such as its sister at a bifurcation, counts only if the extension leads
+ * deeper into it. */
+static bool meets(const Capsule *extension, double part, const Capsule *other)
+{
+    double there = gap(extension, part, other);
+    return there < 0 && there < gap(extension, 0, other) - 1e-9 * extension->radius;
+}
+
+static Box capsule_box(const Capsule *capsule)
+{
+    Box box = box_with_ball(box_empty(), capsule->from, capsule->radius);
+    return box_with_ball(box, vec3_add(capsule->from, capsule->along), capsule->radius);
+}
+
+/* Returns an error that names both vessels and the longest extension that fits. */
+static Status refuse(const Tree *tree, const Capsule *capsule, const Capsule *other, double radii,
+                     Err *err)
+{
+    bool is_inlet = !tree_is_segment(tree, capsule->node);
+    double low = 0, high = 1;
+    for (int i = 0; i < 40; i++)
+        *(meets(capsule, (low + high) / 2, other) ? &high : &low) = (low + high) / 2;
+    return err_set(err, STATUS_INPUT,
+                   "`extend`: the extension of %s %d by %g radii meets segment %d or its "
+                   "extension; the longest that fits is %.1f radii",
+                   is_inlet ? "the inlet at segment" : "outlet", tree->id[capsule->segment], radii,
+                   tree->id[other->segment], floor(low * radii * 10) / 10);
+}
+
+/* Checks that no extension meets a segment or another extension. The first n - n_extensions
+ * capsules are segments. */
+static Status check_gaps(const Tree *tree, const Capsule *capsule, size_t n, size_t n_extensions,
+                         const double *radii, Err *err)
+{
+    Box *boxes = NULL;
+    BoxTree boxtree = {0};
+    uint32_t other;
+    Status status;
+    TRY_GOTO(mem_alloc(&boxes, n, sizeof *boxes, "vessels", err));
+    for (size_t i = 0; i < n; i++)
+        boxes[i] = capsule_box(&capsule[i]);
+    TRY_GOTO(boxtree_build(boxes, n, &boxtree, err));
+    for (size_t i = n - n_extensions; i < n; i++)
+        for (BoxWalk walk = boxwalk_box(&boxtree, boxes[i]); boxwalk_next(&walk, &other);)
+            if (capsule[other].segment != capsule[i].segment &&
+                meets(&capsule[i], 1, &capsule[other]))
+                TRY_GOTO(refuse(tree, &capsule[i], &capsule[other], radii[capsule[i].node], err));
+done:
+    boxtree_release(&boxtree);
+    free(boxes);
+    return status;
+}
+
+/* Lists the segments and then the extensions. Returns the number of both; *n_extensions receives
+ * that of the extensions. */
+static size_t list_capsules(const Tree *tree, const int32_t *only_child, const double *radii,
+                            Capsule *capsule, size_t *n_extensions)
+{
+    size_t n = 0, segments;
+    for (size_t i = 0; i < tree->n; i++)
+        if (tree_is_segment(tree, i)) {
+            Vec3 from = tree->position[tree->parent[i]];
+            capsule[n++] =
+                (Capsule){from, vec3_sub(tree->position[i], from), tree->radius_mm[i], i, i};
+        }
+    segments = n;
+    for (size_t i = 0; i < tree->n; i++) {
+        size_t segment = tree_is_segment(tree, i) ? i : (size_t)only_child[i];
+        double length = tree_segment_length(tree, segment);
+        if (!(radii[i] > 0) || !(length > 0))
+            continue;
+        Vec3 start = tree->position[tree->parent[segment]], end = tree->position[segment];
+        double factor = radii[i] * tree->radius_mm[segment] / length;
+        Vec3 along = segment == i ? vec3_sub(end, start) : vec3_sub(start, end);
+        capsule[n++] = (Capsule){tree->position[i], vec3_scale(along, factor),
+                                 tree->radius_mm[segment], segment, i};
+    }
+    *n_extensions = n - segments;
+    return n;
+}
+
+/* Moves the ends, and adds the column. */
+static Status lengthen(Tree *tree, const Capsule *extension, size_t n, Err *err)
+{
+    double *column;
+    TRY(tree_set_column(tree, extension_column, "mm", &column, err));
+    for (size_t i = 0; i < tree->n; i++)
+        column[i] = 0;
+    for (size_t i = 0; i < n; i++) {
+        Vec3 *end = &tree->position[extension[i].node];
+        *end = vec3_add(*end, extension[i].along);
+        column[extension[i].node] = vec3_length(extension[i].along);
+    }
+    return STATUS_OK;
+}
+
+Status extension_apply(const ExtensionOptions *options, Parsed *parsed, Tree *tree, Err *err)
+{
+    int32_t *children = NULL, *only_child = NULL;
+    double *radii = NULL;
+    Capsule *capsule = NULL;
+    size_t n, n_extensions;
+    Status status;
+    if (options->all == 0 && options->inlet == 0 && !options->outlet)
+        return STATUS_OK;
+    TRY_GOTO(tree_child_counts(tree, &children, err));
+    TRY_GOTO(mem_calloc(&only_child, tree->n, sizeof *only_child, "nodes", err));
+    TRY_GOTO(mem_calloc(&radii, tree->n, sizeof *radii, "radii", err));
+    TRY_GOTO(mem_calloc(&capsule, 2 * tree->n, sizeof *capsule, "vessels", err));
+    for (size_t i = 0; i < tree->n; i++)
+        if (tree_is_segment(tree, i))
+            only_child[tree->parent[i]] = (int32_t)i;
+    TRY_GOTO(choose_lengths(options, parsed, tree, children, radii, err));
+    n = list_capsules(tree, only_child, radii, capsule, &n_extensions);
+    TRY_GOTO(check_gaps(tree, capsule, n, n_extensions, radii, err));
+    status = lengthen(tree, capsule + n - n_extensions, n_extensions, err);
+done:
+    free(children);
+    free(only_child);
+    free(radii);
+    free(capsule);
+    return status;
+}

@@ -1,0 +1,250 @@
+#!/usr/bin/env python3
+"""Checks a certificate of `corcast answer --certificate`; shares no code with corcast.
+
+Pattern answers: the color of each sample is computed with 50 digits; the mean must lie in the
+interval. Area answers: leaves must tile the pixel and sums must follow from the parts of leaves,
+in exact fractions; at random points the parts must enclose the color of the ray through the point.
+
+usage: check_answer.py C.json [POINTS_PER_PIXEL [SEED]]
+"""
+import json
+import random
+import sys
+from decimal import Decimal as D
+from decimal import getcontext
+from fractions import Fraction as F
+
+getcontext().prec = 50
+ROUNDING = F(1, 10**11)  # of areas and sums, far below any width of an interval
+
+def dec(x):
+    return D(x.numerator) / D(x.denominator) if isinstance(x, F) else D(x)
+
+def vec(v):
+    return [dec(x) for x in v]
+
+def dot(a, b):
+    return sum(x * y for x, y in zip(a, b))
+
+def sub(a, b):
+    return [x - y for x, y in zip(a, b)]
+
+def along(a, b, t):
+    return [x + t * y for x, y in zip(a, b)]
+
+def scaled(a, t):
+    return [x * t for x in a]
+
+def unit(a):
+    return scaled(a, 1 / dot(a, a).sqrt())
+
+def power(x, n):
+    return x**n if x > 0 else D(0)
+
+# ---- rays ---------------------------------------------------------------------------------------
+
+def enter_ball(solid, o, d):
+    """Returns depth and outward normal where a ray of unit direction enters, or None."""
+    q, b = sub(o, solid["a"]), dot(sub(o, solid["a"]), d)
+    disc = b * b - dot(q, q) + solid["r"] ** 2
+    if disc <= 0:
+        return None
+    t = -b - disc.sqrt()
+    return t, scaled(along(q, d, t), 1 / solid["r"])
+
+def enter_cylinder(solid, o, d):
+    axis, q = solid["axis"], sub(o, solid["a"])
+    da, qa = dot(d, axis), dot(q, axis)
+    dx, qx = along(d, axis, -da), along(q, axis, -qa)
+    a, b, c = dot(dx, dx), dot(qx, dx), dot(qx, qx) - solid["r"] ** 2
+    if a > D(10) ** -40:
+        disc = b * b - a * c
+        if disc <= 0:
+            return None
+        t = (-b - disc.sqrt()) / a
+        if 0 <= qa + t * da <= solid["length"]:
+            return t, scaled(along(qx, dx, t), 1 / solid["r"])
+    if abs(da) > D(10) ** -40:
+        t = ((0 if da > 0 else solid["length"]) - qa) / da
+        at = along(qx, dx, t)
+        if dot(at, at) <= solid["r"] ** 2:
+            return t, scaled(axis, -1 if da > 0 else 1)
+    return None
+
+def enter(solid, o, d):
+    return enter_ball(solid, o, d) if solid["ball"] else enter_cylinder(solid, o, d)
+
+class Scene:
+    def __init__(self, data):
+        self.data = data
+        self.solids, self.lights = data["solids"][:-1], data["lights"][:-1]
+        for s in self.solids:
+            s["a"], s["b"], s["r"], s["color"] = vec(s["a"]), vec(s["b"]), D(s["radius"]), vec(s["color"])
+            span = sub(s["b"], s["a"])
+            s["length"] = dot(span, span).sqrt()
+            s["axis"] = scaled(span, 1 / s["length"]) if not s["ball"] else None
+        for light in self.lights:
+            light["location"], light["target"] = vec(light["location"]), vec(light["target"])
+            light["color"] = vec(light["color"])
+        self.least = -100 if any(min(light["color"]) < 0 for light in self.lights) else 0
+        self.camera = {k: vec(data[k]) for k in ("location", "right", "up", "direction")}
+        self.background, self.finish = vec(data["background"]), vec(data["finish"])
+
+    def ray(self, x, y):
+        c, (w, h) = self.camera, self.data["size"]
+        offset = along(scaled(c["right"], dec(F(x) / w - F(1, 2))), c["up"], dec(F(1, 2) - F(y) / h))
+        if self.data["perspective"]:
+            return c["location"], unit(along(c["direction"], offset, 1))
+        return along(c["location"], offset, 1), unit(c["direction"])
+
+    def shadowed(self, point, towards, distance, own):
+        for s in self.solids:
+            hit = enter(s, point, towards) if s is not own else None
+            if hit and D(10) ** -25 < hit[0] < distance:
+                return True
+        return False
+
+    def color(self, x, y):
+        o, d = self.ray(x, y)
+        first = None
+        for s in self.solids:
+            hit = enter(s, o, d)
+            if hit and hit[0] > 0 and (first is None or hit[0] < first[1][0]):
+                first = (s, hit)
+        if first is None:
+            return self.background
+        solid, (t, n) = first
+        point, pigment = along(o, d, t), solid["color"]
+        ambient, diffuse, brilliance, phong, size, specular, sharpness = self.finish
+        color = scaled(pigment, ambient)
+        for light in self.lights:
+            to = sub(light["location"], light["target"] if light["parallel"] else point)
+            distance = D("inf") if light["parallel"] else dot(to, to).sqrt()
+            to = unit(to)
+            cosine = dot(n, to)
+            if cosine <= 0 or (light["shadows"] and self.shadowed(point, to, distance, solid)):
+                continue
+            gloss = phong * power(dot(along(d, n, -2 * dot(d, n)), to), size)
+            gloss += specular * power(dot(unit(sub(to, d)), n), sharpness)
+            body = diffuse * power(cosine, brilliance)
+            color = [c + l * (p * body + gloss) for c, l, p in zip(color, light["color"], pigment)]
+        nearest, farthest, near, far = vec(self.data["fade"])
+        part = min(max((t - near) / (far - near), D(0)), D(1)) if far > near else D(0)
+        fade = nearest + (farthest - nearest) * part
+        return [c + (b - c) * fade for c, b in zip(color, self.background)]
+
+
+def inside(color, low, high):
+    return all(D(a) - D("1e-14") <= c <= D(b) + D("1e-14") for a, c, b in zip(low, color, high))
+
+def check_pattern(scene, pixel):
+    n, (i, j) = scene.data["pattern"], pixel["pixel"]
+    offsets = [F(2 * k + 1, 2 * n) - F(1, 2) for k in range(n)] if n > 1 else []
+    places = [(F(0), F(0))] + [(x, y) for y in offsets for x in offsets]
+    colors = [scene.color(i + F(1, 2) + x, j + F(1, 2) + y) for x, y in places]
+    mean = [sum(c[k] for c in colors) / len(colors) for k in range(3)]
+    return [] if inside(mean, pixel["low"], pixel["high"]) else ["the mean of its samples is outside"]
+
+def moments(polygon):
+    area = mx = my = F(0)
+    for (ax, ay), (bx, by) in zip(polygon, polygon[1:] + polygon[:1]):
+        cross = ax * by - bx * ay
+        area, mx, my = area + cross / 2, mx + cross * (ax + bx) / 6, my + cross * (ay + by) / 6
+    return (area, mx, my) if area >= 0 else (-area, -mx, -my)
+
+def contains(polygon, x, y):
+    sides = [(bx - ax) * (y - ay) - (by - ay) * (x - ax)
+             for (ax, ay), (bx, by) in zip(polygon, polygon[1:] + polygon[:1])]
+    return len(polygon) > 2 and (min(sides) >= 0 or max(sides) <= 0)
+
+def exact(points):
+    return [(F(x), F(y)) for x, y in points[:-1]]
+
+def read_leaf(leaf):
+    leaf["polygon"], leaf["parts"] = exact(leaf["polygon"]), leaf["parts"][:-1]
+    for part in leaf["parts"]:
+        if "form" in part:
+            part["polygon"] = exact(part["polygon"])
+    (ax, ay), (bx, by) = [map(F, leaf[k]) for k in ("along", "across")]
+    leaf["scale"] = abs(ax * by - ay * bx)
+
+def check_sums(leaf, least):
+    """The leaf's bounds follow from its parts."""
+    faults = []
+    for c in range(3):
+        low = high = F(0)
+        for part in leaf["parts"]:
+            if "form" in part:
+                (k, x, y, e), (area, mx, my) = map(F, part["form"][c]), moments(part["polygon"])
+                value = k * area + x * mx + y * my
+                low += F(part["weight"]) * max(value - e * area, least * area)
+                high += F(part["weight"]) * (value + e * area)
+            else:
+                low += F(part["area"]) * F(part["low"][c])
+                high += F(part["area"]) * F(part["high"][c])
+        if F(leaf["low"][c]) > low * leaf["scale"] + ROUNDING:
+            faults.append("a leaf's lower bound is above its parts")
+        # Colors are cut to the brightest of the scene, so a bound may be below its parts' sum.
+        if F(leaf["high"][c]) < min(high * leaf["scale"] - ROUNDING, F(leaf["low"][c])):
+            faults.append("a leaf's upper bound is below its parts")
+    return faults
+
+def check_point(scene, leaf, x, y):
+    """The parts enclose the color at a point of the picture."""
+    (ax, ay), (bx, by) = [map(F, leaf[k]) for k in ("along", "across")]
+    dx, dy, det = x - F(leaf["at"][0]), y - F(leaf["at"][1]), ax * by - ay * bx
+    ex, ey = (dx * by - dy * bx) / det, (ax * dy - ay * dx) / det
+    low, high = [F(0)] * 3, [F(0)] * 3
+    for part in leaf["parts"]:
+        for c in range(3):
+            if "form" in part and contains(part["polygon"], ex, ey):
+                k, u, v, e = map(F, part["form"][c])
+                low[c] += F(part["weight"]) * (k + u * ex + v * ey - e)
+                high[c] += F(part["weight"]) * (k + u * ex + v * ey + e)
+            elif "area" in part and part["area"] > 1e-6:
+                low[c] += min(F(part["low"][c]), 0)  # the point may be in the strip or not
+                high[c] += max(F(part["high"][c]), 0)
+    color = scene.color(x, y)
+    return inside(color, map(dec, low), map(dec, high))
+
+def check_area(scene, pixel, points, rng):
+    leaves, (i, j) = pixel["leaves"][:-1], pixel["pixel"]
+    faults = []
+    for leaf in leaves:
+        read_leaf(leaf)
+        faults += check_sums(leaf, scene.least)
+    if abs(sum(moments(leaf["polygon"])[0] * leaf["scale"] for leaf in leaves) - 1) > ROUNDING:
+        faults.append("its leaves do not have its area")
+    for c in range(3):
+        if F(pixel["low"][c]) > sum(F(leaf["low"][c]) for leaf in leaves) + ROUNDING:
+            faults.append("its lower bound is above the sum of its leaves")
+        if F(pixel["high"][c]) < sum(F(leaf["high"][c]) for leaf in leaves) - ROUNDING:
+            faults.append("its upper bound is below the sum of its leaves")
+    for _ in range(points):
+        x, y = i + F(rng.random()), j + F(rng.random())
+        homes = []
+        for leaf in leaves:
+            (ax, ay), (bx, by) = [map(F, leaf[k]) for k in ("along", "across")]
+            dx, dy, det = x - F(leaf["at"][0]), y - F(leaf["at"][1]), ax * by - ay * bx
+            if contains(leaf["polygon"], (dx * by - dy * bx) / det, (ax * dy - ay * dx) / det):
+                homes.append(leaf)
+        if len(homes) != 1:
+            faults.append(f"{len(homes)} leaves contain one of its points")
+        elif not check_point(scene, homes[0], x, y):
+            faults.append("the color at a point is outside the parts of its leaf")
+    return faults
+
+def main():
+    data = json.load(open(sys.argv[1]))
+    points, rng = int((sys.argv + ["", ""])[2] or 8), random.Random(int((sys.argv + ["", ""])[3] or 1))
+    assert not data["ground"] and all(light["samples"] < 2 for light in data["lights"][:-1])
+    scene, faults = Scene(data), 0
+    for pixel in data["pixels"][:-1]:
+        found = check_pattern(scene, pixel) if data["pattern"] else check_area(scene, pixel, points, rng)
+        faults += bool(found)
+        for fault in sorted(set(found)):
+            print(f"pixel {pixel['pixel'][0]},{pixel['pixel'][1]}: {fault}")
+    print(f"{len(data['pixels']) - 1 - faults} of {len(data['pixels']) - 1} pixels proved")
+    sys.exit(1 if faults else 0)
+
+main()
