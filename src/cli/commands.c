@@ -142,11 +142,10 @@ static Status read_environment(Err *err)
     (void)templates_set(getenv("CORCAST_TEMPLATES"));
     if (clock_set_date(date && *date ? date : NULL))
         return STATUS_OK;
-    return err_set(
-        err, STATUS_USAGE,
-        "%s is '%s'; it must be the seconds since 1970-01-01 UTC as an integer from 0 to "
-        "253402300799",
-        date, getenv(date));
+    return err_set(err, STATUS_USAGE,
+                   "SOURCE_DATE_EPOCH is '%s'; it must be the seconds since 1970-01-01 UTC as an "
+                   "integer from 0 to 253402300799",
+                   date);
 }
 
 Status command_run(const Command *command, int argc, char **argv, Err *err)

@@ -133,7 +133,6 @@ class Scene:
         fade = nearest + (farthest - nearest) * part
         return [c + (b - c) * fade for c, b in zip(color, self.background)]
 
-# ---- pixels -------------------------------------------------------------------------------------
 
 def inside(color, low, high):
     return all(D(a) - D("1e-14") <= c <= D(b) + D("1e-14") for a, c, b in zip(low, color, high))

@@ -184,6 +184,8 @@ static double improve(const Planes *a, const Planes *b, const LevelFrame *frame,
  * parts after the map. */
 typedef struct Leavings {
     double before[2][2], after[2][2], flat, flat_n, pixels;
+    double rest[3], shown[3]; /* per channel: the sum of B - A after the map, and the number of
+                               * pixels at which A is neither black nor white */
 } Leavings;
 
 static void add_leavings(const Planes planes[2], const LevelFrame *frame, const Affine *map, int x,
@@ -200,6 +202,8 @@ static void add_leavings(const Planes planes[2], const LevelFrame *frame, const 
         const double rest = is - value[0];
         sums->before[row][column] += (is - was) * (is - was);
         sums->after[row][column] += rest * rest;
+        sums->rest[c] += rest;
+        sums->shown[c] += value[0] > 2 && value[0] < 253;
         const double slope = fmax(fabs((double)*value_at(b, x + 1, y, c) - is),
                                   fabs((double)*value_at(b, x, y + 1, c) - is));
         if (fabs(value[1]) < 1 && fabs(value[2]) < 1 && slope < 1) {
@@ -208,6 +212,16 @@ static void add_leavings(const Planes planes[2], const LevelFrame *frame, const 
         }
     }
     sums->pixels++;
+}
+
+/* Returns true if no channel is brighter or darker by 3 levels, on the mean of what is
+ * shown. Interpolation that rings and is clipped changes it by up to 2. */
+static bool keeps_tones(const Leavings *sums)
+{
+    for (int c = 0; c < 3; c++)
+        if (fabs(sums->rest[c]) > 3 * fmax(sums->shown[c], 1))
+            return false;
+    return true;
 }
 
 static bool explains(const Planes planes[2], const LevelFrame *frame, const Affine *map)
@@ -230,7 +244,7 @@ static bool explains(const Planes planes[2], const LevelFrame *frame, const Affi
         if (here > 0.02 * before && 8 * sums->after[i / 2][i % 2] > here)
             return false;
     }
-    return sums->flat <= 0.5 * fmax(sums->flat_n, 1);
+    return sums->flat <= 0.5 * fmax(sums->flat_n, 1) && keeps_tones(sums);
 }
 
 /* ---- the search --------------------------------------------------------------------------------
