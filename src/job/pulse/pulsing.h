@@ -22,7 +22,7 @@ typedef struct PulsingOptions {
     double exaggerate;
     const char *look;
     PictureSize size;
-    bool json, has_harmonics, has_period, has_drive_is;
+    bool json, has_harmonics, has_period, has_drive_is, has_ventricle;
     BloodOptions blood;
 } PulsingOptions;
 
