@@ -369,7 +369,7 @@ test_the_studio_has_each_of_its_five() {
 # The hero scene by its one command, small: a red trunk in the middle, before a sweep of a darker, even gray.
 test_the_hero_scene_is_drawn_by_one_command() {
     local r g b
-    run_ok env CORCAST="$CORCAST" "$REPO/docs/examples/hero" hero 32 Declare=Hero_Quality=0
+    run_ok env TERMINALS=40 CORCAST="$CORCAST" "$REPO/docs/examples/hero" hero 32 Declare=Hero_Quality=0
     ! grep 'Warning:' stderr | grep -v experimental || fail "expected no warning but of subsurface"
     read -r r g b < <(pngtopnm hero/hero.png | pamcut -left 0 -top 0 -width 32 -height 6 | pamscale -xsize 1 -ysize 1 | pnmtoplainpnm | tail -1)
     [ "$r" -lt 150 ] && [ "$r" -gt "$b" ] && [ $((r - b)) -lt 20 ] || fail "expected a gray sweep, got $r $g $b"
