@@ -17,8 +17,7 @@ extern const Command command_grow, command_refine, command_bifurcation, command_
     command_verify, command_compare, command_report, command_power, command_check_figure,
     command_answer, command_metamorph, command_suite;
 
-/* Commands in the order of the help; NULL ends the list. command_merge and command_answer are not
- * in the list. */
+/* Commands in the order of the help; NULL ends the list. command_merge is not in the list. */
 extern const Command *const job_commands[];
 
 #endif

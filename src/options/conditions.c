@@ -27,6 +27,8 @@ static const ConditionRow rows[] = {
     [WHEN_LONE_RADIUS] = {.sentence = "needs --radii with one radius, the parent's"},
     [WHEN_FREE_ANGLES] = {.sentence = "has no effect if --angles is given"},
     [WHEN_OWN_SEED] = {.sentence = "has no effect here: the plan sets the seeds"},
+    [WHEN_LUMPED] = {.sentence = "has no effect on --outlets structured"},
+    [WHEN_STRUCTURED] = {.sentence = "is for --outlets structured"},
     [WHEN_PICTURE] = {.sentence = "is for pictures", .groups = GROUP(PRESS)},
     [WHEN_PIXELS] = {.sentence =
                          "is for images of pixels; a page (.svg, .pdf, .eps) has the true size",

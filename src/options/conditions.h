@@ -28,6 +28,8 @@ typedef enum Condition {
     WHEN_LONE_RADIUS,
     WHEN_FREE_ANGLES,
     WHEN_OWN_SEED,
+    WHEN_LUMPED,
+    WHEN_STRUCTURED,
     /* of the file of a picture */
     WHEN_PICTURE,
     WHEN_PIXELS,

@@ -7,6 +7,7 @@
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 const char *const option_group_names[OPTION_GROUPS] = {
     [GROUP_FILES] = "files",
@@ -91,6 +92,16 @@ static Status read_text(const Option *option, const char *value, void *where, Er
     (void)err;
     *(const char **)where = value;
     return STATUS_OK;
+}
+
+/* A row whose argument ends in ".csv" accepts no other extension. */
+static Status read_output(const Option *option, const char *value, void *where, Err *err)
+{
+    const char *extension = file_extension(value);
+    if (option->argument && !strchr(option->argument, '|') && *extension &&
+        strcmp(file_extension(option->argument), "csv") == 0 && strcasecmp(extension, "csv") != 0)
+        return wrong(option, value, "a file that ends in .csv", err);
+    return read_text(option, value, where, err);
 }
 
 static Status read_choice(const Option *option, const char *value, void *where, Err *err)
@@ -311,15 +322,20 @@ static bool read_end(const char *text, size_t length, double *at, bool *percent)
     return number_parse(number, at) && isfinite(*at) && (!*percent || (*at >= 0 && *at <= 100));
 }
 
+/* An option with a unit takes values only. */
 static Status read_range(const Option *option, const char *value, void *where, Err *err)
 {
     RangeEnds ends;
+    const bool is_plain = option_unit(option) != NULL;
     const char *comma = strchr(value, ',');
     if (!comma || !read_end(value, (size_t)(comma - value), &ends.at[0], &ends.percent[0]) ||
         !read_end(comma + 1, strlen(comma + 1), &ends.at[1], &ends.percent[1]) ||
+        (is_plain && (ends.percent[0] || ends.percent[1])) ||
         (ends.percent[0] == ends.percent[1] && !(ends.at[0] < ends.at[1])))
         return wrong(option, value,
-                     "A,B, two numbers with A below B, or percentiles from 0% to 100%", err);
+                     is_plain ? "A,B, two numbers with A below B"
+                              : "A,B, two numbers with A below B, or percentiles from 0% to 100%",
+                     err);
     *(RangeEnds *)where = ends;
     return STATUS_OK;
 }
@@ -458,7 +474,7 @@ static const Kind kinds[] = {
     [OPTION_SWITCH] = {"switch", "[on|off]", read_switch, count_one, put_switch, false},
     [OPTION_TEXT] = {"text", "TEXT", read_text, count_text, put_text, false},
     [OPTION_INPUT] = {"input file", "FILE", read_text, count_text, put_text, true},
-    [OPTION_OUTPUT] = {"output file", "FILE", read_text, count_text, put_text, true},
+    [OPTION_OUTPUT] = {"output file", "FILE", read_output, count_text, put_text, true},
     [OPTION_FOLDER] = {"output folder", "DIR", read_text, count_text, put_text, true},
     [OPTION_LOOKUP] = {"name or file", "NAME", read_text, count_text, put_text, true},
     [OPTION_WHOLE] = {"integer", "N", read_whole, count_one, put_whole, false},

@@ -33,7 +33,8 @@ typedef enum OptionKind {
     OPTION_NUMBERS, /* NumberList: A,B,...; up to MAX_LIST numbers */
     OPTION_COLOR,   /* Vec3, sRGB: R,G,B in [0, 1], #RGB, #RRGGBB, a name; see can_be_none */
     OPTION_SIZE,    /* PictureSize: WxH in pixels, each in option_range; or 89mmx60mm, or 89mm */
-    OPTION_RANGE,   /* RangeEnds: A,B; A is below B if both are values or both percentiles */
+    OPTION_RANGE,   /* RangeEnds: A,B; A is below B if both are values or both percentiles. An
+                     * option with a unit takes no percentiles. */
     OPTION_CHOICE   /* int or an enum; index into Option.choices */
 } OptionKind;
 

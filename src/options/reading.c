@@ -50,13 +50,14 @@ static const Option rows[] = {
      .group = GROUP_INPUT,
      .unit = "mm",
      .help = "radius of vessels whose radius is missing or 0 in the file; by default a file with "
-             "missing radii is refused"},
+             "missing radii is refused; with --repair-radii: only if no vessel of the file has a "
+             "radius"},
     {.name = "repair-radii",
      SETS(FLAG, ReadOptions, repair_radii),
      .group = GROUP_INPUT,
      .help =
          "fill each radius that is missing, 0, negative or not a number from its neighbours along "
-         "the branch"},
+         "the branch; takes precedence over --radius"},
     {.name = "radius-array",
      SETS(TEXT, ReadOptions, radius_array),
      .group = GROUP_INPUT,

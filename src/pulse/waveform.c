@@ -82,6 +82,10 @@ static Status take_sample(char *line, WaveSamples *samples, Err *err)
         return STATUS_OK;
     if (!read || !isfinite(time) || !isfinite(value))
         return err_set(err, STATUS_INPUT, "a line must hold two finite numbers: time (s), value");
+    const size_t n = samples->times.n;
+    if (n > 0 && !(time > samples->times.items[n - 1]))
+        return err_set(err, STATUS_INPUT, "the time is %g, after %g; times must rise", time,
+                       samples->times.items[n - 1]);
     TRY(ARRAY_PUSH(&samples->times, "samples", err, time));
     return ARRAY_PUSH(&samples->values, "samples", err, value);
 }

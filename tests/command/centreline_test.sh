@@ -65,6 +65,8 @@ test_gaps_of_radii_are_filled_along_the_branch() {
     run_ok corcast info t.swc --repair-radii --json
     expect_json stdout '.reading.repaired_radii == 3 and .reading.repaired_ids == [3, 5, 6]'
     run_ok corcast convert t.swc r.swc --repair-radii --quiet
+    run_ok corcast info t.swc --repair-radii --radius 9 --json
+    expect_json stdout '.reading.repaired_radii == 3 and .reading.given_radii == 0'
     # Half way between 1 and 0.5; at the end of a branch the nearest; a branch without any takes the thinner neighbour.
     [ "$(grep -v '^#' r.swc | cut -d' ' -f6 | tr '\n' ' ')" = '1 1 0.75 0.5 0.5 0.5 0.2 ' ] || fail "$(cat r.swc)"
 }
@@ -75,6 +77,9 @@ test_statistics_go_into_a_table() {
     [ "$(head -1 s.csv)" = table,number,quantity,mean,sd ] || fail "header: $(head -1 s.csv)"
     jq -r '.stats.by_strahler[] | "strahler,\(.order),elements,\(.elements),"' stdout >orders
     grep -F strahler, s.csv | grep -v diameter- | grep ',elements,' | cmp -s - orders || fail "orders: $(head -3 s.csv orders)"
+    run corcast info t.swc --stats -o s.json
+    expect_status 2
+    expect_sentence "'s.json' is not a file that ends in .csv"
     run corcast info t.swc -o s.csv
     expect_status 2
     expect_sentence '--stats'

@@ -126,6 +126,10 @@ test_what_cannot_be_measured_is_refused() {
     expect_sentence 'no vessel is in the tissue shape; .*--input-unit'
     run_ok corcast coverage one.swc --domain ball:6 --spacing 0.5
     grep -q '^corcast: 25 % of the vessels. length is outside the tissue shape' stderr || fail "no share of the length outside: $(cat stderr)"
+    grep -q 'the same z, but the tissue shape has three' stderr || fail "no warning of a flat tree: $(cat stderr)"
+    run corcast coverage one.swc --domain hull
+    expect_status 2
+    expect_sentence '--domain hull: use hull:MM'
     run corcast coverage one.swc --domain box:0.2,9,9 --spacing 1
     expect_status 2
     expect_sentence 'voxels of 1 mm are too large for the tissue shape'
@@ -137,7 +141,7 @@ test_what_cannot_be_measured_is_refused() {
     expect_sentence "'d.df3' does not end as a volume of values does"
     run corcast coverage one.swc --domain ball:9000 --spacing 0.001
     expect_status 3
-    expect_sentence 'memory'
+    expect_sentence 'the distances at this --spacing: out of memory'
     run corcast coverage one.swc --domain ball:9 --spacing 0
     expect_status 2
     expect_only one.swc

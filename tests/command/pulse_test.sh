@@ -96,7 +96,8 @@ test_structured_trees_given_outlets_and_series_are_written() {
     run_ok corcast pulse tree.swc --outlets structured --wall-time 0.01 --summary s.csv -o t.pvd --frames 2
     expect_file t_0002.vtp
     expect_stdout '^  Womersley'
-    awk -F, 'BEGIN { print "id,rp,c,rd" } NR > 1 && NR < 5 { print $1 ",0.5,0.01,3" }' s.csv >outlets.csv
+    awk '!/^#/ { id[++n] = $1; has[$7] } END { print "id,rp,c,rd"
+        for (k = n; k > 0; k--) if (!(id[k] in has) && ++m < 4) print id[k] ",0.5,0.01,3" }' tree.swc >outlets.csv
     run_ok corcast pulse tree.swc --outlets outlets.csv --json
     run_ok corcast waveforms
     expect_stdout '^aortic-pressure	pressure	1 s	'
@@ -121,7 +122,7 @@ test_bad_inputs_are_refused() {
     refuses '\-\-p-perf' --q-perf 100
     refuses 'outlet at node [34] has a mean pressure of .* not above the venous' "${blood[@]}" --venous-pressure 99.99
     refuses 'E h / r of segment 2, radius 1 mm, is -' "${blood[@]}" --wall 1e3,-1,-1e4
-    refuses 'neither a law' "${blood[@]}" --wall soft
+    refuses 'neither a law \(adan, .*, rigid\) nor' "${blood[@]}" --wall soft
     sed -i 's/ 0.5 2$/ 0 2/' tree.swc
     refuses 'segment 3 has the radius 0' "${blood[@]}"
     sed -i 's/^3.*/3 3 0 0 9 0.5 2/' tree.swc
@@ -131,8 +132,10 @@ test_bad_inputs_are_refused() {
     refuses 'period' --period -1
     refuses 'harmonics' --harmonics 0
     refuses 'harmonics' --harmonics 65
+    run_ok corcast pulse tree.swc --harmonics 64 --json
+    expect_json stdout '.harmonics == 8'
     printf 'time,p\n0,80\n0.3,120\n0.2,90\n0.8,80\n' >bad.csv
-    refuses 'bad.csv: sample 3 has the time 0.2, after 0.3' --drive bad.csv
+    refuses 'bad.csv:4: the time is 0.2, after 0.3' --drive bad.csv
     printf '0,80\n0.3,120\n0.5,90\n0.8,82\n' >bad.csv
     refuses 'not closed: it begins at 80 and ends at 82' --drive bad.csv
     echo 'time,value' >empty.csv
@@ -153,13 +156,23 @@ test_bad_inputs_are_refused() {
     refuses 'needs --outlets rcr' --tissue-pressure ventricular-pressure --outlets structured
     printf 'id,rp,c,rd\n2,1,-1,2\n' >bad.csv
     refuses 'outlet 2 has rp 1, c -1 and rd 2' --outlets bad.csv
+    printf 'id,rp,c,rd\n%s,0.5,0.01,3\n' "$(awk '$7 == 1 { print $1; exit }' tree.swc)" >bad.csv
+    refuses 'bad.csv: segment [0-9]+ is no outlet' --outlets bad.csv
+    printf '0,80\n0.4,120\n1,80\n' >p.csv
+    refuses '\-\-ventricle is for a --tissue-pressure template' --tissue-pressure p.csv --ventricle 5,120
+    refuses 'not A,B, two numbers with A below B$' --tissue-pressure ventricular-pressure --ventricle 10%,90%
+    refuses 'has no effect on --outlets structured' --outlets structured --outlet-time 2
+    refuses 'is for --outlets structured' --outlet-radius 0.1
+    refuses 'and --tissue-pressure' --outlet-time 2 --tissue-pressure ventricular-pressure
+    refuses 'aorta-flow is a flow; a pressure' --tissue-pressure aorta-flow
+    refuses 'not a file that ends in .csv' --summary s.json
     refuses 'is not pressure, flow' --fields speed
     refuses 'must end in' -o v.gif
     refuses 'cannot store' -o v.swc
     refuses 'cannot hold structured' --outlets structured -o d.json
     refuses 'exaggerate' --exaggerate 3 -o v.csv
     run corcast pulse tree.swc
-    expect_sentence 'writes nothing'
+    expect_sentence '--json is missing'
 }
 
 run_tests

@@ -46,7 +46,8 @@ static const Option rows[] = {
      SETS(CHOICE, CoverageOptions, kind),
      .choices = territory_kinds,
      .needs = "territories",
-     .help = "what divides the tissue: terminal (the nearest end of a terminal segment), segment "
+     .help = "with --territories: what divides the tissue: terminal (the nearest end of a terminal "
+             "segment), segment "
              "(the nearest wall), tree (the nearest wall; label: number of its tree)"},
     {.name = "summary",
      SETS(OUTPUT, CoverageOptions, summary),
@@ -61,16 +62,17 @@ static const Option rows[] = {
      SETS(TEXT, CoverageOptions, domain),
      .group = GROUP_TREE,
      .argument = "SHAPE",
+     .list = "domains",
      .otherwise = "from the tree",
-     .help = "tissue shape, as of `grow`: ball:R, mask:FILE, mesh:FILE, hull:MM (everything within "
-             "MM of the tree)"},
+     .help = "tissue shape, as of `grow`, such as ball:R, mask:FILE, mesh:FILE, or hull:MM "
+             "(everything within MM of the tree)"},
     {.name = "spacing",
      .former = "voxel",
      SETS(NUMBER, CoverageOptions, spacing_mm),
      .group = GROUP_VOXELS,
      FROM_TO(DOMAIN_MIN_MM, DOMAIN_MAX_MM),
      .unit = "mm",
-     .otherwise = "1/128 of the longest side",
+     .otherwise = "1/128 of the longest side of the box around the tissue",
      .help = "edge length of the cubic voxels whose centres sample the tissue"},
     {.name = "beyond",
      SETS(NUMBERS, CoverageOptions, beyond),
@@ -297,6 +299,18 @@ static Status check_volume(const Measuring *made, Err *err)
     if (report->tissue_voxels == 0)
         return err_set(err, STATUS_INPUT, "the vessels fill all of the tissue shape");
     return STATUS_OK;
+}
+
+/* A tree that grew in a plane has all its nodes at one z. */
+static void warn_flat(const Measuring *made, const Talk *talk)
+{
+    const Tree *tree = &made->tree;
+    bool is_flat = made->domain.dimension == 3;
+    for (size_t i = 1; i < tree->n; i++)
+        is_flat = is_flat && tree->position[i].z == tree->position[0].z;
+    if (is_flat)
+        talk_warn(talk, "all nodes of the tree have the same z, but the tissue shape has three "
+                        "dimensions; a flat tree supplies a flat shape, such as disc:R");
 }
 
 static void apply_law(Measuring *made)
@@ -534,10 +548,11 @@ static Status prepare(Measuring *made, Parsed *parsed, FileSet *files, Err *err)
 
 static Status run(Measuring *made, Parsed *parsed, FileSet *files, Err *err)
 {
-    static const Work work = {"measuring", "the distances", estimate, measure};
+    static const Work work = {"measuring", "the distances at this `spacing`", estimate, measure};
     TRY(prepare(made, parsed, files, err));
     TRY(work_make(&work, made, files->n_open ? files : NULL, parsed->common.talk, err));
     TRY(check_volume(made, err));
+    warn_flat(made, parsed->common.talk);
     apply_law(made);
     return files->n_open ? work_write(files, put_files, made, parsed, err) : STATUS_OK;
 }

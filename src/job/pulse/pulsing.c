@@ -16,14 +16,19 @@ static const Option rows[] = {
     {.name = "output",
      SETS(OUTPUT, PulsingOptions, output),
      .argument = "V.csv|T.vtp|T.pvd|D.json|S.pov|F%04d.png",
-     .help = "values over time (.csv), the tree with values over time (.vtp and others, .pvd), a "
-             "deck of svZeroDSolver (.json), or the beating tree as a scene of POV-Ray (.pov) or "
-             "as pictures"},
+     .help =
+         "by the ending: .csv: values over time; .vtp and other formats that store columns: the "
+         "tree with values over time; .pvd: an index of ParaView and one tree per moment; "
+         ".json: a deck of svZeroDSolver; .pov: the beating tree as a scene of POV-Ray; .png "
+         "and other images: the beating tree as an animation, one picture per moment, where "
+         "%04d becomes the number of the picture and is required"},
     {.name = "summary",
      SETS(OUTPUT, PulsingOptions, summary),
      .argument = "FILE.csv",
      .otherwise = "",
-     .help = "write one row per segment: ranges of pressure and flow, TAWSS, OSI, delay"},
+     .help = "write one row per segment: ranges of pressure and flow, time-averaged wall shear "
+             "stress (TAWSS), oscillatory shear index (OSI), Womersley number, wave speed, delay, "
+             "area strain"},
     {.name = "impedance",
      SETS(OUTPUT, PulsingOptions, impedance),
      .argument = "FILE.csv",
@@ -35,7 +40,7 @@ static const Option rows[] = {
      .group = GROUP_FILES,
      .argument = "all|NAME,...",
      .help = "quantities to write: pressure, flow, velocity, wss, dilation (change of the radius / "
-             "radius); a film shows the first"},
+             "radius); animations and scenes show the first"},
     {.name = "frames",
      SETS(COUNT, PulsingOptions, frames),
      FROM_TO(2, 2000),
@@ -46,8 +51,10 @@ static const Option rows[] = {
      .group = GROUP_PULSE,
      .argument = "NAME|FILE.csv",
      .list = "waveforms",
-     .help = "cycle at the inlets, scaled to their means: a template, or a CSV file with the "
-             "columns time (s) and value"},
+     .help =
+         "shape of pressure or flow over one cycle at the inlets: a template, or a CSV file with "
+         "the columns time (s) and value, whose last value equals the first within 1 % of the "
+         "range; its mean is scaled to --p-perf (pressure) or --q-perf (flow)"},
     {.name = "drive-is",
      SETS(CHOICE, PulsingOptions, drive_is),
      GIVEN(PulsingOptions, has_drive_is),
@@ -76,14 +83,18 @@ static const Option rows[] = {
      FROM_TO(1, WAVEFORM_MAX_HARMONICS),
      .group = GROUP_PULSE,
      .otherwise = "16, or as many as the waveform has",
-     .help = "number of harmonics of the heart rate"},
+     .help =
+         "number of harmonics of the heart rate; a template with fewer is used as it is, and the "
+         "report states the number"},
     {.name = "wall",
      SETS(TEXT, PulsingOptions, wall),
      .group = GROUP_PULSE,
      .argument = "NAME|K1,K2,K3",
      .list = "walls",
-     .help = "stiffness of the wall by radius r, mm: a law, or E h / r = K1 exp(K2 r) + K3 in Pa, "
-             "1/mm and Pa"},
+     .help =
+         "stiffness of the wall, E h / r, where E is Young's modulus, h the thickness of the wall "
+         "and r the radius, mm: a law, or K1,K2,K3 for K1 exp(K2 r) + K3 in Pa, 1/mm and Pa, "
+         "such as 2e6,-2.253,8.65e4"},
     {.name = "wall-time",
      SETS(NUMBER, PulsingOptions, wall_time_s),
      FROM_TO(0, 10),
@@ -94,33 +105,43 @@ static const Option rows[] = {
      SETS(TEXT, PulsingOptions, outlets),
      .group = GROUP_PULSE,
      .argument = "rcr|structured|FILE.csv",
-     .help = "what is behind the outlets: resistances and a compliance, a structured tree of "
-             "Olufsen, or a CSV file with the columns id, rp, c, rd (mmHg s/ml and ml/mmHg)"},
+     .help = "what is behind the outlets: rcr (resistances and a compliance), structured (a "
+             "structured tree of Olufsen), or a CSV file with the columns id, rp (proximal "
+             "resistance, mmHg s/ml), c (compliance, ml/mmHg), rd (distal resistance); an outlet "
+             "without a row gets the values of rcr"},
     {.name = "outlet-time",
      SETS(NUMBER, PulsingOptions, outlet_time_s),
      FROM_TO(0, 100),
      .unit = "s",
      .group = GROUP_PULSE,
-     .help = "rcr: compliance times resistance of each outlet; 0 is a resistance alone"},
+     .when = WHEN(LUMPED),
+     .excludes = "tissue-pressure",
+     .clash = ", which has a time of its own, exclude each other",
+     .help = "rcr: compliance times total resistance (rp + rd) of each outlet; 0 is a resistance "
+             "alone"},
     {.name = "outlet-radius",
      SETS(NUMBER, PulsingOptions, outlet_radius_mm),
      FROM_TO(1e-4, 100),
      .unit = "mm",
      .group = GROUP_PULSE,
+     .when = WHEN(STRUCTURED),
      .help = "structured: vessels end below this radius"},
     {.name = "venous-pressure",
      SETS(NUMBER, PulsingOptions, venous_mmhg),
      FROM_TO(-100, 1000),
      .unit = "mmHg",
      .group = GROUP_PULSE,
-     .help = "pressure behind the outlets"},
+     .help =
+         "pressure behind the outlets; the resistance of an outlet carries the pressure from the "
+         "terminal to this value"},
     {.name = "tissue-pressure",
      SETS(TEXT, PulsingOptions, tissue),
      .group = GROUP_PULSE,
      .argument = "NAME|FILE.csv",
      .list = "waveforms",
-     .help = "pressure that contracting muscle exerts on small vessels: a template, or a CSV file "
-             "with the columns time (s) and pressure (mmHg)"},
+     .otherwise = "none",
+     .help = "pressure that contracting muscle exerts on the small vessels behind the outlets: a "
+             "template of pressure, or a CSV file with the columns time (s) and pressure (mmHg)"},
     {.name = "tissue-share",
      SETS(NUMBER, PulsingOptions, tissue_share),
      FROM_TO(0, 2),
@@ -129,6 +150,7 @@ static const Option rows[] = {
      .help = "fraction of --tissue-pressure that reaches the vessels"},
     {.name = "ventricle",
      SETS(RANGE, PulsingOptions, ventricle),
+     GIVEN(PulsingOptions, has_ventricle),
      .unit = "mmHg",
      .group = GROUP_PULSE,
      .needs = "tissue-pressure",
@@ -138,7 +160,8 @@ static const Option rows[] = {
      FROM_TO(0, 1000),
      .group = GROUP_ANIMATION,
      .when = WHEN(ANIMATED),
-     .help = "films and scenes: factor of the change of the radius that is drawn"},
+     .help = "animations and scenes: factor of the change of the radius that is drawn; 1 draws the "
+             "true change, 0 none"},
     {.name = "look",
      SETS(TEXT, PulsingOptions, look),
      .group = GROUP_ANIMATION,
@@ -146,15 +169,15 @@ static const Option rows[] = {
      .argument = "NAME",
      .list = "looks",
      .otherwise = "",
-     .help = "films and scenes: look of the vessels; sections [render] and [scene] of a recipe set "
-             "everything else"},
+     .help = "animations and scenes: look of the vessels; other options of the pictures are in the "
+             "section [render] of a --recipe, those of the scene in its section [scene]"},
     {.name = "size",
      SETS(SIZE, PulsingOptions, size),
      FROM_TO(1, 100000),
      .group = GROUP_ANIMATION,
      .when = WHEN(ANIMATED),
      .argument = "WxH",
-     .help = "films and scenes: size of the picture, pixels"},
+     .help = "animations and scenes: size of the picture, pixels"},
 };
 
 static void set_defaults(void *options)
@@ -199,8 +222,7 @@ static Status check_output(const PulsingOptions *options, Err *err)
     const TreeColumn column = {.name = (char[]){"wss_0.1"}, .unit = (char[]){"Pa"}};
     const char *path = options->output;
     if (!path && !options->summary && !options->impedance && !options->json)
-        return err_set(err, STATUS_USAGE,
-                       "pulse writes nothing; give -o, --summary, --impedance or --json");
+        return err_set(err, STATUS_USAGE, "-o, --summary, --impedance or --json is missing");
     if (!path)
         return STATUS_OK;
     const PulsingOutput kind = pulsing_output(path);
@@ -307,6 +329,14 @@ static Status read_tissue(Pulsing *made, Err *err)
     if (strcmp(options->outlets, "rcr") != 0)
         return err_set(err, STATUS_USAGE, "--tissue-pressure needs --outlets rcr");
     TRY(read_waveform(made, "tissue-pressure", options->tissue, tissue, &is_file, err));
+    if (tissue->is_flow)
+        return err_set(err, STATUS_USAGE,
+                       "--tissue-pressure: the template %s is a flow; a pressure is needed",
+                       options->tissue);
+    if (is_file && options->has_ventricle)
+        return err_set(err, STATUS_USAGE,
+                       "--ventricle is for a --tissue-pressure template; %s states its pressures",
+                       options->tissue);
     if (fabs(tissue->period_s - made->drive.period_s) > 1e-6 * made->drive.period_s && is_file)
         return err_set(err, STATUS_INPUT,
                        "%s lasts %g s, but the cycle of --drive lasts %g s; both must be equal",
@@ -324,11 +354,15 @@ static Status read_tissue(Pulsing *made, Err *err)
 
 static Status read_wall(const PulsingOptions *options, PulseWall *wall, Err *err)
 {
+    char names[128] = "";
     if (pulse_wall_parse(options->wall, wall))
         return STATUS_OK;
+    for (size_t i = 0, n = 0; pulse_wall_name(i) && n < sizeof names; i++)
+        n += (size_t)snprintf(names + n, sizeof names - n, "%s%s", i ? ", " : "",
+                              pulse_wall_name(i));
     return err_set(err, STATUS_USAGE,
-                   "--wall: '%.40s' is neither a law that `corcast walls` lists nor K1,K2,K3",
-                   options->wall);
+                   "--wall: '%.40s' is neither a law (%s) nor three numbers K1,K2,K3",
+                   options->wall, names);
 }
 
 /* Takes the columns rp, c and rd of `values`, whose nodes are the tree's. */
@@ -372,6 +406,16 @@ done:
     values.id = NULL; /* the tree's */
     tree_release(&values);
     return status;
+}
+
+/* Refuses a row of --outlets for a segment that no flow leaves the tree from. */
+static Status check_given(const Pulsing *made, Err *err)
+{
+    for (size_t i = 0; made->given && i < made->tree.n; i++)
+        if (!isnan(made->given[i].rp) && !(made->pulse.outflow[i] > 0))
+            return err_set(err, STATUS_INPUT, "%s: segment %d is no outlet", made->options->outlets,
+                           made->tree.id[i]);
+    return STATUS_OK;
 }
 
 /* ---- the result ------------------------------------------------------------------------------ */
@@ -465,6 +509,7 @@ static Status solve(Pulsing *made, Err *err)
     if (status == STATUS_INPUT)
         err_prefix(err, "%s: ", parsed->operands[0]);
     TRY(status);
+    TRY(check_given(made, err));
     made->pulse.params.overrides = NULL;
     return pulse_cycles(&made->pulse, parsed->common.threads, &made->cycles, err);
 }
@@ -514,12 +559,14 @@ json_t *pulsing_json(const Pulsing *made)
     return json_with_members(json_object(), members, sizeof members / sizeof *members);
 }
 
-/* The output's kind decides which options have an effect. */
+/* The kinds of the output and of the outlets decide which options have an effect. */
 static ConditionSet unmet(const void *set, const Parsed *parsed)
 {
     (void)parsed;
     const PulsingOptions *options = set;
-    return UNLESS(options->output && pulsing_draws(options->output), ANIMATED);
+    const bool is_structured = strcmp(options->outlets, "structured") == 0;
+    return UNLESS(options->output && pulsing_draws(options->output), ANIMATED) |
+           UNLESS(is_structured, STRUCTURED) | UNLESS(!is_structured, LUMPED);
 }
 
 static const OptionTable table = {OPTION_ROWS(rows), .unmet = unmet};

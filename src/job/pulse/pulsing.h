@@ -27,10 +27,10 @@ typedef struct PulsingOptions {
     double tissue_share; /* fraction of the tissue pressure that acts on the vessels */
     RangeEnds ventricle; /* lowest and highest pressure, mmHg, that a template for `tissue` is
                           * scaled to */
-    double exaggerate;   /* factor of the drawn change of radius, for films and scenes */
-    const char *look;    /* look of films and scenes */
-    PictureSize size;    /* size of films and scenes */
-    bool json, has_harmonics, has_period, has_drive_is;
+    double exaggerate;   /* factor of the drawn change of radius, for animations and scenes */
+    const char *look;    /* look of animations and scenes */
+    PictureSize size;    /* size of animations and scenes */
+    bool json, has_harmonics, has_period, has_drive_is, has_ventricle;
     BloodOptions blood;
 } PulsingOptions;
 

@@ -45,7 +45,7 @@ static const Option rows[] = {
      .when = WHEN(TREE),
      .help = "add columns named as the arrays of SimVascular's and VMTK's centrelines: "
              "MaximumInscribedSphereRadius, CenterlineSectionArea, BranchId, BifurcationId, Path, "
-             "GlobalNodeId"},
+             "GlobalNodeId; .swc, .in and .vmv files cannot store them"},
 };
 
 const OptionTable treeconversion_table = OPTION_TABLE(rows);

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char hull_mark[] = "hull:";
+static const char hull_mark[] = "hull";
 
 static Status hull_of(const Tree *tree, double mm, const char *path, Domain *domain, Err *err)
 {
@@ -48,8 +48,9 @@ Status tree_domain_parse(const char *spec, const Tree *from, const char *from_pa
                          Err *err)
 {
     size_t skip = sizeof hull_mark - 1;
-    if (strncmp(spec, hull_mark, skip) != 0)
+    if (strncmp(spec, hull_mark, skip) != 0 || (spec[skip] && spec[skip] != ':'))
         return domain_parse(domain, spec, err);
+    skip += spec[skip] == ':';
     const char *values = spec + skip, *comma = strrchr(values, ',');
     double mm;
     if (has_place(values))
