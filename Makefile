@@ -30,7 +30,7 @@ ROOM_SOURCES := $(wildcard $(ROOMS:%=src/%/*.c) $(ROOMS:%=src/%/*/*.c))
 CLI_SOURCES := $(wildcard src/cli/*.c src/cli/*/*.c)
 TEST_SOURCES := $(wildcard tests/unit/*_test.c)
 FORMATTED := $(sort $(wildcard src/*/*.[ch] src/*/*/*.[ch] tests/unit/*.c tests/unit/*.h tests/oracle/*.c \
-	tests/alloc/*.c tests/bench/*.c tests/fuzz/*.c tests/fuzz/*.h tests/power/*.c tests/power/*.h tests/fit/*.c tests/fit/*.h tests/optima/*.c \
+	tests/alloc/*.c tests/bench/*.c tests/suite/*.c tests/fuzz/*.c tests/fuzz/*.h tests/power/*.c tests/power/*.h tests/fit/*.c tests/fit/*.h tests/optima/*.c \
 	tests/api/*.c docs/examples/*.c src/*.h))
 
 # Kernels of the renderer are compiled once for each instruction set [src/render/tile/lanes.h].
@@ -107,7 +107,7 @@ LINK = $(CC) $(OWN_LDFLAGS) $(LDFLAGS)
 VIEWER := $(or $(wildcard templates/page/viewer.js),build/viewer/viewer.js)
 LIBS := $(PACKAGE_LIBS) $(PLAIN_LIBS)
 
-.PHONY: all lib abi api-programs deps page demo figures gallery hero validate bench bench-grow bench-render bench-view bench-compare bench-mesh bench-trees bench-pulse bench-large export-all verify-all coronary answers-long power power-program metamorph fit-blob optima check check-all check-quick program unit \
+.PHONY: all lib abi api-programs deps page demo figures gallery hero validate bench bench-grow bench-render bench-view bench-compare bench-mesh bench-trees bench-pulse bench-large export-all verify-all coronary answers-long power power-program metamorph suite fit-blob optima check check-all check-quick program unit \
 	unit-programs layers format format-check asan tsan \
 	fuzz fuzz-programs golden-update reference install uninstall dist clean help packages libraries
 .DELETE_ON_ERROR:
@@ -215,6 +215,10 @@ power: ## plant faults and count which `verify` and the tests find; writes docs/
 	$(Q)JOBS=$(JOBS) tests/power/run-shared
 
 power-program: $(POWER)
+
+suite: build/corcast ## grade POV-Ray, Tachyon, Embree and corcast by the tube suite; score cards in out/suite/
+	$(Q).ci/deps build run bench
+	$(Q)tests/suite/cards
 
 metamorph: build/corcast ## search for broken relations at length: planted faults, corcast (PAIRS=10000), POV-Ray, Tachyon; results in out/metamorph/
 	$(Q)tests/relations/metamorph $(PAIRS)

@@ -366,15 +366,15 @@ test_the_studio_has_each_of_its_five() {
     expect_differing 20 768 studio.png Skin.png
 }
 
-# The hero scene by its one command, small: a dark red tree in the middle, before paler paper.
+# The hero scene by its one command, small: a red trunk in the middle, before a sweep of a darker, even gray.
 test_the_hero_scene_is_drawn_by_one_command() {
     local r g b
-    run_ok env CORCAST="$CORCAST" "$REPO/docs/examples/hero" hero 32 Declare=Hero_Quality=0
+    run_ok env TERMINALS=40 CORCAST="$CORCAST" "$REPO/docs/examples/hero" hero 32 Declare=Hero_Quality=0
     ! grep 'Warning:' stderr | grep -v experimental || fail "expected no warning but of subsurface"
     read -r r g b < <(pngtopnm hero/hero.png | pamcut -left 0 -top 0 -width 32 -height 6 | pamscale -xsize 1 -ysize 1 | pnmtoplainpnm | tail -1)
-    [ "$r" -gt 140 ] && [ "$r" -gt "$b" ] && [ "$g" -gt 100 ] || fail "expected warm paper, got $r $g $b"
+    [ "$r" -lt 150 ] && [ "$r" -gt "$b" ] && [ $((r - b)) -lt 20 ] || fail "expected a gray sweep, got $r $g $b"
     pngtopnm hero/hero.png | pamcut -left 12 -top 16 -width 8 -height 12 | pnmtoplainpnm | tail -n +4 | xargs -n 3 |
-        awk '$1 > 2 * $2 { n++ } END { exit n < 5 }' || fail "expected a red trunk in the middle"
+        awk '$1 > 1.5 * $2 { n++ } END { exit n < 5 }' || fail "expected a red trunk in the middle"
 }
 
 test_the_background_can_be_transparent() {
