@@ -107,7 +107,7 @@ LINK = $(CC) $(OWN_LDFLAGS) $(LDFLAGS)
 VIEWER := $(or $(wildcard templates/page/viewer.js),build/viewer/viewer.js)
 LIBS := $(PACKAGE_LIBS) $(PLAIN_LIBS)
 
-.PHONY: all lib abi api-programs deps page demo figures gallery hero validate bench bench-grow bench-render bench-view bench-compare bench-mesh bench-trees bench-pulse bench-large export-all verify-all coronary power power-program metamorph suite fit-blob optima check check-all check-quick program unit \
+.PHONY: all lib abi api-programs deps page demo figures gallery hero validate bench bench-grow bench-render bench-view bench-compare bench-mesh bench-trees bench-pulse bench-large export-all verify-all coronary answers-long power power-program metamorph suite fit-blob optima check check-all check-quick program unit \
 	unit-programs layers format format-check asan tsan \
 	fuzz fuzz-programs golden-update reference install uninstall dist clean help packages libraries
 .DELETE_ON_ERROR:
@@ -204,6 +204,9 @@ coronary: ## grow a coronary artery on a measured heart in stages, and compare i
 	$(Q).ci/deps build run
 	$(Q)$(AGAIN) all
 	$(Q)docs/coronary/run
+
+answers-long: build/corcast ## plant faults and check that answers find them; prove certificates; prints the table of docs/VALIDATION.md, section 10
+	$(Q)tests/answers-long
 
 power: ## plant faults and count which `verify` and the tests find; writes docs/VALIDATION.md, sections 5 and 6
 	$(Q).ci/deps build run check

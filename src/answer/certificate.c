@@ -40,6 +40,19 @@ static void put_light(Text *out, const Light *light, bool shadows)
     text_printf(out, "\"end\":0},\n");
 }
 
+static void put_ground(Text *out, const Ground *ground)
+{
+    if (!ground->present) {
+        text_printf(out, "\"ground\":null,");
+        return;
+    }
+    text_printf(out, "\"ground\":{\"offset\":%.17g,", ground->offset_mm);
+    put_vector(out, "normal", ground->normal);
+    put_color(out, "color", ground->color);
+    put_finish(out, "finish", &ground->finish);
+    text_printf(out, "\"end\":0},");
+}
+
 void certificate_put_scene(const AnswerPlan *plan, Text *out)
 {
     const Scene *scene = plan->scene;
@@ -58,7 +71,8 @@ void certificate_put_scene(const AnswerPlan *plan, Text *out)
                 (const double[]){view->fade.nearest, view->fade.farthest, view->fade.near_mm,
                                  view->fade.far_mm},
                 4);
-    text_printf(out, "\"ground\":%d,\"lights\":[\n", view->ground.present);
+    put_ground(out, &view->ground);
+    text_printf(out, "\"lights\":[\n");
     for (size_t i = 0; i < view->n_lights; i++)
         put_light(out, &view->lights[i], plan->params.shadows);
     text_printf(out, "null],\"solids\":[\n");

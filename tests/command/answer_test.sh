@@ -36,6 +36,21 @@ test_exact_pictures_are_certified() {
     expect_certified exact.png
 }
 
+# The ground has a finish of its own and receives shadows.
+test_pictures_of_a_ground_are_certified() {
+    cp "$REPO/templates/looks/cast.ini" ground.ini
+    printf '[ground]\nnormal = 0.3 0.2 1\ngap = 0.1\ncolor = 0.6 0.7 0.8\nambient = 0.2\n' >>ground.ini
+    run_ok corcast answer "$DATA/trifurcation.swc" --size 24x24 --shadows on --look ./ground.ini --area \
+        -o a.exr --certificate proof.json
+    run python3 "$REPO/tests/oracle/check_answer.py" proof.json 1
+    expect_status 0
+    make_answer "$DATA/trifurcation.swc" 1 --look ./ground.ini --shadows on
+    expect_certified exact.png
+    sed -i 's/gap = 0.1/gap = 0.2/' ground.ini
+    run_ok corcast render "$DATA/trifurcation.swc" --size 120x120 --ao 0 --exact --look ./ground.ini --shadows on -o faulty.png
+    expect_refused faulty.png 10
+}
+
 test_planted_faults_are_found() {
     make_answer "$DATA/trifurcation.swc" 3 --shadows on
     awk '/^#/ || NF < 7 { print; next } { $6 *= 1.001; print }' "$DATA/trifurcation.swc" >thicker.swc
@@ -161,4 +176,4 @@ test_bytes_do_not_depend_on_threads() {
     expect_same one.tail three.tail
 }
 
-run_tests
+run_tests "$@"

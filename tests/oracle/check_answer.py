@@ -71,7 +71,16 @@ def enter_cylinder(solid, o, d):
             return t, scaled(axis, -1 if da > 0 else 1)
     return None
 
+def enter_ground(ground, o, d):
+    """The normal is that of the side that faces the ray."""
+    rate = dot(ground["normal"], d)
+    if rate == 0:
+        return None
+    return (ground["offset"] - dot(ground["normal"], o)) / rate, scaled(ground["normal"], -1 if rate > 0 else 1)
+
 def enter(solid, o, d):
+    if "normal" in solid:
+        return enter_ground(solid, o, d)
     return enter_ball(solid, o, d) if solid["ball"] else enter_cylinder(solid, o, d)
 
 class Scene:
@@ -83,12 +92,17 @@ class Scene:
             span = sub(s["b"], s["a"])
             s["length"] = dot(span, span).sqrt()
             s["axis"] = scaled(span, 1 / s["length"]) if not s["ball"] else None
+            s["finish"] = vec(data["finish"])
+        ground = data["ground"]
+        if ground:
+            ground = {"offset": D(ground["offset"])} | {k: vec(ground[k]) for k in ("normal", "color", "finish")}
+            self.solids.append(ground)
         for light in self.lights:
             light["location"], light["target"] = vec(light["location"]), vec(light["target"])
             light["color"] = vec(light["color"])
         self.least = -100 if any(min(light["color"]) < 0 for light in self.lights) else 0
         self.camera = {k: vec(data[k]) for k in ("location", "right", "up", "direction")}
-        self.background, self.finish = vec(data["background"]), vec(data["finish"])
+        self.background = vec(data["background"])
 
     def ray(self, x, y):
         c, (w, h) = self.camera, self.data["size"]
@@ -115,12 +129,13 @@ class Scene:
             return self.background
         solid, (t, n) = first
         point, pigment = along(o, d, t), solid["color"]
-        ambient, diffuse, brilliance, phong, size, specular, sharpness = self.finish
+        ambient, diffuse, brilliance, phong, size, specular, sharpness = solid["finish"]
         color = scaled(pigment, ambient)
         for light in self.lights:
             to = sub(light["location"], light["target"] if light["parallel"] else point)
-            distance = D("inf") if light["parallel"] else dot(to, to).sqrt()
+            length = dot(to, to).sqrt()
             to = unit(to)
+            distance = dot(sub(light["location"], point), to) if light["parallel"] else length
             cosine = dot(n, to)
             if cosine <= 0 or (light["shadows"] and self.shadowed(point, to, distance, solid)):
                 continue
@@ -130,7 +145,7 @@ class Scene:
             color = [c + l * (p * body + gloss) for c, l, p in zip(color, light["color"], pigment)]
         nearest, farthest, near, far = vec(self.data["fade"])
         part = min(max((t - near) / (far - near), D(0)), D(1)) if far > near else D(0)
-        fade = nearest + (farthest - nearest) * part
+        fade = 0 if "normal" in solid else nearest + (farthest - nearest) * part
         return [c + (b - c) * fade for c, b in zip(color, self.background)]
 
 
@@ -237,7 +252,7 @@ def check_area(scene, pixel, points, rng):
 def main():
     data = json.load(open(sys.argv[1]))
     points, rng = int((sys.argv + ["", ""])[2] or 8), random.Random(int((sys.argv + ["", ""])[3] or 1))
-    assert not data["ground"] and all(light["samples"] < 2 for light in data["lights"][:-1])
+    assert all(light["samples"] < 2 for light in data["lights"][:-1])
     scene, faults = Scene(data), 0
     for pixel in data["pixels"][:-1]:
         found = check_pattern(scene, pixel) if data["pattern"] else check_area(scene, pixel, points, rng)
