@@ -10,8 +10,9 @@
 typedef struct AnswerOptions {
     const char *output;
     const char *certificate; /* file of the claims of some pixels; NULL: none */
-    const char *width; /* greatest width of a decided interval: "1/510" or a number */
+    const char *width;       /* greatest width of a decided interval: "1/510" or a number */
     int pattern;
+    int body; /* geometry of the vessels: cylinders or rounded */
     bool area, has_pattern, squares;
     int leaves;
     PictureOptions picture;
