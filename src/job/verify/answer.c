@@ -72,7 +72,9 @@ static Status settle(void *set, const Parsed *parsed, Err *err)
 {
     AnswerOptions *options = set;
     (void)parsed, (void)err;
-    options->picture.model = options->body == BODY_ROUNDED ? SCENE_ROUNDED : SCENE_CYLINDERS;
+    options->picture.model = 0;
+    while (strcmp(model_names[options->picture.model], bodies[options->body]) != 0)
+        options->picture.model++;
     return STATUS_OK;
 }
 
