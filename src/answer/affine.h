@@ -1,18 +1,18 @@
 /* Affine arithmetic over a rectangle of the picture: numbers with a proven error.
  *
- * A Form encloses a quantity that varies over a rectangle whose points have the coordinates ex and
- * ey in [-1, 1]: at each point the quantity is in [v - e, v + e], where v = c + x ex + y ey. A
- * constant has x = y = 0; a single ray is a rectangle of which only the centre counts, so all its
- * forms are constants.
+ * The points of the rectangle have coordinates ex and ey in [-1, 1]. A Form encloses a quantity
+ * that varies over the rectangle. At each point the quantity is in [v - e, v + e], and v is c +
+ * x ex + y ey. A form with x = y = 0 is a constant. All forms of a single ray are constants,
+ * because its rectangle has no extent.
  *
  * Rounding: IEEE 754 bounds the error of each operation by U times its result, U = 2^-53. Each
- * function adds to e a multiple of U times the magnitudes of what it has rounded, and
- * FORM_TINY, which bounds underflow. e itself is a sum of fewer than 30 terms, none of them
- * negative, so that a factor of 1 + 64 U covers its own rounding. docs/ANSWERS.md, section 3, has
- * the bounds of each operation.
+ * function adds two terms to e. The first is U times a bound of the magnitudes of all numbers that
+ * the function rounded. The second is FORM_TINY, which bounds underflow. The sum that gives e is
+ * rounded, too: it has fewer than 30 terms, and none is negative, so a factor of 1 + 64 U covers
+ * its rounding. docs/ANSWERS.md, section 3, has the bounds of each operation.
  *
- * Infinite and NaN errors are allowed: they enclose everything. Comparisons are written so that
- * NaN decides nothing. */
+ * An error may be infinite or NaN: the form then encloses every number. Comparisons are written so
+ * that a comparison with NaN proves nothing. */
 #ifndef CORCAST_ANSWER_AFFINE_H
 #define CORCAST_ANSWER_AFFINE_H
 
@@ -20,8 +20,8 @@
 #include <math.h>
 #include <stdbool.h>
 
-#define FORM_U 0x1p-53
-#define FORM_TINY 1e-300
+#define FORM_U 0x1p-53   /* relative rounding error of an operation on doubles */
+#define FORM_TINY 1e-300 /* more than the errors of underflow in one function */
 
 typedef struct Form {
     double c, x, y, e; /* e >= 0 */
@@ -32,7 +32,7 @@ typedef struct Form3 {
     Form x, y, z;
 } Form3;
 
-/* Returns the form of an exact number, or of a number with an error. */
+/* Returns the constant form of the number `c`, whose error is at most `e` >= 0. */
 static inline Form form_of(double c, double e)
 {
     return (Form){c, 0, 0, e};
@@ -43,13 +43,13 @@ static inline bool form_is_constant(Form f)
     return f.x == 0 && f.y == 0;
 }
 
-/* Returns a bound of |v| over the rectangle, without e. */
+/* Returns a bound of |c + x ex + y ey| over the rectangle. Leaves e out. */
 static inline double form_span(Form f)
 {
     return fabs(f.c) + fabs(f.x) + fabs(f.y);
 }
 
-/* Return bounds of all values over the rectangle. */
+/* Return the lower and the upper bound of the quantity over the rectangle, including e. */
 static inline double form_low(Form f)
 {
     const double low = f.c - (fabs(f.x) + fabs(f.y) + f.e) * (1 + 8 * FORM_U);
@@ -62,13 +62,14 @@ static inline double form_high(Form f)
     return high + 4 * FORM_U * fabs(high) + FORM_TINY;
 }
 
-/* Returns a bound of |value| over the rectangle. */
+/* Returns an upper bound of the quantity's magnitude over the rectangle, including e. */
 static inline double form_most(Form f)
 {
     return (form_span(f) + f.e) * (1 + 8 * FORM_U) + FORM_TINY;
 }
 
-/* Adds the error of operations whose rounded terms sum up to `rounded` in magnitude. */
+/* Adds rounding errors to e. `rounded` is a bound of the summed magnitudes of the rounded numbers.
+ */
 static inline Form form_rounded(Form f, double rounded)
 {
     f.e = (f.e + FORM_U * rounded + FORM_TINY) * (1 + 64 * FORM_U);
@@ -98,8 +99,8 @@ static inline Form form_scale(Form f, double by)
     return form_rounded(product, form_span(product));
 }
 
-/* The product of two varying forms. ex^2 and ey^2 are in [0, 1]: half of their factors goes into c,
- * half into e. */
+/* Returns the product of two varying forms. The product has terms in ex^2 and ey^2, which are in
+ * [0, 1]: 0.5 +- 0.5. Half of the coefficient of such a term goes into c, and half into e. */
 static inline Form form_mul_varying(Form a, Form b)
 {
     const double xx = a.x * b.x, yy = a.y * b.y, xy = a.x * b.y + a.y * b.x;
@@ -110,7 +111,7 @@ static inline Form form_mul_varying(Form a, Form b)
     return form_rounded(product, 8 * span_a * span_b);
 }
 
-/* The product of a form and a constant. */
+/* Returns the product of a form `a` and a constant form `b`. */
 static inline Form form_mul_constant(Form a, Form b)
 {
     const double factor = fabs(b.c), span = form_span(a);
@@ -125,8 +126,8 @@ static inline __attribute__((always_inline)) Form form_mul(Form a, Form b)
                                  : form_mul_varying(a, b);
 }
 
-/* Encloses a function over [low, high] by the line of this slope whose offset is in [bottom, top]:
- * returns it as a form of f, which lies in [low, high]. */
+/* Encloses a function g of the quantity f by a strip of this slope. Requires
+ * slope t + bottom <= g(t) <= slope t + top for all t in the range of f. */
 static inline Form form_line(Form f, double slope, double bottom, double top)
 {
     const double offset = 0.5 * (bottom + top);
@@ -135,7 +136,7 @@ static inline Form form_line(Form f, double slope, double bottom, double top)
     return form_rounded(line, 4 * (fabs(slope) * form_span(f) + fabs(bottom) + fabs(top)));
 }
 
-/* Returns sqrt(max(f, 0)) where f >= 0; where f < 0 the result is not defined. */
+/* Returns sqrt(f). The form is valid only at points of the rectangle where f >= 0. */
 static inline Form form_sqrt(Form f)
 {
     const double low = form_low(f), high = form_high(f);
@@ -147,7 +148,7 @@ static inline Form form_sqrt(Form f)
                         8 * (t + fabs(slope) * form_most(f)));
 }
 
-/* Returns 1 / f; an infinite error if f may be 0. */
+/* Returns 1 / f. The error is infinite if f may be 0. */
 static inline Form form_inverse(Form f)
 {
     double low = form_low(f), high = form_high(f);
@@ -160,7 +161,7 @@ static inline Form form_inverse(Form f)
                         16 * (top + fabs(slope) * high));
 }
 
-/* Returns a form that encloses both. */
+/* Returns a form that encloses both a and b. */
 static inline Form form_hull(Form a, Form b)
 {
     const Form mean = {0.5 * (a.c + b.c), 0.5 * (a.x + b.x), 0.5 * (a.y + b.y),
@@ -182,12 +183,14 @@ static inline Form form_positive(Form f)
     return form_rounded(form_line(f, slope, 0, -low * slope), 8 * (high - low));
 }
 
-/* Returns f cut to [low, high], for a quantity that is known to lie there. */
+/* Narrows f to [low, high], for a quantity that is known to lie there. The result is a constant if
+ * e is infinite or larger than the slopes of f. Otherwise it is f, because a constant would lose
+ * the slopes. */
 static inline Form form_known(Form f, double low, double high)
 {
     if (form_low(f) >= low && form_high(f) <= high)
         return f;
-    if (fabs(f.x) + fabs(f.y) < f.e && isfinite(f.e)) { /* little is lost with the slopes */
+    if (fabs(f.x) + fabs(f.y) < f.e && isfinite(f.e)) { /* the slopes matter little */
         const double from = fmax(form_low(f), low), to = fmin(form_high(f), high);
         return form_rounded(form_of(0.5 * (from + to), 0.5 * fabs(to - from)),
                             fabs(from) + fabs(to));
@@ -195,7 +198,7 @@ static inline Form form_known(Form f, double low, double high)
     return isfinite(f.e) ? f : form_of(0.5 * (low + high), 0.5 * (high - low));
 }
 
-/* Returns max(f, 0) to a power, exponent > 0, for f <= 1. */
+/* Returns max(f, 0) to the power `exponent` > 0. Requires f <= 1 up to rounding. */
 Form form_power(Form f, double exponent);
 
 /* ---- vectors --------------------------------------------------------------------------------- */
@@ -232,7 +235,7 @@ static inline Form3 form3_cross(Form3 a, Form3 b)
                    form_sub(form_mul(a.x, b.y), form_mul(a.y, b.x))};
 }
 
-/* Returns |a|. */
+/* Returns the length of a. */
 static inline Form form3_length(Form3 a)
 {
     return form_sqrt(form3_dot(a, a));

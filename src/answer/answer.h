@@ -1,10 +1,10 @@
 /* The public header of the module answer: for each pixel of a scene, an interval of linear colors
  * that is proven to contain the pixel's true color.
  *
- * A pattern answer is the mean over the sample positions of a renderer: the center of the pixel
- * and, for N >= 2, N x N positions more, all N x N + 1 of one weight [view.h,
- * camera_sample_offsets]. An area answer is the integral over the pixel's square. docs/ANSWERS.md
- * defines the true color and proves the bounds.
+ * A pattern answer bounds the mean of the colors at a renderer's sample positions. For N = 1, the
+ * center of the pixel is the only position. For N >= 2, there are N x N more [view.h,
+ * camera_sample_offsets]. All positions have the same weight. An area answer bounds the mean over
+ * the pixel's square. docs/ANSWERS.md defines the true color and proves the bounds.
  *
  *     Answer answer;
  *     TRY(answer_make(&scene, &params, &answer, err));
@@ -16,58 +16,66 @@
 #include "image/image.h"
 #include "scene/scene.h"
 
+/* Largest N: the rounding errors of a pixel's sum are bounded for up to 4000 sample positions. */
 enum { ANSWER_MAX_PATTERN = 63 };
 
 typedef struct AnswerParams {
-    int pattern;  /* N, 1..ANSWER_MAX_PATTERN; 0: area answers */
-    double width; /* a pixel is decided if its interval is at most this wide in each channel, in
-                   * sRGB from 0 to 1 */
-    int leaves;   /* area answers: most leaves per pixel */
-    bool squares; /* area answers: leaves are squares, not turned along vessels; for tests */
-    bool shadows;
-    int certified; /* number of pixels that show a vessel whose claims are written to certificate */
-    Text *certificate; /* receives JSON; NULL: no certificate; borrowed */
+    int pattern;   /* N, 1..ANSWER_MAX_PATTERN; 0: area answers */
+    double width;  /* a pixel is decided if its interval is at most this wide in each channel, in
+                    * sRGB from 0 to 1 */
+    int leaves;    /* area answers: a pixel that is divided into this many leaves is not divided
+                    * further */
+    bool squares;  /* area answers, for tests: leaves stay squares, not turned along vessels */
+    bool shadows;  /* false: nothing blocks light */
+    int certified; /* maximum number of pixels in the certificate, at least 1; they are spread
+                    * evenly over the pixels whose center shows a vessel */
+    Text *certificate; /* receives the certificate as JSON; NULL: no certificate; borrowed */
     int threads;       /* 0: all processors */
-    bool (*progress)(double fraction, void *context); /* as RenderParams.progress; NULL: none */
+    bool (*progress)(double fraction, void *context); /* returns false to stop; NULL: none */
     void *progress_context;
 } AnswerParams;
 
 typedef enum AnswerState {
-    ANSWER_DECIDED,
-    ANSWER_UNDECIDED,  /* a ray runs through an edge, to rounding errors: the interval is wide */
-    ANSWER_OVER_BUDGET /* area answers: the limit of leaves was reached */
+    ANSWER_DECIDED,   /* the interval is at most AnswerParams.width wide */
+    ANSWER_UNDECIDED, /* pattern answers: the interval is wider, because a ray is as near to an edge
+                       * as the rounding errors */
+    ANSWER_OVER_BUDGET /* area answers: the interval is wider, but AnswerParams.leaves was reached
+                        */
 } AnswerState;
 
-/* The channels of an answer's plane. Floats are rounded outwards. */
+/* The channels of an answer's plane. Bounds are rounded outwards to floats. */
 enum {
     ANSWER_LOW = 0,   /* red, green, blue */
     ANSWER_HIGH = 3,  /* red, green, blue */
     ANSWER_STATE = 6, /* an AnswerState */
-    ANSWER_ID,        /* SWC id of the segment at the pixel's center; 0: none, or not decided */
-    ANSWER_NEAR,      /* bounds of the depth there, mm; infinite if nothing is hit */
-    ANSWER_FAR,
+    ANSWER_ID,   /* SWC id of the segment at the pixel's center; 0: no vessel, or not decided */
+    ANSWER_NEAR, /* lower bound of a vessel's depth at the center, mm; infinity: no vessel */
+    ANSWER_FAR,  /* upper bound of this depth, mm; infinity: no vessel, or not decided */
     ANSWER_CHANNELS
 };
 
 typedef struct Answer {
     Plane plane;      /* ANSWER_CHANNELS channels; owned */
     size_t undecided; /* number of pixels that are not ANSWER_DECIDED */
-    size_t beams;     /* number of rays or leaves */
-    HashText scene;   /* of everything that the colors depend on, without pattern and width */
+    size_t beams;     /* number of rays (pattern answers) or leaves (area answers) computed */
+    HashText scene;   /* answer_scene_hash */
 } Answer;
 
-/* Computes the answer of each pixel. The bytes do not depend on the number of threads.
+/* Computes the answer of each pixel.
  *
- * scene    a geometry of cylinders and balls, all ends explicit [Geometry.implied_ends].
+ * scene    has a model of cylinders and balls, and Geometry.implied_ends is false.
  * out      release it with answer_release. Set on success only.
- * Errors   STATUS_USAGE, with the field that would help, if the scene is outside the assumptions:
- *          vessels that are not in front of the camera, effects, another model. STATUS_CANCELLED,
- *          STATUS_MEMORY. */
+ * Errors   STATUS_USAGE, naming the field to change, if the answer is not defined for the scene:
+ *          another model, effects such as outlines, a vessel that is not in front of the camera, or
+ *          a vessel behind the plane from which a parallel light starts. STATUS_CANCELLED,
+ *          STATUS_MEMORY.
+ * Threads  the result does not depend on their number. */
 MUST_CHECK Status answer_make(const Scene *scene, const AnswerParams *params, Answer *out,
                               Err *err);
 void answer_release(Answer *answer);
 
-/* Returns a digest of the numbers of a scene that determine its colors. */
+/* Returns a digest of everything in a scene that determines its colors. Two answers with the same
+ * digest and the same pattern bound the same colors. */
 HashText answer_scene_hash(const Scene *scene, bool shadows);
 
 #endif

@@ -1,21 +1,24 @@
-/* What all pixels of an answer share: faces, their search tree, lights, and frames of walls. */
+/* Data that all pixels of an answer share: the faces, their bounding volume hierarchy, the lights,
+ * and the frames of walls. */
 #ifndef CORCAST_ANSWER_ANSWERPLAN_H
 #define CORCAST_ANSWER_ANSWERPLAN_H
 
 #include "answer/answer.h"
 #include "answer/faces.h"
 
+/* Returns channel 0 (red), 1 (green) or 2 (blue). */
 static inline double rgb_channel(Rgb color, int channel)
 {
     return (double)(channel == 0 ? color.r : channel == 1 ? color.g : color.b);
 }
 
-/* The rays from a surface to a light. */
+/* One light of the scene, and what all shadow rays to it have in common. */
 typedef struct LightRays {
     const Light *light;
-    Form3 towards;     /* parallel light: unit */
-    WallFrame *frames; /* parallel light: per face; owned */
-    int points;        /* number of points that shadows are averaged over */
+    Form3 towards;     /* parallel light: unit vector towards the light */
+    WallFrame *frames; /* parallel light, per face: frame for the direction `towards`; owned */
+    int points;        /* number of points of the light that shadows are averaged over; 0: nothing
+                        * blocks this light */
 } LightRays;
 
 typedef struct AnswerPlan {
@@ -24,41 +27,43 @@ typedef struct AnswerPlan {
     Face *faces;
     size_t n;          /* number of faces, without the ground */
     bool has_ground;   /* faces[n] is the ground */
-    BoxTree tree;      /* of the boxes of faces */
+    BoxTree tree;      /* hierarchy of the faces' bounding boxes, without the ground */
     WallFrame *frames; /* per face, for an orthographic camera; NULL in perspective */
-    PixelRect *screen; /* per face: the pixels that its box covers */
+    PixelRect *screen; /* per face: the pixels that its bounding box covers */
     LightRays lights[VIEW_MAX_LIGHTS];
-    /* Bounds of each channel of every color, and of what each light adds: `least` is 0 unless a
-     * light has a negative color. */
+    /* Per channel: bounds of every color of the scene, and of the part of a color that any one
+     * light adds. `least` is 0 unless a light has a negative color. */
     double least[3], most[3];
-    double pad_mm; /* the boxes of the search tree are this much larger than the faces */
+    double pad_mm; /* the boxes in `tree` are enlarged by this on each side */
 } AnswerPlan;
 
 /* Prepares a scene. Release *plan with answerplan_release, even after an error. Errors:
- * STATUS_USAGE if the scene is outside the assumptions of answers; STATUS_MEMORY. */
+ * STATUS_USAGE if the answer is not defined for the scene [answer_make]; STATUS_MEMORY. */
 MUST_CHECK Status answerplan_make(const Scene *scene, const AnswerParams *params, AnswerPlan *plan,
                                   Err *err);
 void answerplan_release(AnswerPlan *plan);
 
-/* Returns the beam of the rays through a rectangle of the picture around (x, y), pixels from the
- * left and upper edges. The point (ex, ey) of its forms is at (x, y) + ex along + ey across. */
+/* Returns the beam of the camera rays through a rectangle of the picture. The rectangle's center is
+ * (x, y), and `along` and `across` are half of its sides, all in pixels from the left and the upper
+ * edge. In the beam's forms, the coordinates (ex, ey) stand for (x, y) + ex along + ey across. */
 Beam answerplan_beam(const AnswerPlan *plan, double x, double y, const double along[2],
                      const double across[2]);
-/* Returns the beam of a single ray. */
+/* Returns the beam of the single camera ray through (x, y). */
 static inline Beam answerplan_ray(const AnswerPlan *plan, double x, double y)
 {
     static const double none[2] = {0, 0};
     return answerplan_beam(plan, x, y, none, none);
 }
 
-/* Faces that the rays of a beam may hit. */
+/* A list of faces. */
 typedef struct FaceList {
-    uint32_t *faces; /* capacity: all faces */
+    uint32_t *faces; /* indices in AnswerPlan.faces; the capacity holds all faces */
     size_t n;
 } FaceList;
 
-/* Lists the faces that may block the path from a point within `reach` mm of `from`, along each
- * axis, in the direction `towards`; `far`: up to this multiple of it. */
+/* Lists the faces, without the ground, that may block a path. The path starts at any point whose
+ * coordinates differ from those of `from` by at most `reach` mm. It runs from there by `far` times
+ * the vector `towards`; `far` may be infinite. */
 void answerplan_blockers(const AnswerPlan *plan, Vec3 from, double reach, Vec3 towards, double far,
                          FaceList *list);
 

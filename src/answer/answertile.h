@@ -1,88 +1,103 @@
-/* The pixels of a tile: what both kinds of answers share. */
+/* The computation of one pixel: workspace, color intervals and visibility, which pattern answers
+ * and area answers share. Pixels are computed in tiles, because all pixels of a tile search one
+ * list of faces. */
 #ifndef CORCAST_ANSWER_ANSWERTILE_H
 #define CORCAST_ANSWER_ANSWERTILE_H
 
 #include "answer/light.h"
 
 enum {
-    TILE_SIDE = 16, /* pixels */
-    MAX_HITS = 48   /* most hits of a beam that are looked at; with more, the color is unknown */
+    TILE_SIDE = 16, /* pixels along a side of a tile */
+    MAX_HITS = 48   /* capacity for the hits of a beam; a beam with more may have any color of the
+                     * scene */
 };
 
-/* Part of a pixel: the points of the rectangle that are in the square of `clip`. Pixels from the
- * pixel's center. */
+/* A part of a pixel: a rectangle that may be turned, clipped to an upright square. All positions
+ * are in pixels from the pixel's center. */
 typedef struct AreaLeaf {
-    double x, y, across[2], along[2]; /* centre and half sides; ey is across a vessel */
-    double clip[4];                   /* left, right, top, bottom */
-    double low[3], high[3];           /* of the integral, in pixels */
-    double turn[2];                   /* unit, across the wall that it shows alone; 0: none */
-    bool turned;
-    bool is_mixed; /* shows other faces than one wall, or is wide because of strips along cuts */
+    /* Center of the rectangle, and its half sides. In the forms of the leaf's beam, ex grows along
+     * `along`, and ey along `across`. */
+    double x, y, across[2], along[2];
+    double clip[4];         /* the square: left, right, top, bottom; unused unless `turned` */
+    double low[3], high[3]; /* per channel: bounds of the integral of the color over the leaf, in
+                             * color times square pixels */
+    double turn[2]; /* unit vector across the only wall that the leaf shows; (0, 0): do not turn */
+    bool turned;    /* `across` is across a vessel in the picture, and `along` along it */
+    bool is_mixed;  /* the leaf shows several faces or a face that is no wall, or strips along
+                     * undecided edges cause more than half of the width of its interval */
 } AreaLeaf;
 
-/* The blockers of a face for a light, as seen from a pixel: blockers.faces[begin..begin + n). */
+/* Faces that may block a light on the part of a face that is visible in the present pixel:
+ * AnswerWork.cached_faces[begin] to [begin + n - 1]. */
 typedef struct CachedBlockers {
     const Face *face;
     size_t light, begin, n;
 } CachedBlockers;
 
+/* Capacities of the cache. If it is full, blockers are searched again for each leaf. */
 enum { MAX_CACHED = 32, CACHE_FACES = 4096 };
 
 /* The workspace of a thread. */
 typedef struct AnswerWork {
     const AnswerPlan *plan;
-    FaceList tile, pixel; /* faces in the tile, and in the pixel */
-    FaceList blockers;
-    CachedBlockers cached[MAX_CACHED]; /* of the present pixel's area answer */
+    FaceList tile, pixel; /* faces in the present tile, and in the present pixel; owned */
+    FaceList blockers;    /* result of the last answerplan_blockers; owned */
+    CachedBlockers cached[MAX_CACHED]; /* area answers: valid in the present pixel */
     size_t n_cached, n_cached_faces;
     uint32_t cached_faces[CACHE_FACES];
-    Beam whole; /* of the present pixel's area answer: all its rays */
-    FaceHit hits[MAX_HITS];
+    Beam whole;             /* area answers: all rays of the present pixel */
+    FaceHit hits[MAX_HITS]; /* result of the last tile_look */
     LightBlocker blocker;
-    size_t beams, undecided;
-    ARRAY(AreaLeaf) leaves; /* of a pixel; owned */
-    Text *record;           /* receives the parts of leaves; NULL: nobody; borrowed */
-    Heap heap;              /* of leaves, the widest first */
+    size_t beams, undecided; /* counts of this thread, for Answer */
+    ARRAY(AreaLeaf) leaves;  /* area answers: leaves of the present pixel; owned */
+    Text *record; /* receives the parts of a leaf for a certificate; NULL: no certificate;
+                   * borrowed */
+    Heap heap;    /* indices in `leaves`; the leaf with the widest interval first; owned */
 } AnswerWork;
 
-/* A proven interval of colors. */
+/* A proven interval of linear colors: bounds per channel. */
 typedef struct ColorSpan {
     double low[3], high[3];
 } ColorSpan;
 
-/* Returns the span of every color of the scene. */
+/* Returns the interval that contains every color of the scene. */
 ColorSpan span_any(const AnswerPlan *plan);
-/* Returns the span of a form's values, cut to the colors of the scene. */
+/* Returns the interval of all values of a form, clamped to span_any. */
 ColorSpan span_of(const AnswerPlan *plan, const FormColor *color);
+/* Extends *span so that it contains *other. */
 void span_include(ColorSpan *span, const ColorSpan *other);
-/* Returns the largest width of a channel in sRGB, in plain doubles: widths choose what is refined
- * and what counts as decided, and are not part of what is proven. */
+/* Returns the width of the widest channel, in sRGB from 0 to 1. Rounding errors are ignored,
+ * because the width only chooses which leaf is divided and which pixel counts as decided. The proof
+ * does not depend on it. */
 double span_width(const ColorSpan *span);
-/* Sets the slopes of the sRGB curve at the middle of each channel. */
+/* Sets slopes[c] to the slope of the sRGB curve at the middle of channel c. */
 void span_slopes(const ColorSpan *span, double slopes[3]);
 
-/* The first hits of a beam: work->hits[0..n) may be visible. */
+/* The faces that may be visible in a beam: work->hits[0] to work->hits[n - 1]. */
 typedef struct Seen {
     size_t n;
-    bool crowded; /* there are more than MAX_HITS; nothing is known */
-    bool covered; /* all rays hit one of them */
+    bool crowded; /* there are more than MAX_HITS; the beam may have any color of the scene */
+    bool covered; /* all rays of the beam hit one of the faces: the background is not visible */
 } Seen;
 
-/* Finds the hits that may be the first of a ray, among the faces of `list`. */
+/* Intersects a beam with the faces of `list`. Sets work->hits to the hits that may be the first hit
+ * of any ray of the beam. */
 Seen tile_look(AnswerWork *work, const Beam *beam, const FaceList *list);
 
-/* What a ray finds at the center of a pixel. */
+/* The vessel at the center of a pixel. */
 typedef struct Center {
-    uint32_t face;    /* index of the face; UINT32_MAX: none, or not decided */
-    double near, far; /* bounds of its depth, mm; infinite: no vessel is hit */
+    uint32_t face; /* index of a face of the first vessel; UINT32_MAX: no vessel, or not decided */
+    double near, far; /* bounds of its depth, mm; both infinite: no vessel is hit; `far` alone
+                       * infinite: not decided */
 } Center;
 
-/* Finds what a ray hits first. */
+/* Finds the vessel that a ray hits first, among the faces in work->pixel. */
 void find_center(AnswerWork *work, const Beam *ray, Center *center);
 
-/* Computes the answer of a pixel by the pattern. */
+/* Computes the pattern answer of the pixel in column i and row j, from the faces in work->pixel. */
 ColorSpan pattern_answer(AnswerWork *work, int i, int j);
-/* Computes the area answer of a pixel. Errors: STATUS_MEMORY. */
+/* Computes the area answer of the pixel in column i and row j, from the faces in work->pixel.
+ * Errors: STATUS_MEMORY. */
 MUST_CHECK Status area_answer(AnswerWork *work, int i, int j, ColorSpan *out, Err *err);
 
 #endif

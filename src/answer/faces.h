@@ -1,36 +1,40 @@
-/* The faces of a scene, and where beams hit them, with proven errors.
+/* The faces of a scene, and the hits of beams with them, with proven errors.
  *
  * The vessels are a union of convex solids: closed cylinders and balls. A ray from outside enters a
  * cylinder through its wall or through an end disc, and a ball through its front. A hit is such an
  * entry. The first hit of the union is the nearest of these entries, because the ray starts outside
  * all solids. An end disc that a ball covers is never visible and has no face.
  *
- * A beam is a set of rays origin + depth * direction. The direction may have any length and may
- * vary; depths of one ray are compared only with each other. */
+ * A beam is a set of rays origin + depth * direction, one for each point of a rectangle of the
+ * picture. Its origin and direction are forms over this rectangle [answer/affine.h]. The direction
+ * need not be a unit vector, so a depth is a length in mm only after it is multiplied by the length
+ * of the direction. */
 #ifndef CORCAST_ANSWER_FACES_H
 #define CORCAST_ANSWER_FACES_H
 
 #include "answer/affine.h"
 #include "scene/scene.h"
 
+/* The lateral surface of a cylinder, a sphere, an end of a cylinder, the ground plane. */
 typedef enum FaceKind { FACE_WALL, FACE_BALL, FACE_DISC, FACE_GROUND } FaceKind;
 
 typedef struct Face {
     FaceKind kind;
-    uint32_t segment; /* index of its segment */
-    uint32_t solid;   /* index of the primitive; faces of one convex solid cast no shadow on each
-                       * other */
-    Vec3 at, end;     /* wall: its ends; ball, disc: `at` is the centre */
-    double radius;
-    Form3 axis;    /* wall: unit, from `at` to `end`; disc, ground: outward unit normal */
-    Form length;   /* wall */
-    double offset; /* ground: points with normal . x = offset */
-    Box box;       /* holds the face */
+    uint32_t segment; /* index of the face's segment; unused for the ground */
+    uint32_t solid; /* index of the face's primitive: the faces of one primitive are the surface of
+                     * one convex solid, so they cast no shadow on each other */
+    Vec3 at, end;   /* wall: the ends of its axis, mm; ball, disc: both are the centre */
+    double radius;  /* mm */
+    Form3 axis;     /* wall: unit vector from `at` to `end`; disc, ground: outward unit normal */
+    Form length;    /* wall: distance from `at` to `end`, mm */
+    double offset;  /* ground: the plane axis . x = offset, mm */
+    Box box;        /* bounding box; unused for the ground */
 } Face;
 
-/* A wall in a beam: m is the unit vector across direction and axis, k the unit vector along the
- * direction's part across the axis. */
+/* Vectors that depend on the direction of a beam and on the axis of a wall only. */
 typedef struct WallFrame {
+    /* m is the unit vector of direction x axis. k is the unit vector of the component of the
+     * direction that is perpendicular to the axis. */
     Form3 m, k;
     Form inverse; /* 1 / length of direction x axis */
     Form along;   /* direction . axis */
@@ -38,35 +42,45 @@ typedef struct WallFrame {
 
 typedef struct Beam {
     Form3 origin, direction;
-    Form3 unit;              /* direction / its length */
-    Form length;             /* of the direction */
+    Form3 unit;              /* direction / length */
+    Form length;             /* length of the direction */
     Form inverse;            /* 1 / length */
-    const WallFrame *frames; /* per face, for a direction that is the same in all beams; NULL:
-                              * frames are computed */
+    const WallFrame *frames; /* per face: frames for `direction`, if all beams of this kind have one
+                              * direction; NULL: face_hit computes the frame; borrowed */
 } Beam;
 
-/* Completes a beam of origin and direction. */
+/* Returns the beam with this origin and direction, and without frames. */
 Beam beam_of(Form3 origin, Form3 direction);
 
+/* Returns the frame of a wall for the beam's direction. */
 WallFrame wall_frame(const Face *face, const Beam *beam);
 
+/* Maximum number of edges of a face: a wall has two silhouettes and two ends. */
 enum { HIT_EDGES = 4 };
 
-/* A hit of a face by the rays at which all edges are >= 0. */
+/* The hit of a beam with a face. An edge is a function over the beam's rectangle that is 0 on one
+ * border of the face and negative outside. A ray hits the face if all edges are >= 0 at its point.
+ */
 typedef struct FaceHit {
     const Face *face;
-    Form depth;
-    Form edges[HIT_EDGES];  /* edges that may be negative come first */
-    int pending;            /* number of edges that may be negative */
-    Form s, w;              /* wall and ball: for the normal */
-    const WallFrame *frame; /* wall; of the beam, or own_frame, so that a hit cannot be copied */
+    Form depth;            /* valid for the rays that hit the face */
+    Form edges[HIT_EDGES]; /* the `pending` edges that may be negative somewhere in the beam; edges
+                            * that are >= 0 everywhere are left out */
+    int pending;
+    /* mm. s is half of the chord that the ray's line cuts from a ball or, seen along the axis, from
+     * a wall's circle. w, for walls, is the signed distance of the ray's line from the axis. */
+    Form s, w;
+    const WallFrame *frame; /* wall: a frame of the beam, or &own_frame; so a hit that is copied
+                             * needs its pointer corrected */
     WallFrame own_frame;
-    Form3 v; /* ball: from the centre to the ray, across it */
+    Form3 v; /* ball: vector from the centre to the nearest point of the ray's line, mm */
 } FaceHit;
 
-/* Computes the hit of a face. Returns false if no ray of the beam hits it. */
+/* Computes the hit of a beam with a face. `index` is the position of the face in beam->frames.
+ * Returns false if no ray of the beam hits the face. */
 bool face_hit(const Face *face, size_t index, const Beam *beam, FaceHit *hit);
-/* Returns the outward unit normal at a hit. */
+/* Returns the outward unit normal at a hit. The normal of the ground points to the side that the
+ * ray comes from. */
 Form3 hit_normal(const FaceHit *hit, const Beam *beam);
 
 /* Returns true if the wall and the ball are parts of one capsule: they have the same radius, and
@@ -74,9 +88,12 @@ Form3 hit_normal(const FaceHit *hit, const Beam *beam);
  * wherever both are hit. */
 bool faces_form_capsule(const Face *wall, const Face *ball);
 
-/* Makes the faces of a geometry of cylinders and balls, all ends explicit, and of the ground of a
- * view. *faces is owned by the caller. The ground, if present, is the last face. Errors:
- * STATUS_MEMORY. */
+/* Makes the faces of a geometry of cylinders and balls, and of the ground of a view. Requires that
+ * geometry->implied_ends is false.
+ *
+ * faces    receives the array, which the caller frees. The ground, if present, is the last face.
+ * n        receives the number of faces, including the ground.
+ * Errors   STATUS_MEMORY. */
 MUST_CHECK Status faces_make(const Geometry *geometry, const Ground *ground, Face **faces,
                              size_t *n, Err *err);
 

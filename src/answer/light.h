@@ -1,62 +1,75 @@
-/* The color of a surface in a beam: forms of its ambient light, of what each light adds, and of the
- * faces that block the light. */
+/* Shading of the surface that a beam hits: the ambient color, the color that each light adds, and
+ * the faces that block the light. All are forms over the beam's rectangle. */
 #ifndef CORCAST_ANSWER_LIGHT_H
 #define CORCAST_ANSWER_LIGHT_H
 
 #include "answer/answerplan.h"
 
-/* A color with a proven error. */
+/* A linear color with a proven error. */
 typedef struct FormColor {
-    Form channels[3];
+    Form channels[3]; /* red, green, blue */
 } FormColor;
 
-/* The surface at a hit. */
+/* The surface at a hit. Pointers are borrowed. */
 typedef struct FormSurface {
     const FaceHit *hit;
     const Finish *finish;
     Rgb pigment;
     Form3 point, normal;
-    Form3 view;     /* unit, of the camera's rays */
-    Form keep;      /* the fraction of the vessel's color that fading leaves */
-    FormColor base; /* the light that no lamp sends: ambient light and fading */
+    Form3 view;     /* unit direction of the camera rays */
+    Form keep;      /* the fraction of the vessel's color that is left after fading; 1 - keep is the
+                     * fraction of the background's color */
+    FormColor base; /* the color without any light source: ambient color plus faded background */
 } FormSurface;
 
+/* Returns the surface at a hit of the beam. */
 FormSurface surface_at(const AnswerPlan *plan, const Beam *beam, const FaceHit *hit);
 
-/* What a light adds to a surface if nothing blocks it. */
+/* The color that a light adds to a surface if nothing blocks the light. */
 typedef struct Lit {
-    bool dark;  /* nothing: the surface faces away */
-    bool faces; /* all of the surface faces the light by more than LIGHT_GRAZES */
-    FormColor adds;
+    bool dark;      /* the light adds nothing, because all of the surface faces away from it */
+    bool faces;     /* the cosine of the incidence angle is above LIGHT_GRAZES everywhere */
+    FormColor adds; /* not set if `dark` */
 } Lit;
 
-/* Where the cosine is below this, shadows are not looked for: the light, which is at most this
- * bright there, may be blocked or not. Rounding errors would decide. */
+/* Cosine of the incidence angle up to which shadows of single rays are not searched. Rounding
+ * errors would decide there whether the surface blocks its own light, so the interval includes both
+ * the light and its absence. Diffuse light is at most this bright there. */
 #define LIGHT_GRAZES 2e-5
 
+/* Returns the color that the light with this index adds to a surface. An area light shades as a
+ * point light at its location. */
 Lit light_at(const AnswerPlan *plan, const FormSurface *surface, size_t light);
 
-/* The rays from a surface to point `point` of a light. */
+/* Returns the beam of shadow rays from a surface to point `point` of a light, 0 <= point <
+ * max(LightRays.points, 1). Depth 1 is the light, except for a parallel light. */
 Beam light_beam(const AnswerPlan *plan, const FormSurface *surface, size_t light, int point);
-/* Computes the hit of a blocker in a light beam. Returns false if the face surely blocks no ray.
- * The hit has up to two more edges, which say that it lies between surface and light. */
+
+/* A face that may block the shadow rays of a beam. A ray is blocked if the edges of `hit` and those
+ * in `between` are >= 0. */
 typedef struct LightBlocker {
     FaceHit hit;
-    Form between[2];
-    int pending; /* number of these edges that may be negative */
+    Form between[2]; /* edges that are >= 0 where the hit is between the surface and the light */
+    int pending;     /* number of edges in `between`; edges that are >= 0 everywhere are left out */
 } LightBlocker;
+/* Computes the hit of a shadow beam with the face of this index. Returns false if the face surely
+ * blocks no ray of the beam, for example because it is part of the surface's own convex solid. */
 bool blocker_at(const AnswerPlan *plan, const FormSurface *surface, const Beam *beam, size_t light,
                 uint32_t face, LightBlocker *blocker);
-/* Returns 1 if the ground blocks all rays to the point of the light, 0 if none, -1 if it may. */
+/* Returns 1 if the ground blocks all rays of the shadow beam, 0 if it blocks none, and -1 if this
+ * is not decided. */
 int ground_blocks(const AnswerPlan *plan, const FormSurface *surface, const Beam *beam,
                   size_t light);
 
-/* Renderers do not look for blockers within SHADOW_FROM_MM of a surface. A ray that leaves its own
- * solid within that path, whose length is at least 2 radius cosine, may be blocked or not. */
+/* Renderers ignore blockers within 1e-3 mm of the start of a shadow ray; this constant is 1 %
+ * larger, to cover their rounding. A ray that starts inwards and leaves its own solid again within
+ * this length therefore may be blocked or not. The path inside a solid is about 2 radius |cosine|
+ * long. */
 #define SHADOW_FROM_MM 1.01e-3
 
-/* Returns the same of the solid that the surface belongs to, which blocks the rays that begin
- * inwards: those to points of a light behind the surface, of which other points are before it. */
+/* Tests whether the solid of the surface itself blocks the rays of a shadow beam. It blocks the
+ * rays that start inwards: those to the points of an area light that are behind the surface.
+ * Returns 1 if all rays are blocked, 0 if none is, and -1 if this is not decided. */
 int own_solid_blocks(const FormSurface *surface, const Beam *beam);
 
 #endif

@@ -1,44 +1,51 @@
 /* The integral of a scene's color over a part of the picture, with proven bounds.
  *
- * The part is a convex polygon in the rectangle of a beam. It is cut along the edges of what the
- * beam may hit, until each piece shows one face, or until the limit of cuts is reached. Strips
- * along the cuts, in which an edge is not decided, take the range of all colors that are possible
- * there. docs/ANSWERS.md, section 5. */
+ * The part is a convex polygon in the rectangle of a beam. It is cut along the edges of the faces
+ * that the beam may hit, until each piece shows one face, or until the limit of cuts is reached.
+ * Each cut leaves a narrow strip in which the sign of the edge is not decided. A strip counts with
+ * the range of all colors that are possible in it. See docs/ANSWERS.md, section 5. */
 #ifndef CORCAST_ANSWER_REGION_H
 #define CORCAST_ANSWER_REGION_H
 
 #include "answer/answertile.h"
 
-/* A square has 4 corners, a rectangle in it up to 8, and each cut adds one. */
+/* Maximum number of corners: a rectangle clipped to a square has up to 8, and each cut adds one. A
+ * piece is cut up to 10 times for visibility and up to 10 times for shadows. */
 enum { POLYGON_MAX = 28 };
 
-/* A convex polygon in the coordinates of a beam's rectangle, [-1, 1] in both. */
+/* A convex polygon in the coordinates ex and ey of a beam's rectangle, which are in [-1, 1]. */
 typedef struct LeafPolygon {
-    int n;
+    int n; /* number of corners; 0: empty */
     double x[POLYGON_MAX], y[POLYGON_MAX];
 } LeafPolygon;
 
-/* Cuts the polygon to the side where f >= `from`, in value without e. */
+/* Returns the part of the polygon in which f.c + f.x ex + f.y ey >= `from`. Ignores f.e. The result
+ * is empty if it has fewer than 3 corners, or too many for a LeafPolygon. */
 LeafPolygon polygon_cut(const LeafPolygon *polygon, Form f, double from);
+/* Returns the area, >= 0, in units of ex and ey. */
 double polygon_area(const LeafPolygon *polygon);
 
-/* Bounds of the integral of each channel over a region, in units of area of the beam's rectangle,
- * whose own area is 4. */
+/* The integral of the color over a region. Areas are in units of ex and ey, so the area of the
+ * whole rectangle is 4. */
 typedef struct RegionSum {
-    double low[3], high[3];
-    double strips;  /* the part of high - low that strips along cuts make up, of all channels */
-    uint32_t walls; /* index in work->hits of the wall, plus 1, if no other face is seen; else 0 */
-    bool is_mixed;  /* another face than one wall is seen */
+    double low[3], high[3]; /* per channel: bounds of the integral */
+    double strips;  /* the part of high - low, summed over the channels, that is due to areas whose
+                     * color is not decided */
+    uint32_t walls; /* 1 + index in work->hits of the only face that is visible, if it is a wall;
+                     * else 0 */
+    bool is_mixed;  /* several faces are visible, or a face that is no wall */
 } RegionSum;
 
-/* Integrates the color over a polygon of the beam among the faces of `list`. */
+/* Integrates the color over a polygon in the beam's rectangle. Only the faces of `list` may be
+ * visible there; any face of the scene may cast shadows. Overwrites work->hits. */
 RegionSum region_integrate(AnswerWork *work, const Beam *beam, const FaceList *list,
                            const LeafPolygon *polygon);
 
-/* Returns the leaf's points as a polygon of its rectangle. */
+/* Returns the leaf as a polygon in the coordinates of its rectangle; empty if nothing is left. */
 LeafPolygon arealeaf_polygon(const AreaLeaf *leaf);
-/* Integrates over a leaf of the pixel (i, j), among the faces of work->pixel, and sets its bounds
- * and how it is divided next. */
+/* Integrates the color over a leaf of the pixel in column i and row j. Sets leaf->low and
+ * leaf->high, and leaf->turn and leaf->is_mixed, which decide how the leaf is divided. Only the
+ * faces of work->pixel may be visible. */
 void arealeaf_measure(AnswerWork *work, int i, int j, AreaLeaf *leaf);
 
 #endif

@@ -1,8 +1,8 @@
-/* The nearest of many tubes or points, for every voxel of a block.
+/* Finds the nearest of many tubes or points for every voxel of a block. Private to the module
+ * coverage.
  *
- * A site is a tube with hemispherical ends; a tube without length and radius is a point. The
- * distance to a site is the distance to its wall, and is below 0 inside it. Private to the module
- * coverage. */
+ * A site is a tube with hemispherical ends. A tube without length and radius is a point. The
+ * distance to a site is the distance to its wall, and is negative inside the tube. */
 #ifndef CORCAST_COVERAGE_SITES_H
 #define CORCAST_COVERAGE_SITES_H
 
@@ -11,12 +11,12 @@
 #include "geom/geom.h"
 
 typedef struct VesselSite {
-    Vec3 from, along;       /* start of the axis, and from there to its end, mm */
+    Vec3 from, along;       /* start of the axis, and the vector from the start to the end, mm */
     double inverse_length2; /* 1 / |along|^2; 0 for a point */
     double radius_mm;
 } VesselSite;
 
-/* The sites and a tree of their boxes, both owned. */
+/* The sites, and a hierarchy of their bounding boxes. Both are owned. */
 typedef struct Sites {
     VesselSite *site;
     size_t n;
@@ -36,20 +36,21 @@ static inline double site_distance(const VesselSite *site, Vec3 point)
            site->radius_mm;
 }
 
-/* Returns the distance of a point from the nearest site, mm. If that is `enough_mm` or less, may
- * return the distance of any site that is at most so far. */
+/* Returns the distance of a point from the nearest site, mm. The search may stop at any site whose
+ * distance is at most `enough_mm`, and then returns its distance. -INFINITY finds the nearest one.
+ */
 double sites_nearest(const Sites *sites, Vec3 point, double enough_mm);
 
-/* Workspace of one thread: a stack of lists of sites, with the distance of each. Zero it before
- * first use; release it with sitelists_release. */
+/* Workspace of one thread: a stack of lists of sites. The lists are stored one after the other in
+ * two parallel arrays. Zero it before first use; release it with sitelists_release. */
 typedef struct SiteLists {
-    ARRAY(uint32_t) site;
-    ARRAY(double) distance;
+    ARRAY(uint32_t) site;   /* indices in Sites.site */
+    ARRAY(double) distance; /* distance of the site from the point of the last measurement, mm */
 } SiteLists;
 
 void sitelists_release(SiteLists *lists);
 
-/* A list of the stack. */
+/* A list on the stack: the entries first to first + n - 1. */
 typedef struct SiteRange {
     size_t first, n;
 } SiteRange;
@@ -60,23 +61,26 @@ typedef struct Nearest {
     uint32_t site;
 } Nearest;
 
-/* Points around a centre. */
+/* A ball of points whose nearest sites are searched. */
 typedef struct SiteBall {
     Vec3 centre;
-    double radius_mm;  /* largest distance of a point from the centre */
+    double radius_mm;
     double nearest_mm; /* distance of the centre from the nearest site */
 } SiteBall;
 
-/* Pushes the sites that may be the nearest one of a point in a ball. Errors: STATUS_MEMORY. */
+/* Pushes a list of all sites that may be the nearest site of some point in a ball. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status sitelists_gather(SiteLists *lists, const Sites *sites, const SiteBall *ball,
                                    SiteRange *out, Err *err);
-/* Returns the nearest site of `list` at a point, and stores the distances of all of them. */
+/* Returns the site of `list` that is nearest to a point. Stores the distance of each site of the
+ * list in lists->distance. `list` must not be empty. */
 Nearest sitelists_measure(SiteLists *lists, const Sites *sites, SiteRange list, Vec3 point);
-/* Pushes the sites of a measured list that are at most `most_mm` away. The caller pops them by
- * resetting both lengths to the end of `list`. Errors: STATUS_MEMORY. */
+/* Pushes a list of those sites of `list` whose stored distance is at most `most_mm`. The new list
+ * has no distances until it is measured. The caller pops it with sitelists_pop(lists, list).
+ * Errors: STATUS_MEMORY. */
 MUST_CHECK Status sitelists_narrow(SiteLists *lists, SiteRange list, double most_mm, SiteRange *out,
                                    Err *err);
-/* Pops all lists above `list`. */
+/* Pops all lists above `list`, which becomes the top of the stack. */
 static inline void sitelists_pop(SiteLists *lists, SiteRange list)
 {
     lists->site.n = lists->distance.n = list.first + list.n;
@@ -98,11 +102,13 @@ typedef struct SiteFilling {
     Nearest *nearest;   /* receives the result per wanted voxel */
 } SiteFilling;
 
-/* Fills filling->nearest. `nearest_mm` is sites_nearest of block_centre. Errors: STATUS_MEMORY. */
+/* Fills filling->nearest for the wanted voxels. `nearest_mm` is the exact result of sites_nearest
+ * for the block_centre of filling->block. Errors: STATUS_MEMORY. */
 MUST_CHECK Status sites_fill(const SiteFilling *filling, double nearest_mm, Err *err);
 
-/* Return the middle of the voxel centres of a block, and the largest distance of one from it. */
+/* Returns the middle of the voxel centres of a block. */
 Vec3 block_centre(const VoxelGrid *grid, const VoxelBlock *block);
+/* Returns the largest distance of a voxel centre of a block from its block_centre, mm. */
 double block_reach(const VoxelGrid *grid, const VoxelBlock *block);
 
 #endif

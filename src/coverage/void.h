@@ -1,4 +1,5 @@
-/* The largest empty ball whose centre is in the tissue. Private to the module coverage. */
+/* Finds the point of the tissue that is farthest from any vessel: the centre of the largest ball
+ * without a vessel inside. Private to the module coverage. */
 #ifndef CORCAST_COVERAGE_VOID_H
 #define CORCAST_COVERAGE_VOID_H
 
@@ -10,10 +11,11 @@ typedef struct CoverageVoid {
     Vec3 at;
 } CoverageVoid;
 
-/* A box that may hold the farthest point. */
+/* A box that may hold the farthest point. All boxes of a step of the search have the same size. */
 typedef struct VoidBox {
     Vec3 centre;
-    double distance_mm; /* of the centre from the nearest vessel */
+    double distance_mm; /* distance of the centre from the nearest vessel, or from any vessel that
+                         * is too near for the box to be kept */
 } VoidBox;
 
 typedef ARRAY(VoidBox) VoidBoxes;
@@ -21,18 +23,22 @@ typedef ARRAY(VoidBox) VoidBoxes;
 typedef struct VoidSearch {
     const Domain *domain;
     const Sites *sites;
-    double accepted_mm; /* accepted error, above 0 */
-    CoverageVoid best;  /* the farthest point so far; the caller sets it to a point of the domain */
-    double most_mm;     /* no point in the boxes that were searched is farther; 0 before */
+    double accepted_mm; /* above 0: boxes are dropped in which no point is farther than `best` by
+                         * more than this */
+    CoverageVoid best;  /* the farthest point so far; the caller sets it to a point of the tissue */
+    double most_mm;     /* upper bound of the distance in boxes that were not decided; the caller
+                         * sets it to 0 before the first search */
     VoidBoxes boxes;    /* workspace; the caller releases it with ARRAY_RELEASE */
 } VoidSearch;
 
-/* Improves search->best to the farthest point of the domain in a box, and raises search->most_mm.
- * The search ends with a larger error than the accepted one where very many points are as far as
- * the farthest one, such as around a single straight vessel.
+/* Searches a box for the farthest point of the domain. Replaces search->best if a point is farther.
+ *
+ * The search ends undecided if more than 2^15 boxes are left, because very many points are as far
+ * as the farthest one, such as around a single straight vessel. It then raises search->most_mm. In
+ * any case, no point of the box is farther than max(best.distance_mm + accepted_mm, most_mm).
  *
  * half        half of the sides of the box, mm; 0 along z in two dimensions.
- * nearest_mm  sites_nearest of `centre`.
+ * nearest_mm  result of sites_nearest for `centre`.
  * Errors      STATUS_MEMORY. */
 MUST_CHECK Status void_search(VoidSearch *search, Vec3 centre, Vec3 half, double nearest_mm,
                               Err *err);

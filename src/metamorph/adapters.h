@@ -1,33 +1,34 @@
-/* Writes trial scenes as files of renderers, and the commands that draw them. */
+/* Writes trial scenes in the file formats of renderers, and makes the commands that draw them. */
 #ifndef CORCAST_METAMORPH_ADAPTERS_H
 #define CORCAST_METAMORPH_ADAPTERS_H
 
 #include "metamorph/trial.h"
 
-/* The formats of scenes. */
+/* The formats of scenes: POV-Ray, Tachyon, and trees for `corcast render`. */
 typedef enum TrialFormat { TRIAL_POV, TRIAL_TACHYON, TRIAL_SWC, TRIAL_FORMATS } TrialFormat;
 
 /* Describes a format. */
 typedef struct TrialAdapter {
-    const char *name;    /* "pov"; also the extension of a scene */
-    const char *picture; /* extension of a picture */
+    const char *name;    /* "pov"; also the extension of a scene file */
+    const char *picture; /* extension of the pictures that the renderer writes */
     TrialLimits limits;
-    void (*write)(const TrialScene *scene, Text *out);
+    void (*write)(const TrialScene *scene, Text *out); /* appends the scene in this format */
 } TrialAdapter;
 
+/* Per TrialFormat. */
 extern const TrialAdapter trial_adapters[TRIAL_FORMATS];
 
-/* The files of one drawing. Borrowed. */
+/* Paths of the files of one drawing. Borrowed. */
 typedef struct TrialFiles {
     const char *scene, *picture;
 } TrialFiles;
 
 /* Appends the shell command that draws a scene.
  *
- * In `command`, {scene}, {picture}, {width} and {height} are replaced. {camera} is replaced by
- * options of `corcast render`: the camera, the size and shadows, which a file of the format swc
- * does not hold. If {scene} is missing, the scene, the picture and, of the format swc, the camera
- * are appended as words. */
+ * Replaces the marks {scene}, {picture}, {width}, {height} and {camera} in the user's `command`.
+ * {camera} stands for options of `corcast render` that state the camera, the size and the shadows,
+ * because a file of the format swc does not hold them. If {scene} is missing, appends the paths of
+ * the scene and of the picture as words and, for the format swc, the options of {camera}. */
 void trial_command(const char *command, TrialFormat format, const TrialScene *scene,
                    const TrialFiles *files, Text *out);
 

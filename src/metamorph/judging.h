@@ -1,4 +1,5 @@
-/* Draws pairs of scenes with the renderer, several at a time, and compares the pictures. */
+/* Draws pairs of scenes with the renderer under test, several at a time, and compares the pictures
+ * of each pair. */
 #ifndef CORCAST_METAMORPH_JUDGING_H
 #define CORCAST_METAMORPH_JUDGING_H
 
@@ -7,61 +8,69 @@
 
 /* The renderer that is tested. All strings are borrowed. */
 typedef struct TrialRenderer {
-    const char *command; /* shell command; trial_command lists its marks */
+    const char *command; /* shell command that draws a scene, with the marks of trial_command */
     TrialFormat format;
     const char *folder; /* an existing folder for scenes and pictures; absolute */
-    double timeout_s;   /* a drawing that takes longer is ended */
+    double timeout_s;   /* a command that runs longer is killed */
     int jobs;           /* drawings at the same time, from 1 to TRIAL_JOBS */
 } TrialRenderer;
 
+/* Maximum number of drawings at the same time, and size of a reason in bytes. */
 enum { TRIAL_JOBS = 32, TRIAL_REASON = 400 };
 
-/* What one drawing gave. */
+/* The result of drawing one scene. */
 typedef struct TrialDrawing {
-    Picture picture;           /* 8-bit sRGB of three channels; owned; without codes if none was
-                                * drawn */
-    char reason[TRIAL_REASON]; /* why none was drawn, as a clause: "exit status 1: no such file" */
+    Picture picture;           /* 8-bit sRGB of three channels; zeroed if the renderer drew none;
+                                * owned */
+    char reason[TRIAL_REASON]; /* why it drew none: "exit status 1: no such file" */
 } TrialDrawing;
 
+/* Releases the pictures of `n` drawings, not the array. */
 void drawings_release(TrialDrawing *drawings, size_t n);
 
-/* Draws `n` scenes. `drawings` is zeroed before; release it in any case. A scene that the renderer
- * does not draw is no error. Errors: STATUS_IO, STATUS_MEMORY, STATUS_TOOL if no process starts. */
+/* Draws `n` scenes. If the renderer does not draw a scene, this is not an error: the drawing has a
+ * reason instead of a picture.
+ *
+ * drawings  array of n, zeroed before; release it with drawings_release even after an error.
+ * Errors    STATUS_TOOL if no process can be started; STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status trials_draw(const TrialRenderer *renderer, const TrialScene *scenes, size_t n,
                               TrialDrawing *drawings, Err *err);
 
 typedef enum VerdictKind {
-    VERDICT_NONE, /* the relation makes no promise about the first scene, or it is not drawn */
-    VERDICT_HOLDS,
-    VERDICT_EDGE,    /* a shape appears or vanishes in a pixel */
-    VERDICT_SHADE,   /* only colors of shapes differ */
-    VERDICT_REFUSED, /* the second scene is not drawn */
+    VERDICT_NONE,    /* not judged: the relation does not apply to the first scene, or the renderer
+                      * did not draw the first scene */
+    VERDICT_HOLDS,   /* no pixel differs by more than the relation allows */
+    VERDICT_EDGE,    /* some pixel shows the background in one picture and not in the other */
+    VERDICT_SHADE,   /* pixels differ, but none of them shows the background */
+    VERDICT_REFUSED, /* the renderer drew the first scene but not the second one */
     VERDICT_KINDS
 } VerdictKind;
 
-/* The names of the kinds: "edge". */
+/* Per VerdictKind: its name, "edge". */
 extern const char *const verdict_names[VERDICT_KINDS];
 
-/* What the comparison of a pair found. */
+/* The result of comparing a pair. */
 typedef struct PairVerdict {
     VerdictKind kind;
-    int pixels;                /* differ by more than the relation allows */
-    int codes;                 /* the largest difference of two 8-bit codes */
-    PixelRect box;             /* of these pixels, in the first picture */
+    int pixels;                /* number of pixels that differ by more than Relation.codes */
+    int codes;                 /* largest difference of two 8-bit codes */
+    PixelRect box;             /* bounding box of these pixels in the first picture */
     bool is_empty;             /* all pixels of the first picture are equal */
-    char reason[TRIAL_REASON]; /* of VERDICT_NONE and VERDICT_REFUSED: why; "": no promise */
+    char reason[TRIAL_REASON]; /* why a scene was not drawn; "" if both were drawn, or the relation
+                                * does not apply */
 } PairVerdict;
 
-/* Returns true if the relation is broken. */
+/* Returns true if the renderer breaks the relation: VERDICT_EDGE, VERDICT_SHADE or VERDICT_REFUSED.
+ */
 static inline bool verdict_fails(const PairVerdict *verdict)
 {
     return verdict->kind >= VERDICT_EDGE;
 }
 
-/* Compares the pictures of a pair. */
+/* Compares the drawings of the first and of the second scene of a pair. */
 void pair_compare(const Relation *relation, const TrialDrawing drawings[2], PairVerdict *verdict);
 
-/* Draws and compares `n` pairs. Errors: those of trials_draw. */
+/* Draws and compares `n` pairs. Sets verdicts[i] for pair i. Errors: those of trials_draw. */
 MUST_CHECK Status pairs_judge(const TrialRenderer *renderer, const TrialPair *pairs, size_t n,
                               PairVerdict *verdicts, Err *err);
 

@@ -1,9 +1,10 @@
 /* The public header of the module metamorph: tests a renderer without a reference picture.
  *
- * A metamorphic relation changes a scene in a way whose effect on the picture is known: all lengths
- * times 2, for example, the camera included. A renderer that breaks a relation has a defect. The
- * module draws pairs of random scenes, confirms each failure with three cameras, shrinks it, and
- * writes one report for each cause. */
+ * A metamorphic relation changes a scene in a way whose effect on the picture is known. For
+ * example, it doubles all lengths, including those of the camera, which must not change the
+ * picture. A renderer that breaks a relation has a defect. The module draws random scenes, each
+ * before and after such a change. It confirms each failing pair with three cameras, reduces it to a
+ * small scene, and writes one report for each cause. */
 #ifndef CORCAST_METAMORPH_METAMORPH_H
 #define CORCAST_METAMORPH_METAMORPH_H
 
@@ -13,59 +14,61 @@
 /* What to test, and for how long. All strings are borrowed. */
 typedef struct MetamorphParams {
     TrialRenderer renderer; /* `folder` receives the scenes while they are tested */
-    const char *relations;  /* names, separated by commas; NULL: all that the format has */
+    const char *relations;  /* names, separated by commas; NULL: all relations of the format */
     uint64_t seed;
     size_t max_pairs;          /* 0: no limit */
-    double seconds;            /* no new pairs are drawn after this time */
+    double seconds;            /* the search starts no new batch of pairs after this time */
     const char *output;        /* existing folder that receives a folder for each cause */
-    ProgramProgress *progress; /* receives the fraction of `seconds` that has passed; may be NULL */
+    ProgramProgress *progress; /* receives the fraction of `seconds` that has passed, and returns
+                                * false to stop; NULL: none */
     void *progress_context;
 } MetamorphParams;
 
 /* The counts of one relation. */
 typedef struct RelationCount {
-    size_t pairs;     /* drawn and compared */
-    size_t none;      /* the first scene was not drawn */
-    size_t failed;    /* pictures differ by more than the relation allows */
-    size_t confirmed; /* failed with two of three cameras */
-    double seconds;   /* drawing time, with confirmation and shrinking */
+    size_t pairs;     /* number of pairs */
+    size_t none;      /* number of pairs whose first scene the renderer did not draw */
+    size_t failed;    /* number of pairs that break the relation [verdict_fails] */
+    size_t confirmed; /* number of these that fail in two of three camera positions, too */
+    double seconds;   /* time for all its pairs, including confirmation and reduction */
 } RelationCount;
 
+/* Size of a cause's name in bytes, capacity for relations, and largest exponent of a sweep. */
 enum { CAUSE_NAME = 120, MAX_RELATIONS = 32, SWEEP = 20 };
 
-/* One cause: a relation, the kinds of shapes that are left, shadows, perspective, and the kind of
- * failure. */
+/* One cause. Failing pairs have the same cause if their smallest pairs agree in the relation, the
+ * kinds of shapes, shadows, perspective, and the kind of failure. */
 typedef struct MetamorphCause {
-    char name[CAUSE_NAME]; /* "scale-up-torus-edge"; also the name of its folder */
-    TrialPair pair;        /* the smallest pair */
-    PairVerdict verdict;
-    size_t confirmed;         /* pairs with this cause */
-    int sweep[2 * SWEEP + 1]; /* of a scaling relation: differing pixels at 2^k, k from -SWEEP to
-                               * SWEEP; -1: the scene is not drawn */
+    char name[CAUSE_NAME];    /* "scale-up-torus-edge"; also the name of its folder */
+    TrialPair pair;           /* the smallest pair that still fails */
+    PairVerdict verdict;      /* verdict of this pair */
+    size_t confirmed;         /* number of confirmed pairs that this cause explains */
+    int sweep[2 * SWEEP + 1]; /* relations that scale: sweep[k + SWEEP] is the number of pixels that
+                               * differ if all lengths are multiplied by 2^k; -1: not drawn */
 } MetamorphCause;
 
-/* What was found. Zeroed: nothing. Release with metamorph_release. */
+/* The result of a search. Zeroed: empty. Release with metamorph_release. */
 typedef struct Metamorph {
     TrialFormat format;
-    RelationCount counts[MAX_RELATIONS]; /* in the order of `relations` */
+    RelationCount counts[MAX_RELATIONS]; /* parallel to the table `relations` */
     ARRAY(MetamorphCause) causes;
     double seconds;
 } Metamorph;
 
 void metamorph_release(Metamorph *result);
 
-/* Runs the search and writes output/CAUSE/ for each cause: first and second scene, both pictures,
- * the difference (difference.png) and report.txt.
+/* Runs the search. Then writes the folder output/NAME/ for each cause, with both scenes, both
+ * pictures, their difference (difference.png) and report.txt.
  *
  * result  zeroed before; release it even after an error.
- * Errors  STATUS_USAGE if `relations` names none; STATUS_TOOL if the renderer draws none of the
- *         first scenes, or nothing is visible in any; STATUS_IO; STATUS_CANCELLED; STATUS_MEMORY.
- */
+ * Errors  STATUS_USAGE if params->relations names a relation that the format does not have;
+ *         STATUS_TOOL if the renderer draws fewer than half of the first scenes, or if each picture
+ *         has a single color; STATUS_IO; STATUS_CANCELLED; STATUS_MEMORY. */
 MUST_CHECK Status metamorph_run(const MetamorphParams *params, Metamorph *result, Err *err);
 
 /* Appends the counts and the causes as text. */
 void metamorph_text(const Metamorph *result, Text *out);
-/* Returns them as JSON: a new reference; NULL if memory runs out. */
+/* Returns the counts and the causes as JSON: a new reference; NULL if memory runs out. */
 json_t *metamorph_json(const Metamorph *result);
 
 #endif

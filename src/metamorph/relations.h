@@ -1,4 +1,4 @@
-/* Relations: changes of a scene whose effect on the picture is known. */
+/* Metamorphic relations: changes of a scene whose effect on the picture is known. */
 #ifndef CORCAST_METAMORPH_RELATIONS_H
 #define CORCAST_METAMORPH_RELATIONS_H
 
@@ -7,32 +7,35 @@
 /* A row of the table of relations. */
 typedef struct Relation {
     const char *name;   /* "translation" */
-    const char *change; /* how the second scene is made, and when, for reports */
+    const char *change; /* sentence for reports: how the second scene differs from the first, and to
+                         * which scenes the relation applies */
     unsigned formats;   /* formats that have this relation: bits 1 << TrialFormat */
-    int codes;          /* difference of 8-bit codes that is allowed */
+    int codes;          /* allowed difference of two 8-bit codes */
     bool flips;         /* the second picture is the mirror image of the first */
     bool crops;         /* the first picture is the middle half of the second one's rows */
-    /* Changes `scene`. Returns false if the relation makes no promise about the scene. */
+    /* Changes `scene`. Returns false if the relation does not apply to the scene, which may be
+     * changed even then. */
     bool (*apply)(TrialScene *scene, TrialFormat format, Random *random);
 } Relation;
 
-/* The table; a row without a name ends it. */
+/* The table of relations. A row without a name ends it. */
 extern const Relation relations[];
 
 /* A relation and the first scene of a pair. */
 typedef struct TrialPair {
     const Relation *relation;
     TrialFormat format;
-    uint64_t seed; /* of the choices that the relation makes */
+    uint64_t seed; /* seed of the random choices that the relation makes */
     TrialScene first;
 } TrialPair;
 
-/* Makes the second scene. Returns false if the relation makes no promise about the first scene. */
+/* Makes the second scene of a pair. Returns false if the relation does not apply to the first
+ * scene; *second must not be used then. The same pair always gives the same scene. */
 bool pair_second(const TrialPair *pair, TrialScene *second);
 
 /* Returns true if the relation multiplies all lengths by a power of two. */
 bool relation_scales(const Relation *relation);
-/* Multiplies all lengths of the scene by 2^k. */
+/* Multiplies all lengths of the scene, including those of the camera and lights, by 2^k. */
 void scene_scale(TrialScene *scene, int k);
 
 #endif

@@ -1,20 +1,22 @@
-/* Makes a pair that breaks a relation as small as possible. */
+/* Confirms a pair that breaks a relation, and reduces it to a small pair that breaks the relation
+ * in the same way. */
 #ifndef CORCAST_METAMORPH_SHRINK_H
 #define CORCAST_METAMORPH_SHRINK_H
 
 #include "metamorph/judging.h"
 
-/* Draws the pair with the camera moved by three odd fractions of a pixel.
+/* Draws the pair from three cameras, which are shifted by different fractions of a pixel.
  *
- * confirmed  receives true if the relation is broken, in the same kind, in two of the three.
+ * confirmed  receives true if at least two of the three verdicts are of this kind.
  * Errors     those of pairs_judge. */
 MUST_CHECK Status pair_confirm(const TrialRenderer *renderer, const TrialPair *pair,
                                VerdictKind kind, bool *confirmed, Err *err);
 
-/* Replaces a confirmed pair by smaller ones while they fail in the same kind: leaves out shapes,
- * lights, shadows, perspective, the picture's edges, and digits of numbers.
+/* Replaces a confirmed pair by smaller pairs, as long as one fails with a verdict of the same kind
+ * from two cameras. A smaller pair has fewer shapes, lights or pixels, no shadows, no perspective,
+ * or rounder numbers.
  *
- * verdict  that of the pair; replaced by the verdict of the smallest pair.
+ * verdict  the verdict of the pair before; receives the verdict of the smallest pair.
  * Errors   those of pairs_judge. */
 MUST_CHECK Status pair_shrink(const TrialRenderer *renderer, TrialPair *pair, PairVerdict *verdict,
                               Err *err);

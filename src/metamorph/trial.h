@@ -1,5 +1,6 @@
-/* Small scenes from a seed, for any renderer: shapes, lights and a camera whose numbers are exact
- * in binary, so that scaling, translating, rotating and mirroring them rounds nothing. */
+/* Makes small random scenes for any renderer: shapes, lights and a camera. Their numbers have few
+ * binary digits, so that scaling, translating, rotating and mirroring them has no rounding errors.
+ */
 #ifndef CORCAST_METAMORPH_TRIAL_H
 #define CORCAST_METAMORPH_TRIAL_H
 
@@ -14,20 +15,20 @@ typedef enum ShapeKind {
     SHAPE_BLOB,       /* components at at[0] and at[1], radius[0] */
     SHAPE_ISOSURFACE, /* a sphere as an isosurface: center at[0], radius[0] */
     SHAPE_TRIANGLE,   /* corners at[0], at[1], at[2] */
-    SHAPE_NODE,       /* a row of an SWC file: at[0], radius[0], id, parent */
+    SHAPE_NODE,       /* a row of an SWC file: position at[0], radius[0], id, parent */
     SHAPE_KINDS
 } ShapeKind;
 
-/* The names of the kinds: "sphere". */
+/* Per ShapeKind: its name, "sphere". */
 extern const char *const shape_kind_names[SHAPE_KINDS];
 
-/* Ways to write a shape that must not change its picture; bits of TrialShape.form. */
+/* Ways to write a shape that must not change its picture. Each is a bit of TrialShape.form. */
 typedef enum ShapeForm {
-    FORM_STURM = 1,     /* the polynomial is solved by Sturm sequences */
-    FORM_BOUNDED = 2,   /* a bounding sphere is given */
-    FORM_CANCELLED = 4, /* of a blob: two more components, which cancel each other */
-    FORM_WIDE = 8,      /* of an isosurface: its container is 1.25 times as wide */
-    FORM_FINE = 16      /* of an isosurface: its accuracy is 16 times as fine */
+    FORM_STURM = 1,     /* torus, blob: `sturm` selects another solver of polynomials */
+    FORM_BOUNDED = 2,   /* the shape has a bounding sphere */
+    FORM_CANCELLED = 4, /* blob: two more components, whose strengths cancel each other */
+    FORM_WIDE = 8,      /* isosurface: its container is 1.25 times as wide */
+    FORM_FINE = 16      /* isosurface: its accuracy is 16 times as fine */
 } ShapeForm;
 
 typedef struct TrialShape {
@@ -35,13 +36,13 @@ typedef struct TrialShape {
     Vec3 at[3];
     double radius[2];
     int color;      /* in [0, TRIAL_COLORS) */
-    int id, parent; /* of SHAPE_NODE: SWC ids; parent -1: a root */
-    unsigned form;  /* ShapeForm */
+    int id, parent; /* SHAPE_NODE: SWC ids; parent -1: a root */
+    unsigned form;  /* bits of ShapeForm */
 } TrialShape;
 
 typedef struct TrialLight {
     Vec3 at, target;
-    bool parallel; /* all rays run from `at` to `target`; false: a point light */
+    bool parallel; /* all rays have the direction from `at` to `target`; false: a point light */
     double brightness;
 } TrialLight;
 
@@ -53,35 +54,39 @@ typedef struct TrialScene {
     TrialLight lights[TRIAL_MAX_LIGHTS];
     int n_lights;
     bool shadows, perspective;
-    bool is_union;      /* all shapes are parts of one object */
-    Vec3 location;      /* of the camera */
-    Vec3 direction, up; /* of the camera: vectors of integers at right angles */
-    double height;      /* of the picture; in perspective at distance 1 from the camera */
+    bool is_union; /* all shapes are parts of one object */
+    Vec3 location; /* position of the camera */
+    /* Of the camera: perpendicular, with integer coordinates; not unit vectors. */
+    Vec3 direction, up;
+    double height; /* height of the view, as a length; in perspective, at distance 1 from the
+                    * camera */
     int width_px, height_px;
 } TrialScene;
 
-/* What a format can hold. */
+/* Limits of a format. */
 typedef struct TrialLimits {
-    unsigned kinds;  /* bits 1 << ShapeKind */
-    int camera_bits; /* binary digits behind the point of the camera's coordinates */
+    unsigned kinds;  /* kinds of shapes that it can hold: bits 1 << ShapeKind */
+    int camera_bits; /* number of binary digits behind the point in the camera's coordinates */
 } TrialLimits;
 
-/* Returns an integer in [0, n). */
+/* Returns a random integer in [0, n). */
 int random_below(Random *random, int n);
 
-/* Makes a scene of 1 to 9 shapes. Coordinates are multiples of 1/64. The camera's coordinates are
- * odd multiples of 2^-camera_bits, so that no sample lies exactly on a silhouette. */
+/* Makes a scene of 1 to 5 shapes, or of 2 to 8 nodes for a format of trees. Coordinates of shapes
+ * are multiples of 1/64. The camera's coordinates are odd multiples of 2^-camera_bits, so that no
+ * sample lies exactly on a silhouette. */
 void trial_make(Random *random, const TrialLimits *limits, TrialScene *scene);
 
 /* Returns the kinds of the shapes as bits 1 << ShapeKind. */
 unsigned trial_kinds(const TrialScene *scene);
 
-/* Removes the shapes from `first` to before `end`. Nodes whose parent is removed become children of
- * the parent's parent. */
+/* Removes the shapes with indices first to end - 1. A node whose parent is removed becomes a child
+ * of the parent's parent. */
 void trial_remove(TrialScene *scene, int first, int end);
 
-/* Moves the camera by `x` pixels to the right and `y` pixels up, of an orthographic picture. In
- * perspective, one pixel is taken as 1/4. */
+/* Moves the camera of an orthographic view by about `x` pixels to the right and `y` pixels up. One
+ * pixel is a length of 1/4 in perspective. The lengths are multiplied by a factor between 0.5
+ * and 1.8 that depends on the camera, so that the sum is exact in binary. */
 void trial_shift_camera(TrialScene *scene, double x, double y);
 
 #endif

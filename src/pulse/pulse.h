@@ -7,8 +7,9 @@
  * everywhere, with all reflections. The means over the cycle are those of the steady solution
  * [derive/derive.h].
  *
- * Units are mm, g and s: pressure in Pa, flow in mm^3/s. A complex amplitude x of harmonic k stands
- * for Re(x exp(2 pi j k t / T)).
+ * The unit of pressure is Pa and that of flow is mm^3/s, from mm, g and s. The steady solution and
+ * the fields over time are in mmHg and ml/min instead; their comments say so. A complex amplitude x
+ * of harmonic k stands for Re(x exp(2 pi j k t / T)), T the period.
  *
  *     TRY(pulse_solve(&params, &pulse, err));
  *     TRY(pulse_course(&pulse, PULSE_WSS, 24, columns, threads, err));
@@ -22,35 +23,37 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* Harmonics are computed two at a time. */
+/* Number of harmonics that are computed at a time. */
 enum { PULSE_LANES = 2 };
 
 /* ---- the model ------------------------------------------------------------------------------- */
 
-/* Stiffness of the wall by radius: E h / r = sum of k[i] exp(rate[i] r), in Pa, r in mm. E is
- * Young's modulus and h the thickness of the wall. All zero: the wall is rigid. */
+/* A wall law, the stiffness of the wall as a function of the radius r, mm: E h / r = sum of
+ * k_pa[i] exp(rate_per_mm[i] r), Pa. E is Young's modulus and h the thickness of the wall. The wall
+ * is rigid if k_pa[0] and k_pa[1] are 0. */
 typedef struct PulseWall {
     double k_pa[2], rate_per_mm[2];
 } PulseWall;
 
-/* Return the name and the description, with source, of wall law `i`, from 0; NULL after the last.
- */
+/* Return the name and the description of built-in wall law `i`, counted from 0. The description
+ * cites the source. Both return NULL after the last law. */
 const char *pulse_wall_name(size_t i);
 const char *pulse_wall_description(size_t i);
-/* Finds a wall law by its name, or by numbers "K1,K2,K3": E h / r = K1 exp(K2 r) + K3, in Pa, 1/mm
- * and Pa. Returns false, and sets nothing, for any other text. */
+/* Reads a wall law: the name of a built-in law, or "K1,K2,K3" for E h / r = K1 exp(K2 r) + K3, with
+ * K1 and K3 in Pa and K2 in 1/mm. Returns false, and sets nothing, for any other text. */
 bool pulse_wall_parse(const char *text, PulseWall *wall);
 /* Returns E h / r of a vessel of this radius, Pa; 0 for a rigid wall. */
 double pulse_wall_stiffness(const PulseWall *wall, double radius_mm);
 
 typedef enum PulseOutlet {
-    PULSE_RCR,       /* two resistances and a compliance */
-    PULSE_STRUCTURED /* Olufsen's structured tree */
+    PULSE_RCR,       /* three-element Windkessel: two resistances and a compliance */
+    PULSE_STRUCTURED /* structured tree [Olufsen, Am. J. Physiol. 276 (1999) H257] */
 } PulseOutlet;
 
-/* The lumped model of one outlet: rp in series with rd parallel to c. Pa s/mm^3 and mm^3/Pa. */
+/* The three-element Windkessel of one outlet: the proximal resistance rp, in series with the distal
+ * resistance rd, to which the compliance c is parallel. */
 typedef struct PulseLumped {
-    double rp, c, rd;
+    double rp, c, rd; /* Pa s/mm^3, mm^3/Pa, Pa s/mm^3 */
 } PulseLumped;
 
 /* All pointers are borrowed. */
@@ -58,129 +61,156 @@ typedef struct PulseParams {
     const Tree *tree;
     const TreeMeta *overrides; /* values that the user specified, as in derive_field */
     int harmonics;             /* in [1, WAVEFORM_MAX_HARMONICS] */
-    const Waveform *drive;     /* the cycle at the inlets, scaled to the mean of each */
+    const Waveform *drive;     /* pressure or flow at all inlets over a cycle; at each inlet it is
+                                * scaled to the mean of the steady solution there */
     bool drive_is_flow;        /* false: `drive` is pressure */
-    double range_pa; /* scale the pressure so that its range is this; 0: by its mean alone */
+    double range_pa; /* pressure drive: maximum - minimum of the pressure at the inlets, to which
+                      * the oscillation is scaled; 0: it is scaled with the mean */
     PulseWall wall;
     double wall_time_s; /* relaxation time of a viscoelastic wall (Kelvin-Voigt); 0: elastic */
     PulseOutlet outlet;
     double outlet_time_s;     /* RCR: compliance times total resistance; 0: a resistance alone */
-    double venous_pa;         /* pressure behind the outlets */
-    double min_radius_mm;     /* structured tree: vessels end below this radius */
-    const PulseLumped *given; /* per node: replaces the rule; rp is NAN: it does not. NULL: none */
-    const Waveform *tissue;   /* pressure of the tissue around small vessels, Pa; NULL: none */
+    double venous_pa;         /* mean pressure behind the outlets */
+    double min_radius_mm;     /* structured tree: a vessel below this radius has no daughters */
+    const PulseLumped *given; /* RCR, per node: model of its outlet. It replaces the model that
+                               * follows from outlet_time_s, unless rp is NAN. NULL: none */
+    const Waveform *tissue;   /* RCR: pressure of the contracting tissue on small vessels, Pa. All
+                               * outlets then have the coronary model of pulse_put_deck instead of
+                               * `given` and outlet_time_s. Its mean is not used. NULL: none */
     int threads;              /* maximum number of threads; 0: all processors */
 } PulseParams;
 
 /* ---- the solution ---------------------------------------------------------------------------- */
 
-/* What the two-port of a segment follows from. */
+/* The constants of a segment from which its two-port is computed. */
 typedef struct PulseVessel {
-    double resistance;  /* of steady flow, Pa s/mm^3 */
+    double resistance;  /* resistance of Poiseuille flow, Pa s/mm^3 */
     double inertance;   /* rho l / A, Pa s^2/mm^3 */
-    double compliance;  /* of the whole segment, mm^3/Pa */
-    double womersley_s; /* r^2 rho / mu: the squared Womersley number / angular frequency */
+    double compliance;  /* compliance of the whole segment, mm^3/Pa; 0: rigid */
+    double womersley_s; /* r^2 rho / mu, s: squared Womersley number divided by angular frequency */
 } PulseVessel;
 
+/* A complex amplitude. */
 typedef struct Phasor {
     double re, im;
 } Phasor;
 
-/* Pressure and flow of two harmonics at the distal end of a segment. */
+/* Amplitudes of the pressure p, Pa, and of the flow q, mm^3/s, at a node, for two harmonics. The
+ * flow is that at the distal end of the node's segment. */
 typedef struct PulseWaves {
     double p_re[PULSE_LANES], p_im[PULSE_LANES], q_re[PULSE_LANES], q_im[PULSE_LANES];
 } PulseWaves;
 
-/* Arrays are owned; release with pulse_release. */
+/* The solution. Arrays are owned; release with pulse_release. */
 typedef struct Pulse {
     PulseParams params; /* its pointers are borrowed */
     double period_s;
     size_t n;                /* number of nodes */
-    double *flow, *pressure; /* per node: the steady solution, ml/min and mmHg; roots have the sum
-                              * of what leaves them, and the pressure of the inlet */
-    double *outflow;         /* per node: the part of the flow that leaves the tree there, ml/min */
-    double *viscosity;       /* per node: Pa s */
-    PulseVessel *vessel;     /* per node; roots have zeros */
-    PulseWaves *waves;       /* waves[k / PULSE_LANES * n + i]: harmonic k + 1 at node i */
+    double *flow, *pressure; /* per node: steady flow in its segment, ml/min, and steady pressure,
+                              * mmHg; the flow of a root is the sum of the flows that leave it */
+    double *outflow;         /* per node: steady flow that leaves the tree there, ml/min */
+    double *viscosity;       /* per node: viscosity in its segment, Pa s */
+    PulseVessel *vessel;     /* per node: its segment; zeros at a root */
+    PulseWaves *waves;       /* harmonic k >= 1 of node i is lane (k - 1) % PULSE_LANES of
+                              * waves[(k - 1) / PULSE_LANES * n + i] */
 } Pulse;
 
-/* Computes the waves.
+/* Computes the steady solution and all harmonics of pressure and flow.
  *
  * pulse    release it with pulse_release. It borrows the pointers of `params`.
- * Errors   STATUS_INPUT, naming the segment, for a radius or length of 0, a stiffness that is not
- *          above 0, an outlet whose pressure is not above the venous pressure, and numbers that
- *          overflow; as derive_rule for flow and pressure. STATUS_MEMORY.
+ * Errors   STATUS_INPUT, naming the segment or node, for a radius or length of 0, a stiffness that
+ *          is not above 0, an outlet whose mean pressure is not above the venous pressure, and
+ *          waves that overflow; STATUS_INPUT if the tree and the overrides lack a value that flow,
+ *          pressure or viscosity needs [derive_rule]. STATUS_MEMORY.
  * Threads  the result does not depend on their number.
  * Cost     O(segments * harmonics). 32 bytes per segment and harmonic. */
 MUST_CHECK Status pulse_solve(const PulseParams *params, Pulse *pulse, Err *err);
 void pulse_release(Pulse *pulse);
 
-/* Return the amplitudes of harmonic k, from 1, at node i: pressure in Pa, flow in mm^3/s. */
+/* Return the amplitude of harmonic k, in [1, params.harmonics], at node i: pressure in Pa, flow in
+ * mm^3/s. */
 Phasor pulse_pressure(const Pulse *pulse, size_t i, int k);
 Phasor pulse_flow(const Pulse *pulse, size_t i, int k);
 
-/* The two-port of segment i for harmonic k: p_in = a p_out + b q_out, q_in = c p_out + a q_out. */
+/* The two-port of a segment for one harmonic. It relates the amplitudes at the proximal end (in) to
+ * those at the distal end (out): p_in = a p_out + b q_out, q_in = c p_out + a q_out. */
 typedef struct TwoPort {
     Phasor a, b, c;
 } TwoPort;
+/* Returns the two-port of a segment for harmonic k >= 1 of a cycle of `period_s`. */
 TwoPort pulse_twoport(const PulseVessel *vessel, double period_s, double wall_time_s, int k);
-/* Returns the friction factor H for a Womersley number alpha: the ratio of the viscous drag to the
- * drag of Poiseuille flow of the same flow rate. */
+/* Returns the complex friction factor for a Womersley number alpha: the viscous drag of oscillating
+ * flow divided by the drag of Poiseuille flow with the same flow rate. It is 1 for alpha = 0. */
 Phasor pulse_friction(double alpha);
-/* Returns the admittance of a structured tree for harmonic k, mm^3/s/Pa. Its root has this radius
- * and the blood this viscosity. Errors: STATUS_MEMORY. */
+/* Computes the admittance of a structured tree for harmonic k >= 1, mm^3/s/Pa. Uses the period of
+ * params->drive, `wall`, wall_time_s and min_radius_mm.
+ *
+ * radius_mm  radius of the root of the structured tree.
+ * viscosity  viscosity of the blood, Pa s.
+ * Errors     STATUS_MEMORY. */
 MUST_CHECK Status pulse_structured(const PulseParams *params, double radius_mm, double viscosity,
                                    int k, Phasor *out, Err *err);
 
 /* ---- over time ------------------------------------------------------------------------------- */
 
-/* A field over time. Values are those at the distal end of a segment. */
+/* The fields over time. The value of a segment is that at its distal end. */
 typedef enum PulseField {
     PULSE_PRESSURE, /* mmHg */
     PULSE_FLOW,     /* ml/min */
     PULSE_VELOCITY, /* mm/s, the mean over the cross-section */
-    PULSE_WSS,      /* Pa */
+    PULSE_WSS,      /* wall shear stress, Pa; below 0 where flow is reversed */
     PULSE_DILATION, /* (radius - mean radius) / mean radius */
     PULSE_FIELDS
 } PulseField;
 
-/* The name, the unit ("" for pure numbers) and the title of each field. */
+/* Per PulseField: its name, its unit ("" for pure numbers) and its title. */
 extern const struct PulseFieldRow {
     const char *name, *unit, *title;
 } pulse_fields[PULSE_FIELDS];
 
-/* Computes a field at the times m T / frames.
+/* Computes a field at the times m T / frames, for m from 0 to frames - 1.
  *
- * column   per frame: an array of n values, which are set. Roots get NAN.
+ * column   per frame: an array of pulse->n values of the caller's. The function sets the value of
+ *          each node's segment, and NAN at roots.
+ * threads  maximum number of threads; 0: all processors. The result does not depend on it.
  * Errors   STATUS_MEMORY. */
 MUST_CHECK Status pulse_course(const Pulse *pulse, PulseField field, size_t frames,
                                double *const *column, int threads, Err *err);
 
-/* What happens in one segment during a cycle. */
+/* Measures of one segment over a cycle, at its distal end. */
 typedef struct PulseCycle {
     double pressure[2], flow[2]; /* minimum and maximum: mmHg, ml/min */
-    double wss_mean, tawss;      /* mean of the stress and of its size, Pa */
-    double osi;                  /* oscillatory shear index, 0 to 0.5 */
-    double alpha;                /* Womersley number of the first harmonic */
-    double wave_speed;           /* of a wave without losses, m/s; infinity in rigid walls */
-    double delay_ms;             /* of the first harmonic of pressure behind the root */
-    double strain;               /* range of the area / mean area */
-    double mach;                 /* largest velocity / wave speed */
+    double wss_mean, tawss; /* time average of the wall shear stress and of its magnitude, Pa */
+    double osi;             /* oscillatory shear index, 0 to 0.5 */
+    double alpha;           /* Womersley number of the first harmonic */
+    double wave_speed;      /* speed of a wave without losses, m/s; infinity in rigid walls */
+    double delay_ms;        /* phase delay of the first harmonic of pressure, from the root */
+    double strain;          /* (largest - smallest cross-section) / mean cross-section */
+    double mach;            /* largest mean velocity over the cross-section / wave speed */
 } PulseCycle;
 
-/* Computes the cycles of all segments from PULSE_SAMPLES samples; roots have NAN. *cycles, n
- * entries, is owned by the caller. Errors: STATUS_MEMORY. */
+/* Number of moments of a cycle that minima, maxima and averages are taken from. */
 enum { PULSE_SAMPLES = 64 };
+/* Computes the measures of all segments.
+ *
+ * threads  maximum number of threads; 0: all processors. The result does not depend on it.
+ * cycles   receives an array of pulse->n entries, which the caller frees. Roots have NAN.
+ * Errors   STATUS_MEMORY. */
 MUST_CHECK Status pulse_cycles(const Pulse *pulse, int threads, PulseCycle **cycles, Err *err);
 
 /* ---- 0-D decks ------------------------------------------------------------------------------- */
 
-/* Appends the tree as a deck of svZeroDSolver, in JSON. Units are cm, g and s. Vessels are called
- * branchID_seg0, ID the id of the segment. Inertance is rho l / A.
+/* Appends the input file ("deck") of svZeroDSolver for the tree, as JSON in cm, g and s. Each
+ * segment becomes a vessel with a resistance, a compliance and the inertance rho l / A. Its name is
+ * branchID_seg0, where ID is the id of the segment. Outlets become boundary conditions of the type
+ * RCR or RESISTANCE, or CORONARY if params.tissue is set.
  *
- * pulse    solved, without a tissue pressure in a structured tree.
- * points   samples of the inflow per cycle.
- * Errors   STATUS_INPUT for outlets that are structured trees. STATUS_MEMORY. */
+ * pulse    result of pulse_solve.
+ * points   number of samples of each waveform, at least 2; the first and the last one are a period
+ *          apart.
+ * Errors   STATUS_INPUT if outlets are structured trees, if flow leaves the tree at an inner node,
+ *          if no flow leaves at a terminal, or if the drive is flow and several segments leave a
+ *          root. STATUS_MEMORY. */
 MUST_CHECK Status pulse_put_deck(const Pulse *pulse, size_t points, Text *out, Err *err);
 
 #endif

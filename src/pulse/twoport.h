@@ -1,7 +1,7 @@
 /* The two-port of a vessel for two harmonics at a time. Private to the module pulse.
  *
- * A PairR holds one real number for each of the two harmonics. It is a vector of two doubles, which
- * every x86-64 processor has, so that all processors give the same bits. */
+ * A PairR holds one real number for each of the two harmonics. It is a vector of two doubles: every
+ * x86-64 processor has such vectors, so all processors give the same bits. */
 #ifndef CORCAST_PULSE_TWOPORT_H
 #define CORCAST_PULSE_TWOPORT_H
 
@@ -16,20 +16,22 @@ typedef struct PairC {
     PairR re, im;
 } PairC;
 
-/* What two harmonics have in common in all vessels. */
+/* Constants of two harmonics that are the same for all vessels. */
 typedef struct PairFrequency {
     PairR omega;     /* angular frequency, 1/s */
     PairC compliant; /* j omega / (1 + j omega t_w), t_w the relaxation time of the wall */
-    int n_terms;     /* minimum number of terms of the continued fraction, for alpha 0 */
+    int n_terms;     /* not used */
 } PairFrequency;
 
-/* The two-port of a vessel, multiplied by `scale`: p_in = (a p_out + b q_out) / scale, q_in = (c
- * p_out + a q_out) / scale. The scale is 1 unless cosh would overflow. */
+/* The two-port of a vessel, multiplied by `scale`. It relates the proximal end (in) to the distal
+ * end (out): p_in = (a p_out + b q_out) / scale, q_in = (c p_out + a q_out) / scale. The scale is 1
+ * unless cosh would overflow. */
 typedef struct PairPort {
     PairC a, b, c;
     PairR scale;
 } PairPort;
 
+/* Returns the same complex number for both harmonics. */
 static inline PairC pairc(double re, double im)
 {
     return (PairC){(PairR){0} + re, (PairR){0} + im};
@@ -56,17 +58,18 @@ static inline PairC pairc_inverse(PairC x)
     return (PairC){x.re * k, -x.im * k};
 }
 
-/* Makes the frequencies of harmonics `first` and first + 1, counted from 1. */
+/* Returns the constants of the harmonics `first` and first + 1. `first` is at least 1. */
 PairFrequency pairfrequency(int first, double period_s, double wall_time_s);
 
-/* Computes the friction factor H. `u` is alpha^2, the squared Womersley number, of each harmonic.
- */
+/* Returns the complex friction factor [pulse_friction]. `u` is the squared Womersley number of each
+ * harmonic. */
 PairC pair_friction(PairR u);
 
-/* Computes the two-port of a vessel. */
+/* Returns the two-port of a vessel. */
 PairPort pair_port(const PulseVessel *vessel, const PairFrequency *at);
 
-/* Returns the admittance at the inlet of a vessel whose outlet has the admittance `load`. */
+/* Returns the admittance at the proximal end of a vessel that has the admittance `load` at its
+ * distal end. *inverse receives 1 / (a + b load). */
 static inline PairC pairport_load(const PairPort *port, PairC load, PairC *inverse)
 {
     *inverse = pairc_inverse(pairc_add(port->a, pairc_mul(port->b, load)));

@@ -12,7 +12,7 @@
 static Status check_samples(const double *times, const double *values, size_t n, int harmonics,
                             double *range, Err *err)
 {
-    double low = values[0], high = values[0];
+    double low = HUGE_VAL, high = -HUGE_VAL;
     if (n < 3)
         return err_set(err, STATUS_INPUT, "the waveform has %zu samples; it needs at least 3", n);
     for (size_t i = 0; i < n; i++) {

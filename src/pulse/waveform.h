@@ -5,42 +5,52 @@
 #include "base/base.h"
 #include <stdbool.h>
 
+/* The maximum and the default number of harmonics, and the maximum length of a template's texts. */
 enum { WAVEFORM_MAX_HARMONICS = 64, WAVEFORM_HARMONICS = 16, WAVEFORM_MAX_TEXT = 200 };
 
 /* x(t) = mean + sum over k of Re(c_k exp(2 pi j k t / T)), c_k = re[k] + j im[k]. */
 typedef struct Waveform {
     double period_s, mean;
     double re[WAVEFORM_MAX_HARMONICS + 1], im[WAVEFORM_MAX_HARMONICS + 1]; /* index 0 is unused */
-    int harmonics; /* that are known; the others are 0 */
-    bool is_flow;  /* templates: the quantity is flow; else pressure */
-    char about[WAVEFORM_MAX_TEXT + 1], source[WAVEFORM_MAX_TEXT + 1]; /* of a template; or "" */
+    int harmonics; /* number of known harmonics; all higher coefficients are 0 */
+    bool is_flow;  /* the quantity is flow, as a template states; false: pressure, or unknown */
+    /* Description and source, from a template; else "". */
+    char about[WAVEFORM_MAX_TEXT + 1], source[WAVEFORM_MAX_TEXT + 1];
 } Waveform;
 
-/* Computes the coefficients of a cycle that is linear between its samples. The integrals are exact,
- * so coarse samples do not alias.
+/* Computes the Fourier coefficients of a cycle that is linear between its samples. The integrals
+ * are exact, so coarse samples do not alias.
  *
- * times      s, rising; the period is from the first to the last.
- * harmonics  are computed, in [1, WAVEFORM_MAX_HARMONICS]. 0: WAVEFORM_HARMONICS, or as many as the
- *            samples allow.
- * Errors     STATUS_INPUT if there are fewer than 3 samples, fewer than 2 per harmonic, times that
- *            do not rise, or a last value that differs from the first by more than 1 % of the
- * range. The sentence names no file. */
+ * times      n times in seconds, strictly increasing. The period is the last minus the first time.
+ * values     n values in any unit. The last value is replaced by the first.
+ * n          at least 1.
+ * harmonics  number of harmonics, in [1, WAVEFORM_MAX_HARMONICS]. 0: WAVEFORM_HARMONICS, or
+ *            (n - 1) / 2 if that is smaller.
+ * Errors     STATUS_INPUT, without the name of a file, if there are fewer than 3 samples or fewer
+ *            than 2 * harmonics + 1, if times do not increase, if the last value differs from the
+ *            first by more than 1 % of the range, or if the mean is 0. */
 MUST_CHECK Status waveform_sample(const double *times, const double *values, size_t n,
                                   int harmonics, Waveform *out, Err *err);
 
-/* Reads a cycle from a CSV file with the columns time (s) and value, whose first line may be
- * titles. Errors: as waveform_sample, with file and, where there is one, line; STATUS_IO,
- * STATUS_MEMORY. */
+/* Reads a cycle from a CSV file with the columns time (s) and value. The first line may hold
+ * titles. Empty lines and lines that begin with '#' are ignored.
+ *
+ * harmonics  as in waveform_sample.
+ * Errors     STATUS_INPUT, with file and line, for a line that is not two numbers; the errors of
+ *            waveform_sample, with the file; STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status waveform_read(const char *path, int harmonics, Waveform *out, Err *err);
 
-/* Reads a template: an INI file with about, source, quantity, period_s, mean, amplitude (relative
- * to the mean) and phase_deg of each harmonic: x / mean = 1 + sum of A_k cos(2 pi k t / T - phi_k).
- * Errors: STATUS_INPUT with file and line, STATUS_IO, STATUS_MEMORY. */
+/* Reads a template: an INI file with the keys about, source, quantity (pressure or flow), period_s,
+ * amplitude and phase_deg. The last two list a number A_k and phi_k for each harmonic, separated by
+ * blanks. The cycle is x(t) = 1 + sum over k of A_k cos(2 pi k t / T - phi_k), so its mean is 1.
+ *
+ * Errors   STATUS_INPUT with the file and, if one line is wrong, the line; STATUS_IO;
+ *          STATUS_MEMORY. */
 MUST_CHECK Status waveform_read_template(const char *path, Waveform *out, Err *err);
 
-/* Returns the value at time t, s. */
+/* Returns x(t), t in seconds. */
 double waveform_at(const Waveform *waveform, double t);
-/* Returns the largest minus the smallest of 256 values of a cycle. */
+/* Returns the range of a cycle: the largest minus the smallest of 256 evenly spaced values. */
 double waveform_range(const Waveform *waveform);
 
 #endif

@@ -1,5 +1,5 @@
-/* Smooths and resamples the centrelines of measured trees. Both work along each branch
- * [tree/branches.h]. Roots, bifurcations and terminals keep their positions. */
+/* Smooths and resamples the centrelines of measured trees. Both operations treat each branch on its
+ * own [tree/branches.h]. Roots, bifurcations and terminals keep their positions. */
 #ifndef CORCAST_TREE_CENTRELINE_H
 #define CORCAST_TREE_CENTRELINE_H
 
@@ -8,34 +8,39 @@
 
 typedef struct Tree Tree;
 
-/* How far tree_smooth may move a node, in radii of the thinner of its two segments. */
+/* Maximum move of a node by tree_smooth, as a multiple of the radius of the thinner of its two
+ * segments. */
 #define SMOOTH_MOST_RADII 0.25
 
 /* Quantities by which two versions of a tree are compared. */
 typedef struct CentrelineSums {
-    double length_mm, volume_mm3; /* sum of pi r^2 l */
-    double resistance;            /* sum of l / r^4 over the segments with a radius, 1/mm^3 */
+    double length_mm, volume_mm3; /* sums of l and of pi r^2 l over all segments */
+    double resistance;            /* sum of l / r^4 over the segments with r > 0, 1/mm^3 */
 } CentrelineSums;
 
+/* Returns the sums of a tree. */
 CentrelineSums centreline_sums(const Tree *tree);
 
+/* The moves of tree_smooth. */
 typedef struct SmoothMoves {
-    double most_mm, most_radii; /* largest move of a node */
-    size_t held;                /* number of nodes that SMOOTH_MOST_RADII held back */
+    double most_mm, most_radii; /* largest move, in mm and in radii of the node's thinner segment */
+    size_t held;                /* number of nodes whose move was limited by SMOOTH_MOST_RADII */
 } SmoothMoves;
 
-/* Moves the nodes inside branches by 10 rounds of Taubin's filter with the factors 0.5 and -0.53
- * [Taubin, SIGGRAPH 1995], which removes the steps of voxels and does not shorten curves. A node
- * moves by at most SMOOTH_MOST_RADII; one at a segment without radius stays. Errors:
- * STATUS_MEMORY. */
+/* Smooths the positions of the nodes inside branches by 10 rounds of Taubin's filter with the
+ * factors 0.5 and -0.53 [Taubin, SIGGRAPH 1995]. The filter removes the steps of voxels and does
+ * not shorten curves. Each move is limited to SMOOTH_MOST_RADII, so a node at a segment without
+ * radius does not move. Errors: STATUS_MEMORY. */
 MUST_CHECK Status tree_smooth(Tree *tree, SmoothMoves *moves, Err *err);
 
-/* Makes a copy of the tree whose branches have segments of equal length, as near to `step_mm` > 0
- * as their number allows, at least one per branch. The new nodes lie on the old segments.
+/* Makes a copy of the tree in which each branch has segments of equal length, measured along the
+ * old centreline. A branch gets its length divided by `step_mm` > 0, rounded, as the number of its
+ * segments, and at least one. The new nodes lie on the old segments.
  *
- * A new segment has the radius of the tube with the same resistance as the old ones that it
- * replaces: the mean of r^-4 over the length. Columns and types are those of the old segment at its
- * end. Flow shares move to the next node. Ids are 1 to n.
+ * A new segment has the same Poiseuille resistance as the old segments that it replaces: its r^-4
+ * is the mean of their r^-4 over the length. It has the column values and the type of the old
+ * segment at its distal end. The flow share of an old node is added to the next new node
+ * downstream. Ids are 1 to n.
  *
  * out      receives the tree; release it with tree_release.
  * Errors   STATUS_INFEASIBLE if there would be more than TREE_MAX_ID nodes; STATUS_MEMORY. */

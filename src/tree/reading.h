@@ -19,26 +19,28 @@ typedef enum LengthUnit { LENGTH_MM, LENGTH_UM, LENGTH_CM, LENGTH_M, LENGTH_UNIT
 extern const char *const length_unit_names[LENGTH_UNITS + 1];
 /* Returns the length of the unit in mm. */
 double length_unit_mm(LengthUnit unit);
-/* Converts mm to a unit, such that reading the result gives `mm` again, as closely as possible: a
- * number that is read and written keeps its text. */
+/* Converts a length from mm to a unit. Of the numbers near mm / length_unit_mm(unit), returns the
+ * one that converts back to `mm` best. A number that is read and written again therefore keeps its
+ * text. */
 double length_from_mm(double mm, LengthUnit unit);
 
-/* The options of reading. Zeroed: none was set. Texts are borrowed. */
+/* The options for reading. Zeroed: none is set. Texts are borrowed. */
 typedef struct ReadOptions {
     bool has_unit, has_voxel_size;
-    LengthUnit unit;           /* of coordinates and radii; if !has_unit, the format's usual unit */
-    Vec3 voxel_size;           /* factors of the coordinates, each above 0 */
-    bool voxel_radii;          /* radii are voxels, too; their factor is the geometric mean of
-                                * voxel_size */
+    LengthUnit unit;  /* of coordinates and radii; if !has_unit, the format's usual unit */
+    Vec3 voxel_size;  /* factors that the coordinates are multiplied by, each above 0 */
+    bool voxel_radii; /* radii are in voxels, too; they are multiplied by the geometric mean
+                       * of voxel_size */
     double merge_tolerance_mm; /* points this close are merged; 0: only points at one position */
-    bool break_loops;          /* cut each loop at its thinnest line; false: refuse loops */
-    const char *radius_array;  /* name of the array with the radii; NULL: found by usual names */
+    bool break_loops;          /* cut each loop at its thinnest line; false: a loop is an error */
+    const char *radius_array;  /* name of the array with the radii; NULL: search for usual names */
     const char *graphml_keys;  /* "x=KEY,y=KEY,...": the GraphML keys of the attributes */
     const char *columns;       /* "x=NAME,y=NAME,...": the columns of a table */
     const char *edges;         /* path of the table of lines that belongs to a table of points */
-    const char *format;        /* main extension of the format, "vtk"; NULL: by name and content */
-    double radius_mm;          /* radius of segments for which the file states none or 0; 0: files
-                                * must state radii */
+    const char *format;        /* main extension of the format, "vtk"; NULL: detect the format from
+                                * the name and the content of the file */
+    double radius_mm;          /* radius of the segments for which the file states none or 0; 0: a
+                                * file without radii is an error */
     bool repair_radii;         /* fill radii that are negative, infinite, 0 or missing */
 } ReadOptions;
 
@@ -48,26 +50,28 @@ typedef struct LengthScale {
     double radius;
 } LengthScale;
 
-/* Returns the factors of the options; if they set no unit, or are NULL, of a file in `unit`. */
+/* Returns the factors that follow from the options. Uses `unit` if the options set no unit.
+ * `options` may be NULL. */
 LengthScale length_scale(const ReadOptions *options, LengthUnit unit);
 /* Converts a position to mm. */
 Vec3 length_scaled(const LengthScale *scale, Vec3 position);
 
 /* Why a node is a root. */
 typedef enum RootReason {
-    ROOT_STATED,    /* the file states it */
-    ROOT_DIRECTION, /* directed lines leave it, and none ends there */
-    ROOT_THICKEST,  /* it is the thickest end of its component */
+    ROOT_STATED,    /* the file states that the node is a root */
+    ROOT_DIRECTION, /* directed lines leave the node, and none ends there */
+    ROOT_THICKEST,  /* the node is the thickest end of its connected component */
     ROOT_REASONS
 } RootReason;
 
-/* Per RootReason: a text for people, "from the file". */
+/* Per RootReason: a text for reports, "from the file". */
 extern const char *const root_reason_texts[ROOT_REASONS];
 
+/* A root of the tree that was read. */
 typedef struct ReadRoot {
-    int32_t id;
+    int32_t id; /* id of the node */
     RootReason reason;
-    size_t nodes; /* number of nodes in its component */
+    size_t nodes; /* number of nodes in its connected component */
 } ReadRoot;
 
 /* A line that was removed to open a loop. */
@@ -77,16 +81,18 @@ typedef struct ReadCut {
     double radius_mm;
 } ReadCut;
 
+/* Bounds of the arrays below, and number of points from which on integer coordinates look like
+ * voxels and not like chance. */
 enum { READ_MAX_DEGREE = 8, READ_MAX_CUTS = 1000, READ_FEW = 20 };
 
-/* How a tree was made of a network: the points and lines of a file. */
+/* How a tree was made from a network, which consists of the points and lines of a file. */
 typedef struct NetworkReading {
     size_t points, lines;  /* counts in the file */
     size_t merged;         /* count of points merged with another point */
     size_t unused;         /* count of points without a line */
     size_t without_length; /* count of lines from a point to itself */
     size_t repeated;       /* count of lines that repeat another line */
-    size_t against;        /* count of lines that the file directs towards the root */
+    size_t against;        /* count of lines whose direction in the file is towards the root */
     size_t loops;          /* count of lines that were cut because they closed a loop */
     size_t near_ends;      /* count of ends that nearly touch another component */
     double near_mm;        /* the widest gap at such an end */
@@ -97,24 +103,27 @@ typedef struct NetworkReading {
 /* The report about a tree that was read. Zeroed: empty. Release with reading_release. */
 typedef struct TreeReading {
     const char *format; /* name of the format, "VTK"; borrowed */
-    bool is_network;    /* the format holds points and lines, not a tree; `network` is set */
+    bool is_network;    /* the format holds points and lines, not a tree; false: `network` is
+                         * zeroed */
     NetworkReading network;
     ReadRoot *root; /* the roots, one per component; owned */
     size_t n_roots, roots_capacity;
-    size_t degree[READ_MAX_DEGREE + 1]; /* degree[k]: count of nodes where k segments meet; the
-                                         * last: k or more */
+    size_t degree[READ_MAX_DEGREE + 1]; /* degree[k]: count of nodes where k segments meet;
+                                         * the last entry counts higher degrees, too */
     size_t without_radius;              /* count of segments with radius 0 */
     size_t given_radius;                /* count of segments that got ReadOptions.radius_mm */
     size_t repaired_radii;              /* count of segments whose radius was repaired */
-    int32_t *repaired;                  /* their ids; NULL: there are none; owned */
-    double median_radius_mm;            /* of all segments; 0 if there are none */
+    int32_t *repaired;                  /* ids of these segments; NULL: there are none; owned */
+    double median_radius_mm;            /* median over all segments; 0 if there are none */
     LengthUnit unit;                    /* the unit that was used for coordinates and radii */
     bool unit_is_stated;                /* options or the file state the unit */
     bool voxels;                        /* coordinates were multiplied by the size of a voxel */
-    bool has_plausible_unit;            /* in some unit, the radii are plausible for vessels ... */
-    LengthUnit plausible_unit;          /* ... and this is the unit */
-    bool looks_like_voxels; /* there are READ_FEW points or more, and all are integers */
-    char **note;            /* sentences about what was assumed; owned */
+    bool has_plausible_unit;            /* the median radius is plausible for vessels in `unit` or,
+                                         * if not, in another unit */
+    LengthUnit plausible_unit;          /* this unit; set if has_plausible_unit */
+    bool looks_like_voxels; /* no unit is stated, and all coordinates of READ_FEW or more points are
+                             * integers */
+    char **note;            /* sentences about what was assumed, without full stops; owned */
     size_t n_notes, notes_capacity;
 } TreeReading;
 
@@ -126,32 +135,38 @@ void reading_release(TreeReading *reading);
 MUST_CHECK Status reading_note(TreeReading *reading, Err *err, const char *format, ...)
     PRINTF_LIKE(3, 4);
 
-/* Checks a radius of a file. NAN, no radius, is accepted. A radius that is infinite or negative
- * becomes NAN if options->repair_radii is set; reading_fill_radii replaces it later. Otherwise the
- * function returns STATUS_INPUT with a sentence to which the caller adds file and record. `options`
- * may be NULL. */
+/* Checks a radius of a file. NAN stands for a missing radius and is accepted. A radius that is
+ * infinite or negative becomes NAN if options->repair_radii is set, and reading_fill_radii replaces
+ * it later. Otherwise such a radius is an error. `options` may be NULL.
+ *
+ * Errors  STATUS_INPUT with a sentence that lacks the file and the record, which the caller adds.
+ */
 MUST_CHECK Status reading_radius(const ReadOptions *options, double *radius, Err *err);
 
-/* Returns STATUS_INPUT with a sentence about the bad radius `text`, which the sentence calls
- * `what`. The caller adds file and record. */
+/* Refuses a bad radius: returns STATUS_INPUT with a sentence that begins "the WHAT is 'TEXT'". The
+ * caller adds the file and the record. */
 MUST_CHECK Status reading_refuse_radius(const char *what, const char *text, Err *err);
 
-/* Replaces missing radii, NAN or 0, according to the options, and counts them in *reading.
+/* Replaces the missing radii, which are NAN or 0, and counts them in *reading. With
+ * options->repair_radii it repairs them. Otherwise they become options->radius_mm if that is above
+ * 0, and the tree is not changed if it is 0.
  *
- * A repaired radius is interpolated along its branch between the nearest radii; at an end of the
- * branch it is the nearest radius. A branch without any radius takes the thinner one of its parent
- * and its thickest daughter or, if both lack one, the median of the tree.
+ * A repaired radius is interpolated along its branch between the nearest known radii. At an end of
+ * the branch it is the nearest known radius. A branch without a known radius gets the smaller one
+ * of the radii of its parent and of its thickest daughter. If both are unknown, it gets the median
+ * of the tree.
  *
  * Errors  STATUS_INPUT if there is no radius at all; STATUS_MEMORY.
  * Cost    O(n). */
 MUST_CHECK Status reading_fill_radii(TreeReading *reading, const ReadOptions *options, Tree *tree,
                                      Err *err);
 
-/* Returns true if all coordinates are integers. */
+/* Returns true if x, y and z are integers. */
 bool reading_is_voxel(Vec3 position);
 
-/* Measures a tree for the report: roots whose reason is not recorded yet, degrees, the median
- * radius and the plausible unit. Errors: STATUS_MEMORY. Cost: O(n log n). */
+/* Completes the report about a tree: records the roots if no reader has recorded them, counts the
+ * degrees, and finds the median radius and the plausible unit. Errors: STATUS_MEMORY. Cost:
+ * O(n log n). */
 MUST_CHECK Status reading_measure(TreeReading *reading, const Tree *tree, Err *err);
 
 #endif

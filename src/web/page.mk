@@ -1,4 +1,4 @@
-# Builds the page that grows trees, build/grow/corcast.html: `make page` calls this file. The program is compiled twice,
+# Builds the page that grows trees, build/grow/corcast.html: `make page` calls this file. The program is compiled
 # with and without vectors, by clang for WASI [docs/decisions/wasm.md].
 OUT := build/grow
 SYSROOT := $(or $(WASI_SYSROOT),/usr)
@@ -12,8 +12,9 @@ SOURCES := $(filter-out $(ABSENT),$(wildcard $(MODULES:%=src/%/*.c) $(patsubst %
 	$(addprefix src/image/,colorscale.c encoding.c colormap.c)
 FLAGS := --target=wasm32-wasi --sysroot=$(SYSROOT) -std=c11 -O3 -DCORCAST_PAGE '-DCORCAST_PREFIX=""' -D_GNU_SOURCE -D_WASI_EMULATED_PROCESS_CLOCKS -Isrc \
 	-ffunction-sections -fdata-sections -fno-math-errno -fno-trapping-math -Wall -Wno-unused
-# With vectors, clang 14 gives src/mesh/lattice/octree.c other cells than the native program has. The cause is not known.
-# So meshes are compiled without.
+# Growth alone gains from vectors, so both programs share the objects of all other modules. (With vectors, clang 14 gives
+# src/mesh/lattice/octree.c other cells than the native program has. The cause is not known.)
+GROWTH := $(filter $(addprefix src/,base/% geom/% tree/% domain/% grow/% derive/%),$(SOURCES))
 LIMITS := -Wl,--gc-sections,--stack-first,-z,stack-size=1048576,--strip-all
 
 $(OUT)/corcast.html: $(OUT)/made/simd.wasm $(OUT)/made/plain.wasm $(wildcard templates/grow/* templates/viewer/* templates/colormaps/*) \
@@ -22,14 +23,14 @@ $(OUT)/corcast.html: $(OUT)/made/simd.wasm $(OUT)/made/plain.wasm $(wildcard tem
 	@templates/grow/bundle $(OUT)
 
 define MODULE
-$(OUT)/made/$(1).wasm: $(SOURCES:%.c=$(OUT)/$(1)/%.o)
+$(OUT)/made/$(1).wasm: $(GROWTH:%.c=$(OUT)/$(1)/%.o) $(patsubst %.c,$(OUT)/plain/%.o,$(filter-out $(GROWTH),$(SOURCES)))
 	@printf '  %-6s %s\n' LINK $$@
 	@mkdir -p $$(@D)
 	@$(CLANG) $(FLAGS) -mexec-model=reactor $(LIMITS) -o $$@ $$^ -lwasi-emulated-process-clocks
 $(OUT)/$(1)/%.o: %.c
 	@printf '  %-6s %s\n' WASM $$<
 	@mkdir -p $$(@D)
-	@$(CLANG) $(FLAGS) $$(if $$(filter src/mesh/%,$$<),,$(2)) -ffp-contract=off -MMD -MP -c -o $$@ $$<
+	@$(CLANG) $(FLAGS) $(2) -ffp-contract=off -MMD -MP -c -o $$@ $$<
 -include $(SOURCES:%.c=$(OUT)/$(1)/%.d)
 endef
 $(eval $(call MODULE,simd,-msimd128))

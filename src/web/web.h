@@ -1,11 +1,14 @@
-/* The public header of the module web: the program of the page that grows trees, compiled to
- * WebAssembly [templates/grow/].
+/* The public header of the module web: the program, compiled to WebAssembly, of the web page that
+ * grows trees [templates/grow/].
  *
- * The page's worker calls these functions. There is one tree at a time: the one that web_grow made
- * last. Texts go in and bytes come out through memory of the module: web_input gives room for a
- * text, and web_bytes and web_size describe the result of the last call. A function that can fail
- * returns 0 on success, and else the exit status that the program has for this failure; web_bytes
- * is then one sentence. The page offers no files, so an option that names a file fails. */
+ * The page's JavaScript worker calls these functions. The program holds one tree: the one that the
+ * last successful web_grow made. Before that, the tree is empty.
+ *
+ * A function with an input reads the text that the worker wrote to the buffer from web_input. The
+ * worker must call web_input at least once before such a function. The result of a function is a
+ * sequence of bytes, which web_bytes and web_size describe. Functions that return int return 0 on
+ * success. On failure they return the exit status that `corcast` has for this failure, and the
+ * result is one sentence. The page has no files, so an option that names a file fails. */
 #ifndef CORCAST_WEB_WEB_H
 #define CORCAST_WEB_WEB_H
 
@@ -18,39 +21,42 @@
 #define WEB_EXPORT(name)
 #endif
 
-/* Returns room for a text of `size` bytes and its final zero, which stays valid until the next
- * call. NULL if memory runs out. */
+/* Returns a buffer for an input of `size` bytes and its final zero, which is set. The buffer stays
+ * valid until the next call of web_input. Returns NULL if memory runs out. */
 WEB_EXPORT(web_input) char *web_input(size_t size);
 
-/* The bytes of the last result, and their number. The bytes stay valid until the next call. */
+/* Return the bytes of the last result, and their number. The bytes stay valid until the next call
+ * of a function that makes a result. */
 WEB_EXPORT(web_bytes) const char *web_bytes(void);
 WEB_EXPORT(web_size) size_t web_size(void);
 
-/* Grows a tree as `corcast grow` does, and refines it if asked. The input has one option per line,
- * "NAME=VALUE", without dashes. The result is the command line that makes the tree, then the notes
- * and warnings of the operation, one per line, each after "note: " or "warning: ". After an error
- * the tree before stays. */
+/* Grows a tree as `corcast grow` does, with the same options. The input has one option per line,
+ * "NAME=VALUE", where NAME has no dashes in front. The first line of the result is the command line
+ * that makes the same tree. Each further line is a note or a warning of the operation, and begins
+ * with "note: " or "warning: ". After an error the previous tree is kept. */
 WEB_EXPORT(web_grow) int web_grow(void);
 
-/* The tree as an SWC file: the bytes that `corcast grow -o T.swc` writes. */
+/* Makes the tree as an SWC file: the bytes that `corcast grow -o T.swc` writes. */
 WEB_EXPORT(web_swc) int web_swc(void);
-/* The surface of the tree as an STL file. The input has options of `corcast export`, as web_grow's
- * of `corcast grow`. */
+/* Makes the surface of the tree as an STL file. The input has options of `corcast export`, in the
+ * form of web_grow. */
 WEB_EXPORT(web_stl) int web_stl(void);
 
-/* The nodes of the tree, as little-endian arrays one after another: float x, y, z per node, mm;
- * float radius per node, mm; uint32 index of the parent per node, a root's own; uint32 id per
- * node. */
+/* Makes four little-endian arrays of the nodes of the tree, one after the other: float x, y and z
+ * per node, mm; float radius per node, mm; uint32 index of the parent per node, or of the node
+ * itself for a root; uint32 id per node. */
 WEB_EXPORT(web_nodes) int web_nodes(void);
 
-/* The number of fields that trees may have. */
+/* Returns the number of fields that `corcast` can compute for a tree. Makes no result. */
 WEB_EXPORT(web_fields) size_t web_fields(void);
-/* The field whose number, from 0, is the input: the line "name<TAB>title<TAB>unit" and its final
- * zero, then as many bytes that the size is a multiple of 4, then a float per node, NAN for no
- * value. Empty if the tree lacks what the field needs. */
+/* Computes a field. The input is its index in decimal, from 0 to web_fields() - 1. The result is
+ * the text "name<TAB>title<TAB>unit" with a final zero, then zeros up to a multiple of 4 bytes,
+ * then a little-endian float per node, NaN where there is no value. The result is empty, without an
+ * error, if there is no such field or if the tree lacks a quantity that the field needs. */
 WEB_EXPORT(web_field) int web_field(void);
 
-/* What `corcast info` tells of the tree: lines "key<TAB>value", with the keys of its JSON. */
+/* Makes a summary of the tree: lines "key<TAB>value", with keys and values of the JSON that
+ * `corcast info` prints. */
 WEB_EXPORT(web_summary) int web_summary(void);
 
 #endif

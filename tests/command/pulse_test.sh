@@ -135,6 +135,8 @@ test_bad_inputs_are_refused() {
     refuses 'bad.csv: sample 3 has the time 0.2, after 0.3' --drive bad.csv
     printf '0,80\n0.3,120\n0.5,90\n0.8,82\n' >bad.csv
     refuses 'not closed: it begins at 80 and ends at 82' --drive bad.csv
+    echo 'time,value' >empty.csv
+    refuses 'empty.csv: the waveform has 0 samples; it needs at least 3' --drive empty.csv
     printf '0,1\n0.2,0\n0.4,-1\n0.6,0\n0.8,1\n' >bad.csv
     refuses 'mean of the waveform' --drive bad.csv
     printf '0,80\n0.3,120\n0.5,90\n0.8,80\n' >bad.csv

@@ -288,7 +288,7 @@ END
 }
 
 test_key_c_goes_through_all_fields() {
-    local field fields="radius length flow velocity pressure wss reynolds level strahler diameter-strahler branch tree"
+    local field fields="radius length flow velocity pressure wss reynolds level strahler diameter-strahler branch tree type"
     local n=0
     cp "$DATA/bifurcation.swc" tree.swc
     open_view --size 120x90

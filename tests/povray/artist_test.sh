@@ -39,20 +39,21 @@ test_no_model_makes_povray_warn() {
     grep -q Blob_Cell blob.inc || fail "expected a blob of many cells"
 }
 
-# A colored and pruned forest in the shadows of every look, and the planes that `verify` asks for.
+# A colored and pruned forest in the shadows of every look, and the planes that `verify` asks for. Models take turns: looks
+# and models are separate files of a scene.
 test_no_look_and_no_plane_makes_povray_warn() {
-    local model look plane=0 header
+    local model look n=0 models header
+    read -ra models <<<"$MODELS"
     cp "$REPO"/templates/povray/planes.inc corcast_planes.inc
     run_ok corcast grow --quiet --terminals 40 --inlet 0,50 --inlet 0,-50 -o tree.swc
-    for model in $MODELS; do
-        for look in $(corcast looks | grep -v 'not in POV-Ray' | cut -f 1); do
-            run_ok corcast scene tree.swc --quiet --model "$model" --look "$look" --shadows on --size 24x18 --view iso \
-                --projection perspective --color-by flow --log --classes 5 --prune-radius 0.3 -o "$model.pov"
-            header=+HIcorcast_planes.inc
-            [ $((plane % 5)) != 0 ] || header=
-            draw "$model" +W24 +H18 $header Declare=Corcast_Plane=$((plane++ % 5))
-            expect_no_warning "$model"
-        done
+    for look in $(corcast looks | grep -v 'not in POV-Ray' | cut -f 1) $(printf 'cast %.0s' "${models[@]}"); do
+        model=${models[n % ${#models[@]}]}
+        run_ok corcast scene tree.swc --quiet --model "$model" --look "$look" --shadows on --size 24x18 --view iso \
+            --projection perspective --color-by flow --log --classes 5 --prune-radius 0.3 -o "$model.pov"
+        header=+HIcorcast_planes.inc
+        [ $((n % 5)) != 0 ] || header=
+        draw "$model" +W24 +H18 $header Declare=Corcast_Plane=$((n++ % 5))
+        expect_no_warning "$model"
     done
 }
 
@@ -369,7 +370,7 @@ test_the_studio_has_each_of_its_five() {
 # The hero scene by its one command, small: a red trunk in the middle, before a sweep of a darker, even gray.
 test_the_hero_scene_is_drawn_by_one_command() {
     local r g b
-    run_ok env CORCAST="$CORCAST" "$REPO/docs/examples/hero" hero 32 Declare=Hero_Quality=0
+    run_ok env TERMINALS=40 CORCAST="$CORCAST" "$REPO/docs/examples/hero" hero 32 Declare=Hero_Quality=0
     ! grep 'Warning:' stderr | grep -v experimental || fail "expected no warning but of subsurface"
     read -r r g b < <(pngtopnm hero/hero.png | pamcut -left 0 -top 0 -width 32 -height 6 | pamscale -xsize 1 -ysize 1 | pnmtoplainpnm | tail -1)
     [ "$r" -lt 150 ] && [ "$r" -gt "$b" ] && [ $((r - b)) -lt 20 ] || fail "expected a gray sweep, got $r $g $b"

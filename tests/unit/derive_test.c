@@ -236,8 +236,9 @@ static void an_unknown_field_is_answered_with_the_known_ones(void **state)
     Err err;
     assert_int_equal(derive_field(&tree, &no_options, "color", &field, &err), STATUS_USAGE);
     assert_string_equal(
-        err.text, "there is no field 'color'; the fields are radius, length, flow, velocity, "
-                  "pressure, wss, reynolds, level, strahler, diameter-strahler, branch, tree, type");
+        err.text,
+        "there is no field 'color'; the fields are radius, length, flow, velocity, "
+        "pressure, wss, reynolds, level, strahler, diameter-strahler, branch, tree, type");
     tree_release(&tree);
 }
 

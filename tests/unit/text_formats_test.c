@@ -226,8 +226,9 @@ static void rejects_vmv_that_makes_no_sense(void **state)
          "found 4"},
         {"$VERT_LIST_BEGIN\n1 0 0 0 1\n1 0 0 2 1\n",
          ":3: the vertex '1' is already defined in line 2"},
-        {"$VERT_LIST_BEGIN\n1 0 0 0 -2\n", ":2: the radius is '-2'; it must be a finite number of "
-                                           "0 or more (`repair_radii` fills it from its neighbours)"},
+        {"$VERT_LIST_BEGIN\n1 0 0 0 -2\n",
+         ":2: the radius is '-2'; it must be a finite number of "
+         "0 or more (`repair_radii` fills it from its neighbours)"},
         {"$VERT_LIST_BEGIN\n1 0 0 0 2\n$VERT_LIST_END\n$STRANDS_LIST_BEGIN\n1 1 2\n",
          ":5: there is no vertex '2'"},
         {"$VERT_LIST_BEGIN\n1 0 0 0 2\n$VERT_LIST_END\n$STRANDS_LIST_BEGIN\n1 1\n",

@@ -1,24 +1,24 @@
-/* Grades a picture by an answer: by an interval for each channel of each pixel that is proven to
- * contain the true color [docs/ANSWERS.md]. No tolerance is needed, except one for the rounding of
- * colors in single precision. */
+/* Grades a picture by an answer. An answer has an interval for each channel of each pixel, which is
+ * proven to contain the true color [docs/ANSWERS.md]. The only tolerance is ANSWERGRADE_SLACK, for
+ * the rounding of colors. */
 #ifndef CORCAST_COMPARE_GRADE_GRADE_H
 #define CORCAST_COMPARE_GRADE_GRADE_H
 
 #include "base/base.h"
 #include "image/image.h"
 
-/* Distance from the interval, in levels of 1/255 of sRGB, up to which a pixel counts as inside.
- * Renderers compute colors in single precision, and a code of 8 bits may round either way at a
- * tie. */
+/* Distance from the interval, in levels of 1/255 of sRGB, up to which a channel counts as inside.
+ * Renderers compute colors in single precision, so a color near the middle between two 8-bit codes
+ * may get either code. */
 #define ANSWERGRADE_SLACK 0.005
 
-/* An answer as it is read from its file. */
+/* An answer that was read from a file. */
 typedef struct AnswerFile {
     Plane low, high;  /* linear colors, 3 channels; owned */
     Plane state;      /* 1 channel: 0 where the pixel is decided; owned */
-    char pattern[16]; /* "3", or "area" */
-    char scene[72];   /* digest of the scene */
-    char width[32];
+    char pattern[16]; /* pattern of the samples, "3" for 3 x 3 and the center; or "area" */
+    char scene[72];   /* digest of the scene, answer_scene_hash */
+    char width[32];   /* width up to which an interval is decided, in sRGB from 0 to 1: "1/510" */
 } AnswerFile;
 
 /* Returns true if the file is an answer: an OpenEXR file with the attribute "answer". */
@@ -28,38 +28,46 @@ bool answerfile_is(const char *path);
 MUST_CHECK Status answerfile_read(AnswerFile *answer, const char *path, Err *err);
 void answerfile_release(AnswerFile *answer);
 
-/* How a picture lies in the intervals. Distances are in levels of 1/255 of sRGB, positive where the
- * picture is brighter than the interval. */
+/* The grade of a picture. The distance of a channel is that from its interval, in levels of 1/255
+ * of sRGB or of the picture's own gamma. It is positive if the picture is brighter than the
+ * interval, and 0 inside and up to ANSWERGRADE_SLACK. */
 typedef struct AnswerGrade {
-    size_t pixels, undecided; /* undecided: pixels whose interval is wider than the answer's width;
-                               * they are graded, too, because their interval is proven */
-    size_t outside;           /* pixels with a channel outside its interval */
-    size_t brighter, darker;  /* of these: by the sum of their channels' distances */
-    double worst;             /* distance of the worst channel; 0: none is outside */
-    int x, y, channel;        /* where that is: column, row, 0 red, 1 green, 2 blue */
-    double mean[3];           /* per channel: mean distance over all pixels */
-    bool certified;           /* no pixel is outside, and one at least is decided */
+    size_t pixels, undecided; /* count of all pixels, and of those whose interval is wider than the
+                               * answer's width; these are graded, too: their interval is proven */
+    size_t outside;           /* count of pixels with a channel outside of its interval */
+    size_t brighter, darker;  /* count of the pixels outside whose sum of channel distances is above
+                               * 0, and of the others */
+    double worst;      /* the distance with the largest magnitude; 0: no channel is outside */
+    int x, y, channel; /* of `worst`: column, row, and 0 red, 1 green or 2 blue */
+    double mean[3];    /* per channel: mean distance over all pixels */
+    bool certified;    /* no pixel is outside, and at least one pixel is decided */
 } AnswerGrade;
 
-/* Grades an image of 3 channels or grey: codes of any gamma, or linear floats.
+/* Grades an image of 3 channels or grey. The image has codes of any gamma, or linear floats. A code
+ * stands for all colors that round to it. A NaN is infinitely far from its interval.
  *
- * distances  receives the worst channel's distance of each pixel, 1 channel; the caller releases
- *            it. NULL: not wanted.
+ * distances  receives the distance of each pixel's worst channel, as a plane of 1 channel; the
+ *            caller releases it. NULL: not wanted.
  * Errors     STATUS_INPUT if the sizes differ; STATUS_MEMORY. */
 MUST_CHECK Status answergrade_image(const AnswerFile *answer, const Image *image,
                                     AnswerGrade *grade, Plane *distances, Err *err);
 
-/* Checks that the intervals of two answers of one scene intersect; they are then consistent. A
- * pixel whose intervals are disjoint counts as outside, and one of the answers is wrong. Errors:
- * STATUS_INPUT if the sizes, the scenes or the patterns differ. */
+/* Checks two answers for one scene against each other. Both contain the true color, so their
+ * intervals must intersect. A pixel with disjoint intervals counts as outside: at least one answer
+ * is wrong there. Distances are positive where b is brighter than a. A pixel is undecided if it is
+ * undecided in a or b.
+ *
+ * Errors   STATUS_INPUT if the sizes, the scenes or the patterns differ. */
 MUST_CHECK Status answergrade_answers(const AnswerFile *a, const AnswerFile *b, AnswerGrade *grade,
                                       Err *err);
 
-/* Makes a picture of distances: grey where pixels are inside, red where they are brighter than the
- * answer, blue where they are darker, in full color from 8 levels on. Errors: STATUS_MEMORY. */
+/* Makes a picture of the distances from answergrade_image. Pixels inside are grey, brighter pixels
+ * are red, and darker pixels are blue. The color is full from a distance of 8 levels on:
+ * differences become visible near 2 levels. The caller releases *out. Errors: STATUS_MEMORY. */
 MUST_CHECK Status answergrade_picture(const Plane *distances, Picture *out, Err *err);
 
-/* Appends the verdict as one sentence. */
+/* Appends the verdict as a line of text. If a pixel is outside, appends two more lines: the worst
+ * channel, and the mean distances. */
 void answergrade_text(const AnswerGrade *grade, Text *out);
 /* Returns the grade as JSON: a new reference, NULL if memory runs out. */
 json_t *answergrade_json(const AnswerGrade *grade);

@@ -1,33 +1,44 @@
-/* The parts of a suite that its files share. Private to the module compare. */
+/* The steps of a suite: listing its cases, comparing them and finding unused files. Private to the
+ * module compare. */
 #ifndef CORCAST_COMPARE_SUITE_PARTS_H
 #define CORCAST_COMPARE_SUITE_PARTS_H
 
 #include "compare/suite/suite.h"
 
-/* Returns true if `pattern` selects the case `name`. A pattern is a name, "all", or names and
- * wildcards (* ? [...]) separated by commas; '*' also stands for '/'. NULL selects all. */
+/* Returns true if `pattern` selects the case `name`. A pattern is a name, or names and wildcards
+ * (* ? [...]) separated by commas. '*' also stands for '/'. "all" and NULL select every case. */
 bool suite_selects(const char *pattern, const char *name);
-/* Lists the cases of both folders by name, and the files that belong to cases. */
+/* Lists the cases of both folders in suite->cases, sorted by name. Lists the masks, tolerances and
+ * further references of the folder of references in suite->companions. folders->only limits the
+ * cases.
+ *
+ * suite    zeroed before; release it with suite_release even after an error.
+ * Errors   STATUS_IO if a folder cannot be read; STATUS_INPUT for more than 1,000,000 pictures;
+ *          STATUS_MEMORY. */
 MUST_CHECK Status suite_list(Suite *suite, const SuiteFolders *folders, Err *err);
-/* Removes the files that this run needed from suite->companions. */
+/* Removes the files from suite->companions that a case of this run needed, and says of the others
+ * why no case did. `only` is the pattern of the cases that were listed: unless it is NULL, files of
+ * cases that were not listed are removed as well. */
 void suite_find_unused(Suite *suite, const char *only);
-/* Compares the cases of a listed suite that are selected, and sets their states. */
+/* Compares the cases that have is_selected, and sets their states. `threads`: 0: all processors. */
 void suite_judge_selected(Suite *suite, const SuiteFolders *folders, int threads);
 
-/* A reference and a picture in memory. Zero before suite_pair_read. */
+/* A reference (index 0) and a picture (index 1) in memory. Zero before suite_pair_read. */
 typedef struct SuitePair {
     Image images[2];
-    Picture alphas[2]; /* empty where the image is opaque */
-    size_t masked;     /* pixels */
+    Picture alphas[2]; /* zeroed if the image is opaque */
+    size_t masked;     /* number of pixels that are not compared */
 } SuitePair;
 
-/* Reads a reference and a picture, and gives masked pixels of the picture the reference's codes.
+/* Reads a reference and a picture. Copies the masked pixels of the reference into the picture, so
+ * that they do not differ.
  *
- * paths    of the reference and of the picture.
- * mask     path of the mask; NULL, or no such file: nothing is masked.
- * pair     release it with suite_pair_release, also after an error.
- * Errors   STATUS_INPUT for a bad file, and for a mask that does not fit or hides every pixel;
- *          STATUS_IO; STATUS_MEMORY. */
+ * pair        release it with suite_pair_release even after an error.
+ * paths       paths of the reference and of the picture.
+ * mask        path of the mask; NULL, or no such file: nothing is masked.
+ * background  red, green and blue in linear light; transparent pixels are composited over it.
+ * Errors      STATUS_INPUT for a malformed file, and for a mask that has another size than the
+ *             pictures or hides every pixel; STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status suite_pair_read(SuitePair *pair, const char *const paths[2], const char *mask,
                                   const float background[3], Err *err);
 void suite_pair_release(SuitePair *pair);
@@ -35,9 +46,12 @@ void suite_pair_release(SuitePair *pair);
  * compare_pictures. */
 MUST_CHECK Status suite_pair_compare(const SuitePair *pair, const Tolerance *tolerance,
                                      CompareResult *result, Err *err);
-/* Reads the tolerance of the case at `path` of the folder of references: that of the suite, or the
- * limits of its file. `name` receives the name of the tolerance, or stays NULL; the caller frees
- * it. */
+/* Finds the tolerance of a case. `path` is the path of its reference. If there is a tolerance file
+ * beside the reference, its limits replace those of folders->case_tolerance. Otherwise the result
+ * is folders->tolerance.
+ *
+ * name     NULL before; receives the name of a tolerance that was read, which the caller frees.
+ * Errors   the errors of tolerance_read: STATUS_INPUT, STATUS_IO, STATUS_MEMORY. */
 MUST_CHECK Status suite_tolerance(const SuiteFolders *folders, const char *path,
                                   Tolerance *tolerance, char **name, Err *err);
 

@@ -16,8 +16,8 @@
 
 #include "base/base.h"
 
-/* Ends of the names of files that belong to a case, and the mark in the name of a further
- * reference. */
+/* Ends of the names of files that belong to a case, and the text between NAME and LABEL in the name
+ * of a further reference. */
 #define MASK_SUFFIX ".mask.png"
 #define TOLERANCE_SUFFIX ".tolerance.ini"
 #define REFERENCES_SUFFIX ".references.ini"
@@ -35,23 +35,24 @@ typedef struct References {
     char *text; /* owned; strings of the file point into it */
 } References;
 
-/* Reads the references of a case: the file with its name, and those that its list names.
+/* Finds the references of a case: the file with its name, and the files that its list names. Does
+ * not check that these files exist.
  *
+ * references   release it with references_release even after an error.
  * case_path    path of the case in the folder of references; must outlive *references.
- * references   release it with references_release, also after an error.
  * Errors       STATUS_INPUT, with file and line, for a name that is not a reference of this case,
- * an unknown or missing key, and a bad date; STATUS_IO; STATUS_MEMORY. */
+ *              for an unknown or missing key and for a malformed date; STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status references_read(References *references, const char *case_path, Err *err);
 void references_release(References *references);
 
-/* Returns true if the last day of the reference is over. */
+/* Returns true if the last day of the reference is before today, in UTC. */
 bool reference_is_expired(const Reference *reference);
-/* Checks a date: "2027-03-01", or "never". Errors: STATUS_INPUT. */
+/* Checks the form of a date: "2027-03-01", or "never". Errors: STATUS_INPUT. */
 MUST_CHECK Status reference_check_date(const char *date, Err *err);
 
-/* Changes the list of a case: removes the entry of the reference `name`, if there is one, and
- * appends `entry` unless it is NULL. Other lines stay. A list without entries is removed.
- * Errors: STATUS_IO, STATUS_MEMORY. */
+/* Changes the file that lists the references of a case. Removes the entry of the reference `name`,
+ * if there is one. Then appends `entry` unless it is NULL. Other lines stay. A file without entries
+ * is deleted. Errors: STATUS_INPUT if the file is not text, STATUS_IO, STATUS_MEMORY. */
 MUST_CHECK Status references_store(const char *case_path, const char *name, const Reference *entry,
                                    Err *err);
 

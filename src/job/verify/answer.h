@@ -9,28 +9,31 @@
 /* The options of `answer`. Strings are borrowed from the parsed command line. */
 typedef struct AnswerOptions {
     const char *output;
-    const char *certificate; /* file of the claims of some pixels; NULL: none */
-    const char *width;       /* greatest width of a decided interval: "1/510" or a number */
-    int pattern;
-    int body; /* geometry of the vessels: cylinders or rounded */
+    const char *certificate; /* file for the certificate [answer/certificate.h]; NULL: none */
+    const char *width; /* greatest width of a decided interval, in sRGB from 0 to 1: "1/510" or a
+                        * number */
+    int pattern;       /* AnswerParams.pattern, unless `area` is set */
+    int body;          /* geometry of the vessels: cylinders or rounded */
+    /* Area answers instead of pattern answers; `pattern` is specified; AnswerParams.squares. */
     bool area, has_pattern, squares;
-    int leaves;
+    int leaves; /* AnswerParams.leaves */
     PictureOptions picture;
 } AnswerOptions;
 
 extern const Command command_answer;
 
-/* What was computed, for a report. */
+/* Facts about an answer that was written. */
 typedef struct AnswerReport {
-    size_t pixels, undecided, beams;
-    double cpu_s;
-    HashText scene;
+    size_t pixels, undecided, beams; /* counts: all pixels; Answer.undecided; Answer.beams */
+    double cpu_s;                    /* CPU time of all threads */
+    HashText scene;                  /* answer_scene_hash */
 } AnswerReport;
 
 /* Makes the scene, computes its answer and writes options->output.
  *
- * Errors  STATUS_USAGE if an option has no answer or the scene is outside the assumptions of
- *         answers; the errors of picture_scene; STATUS_IO; STATUS_MEMORY. */
+ * Errors  STATUS_USAGE if the answer is not defined for an option, such as ambient occlusion, or
+ *         for the scene [answer_make]; the errors of picture_scene; STATUS_CANCELLED; STATUS_IO;
+ *         STATUS_MEMORY. */
 MUST_CHECK Status answer_run(AnswerOptions *options, Parsed *parsed, AnswerReport *report,
                              Err *err);
 

@@ -1,5 +1,5 @@
-/* The operation `suite`: a renderer draws the scenes of the tube suite, and each picture is graded
- * by the proven answer of its scene. */
+/* The operation `suite`: lets a renderer draw the scenes of the tube suite, and grades each picture
+ * by the proven answer for its scene [compare/grade/grade.h]. */
 #ifndef CORCAST_JOB_VERIFY_TUBESUITE_H
 #define CORCAST_JOB_VERIFY_TUBESUITE_H
 
@@ -21,31 +21,31 @@ typedef struct TubeSuiteOptions {
     const char *folder; /* output folder */
     const char *title;  /* name of the renderer on the score card; NULL: the command */
     TubeFormat format;
-    double levels; /* a pixel this far from its interval is right */
-    double timeout_s;
-    int jobs;
-    bool json; /* for the command line: the card is printed as JSON */
+    double levels;    /* largest distance of a right pixel from its interval, in levels of 1/255 */
+    double timeout_s; /* a drawing that takes longer is ended */
+    int jobs;         /* maximum number of drawings at the same time */
+    bool json;        /* for the command line: the score card is printed as JSON */
 } TubeSuiteOptions;
 
 /* A scene of the suite and its grade. */
 typedef struct TubeCase {
-    char *name, *group, *look, *options, *tree; /* owned; as in templates/suite/scenes.ini */
-    int rows;                                   /* of the tree */
+    char *name, *group, *look, *options, *tree; /* keys of templates/suite/scenes.ini; owned */
+    int rows;                                   /* number of rows of the tree's SWC file */
     bool drawn;                                 /* the renderer drew a picture of the right size */
-    char reason[400];                           /* why it is not drawn */
-    size_t wrong;      /* pixels that are farther than options->levels from their intervals */
-    bool certified;    /* it is drawn, and no pixel is wrong */
-    AnswerGrade grade; /* of a picture that is drawn */
+    char reason[400];                           /* why it is not drawn; "" if it is */
+    size_t wrong;   /* count of pixels that are farther than options->levels from their interval */
+    bool certified; /* it is drawn, no pixel is wrong, and at least one pixel is decided */
+    AnswerGrade grade; /* grade of the picture; zeroed unless `drawn` */
 } TubeCase;
 
 /* The score card. Zeroed: empty. Release with tubesuite_release. */
 typedef struct TubeSuite {
     const TubeSuiteOptions *options; /* borrowed */
     ARRAY(TubeCase) cases;
-    size_t drawn, certified;
+    size_t drawn, certified; /* number of these cases */
 } TubeSuite;
 
-enum { SUITE_PIXELS = 64 }; /* side of the pictures */
+enum { SUITE_PIXELS = 64 }; /* width and height of the pictures */
 
 extern const Command command_suite;
 
@@ -61,11 +61,11 @@ void tubesuite_release(TubeSuite *suite);
 MUST_CHECK Status tubesuite_run(const TubeSuiteOptions *options, Parsed *parsed, TubeSuite *suite,
                                 Err *err);
 
-/* Appends the card as text: a sentence, and a line for each scene that is not certified. */
+/* Appends the score card as text: a sentence, and a line for each scene that is not certified. */
 void tubesuite_text(const TubeSuite *suite, Text *out);
-/* Returns the card as JSON: a new reference; NULL if memory runs out. */
+/* Returns the score card as JSON: a new reference; NULL if memory runs out. */
 json_t *tubesuite_json(const TubeSuite *suite);
-/* Appends the card as a page. Pictures are named relative to the folder. */
+/* Appends the score card as an HTML page. Its links to pictures are relative to options->folder. */
 void tubesuite_page(const TubeSuite *suite, Text *out);
 
 #endif
