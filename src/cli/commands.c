@@ -50,7 +50,7 @@ const CommandRow command_rows[] = {
     {&command_report, run_report, COMMANDS_CHECK, OBEYS_RUN},
     {&command_power, run_power, COMMANDS_CHECK, OBEYS_MOST},
     {&command_suite, run_suite, COMMANDS_CHECK, OBEYS_MOST},
-    {&command_metamorph, run_metamorph, COMMANDS_CHECK, OBEYS_MOST},
+    {&command_metamorph, run_metamorph, COMMANDS_CHECK, OBEYS_ALL},
     {&command_check_figure, run_check_figure, COMMANDS_CHECK, OBEYS_RUN},
     {&command_models, run_models, COMMANDS_LIST, 0},
     {&command_fields, run_list, COMMANDS_LIST, 0},

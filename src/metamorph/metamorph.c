@@ -40,18 +40,29 @@ static bool is_listed(const char *list, const char *name)
     return false;
 }
 
+/* Returns true if the first word of a list separated by commas names a relation of the format. */
+static bool is_relation(const char *list, TrialFormat format)
+{
+    const size_t length = strcspn(list, ",");
+    for (int i = 0; relations[i].name; i++)
+        if (relations[i].formats >> format & 1 && strlen(relations[i].name) == length &&
+            strncmp(relations[i].name, list, length) == 0)
+            return true;
+    return false;
+}
+
 static Status choose_relations(Search *search, Err *err)
 {
     const MetamorphParams *params = search->params;
     const char *wanted = params->relations;
-    int n_words = wanted != NULL;
-    for (const char *at = wanted; at && *at; at++)
-        n_words += *at == ',';
     for (int i = 0; relations[i].name; i++)
         if (relations[i].formats >> params->renderer.format & 1 &&
             (!wanted || is_listed(wanted, relations[i].name)))
             search->chosen[search->n_chosen++] = i;
-    if (!wanted || search->n_chosen == n_words)
+    const char *wrong = wanted;
+    while (wrong && is_relation(wrong, params->renderer.format))
+        wrong = strchr(wrong, ',') ? strchr(wrong, ',') + 1 : NULL;
+    if (!wrong)
         return STATUS_OK;
     Text names = TEXT_INIT;
     for (int i = 0; relations[i].name; i++)
@@ -59,8 +70,9 @@ static Status choose_relations(Search *search, Err *err)
             text_printf(&names, "%s%s", names.length ? ", " : "", relations[i].name);
     const char *list = text_chars(&names);
     const Status status =
-        err_set(err, STATUS_USAGE, "`relations`: \"%s\" is not a list of relations of %s: %s",
-                wanted, trial_adapters[params->renderer.format].name, list ? list : "");
+        err_set(err, STATUS_USAGE, "`relations`: \"%.*s\" is not a relation of %s, which has %s",
+                (int)strcspn(wrong, ","), wrong, trial_adapters[params->renderer.format].name,
+                list ? list : "");
     text_release(&names);
     return status;
 }

@@ -51,11 +51,25 @@ static const OptionTable common_table = OPTION_TABLE(common_options);
 
 /* ---- settings -------------------------------------------------------------------------------- */
 
-static void bind(Parsed *parsed, const OptionTable *table, void *base)
+/* Returns true if a list of names separated by blanks contains the name. NULL is an empty list. */
+static bool lists(const char *names, const char *name)
+{
+    const size_t length = strlen(name);
+    for (const char *at = names; at && *at; at += strcspn(at, " ")) {
+        at += strspn(at, " ");
+        if (strcspn(at, " ") == length && strncmp(at, name, length) == 0)
+            return true;
+    }
+    return false;
+}
+
+/* Adds the options of a table except those in the list `without`. */
+static void bind(Parsed *parsed, const OptionTable *table, const char *without, void *base)
 {
     for (size_t i = 0; i < table->n; i++)
-        parsed->settings[parsed->n_settings++] =
-            (Setting){.option = &table->options[i], .base = base};
+        if (!lists(without, table->options[i].name))
+            parsed->settings[parsed->n_settings++] =
+                (Setting){.option = &table->options[i], .base = base};
 }
 
 Status parsed_init(Parsed *parsed, const Command *command, Err *err)
@@ -73,10 +87,11 @@ Status parsed_init(Parsed *parsed, const Command *command, Err *err)
     if (command->set_defaults)
         command->set_defaults(parsed->options);
     for (int t = 0; t < MAX_TABLES && command->tables[t].table; t++)
-        bind(parsed, command->tables[t].table, (char *)parsed->options + command->tables[t].at);
+        bind(parsed, command->tables[t].table, t > 0 ? command->without : NULL,
+             (char *)parsed->options + command->tables[t].at);
     if (command->reads_tree)
-        bind(parsed, &reading_table, &parsed->reading);
-    bind(parsed, &common_table, &parsed->common);
+        bind(parsed, &reading_table, NULL, &parsed->reading);
+    bind(parsed, &common_table, NULL, &parsed->common);
     return STATUS_OK;
 }
 

@@ -234,7 +234,10 @@ typedef struct Command {
     bool reads_tree;   /* the command has the options for reading trees, which set Parsed.reading */
     bool own_recipe;   /* the command prints the recipe of --dump-recipe itself */
     bool own_check;    /* options_finish does not call options_check for this command */
-    size_t size;       /* bytes of the struct that the options set; 0: none */
+    /* Names, separated by blanks, of options that the first table replaces or that the command does
+     * not have, although a further table has them. NULL: none. */
+    const char *without;
+    size_t size;                         /* bytes of the struct that the options set; 0: none */
     void (*set_defaults)(void *options); /* receives the zeroed struct; NULL: all zero */
     struct {
         const OptionTable *table;

@@ -233,7 +233,7 @@ test_a_tolerance_file_sets_the_limits() {
     printf 'color_level = 3\n' >mine.ini
     run corcast compare a.ppm b.ppm --tolerance mine.ini
     expect_status 2
-    expect_sentence "mine\.ini:1: unknown limit 'color_level'"
+    expect_sentence "mine\.ini:1: unknown limit 'color_level' in a tolerance file; it has region_pixels, "
 }
 
 test_metrics_are_printed_when_they_are_asked_for() {

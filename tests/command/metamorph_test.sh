@@ -21,8 +21,9 @@ search() {
 }
 
 test_a_correct_renderer_keeps_all_relations() {
-    renderer ''
-    search --pairs 66 --seed 3
+    local render # the example of the help
+    render=$(corcast metamorph --help | sed -n "s/.*--format swc --render '\([^']*\)'.*/\1/p")
+    search --pairs 66 --seed 3 --render "${render/#corcast/$CORCAST} --threads 1"
     expect_status 0
     expect_stdout '^66 pairs in .* s: 0 causes$'
     expect_json out/metamorph.json '.pairs == 66 and .causes == [] and (.relations | length) >= 5'
@@ -62,9 +63,12 @@ test_bad_options_are_refused() {
     run corcast metamorph -o out
     expect_status 2
     expect_sentence '^corcast metamorph: --render needs a command'
-    search --relations scale
+    run corcast metamorph --render ./draw
     expect_status 2
-    expect_sentence -- '--relations: "scale" is not a list of relations of swc: repeat, scale-up'
+    expect_sentence '-o DIR, the folder that receives the reports, is missing'
+    search --relations repeat,scale,rows
+    expect_status 2
+    expect_sentence -- '--relations: "scale" is not a relation of swc, which has repeat, scale-up'
 }
 
 run_tests

@@ -170,6 +170,20 @@ static Status take_name(char **name, const char *value, Err *err)
     return STATUS_OK;
 }
 
+static Status refuse_key(const char *key, Err *err)
+{
+    Text keys = TEXT_INIT;
+    for (Limit i = 0; i < LIMITS; i++)
+        if (limit_keys[i].key)
+            text_printf(&keys, "%s%s", keys.length ? ", " : "", limit_keys[i].key);
+    Status status = text_check(&keys, err);
+    if (status == STATUS_OK)
+        status = err_set(err, STATUS_INPUT, "unknown limit '%s' in a tolerance file; it has %s",
+                         key, text_chars(&keys));
+    text_release(&keys);
+    return status;
+}
+
 static Status take_line(void *user, const char *section, const char *key, const char *value,
                         Err *err)
 {
@@ -182,7 +196,7 @@ static Status take_line(void *user, const char *section, const char *key, const 
     for (Limit i = 0; i < LIMITS; i++)
         if (limit_keys[i].key && strcmp(key, limit_keys[i].key) == 0)
             return set_limit(&reader->tolerance, i, value, err);
-    return err_set(err, STATUS_INPUT, "unknown limit '%s' in a tolerance file", key);
+    return refuse_key(key, err);
 }
 
 Status tolerance_read(Tolerance *tolerance, char **name, const char *path, Err *err)

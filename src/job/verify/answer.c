@@ -8,6 +8,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* The geometries that have answers. */
+enum { BODY_CYLINDERS, BODY_ROUNDED };
+static const char *const bodies[] = {
+    [BODY_CYLINDERS] = "cylinders", [BODY_ROUNDED] = "rounded", NULL};
+
 static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, AnswerOptions, output),
@@ -18,23 +23,26 @@ static const Option own[] = {
      SETS(WHOLE, AnswerOptions, pattern),
      GIVEN(AnswerOptions, has_pattern),
      FROM_TO(1, ANSWER_MAX_PATTERN),
-     .help = "answer for the mean over N x N samples per pixel and its center, the samples of "
-             "render --exact --antialias N and of POV-Ray's +A0.0 +AM1 +RN; 1: the center alone"},
+     .help = "the color of a pixel is the mean of N x N samples and the center, as render --exact "
+             "--antialias N and POV-Ray's +A0.0 +AM1 +RN draw it; 1: the center alone"},
     {.name = "area",
      SETS(FLAG, AnswerOptions, area),
      .excludes = "pattern",
      .clash = " are two answers; one can be asked",
-     .help = "answer for the mean over the whole area of each pixel"},
+     .help = "the color of a pixel is the mean over its whole area; cannot be combined with "
+             "--pattern"},
     {.name = "width",
      SETS(TEXT, AnswerOptions, width),
      .argument = "W",
-     .help = "width in sRGB from 0 to 1 up to which the interval of a pixel is decided: a number "
-             "or a fraction such as 1/510, half a level of 8 bits"},
+     .help = "an interval that is at most this wide is narrow enough, and its pixel counts as "
+             "decided: an sRGB value from 1e-12 to 1, or a fraction such as 1/510, half a level "
+             "of 8 bits"},
     {.name = "leaves",
      SETS(WHOLE, AnswerOptions, leaves),
      FROM_TO(1, 10000000),
      .needs = "area",
-     .help = "most parts that a pixel is divided into before it counts as over budget"},
+     .help = "maximum number of parts of one pixel; a pixel that needs more keeps a wide interval "
+             "and counts as undecided"},
     {.name = "certificate",
      SETS(OUTPUT, AnswerOptions, certificate),
      .argument = "C.json",
@@ -43,18 +51,40 @@ static const Option own[] = {
          "shares no code with corcast"},
     {.name = "squares",
      SETS(FLAG, AnswerOptions, squares),
-     .group = GROUP_RUN,
      .needs = "area",
-     .help = "for tests only: divide pixels into squares, not into parts along vessels; slower, "
-             "and the intervals must intersect"},
+     .help = "compute with a second, slower method, which divides pixels into squares; its "
+             "intervals must overlap the intervals of the first method (for tests)"},
+    {.name = "model",
+     SETS(CHOICE, AnswerOptions, body),
+     .choices = bodies,
+     .group = GROUP_VESSELS,
+     .help = "vessel geometry: cylinders (one closed cylinder per segment), rounded (cylinders "
+             "with spheres where they meet or end)"},
+    {.name = "background",
+     SETS(COLOR, AnswerOptions, picture.background),
+     GIVEN(AnswerOptions, picture.has_background),
+     .group = GROUP_LIGHT,
+     .otherwise = "the look's background",
+     .help = "background color: a CSS name, #RRGGBB, or R,G,B each 0..1"},
 };
 
-static const OptionTable own_table = OPTION_TABLE(own);
+static Status settle(void *set, const Parsed *parsed, Err *err)
+{
+    AnswerOptions *options = set;
+    (void)parsed, (void)err;
+    options->picture.model = 0;
+    while (strcmp(model_names[options->picture.model], bodies[options->body]) != 0)
+        options->picture.model++;
+    return STATUS_OK;
+}
+
+static const OptionTable own_table = {OPTION_ROWS(own), .settle = settle};
 
 static void set_defaults(void *options)
 {
     AnswerOptions *own_options = options;
     picture_set_defaults(&own_options->picture);
+    own_options->body = BODY_ROUNDED;
     own_options->pattern = 1;
     own_options->width = "1/510";
     own_options->leaves = 20000;
@@ -81,14 +111,11 @@ static Status check(const AnswerOptions *options, Err *err)
     const char *extension = file_extension(options->output);
     if (strcmp(extension, "exr") != 0)
         return err_set(err, STATUS_USAGE, "-o: '%s' does not end in .exr", options->output);
-    if (picture->has_antialias)
-        return err_set(err, STATUS_USAGE,
-                       "--antialias has no effect on an answer; give --pattern %d",
-                       picture->antialias);
     if (picture->occlusion > 0)
         return err_set(err, STATUS_USAGE,
-                       "--ao: ambient occlusion has no answer, because its definition is a method; "
-                       "give --ao 0");
+                       "--%s: ambient occlusion has no answer, because its definition is a "
+                       "method; give --ao 0",
+                       picture->has_occlusion ? "ao" : "look");
     return picture_fits(picture->size.pixels[0], picture->size.pixels[1],
                         ANSWER_CHANNELS * sizeof(float) + 8, err);
 }
@@ -185,11 +212,17 @@ const Command command_answer = {
     .operands = "T.swc -o A.exr",
     .examples = "  corcast answer tree.swc --pattern 3 -o tree.answer.exr\n"
                 "  corcast render tree.swc --exact --antialias 3 -o tree.png\n"
-                "  corcast compare tree.answer.exr tree.png\n",
+                "  corcast compare tree.answer.exr tree.png\n"
+                "\nThe command computes, for each pixel, two bounds that certainly contain its "
+                "color. `corcast\ncompare A.exr picture.png` counts the pixels outside their "
+                "bounds. Draw the picture with\n`corcast render --exact --antialias N`, or with "
+                "POV-Ray's +A0.0 +AM1 +RN, at the N of --pattern.\n",
     .min_operands = 1,
     .max_operands = 1,
     .needs_output = true,
     .reads_tree = true,
+    .without = "model background antialias potential joints mesh-tolerance part-overlaps "
+               "color-blend erf cell-beta",
     .size = sizeof(AnswerOptions),
     .set_defaults = set_defaults,
     .tables = {{&own_table, 0}, PICTURE_TABLES(AnswerOptions, picture)},

@@ -13,6 +13,7 @@ typedef struct AnswerOptions {
     const char *width; /* greatest width of a decided interval, in sRGB from 0 to 1: "1/510" or a
                         * number */
     int pattern;       /* AnswerParams.pattern, unless `area` is set */
+    int body;          /* geometry of the vessels: cylinders or rounded */
     /* Area answers instead of pattern answers; `pattern` is specified; AnswerParams.squares. */
     bool area, has_pattern, squares;
     int leaves; /* AnswerParams.leaves */

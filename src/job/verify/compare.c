@@ -258,6 +258,9 @@ static Status compare_any(CompareOptions *options, const Parsed *parsed, Compari
         return compare_folders(options, parsed, made, err);
     if (!is_given(options) && answerfile_is(parsed->operands[0]))
         return compare_answer(options, parsed, made, err);
+    if (!is_given(options) && answerfile_is(parsed->operands[1]))
+        return err_set(err, STATUS_USAGE, "%s is an answer; give it as A, before the picture",
+                       parsed->operands[1]);
     if (!options->noise && !options->variance)
         return compare_pair(options, parsed, made, err);
     made->kind = COMPARED_NOISE;
@@ -344,6 +347,9 @@ const Command command_compare = {
         "  corcast compare --reference references drawn --html page.html\n"
         "  corcast compare --reference references drawn --accept 'a.png,detail/*' --reason 'new "
         "lamp'\n"
+        "\nA may be an answer of `corcast answer`. The command then reports only whether the "
+        "picture is\ncertified and how many pixels are outside their bounds; --tier, --levels and "
+        "--html are refused.\n"
         "\ntiers of agreement:\n"
         "  A        identical: colors, ids and depths differ in at most 2 pixels per million;\n"
         "           images of fewer than 500,000 pixels: in at most one pixel, by one 8-bit level\n"

@@ -190,8 +190,9 @@ static const Option of_judge[] = {
      .argument = "FILE.ini",
      .excludes = "verdict",
      .clash = " are two rules; one can be asked",
-     .help = "file with limits of your own; rules that are not listed are not checked, unless "
-             "--tier is given"},
+     .help = "file with limits of your own, one `name = value` per line; `corcast power --choose` "
+             "writes an example; limits that are not listed are not checked, unless --tier is "
+             "given"},
     {.name = "levels",
      SETS(NUMBER, JudgeOptions, levels),
      GIVEN(JudgeOptions, has_levels),

@@ -10,9 +10,11 @@ static const Option own[] = {
     {.name = "render",
      SETS(TEXT, MetamorphOptions, render),
      .argument = "COMMAND",
-     .help = "shell command that renders the file {scene} into the PNG, PPM, TIFF or EXR file "
-             "{picture} of {width} x {height} pixels; without {scene}, both files are appended; "
-             "for the format swc, {camera} stands for camera options as `corcast render` has them"},
+     .help =
+         "shell command that renders the file {scene} into the PNG, PPM, TIFF or EXR file "
+         "{picture} of {width} x {height} pixels; if the command lacks {scene}, the command adds "
+         "the scene and the picture at its end; {camera}, only with --format swc, stands for "
+         "the camera options of `corcast render`"},
     {.name = "format",
      SETS(CHOICE, MetamorphOptions, format),
      .choices = formats,
@@ -21,25 +23,25 @@ static const Option own[] = {
      SETS(TEXT, MetamorphOptions, relations),
      .argument = "LIST",
      .otherwise = "all",
-     .help = "relations to test, separated by commas, such as scale-up,translation"},
+     .help = "relations to test, separated by commas; all formats: repeat, scale-up, scale-down, "
+             "translation, rotation, crop, behind, outside, split; pov and tachyon also: mirror, "
+             "order, lights, hidden; swc also: rows, ids; pov also: cone, union, bounds, sturm, "
+             "cancelled, container, accuracy"},
     {.name = "seconds",
      SETS(NUMBER, MetamorphOptions, seconds),
      FROM_TO(0.001, 1e6),
      .unit = "s",
-     .help = "duration of the search; confirming, shrinking and reports take longer"},
+     .help = "duration of the search; confirming, making scenes small and reports come on top"},
     {.name = "pairs",
      SETS(COUNT, MetamorphOptions, max_pairs),
      FROM_TO(0, 1e9),
      .argument = "N",
      .help = "maximum number of pairs; 0: no limit"},
-    {.name = "seed",
-     SETS(SEED, MetamorphOptions, seed),
-     .help = "seed of the scenes; the same seed gives the same pairs"},
     {.name = "timeout",
      SETS(NUMBER, MetamorphOptions, timeout_s),
      FROM_TO(0.1, 1e5),
      .unit = "s",
-     .help = "a rendering that takes longer is ended and counts as refused"},
+     .help = "a rendering that takes longer is ended and does not count as a defect"},
     {.name = "jobs",
      SETS(WHOLE, MetamorphOptions, jobs),
      FROM_TO(1, TRIAL_JOBS),
@@ -63,7 +65,6 @@ static void set_defaults(void *options)
     metamorph->seconds = 60;
     metamorph->timeout_s = 20;
     metamorph->jobs = 16;
-    metamorph->seed = 1;
 }
 
 static Status write_result(const MetamorphOptions *options, const Metamorph *result, Err *err)
@@ -102,13 +103,14 @@ Status metamorph_make(const MetamorphOptions *options, Parsed *parsed, Metamorph
                        "--render needs a command, such as --render 'povray +I{scene} +O{picture} "
                        "+W{width} +H{height} -D'");
     if (!options->folder)
-        return err_set(err, STATUS_USAGE, "--output needs the folder that receives the reports");
+        return err_set(err, STATUS_USAGE,
+                       "-o DIR, the folder that receives the reports, is missing");
     progress_start(&progress, "testing", parsed->common.talk);
     TRY_GOTO(make_folders(options, &scenes, err));
     const MetamorphParams params = {
         .renderer = {options->render, options->format, scenes, options->timeout_s, options->jobs},
         .relations = options->relations,
-        .seed = options->seed,
+        .seed = parsed->common.seed,
         .max_pairs = options->max_pairs,
         .seconds = options->seconds,
         .output = options->folder,
@@ -132,11 +134,12 @@ const Command command_metamorph = {
         "  corcast metamorph --format tachyon --render 'tachyon {scene} -numthreads 1 -format PPM "
         "-o {picture}' -o tachyon\n"
         "  corcast metamorph --format swc --render 'corcast render {scene} {camera} -o {picture} "
-        "-q' -o self\n"
+        "--quiet' -o self\n"
         "\nThe command draws pairs of random scenes. The second scene of a pair is the first one "
         "with a\nchange whose effect on the picture is known, such as a translation of scene and "
-        "camera. A pair\nwhose pictures differ is confirmed with two more cameras, shrunk, and "
-        "reported in DIR/CAUSE.\nThe exit status is 1 if a cause was found.\n",
+        "camera. A pair\nwhose pictures differ is confirmed with two more cameras, made as "
+        "small as possible, and reported\nin DIR/CAUSE. The exit status is 1 if a cause was "
+        "found.\n",
     .max_operands = 0,
     .size = sizeof(MetamorphOptions),
     .set_defaults = set_defaults,

@@ -12,7 +12,6 @@ typedef struct MetamorphOptions {
     const char *folder;    /* output folder */
     const char *relations; /* names, separated by commas; NULL: all */
     TrialFormat format;
-    uint64_t seed;
     double seconds, timeout_s;
     size_t max_pairs; /* 0: no limit */
     int jobs;         /* drawings at the same time */

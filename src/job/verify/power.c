@@ -25,15 +25,15 @@ static const Option own[] = {
      SETS(OUTPUT, PowerOptions, choose),
      .argument = "FILE.ini",
      .excludes = "render verdict tier tolerance levels ppm pixelmatch",
-     .help = "choose the tightest tolerance that the operands, a reference and repeated renderings "
-             "of its scene, agree with, and write it to this file, such as NAME.tolerance.ini"},
+     .help = "write the strictest tolerance that accepts all operands: a reference and at least "
+             "two further renderings of the same scene; such as NAME.tolerance.ini"},
     {.name = "alarms",
      SETS(NUMBER, PowerOptions, alarms),
      FROM_TO(0, 0.5),
      .group = GROUP_JUDGE,
      .needs = "choose",
      .otherwise = "1 / number of operands",
-     .help = "false alarm rate that the chosen tolerance may have, a fraction"},
+     .help = "with --choose: false alarm rate that the chosen tolerance may have, a fraction"},
     {.name = "extension",
      SETS(TEXT, PowerOptions, extension),
      .argument = "EXT",

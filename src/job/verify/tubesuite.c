@@ -11,6 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static const char *const formats[] = {"pov", "tachyon", "json", "swc", NULL};
 
@@ -19,9 +20,9 @@ static const Option own[] = {
      SETS(TEXT, TubeSuiteOptions, render),
      .argument = "COMMAND",
      .help = "shell command that renders the file {scene} into the image file {picture} of "
-             "{width} x {height} pixels, with one sample at the center of each pixel; without "
-             "{scene}, both files are appended; for the format swc, {camera} stands for options of "
-             "`corcast render`"},
+             "{width} x {height} pixels, with one sample at the center of each pixel; if "
+             "the command lacks {scene}, the scene and the picture are added at its end; {camera}, "
+             "only with --format swc, stands for options of `corcast render`"},
     {.name = "format",
      SETS(CHOICE, TubeSuiteOptions, format),
      .choices = formats,
@@ -36,7 +37,7 @@ static const Option own[] = {
      SETS(NUMBER, TubeSuiteOptions, levels),
      FROM_TO(0, 255),
      .help = "distance from the interval up to which a pixel counts as right, in levels of 1/255; "
-             "0.5 forgives codes that are truncated instead of rounded"},
+             "0.5 accepts renderers that cut decimals instead of rounding"},
     {.name = "timeout",
      SETS(NUMBER, TubeSuiteOptions, timeout_s),
      FROM_TO(0.1, 1e5),
@@ -429,7 +430,9 @@ static Status grade(const TubeSuiteOptions *options, const SuiteFiles *files, co
     snprintf(why.text, sizeof why.text, "exit status %d, see %s", end->exit_status, files->log);
     Status status = STATUS_TOOL;
     if (!end->timed_out && end->exit_status == 0)
-        status = image_read(&image, files->picture, ALPHA_KEPT, NULL, &why);
+        status = access(files->picture, F_OK) == 0
+                     ? image_read(&image, files->picture, ALPHA_KEPT, NULL, &why)
+                     : err_set(&why, STATUS_TOOL, "the command wrote no picture");
     if (status == STATUS_OK)
         status = image_composite(&image, black, &why);
     if (status == STATUS_OK && options->format == SUITE_TACHYON && image.picture.bits)
@@ -538,7 +541,8 @@ Status tubesuite_run(const TubeSuiteOptions *options, Parsed *parsed, TubeSuite 
                        "--render needs a command, such as --render 'povray +I{scene} +O{picture} "
                        "+W{width} +H{height} -D'");
     if (!options->folder)
-        return err_set(err, STATUS_USAGE, "--output needs the folder that receives the card");
+        return err_set(err, STATUS_USAGE,
+                       "-o DIR, the folder that receives the score card, is missing");
     suite->options = options;
     TRY(read_suite(suite, err));
     Status status = open_run(options, suite->cases.n, &run, err);
@@ -556,9 +560,9 @@ const Command command_suite = {
         "  corcast suite --render 'povray +I{scene} +O{picture} +W{width} +H{height} -D' -o card\n"
         "  corcast suite --format tachyon --render 'tachyon {scene} -shade_phong -format PPM -o "
         "{picture}' -o card\n"
-        "  corcast suite --format swc --render 'corcast render {scene} {camera} -o {picture} "
-        "--quiet' -o card\n"
-        "\nThe command writes scenes of cylinders and spheres, lets the renderer draw them, and "
+        "  corcast suite --format swc --render 'corcast render {scene} {camera} --exact -o "
+        "{picture} --quiet' -o card\n"
+        "\nThe command writes 72 scenes of cylinders and spheres, lets the renderer draw them, and "
         "compares\neach pixel with the interval that is proven to contain its color. "
         "DIR/index.html "
         "is the score\ncard. The exit status is 1 if a picture is not certified.\n",
