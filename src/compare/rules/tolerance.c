@@ -176,10 +176,11 @@ static Status refuse_key(const char *key, Err *err)
     for (Limit i = 0; i < LIMITS; i++)
         if (limit_keys[i].key)
             text_printf(&keys, "%s%s", keys.length ? ", " : "", limit_keys[i].key);
-    Status status = text_check(&keys, err);
-    if (status == STATUS_OK)
-        status = err_set(err, STATUS_INPUT, "unknown limit '%s' in a tolerance file; it has %s",
-                         key, text_chars(&keys));
+    Status status;
+    TRY_GOTO(text_check(&keys, err));
+    status = err_set(err, STATUS_INPUT, "unknown limit '%s' in a tolerance file; it has %s", key,
+                     text_chars(&keys));
+done:
     text_release(&keys);
     return status;
 }
