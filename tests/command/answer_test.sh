@@ -47,7 +47,7 @@ test_pictures_of_a_ground_are_certified() {
     make_answer "$DATA/trifurcation.swc" 1 --look ./ground.ini --shadows on
     expect_certified exact.png
     sed -i 's/gap = 0.1/gap = 0.2/' ground.ini
-    run_ok corcast render "$DATA/trifurcation.swc" --size 120x120 --ao 0 --exact --look ./ground.ini --shadows on -o faulty.png
+    run_ok corcast render "$DATA/trifurcation.swc" --size 96x96 --ao 0 --exact --look ./ground.ini --shadows on -o faulty.png
     expect_refused faulty.png 10
 }
 
