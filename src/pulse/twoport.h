@@ -20,7 +20,6 @@ typedef struct PairC {
 typedef struct PairFrequency {
     PairR omega;     /* angular frequency, 1/s */
     PairC compliant; /* j omega / (1 + j omega t_w), t_w the relaxation time of the wall */
-    int n_terms;     /* not used */
 } PairFrequency;
 
 /* The two-port of a vessel, multiplied by `scale`. It relates the proximal end (in) to the distal
