@@ -676,6 +676,25 @@ Status file_write_text(const char *path, const Text *text, Err *err)
     return file_write(path, text_chars(text), text->length, err);
 }
 
+Status file_write_parts(const char *path, PutContent *put, const void *context, Err *err)
+{
+    OutFile file;
+    TRY(outfile_open(&file, path, err));
+    Text text = TEXT_TO(file.stream);
+    Status status = STATUS_OK;
+    TRY_GOTO(put(context, &text, err));
+    status = text_flush(&text, err);
+done:
+    text_release(&text);
+    if (status == STATUS_IO)
+        err_prefix(err, "%s: ", strcmp(path, "-") == 0 ? "standard output" : path);
+    if (status != STATUS_OK) {
+        outfile_discard(&file);
+        return status;
+    }
+    return outfile_commit(&file, err);
+}
+
 Status file_make_folder(const char *path, Err *err)
 {
     char *partial = NULL;

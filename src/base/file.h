@@ -87,6 +87,13 @@ MUST_CHECK Status file_write(const char *path, const void *bytes, size_t size, E
 /* Writes the string of `text` to `path`; returns STATUS_MEMORY if `text` has failed. */
 MUST_CHECK Status file_write_text(const char *path, const Text *text, Err *err);
 
+/* Appends the content of a file to `text`. */
+typedef Status PutContent(const void *context, Text *text, Err *err);
+/* Writes what `put` appends to `path` through an OutFile, in parts, so that the content need not
+ * fit into memory. Errors: those of `put`; STATUS_IO, which names the file; STATUS_MEMORY. */
+MUST_CHECK Status file_write_parts(const char *path, PutContent *put, const void *context,
+                                   Err *err);
+
 /* Finds the file that writing to `path` would write: follows symbolic links in the last component.
  * The caller frees *out. Errors: STATUS_IO if the links form a circle; STATUS_MEMORY. */
 MUST_CHECK Status file_resolve(const char *path, char **out, Err *err);

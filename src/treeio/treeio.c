@@ -705,25 +705,23 @@ static Status write_to(const char *path, const Tree *tree, Text *text, Err *err)
     return format->write(&written, text, err);
 }
 
+/* A tree and the path whose extension decides its format. Borrowed. */
+typedef struct TreeAt {
+    const Tree *tree;
+    const char *path;
+} TreeAt;
+
+static Status put_tree(const void *context, Text *text, Err *err)
+{
+    const TreeAt *at = context;
+    return write_to(at->path, at->tree, text, err);
+}
+
 Status tree_write(const Tree *tree, const char *path, Err *err)
 {
-    OutFile file;
     TRY(tree_format_check(path, err));
     TRY(tree_check(tree, err));
-    TRY(outfile_open(&file, path, err));
-    Text text = TEXT_TO(file.stream);
-    Status status = STATUS_OK;
-    TRY_GOTO(write_to(path, tree, &text, err));
-    status = text_flush(&text, err);
-done:
-    text_release(&text);
-    if (status == STATUS_IO)
-        err_prefix(err, "%s: ", is_standard(path) ? "standard output" : path);
-    if (status != STATUS_OK) {
-        outfile_discard(&file);
-        return status;
-    }
-    return outfile_commit(&file, err);
+    return file_write_parts(path, put_tree, &(TreeAt){tree, path}, err);
 }
 
 Status tree_write_text(const Tree *tree, const char *path, Text *out, Err *err)

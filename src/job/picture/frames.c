@@ -309,25 +309,25 @@ static Status write_picture(FramesWriter *writer, const Frame *rows, Err *err)
     return status;
 }
 
+/* A page and its notes. Borrowed. */
+typedef struct NotedPage {
+    const FigurePage *page;
+    const FigureNotes *notes;
+} NotedPage;
+
+static Status put_svg(const void *context, Text *text, Err *err)
+{
+    const NotedPage *noted = context;
+    return figure_put_svg(noted->page, noted->notes, text, err);
+}
+
 Status frames_write_page(const FigurePage *page, const FigureNotes *notes, const char *path,
                          Err *err)
 {
     const bool eps = strcmp(file_extension(path), "eps") == 0;
     if (eps || strcmp(file_extension(path), "pdf") == 0)
         return figure_write_pdf(page, notes, eps, path, err);
-    OutFile file;
-    TRY(outfile_open(&file, path, err));
-    Text svg = TEXT_TO(file.stream);
-    Status status = figure_put_svg(page, notes, &svg, err);
-    if (status == STATUS_OK)
-        status = text_flush(&svg, err);
-    text_release(&svg);
-    if (status == STATUS_OK)
-        return outfile_commit(&file, err);
-    if (status == STATUS_IO)
-        err_prefix(err, "%s: ", path);
-    outfile_discard(&file);
-    return status;
+    return file_write_parts(path, put_svg, &(NotedPage){page, notes}, err);
 }
 
 /* Writes the page with its picture in it. */

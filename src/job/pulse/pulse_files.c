@@ -38,25 +38,6 @@ void pulse_root_range(const Pulse *pulse, size_t i, double range[2])
 
 /* ---- tables ---------------------------------------------------------------------------------- */
 
-typedef Status PutTable(const Pulsing *made, Text *text, Err *err);
-
-static Status write_table(const Pulsing *made, const char *path, PutTable *put, Err *err)
-{
-    OutFile file;
-    TRY(outfile_open(&file, path, err));
-    Text text = TEXT_TO(file.stream);
-    Status status = put(made, &text, err);
-    if (status == STATUS_OK)
-        status = text_flush(&text, err);
-    text_release(&text);
-    if (status == STATUS_OK)
-        return outfile_commit(&file, err);
-    if (status == STATUS_IO)
-        err_prefix(err, "%s: ", path);
-    outfile_discard(&file);
-    return status;
-}
-
 static void put_numbers(Text *text, const double *numbers, size_t n)
 {
     for (size_t i = 0; i < n; i++) {
@@ -65,8 +46,9 @@ static void put_numbers(Text *text, const double *numbers, size_t n)
     }
 }
 
-static Status put_summary(const Pulsing *made, Text *text, Err *err)
+static Status put_summary(const void *context, Text *text, Err *err)
 {
+    const Pulsing *made = context;
     const Pulse *pulse = &made->pulse;
     text_puts(text, "id,pressure_mean [mmHg],pressure_min [mmHg],pressure_max [mmHg],"
                     "pressure_pulse [mmHg],flow_mean [ml/min],flow_min [ml/min],flow_max [ml/min],"
@@ -88,8 +70,9 @@ static Status put_summary(const Pulsing *made, Text *text, Err *err)
     return text_check(text, err);
 }
 
-static Status put_impedance(const Pulsing *made, Text *text, Err *err)
+static Status put_impedance(const void *context, Text *text, Err *err)
 {
+    const Pulsing *made = context;
     const Pulse *pulse = &made->pulse;
     text_puts(text, "root,harmonic,frequency [Hz],size [mmHg s/ml],phase [deg]\n");
     for (size_t i = 0; i < made->tree.n; i++)
@@ -157,8 +140,9 @@ static Status find_columns(const Pulsing *made, const TreeColumn ***out, size_t 
     return STATUS_OK;
 }
 
-static Status put_values(const Pulsing *made, Text *text, Err *err)
+static Status put_values(const void *context, Text *text, Err *err)
 {
+    const Pulsing *made = context;
     const TreeColumn **column;
     size_t n;
     TRY(find_columns(made, &column, &n, err));
@@ -178,8 +162,9 @@ static Status put_values(const Pulsing *made, Text *text, Err *err)
     return text_check(text, err);
 }
 
-static Status put_deck(const Pulsing *made, Text *text, Err *err)
+static Status put_deck(const void *context, Text *text, Err *err)
 {
+    const Pulsing *made = context;
     enum { POINTS = 201 };
     return pulse_put_deck(&made->pulse, POINTS, text, err);
 }
@@ -188,7 +173,7 @@ static Status write_output(Pulsing *made, const char *path, Err *err)
 {
     const PulsingOutput kind = pulsing_output(path);
     if (kind == PULSING_DECK) {
-        TRY(write_table(made, path, put_deck, err));
+        TRY(file_write_parts(path, put_deck, made, err));
         talk_note(
             made->parsed->common.talk,
             "the deck has one vessel per segment; svZeroDSolver took 16 s for 999 vessels and "
@@ -197,7 +182,7 @@ static Status write_output(Pulsing *made, const char *path, Err *err)
     }
     TRY(pulsing_add_columns(made, err));
     if (kind == PULSING_VALUES)
-        return write_table(made, path, put_values, err);
+        return file_write_parts(path, put_values, made, err);
     return strcasecmp(file_extension(path), "pvd") == 0 ? tree_write_moments(&made->tree, path, err)
                                                         : tree_write(&made->tree, path, err);
 }
@@ -206,9 +191,9 @@ Status pulsing_write(Pulsing *made, Err *err)
 {
     const PulsingOptions *options = made->options;
     if (options->summary)
-        TRY(write_table(made, options->summary, put_summary, err));
+        TRY(file_write_parts(options->summary, put_summary, made, err));
     if (options->impedance)
-        TRY(write_table(made, options->impedance, put_impedance, err));
+        TRY(file_write_parts(options->impedance, put_impedance, made, err));
     if (!options->output)
         return STATUS_OK;
     const PulsingOutput kind = pulsing_output(options->output);
