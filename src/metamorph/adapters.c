@@ -318,7 +318,7 @@ void trial_command(const char *command, TrialFormat format, const TrialScene *sc
                                    {"{camera}", text_chars(&camera), true},
                                    {"{width}", width, true},
                                    {"{height}", height, true}};
-        shell_fill_marks(command, marks, 5, format == TRIAL_SWC ? 3 : 2, out);
+        shell_fill(command, marks, 5, format == TRIAL_SWC ? 3 : 2, out);
     } else {
         text_puts(out, NULL);
     }

@@ -9,17 +9,6 @@
 #include <time.h>
 #include <unistd.h>
 
-size_t shell_fill(const char *command, const char *mark, const char *path, Text *out)
-{
-    size_t n = 0;
-    for (const char *next; (next = strstr(command, mark)); command = next + strlen(mark), n++) {
-        text_append(out, command, (size_t)(next - command));
-        text_put_shell_word(out, path);
-    }
-    text_puts(out, command);
-    return n;
-}
-
 static void put_mark(const ShellMark *mark, Text *out)
 {
     if (mark->is_words)
@@ -28,8 +17,7 @@ static void put_mark(const ShellMark *mark, Text *out)
         text_put_shell_word(out, mark->text);
 }
 
-void shell_fill_marks(const char *command, const ShellMark *marks, size_t n, size_t appended,
-                      Text *out)
+void shell_fill(const char *command, const ShellMark *marks, size_t n, size_t appended, Text *out)
 {
     const bool has_marks = strstr(command, marks[0].mark) != NULL;
     for (const char *at = command; *at;) {

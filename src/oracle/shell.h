@@ -4,10 +4,6 @@
 
 #include "base/base.h"
 
-/* Appends `command`, with each `mark` ("{}") replaced by `path` as a word of the shell. Returns the
- * number of marks. */
-size_t shell_fill(const char *command, const char *mark, const char *path, Text *out);
-
 /* A mark of a command, such as "{scene}", and what replaces it. Borrowed. */
 typedef struct ShellMark {
     const char *mark, *text;
@@ -16,8 +12,7 @@ typedef struct ShellMark {
 
 /* Appends `command` with all marks replaced. If the first mark is missing in `command`, the texts
  * of the first `appended` marks are appended. */
-void shell_fill_marks(const char *command, const ShellMark *marks, size_t n, size_t appended,
-                      Text *out);
+void shell_fill(const char *command, const ShellMark *marks, size_t n, size_t appended, Text *out);
 
 /* How a command ended. */
 typedef struct ShellEnd {

@@ -136,7 +136,8 @@ static Status draw(const PowerOptions *options, const PowerFiles *place, bool he
     Text command = TEXT_INIT;
     int exit_status = 0;
     Status status = STATUS_OK;
-    shell_fill(options->render, "{}", place->files[FILE_DRAWN], &command);
+    shell_fill(options->render, &(ShellMark){"{}", place->files[FILE_DRAWN], false}, 1, 0,
+               &command);
     TRY_GOTO(text_check(&command, err));
     remove(place->files[FILE_DRAWN]); /* an old file is not what this run draws */
     TRY_GOTO(shell_run(text_chars(&command), heard, &exit_status, err));
@@ -186,16 +187,13 @@ static Status command_differs(void *context, const Picture *reference, const Pic
 static Status fill_verdict(const PowerOptions *options, const PowerFiles *place,
                            VerdictCommand *verdict, Err *err)
 {
-    Text half = TEXT_INIT, whole = TEXT_INIT;
-    Status status;
+    const ShellMark marks[] = {{"{a}", place->files[FILE_A], false},
+                               {"{b}", place->files[FILE_B], false}};
+    Text command = TEXT_INIT;
     verdict->place = place;
-    shell_fill(options->verdict, "{a}", place->files[FILE_A], &half);
-    TRY_GOTO(text_check(&half, err));
-    shell_fill(text_chars(&half), "{b}", place->files[FILE_B], &whole);
-    status = text_take(&whole, &verdict->command, err);
-done:
-    text_release(&half);
-    text_release(&whole);
+    shell_fill(options->verdict, marks, 2, 0, &command);
+    Status status = text_take(&command, &verdict->command, err);
+    text_release(&command);
     return status;
 }
 

@@ -374,7 +374,7 @@ static Status prepare(const TubeSuiteOptions *options, const TubeCase *one, Suit
                                {"{camera}", text_chars(&camera), true},
                                {"{width}", "64", true},
                                {"{height}", "64", true}};
-    shell_fill_marks(options->render, marks, 5, options->format == SUITE_SWC ? 3 : 2, &command);
+    shell_fill(options->render, marks, 5, options->format == SUITE_SWC ? 3 : 2, &command);
     status = text_take(&command, &files->command, err);
 done:
     if (status != STATUS_OK)
