@@ -1,5 +1,5 @@
 # Builds the page that grows trees, build/grow/corcast.html: `make page` calls this file. The program is compiled
-# with and without vectors, by clang for WASI [docs/decisions/wasm.md].
+# with and without vectors, by clang for WASI [docs/decisions/wasm-by-clang.md].
 OUT := build/grow
 SYSROOT := $(or $(WASI_SYSROOT),/usr)
 CLANG := $(or $(WASI_CC),clang)
