@@ -200,7 +200,8 @@ static Status answer_tile(size_t tile, int worker, void *context, Err *err)
     return STATUS_OK;
 }
 
-/* Writes the claims of pixels that lie evenly among those that show a vessel at their center. */
+/* Writes the claims of some pixels. These pixels are evenly spaced in the list of all pixels that
+ * show a vessel at their center. */
 static Status certify(AnswerJob *job, Err *err)
 {
     AnswerWork *work = &job->works[0];

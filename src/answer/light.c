@@ -1,4 +1,4 @@
-/* The shading model is that of render/light/shade.c, in real numbers. */
+/* Computes the shading model of render/light/shade.c in real numbers. */
 #include "answer/light.h"
 
 static Form3 exact(Vec3 v)

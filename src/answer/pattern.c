@@ -15,7 +15,7 @@ ColorSpan span_any(const AnswerPlan *plan)
     return span;
 }
 
-/* Comparisons with NaN are false, so that an unknown bound stays that of span_any. */
+/* Comparisons with NaN are false. A bound that is NaN therefore keeps its value of span_any. */
 ColorSpan span_of(const AnswerPlan *plan, const FormColor *color)
 {
     ColorSpan span = span_any(plan);
@@ -124,7 +124,8 @@ Seen tile_look(AnswerWork *work, const Beam *beam, const FaceList *list)
 
 /* ---- colors ---------------------------------------------------------------------------------- */
 
-/* Counts the points of a light that are surely visible from a surface, and those that may be. */
+/* Counts the points of a light. `sure` points are visible from the surface for certain; `may`
+ * points are or may be visible. */
 static void count_visible(AnswerWork *work, const FormSurface *surface, size_t light, int *sure,
                           int *may)
 {

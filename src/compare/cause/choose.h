@@ -24,7 +24,7 @@ typedef struct Choice {
      * each level L. The choice of L uses the same repeats, which `alarms` accounts for. */
     double rate, bound;
     size_t alarms;          /* of n trials: the rule chosen without a repeat rejects this repeat */
-    size_t planted, missed; /* planted faults; those that the rule does not detect */
+    size_t planted, missed; /* counts: planted faults, and faults that the rule does not detect */
 } Choice;
 
 /* Chooses a tolerance.

@@ -1,8 +1,10 @@
-/* Another hue or another saturation: one map of colors takes every pixel of A to the pixel of B,
- * and leaves greys as they are. Each map has one number. It is found on the samples and named if
- * it fits all pixels: of those that differ by more than the rounding of codes, 49 of 50 come within
- * it, and no more are driven away. A saturation moves colors away from a grey of the pixel itself;
- * programs differ in the grey that they take, and in whether they compute in codes or in light. */
+/* Finds a change of hue or of saturation: one map of colors takes every pixel of A to the pixel of
+ * B, and leaves greys as they are. Each map has one parameter, which is fitted to the samples. The
+ * map is named if it fits the whole picture: for 50 pixels of A and B that differ by more than the
+ * rounding of codes, it leaves at most one pixel that differs. A saturation moves a color away from
+ * the grey of its pixel. Programs define this grey in different ways, and compute in codes or in
+ * light.
+ */
 #include "compare/cause/guesses.h"
 
 #include <math.h>

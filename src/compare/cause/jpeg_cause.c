@@ -122,9 +122,10 @@ static Status take_blocks(JpegBlocks *self, const Picture *a, const Picture *b, 
     return STATUS_OK;
 }
 
-/* Pixels that differ by more than rounding, and those that the compression of A leaves so. */
+/* Counts of pixels. */
 typedef struct JpegFit {
-    size_t beyond, misfits;
+    size_t beyond;  /* A and B differ by more than rounding */
+    size_t misfits; /* the compressed A and B differ by more than rounding */
 } JpegFit;
 
 static void add_fit(const JpegBlocks *self, const Block *block, int quality, JpegFit *fit)

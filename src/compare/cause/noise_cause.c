@@ -12,8 +12,8 @@ static const int lags[LAGS][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}, {2, 0}, {0, 2
 /* Sums over the channels of all pixels that are not clipped; d is B - A in levels. */
 typedef struct WhitenessSums {
     double n, d, dd;
-    double differing;                    /* codes that differ */
-    double clipped, changed;             /* codes of A that are black or white; those that differ */
+    double differing;        /* codes that differ */
+    double clipped, changed; /* codes of A that are black or white; how many of them differ in B */
     double lagged[LAGS], lagged_n[LAGS]; /* products of neighbours */
     double slope[3], slopes[3]; /* products of d with the slope of A across, the slope of A down,
                                  * and with the sum of the neighbours less A; their squares */

@@ -37,8 +37,8 @@ static const Option rows[] = {
      .unit = "mm",
      .otherwise = "as in the file",
      .when = WHEN(TREE),
-     .help = "divide each branch into segments of this length, or a little more or less; a radius "
-             "becomes that of a tube with the same resistance"},
+     .help = "divide each branch into equal segments of about this length; a new segment has the "
+             "radius at which its resistance is the same as before"},
     {.name = "centreline-arrays",
      SETS(FLAG, TreeConversion, centreline_arrays),
      .group = GROUP_FILES,
