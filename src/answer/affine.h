@@ -183,9 +183,9 @@ static inline Form form_positive(Form f)
     return form_rounded(form_line(f, slope, 0, -low * slope), 8 * (high - low));
 }
 
-/* Narrows f to [low, high], for a quantity that is known to lie there. The result is a constant if
- * e is infinite or larger than the slopes of f. Otherwise it is f, because a constant would lose
- * the slopes. */
+/* Narrows f to [low, high], for a quantity that is known to lie there. If f
+ * lies in [low, high], the result is f. If e is not finite, or e > |x| + |y|, the result is a
+ * constant. Otherwise the result is f, not narrowed, because a constant would lose the slopes. */
 static inline Form form_known(Form f, double low, double high)
 {
     if (form_low(f) >= low && form_high(f) <= high)

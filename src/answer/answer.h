@@ -1,10 +1,11 @@
 /* The public header of the module answer: for each pixel of a scene, an interval of linear colors
  * that is proven to contain the pixel's true color.
  *
- * A pattern answer bounds the mean of the colors at a renderer's sample positions. For N = 1, the
- * center of the pixel is the only position. For N >= 2, there are N x N more [view.h,
- * camera_sample_offsets]. All positions have the same weight. An area answer bounds the mean over
- * the pixel's square. docs/ANSWERS.md defines the true color and proves the bounds.
+ * A pattern answer bounds the mean of the colors at a renderer's sample positions. N is
+ * AnswerParams.pattern. For N = 1, the center of the pixel is the only position. For N >= 2, there
+ * are N x N more [view.h, camera_sample_offsets]. All positions have the same weight. An area
+ * answer bounds the mean over the pixel's square. docs/ANSWERS.md defines the true color and proves
+ * the bounds.
  *
  *     Answer answer;
  *     TRY(answer_make(&scene, &params, &answer, err));
@@ -16,7 +17,8 @@
 #include "image/image.h"
 #include "scene/scene.h"
 
-/* Largest N: the rounding errors of a pixel's sum are bounded for up to 4000 sample positions. */
+/* Largest N. It has 63 x 63 + 1 = 3970 sample positions; pattern.c bounds the rounding errors of a
+ * sum of up to 4000. */
 enum { ANSWER_MAX_PATTERN = 63 };
 
 typedef struct AnswerParams {
@@ -36,9 +38,9 @@ typedef struct AnswerParams {
 } AnswerParams;
 
 typedef enum AnswerState {
-    ANSWER_DECIDED,   /* the interval is at most AnswerParams.width wide */
-    ANSWER_UNDECIDED, /* pattern answers: the interval is wider, because a ray is as near to an edge
-                       * as the rounding errors */
+    ANSWER_DECIDED,    /* the interval is at most AnswerParams.width wide */
+    ANSWER_UNDECIDED,  /* pattern answers: the interval is wider. Usually a ray passes an edge
+                        * within its rounding errors */
     ANSWER_OVER_BUDGET /* area answers: the interval is wider, but AnswerParams.leaves was reached
                         */
 } AnswerState;

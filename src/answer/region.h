@@ -20,7 +20,8 @@ typedef struct LeafPolygon {
 } LeafPolygon;
 
 /* Returns the part of the polygon in which f.c + f.x ex + f.y ey >= `from`. Ignores f.e. The result
- * is empty if it has fewer than 3 corners, or too many for a LeafPolygon. */
+ * is empty if it would have fewer than 3 corners, or more than POLYGON_MAX - 2. The callers count
+ * an area that is lost so among the undecided. */
 LeafPolygon polygon_cut(const LeafPolygon *polygon, Form f, double from);
 /* Returns the area, >= 0, in units of ex and ey. */
 double polygon_area(const LeafPolygon *polygon);

@@ -79,8 +79,8 @@ double coverage_memory(const CoverageParams *params);
 MUST_CHECK Status coverage_measure(const CoverageParams *params, CoverageReport *report, Err *err);
 void coveragereport_release(CoverageReport *report);
 
-/* Returns a quantile of the distance: the fraction `part`, in [0, 1], of the tissue voxels is at
- * most that far from the nearest vessel, mm. The error is at most report->bin_mm. Returns NAN
+/* Returns the distance from the nearest vessel, mm, that the fraction `part`, in [0, 1], of the
+ * tissue voxels does not exceed. The error is at most report->bin_mm. Returns NAN
  * without tissue. */
 double coverage_quantile(const CoverageReport *report, double part);
 

@@ -1,10 +1,10 @@
 /* The public header of the module metamorph: tests a renderer without a reference picture.
  *
- * A metamorphic relation changes a scene in a way whose effect on the picture is known. For
- * example, it doubles all lengths, including those of the camera, which must not change the
- * picture. A renderer that breaks a relation has a defect. The module draws random scenes, each
- * before and after such a change. It confirms each failing pair with three cameras, reduces it to a
- * small scene, and writes one report for each cause. */
+ * A metamorphic relation changes a scene in a way whose effect on the picture is known. An
+ * example: all lengths, also of the camera, are doubled. The picture must not change. A renderer
+ * that breaks a relation has a defect. The module draws random scenes, each before and after such a
+ * change. It confirms each failing pair with three cameras, reduces it to a small scene, and writes
+ * one report for each cause. */
 #ifndef CORCAST_METAMORPH_METAMORPH_H
 #define CORCAST_METAMORPH_METAMORPH_H
 
@@ -29,15 +29,16 @@ typedef struct RelationCount {
     size_t pairs;     /* number of pairs */
     size_t none;      /* number of pairs whose first scene the renderer did not draw */
     size_t failed;    /* number of pairs that break the relation [verdict_fails] */
-    size_t confirmed; /* number of these that fail in two of three camera positions, too */
+    size_t confirmed; /* number of these that fail in the same way for at least two of three
+                       * shifted cameras */
     double seconds;   /* time for all its pairs, including confirmation and reduction */
 } RelationCount;
 
 /* Size of a cause's name in bytes, capacity for relations, and largest exponent of a sweep. */
 enum { CAUSE_NAME = 120, MAX_RELATIONS = 32, SWEEP = 20 };
 
-/* One cause. Failing pairs have the same cause if their smallest pairs agree in the relation, the
- * kinds of shapes, shadows, perspective, and the kind of failure. */
+/* One cause. Each confirmed pair is reduced to a small pair. Two reduced pairs have the same cause
+ * if these agree: relation, kinds of shapes, shadows, perspective, kind of failure. */
 typedef struct MetamorphCause {
     char name[CAUSE_NAME];    /* "scale-up-torus-edge"; also the name of its folder */
     TrialPair pair;           /* the smallest pair that still fails */

@@ -64,8 +64,8 @@ typedef struct PulseParams {
     const Waveform *drive;     /* pressure or flow at all inlets over a cycle; at each inlet it is
                                 * scaled to the mean of the steady solution there */
     bool drive_is_flow;        /* false: `drive` is pressure */
-    double range_pa; /* pressure drive: maximum - minimum of the pressure at the inlets, to which
-                      * the oscillation is scaled; 0: it is scaled with the mean */
+    double range_pa; /* pressure drive: wanted maximum - minimum of the pressure at the inlets. 0:
+                      * the oscillation is scaled by the factor of the mean */
     PulseWall wall;
     double wall_time_s; /* relaxation time of a viscoelastic wall (Kelvin-Voigt); 0: elastic */
     PulseOutlet outlet;
@@ -186,7 +186,8 @@ typedef struct PulseCycle {
     double wave_speed;      /* speed of a wave without losses, m/s; infinity in rigid walls */
     double delay_ms;        /* phase delay of the first harmonic of pressure, from the root */
     double strain;          /* (largest - smallest cross-section) / mean cross-section */
-    double mach;            /* largest mean velocity over the cross-section / wave speed */
+    double mach;            /* largest size, over the cycle, of the mean velocity over the
+                             * cross-section, / wave_speed */
 } PulseCycle;
 
 /* Number of moments of a cycle that minima, maxima and averages are taken from. */

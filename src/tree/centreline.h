@@ -29,13 +29,14 @@ typedef struct SmoothMoves {
 
 /* Smooths the positions of the nodes inside branches by 10 rounds of Taubin's filter with the
  * factors 0.5 and -0.53 [Taubin, SIGGRAPH 1995]. The filter removes the steps of voxels and does
- * not shorten curves. Each move is limited to SMOOTH_MOST_RADII, so a node at a segment without
- * radius does not move. Errors: STATUS_MEMORY. */
+ * not shorten curves. After the last round, the whole move of a node is limited to
+ * SMOOTH_MOST_RADII radii of its thinner segment. A node at a segment of radius 0 does not move.
+ * Errors: STATUS_MEMORY. */
 MUST_CHECK Status tree_smooth(Tree *tree, SmoothMoves *moves, Err *err);
 
 /* Makes a copy of the tree in which each branch has segments of equal length, measured along the
- * old centreline. A branch gets its length divided by `step_mm` > 0, rounded, as the number of its
- * segments, and at least one. The new nodes lie on the old segments.
+ * old centreline. The number of new segments of a branch is its length / `step_mm`, rounded, and at
+ * least 1. `step_mm` is above 0. The new nodes lie on the old segments.
  *
  * A new segment has the same Poiseuille resistance as the old segments that it replaces: its r^-4
  * is the mean of their r^-4 over the length. It has the column values and the type of the old

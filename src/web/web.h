@@ -1,5 +1,5 @@
-/* The public header of the module web: the program, compiled to WebAssembly, of the web page that
- * grows trees [templates/grow/].
+/* The public header of the module web: the functions that the web page that grows trees calls
+ * [templates/grow/]. They are compiled to WebAssembly.
  *
  * The page's JavaScript worker calls these functions. The program holds one tree: the one that the
  * last successful web_grow made. Before that, the tree is empty.
@@ -21,7 +21,7 @@
 #define WEB_EXPORT(name)
 #endif
 
-/* Returns a buffer for an input of `size` bytes and its final zero, which is set. The buffer stays
+/* Returns a buffer of `size` + 1 bytes for an input. Its last byte is 0. The buffer stays
  * valid until the next call of web_input. Returns NULL if memory runs out. */
 WEB_EXPORT(web_input) char *web_input(size_t size);
 

@@ -62,8 +62,8 @@ MUST_CHECK Status answergrade_answers(const AnswerFile *a, const AnswerFile *b, 
                                       Err *err);
 
 /* Makes a picture of the distances from answergrade_image. Pixels inside are grey, brighter pixels
- * are red, and darker pixels are blue. The color is full from a distance of 8 levels on:
- * differences become visible near 2 levels. The caller releases *out. Errors: STATUS_MEMORY. */
+ * are red, and darker pixels are blue. A distance of 8 levels or more has the full
+ * color. The caller releases *out. Errors: STATUS_MEMORY. */
 MUST_CHECK Status answergrade_picture(const Plane *distances, Picture *out, Err *err);
 
 /* Appends the verdict as a line of text. If a pixel is outside, appends two more lines: the worst

@@ -1,8 +1,8 @@
 /* The accepted references of a case, and the file that lists them. Private to the module compare.
  *
  * The reference of the case views/front.png is the file of that name in the folder of references.
- * Further references, such as views/front.ref-gpu.png, and facts about any of them are listed in
- * views/front.references.ini, with one section per file:
+ * The file views/front.references.ini lists the further references, such as
+ * views/front.ref-gpu.png. It has a section for each of them, and may have one for front.png:
  *
  *     [front.ref-gpu.png]
  *     reason  = driver 550 rounds the shadows differently
@@ -16,8 +16,8 @@
 
 #include "base/base.h"
 
-/* Ends of the names of files that belong to a case, and the text between NAME and LABEL in the name
- * of a further reference. */
+/* Suffixes of the files that belong to a case. REFERENCE_MARK separates the name of a case from the
+ * label of a further reference: the label of front.ref-gpu.png is gpu. */
 #define MASK_SUFFIX ".mask.png"
 #define TOLERANCE_SUFFIX ".tolerance.ini"
 #define REFERENCES_SUFFIX ".references.ini"

@@ -40,8 +40,9 @@ static const Option rows[] = {
      SETS(OUTPUT, CoverageOptions, territories),
      .argument = "L.nii.gz",
      .otherwise = "",
-     .help = "write a volume with the label of the territory of each voxel, 0 outside the tissue "
-             "shape, and the volumes and flows of the territories to L.csv"},
+     .help =
+         "write two files: a volume with the label of the territory of each voxel (0 outside the "
+         "tissue shape), and L.csv with the volume and flow of each territory"},
     {.name = "territory",
      SETS(CHOICE, CoverageOptions, kind),
      .choices = territory_kinds,

@@ -92,9 +92,10 @@ static const Option rows[] = {
      .argument = "NAME|K1,K2,K3",
      .list = "walls",
      .help =
-         "stiffness of the wall, E h / r, where E is Young's modulus, h the thickness of the wall "
-         "and r the radius, mm: a law, or K1,K2,K3 for K1 exp(K2 r) + K3 in Pa, 1/mm and Pa, "
-         "such as 2e6,-2.253,8.65e4"},
+         "stiffness of the wall: a law, or three numbers such as 2e6,-2.253,8.65e4; the stiffness "
+         "is "
+         "E h / r = K1 exp(K2 r) + K3, with Young's modulus E, the thickness h of the wall, the "
+         "radius r in mm, K1 and K3 in Pa, and K2 in 1/mm"},
     {.name = "wall-time",
      SETS(NUMBER, PulsingOptions, wall_time_s),
      FROM_TO(0, 10),
@@ -131,9 +132,9 @@ static const Option rows[] = {
      FROM_TO(-100, 1000),
      .unit = "mmHg",
      .group = GROUP_PULSE,
-     .help =
-         "pressure behind the outlets; the resistance of an outlet carries the pressure from the "
-         "terminal to this value"},
+     .help = "mean pressure behind the outlets; the resistance of an rcr outlet is (mean pressure "
+             "at the "
+             "outlet - this pressure) / mean flow"},
     {.name = "tissue-pressure",
      SETS(TEXT, PulsingOptions, tissue),
      .group = GROUP_PULSE,

@@ -34,9 +34,8 @@ static const Option own[] = {
     {.name = "width",
      SETS(TEXT, AnswerOptions, width),
      .argument = "W",
-     .help = "an interval that is at most this wide is narrow enough, and its pixel counts as "
-             "decided: an sRGB value from 1e-12 to 1, or a fraction such as 1/510, half a level "
-             "of 8 bits"},
+     .help = "maximum width of the interval of a decided pixel, in sRGB: a number from 1e-12 to 1, "
+             "or a fraction; 1/510 is half a level of 8 bits"},
     {.name = "leaves",
      SETS(WHOLE, AnswerOptions, leaves),
      FROM_TO(1, 10000000),
@@ -46,9 +45,9 @@ static const Option own[] = {
     {.name = "certificate",
      SETS(OUTPUT, AnswerOptions, certificate),
      .argument = "C.json",
-     .help =
-         "write the scene's numbers and the claims behind 24 pixels as JSON, for a checker that "
-         "shares no code with corcast"},
+     .help = "write the scene's numbers and the claims behind up to 24 pixels as JSON, for a "
+             "checker that "
+             "shares no code with corcast"},
     {.name = "squares",
      SETS(FLAG, AnswerOptions, squares),
      .needs = "area",
@@ -215,8 +214,9 @@ const Command command_answer = {
                 "  corcast compare tree.answer.exr tree.png\n"
                 "\nThe command computes, for each pixel, two bounds that certainly contain its "
                 "color. `corcast\ncompare A.exr picture.png` counts the pixels outside their "
-                "bounds. Draw the picture with\n`corcast render --exact --antialias N`, or with "
-                "POV-Ray's +A0.0 +AM1 +RN, at the N of --pattern.\n",
+                "bounds. The picture must have the\nsamples of the answer. For --pattern N, draw "
+                "it with `corcast render --exact --antialias N`, or\nwith POV-Ray and +A0.0 +AM1 "
+                "+RN.\n",
     .min_operands = 1,
     .max_operands = 1,
     .needs_output = true,

@@ -12,9 +12,9 @@ static const Option own[] = {
      .argument = "COMMAND",
      .help =
          "shell command that renders the file {scene} into the PNG, PPM, TIFF or EXR file "
-         "{picture} of {width} x {height} pixels; if the command lacks {scene}, the command adds "
-         "the scene and the picture at its end; {camera}, only with --format swc, stands for "
-         "the camera options of `corcast render`"},
+         "{picture} of {width} x {height} pixels; if COMMAND lacks {scene}, corcast appends the "
+         "names of the files of scene and picture to COMMAND; {camera}, only with --format swc, "
+         "stands for the camera options of `corcast render`"},
     {.name = "format",
      SETS(CHOICE, MetamorphOptions, format),
      .choices = formats,
@@ -135,11 +135,14 @@ const Command command_metamorph = {
         "-o {picture}' -o tachyon\n"
         "  corcast metamorph --format swc --render 'corcast render {scene} {camera} -o {picture} "
         "--quiet' -o self\n"
-        "\nThe command draws pairs of random scenes. The second scene of a pair is the first one "
-        "with a\nchange whose effect on the picture is known, such as a translation of scene and "
-        "camera. A pair\nwhose pictures differ is confirmed with two more cameras, made as "
-        "small as possible, and reported\nin DIR/CAUSE. The exit status is 1 if a cause was "
-        "found.\n",
+        "\ncorcast makes pairs of random scenes and lets the renderer draw them. The second scene "
+        "of a\n"
+        "pair is the first one with a change whose effect on the picture is known, such as a\n"
+        "translation of scene and camera. corcast draws a failing pair again with three shifted\n"
+        "cameras. The pair is confirmed if at least two of the three fail in the same way. "
+        "corcast\n"
+        "makes a confirmed pair as small as possible and reports it in DIR/CAUSE. The exit status\n"
+        "is 1 if a cause was found.\n",
     .max_operands = 0,
     .size = sizeof(MetamorphOptions),
     .set_defaults = set_defaults,
