@@ -19,6 +19,10 @@ static inline const TreeMeta *value_source(const Tree *tree, const TreeMeta *ove
     return overrides->known[key] ? overrides : &tree->meta;
 }
 
+/* Refuses networks with links. Errors: STATUS_INPUT, with a sentence that continues the name of a
+ * field. */
+MUST_CHECK Status refuse_loops(const Tree *tree, Err *err);
+
 /* Returns true if no input of field_pressure is missing. */
 bool pressure_is_known(const Tree *tree, const TreeMeta *overrides);
 
