@@ -218,65 +218,54 @@ static json_t *color_json(Rgb c)
 
 static json_t *finish_json(const Finish *finish)
 {
-    const JsonMember members[] = {{"ambient", json_number((double)finish->ambient)},
-                                  {"diffuse", json_number((double)finish->diffuse)},
-                                  {"brilliance", json_number((double)finish->brilliance)},
-                                  {"phong", json_number((double)finish->phong)},
-                                  {"phong_size", json_number((double)finish->phong_size)},
-                                  {"specular", json_number((double)finish->specular)},
-                                  {"roughness", json_number((double)finish->roughness)}};
-    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+    return JSON_OBJECT({"ambient", json_number((double)finish->ambient)},
+                       {"diffuse", json_number((double)finish->diffuse)},
+                       {"brilliance", json_number((double)finish->brilliance)},
+                       {"phong", json_number((double)finish->phong)},
+                       {"phong_size", json_number((double)finish->phong_size)},
+                       {"specular", json_number((double)finish->specular)},
+                       {"roughness", json_number((double)finish->roughness)});
 }
 
 static json_t *camera_json(const Camera *camera)
 {
     const bool perspective = camera->projection == PROJECTION_PERSPECTIVE;
-    const JsonMember members[] = {
-        {"projection", json_text(perspective ? "perspective" : "orthographic")},
-        {"location", vector_json(camera->location)},
-        {"right", vector_json(camera->right)},
-        {"up", vector_json(camera->up)},
-        {"direction", vector_json(camera->direction)},
-        {"width", json_count((uint64_t)camera->width)},
-        {"height", json_count((uint64_t)camera->height)}};
-    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+    return JSON_OBJECT({"projection", json_text(perspective ? "perspective" : "orthographic")},
+                       {"location", vector_json(camera->location)},
+                       {"right", vector_json(camera->right)}, {"up", vector_json(camera->up)},
+                       {"direction", vector_json(camera->direction)},
+                       {"width", json_count((uint64_t)camera->width)},
+                       {"height", json_count((uint64_t)camera->height)});
 }
 
 static json_t *light_json(const Light *light)
 {
-    const JsonMember members[] = {{"location", vector_json(light->location)},
-                                  {"target", vector_json(light->target)},
-                                  {"parallel", json_boolean(light->parallel)},
-                                  {"color", color_json(light->color)},
-                                  {"samples", json_count((uint64_t)light_points(light))},
-                                  {"side_a", vector_json(light->sides[0])},
-                                  {"side_b", vector_json(light->sides[1])}};
-    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+    return JSON_OBJECT(
+        {"location", vector_json(light->location)}, {"target", vector_json(light->target)},
+        {"parallel", json_boolean(light->parallel)}, {"color", color_json(light->color)},
+        {"samples", json_count((uint64_t)light_points(light))},
+        {"side_a", vector_json(light->sides[0])}, {"side_b", vector_json(light->sides[1])});
 }
 
 static json_t *shape_json(const Scene *scene, const Primitive *primitive)
 {
     const Appearance *look = &scene->appearance;
     const bool is_ball = primitive->kind == PRIMITIVE_SPHERE;
-    const JsonMember members[] = {
-        {"kind", json_text(is_ball ? "sphere" : "cylinder")},
-        {"a", vector_json(primitive->a)},
+    return JSON_OBJECT(
+        {"kind", json_text(is_ball ? "sphere" : "cylinder")}, {"a", vector_json(primitive->a)},
         {"b", vector_json(is_ball ? primitive->a : primitive->b)},
         {"radius", json_number(primitive->radius_mm)},
         {"color",
-         color_json(look->colors ? appearance_color(look, primitive->segment) : look->color)}};
-    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+         color_json(look->colors ? appearance_color(look, primitive->segment) : look->color)});
 }
 
 static json_t *ground_json(const Ground *ground)
 {
-    const JsonMember members[] = {{"normal", vector_json(ground->normal)},
-                                  {"offset", json_number(ground->offset_mm)},
-                                  {"color", color_json(ground->color)},
-                                  {"finish", finish_json(&ground->finish)}};
-    return ground->present
-               ? json_with_members(json_object(), members, sizeof members / sizeof *members)
-               : json_null();
+    return ground->present ? JSON_OBJECT({"normal", vector_json(ground->normal)},
+                                         {"offset", json_number(ground->offset_mm)},
+                                         {"color", color_json(ground->color)},
+                                         {"finish", finish_json(&ground->finish)})
+                           : json_null();
 }
 
 /* Returns a scene as JSON: lengths in mm, linear colors. */
@@ -288,18 +277,14 @@ static json_t *scene_json(const Scene *scene, bool shadows)
     for (size_t i = 0; i < scene->geometry.n_primitives; i++)
         shapes = json_with_item(shapes, shape_json(scene, &scene->geometry.primitives[i]));
     const Fade *fade = &scene->view.fade;
-    const JsonMember members[] = {
+    return JSON_OBJECT(
         {"camera", camera_json(&scene->view.camera)},
         {"background", color_json(scene->view.background)},
-        {"finish", finish_json(&scene->appearance.finish)},
-        {"shadows", json_boolean(shadows)},
+        {"finish", finish_json(&scene->appearance.finish)}, {"shadows", json_boolean(shadows)},
         {"fade",
          json_numbers((const double[]){fade->nearest, fade->farthest, fade->near_mm, fade->far_mm},
                       4)},
-        {"ground", ground_json(&scene->view.ground)},
-        {"lights", lights},
-        {"shapes", shapes}};
-    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+        {"ground", ground_json(&scene->view.ground)}, {"lights", lights}, {"shapes", shapes});
 }
 
 /* ---- answers and drawings -------------------------------------------------------------------- */
