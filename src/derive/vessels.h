@@ -5,6 +5,7 @@
 #ifndef CORCAST_DERIVE_VESSELS_H
 #define CORCAST_DERIVE_VESSELS_H
 
+#include "derive/statistics.h"
 #include "tree/tree.h"
 
 enum { NO_VESSEL = -1 };
@@ -43,5 +44,10 @@ typedef struct DiameterOrders {
  * *order has an entry per vessel and is owned by the caller. Errors: STATUS_MEMORY. */
 MUST_CHECK Status vessels_diameter_orders(const Vessels *vessels, int32_t **order,
                                           DiameterOrders *result, Err *err);
+
+/* Computes the order of each vessel by n published diameters [statistics_by_diameter]. *order has
+ * an entry per vessel and is owned by the caller. Errors: STATUS_MEMORY. */
+MUST_CHECK Status vessels_published_orders(const Vessels *vessels, const Spread *diameter_mm,
+                                           size_t n, int32_t **order, Err *err);
 
 #endif
