@@ -22,13 +22,6 @@ typedef struct OrderBin {
     double bound;    /* between this order and the next; infinite for the last */
 } OrderBin;
 
-/* Returns the bound between the diameters of two neighbouring orders. */
-static double bound_between(Spread low, Spread high)
-{
-    double low_sd = isnan(low.sd) ? 0 : low.sd, high_sd = isnan(high.sd) ? 0 : high.sd;
-    return (low.mean + low_sd + high.mean - high_sd) / 2;
-}
-
 /* Two passes, so that the spread of nearly equal diameters is not lost in their squares. */
 static void measure_bins(const Vessels *vessels, const int32_t *order, OrderBin *bin, int n_bins)
 {
@@ -47,8 +40,7 @@ static void measure_bins(const Vessels *vessels, const int32_t *order, OrderBin 
     for (int b = 0; b < n_bins; b++)
         bin[b].sd = bin[b].count > 1 ? sqrt(bin[b].sd / (double)(bin[b].count - 1)) : 0;
     for (int b = 0; b + 1 < n_bins && bin[b + 1].count; b++)
-        bin[b].bound = bound_between((Spread){bin[b].mean, bin[b].sd},
-                                     (Spread){bin[b + 1].mean, bin[b + 1].sd});
+        bin[b].bound = (bin[b].mean + bin[b].sd + bin[b + 1].mean - bin[b + 1].sd) / 2;
 }
 
 /* Computes the order of every vessel again. Returns the number of vessels whose order changed.
@@ -106,24 +98,16 @@ done:
     return status;
 }
 
-/* Returns the order of a diameter: 1 + the number of bounds below it. */
-static int32_t order_of_diameter(double diameter, const Spread *published, size_t n)
-{
-    int32_t order = 1;
-    for (size_t k = 0; k + 1 < n; k++)
-        order += diameter > bound_between(published[k], published[k + 1]);
-    return order;
-}
-
-Status vessels_published_orders(const Vessels *vessels, const Spread *diameter_mm, size_t n,
-                                int32_t **order, Err *err)
+Status vessels_bounded_orders(const Vessels *vessels, const double *bound_mm, size_t n,
+                              int32_t **order, Err *err)
 {
     int32_t *made;
     TRY(mem_calloc(&made, vessels->n, sizeof *made, "orders", err));
     for (size_t v = vessels->n; v-- > 0;) {
         /* made[v] is the largest order among the daughters so far. */
-        int32_t own = order_of_diameter(2 * vessels->vessel[v].radius_mm, diameter_mm, n);
-        int32_t parent = vessels->vessel[v].parent;
+        int32_t own = 1, parent = vessels->vessel[v].parent;
+        for (size_t k = 0; k < n; k++)
+            own += 2 * vessels->vessel[v].radius_mm > bound_mm[k];
         made[v] = own > made[v] ? own : made[v];
         if (parent != NO_VESSEL && made[v] > made[parent])
             made[parent] = made[v];

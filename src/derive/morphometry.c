@@ -141,6 +141,18 @@ Status morphometry_read(Morphometry *table, const char *path, Err *err)
     return status;
 }
 
+double morphometry_bound_mm(const Morphometry *table, int order)
+{
+    if (order < 1)
+        return 0;
+    if (order >= (int)table->n)
+        return HUGE_VAL;
+    Spread low = table->row[order - 1].diameter_mm, high = table->row[order].diameter_mm;
+    return (low.mean + (isfinite(low.sd) ? low.sd : 0) + high.mean -
+            (isfinite(high.sd) ? high.sd : 0)) /
+           2;
+}
+
 /* ---- comparison ------------------------------------------------------------------------------ */
 
 /* The elements of a tree by order. `daughters` is as in TreeStatistics, where n is the last row's
@@ -272,13 +284,12 @@ static Status compare_published(const Tree *tree, const Morphometry *table,
                                 MorphometryComparison *comparison, Err *err)
 {
     StatisticsTable elements = {0};
-    double *daughters = NULL;
-    Spread *diameter = NULL;
-    TRY(mem_calloc(&diameter, table->n, sizeof *diameter, "orders", err));
+    double *daughters = NULL, *bound = NULL;
+    TRY(mem_calloc(&bound, table->n, sizeof *bound, "orders", err));
     for (size_t k = 0; k < table->n; k++)
-        diameter[k] = table->row[k].diameter_mm;
-    Status status = statistics_by_diameter(tree, diameter, table->n, &elements, &daughters, err);
-    free(diameter);
+        bound[k] = morphometry_bound_mm(table, (int)k + 1);
+    Status status = statistics_by_bounds(tree, bound, table->n, &elements, &daughters, err);
+    free(bound);
     if (status == STATUS_OK)
         status = compare_orders(&(ComparedOrders){.elements = &elements, .daughters = daughters},
                                 table, comparison, err);

@@ -50,6 +50,11 @@ typedef struct Morphometry {
 MUST_CHECK Status morphometry_read(Morphometry *table, const char *path, Err *err);
 void morphometry_release(Morphometry *table);
 
+/* Returns the diameter, mm, between `order`, from 0, and the next order: half way between mean plus
+ * standard deviation of the one and mean minus standard deviation of the other [Jiang, Kassab &
+ * Fung 1994, as in derive.h]. It is 0 below order 1, and infinite above the last order. */
+double morphometry_bound_mm(const Morphometry *table, int order);
+
 /* The quantities that are compared. */
 typedef enum MorphometryMeasure {
     COMPARED_DIAMETER,
@@ -106,9 +111,8 @@ extern const char *const morphometry_orders_names[MORPHOMETRY_ORDERS + 1]; /* NU
 
 /* Compares a tree with a table, by both kinds of orders.
  *
- * Published orders: the bound between two orders is half way between mean + SD of the lower and
- * mean - SD of the higher published diameter. A vessel has the order of its diameter, or the
- * largest order of its daughters if that is higher.
+ * Published orders: morphometry_bound_mm is the bound between two orders. A vessel has the order of
+ * its diameter, or the largest order of its daughters if that is higher.
  *
  * Found orders: a tree rarely covers a whole organ, so order k of the tree is compared with the
  * published order k + shift. Among the shifts for which the most orders have a counterpart, the

@@ -246,15 +246,15 @@ done:
     return status;
 }
 
-Status statistics_by_diameter(const Tree *tree, const Spread *diameter_mm, size_t n,
-                              StatisticsTable *elements, double **daughters, Err *err)
+Status statistics_by_bounds(const Tree *tree, const double *bound_mm, size_t n,
+                            StatisticsTable *elements, double **daughters, Err *err)
 {
     Vessels vessels;
     int32_t *order = NULL;
     OrderRatios ratios;
     TRY(vessels_init(&vessels, tree, err));
     Status status = STATUS_OK;
-    TRY_GOTO(vessels_published_orders(&vessels, diameter_mm, n, &order, err));
+    TRY_GOTO(vessels_bounded_orders(&vessels, bound_mm, n, &order, err));
     TRY_GOTO(make_order_table(&vessels, order, elements, &ratios, daughters, err));
 done:
     free(order);

@@ -66,15 +66,15 @@ typedef struct TreeStatistics {
 MUST_CHECK Status derive_statistics(const Tree *tree, TreeStatistics *statistics, Err *err);
 void statistics_release(TreeStatistics *statistics);
 
-/* Computes the elements of the orders that published diameters define, as in morphometry_compare.
+/* Computes the elements of the orders that n bounds of diameter define. A vessel has the order 1 +
+ * the number of bounds below its diameter, or the largest order of its daughters if that is higher.
  *
- * diameter_mm  per order, from 1: mean and standard deviation (NAN counts as 0).
- * elements     receives a row for each order that has vessels; the caller frees `row`.
- * daughters    receives the connectivity as in TreeStatistics, where n is the last row's order;
- *              owned by the caller.
- * Errors       STATUS_MEMORY. Nothing is set after an error. */
-MUST_CHECK Status statistics_by_diameter(const Tree *tree, const Spread *diameter_mm, size_t n,
-                                         StatisticsTable *elements, double **daughters, Err *err);
+ * elements   receives a row for each order that has vessels; the caller frees `row`.
+ * daughters  receives the connectivity as in TreeStatistics, where n is the last row's order;
+ *            owned by the caller.
+ * Errors     STATUS_MEMORY. */
+MUST_CHECK Status statistics_by_bounds(const Tree *tree, const double *bound_mm, size_t n,
+                                       StatisticsTable *elements, double **daughters, Err *err);
 
 /* Computes the ratios from the rows with numbers `first` to `last`. */
 OrderRatios statistics_ratios(const StatisticsTable *table, int first, int last);

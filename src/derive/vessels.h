@@ -5,7 +5,6 @@
 #ifndef CORCAST_DERIVE_VESSELS_H
 #define CORCAST_DERIVE_VESSELS_H
 
-#include "derive/statistics.h"
 #include "tree/tree.h"
 
 enum { NO_VESSEL = -1 };
@@ -45,9 +44,9 @@ typedef struct DiameterOrders {
 MUST_CHECK Status vessels_diameter_orders(const Vessels *vessels, int32_t **order,
                                           DiameterOrders *result, Err *err);
 
-/* Computes the order of each vessel by n published diameters [statistics_by_diameter]. *order has
- * an entry per vessel and is owned by the caller. Errors: STATUS_MEMORY. */
-MUST_CHECK Status vessels_published_orders(const Vessels *vessels, const Spread *diameter_mm,
-                                           size_t n, int32_t **order, Err *err);
+/* Computes the order of each vessel by bounds of diameter [statistics_by_bounds]. *order has an
+ * entry per vessel and is owned by the caller. Errors: STATUS_MEMORY. */
+MUST_CHECK Status vessels_bounded_orders(const Vessels *vessels, const double *bound_mm, size_t n,
+                                         int32_t **order, Err *err);
 
 #endif
