@@ -2,6 +2,7 @@
  * reduction. */
 #include "network/network.h"
 
+#include "base/sets.h"
 #include "network/reduce.h"
 #include <float.h>
 #include <stdlib.h>
@@ -21,29 +22,19 @@ static bool is_open(const Network *network, size_t segment)
     return network->resistance[segment] < HUGE_VAL;
 }
 
-static uint32_t find(uint32_t *parent, uint32_t node)
-{
-    while (parent[node] != node)
-        node = parent[node] = parent[parent[node]];
-    return node;
-}
-
-/* Joins the nodes of open segments. The first node of a component becomes the parent of all. */
+/* Joins the nodes of open segments. */
 static void join(const Network *network, uint32_t *parent)
 {
-    for (uint32_t v = 0; v < network->n_nodes; v++)
-        parent[v] = v;
-    for (size_t i = 0; i < network->n_segments; i++) {
-        uint32_t a = find(parent, network->ends[i][0]), b = find(parent, network->ends[i][1]);
+    sets_begin(parent, network->n_nodes);
+    for (size_t i = 0; i < network->n_segments; i++)
         if (is_open(network, i))
-            parent[a > b ? a : b] = a > b ? b : a;
-    }
+            sets_join(parent, network->ends[i][0], network->ends[i][1]);
 }
 
 static void measure(const Network *network, uint32_t *parent, Component *component)
 {
     for (uint32_t v = 0; v < network->n_nodes; v++) {
-        uint32_t top = find(parent, v);
+        uint32_t top = sets_find(parent, v);
         Component *at = &component[top];
         if (top == v)
             at->reference = v;
