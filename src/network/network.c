@@ -59,14 +59,17 @@ static Status fix_pressures(const Network *network, const Component *component, 
         out->components += at->has_segment;
         if (at->has_pressure)
             continue;
-        if (fabs(at->sum) > NETWORK_MAX_EXCESS * at->sizes)
+        if (!network->absorbs && fabs(at->sum) > NETWORK_MAX_EXCESS * at->sizes)
             return err_set(err, STATUS_INPUT,
                            "the inflows of the vessels that are connected with node %d sum to %.6g "
                            "ml/min; they must sum to 0, because no pressure is known there",
                            network->id[at->reference], ml_min_from_mm3_s(at->sum));
-        if (at->has_segment)
-            pressure[at->reference] = 0;
-        out->floating += at->has_segment;
+        if (!at->has_segment)
+            continue;
+        pressure[at->reference] = 0;
+        out->floating++;
+        out->idle += at->sizes == 0;
+        out->idle_node = at->sizes == 0 ? v : out->idle_node;
     }
     return STATUS_OK;
 }
