@@ -117,6 +117,18 @@ Status morphometry_read(Morphometry *table, const char *path, Err *err)
     return status;
 }
 
+double morphometry_bound_mm(const Morphometry *table, int order)
+{
+    if (order < 1)
+        return 0;
+    if (order >= (int)table->n)
+        return HUGE_VAL;
+    Spread low = table->row[order - 1].diameter_mm, high = table->row[order].diameter_mm;
+    return (low.mean + (isfinite(low.sd) ? low.sd : 0) + high.mean -
+            (isfinite(high.sd) ? high.sd : 0)) /
+           2;
+}
+
 /* Of an order's row of the tree. */
 static MorphometryRow row_of_tree(const TreeStatistics *statistics, size_t k)
 {

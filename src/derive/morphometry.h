@@ -42,6 +42,11 @@ typedef struct Morphometry {
 MUST_CHECK Status morphometry_read(Morphometry *table, const char *path, Err *err);
 void morphometry_release(Morphometry *table);
 
+/* Returns the diameter, mm, between `order`, from 0, and the next order: half way between mean plus
+ * standard deviation of the one and mean minus standard deviation of the other [Jiang, Kassab &
+ * Fung 1994, as in derive.h]. It is 0 below order 1, and infinite above the last order. */
+double morphometry_bound_mm(const Morphometry *table, int order);
+
 /* The quantities that are compared. */
 typedef enum MorphometryMeasure {
     COMPARED_DIAMETER,

@@ -50,6 +50,18 @@ static void set_defaults(void *options)
 
 static void note_grown(const Talk *talk, const GrowReport *report, const GrowParams *params)
 {
+    const FillReport *fill = &report->fill;
+    if (fill->elements > 0) {
+        talk_note(talk,
+                  "filled with %zu elements in %.3g s: %zu terminals, %.4g ml/min; the terminals' "
+                  "flows vary by %.0f %% of their mean (standard deviation)",
+                  fill->elements, report->seconds, report->terminals, fill->flow_ml_min,
+                  100 * fill->flow_spread);
+        if (fill->left_out > 0)
+            talk_warn(talk, "%zu elements have no place in the tissue shape and were left out",
+                      fill->left_out);
+        return;
+    }
     talk_note(talk, "grew %zu terminals in %.3g s: target %.6g, root radius %.4g mm",
               report->terminals, report->seconds, report->target, report->root_radius_mm);
     if (params->pair_mm > 0)
