@@ -113,25 +113,19 @@ static Status make_report(const GrowOptions *options, int threads, const GrowRep
     json_t *bound = json_null();
     if (options->bound)
         TRY(bound_json(&made->tree, &made->tree.meta, &bound, err));
-    const JsonMember members[] = {
-        {"generator", json_text(GENERATOR)},
-        {"seconds", json_number(report->seconds)},
-        {"terminals", json_count(report->terminals)},
-        {"target", json_number(report->target)},
-        {"root_radius_mm", json_number(report->root_radius_mm)},
-        {"tosses", json_count(report->tosses)},
-        {"rejected", json_count(report->rejected)},
-        {"thickness", json_number(report->thickness)},
-        {"broken", json_count(report->broken)},
-        {"complete", json_boolean(report->complete)},
-        {"threads", json_integer(threads ? threads : threads_available())},
-        {"radius_change", change_json(report)},
-        {"apart_mm", json_number(report->apart_mm)},
-        {"terminal_pairs", pairs_json(&made->tree)},
-        {"bound", bound},
-    };
     return madetree_report(
-        made, json_with_members(json_object(), members, sizeof members / sizeof *members), err);
+        made,
+        JSON_OBJECT(
+            {"generator", json_text(GENERATOR)}, {"seconds", json_number(report->seconds)},
+            {"terminals", json_count(report->terminals)}, {"target", json_number(report->target)},
+            {"root_radius_mm", json_number(report->root_radius_mm)},
+            {"tosses", json_count(report->tosses)}, {"rejected", json_count(report->rejected)},
+            {"thickness", json_number(report->thickness)}, {"broken", json_count(report->broken)},
+            {"complete", json_boolean(report->complete)},
+            {"threads", json_integer(threads ? threads : threads_available())},
+            {"radius_change", change_json(report)}, {"apart_mm", json_number(report->apart_mm)},
+            {"terminal_pairs", pairs_json(&made->tree)}, {"bound", bound}),
+        err);
 }
 
 /* ---- the operation --------------------------------------------------------------------------- */

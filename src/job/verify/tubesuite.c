@@ -204,104 +204,6 @@ static Status prepare_answer(const TubeCase *one, const SuiteFiles *files, Parse
     return options_finish(answer, err);
 }
 
-/* ---- plain JSON ------------------------------------------------------------------------------ */
-
-static json_t *vector_json(Vec3 v)
-{
-    return json_numbers((const double[]){v.x, v.y, v.z}, 3);
-}
-
-static json_t *color_json(Rgb c)
-{
-    return json_numbers((const double[]){(double)c.r, (double)c.g, (double)c.b}, 3);
-}
-
-static json_t *finish_json(const Finish *finish)
-{
-    const JsonMember members[] = {{"ambient", json_number((double)finish->ambient)},
-                                  {"diffuse", json_number((double)finish->diffuse)},
-                                  {"brilliance", json_number((double)finish->brilliance)},
-                                  {"phong", json_number((double)finish->phong)},
-                                  {"phong_size", json_number((double)finish->phong_size)},
-                                  {"specular", json_number((double)finish->specular)},
-                                  {"roughness", json_number((double)finish->roughness)}};
-    return json_with_members(json_object(), members, sizeof members / sizeof *members);
-}
-
-static json_t *camera_json(const Camera *camera)
-{
-    const bool perspective = camera->projection == PROJECTION_PERSPECTIVE;
-    const JsonMember members[] = {
-        {"projection", json_text(perspective ? "perspective" : "orthographic")},
-        {"location", vector_json(camera->location)},
-        {"right", vector_json(camera->right)},
-        {"up", vector_json(camera->up)},
-        {"direction", vector_json(camera->direction)},
-        {"width", json_count((uint64_t)camera->width)},
-        {"height", json_count((uint64_t)camera->height)}};
-    return json_with_members(json_object(), members, sizeof members / sizeof *members);
-}
-
-static json_t *light_json(const Light *light)
-{
-    const JsonMember members[] = {{"location", vector_json(light->location)},
-                                  {"target", vector_json(light->target)},
-                                  {"parallel", json_boolean(light->parallel)},
-                                  {"color", color_json(light->color)},
-                                  {"samples", json_count((uint64_t)light_points(light))},
-                                  {"side_a", vector_json(light->sides[0])},
-                                  {"side_b", vector_json(light->sides[1])}};
-    return json_with_members(json_object(), members, sizeof members / sizeof *members);
-}
-
-static json_t *shape_json(const Scene *scene, const Primitive *primitive)
-{
-    const Appearance *look = &scene->appearance;
-    const bool is_ball = primitive->kind == PRIMITIVE_SPHERE;
-    const JsonMember members[] = {
-        {"kind", json_text(is_ball ? "sphere" : "cylinder")},
-        {"a", vector_json(primitive->a)},
-        {"b", vector_json(is_ball ? primitive->a : primitive->b)},
-        {"radius", json_number(primitive->radius_mm)},
-        {"color",
-         color_json(look->colors ? appearance_color(look, primitive->segment) : look->color)}};
-    return json_with_members(json_object(), members, sizeof members / sizeof *members);
-}
-
-static json_t *ground_json(const Ground *ground)
-{
-    const JsonMember members[] = {{"normal", vector_json(ground->normal)},
-                                  {"offset", json_number(ground->offset_mm)},
-                                  {"color", color_json(ground->color)},
-                                  {"finish", finish_json(&ground->finish)}};
-    return ground->present
-               ? json_with_members(json_object(), members, sizeof members / sizeof *members)
-               : json_null();
-}
-
-/* Returns a scene as JSON: lengths in mm, linear colors. */
-static json_t *scene_json(const Scene *scene, bool shadows)
-{
-    json_t *lights = json_array(), *shapes = json_array();
-    for (size_t i = 0; i < scene->view.n_lights; i++)
-        lights = json_with_item(lights, light_json(&scene->view.lights[i]));
-    for (size_t i = 0; i < scene->geometry.n_primitives; i++)
-        shapes = json_with_item(shapes, shape_json(scene, &scene->geometry.primitives[i]));
-    const Fade *fade = &scene->view.fade;
-    const JsonMember members[] = {
-        {"camera", camera_json(&scene->view.camera)},
-        {"background", color_json(scene->view.background)},
-        {"finish", finish_json(&scene->appearance.finish)},
-        {"shadows", json_boolean(shadows)},
-        {"fade",
-         json_numbers((const double[]){fade->nearest, fade->farthest, fade->near_mm, fade->far_mm},
-                      4)},
-        {"ground", ground_json(&scene->view.ground)},
-        {"lights", lights},
-        {"shapes", shapes}};
-    return json_with_members(json_object(), members, sizeof members / sizeof *members);
-}
-
 /* ---- answers and drawings -------------------------------------------------------------------- */
 
 static Status write_scene(const TubeSuiteOptions *options, const PictureOptions *picture,
@@ -315,7 +217,7 @@ static Status write_scene(const TubeSuiteOptions *options, const PictureOptions 
     if (options->format == SUITE_SWC)
         return STATUS_OK;
     if (options->format == SUITE_JSON)
-        return json_write(scene_json(scene, picture->stage.shadows), files->scene, err);
+        return json_write(answer_scene_json(scene, picture->stage.shadows), files->scene, err);
     TRY_GOTO(templates_folder(&templates, err));
     const EmitParams params = {.scene = scene,
                                .command = "corcast suite",

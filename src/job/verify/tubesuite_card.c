@@ -33,18 +33,13 @@ void tubesuite_text(const TubeSuite *suite, Text *out)
 
 static json_t *case_json(const TubeCase *one)
 {
-    const JsonMember members[] = {
-        {"name", json_text(one->name)},
-        {"group", json_text(one->group)},
-        {"look", json_text(one->look)},
-        {"options", json_text(one->options)},
-        {"rows", json_count((uint64_t)one->rows)},
-        {"drawn", json_boolean(one->drawn)},
-        {"certified", json_boolean(one->certified)},
-        {"wrong", json_count(one->wrong)},
+    return JSON_OBJECT(
+        {"name", json_text(one->name)}, {"group", json_text(one->group)},
+        {"look", json_text(one->look)}, {"options", json_text(one->options)},
+        {"rows", json_count((uint64_t)one->rows)}, {"drawn", json_boolean(one->drawn)},
+        {"certified", json_boolean(one->certified)}, {"wrong", json_count(one->wrong)},
         {"reason", json_text_or_null(one->drawn ? NULL : one->reason)},
-        {"grade", one->drawn ? answergrade_json(&one->grade) : json_null()}};
-    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+        {"grade", one->drawn ? answergrade_json(&one->grade) : json_null()});
 }
 
 json_t *tubesuite_json(const TubeSuite *suite)
@@ -52,14 +47,10 @@ json_t *tubesuite_json(const TubeSuite *suite)
     json_t *cases = json_array();
     for (size_t i = 0; i < suite->cases.n; i++)
         cases = json_with_item(cases, case_json(&suite->cases.items[i]));
-    const JsonMember members[] = {
-        {"renderer",
-         json_text(suite->options->title ? suite->options->title : suite->options->render)},
-        {"scenes", json_count(suite->cases.n)},
-        {"drawn", json_count(suite->drawn)},
-        {"certified", json_count(suite->certified)},
-        {"cases", cases}};
-    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+    return JSON_OBJECT({"renderer", json_text(suite->options->title ? suite->options->title
+                                                                    : suite->options->render)},
+                       {"scenes", json_count(suite->cases.n)}, {"drawn", json_count(suite->drawn)},
+                       {"certified", json_count(suite->certified)}, {"cases", cases});
 }
 
 static void put_row(const TubeCase *one, Text *out)
