@@ -118,7 +118,7 @@ typedef struct FillReport {
 typedef struct GrowReport {
     double seconds; /* wall clock */
     size_t terminals;
-    double target;         /* sum of l r^lambda, mm^(1 + lambda) */
+    double target;         /* sum of l r^lambda, mm^(1 + lambda); NAN for a filled tree */
     double root_radius_mm; /* the largest root radius */
     uint64_t tosses;       /* random points drawn */
     uint64_t rejected;     /* points in vessels, in full cells, or without room for a connection */

@@ -142,10 +142,11 @@ static Daughters random_daughters(Filling *filling, const FillElement *element)
     bool is_above = element->grown && element->order >= rules->from;
     int highest = is_above ? rules->from - 1 : element->order, own = 0;
     Daughters out = {.n = 0};
-    for (int less = 0; less < DAUGHTER_ORDERS && element->order - less >= rules->to; less++) {
+    for (int less = 0; less < PUBLISHED_DAUGHTERS && element->order - less >= rules->to; less++) {
         if (element->order - less > highest)
             continue;
-        int count = random_count(&filling->random, row->daughters[less]) - element->present[less];
+        int count =
+            random_count(&filling->random, row->daughters[less].mean) - element->present[less];
         push(&out, element->order - less, count);
         own += less == 0 && count > 0 ? count : 0;
     }

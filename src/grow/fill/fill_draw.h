@@ -24,10 +24,10 @@ typedef struct FillElement {
     int32_t segments; /* of a drawn element: number of segments that it is cut into */
     bool grown;       /* the element is part of the tree that is filled */
     bool is_open;     /* grown, and its last segment is a terminal */
-    uint16_t present[DAUGHTER_ORDERS]; /* grown daughters by the number of orders below */
-    double radius_mm;                  /* of a grown element: the radius at its distal end */
-    double grown_mm;                   /* length that was grown; 0 for a drawn element */
-    double length_mm;                  /* length that the filling adds */
+    uint16_t present[PUBLISHED_DAUGHTERS]; /* grown daughters by the number of orders below */
+    double radius_mm;                      /* of a grown element: the radius at its distal end */
+    double grown_mm;                       /* length that was grown; 0 for a drawn element */
+    double length_mm;                      /* length that the filling adds */
 } FillElement;
 
 /* The elements of a filling. A drawn element comes after its parent. */

@@ -67,7 +67,7 @@ static Status begin_element(Filling *filling, int32_t order, int32_t above, Err 
 {
     if (above != NO_ELEMENT) {
         int less = filling->element[above].order - order;
-        if (less < DAUGHTER_ORDERS)
+        if (less < PUBLISHED_DAUGHTERS)
             filling->element[above].present[less]++;
     }
     return filling_add(filling, (FillElement){.order = order, .parent = NO_ELEMENT, .grown = true},
@@ -279,7 +279,8 @@ Status fill_tree(const GrowParams *params, const FillRules *rules, const Domain 
     const Tree *from = params->from;
     Filling filling = {0};
     Places places = {.domain = domain, .filling = &filling};
-    GrowReport made = {.thickness = 1, .apart_mm = INFINITY, .complete = true};
+    GrowReport made = {
+        .target = (double)NAN, .thickness = 1, .apart_mm = INFINITY, .complete = true};
     Tree tree = {0};
     int32_t *of_node = NULL;
     Status status;

@@ -107,6 +107,17 @@ static json_t *change_json(const GrowReport *report)
                      report->least_change, "max", report->greatest_change);
 }
 
+/* Returns JSON null if the tree was not filled. */
+static json_t *fill_json(const FillReport *fill)
+{
+    if (fill->elements == 0)
+        return json_null();
+    return JSON_OBJECT({"elements", json_count(fill->elements)},
+                       {"left_out", json_count(fill->left_out)},
+                       {"flow_ml_min", json_number(fill->flow_ml_min)},
+                       {"flow_spread", json_number(fill->flow_spread)});
+}
+
 static Status make_report(const GrowOptions *options, int threads, const GrowReport *report,
                           MadeTree *made, Err *err)
 {
@@ -124,7 +135,8 @@ static Status make_report(const GrowOptions *options, int threads, const GrowRep
             {"complete", json_boolean(report->complete)},
             {"threads", json_integer(threads ? threads : threads_available())},
             {"radius_change", change_json(report)}, {"apart_mm", json_number(report->apart_mm)},
-            {"terminal_pairs", pairs_json(&made->tree)}, {"bound", bound}),
+            {"terminal_pairs", pairs_json(&made->tree)}, {"fill", fill_json(&report->fill)},
+            {"bound", bound}),
         err);
 }
 

@@ -159,22 +159,50 @@ static json_t *pair_json(const MorphometryPair *pair)
 {
     json_t *whole = pair->order > 0 ? json_integer(pair->order) : json_null();
     json_t *other = pair->order > 0 ? json_integer(pair->published_order) : json_null();
-    return JSON_OBJECT({"measure", json_text(morphometry_names[pair->measure].name)},
-                       {"unit", json_text(morphometry_names[pair->measure].unit)}, {"order", whole},
-                       {"published_order", other}, {"value", json_number(pair->value)},
-                       {"published_mean", json_number(pair->published.mean)},
-                       {"published_sd", json_number(pair->published.sd)},
-                       {"room", json_number(pair->room)}, {"pass", json_boolean(pair->agrees)});
+    const JsonMember members[] = {
+        {"measure", json_text(morphometry_names[pair->measure].name)},
+        {"unit", json_text(morphometry_names[pair->measure].unit)},
+        {"order", whole},
+        {"published_order", other},
+        {"value", json_number(pair->value)},
+        {"published_mean", json_number(pair->published.mean)},
+        {"published_sd", json_number(pair->published.sd)},
+        {"published_se", json_number(pair->se)},
+        {"room", json_number(pair->room)},
+        {"pass", json_boolean(pair->agrees)},
+        {"pass_strict", json_boolean(pair->agrees_strictly)},
+    };
+    return json_with_members(json_object(), members, sizeof members / sizeof *members);
 }
 
-static json_t *morphometry_json(const Morphometry *table, const MorphometryComparison *comparison)
+/* Adds the counts of a comparison to an object. */
+static json_t *with_counts(json_t *object, const MorphometryComparison *comparison)
 {
-    json_t *pairs = json_array();
-    for (size_t i = 0; i < comparison->n; i++)
-        pairs = json_with_item(pairs, pair_json(&comparison->pair[i]));
-    return JSON_OBJECT({"source", json_text(table->source)},
-                       {"compared", json_count(comparison->n)},
-                       {"passed", json_count(comparison->agreeing)}, {"rows", pairs});
+    const JsonMember members[] = {
+        {"compared", json_count(comparison->n)},
+        {"passed", json_count(comparison->agreeing)},
+        {"passed_strict", json_count(comparison->agreeing_strictly)},
+    };
+    return json_with_members(object, members, sizeof members / sizeof *members);
+}
+
+static json_t *morphometry_json(const InfoReport *report)
+{
+    const MorphometryComparison *chosen = &report->comparison[report->orders];
+    json_t *pairs = json_array(), *counts = json_object();
+    for (size_t i = 0; i < chosen->n; i++)
+        pairs = json_with_item(pairs, pair_json(&chosen->pair[i]));
+    for (int k = 0; k < MORPHOMETRY_ORDERS; k++)
+        counts = json_with(counts, morphometry_orders_names[k],
+                           with_counts(json_object(), &report->comparison[k]));
+    const JsonMember members[] = {
+        {"source", json_text(report->table.source)},
+        {"orders", json_text(morphometry_orders_names[report->orders])},
+        {"counts", counts},
+        {"rows", pairs},
+    };
+    return json_with_members(with_counts(json_object(), chosen), members,
+                             sizeof members / sizeof *members);
 }
 
 /* ---- the whole ------------------------------------------------------------------------------- */
@@ -200,8 +228,7 @@ json_t *inforeport_json(const InfoReport *report)
     if (report->has_statistics)
         json = json_with(json, "stats", statistics_json(&report->statistics));
     if (report->has_morphometry)
-        json =
-            json_with(json, "morphometry", morphometry_json(&report->table, &report->comparison));
+        json = json_with(json, "morphometry", morphometry_json(report));
     json = json_with(json, "reading", reading_json(&report->reading));
     return report->bound ? json_with(json, "bound", json_incref(report->bound)) : json;
 }
