@@ -24,13 +24,13 @@ Status treenetwork_make(const Tree *tree, const double *viscosity, TreeNetwork *
                                  : HUGE_VAL;
         made.pressure[i] = (double)NAN;
     }
-    made.network = (Network){.n_nodes = tree->n,
-                             .n_segments = tree->n,
-                             .ends = (const uint32_t(*)[2])made.ends,
-                             .resistance = made.resistance,
-                             .pressure = made.pressure,
-                             .inflow = made.inflow,
-                             .id = tree->id};
+    made.network = (FlowNetwork){.n_nodes = tree->n,
+                                 .n_segments = tree->n,
+                                 .ends = (const uint32_t(*)[2])made.ends,
+                                 .resistance = made.resistance,
+                                 .pressure = made.pressure,
+                                 .inflow = made.inflow,
+                                 .id = tree->id};
     *out = made;
     made = (TreeNetwork){0};
 done:

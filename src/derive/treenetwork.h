@@ -12,7 +12,7 @@
 
 /* The arrays of `network`, all with an entry per node of the tree. Owned. */
 typedef struct TreeNetwork {
-    Network network;
+    FlowNetwork network;
     uint32_t (*ends)[2];
     double *resistance, *pressure, *inflow, *length_mm;
 } TreeNetwork;

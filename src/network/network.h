@@ -19,7 +19,7 @@
 #include <stdint.h>
 
 /* A network and its boundary conditions. All arrays are borrowed. */
-typedef struct Network {
+typedef struct FlowNetwork {
     size_t n_nodes, n_segments;
     const uint32_t (*ends)[2]; /* per segment: its first and its second node */
     const double *resistance;  /* per segment: Pa s/mm^3, >= 0; INFINITY: no blood flows */
@@ -28,7 +28,7 @@ typedef struct Network {
                            * leaves. It is not read at a node of known pressure. */
     const int32_t *id;    /* per node: its name in errors */
     bool absorbs;         /* accepts inflows of any sum in components without a known pressure */
-} Network;
+} FlowNetwork;
 
 /* The largest sum of the inflows of a component without a known pressure, divided by the sum of
  * their sizes. Inflows that a file states with four digits stay below it. */
@@ -64,7 +64,7 @@ typedef struct NetworkFlow {
  * Errors   STATUS_INPUT, naming a node, if the inflows of a component without a known pressure do
  *          not sum to 0 within NETWORK_MAX_EXCESS; STATUS_MEMORY.
  * Cost     O(n) for the reduction; the number of steps grows like the cube root of the unknowns. */
-MUST_CHECK Status network_solve(const Network *network, NetworkFlow *out, Err *err);
+MUST_CHECK Status network_solve(const FlowNetwork *network, NetworkFlow *out, Err *err);
 void networkflow_release(NetworkFlow *flow);
 
 /* ---- red cells ------------------------------------------------------------------------------- */
@@ -108,7 +108,7 @@ enum { NETWORK_MAX_ROUNDS = 100 };
  * flow     release with networkflow_release.
  * cells    free the array.
  * Errors   those of network_solve. */
-MUST_CHECK Status network_separate(const Network *network, const NetworkBlood *blood,
+MUST_CHECK Status network_separate(const FlowNetwork *network, const NetworkBlood *blood,
                                    NetworkFlow *flow, NetworkCells *cells, Err *err);
 
 /* ---- unknown boundary conditions --------------------------------------------------------------
@@ -144,7 +144,7 @@ enum { NETWORK_MAX_OPEN = 5000 };
  * Errors    STATUS_INFEASIBLE if more than NETWORK_MAX_OPEN nodes are open; those of network_solve.
  * Cost      three solutions per open node, and the cube of their number.
  * Threads   the result does not depend on their number. */
-MUST_CHECK Status network_guess(const Network *network, const NetworkGuess *guess, double *pressure,
-                                NetworkSpread *spread, Err *err);
+MUST_CHECK Status network_guess(const FlowNetwork *network, const NetworkGuess *guess,
+                                double *pressure, NetworkSpread *spread, Err *err);
 
 #endif

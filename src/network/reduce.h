@@ -34,7 +34,7 @@ typedef struct Reduction {
 
 /* Reduces a network. `pressure` has an entry per node, which replaces network->pressure. Release
  * *out with reduction_release, also after an error. Errors: STATUS_MEMORY. Cost: O(n). */
-MUST_CHECK Status reduction_make(const Network *network, double *pressure, Reduction *out,
+MUST_CHECK Status reduction_make(const FlowNetwork *network, double *pressure, Reduction *out,
                                  Err *err);
 void reduction_release(Reduction *reduction);
 

@@ -19,7 +19,7 @@ typedef struct RankedNode {
 
 /* The state of the iteration. Owns its arrays. */
 typedef struct Separation {
-    const Network *network;
+    const FlowNetwork *network;
     const NetworkBlood *blood;
     IndexLists lists;                /* per node: its segments */
     double *resistance, *now, *next; /* per segment; hematocrit of this round and of the next */
@@ -162,7 +162,7 @@ static bool is_settled(const Separation *made, const NetworkFlow *flow, NetworkC
 
 static Status solve_round(const Separation *made, NetworkFlow *flow, Err *err)
 {
-    Network network = *made->network;
+    FlowNetwork network = *made->network;
     for (size_t i = 0; i < network.n_segments; i++)
         made->resistance[i] = network_resistance(made->blood, i, made->now[i]);
     network.resistance = made->resistance;
@@ -211,7 +211,7 @@ static void balance(const Separation *made, const NetworkFlow *flow, NetworkCell
 
 static Status begin(Separation *made, Err *err)
 {
-    const Network *network = made->network;
+    const FlowNetwork *network = made->network;
     size_t n = network->n_segments;
     ItemKeys keys = {&network->ends[0][0], n, 2};
     TRY(mem_alloc(&made->resistance, n, sizeof *made->resistance, "resistances", err));
@@ -225,7 +225,7 @@ static Status begin(Separation *made, Err *err)
     return indexlists_sort(&made->lists, network->n_nodes, keys, "segments", err);
 }
 
-Status network_separate(const Network *network, const NetworkBlood *blood, NetworkFlow *flow,
+Status network_separate(const FlowNetwork *network, const NetworkBlood *blood, NetworkFlow *flow,
                         NetworkCells *cells, Err *err)
 {
     Separation made = {.network = network, .blood = blood};

@@ -323,7 +323,7 @@ static Status set_blood(Flowing *made, const TreeMeta *said, Err *err)
 
 static Status solve(Flowing *made, Err *err)
 {
-    const Network *network = &made->network.network;
+    const FlowNetwork *network = &made->network.network;
     const NetworkCells *cells = &made->cells;
     if (!made->options->separation)
         TRY(network_solve(network, &made->flow, err));
