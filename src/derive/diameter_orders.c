@@ -120,6 +120,7 @@ Status field_diameter_strahler(const Tree *tree, const TreeMeta *overrides, doub
 {
     (void)overrides;
     Vessels vessels;
+    TRY(refuse_loops(tree, err));
     TRY(vessels_init(&vessels, tree, err));
     int32_t *order = NULL;
     DiameterOrders result;

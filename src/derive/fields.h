@@ -19,6 +19,10 @@ static inline const TreeMeta *value_source(const Tree *tree, const TreeMeta *ove
     return overrides->known[key] ? overrides : &tree->meta;
 }
 
+/* Refuses networks with links. Errors: STATUS_INPUT, with a sentence that continues the name of a
+ * field. */
+MUST_CHECK Status refuse_loops(const Tree *tree, Err *err);
+
 /* Finds a value that a field needs. Errors: STATUS_INPUT if neither the overrides nor the tree have
  * it, with a sentence that continues "the field NAME ". */
 MUST_CHECK Status needed_value(const Tree *tree, const TreeMeta *overrides, MetaKey key,
