@@ -164,17 +164,31 @@ static json_t *pair_json(const MorphometryPair *pair)
                        {"published_order", other}, {"value", json_number(pair->value)},
                        {"published_mean", json_number(pair->published.mean)},
                        {"published_sd", json_number(pair->published.sd)},
-                       {"room", json_number(pair->room)}, {"pass", json_boolean(pair->agrees)});
+                       {"published_se", json_number(pair->se)}, {"room", json_number(pair->room)},
+                       {"pass", json_boolean(pair->agrees)},
+                       {"pass_strict", json_boolean(pair->agrees_strictly)});
 }
 
-static json_t *morphometry_json(const Morphometry *table, const MorphometryComparison *comparison)
+/* Adds the counts of a comparison to an object. */
+static json_t *with_counts(json_t *object, const MorphometryComparison *comparison)
 {
-    json_t *pairs = json_array();
-    for (size_t i = 0; i < comparison->n; i++)
-        pairs = json_with_item(pairs, pair_json(&comparison->pair[i]));
-    return JSON_OBJECT({"source", json_text(table->source)},
-                       {"compared", json_count(comparison->n)},
-                       {"passed", json_count(comparison->agreeing)}, {"rows", pairs});
+    return JSON_WITH(object, {"compared", json_count(comparison->n)},
+                     {"passed", json_count(comparison->agreeing)},
+                     {"passed_strict", json_count(comparison->agreeing_strictly)});
+}
+
+static json_t *morphometry_json(const InfoReport *report)
+{
+    const MorphometryComparison *chosen = &report->comparison[report->orders];
+    json_t *pairs = json_array(), *counts = json_object();
+    for (size_t i = 0; i < chosen->n; i++)
+        pairs = json_with_item(pairs, pair_json(&chosen->pair[i]));
+    for (int k = 0; k < MORPHOMETRY_ORDERS; k++)
+        counts = json_with(counts, morphometry_orders_names[k],
+                           with_counts(json_object(), &report->comparison[k]));
+    json_t *json = JSON_OBJECT({"source", json_text(report->table.source)},
+                               {"orders", json_text(morphometry_orders_names[report->orders])});
+    return JSON_WITH(with_counts(json, chosen), {"counts", counts}, {"rows", pairs});
 }
 
 /* ---- the whole ------------------------------------------------------------------------------- */
@@ -200,8 +214,7 @@ json_t *inforeport_json(const InfoReport *report)
     if (report->has_statistics)
         json = json_with(json, "stats", statistics_json(&report->statistics));
     if (report->has_morphometry)
-        json =
-            json_with(json, "morphometry", morphometry_json(&report->table, &report->comparison));
+        json = json_with(json, "morphometry", morphometry_json(report));
     json = json_with(json, "reading", reading_json(&report->reading));
     return report->bound ? json_with(json, "bound", json_incref(report->bound)) : json;
 }
