@@ -2,7 +2,6 @@
  * reduction. */
 #include "network/network.h"
 
-#include "base/sets.h"
 #include "network/reduce.h"
 #include <float.h>
 #include <stdlib.h>
