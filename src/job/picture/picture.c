@@ -487,6 +487,11 @@ static bool has_segments(const Tree *tree)
 static Status prune(double radius_mm, bool keep_whole, PictureTree *of, Err *err)
 {
     Tree rest;
+    if (of->tree.link)
+        return err_set(err, STATUS_INPUT,
+                       "%s: the network has loops, and --prune-radius needs a tree; --break-loops "
+                       "cuts each loop at its thinnest line",
+                       of->path);
     TRY(tree_pruned(&of->tree, radius_mm, &rest, err));
     of->pruned = of->tree.n - rest.n;
     if (of->pruned > 0 && !has_segments(&rest)) {
