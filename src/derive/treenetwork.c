@@ -24,13 +24,13 @@ Status treenetwork_make(const Tree *tree, const double *viscosity, TreeNetwork *
                                  : HUGE_VAL;
         made.pressure[i] = (double)NAN;
     }
-    made.network = (Network){.n_nodes = tree->n,
-                             .n_segments = tree->n,
-                             .ends = (const uint32_t(*)[2])made.ends,
-                             .resistance = made.resistance,
-                             .pressure = made.pressure,
-                             .inflow = made.inflow,
-                             .id = tree->id};
+    made.network = (FlowNetwork){.n_nodes = tree->n,
+                                 .n_segments = tree->n,
+                                 .ends = (const uint32_t(*)[2])made.ends,
+                                 .resistance = made.resistance,
+                                 .pressure = made.pressure,
+                                 .inflow = made.inflow,
+                                 .id = tree->id};
     *out = made;
     made = (TreeNetwork){0};
 done:
@@ -75,7 +75,7 @@ Status solve_links(const Tree *tree, const TreeMeta *overrides, double *flow, do
     TRY_GOTO(derive_viscosity(tree, overrides, &viscosity, err));
     TRY_GOTO(treenetwork_make(tree, viscosity, &network, err));
     TRY_GOTO(treenetwork_set_terminals(&network, tree, overrides, err));
-    TRY_GOTO(network_solve(&network.network, &solved, err));
+    TRY_GOTO(flownetwork_solve(&network.network, &solved, err));
     for (size_t i = 0; flow && i < tree->n; i++)
         flow[i] = tree_is_segment(tree, i) ? fabs(solved.flow[i]) : solved.inflow[i];
     for (size_t i = 0; pressure && i < tree->n; i++)

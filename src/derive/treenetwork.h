@@ -7,12 +7,12 @@
 #ifndef CORCAST_DERIVE_TREENETWORK_H
 #define CORCAST_DERIVE_TREENETWORK_H
 
-#include "network/network.h"
+#include "flownetwork/flownetwork.h"
 #include "tree/tree.h"
 
 /* The arrays of `network`, all with an entry per node of the tree. Owned. */
 typedef struct TreeNetwork {
-    Network network;
+    FlowNetwork network;
     uint32_t (*ends)[2];
     double *resistance, *pressure, *inflow, *length_mm;
 } TreeNetwork;

@@ -1,7 +1,7 @@
 /* Times the flow in a random network of about N segments (1,000,000), in seconds of the processor
  * and of the wall clock. Nodes lie on a lattice and have three vessels on average; diameters are
  * lognormal, and each vessel has five pieces. Two faces have known pressures. */
-#include "network/network.h"
+#include "flownetwork/flownetwork.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -73,17 +73,17 @@ int main(int argc, char **argv)
     NetworkFlow flow;
     Err err;
     fill(&made, side);
-    Network network = {made.n_nodes,
-                       made.n_segments,
-                       (const uint32_t(*)[2])made.ends,
-                       made.resistance,
-                       made.pressure,
-                       made.inflow,
-                       made.id,
-                       false};
+    FlowNetwork network = {made.n_nodes,
+                           made.n_segments,
+                           (const uint32_t(*)[2])made.ends,
+                           made.resistance,
+                           made.pressure,
+                           made.inflow,
+                           made.id,
+                           false};
     double wall = clock_seconds();
     clock_t processor = clock();
-    if (network_solve(&network, &flow, &err) != STATUS_OK) {
+    if (flownetwork_solve(&network, &flow, &err) != STATUS_OK) {
         fprintf(stderr, "%s\n", err.text);
         return 2;
     }

@@ -265,8 +265,8 @@ static Status estimate(Flowing *made, const bool *is_open, Err *err)
                                 .starts = options->starts,
                                 .seed = made->parsed->common.seed,
                                 .threads = made->parsed->common.threads};
-    return network_guess(&made->network.network, &guess, made->network.pressure, &made->spread,
-                         err);
+    return flownetwork_guess(&made->network.network, &guess, made->network.pressure, &made->spread,
+                             err);
 }
 
 static Status set_boundary(Flowing *made, const TreeMeta *said, Err *err)
@@ -317,21 +317,22 @@ static Status set_blood(Flowing *made, const TreeMeta *said, Err *err)
     for (size_t i = 0; i < tree->n; i++)
         if (tree_is_segment(tree, i))
             made->network.resistance[i] =
-                network_resistance(&made->blood, i, made->blood.hematocrit);
+                flownetwork_resistance(&made->blood, i, made->blood.hematocrit);
     return STATUS_OK;
 }
 
 static Status solve(Flowing *made, Err *err)
 {
-    const Network *network = &made->network.network;
+    const FlowNetwork *network = &made->network.network;
     const NetworkCells *cells = &made->cells;
     if (!made->options->separation)
-        TRY(network_solve(network, &made->flow, err));
+        TRY(flownetwork_solve(network, &made->flow, err));
     else
-        TRY(network_separate(network, &made->blood, &made->flow, &made->cells, err));
+        TRY(flownetwork_separate(network, &made->blood, &made->flow, &made->cells, err));
     for (size_t i = 0; cells->hematocrit && i < made->tree.n; i++)
         if (tree_is_segment(&made->tree, i))
-            made->network.resistance[i] = network_resistance(&made->blood, i, cells->hematocrit[i]);
+            made->network.resistance[i] =
+                flownetwork_resistance(&made->blood, i, cells->hematocrit[i]);
     if (made->options->separation && !cells->converged)
         talk_warn(
             made->parsed->common.talk,

@@ -1,8 +1,8 @@
 /* Components without a known pressure get one at the node with the largest inflow, before the
  * reduction. */
-#include "network/network.h"
+#include "flownetwork/flownetwork.h"
 
-#include "network/reduce.h"
+#include "flownetwork/reduce.h"
 #include <float.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,13 +16,13 @@ typedef struct Component {
     bool has_pressure, has_segment;
 } Component;
 
-static bool is_open(const Network *network, size_t segment)
+static bool is_open(const FlowNetwork *network, size_t segment)
 {
     return network->resistance[segment] < HUGE_VAL;
 }
 
 /* Joins the nodes of open segments. */
-static void join(const Network *network, uint32_t *parent)
+static void join(const FlowNetwork *network, uint32_t *parent)
 {
     sets_begin(parent, network->n_nodes);
     for (size_t i = 0; i < network->n_segments; i++)
@@ -30,7 +30,7 @@ static void join(const Network *network, uint32_t *parent)
             sets_join(parent, network->ends[i][0], network->ends[i][1]);
 }
 
-static void measure(const Network *network, uint32_t *parent, Component *component)
+static void measure(const FlowNetwork *network, uint32_t *parent, Component *component)
 {
     for (uint32_t v = 0; v < network->n_nodes; v++) {
         uint32_t top = sets_find(parent, v);
@@ -50,8 +50,8 @@ static void measure(const Network *network, uint32_t *parent, Component *compone
 }
 
 /* Sets the pressure 0 at a node of each component without a known pressure. */
-static Status fix_pressures(const Network *network, const Component *component, double *pressure,
-                            NetworkFlow *out, Err *err)
+static Status fix_pressures(const FlowNetwork *network, const Component *component,
+                            double *pressure, NetworkFlow *out, Err *err)
 {
     for (uint32_t v = 0; v < network->n_nodes; v++) {
         const Component *at = &component[v];
@@ -73,7 +73,8 @@ static Status fix_pressures(const Network *network, const Component *component, 
     return STATUS_OK;
 }
 
-static Status check_components(const Network *network, double *pressure, NetworkFlow *out, Err *err)
+static Status check_components(const FlowNetwork *network, double *pressure, NetworkFlow *out,
+                               Err *err)
 {
     uint32_t *parent = NULL;
     Component *component = NULL;
@@ -91,7 +92,7 @@ done:
 
 /* ---- the solution ---------------------------------------------------------------------------- */
 
-static void take_flows(const Network *network, const Reduction *reduction, NetworkFlow *out)
+static void take_flows(const FlowNetwork *network, const Reduction *reduction, NetworkFlow *out)
 {
     for (size_t i = 0; i < network->n_segments; i++) {
         out->flow[i] = reduction->edge[i].flow;
@@ -104,7 +105,7 @@ static void take_flows(const Network *network, const Reduction *reduction, Netwo
 }
 
 /* Measures the sum of the flows at each node, and sets the inflow at nodes of known pressure. */
-static Status balance(const Network *network, const double *fixed, NetworkFlow *out, Err *err)
+static Status balance(const FlowNetwork *network, const double *fixed, NetworkFlow *out, Err *err)
 {
     typedef struct Sum {
         double net, sizes;
@@ -133,7 +134,7 @@ static Status balance(const Network *network, const double *fixed, NetworkFlow *
     return STATUS_OK;
 }
 
-static Status allocate(const Network *network, NetworkFlow *out, Err *err)
+static Status allocate(const FlowNetwork *network, NetworkFlow *out, Err *err)
 {
     TRY(mem_calloc(&out->flow, network->n_segments, sizeof *out->flow, "flows", err));
     TRY(mem_calloc(&out->is_lost, network->n_segments, sizeof *out->is_lost, "flows", err));
@@ -141,7 +142,7 @@ static Status allocate(const Network *network, NetworkFlow *out, Err *err)
     return mem_calloc(&out->inflow, network->n_nodes, sizeof *out->inflow, "inflows", err);
 }
 
-Status network_solve(const Network *network, NetworkFlow *out, Err *err)
+Status flownetwork_solve(const FlowNetwork *network, NetworkFlow *out, Err *err)
 {
     NetworkFlow made = {0};
     Reduction reduction = {0};

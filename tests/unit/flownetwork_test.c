@@ -1,5 +1,5 @@
 /* Flow in networks with loops, compared with closed forms and with elimination of all nodes. */
-#include "network/network.h"
+#include "flownetwork/flownetwork.h"
 #include "unit.h"
 
 #include <stdlib.h>
@@ -18,7 +18,7 @@ typedef struct Case {
     uint32_t ends[2 * MOST][2];
     double resistance[2 * MOST], pressure[MOST], inflow[MOST];
     int32_t id[MOST];
-    Network network;
+    FlowNetwork network;
 } Case;
 
 static void begin(Case *test, size_t n_nodes)
@@ -47,7 +47,7 @@ static NetworkFlow solve(Case *test)
 {
     NetworkFlow flow = {0};
     Err err;
-    must(network_solve(&test->network, &flow, &err), &err);
+    must(flownetwork_solve(&test->network, &flow, &err), &err);
     return flow;
 }
 
@@ -142,7 +142,7 @@ static void without_a_pressure_inflows_must_sum_to_0(void **state)
     assert_true(flow.floating == 1 && flow.components == 1 && flow.idle == 0);
     networkflow_release(&flow);
     test.inflow[3] = -3.4;
-    assert_int_equal(network_solve(&test.network, &failed, &err), STATUS_INPUT);
+    assert_int_equal(flownetwork_solve(&test.network, &failed, &err), STATUS_INPUT);
     assert_string_equal(err.text,
                         "the inflows of the vessels that are connected with node 1 sum to 0.006 "
                         "ml/min; they must sum to 0, because no pressure is known there");
@@ -231,7 +231,7 @@ static NetworkCells divide(const double radius[3], double share, NetworkFlow *fl
     test.inflow[2] = -share * 1e-6;
     test.inflow[3] = (share - 1) * 1e-6;
     const NetworkBlood blood = {radius, length, hematocrit, 0.4, 1e-3, 92};
-    must(network_separate(&test.network, &blood, flow, &cells, &err), &err);
+    must(flownetwork_separate(&test.network, &blood, flow, &cells, &err), &err);
     assert_true(cells.converged && cells.imbalance < 1e-14);
     return cells;
 }

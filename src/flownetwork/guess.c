@@ -3,7 +3,7 @@
  * derivative by y is a system of equations as large as the number of open nodes, S y = b. Z is not
  * stored: its transpose acts through a second solution, whose inflows are the derivative of the
  * objective by p, and S = S0 + k S1 is computed once for all k and all directions. */
-#include "network/network.h"
+#include "flownetwork/flownetwork.h"
 
 #include <float.h>
 #include <stdlib.h>
@@ -15,7 +15,7 @@ enum { SOLVES_PER_WEIGHT = 5 };
 
 /* The state of an estimate. Owns its arrays. */
 typedef struct Guess {
-    const Network *network;
+    const FlowNetwork *network;
     const NetworkGuess *params;
     uint32_t *open;  /* the open nodes */
     size_t n;        /* their number */
@@ -34,7 +34,7 @@ typedef struct Load {
 
 static Status solve(const Guess *made, const Load *load, NetworkFlow *flow, Err *err)
 {
-    Network network = *made->network;
+    FlowNetwork network = *made->network;
     double *pressure = NULL, *inflow = NULL;
     Status status = STATUS_OK;
     TRY_GOTO(mem_calloc(&pressure, network.n_nodes, sizeof *pressure, "pressures", err));
@@ -49,7 +49,7 @@ static Status solve(const Guess *made, const Load *load, NetworkFlow *flow, Err 
     network.pressure = pressure;
     network.inflow = inflow;
     network.absorbs = !load->is_whole;
-    status = network_solve(&network, flow, err);
+    status = flownetwork_solve(&network, flow, err);
 done:
     free(pressure);
     free(inflow);
@@ -237,7 +237,7 @@ static Status compare(const Guess *made, const NetworkFlow *first, const Network
 
 static Status begin(Guess *made, Err *err)
 {
-    const Network *network = made->network;
+    const FlowNetwork *network = made->network;
     TRY(mem_alloc(&made->open, network->n_nodes, sizeof *made->open, "nodes", err));
     TRY(mem_calloc(&made->weight, network->n_nodes, sizeof *made->weight, "nodes", err));
     for (uint32_t v = 0; v < network->n_nodes; v++)
@@ -276,8 +276,8 @@ done:
     return status;
 }
 
-Status network_guess(const Network *network, const NetworkGuess *params, double *pressure,
-                     NetworkSpread *spread, Err *err)
+Status flownetwork_guess(const FlowNetwork *network, const NetworkGuess *params, double *pressure,
+                         NetworkSpread *spread, Err *err)
 {
     Guess made = {.network = network, .params = params};
     Start *start = NULL;
