@@ -13,6 +13,10 @@ enum { MOST_DAUGHTERS = 64 };
 enum { DRAWS = 64 };
 /* An element has this many times the length that its segments need at least. */
 static const double spare_length = 1.02;
+/* The first segment of an element is this many times as long as the sum of its radius and that of
+ * its parent: leave_thin for a thin daughter, leave_thin + leave_wide for one as wide as its parent
+ * [angles in fill_place.c]. */
+static const double leave_thin = 1.1, leave_wide = 0.4;
 
 void filling_release(Filling *filling)
 {
@@ -182,12 +186,16 @@ static Status draw_daughters(Filling *filling, int32_t parent, Err *err)
 
 /* ---- lengths --------------------------------------------------------------------------------- */
 
-/* Length that the first segment of an element needs, mm: a drawn one has to leave its parent. */
+/* Length that the first segment of an element needs, mm. A drawn one has to leave its parent, which
+ * takes more than the sum of the radii because the angle between them is not a right one, and is
+ * smaller for wide daughters. */
 static double least_first(const Filling *filling, const FillElement *element)
 {
     double radius = element->radius_mm;
-    return element->grown ? 2 * radius
-                          : radius + fmax(radius, filling->element[element->parent].radius_mm);
+    if (element->grown)
+        return 2 * radius;
+    double parent = filling->element[element->parent].radius_mm;
+    return (radius + parent) * (leave_thin + leave_wide * fmin(1, radius / parent));
 }
 
 static double least_length(const Filling *filling, const FillElement *element)

@@ -14,14 +14,14 @@ enum { DIRECTIONS = 12, RINGS = 3, MOST_BENDS = 5 };
 /* Attempts to find a place on a grown element with room for a daughter. */
 enum { ATTEMPTS = 32 };
 /* A gap beyond this share of the segment's length, and this many radii, counts as no larger. */
-static const double enough_gap = 0.75, enough_radii = 2;
+static const double enough_gap = 0.4, enough_radii = 2;
 /* Number of grid cells per segment. Vessels are crowded, so that most cells are empty. */
 static const double cells_per_segment = 4;
 /* Number of nodes that bends may add, relative to all nodes. */
 static const double spare_nodes = 0.25;
 /* A daughter leaves at the first angle if it is as wide as its parent, at the second if it is thin.
  * The angle varies by `spread`, and is larger on wider cones. */
-static const double wide_angle = 30, thin_angle = 75, spread = 12;
+static const double wide_angle = 40, thin_angle = 75, spread = 12;
 static const double wider[RINGS][2] = {{-1, 1}, {90, 115}, {140, 165}};
 /* Angles of a segment that continues a segment of the same element. */
 static const double onward[RINGS][2] = {{8, 22}, {45, 75}, {110, 150}};
@@ -77,6 +77,13 @@ Status places_enter(Places *places, int32_t i, Err *err)
                     err);
 }
 
+static FillNear ball_of(const Places *places, int32_t i)
+{
+    return (FillNear){.center = vec3_scale(vec3_add(proximal(places, i), places->node[i].at), 0.5),
+                      .radius = length_of(places, i) / 2 + places->node[i].radius,
+                      .segment = i};
+}
+
 Status places_search(Places *places, Vec3 a, Vec3 b, double reach, Err *err)
 {
     GridItem item = grid_item(&places->grid, (Capsule){a, b, reach}, 0);
@@ -91,7 +98,7 @@ Status places_search(Places *places, Vec3 a, Vec3 b, double reach, Err *err)
         places->stamp[other] = places->searches;
         TRY(mem_reserve(&places->near, &places->near_capacity, places->n_near + 1,
                         sizeof *places->near, "segments", err));
-        places->near[places->n_near++] = other;
+        places->near[places->n_near++] = ball_of(places, other);
     }
     return STATUS_OK;
 }
@@ -111,22 +118,37 @@ typedef struct Candidate {
     double gap; /* mm, between the walls of the segment and of others */
 } Candidate;
 
-/* A segment that begins at the same node must be far from the new segment's end only. */
+static double distance2_to(Vec3 point, Vec3 a, Vec3 b)
+{
+    return vec3_distance2_along(vec3_sub(point, a), vec3_sub(b, a));
+}
+
+/* Of segments that share a node, only the other ends must be far from the other segment. */
 static double gap_beside(const Places *places, const FillCourse *course, Vec3 end, int32_t other)
 {
     const FillNode *node = &places->node[other];
     Vec3 start = places->node[course->start].at, a = proximal(places, other);
-    bool is_joined = other == course->start || node->parent == course->start;
-    double apart2 = is_joined ? vec3_distance2_along(vec3_sub(end, a), vec3_sub(node->at, a))
-                              : segment_distance2(start, end, a, node->at);
+    double apart2;
+    if (other == course->start)
+        apart2 = distance2_to(end, a, node->at);
+    else if (node->parent == course->start)
+        apart2 = fmin(distance2_to(end, a, node->at), distance2_to(node->at, start, end));
+    else
+        apart2 = segment_distance2(start, end, a, node->at);
     return sqrt(apart2) - node->radius - course->radius;
 }
 
 static double gap_of(const Places *places, const FillCourse *course, Vec3 end, double enough)
 {
-    double gap = enough;
-    for (size_t k = 0; k < places->n_near; k++)
-        gap = fmin(gap, gap_beside(places, course, end, places->near[k]));
+    Vec3 middle = vec3_scale(vec3_add(places->node[course->start].at, end), 0.5);
+    double gap = enough, half = course->length / 2 + course->radius;
+    for (size_t k = 0; k < places->n_near; k++) {
+        const FillNear *near = &places->near[k];
+        Vec3 apart = vec3_sub(near->center, middle);
+        double sum = fmax(0, half + near->radius + gap);
+        if (vec3_dot(apart, apart) < sum * sum)
+            gap = fmin(gap, gap_beside(places, course, end, near->segment));
+    }
     return gap;
 }
 

@@ -35,7 +35,7 @@ static Status fault_of(Places *places, int32_t i, int32_t below, double *fault, 
     *fault = fmax(0, 2 * own->radius - vec3_distance(a, b));
     TRY(places_search(places, a, b, (1 + spare) * own->radius, err));
     for (size_t k = 0; k < places->n_near; k++) {
-        int32_t j = places->near[k];
+        int32_t j = places->near[k].segment;
         if ((!node[j].grown && j >= below) || are_joined(node, i, j))
             continue;
         double apart2 = segment_distance2(a, b, node[node[j].parent].at, node[j].at);
