@@ -296,9 +296,17 @@ static Status place_drawn(Places *places, int32_t e, Err *err)
     return STATUS_OK;
 }
 
-/* Splits a grown element at `from_end` mm from its distal end, unless the point is outside the
- * domain or nearer than `margin` radii to a node. *node receives the new node, or NO_NODE. */
-static void try_split(Places *places, int32_t last, double from_end, double margin, int32_t *node)
+/* A place where a grown segment may be split. */
+typedef struct FillSplit {
+    int32_t segment; /* NO_NODE: none */
+    Vec3 at;
+    double room; /* mm; below 0 if it is in another vessel, or nearer to a node than a width */
+} FillSplit;
+
+/* Replaces *best by the place `from_end` mm from the distal end of a grown element, if that has
+ * more room and is in the domain. */
+static Status look_at_place(Places *places, int32_t last, double from_end, FillSplit *best,
+                            Err *err)
 {
     int32_t i = last;
     double length = length_of(places, i);
@@ -307,38 +315,48 @@ static void try_split(Places *places, int32_t last, double from_end, double marg
         from_end -= length;
         i = places->node[i].parent;
     }
-    FillNode split = places->node[i];
-    double room = margin * split.radius;
-    *node = NO_NODE;
-    split.at = vec3_add_scaled(split.at, vec3_sub(proximal(places, i), split.at),
-                               fmin(from_end / length, 1));
-    split.origin = NO_NODE;
-    if (from_end < room || length - from_end < room || !(length > 0) ||
-        !domain_inside(places->domain, split.at, 0))
-        return;
-    *node = (int32_t)places->n;
-    places->node[places->n++] = split;
-    places->node[i].parent = *node;
+    const FillNode *node = &places->node[i];
+    if (!(length > 0) || from_end > length)
+        return STATUS_OK;
+    Vec3 at = vec3_add_scaled(node->at, vec3_sub(proximal(places, i), node->at), from_end / length);
+    double room = fmin(from_end, length - from_end) - 2 * node->radius;
+    TRY(places_search(places, at, at, node->radius, err));
+    for (size_t k = 0; k < places->n_near; k++) {
+        int32_t j = places->near[k].segment;
+        double apart = sqrt(distance2_to(at, proximal(places, j), places->node[j].at));
+        room = j == i ? room : fmin(room, apart - places->node[j].radius);
+    }
+    if ((best->segment == NO_NODE || room > best->room) && domain_inside(places->domain, at, 0))
+        *best = (FillSplit){i, at, room};
+    return STATUS_OK;
 }
 
-/* Starts a daughter at a place on a grown element, from its beginning. */
-static void start_daughter(Places *places, int32_t e, int32_t daughter)
+/* Starts a daughter at a random place on a grown element: the first that has room, or the one with
+ * the most room. */
+static Status start_daughter(Places *places, int32_t e, int32_t daughter, Err *err)
 {
     const FillElement *element = &places->filling->element[e];
-    int32_t node = NO_NODE;
-    for (int i = 0; i < ATTEMPTS && node == NO_NODE; i++) {
+    FillSplit best = {.segment = NO_NODE};
+    for (int i = 0; i < ATTEMPTS && (best.segment == NO_NODE || best.room < 0); i++) {
         double at = random_uniform(&places->filling->random) * element->grown_mm;
-        try_split(places, places->end[e], at, fmax(0, 2 - 0.1 * i), &node);
+        TRY(look_at_place(places, places->end[e], at, &best, err));
     }
-    places->start[daughter] = node;
+    if (best.segment == NO_NODE)
+        return STATUS_OK;
+    FillNode split = places->node[best.segment];
+    split.at = best.at;
+    split.origin = NO_NODE;
+    places->node[best.segment].parent = places->start[daughter] = (int32_t)places->n;
+    places->node[places->n++] = split;
+    TRY(places_enter(places, places->start[daughter], err));
+    return places_enter(places, best.segment, err);
 }
 
 /* Starts the daughters of a grown element. Those on the length that is still to be placed stay in
  * the list of daughters, as element->segments. */
-static void split_grown(Places *places, int32_t e)
+static Status split_grown(Places *places, int32_t e, Err *err)
 {
-    FillElement *element = &places->filling->element[e];
-    FillElement *all = places->filling->element;
+    FillElement *all = places->filling->element, *element = &all[e];
     int32_t along = 0, *link = &element->daughter;
     double total = element->grown_mm + element->length_mm;
     for (int32_t d = element->daughter; d != NO_ELEMENT; d = all[d].sister)
@@ -346,15 +364,16 @@ static void split_grown(Places *places, int32_t e)
     along -= element->is_open && element->order > places->filling->rules.to ? 2 : 0;
     element->segments = 1;
     for (; along > 0; along--) {
-        int32_t d = *link;
-        if (random_uniform(&places->filling->random) * total < element->grown_mm) {
-            start_daughter(places, e, d);
-            *link = all[d].sister;
+        bool is_full = element->length_mm < 2 * element->radius_mm * (element->segments + 1);
+        if (is_full || random_uniform(&places->filling->random) * total < element->grown_mm) {
+            TRY(start_daughter(places, e, *link, err));
+            *link = all[*link].sister;
         } else {
             element->segments++;
-            link = &all[d].sister;
+            link = &all[*link].sister;
         }
     }
+    return STATUS_OK;
 }
 
 static Status place_grown(Places *places, int32_t e, Err *err)
@@ -389,10 +408,10 @@ Status places_fill(Places *places, const GrowParams *params, Err *err)
     const Filling *filling = places->filling;
     size_t done = 0;
     TRY(make_grid(places, err));
-    for (size_t e = 0; e < filling->n && filling->element[e].grown; e++)
-        split_grown(places, (int32_t)e);
     for (size_t i = 0; i < places->n; i++)
         TRY(places_enter(places, (int32_t)i, err));
+    for (size_t e = 0; e < filling->n && filling->element[e].grown; e++)
+        TRY(split_grown(places, (int32_t)e, err));
     for (int order = (int)filling->rules.table->n; order >= filling->rules.to; order--)
         for (int32_t e = filling->first[order]; e != NO_ELEMENT; e = filling->element[e].peer) {
             TRY(filling->element[e].grown ? place_grown(places, e, err)
