@@ -185,7 +185,9 @@ run_test() {
         printf '%s\n' "${reason:-ended with status $result: $(tail -3 "$folder.output")}" | sed 's/^/# /'
         ;;
     esac >"$folder.tap"
-    seconds=$(sed -n '2s/[ms]/ /gp' "$folder.times" 2>/dev/null | awk '{ print int(60 * ($1 + $3) + $2 + $4) }')
+    seconds=$(sed -n '2s/[ms]/ /gp' "$folder.times" 2>/dev/null | awk '{ print 60 * ($1 + $3) + $2 + $4 }')
+    [ -z "${TEST_TIMES-}" ] || echo "${seconds:-0} ${0##*/} $name" >>"$TEST_TIMES"
+    seconds=${seconds%.*}
     [ "${seconds:-0}" -lt 10 ] || grep -B1 "^test_$name() {" "$0" | grep -q '^# Slow: ' ||
         echo "# slow: $name took $seconds s of a processor" >>"$folder.tap"
     chmod -R u+w "$folder"

@@ -8,6 +8,7 @@
 #include "base/base.h"
 #include "derive/morphometry.h" // IWYU pragma: export
 #include "derive/statistics.h"  // IWYU pragma: export
+#include "derive/treenetwork.h" // IWYU pragma: export
 #include "geom/geom.h"
 #include "tree/tree.h"
 #include <stdbool.h>
@@ -51,7 +52,9 @@ typedef struct Field {
  * several equal ones) continues the branch of its parent; every other daughter starts a branch, and
  * so does every segment that leaves a root.
  *
- * Flow shares are the tree's, or those of tree/outlets.h. mu is the constant viscosity of the
+ * In a network with links, flow and pressure are those of Kirchhoff's laws with the same boundary
+ * conditions [derive/treenetwork.h], and flow is its size. Flow shares are the tree's, or those of
+ * tree/outlets.h. mu is the constant viscosity of the
  * blood, or viscosity_pries_pa_s of each segment's radius. Velocity, wall shear stress and Reynolds
  * number of a segment of radius 0 are NAN, and so are the pressures at and below it.
  *

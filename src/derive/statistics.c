@@ -77,7 +77,7 @@ static void count_daughters(const Vessels *vessels, const int32_t *element_of,
     }
 }
 
-/* `daughters`, not NULL for orders without gaps, is set (owned). */
+/* Sets *daughters (owned) if `daughters` is not NULL; groups are then orders, from 1. */
 static Status make_table(const Vessels *vessels, const int32_t *group, const int32_t *heir,
                          StatisticsTable *table, double **daughters, Err *err)
 {
@@ -243,6 +243,22 @@ static Status make_order_table(const Vessels *vessels, const int32_t *order, Sta
     *ratios = statistics_ratios(table, 0, INT_MAX);
 done:
     free(heir);
+    return status;
+}
+
+Status statistics_by_bounds(const Tree *tree, const double *bound_mm, size_t n,
+                            StatisticsTable *elements, double **daughters, Err *err)
+{
+    Vessels vessels;
+    int32_t *order = NULL;
+    OrderRatios ratios;
+    TRY(vessels_init(&vessels, tree, err));
+    Status status = STATUS_OK;
+    TRY_GOTO(vessels_bounded_orders(&vessels, bound_mm, n, &order, err));
+    TRY_GOTO(make_order_table(&vessels, order, elements, &ratios, daughters, err));
+done:
+    free(order);
+    vessels_release(&vessels);
     return status;
 }
 

@@ -66,6 +66,16 @@ typedef struct TreeStatistics {
 MUST_CHECK Status derive_statistics(const Tree *tree, TreeStatistics *statistics, Err *err);
 void statistics_release(TreeStatistics *statistics);
 
+/* Computes the elements of the orders that n bounds of diameter define. A vessel has the order 1 +
+ * the number of bounds below its diameter, or the largest order of its daughters if that is higher.
+ *
+ * elements   receives a row for each order that has vessels; the caller frees `row`.
+ * daughters  receives the connectivity as in TreeStatistics, where n is the last row's order;
+ *            owned by the caller.
+ * Errors     STATUS_MEMORY. */
+MUST_CHECK Status statistics_by_bounds(const Tree *tree, const double *bound_mm, size_t n,
+                                       StatisticsTable *elements, double **daughters, Err *err);
+
 /* Computes the ratios from the rows with numbers `first` to `last`. */
 OrderRatios statistics_ratios(const StatisticsTable *table, int first, int last);
 

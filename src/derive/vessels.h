@@ -44,4 +44,9 @@ typedef struct DiameterOrders {
 MUST_CHECK Status vessels_diameter_orders(const Vessels *vessels, int32_t **order,
                                           DiameterOrders *result, Err *err);
 
+/* Computes the order of each vessel by bounds of diameter [statistics_by_bounds]. *order has an
+ * entry per vessel and is owned by the caller. Errors: STATUS_MEMORY. */
+MUST_CHECK Status vessels_bounded_orders(const Vessels *vessels, const double *bound_mm, size_t n,
+                                         int32_t **order, Err *err);
+
 #endif

@@ -29,6 +29,7 @@ static const ConditionRow rows[] = {
     [WHEN_OWN_SEED] = {.sentence = "has no effect here: the plan sets the seeds"},
     [WHEN_LUMPED] = {.sentence = "has no effect on --outlets structured"},
     [WHEN_STRUCTURED] = {.sentence = "is for --outlets structured"},
+    [WHEN_ESTIMATED] = {.sentence = "is for --ends estimate"},
     [WHEN_PICTURE] = {.sentence = "is for pictures", .groups = GROUP(PRESS)},
     [WHEN_PIXELS] = {.sentence =
                          "is for images of pixels; a page (.svg, .pdf, .eps) has the true size",

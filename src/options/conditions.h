@@ -30,6 +30,7 @@ typedef enum Condition {
     WHEN_OWN_SEED,
     WHEN_LUMPED,
     WHEN_STRUCTURED,
+    WHEN_ESTIMATED,
     /* of the file of a picture */
     WHEN_PICTURE,
     WHEN_PIXELS,

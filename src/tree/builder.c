@@ -33,6 +33,8 @@ typedef struct BuilderPair {
 
 enum { NO_ROW = -1 };
 
+static const char share_name[] = "flow_share", link_name[] = "a link";
+
 void builder_release(TreeBuilder *builder)
 {
     for (size_t k = 0; k < builder->n_columns; k++) {
@@ -49,6 +51,7 @@ void builder_release(TreeBuilder *builder)
     free(builder->column);
     free(builder->share);
     free(builder->pair);
+    free(builder->link);
     meta_release(&builder->meta);
     *builder = (TreeBuilder){0};
 }
@@ -76,16 +79,11 @@ static Status unknown_parent(int64_t id, Err *err)
         (long long)id, TREE_NO_PARENT);
 }
 
-static Status unknown_pair(int64_t id, Err *err)
+/* Refuses a node that `what`, a pair, a link or a share, names. */
+static Status unknown_node(const char *what, int64_t id, Err *err)
 {
-    return err_set(err, STATUS_INPUT, "%s names the node %lld, which is not the id of a node",
-                   tree_pairs_name, (long long)id);
-}
-
-static Status unknown_share(int64_t id, Err *err)
-{
-    return err_set(err, STATUS_INPUT,
-                   "flow_share names the node %lld, which is not the id of a node", (long long)id);
+    return err_set(err, STATUS_INPUT, "%s names the node %lld, which is not the id of a node", what,
+                   (long long)id);
 }
 
 static Status check_node(const BuilderNode *node, Err *err)
@@ -200,7 +198,7 @@ Status builder_share(TreeBuilder *builder, int64_t id, double share, size_t reco
                        "the flow share is '%s'; it must be a finite number above 0",
                        number_text(share, number));
     if (!is_id(id))
-        return unknown_share(id, err);
+        return unknown_node(share_name, id, err);
     TRY(mem_reserve(&builder->share, &builder->shares_capacity, builder->n_shares + 1,
                     sizeof *builder->share, "flow shares", err));
     builder->share[builder->n_shares++] =
@@ -211,10 +209,21 @@ Status builder_share(TreeBuilder *builder, int64_t id, double share, size_t reco
 Status builder_pair(TreeBuilder *builder, int64_t id, int64_t other, size_t record, Err *err)
 {
     if (!is_id(id) || !is_id(other))
-        return unknown_pair(is_id(id) ? other : id, err);
+        return unknown_node(tree_pairs_name, is_id(id) ? other : id, err);
     TRY(mem_reserve(&builder->pair, &builder->pairs_capacity, builder->n_pairs + 1,
                     sizeof *builder->pair, "pairs", err));
     builder->pair[builder->n_pairs++] =
+        (BuilderPair){.id = {(int32_t)id, (int32_t)other}, .record = record};
+    return STATUS_OK;
+}
+
+Status builder_link(TreeBuilder *builder, int64_t id, int64_t other, size_t record, Err *err)
+{
+    if (!is_id(id) || !is_id(other))
+        return unknown_node(link_name, is_id(id) ? other : id, err);
+    TRY(mem_reserve(&builder->link, &builder->links_capacity, builder->n_links + 1,
+                    sizeof *builder->link, "links", err));
+    builder->link[builder->n_links++] =
         (BuilderPair){.id = {(int32_t)id, (int32_t)other}, .record = record};
     return STATUS_OK;
 }
@@ -390,7 +399,7 @@ static Status fill_shares(const TreeBuilder *builder, const IdIndex *index, cons
         int32_t row = row_of(builder, index, said->id);
         Status status = STATUS_OK;
         if (row == NO_ROW)
-            status = unknown_share(said->id, err);
+            status = unknown_node(share_name, said->id, err);
         else if (tree->flow_share[place_of(place, (size_t)row)] > 0)
             status =
                 err_set(err, STATUS_INPUT, "the flow share of node %d is stated twice", said->id);
@@ -407,7 +416,7 @@ static Status find_pair(const TreeBuilder *builder, const IdIndex *index, const 
     for (int side = 0; side < 2; side++) {
         int32_t id = builder->pair[k].id[side], row = row_of(builder, index, id);
         if (row == NO_ROW)
-            return unknown_pair(id, err);
+            return unknown_node(tree_pairs_name, id, err);
         size_t at = place_of(place, (size_t)row);
         if (!isnan(number[at]))
             return err_set(err, STATUS_INPUT, "node %d is of a pair twice", id);
@@ -426,6 +435,39 @@ static Status fill_pairs(const TreeBuilder *builder, const IdIndex *index, const
         TRY(builder_blame(builder, builder->pair[k].record,
                           find_pair(builder, index, place, k, number, err), err));
     return STATUS_OK;
+}
+
+/* Sets the link of one node. */
+static Status fill_link(const TreeBuilder *builder, const IdIndex *index, const int32_t *place,
+                        const BuilderPair *link, Tree *tree, Err *err)
+{
+    size_t at[2];
+    for (int side = 0; side < 2; side++) {
+        int32_t row = row_of(builder, index, link->id[side]);
+        if (row == NO_ROW)
+            return unknown_node(link_name, link->id[side], err);
+        at[side] = place_of(place, (size_t)row);
+    }
+    if (tree_is_link(tree, at[0]))
+        return err_set(err, STATUS_INPUT, "node %d has two links", link->id[0]);
+    tree->link[at[0]] = (int32_t)at[1];
+    tree->position[at[0]] = tree->position[at[1]];
+    return STATUS_OK;
+}
+
+static Status fill_links(const TreeBuilder *builder, const IdIndex *index, const int32_t *place,
+                         Tree *tree, Err *err)
+{
+    if (builder->n_links == 0)
+        return STATUS_OK;
+    TRY(tree_add_links(tree, err));
+    for (size_t k = 0; k < builder->n_links; k++)
+        TRY(builder_blame(builder, builder->link[k].record,
+                          fill_link(builder, index, place, &builder->link[k], tree, err), err));
+    Status status = tree_check_links(tree, err);
+    if (status == STATUS_INPUT)
+        err_prefix(err, "%s: ", builder->name);
+    return status;
 }
 
 Status builder_build(TreeBuilder *builder, Tree *out, Err *err)
@@ -450,6 +492,7 @@ Status builder_build(TreeBuilder *builder, Tree *out, Err *err)
     TRY_GOTO(fill_columns(builder, place, &tree, err));
     TRY_GOTO(fill_shares(builder, &index, place, &tree, err));
     TRY_GOTO(fill_pairs(builder, &index, place, &tree, err));
+    TRY_GOTO(fill_links(builder, &index, place, &tree, err));
     tree.meta = builder->meta;
     builder->meta = (TreeMeta){0};
     *out = tree;

@@ -46,6 +46,8 @@ typedef struct TreeBuilder {
     size_t n_shares, shares_capacity;
     struct BuilderPair *pair;
     size_t n_pairs, pairs_capacity;
+    struct BuilderPair *link;
+    size_t n_links, links_capacity;
 } TreeBuilder;
 
 void builder_release(TreeBuilder *builder);
@@ -82,14 +84,19 @@ MUST_CHECK Status builder_share(TreeBuilder *builder, int64_t id, double share, 
 MUST_CHECK Status builder_pair(TreeBuilder *builder, int64_t id, int64_t other, size_t record,
                                Err *err);
 
+/* States that the node `id` is the same point as the node `other` [Tree.link]. builder_build gives
+ * it the position of `other`. The nodes may be added later. */
+MUST_CHECK Status builder_link(TreeBuilder *builder, int64_t id, int64_t other, size_t record,
+                               Err *err);
+
 /* Builds the tree, which tree_check accepts. The metadata move to it. Nodes keep the order of the
  * file, except that an ancestor that comes later moves to just before its first descendant.
  *
  * tree     receives the tree; release it with tree_release.
  * Errors   STATUS_INPUT if there is no node, an id occurs twice, a parent does not exist, nodes
- *          form a cycle, a share or a pair refers to a node that does not exist or occurs twice, or
- *          there is a share although the key terminal_flow forbids it. STATUS_MEMORY.
- * Cost     O(n log n) for n nodes. */
+ *          form a cycle, a share, a pair or a link refers to a node that does not exist or occurs
+ *          twice, tree_check_links refuses a link, or there is a share although the key
+ * terminal_flow forbids it. STATUS_MEMORY. Cost     O(n log n) for n nodes. */
 MUST_CHECK Status builder_build(TreeBuilder *builder, Tree *tree, Err *err);
 
 #endif

@@ -43,6 +43,7 @@ void tree_release(Tree *tree)
     free(tree->parent);
     free(tree->position);
     free(tree->radius_mm);
+    free(tree->link);
     free(tree->flow_share);
     for (size_t k = 0; k < tree->n_columns; k++)
         release_column(&tree->column[k]);
@@ -61,6 +62,7 @@ void tree_hash(const Tree *tree, Hash *hash)
     hash_add(hash, tree->parent, n * sizeof *tree->parent);
     hash_add(hash, tree->position, n * sizeof *tree->position);
     hash_add(hash, tree->radius_mm, n * sizeof *tree->radius_mm);
+    hash_add(hash, tree->link, tree->link ? n * sizeof *tree->link : 0);
     hash_add(hash, tree->flow_share, tree->flow_share ? n * sizeof *tree->flow_share : 0);
     for (size_t k = 0; k < tree->n_columns; k++) {
         hash_add_text(hash, tree->column[k].name);
@@ -97,7 +99,57 @@ Status tree_child_counts(const Tree *tree, int32_t **count, Err *err)
     for (size_t i = 0; i < tree->n; i++)
         if (tree_is_segment(tree, i))
             counted[tree->parent[i]]++;
+    for (size_t i = 0; i < tree->n && tree->link; i++)
+        if (tree_is_link(tree, i)) {
+            counted[tree->link[i]]++;
+            counted[i] = 1;
+        }
     *count = counted;
+    return STATUS_OK;
+}
+
+size_t tree_link_count(const Tree *tree)
+{
+    size_t links = 0;
+    for (size_t i = 0; i < tree->n && tree->link; i++)
+        links += tree_is_link(tree, i);
+    return links;
+}
+
+Status tree_add_links(Tree *tree, Err *err)
+{
+    assert(!tree->link);
+    TRY(mem_calloc(&tree->link, tree->n, sizeof *tree->link, "links", err));
+    for (size_t i = 0; i < tree->n; i++)
+        tree->link[i] = TREE_NO_LINK;
+    return STATUS_OK;
+}
+
+Status tree_components(const Tree *tree, uint32_t **component, size_t *n, Err *err)
+{
+    uint32_t *set = NULL;
+    TRY(mem_alloc(&set, tree->n, sizeof *set, "components", err));
+    for (size_t i = 0; i < tree->n; i++)
+        set[i] = tree_is_segment(tree, i) ? set[tree->parent[i]] : (uint32_t)i;
+    for (size_t i = 0; i < tree->n && tree->link; i++)
+        if (tree_is_link(tree, i))
+            sets_join(set, (uint32_t)i, (uint32_t)tree->link[i]);
+    *n = 0;
+    for (size_t i = 0; i < tree->n; i++) /* set[i] <= i: earlier nodes have their number */
+        set[i] = set[i] == i ? (uint32_t)(*n)++ : set[set[i]];
+    *component = set;
+    return STATUS_OK;
+}
+
+Status tree_loop_count(const Tree *tree, size_t *loops, Err *err)
+{
+    uint32_t *component;
+    size_t components, roots = 0;
+    TRY(tree_components(tree, &component, &components, err));
+    free(component);
+    for (size_t i = 0; i < tree->n; i++)
+        roots += !tree_is_segment(tree, i);
+    *loops = tree_link_count(tree) + components - roots;
     return STATUS_OK;
 }
 
@@ -192,12 +244,53 @@ static Status check_node(const Tree *tree, size_t i, Err *err)
     return STATUS_OK;
 }
 
+/* Checks the link of node i. `others` has, per node, the count of tree_child_counts. */
+static Status check_link(const Tree *tree, size_t i, const int32_t *others, Err *err)
+{
+    int32_t id = tree->id[i], to = tree->link[i];
+    const char *fault = NULL;
+    if (to < 0 || (size_t)to >= tree->n || (size_t)to == i)
+        return err_set(err, STATUS_INPUT, "node %d: its link does not name another node", id);
+    if (!tree_is_segment(tree, i))
+        fault = "a root cannot have a link";
+    else if (others[i] != 0)
+        fault = "a node with a link cannot have children or be named by a link";
+    else if (!tree_is_segment(tree, (size_t)to) && others[to] == 1)
+        fault = "the link names a root that no other segment leaves";
+    else if (memcmp(&tree->position[i], &tree->position[to], sizeof *tree->position) != 0)
+        fault = "its position differs from that of the node that its link names";
+    else if (tree->flow_share && tree->flow_share[i] > 0)
+        fault = "a node with a link cannot have a flow share";
+    return fault ? err_set(err, STATUS_INPUT, "node %d: %s", id, fault) : STATUS_OK;
+}
+
+Status tree_check_links(const Tree *tree, Err *err)
+{
+    int32_t *others = NULL;
+    if (!tree->link)
+        return STATUS_OK;
+    Status status = STATUS_OK;
+    TRY(mem_calloc(&others, tree->n, sizeof *others, "counts of segments", err));
+    for (size_t i = 0; i < tree->n; i++) {
+        if (tree_is_segment(tree, i))
+            others[tree->parent[i]]++;
+        if (tree_is_link(tree, i) && tree->link[i] >= 0 && (size_t)tree->link[i] < tree->n)
+            others[tree->link[i]]++;
+    }
+    for (size_t i = 0; i < tree->n && status == STATUS_OK; i++)
+        if (tree_is_link(tree, i))
+            status = check_link(tree, i, others, err);
+    free(others);
+    return status;
+}
+
 Status tree_check(const Tree *tree, Err *err)
 {
     if (tree->n == 0)
         return err_set(err, STATUS_INPUT, "the tree has no nodes; at least one is needed");
     for (size_t i = 0; i < tree->n; i++)
         TRY(check_node(tree, i, err));
+    TRY(tree_check_links(tree, err));
     uint8_t *seen = NULL; /* one bit an id */
     TRY(mem_calloc(&seen, (size_t)tree_last_id(tree) / 8 + 1, 1, "bytes of seen ids", err));
     Status status = STATUS_OK;
@@ -251,6 +344,39 @@ static Status prune_columns(const Tree *tree, const int32_t *place, Tree *out, E
     return STATUS_OK;
 }
 
+static void drop_empty_links(Tree *tree)
+{
+    if (tree_link_count(tree) > 0)
+        return;
+    free(tree->link);
+    tree->link = NULL;
+}
+
+/* Copies the links whose two nodes are kept. Of several links to a dropped node, the first kept
+ * node becomes the node that the other links name. */
+static Status prune_links(const Tree *tree, const int32_t *place, Tree *out, Err *err)
+{
+    if (!tree->link)
+        return STATUS_OK;
+    int32_t *now = NULL; /* per node that links name: the node that they name in `out` */
+    TRY(mem_alloc(&now, tree->n, sizeof *now, "links", err));
+    memcpy(now, place, tree->n * sizeof *now);
+    Status status = tree_add_links(out, err);
+    for (size_t i = 0; i < tree->n && status == STATUS_OK; i++) {
+        if (!tree_is_link(tree, i) || place[i] == DROPPED)
+            continue;
+        int32_t *to = &now[tree->link[i]];
+        if (*to == DROPPED)
+            *to = place[i];
+        else
+            out->link[place[i]] = *to;
+    }
+    if (status == STATUS_OK)
+        drop_empty_links(out);
+    free(now);
+    return status;
+}
+
 /* Makes a new tree of the nodes that have an index in `place`. */
 static Status take_placed(const Tree *tree, const int32_t *place, size_t n, Tree *out, Err *err)
 {
@@ -268,6 +394,7 @@ static Status take_placed(const Tree *tree, const int32_t *place, size_t n, Tree
         made.position[at] = tree->position[i];
         made.radius_mm[at] = tree->radius_mm[i];
     }
+    TRY_GOTO(prune_links(tree, place, &made, err));
     TRY_GOTO(prune_flow_shares(tree, place, &made, err));
     TRY_GOTO(prune_columns(tree, place, &made, err));
     *out = made;
@@ -314,6 +441,8 @@ static void cut_ends(const Tree *tree, const int32_t *place, const double *way, 
         double share = (reach - way[parent]) / (way[i] - way[parent]);
         Vec3 from = tree->position[parent], span = vec3_sub(tree->position[i], from);
         part->position[place[i]] = vec3_add_scaled(from, span, share);
+        if (part->link)
+            part->link[place[i]] = TREE_NO_LINK;
     }
 }
 

@@ -324,11 +324,11 @@ static void try_scenes(SceneModel model, int runs, uint64_t seed)
     }
 }
 
-/* Slow: of 45,000 rays, each is walked through by brute force, in long double. */
+/* Slow: of 22,000 rays, each is walked through by brute force, in long double. */
 static void holds_for_adversarial_scenes(void **state)
 {
     (void)state;
-    try_scenes(SCENE_ISOSURFACE, 10, 63);
+    try_scenes(SCENE_ISOSURFACE, 5, 63);
 }
 
 static void holds_for_blobs(void **state)
@@ -426,7 +426,7 @@ static void holds_for_adversarial_scenes_in_a_plane(void **state)
     random_seed(&random, 64);
     for (int kind = 0; kind < N_KINDS; kind++) {
         Tally tally = {.name = kind_names[kind]};
-        for (int run = 0; run < (SHARE > 1 ? 3 : 10); run++) {
+        for (int run = 0; run < (SHARE > 1 ? 3 : 5); run++) {
             TestScene test;
             make_test_scene((SceneKind)kind, &random, &test);
             double height = uniform(&random, -30, 30);

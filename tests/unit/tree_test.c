@@ -448,6 +448,103 @@ static void growth_cuts_vessels_at_the_same_way_from_their_roots(void **state)
     tree_release(&tree);
 }
 
+/* A ring with a tail: 1 -> 2 -> { 3 -> 6, 4 -> 5 }, where 5 and 7, a daughter of 6, are the points
+ * 3 and 2, so that 6 -> 7 closes a second loop. A root 8 -> 9 is apart. */
+static Tree ring(void)
+{
+    static const int32_t parent[] = {TREE_NO_PARENT, 1, 2, 2, 4, 3, 6, TREE_NO_PARENT, 8};
+    TreeBuilder builder = {.name = "ring", .record = "point"};
+    Tree tree;
+    Err err;
+    must(builder_link(&builder, 5, 3, 4, &err), &err);
+    must(builder_link(&builder, 7, 2, 5, &err), &err);
+    for (int64_t id = 1; id <= 9; id++)
+        give(&builder, id, parent[id - 1], id == 3 ? 0.25 : 1);
+    must(builder_build(&builder, &tree, &err), &err);
+    must(tree_check(&tree, &err), &err);
+    builder_release(&builder);
+    return tree;
+}
+
+static void links_close_loops(void **state)
+{
+    (void)state;
+    static const int32_t others[] = {1, 3, 2, 1, 1, 1, 1, 1, 0};
+    static const uint32_t components[] = {0, 0, 0, 0, 0, 0, 0, 1, 1};
+    Tree tree = ring();
+    Err err;
+    int32_t *count;
+    uint32_t *component;
+    size_t n;
+    assert_int_equal(tree_link_count(&tree), 2);
+    assert_int_equal(tree_place(&tree, 4), 2);
+    assert_int_equal(tree_place(&tree, 2), 2);
+    assert_memory_equal(&tree.position[4], &tree.position[2], sizeof *tree.position);
+    must(tree_child_counts(&tree, &count, &err), &err);
+    assert_memory_equal(count, others, sizeof others);
+    must(tree_components(&tree, &component, &n, &err), &err);
+    assert_memory_equal(component, components, sizeof components);
+    must(tree_loop_count(&tree, &n, &err), &err);
+    assert_int_equal(n, 2);
+    tree.link[6] = 8; /* joins the two trees, and closes no loop */
+    must(tree_loop_count(&tree, &n, &err), &err);
+    assert_int_equal(n, 1);
+    free(count);
+    free(component);
+    tree_release(&tree);
+}
+
+static HashText hash_of(const Tree *tree)
+{
+    Hash hash;
+    hash_begin(&hash);
+    tree_hash(tree, &hash);
+    return hash_text(&hash);
+}
+
+static void bad_links_are_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        size_t node;
+        int32_t to;
+        const char *text;
+    } bad[] = {{6, 9, "node 7: its link does not name"}, {6, 6, "node 7: its link does not name"},
+               {6, -2, "node 7: its link does not"},     {0, 2, "node 1: a root cannot have"},
+               {3, 1, "node 4: a node with a link"},     {6, 4, "node 5: a node with a link"},
+               {6, 0, "node 7: its position differs"}};
+    Err err;
+    for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
+        Tree tree = ring();
+        HashText before = hash_of(&tree);
+        tree.link[bad[k].node] = bad[k].to;
+        HashText after = hash_of(&tree);
+        assert_memory_not_equal(&before, &after, sizeof before);
+        assert_int_equal(tree_check(&tree, &err), STATUS_INPUT);
+        assert_non_null(strstr(err.text, bad[k].text));
+        tree_release(&tree);
+    }
+}
+
+static void a_link_to_a_pruned_node_ends_there(void **state)
+{
+    (void)state;
+    Tree tree = ring(), pruned;
+    Err err;
+    must(tree_pruned(&tree, 0.5, &pruned, &err), &err); /* without 3, 6 and 7 */
+    must(tree_check(&pruned, &err), &err);
+    assert_int_equal(pruned.n, 6);
+    assert_null(pruned.link);
+    tree_release(&pruned);
+    tree.radius_mm[2] = 1;
+    tree.radius_mm[5] = 0.25;
+    must(tree_pruned(&tree, 0.5, &pruned, &err), &err); /* without 6 and 7 */
+    must(tree_check(&pruned, &err), &err);
+    assert_int_equal(pruned.link[4], 2);
+    tree_release(&pruned);
+    tree_release(&tree);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -468,6 +565,9 @@ int main(void)
         cmocka_unit_test(the_bounds_hold_both_ends_with_the_segment_radius),
         cmocka_unit_test(a_chain_of_a_million_segments_is_no_deeper_than_a_bush),
         cmocka_unit_test(growth_cuts_vessels_at_the_same_way_from_their_roots),
+        cmocka_unit_test(links_close_loops),
+        cmocka_unit_test(bad_links_are_refused),
+        cmocka_unit_test(a_link_to_a_pruned_node_ends_there),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -298,19 +298,25 @@ static void print_pair(const MorphometryPair *pair)
     print_number(10, pair->value, 4);
     printf("  ");
     print_mean(pair->published.mean, pair->room);
-    printf(" %s\n", pair->agrees ? "pass" : "fail");
+    printf(" %s\n", pair->agrees_strictly ? "pass" : pair->agrees ? "pass by 2 SE" : "fail");
 }
 
-static void print_morphometry(const Morphometry *table, const MorphometryComparison *comparison)
+static void print_morphometry(const InfoReport *report)
 {
-    printf("\nBeside %s\n", table->source);
-    printf("  (± the published standard deviation or, where there is none, %g %%; lengths in mm)\n",
-           100 * MORPHOMETRY_ROOM);
+    const MorphometryComparison *comparison = &report->comparison[report->orders];
+    printf("\nBeside %s, by %s orders\n", report->table.source,
+           morphometry_orders_names[report->orders]);
+    printf("  (± the published standard deviation; where there is none, the wider of %g %% and %d\n"
+           "  published standard errors (SE); lengths in mm)\n",
+           100 * MORPHOMETRY_ROOM, MORPHOMETRY_ERRORS);
     printf("  %-27s %5s %9s  %10s  %s\n", "of the elements", "order", "published", "this tree",
            "published");
     for (size_t i = 0; i < comparison->n; i++)
         print_pair(&comparison->pair[i]);
-    printf("  %zu of %zu pass\n", comparison->agreeing, comparison->n);
+    for (int k = 0; k < MORPHOMETRY_ORDERS; k++)
+        printf("  by %s orders: %zu of %zu pass (%zu without standard errors)\n",
+               morphometry_orders_names[k], report->comparison[k].agreeing, report->comparison[k].n,
+               report->comparison[k].agreeing_strictly);
 }
 
 /* ---- the command ----------------------------------------------------------------------------- */
@@ -323,7 +329,7 @@ static Status print(const InfoReport *report, Err *err)
     if (report->has_statistics)
         print_statistics(&report->statistics);
     if (report->has_morphometry)
-        print_morphometry(&report->table, &report->comparison);
+        print_morphometry(report);
     return STATUS_OK;
 }
 

@@ -17,6 +17,42 @@ typedef struct Samples {
     int n;
 } Samples;
 
+/* Returns the index of the first code of pixel (x, y). */
+static inline size_t first_code(const Picture *picture, int x, int y)
+{
+    return ((size_t)y * (size_t)picture->width + (size_t)x) * (size_t)picture->channels;
+}
+
+/* Returns the code of pixel (x, y) in channel c. */
+static inline int code_at(const Picture *picture, int x, int y, int c)
+{
+    return picture_code(picture, first_code(picture, x, y) + (size_t)c);
+}
+
+/* Returns the number of pixels in question: those of the samples, or all if `samples` is NULL. */
+static inline size_t n_asked(const Picture *picture, const Samples *samples)
+{
+    return samples ? (size_t)samples->n : (size_t)picture->width * (size_t)picture->height;
+}
+
+/* Returns the index of the first code of pixel i of those in question. */
+static inline size_t asked_code(const Picture *picture, const Samples *samples, size_t i)
+{
+    return samples ? first_code(picture, samples->at[i].x, samples->at[i].y)
+                   : i * (size_t)picture->channels;
+}
+
+/* Makes a plane of one row with the linear light of each code of such a picture. The caller
+ * releases it. Errors: STATUS_MEMORY. */
+MUST_CHECK Status light_of_codes(const Picture *picture, Plane *lights, Err *err);
+
+/* Adds up numbers over the rows of a picture, which several threads compute: `n` sums, of which
+ * `row` adds those of row y to `sums`. The order of adding does not depend on the threads. Errors:
+ * STATUS_MEMORY. */
+typedef void RowSums(const void *context, int y, double *sums);
+MUST_CHECK Status rows_sum(int height, RowSums *row, const void *context, double *sums, size_t n,
+                           Err *err);
+
 /* A sentence about the cause. */
 typedef struct Sentence {
     char *text;  /* "" until a cause is found; borrowed */

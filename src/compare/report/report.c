@@ -22,19 +22,13 @@ json_t *report_json(const ReportCase *report)
             planes = json_with(planes, plane_kind_name(kind), compare_json(report->planes[kind]));
     for (size_t i = 0; i < report->n_commands; i++)
         commands = json_with_item(commands, json_text(report->commands[i]));
-    const JsonMember members[] = {
+    json_t *json = JSON_OBJECT(
         {"verdict", json_text(reason ? "differ" : "agree")},
-        {"severity", json_number(report_severity(report))},
-        {"reason", json_text_or_null(reason)},
-        {"name", json_text(report->name)},
-        {"model", json_text(report->model)},
-        {"tier", json_text(report->planes[PLANE_COLOR]->tolerance.tier)},
-        {"planes", planes},
-        {report->a.key, side_json(&report->a)},
-        {report->b.key, side_json(&report->b)},
-        {"commands", commands},
-    };
-    json_t *json = json_with_members(json_object(), members, sizeof members / sizeof *members);
+        {"severity", json_number(report_severity(report))}, {"reason", json_text_or_null(reason)},
+        {"name", json_text(report->name)}, {"model", json_text(report->model)},
+        {"tier", json_text(report->planes[PLANE_COLOR]->tolerance.tier)}, {"planes", planes},
+        {report->a.key, side_json(&report->a)}, {report->b.key, side_json(&report->b)},
+        {"commands", commands});
     if (report->surface)
         json = json_with(json, "surface", surface_check_json(report->surface));
     if (report->alpha)

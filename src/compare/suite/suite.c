@@ -378,17 +378,15 @@ json_t *suite_json(const Suite *suite)
     json_t *cases = json_array(), *unused = json_array();
     for (size_t i = 0; i < suite->n; i++) {
         const SuiteCase *entry = &suite->cases[i];
-        const JsonMember members[] = {
-            {"name", json_text(entry->name)},
-            {"state", json_text(suite_state_name(entry->state))},
-            {"reason", json_text_or_null(*entry->sentence ? entry->sentence : NULL)},
-            {"reference", json_text_or_null(entry->agreed)},
-            {"differing_pixels", json_count(entry->differing)},
-            {"masked_pixels", json_count(entry->masked)},
-            {"seconds", json_number(entry->seconds)},
-        };
         cases = json_with_item(
-            cases, json_with_members(json_object(), members, sizeof members / sizeof *members));
+            cases,
+            JSON_OBJECT({"name", json_text(entry->name)},
+                        {"state", json_text(suite_state_name(entry->state))},
+                        {"reason", json_text_or_null(*entry->sentence ? entry->sentence : NULL)},
+                        {"reference", json_text_or_null(entry->agreed)},
+                        {"differing_pixels", json_count(entry->differing)},
+                        {"masked_pixels", json_count(entry->masked)},
+                        {"seconds", json_number(entry->seconds)}));
     }
     json_t *json =
         json_with(json_object(), "verdict", json_text(suite->agrees ? "agree" : "differ"));

@@ -10,6 +10,8 @@
 typedef struct Growing {
     GrowParams params; /* its pointers borrow from the other members */
     const char *domain_spec, *from_path, *demand_spec; /* NULL: not given; borrowed */
+    const char *fill;       /* name of the published table to fill the tree by; NULL: grow */
+    int fill_from, fill_to; /* as FillRules */
     VectorList inlet;
     NumberList inlet_share;
     bool given[META_KEYS]; /* by key of the metadata: an option gave it */
@@ -36,8 +38,9 @@ MUST_CHECK Status growing_prepare(Growing *growing, Parsed *parsed, Err *err);
  * demand_read. */
 MUST_CHECK Status growing_read_demand(Growing *growing, Err *err);
 
-/* Grows a tree, with progress. Warns why growth stopped early, if --partial allows that. Errors: as
- * grow_tree. */
+/* Grows a tree, or fills the tree of --from if `fill` is set, with progress. Warns why growth
+ * stopped early, if --partial allows that. Errors: as grow_tree; as fill_tree and morphometry_read.
+ */
 MUST_CHECK Status growing_run(Growing *growing, const Parsed *parsed, Tree *tree,
                               GrowReport *report, Err *err);
 

@@ -10,7 +10,8 @@
 typedef struct InfoOptions {
     bool json, stats, bound;
     const char *morphometry; /* NULL: beside none */
-    const char *output;      /* CSV file for the statistics; NULL: none */
+    MorphometryOrders orders;
+    const char *output; /* CSV file for the statistics; NULL: none */
     BloodOptions blood;
 } InfoOptions;
 
@@ -38,6 +39,12 @@ static const Option own[] = {
      .list = "morphometries",
      .help = "compare the tree with a published data set: its name, or the path of a file of your "
              "own (with a '/')"},
+    {.name = "orders",
+     SETS(CHOICE, InfoOptions, orders),
+     .choices = morphometry_orders_names,
+     .needs = "morphometry",
+     .help = "orders of the tree that are compared: published (by the diameters of the data set), "
+             "found (by the diameters of the tree)"},
     {.name = "lambda",
      SETS_KEY(InfoOptions, blood.said.number[META_LAMBDA], blood.said.known, LAMBDA),
      .group = GROUP_OPTIMUM,
@@ -56,7 +63,8 @@ static Status compare(const char *name, InfoReport *report, Err *err)
     free(path);
     TRY(status);
     report->has_morphometry = true;
-    return morphometry_compare(&report->statistics, &report->table, &report->comparison, err);
+    return morphometry_compare(&report->tree, &report->statistics, &report->table,
+                               report->comparison, err);
 }
 
 static Status measure(const InfoOptions *options, InfoReport *report, Err *err)
@@ -69,6 +77,7 @@ static Status measure(const InfoOptions *options, InfoReport *report, Err *err)
     if (options->stats || options->morphometry)
         TRY(derive_statistics(tree, &report->statistics, err));
     report->has_statistics = options->stats;
+    report->orders = options->orders;
     return options->morphometry ? compare(options->morphometry, report, err) : STATUS_OK;
 }
 
@@ -158,7 +167,8 @@ void inforeport_release(InfoReport *report)
     reading_release(&report->reading);
     statistics_release(&report->statistics);
     morphometry_release(&report->table);
-    free(report->comparison.pair);
+    for (int k = 0; k < MORPHOMETRY_ORDERS; k++)
+        free(report->comparison[k].pair);
     json_decref(report->bound);
     tree_release(&report->tree);
 }
