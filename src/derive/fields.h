@@ -30,7 +30,7 @@ MUST_CHECK Status needed_value(const Tree *tree, const TreeMeta *overrides, Meta
 
 /* Solves a network with links [treenetwork_set_terminals]: the size of the flow in each segment,
  * mm^3/s, and the inflow of each root; the pressure at each node, Pa. Either array may be NULL.
- * Errors: as those of a FieldFunction and of network_solve. */
+ * Errors: as those of a FieldFunction and of flownetwork_solve. */
 MUST_CHECK Status solve_links(const Tree *tree, const TreeMeta *overrides, double *flow,
                               double *pressure, Err *err);
 

@@ -75,7 +75,7 @@ Status solve_links(const Tree *tree, const TreeMeta *overrides, double *flow, do
     TRY_GOTO(derive_viscosity(tree, overrides, &viscosity, err));
     TRY_GOTO(treenetwork_make(tree, viscosity, &network, err));
     TRY_GOTO(treenetwork_set_terminals(&network, tree, overrides, err));
-    TRY_GOTO(network_solve(&network.network, &solved, err));
+    TRY_GOTO(flownetwork_solve(&network.network, &solved, err));
     for (size_t i = 0; flow && i < tree->n; i++)
         flow[i] = tree_is_segment(tree, i) ? fabs(solved.flow[i]) : solved.inflow[i];
     for (size_t i = 0; pressure && i < tree->n; i++)

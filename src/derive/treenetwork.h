@@ -7,7 +7,7 @@
 #ifndef CORCAST_DERIVE_TREENETWORK_H
 #define CORCAST_DERIVE_TREENETWORK_H
 
-#include "network/network.h"
+#include "flownetwork/flownetwork.h"
 #include "tree/tree.h"
 
 /* The arrays of `network`, all with an entry per node of the tree. Owned. */

@@ -220,15 +220,13 @@ typedef struct CaseFiles {
 static Status judge_reference(SuiteCase *entry, const CaseFiles *files, const char *name,
                               const float background[3], Err *err)
 {
-    Text path = TEXT_INIT;
-    Status status;
-    text_printf(&path, "%.*s%s", (int)(file_name(files->reference) - files->reference),
-                files->reference, name);
-    TRY_GOTO(text_check(&path, err));
-    const char *const paths[2] = {text_chars(&path), files->picture};
-    status = judge_pair(entry, paths, files->mask, background, files->tolerance, err);
-done:
-    text_release(&path);
+    char *path;
+    TRY(file_format_name(&path, err, "%.*s%s",
+                         (int)(file_name(files->reference) - files->reference), files->reference,
+                         name));
+    const char *const paths[2] = {path, files->picture};
+    Status status = judge_pair(entry, paths, files->mask, background, files->tolerance, err);
+    free(path);
     return status;
 }
 

@@ -517,13 +517,9 @@ static Status name_files(const CoverageOptions *options, const VolumeFormat *for
     TRY(copy_path(options->json, &at[FILE_JSON].path, err));
     if (!options->territories)
         return STATUS_OK;
-    Text path = TEXT_INIT;
-    text_append(&path, options->territories, strlen(options->territories) - strlen(format->suffix));
-    text_puts(&path, ".csv");
+    const size_t stem = strlen(options->territories) - strlen(format->suffix);
     at[FILE_TABLE].role = "the table of territories";
-    Status status = text_take(&path, &at[FILE_TABLE].path, err);
-    text_release(&path);
-    return status;
+    return file_format_name(&at[FILE_TABLE].path, err, "%.*s.csv", (int)stem, options->territories);
 }
 
 static Status prepare(Measuring *made, Parsed *parsed, FileSet *files, Err *err)

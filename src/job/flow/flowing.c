@@ -265,8 +265,8 @@ static Status estimate(Flowing *made, const bool *is_open, Err *err)
                                 .starts = options->starts,
                                 .seed = made->parsed->common.seed,
                                 .threads = made->parsed->common.threads};
-    return network_guess(&made->network.network, &guess, made->network.pressure, &made->spread,
-                         err);
+    return flownetwork_guess(&made->network.network, &guess, made->network.pressure, &made->spread,
+                             err);
 }
 
 static Status set_boundary(Flowing *made, const TreeMeta *said, Err *err)
@@ -317,8 +317,16 @@ static Status set_blood(Flowing *made, const TreeMeta *said, Err *err)
     for (size_t i = 0; i < tree->n; i++)
         if (tree_is_segment(tree, i))
             made->network.resistance[i] =
-                network_resistance(&made->blood, i, made->blood.hematocrit);
+                flownetwork_resistance(&made->blood, i, made->blood.hematocrit);
     return STATUS_OK;
+}
+
+static size_t count_closed(const Flowing *made)
+{
+    size_t closed = 0;
+    for (size_t i = 0; i < made->tree.n; i++)
+        closed += tree_is_segment(&made->tree, i) && !(made->network.resistance[i] < HUGE_VAL);
+    return closed;
 }
 
 static Status solve(Flowing *made, Err *err)
@@ -326,24 +334,23 @@ static Status solve(Flowing *made, Err *err)
     const FlowNetwork *network = &made->network.network;
     const NetworkCells *cells = &made->cells;
     if (!made->options->separation)
-        TRY(network_solve(network, &made->flow, err));
+        TRY(flownetwork_solve(network, &made->flow, err));
     else
-        TRY(network_separate(network, &made->blood, &made->flow, &made->cells, err));
+        TRY(flownetwork_separate(network, &made->blood, &made->flow, &made->cells, err));
     for (size_t i = 0; cells->hematocrit && i < made->tree.n; i++)
         if (tree_is_segment(&made->tree, i))
-            made->network.resistance[i] = network_resistance(&made->blood, i, cells->hematocrit[i]);
+            made->network.resistance[i] =
+                flownetwork_resistance(&made->blood, i, cells->hematocrit[i]);
     if (made->options->separation && !cells->converged)
-        talk_warn(
-            made->parsed->common.talk,
-            "not converged: after %zu rounds the hematocrit still changes by %.2g and the flow by "
-            "%.2g ml/min; the fields are those of the last round",
-            cells->rounds, cells->hematocrit_change, ml_min_from_mm3_s(cells->flow_change));
+        talk_warn(made->parsed->common.talk,
+                  "not converged: after %zu rounds the hematocrit still changes by %.2g and the "
+                  "flow by %.2g ml/min; the fields are those of the last round",
+                  cells->rounds, cells->hematocrit_change, ml_min_from_mm3_s(cells->flow_change));
     if (made->flow.idle > 0 && made->options->ends == ENDS_REFUSED)
-        return err_set(
-            err, STATUS_INPUT,
-            "the vessels that are connected with node %d have no boundary condition; give a "
-            "pressure or flow there, or --ends closed",
-            made->tree.id[made->flow.idle_node]);
+        return err_set(err, STATUS_INPUT,
+                       "the vessels that are connected with node %d have no boundary condition; "
+                       "give a pressure or flow there, or --ends closed",
+                       made->tree.id[made->flow.idle_node]);
     return STATUS_OK;
 }
 
@@ -406,12 +413,11 @@ static void add_row(Flowing *made, const char *key, const char *title, double va
 static void report_flow(Flowing *made, size_t loops)
 {
     const NetworkFlow *flow = &made->flow;
-    double segments = 0, closed = 0, lost = 0, inflow = 0, pressure[2] = {HUGE_VAL, -HUGE_VAL};
+    double segments = 0, lost = 0, inflow = 0, pressure[2] = {HUGE_VAL, -HUGE_VAL};
     for (size_t i = 0; i < made->tree.n; i++) {
         bool is_segment = tree_is_segment(&made->tree, i),
              is_closed = !(made->network.resistance[i] < HUGE_VAL);
         segments += is_segment;
-        closed += is_segment && is_closed;
         lost += is_segment && !is_closed && flow->is_lost[i];
         inflow += ml_min_from_mm3_s(fmax(flow->inflow[i], 0));
         if (!isnan(flow->pressure[i])) {
@@ -428,7 +434,8 @@ static void report_flow(Flowing *made, size_t loops)
     add_row(made, "largest_flow", "largest flow", ml_min_from_mm3_s(flow->largest), "ml/min");
     add_row(made, "pressure_min", "lowest pressure", pressure[0], "mmHg");
     add_row(made, "pressure_max", "highest pressure", pressure[1], "mmHg");
-    add_row(made, "closed_segments", "segments too narrow for flow", closed, "");
+    add_row(made, "closed_segments", "segments too narrow for flow", (double)count_closed(made),
+            "");
     add_row(made, "lost_segments", "segments without flow above rounding", lost, "");
     add_row(made, "unknowns", "unknowns after reduction", (double)flow->unknowns, "");
     add_row(made, "steps", "steps of conjugate gradients", (double)flow->steps, "");
@@ -489,8 +496,14 @@ static Status compute(Flowing *made, const TreeMeta *said, Err *err)
     TRY(derive_viscosity(&made->tree, said, &made->viscosity, err));
     TRY(treenetwork_make(&made->tree, made->viscosity, &made->network, err));
     TRY(set_blood(made, said, err));
-    TRY(set_boundary(made, said, err));
-    TRY(solve(made, err));
+    size_t closed = count_closed(made);
+    Status status = set_boundary(made, said, err);
+    if (status == STATUS_OK)
+        status = solve(made, err);
+    if (status == STATUS_INPUT && closed > 0)
+        err_prefix(err, "%zu segments are too narrow for flow (`repair_radii`, `radius`); ",
+                   closed);
+    TRY(status);
     TRY(add_fields(made, err));
     TRY(tree_loop_count(&made->tree, &loops, err));
     report_flow(made, loops);

@@ -57,7 +57,7 @@ typedef struct Flowing {
  * made     release it with flowing_release even after an error.
  * Errors   STATUS_USAGE for options without effect; STATUS_INPUT for boundary conditions that do
  *          not determine the flow, naming the node; the errors of reading_tree, blood_settle,
- *          tree_read_values, network_solve and network_guess. */
+ *          tree_read_values, flownetwork_solve and flownetwork_guess. */
 MUST_CHECK Status flowing_make(void *options, Parsed *parsed, Flowing *made, Err *err);
 void flowing_release(Flowing *made);
 

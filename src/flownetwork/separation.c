@@ -1,6 +1,6 @@
 /* Nodes are visited in the order of falling pressure, so that the hematocrit of all inflows of a
  * node is known when its cells are divided. Equal pressures go by node number. */
-#include "network/network.h"
+#include "flownetwork/flownetwork.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -28,7 +28,7 @@ typedef struct Separation {
     RankedNode *rank;                /* workspace, per node */
 } Separation;
 
-double network_resistance(const NetworkBlood *blood, size_t i, double hematocrit)
+double flownetwork_resistance(const NetworkBlood *blood, size_t i, double hematocrit)
 {
     double radius = blood->radius_mm[i], scale = viscosity_cell_scale(blood->cell_fl);
     double viscosity = viscosity_pries_pa_s(radius * scale, hematocrit, blood->plasma_pa_s);
@@ -164,10 +164,10 @@ static Status solve_round(const Separation *made, NetworkFlow *flow, Err *err)
 {
     FlowNetwork network = *made->network;
     for (size_t i = 0; i < network.n_segments; i++)
-        made->resistance[i] = network_resistance(made->blood, i, made->now[i]);
+        made->resistance[i] = flownetwork_resistance(made->blood, i, made->now[i]);
     network.resistance = made->resistance;
     networkflow_release(flow);
-    return network_solve(&network, flow, err);
+    return flownetwork_solve(&network, flow, err);
 }
 
 /* Iterates. The last hematocrit is not relaxed, so that no cells are lost. */
@@ -225,8 +225,8 @@ static Status begin(Separation *made, Err *err)
     return indexlists_sort(&made->lists, network->n_nodes, keys, "segments", err);
 }
 
-Status network_separate(const FlowNetwork *network, const NetworkBlood *blood, NetworkFlow *flow,
-                        NetworkCells *cells, Err *err)
+Status flownetwork_separate(const FlowNetwork *network, const NetworkBlood *blood,
+                            NetworkFlow *flow, NetworkCells *cells, Err *err)
 {
     Separation made = {.network = network, .blood = blood};
     Status status = STATUS_OK;

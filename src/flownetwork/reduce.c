@@ -2,7 +2,7 @@
  * resistances behind it, as current divides between two resistors. A chain that begins and ends at
  * one node carries only the inflow of v, and no edge is made. Each node enters the stack once, when
  * no more than two edges are left at it. */
-#include "network/reduce.h"
+#include "flownetwork/reduce.h"
 
 #include <stdlib.h>
 

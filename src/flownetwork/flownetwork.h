@@ -1,15 +1,15 @@
-/* The public header of the module network: steady flow in networks of vessels, also with loops.
+/* The public header of the module flownetwork: steady flow in networks of vessels, also with loops.
  *
  * Each segment obeys Poiseuille's law: flow = (pressure at its first node - pressure at its second
  * node) / resistance. At each node the flows sum to the known inflow, as in Kirchhoff's laws.
  *
- *     TRY(network_solve(&network, &flow, err));
+ *     TRY(flownetwork_solve(&network, &flow, err));
  *     double q = flow.flow[segment];
  *     networkflow_release(&flow);
  *
  * The unit of pressure is Pa and that of flow is mm^3/s, from mm, g and s. */
-#ifndef CORCAST_NETWORK_NETWORK_H
-#define CORCAST_NETWORK_NETWORK_H
+#ifndef CORCAST_FLOWNETWORK_FLOWNETWORK_H
+#define CORCAST_FLOWNETWORK_FLOWNETWORK_H
 
 #include "base/base.h"
 #include "tree/tree.h"
@@ -64,7 +64,7 @@ typedef struct NetworkFlow {
  * Errors   STATUS_INPUT, naming a node, if the inflows of a component without a known pressure do
  *          not sum to 0 within NETWORK_MAX_EXCESS; STATUS_MEMORY.
  * Cost     O(n) for the reduction; the number of steps grows like the cube root of the unknowns. */
-MUST_CHECK Status network_solve(const FlowNetwork *network, NetworkFlow *out, Err *err);
+MUST_CHECK Status flownetwork_solve(const FlowNetwork *network, NetworkFlow *out, Err *err);
 void networkflow_release(NetworkFlow *flow);
 
 /* ---- red cells ------------------------------------------------------------------------------- */
@@ -80,7 +80,7 @@ typedef struct NetworkBlood {
 } NetworkBlood;
 
 /* Returns the resistance of segment i at this hematocrit, Pa s/mm^3, by viscosity_pries_pa_s. */
-double network_resistance(const NetworkBlood *blood, size_t i, double hematocrit);
+double flownetwork_resistance(const NetworkBlood *blood, size_t i, double hematocrit);
 
 /* The cells. */
 typedef struct NetworkCells {
@@ -107,9 +107,9 @@ enum { NETWORK_MAX_ROUNDS = 100 };
  * network  its resistances are not read.
  * flow     release with networkflow_release.
  * cells    free the array.
- * Errors   those of network_solve. */
-MUST_CHECK Status network_separate(const FlowNetwork *network, const NetworkBlood *blood,
-                                   NetworkFlow *flow, NetworkCells *cells, Err *err);
+ * Errors   those of flownetwork_solve. */
+MUST_CHECK Status flownetwork_separate(const FlowNetwork *network, const NetworkBlood *blood,
+                                       NetworkFlow *flow, NetworkCells *cells, Err *err);
 
 /* ---- unknown boundary conditions --------------------------------------------------------------
  */
@@ -141,10 +141,10 @@ enum { NETWORK_MAX_OPEN = 5000 };
  * before. k is 0 at first, then 0.002, and doubles up to 4.096; at most 5 solutions for each k.
  *
  * pressure  per node: receives the pressures of the open nodes; other nodes stay as they are.
- * Errors    STATUS_INFEASIBLE if more than NETWORK_MAX_OPEN nodes are open; those of network_solve.
- * Cost      three solutions per open node, and the cube of their number.
- * Threads   the result does not depend on their number. */
-MUST_CHECK Status network_guess(const FlowNetwork *network, const NetworkGuess *guess,
-                                double *pressure, NetworkSpread *spread, Err *err);
+ * Errors    STATUS_INFEASIBLE if more than NETWORK_MAX_OPEN nodes are open; those of
+ * flownetwork_solve. Cost      three solutions per open node, and the cube of their number. Threads
+ * the result does not depend on their number. */
+MUST_CHECK Status flownetwork_guess(const FlowNetwork *network, const NetworkGuess *guess,
+                                    double *pressure, NetworkSpread *spread, Err *err);
 
 #endif

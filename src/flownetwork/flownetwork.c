@@ -1,8 +1,8 @@
 /* Components without a known pressure get one at the node with the largest inflow, before the
  * reduction. */
-#include "network/network.h"
+#include "flownetwork/flownetwork.h"
 
-#include "network/reduce.h"
+#include "flownetwork/reduce.h"
 #include <float.h>
 #include <stdlib.h>
 #include <string.h>
@@ -104,6 +104,22 @@ static void take_flows(const FlowNetwork *network, const Reduction *reduction, N
     }
 }
 
+/* Adds a number to the pressures. */
+static void shift(double *pressure, size_t n, double by)
+{
+    for (size_t v = 0; v < n; v++)
+        pressure[v] += by;
+}
+
+/* Returns a known pressure. Differences from it have smaller rounding errors than pressures. */
+static double reference(const double *fixed, size_t n)
+{
+    for (size_t v = 0; v < n; v++)
+        if (!isnan(fixed[v]))
+            return fixed[v];
+    return 0;
+}
+
 /* Measures the sum of the flows at each node, and sets the inflow at nodes of known pressure. */
 static Status balance(const FlowNetwork *network, const double *fixed, NetworkFlow *out, Err *err)
 {
@@ -142,7 +158,7 @@ static Status allocate(const FlowNetwork *network, NetworkFlow *out, Err *err)
     return mem_calloc(&out->inflow, network->n_nodes, sizeof *out->inflow, "inflows", err);
 }
 
-Status network_solve(const FlowNetwork *network, NetworkFlow *out, Err *err)
+Status flownetwork_solve(const FlowNetwork *network, NetworkFlow *out, Err *err)
 {
     NetworkFlow made = {0};
     Reduction reduction = {0};
@@ -153,9 +169,12 @@ Status network_solve(const FlowNetwork *network, NetworkFlow *out, Err *err)
     TRY_GOTO(check_components(network, made.pressure, &made, err));
     TRY_GOTO(mem_alloc(&fixed, network->n_nodes, sizeof *fixed, "pressures", err));
     memcpy(fixed, made.pressure, network->n_nodes * sizeof *fixed);
+    double middle = reference(fixed, network->n_nodes);
+    shift(made.pressure, network->n_nodes, -middle);
     TRY_GOTO(reduction_make(network, made.pressure, &reduction, err));
     TRY_GOTO(core_solve(&reduction, network->n_nodes, &made, err));
     reduction_restore(&reduction);
+    shift(made.pressure, network->n_nodes, middle);
     take_flows(network, &reduction, &made);
     TRY_GOTO(balance(network, fixed, &made, err));
     *out = made;

@@ -3,7 +3,7 @@
  * derivative by y is a system of equations as large as the number of open nodes, S y = b. Z is not
  * stored: its transpose acts through a second solution, whose inflows are the derivative of the
  * objective by p, and S = S0 + k S1 is computed once for all k and all directions. */
-#include "network/network.h"
+#include "flownetwork/flownetwork.h"
 
 #include <float.h>
 #include <stdlib.h>
@@ -49,7 +49,7 @@ static Status solve(const Guess *made, const Load *load, NetworkFlow *flow, Err 
     network.pressure = pressure;
     network.inflow = inflow;
     network.absorbs = !load->is_whole;
-    status = network_solve(&network, flow, err);
+    status = flownetwork_solve(&network, flow, err);
 done:
     free(pressure);
     free(inflow);
@@ -276,8 +276,8 @@ done:
     return status;
 }
 
-Status network_guess(const FlowNetwork *network, const NetworkGuess *params, double *pressure,
-                     NetworkSpread *spread, Err *err)
+Status flownetwork_guess(const FlowNetwork *network, const NetworkGuess *params, double *pressure,
+                         NetworkSpread *spread, Err *err)
 {
     Guess made = {.network = network, .params = params};
     Start *start = NULL;
