@@ -111,4 +111,16 @@ test_diagrams_and_pages_show_where_a_loop_closes() {
     grep -q 'id="place"' ring.html || fail "the page does not say where the loop closes"
 }
 
+# As they stand, but small.
+test_the_pictures_of_the_guide_are_drawn_by_the_commands_beside_them() {
+    local command
+    [ -d "$SHARED" ] || skip "$SHARED is missing"
+    cp "$SHARED/microvesselchaste/retinal.vtp" .
+    command=$(sed -n 's/^    corcast \(render retinal.*\)/\1/p' "$REPO/docs/NETWORKS.md")
+    # shellcheck disable=SC2086
+    run_ok corcast ${command/1200x900/120x90} --quiet
+    expect_file retina.jpg
+    [ "$(stat -c %s "$REPO/docs/images/retina.jpg")" -le 300000 ] || fail "expected at most 300 kB"
+}
+
 run_tests "$@"
