@@ -1,18 +1,18 @@
-/* The triangles as VTK's XML PolyData, in the arrays that SimVascular reads: `ModelFaceID` says of
- * each triangle the number of its part, from 1 on, and `FaceNames`, in the field data, which VTK
- * hands on, the names in that order. Arrays stand behind the document, as bytes, each with its size
- * before it. */
+/* Writes a mesh as XML PolyData of VTK, with the arrays that SimVascular reads. `ModelFaceID` has
+ * the number of each triangle's part, counted from 1. `FaceNames`, in the field data, has the names
+ * of the parts in that order; VTK filters pass field data on. The arrays of numbers follow the XML
+ * document as binary data, each preceded by its size in bytes. */
 #include "emit/meshparts.h"
 #include "emit/record.h"
 #include "emit/rows.h"
 #include "emit/values.h"
 
-/* In the order of the file. */
+/* The binary arrays in the order of the file, and the template's names for their offsets. */
 enum { FACES, SEGMENTS, POINTS, CORNERS, OFFSETS, ARRAYS };
-static const char *const places[ARRAYS] = {"at_faces", "at_segments", "at_points", "at_corners",
-                                           "at_offsets"};
+static const char *const offset_names[ARRAYS] = {"at_faces", "at_segments", "at_points",
+                                                 "at_corners", "at_offsets"};
 
-/* How many numbers of 4 bytes it takes. */
+/* Returns the length of an array, in numbers of 4 bytes. */
 static size_t array_length(const VesselMesh *mesh, int array)
 {
     return array == POINTS    ? 3 * mesh->n_points
@@ -53,7 +53,8 @@ static Status put_arrays(Text *out, void *context, Err *err)
     return text_check(out, err);
 }
 
-/* As the numbers of its letters, and a 0: the only form of text that VTK's XML has. */
+/* Appends a string as the codes of its characters and a 0, the only text format for strings in
+ * VTK's XML. Appends nothing for NULL. */
 static void put_letters(Text *text, const char *chars)
 {
     for (const char *at = chars; at && *at; at++)
@@ -84,7 +85,7 @@ Status vtp_write_mesh(const EmitParams *params, EmitOutput *to, Err *err)
     add_count(&values, "n_points", mesh->n_points);
     add_count(&values, "n_triangles", mesh->n_triangles);
     for (int array = 0; array < ARRAYS; array++) {
-        add_count(&values, places[array], offset);
+        add_count(&values, offset_names[array], offset);
         offset += 8 + 4 * array_length(mesh, array);
     }
     add_part(&values, "arrays", put_arrays, &context);
