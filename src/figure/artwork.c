@@ -227,11 +227,11 @@ static Status put_size(const void *context, Text *bytes, Err *err)
 
 /* Maximum number of bytes of a PDF or SVG. Viewers cannot open larger pages of vectors, so a larger
  * file is a mistake. */
-enum { MOST_BYTES = 100000000 };
+enum { MAX_BYTES = 100000000 };
 
 static Status read_vectors(FigureArtwork *artwork, Err *err)
 {
-    const FileForm form = {.name = "a page of vectors", .most_bytes = MOST_BYTES};
+    const FileForm form = {.name = "a page of vectors", .most_bytes = MAX_BYTES};
     Text bytes = TEXT_INIT;
     double size[2];
     Status status;
@@ -289,9 +289,9 @@ Status figureartwork_read(const char *path, FigureColor paper, FigureArtwork *ar
 {
     ImageFacts facts;
     TRY(image_facts(path, &facts, err));
-    if (facts.bytes > MOST_BYTES)
+    if (facts.bytes > MAX_BYTES)
         return err_set(err, STATUS_INPUT, "%s: has %.0f MB; a panel shows files of at most %d MB",
-                       path, (double)facts.bytes * 1e-6, MOST_BYTES / 1000000);
+                       path, (double)facts.bytes * 1e-6, MAX_BYTES / 1000000);
     *artwork = (FigureArtwork){.path = path, .pdf = strcmp(facts.format, "pdf") == 0};
     if (artwork->pdf || strcmp(facts.format, "svg") == 0)
         return read_vectors(artwork, err);

@@ -28,7 +28,7 @@ static const Option own[] = {
              "info --json` or runs of a study"},
     {.name = "only",
      SETS(WHOLE, StudyOptions, only),
-     FROM_TO(1, STUDY_MOST_RUNS),
+     FROM_TO(1, STUDY_MAX_RUNS),
      .group = GROUP_PARTS,
      .argument = "K",
      .otherwise = "",

@@ -95,9 +95,9 @@ static Status add_range(StudyKey *key, const char *range, long long from, long l
         return err_set(err, STATUS_INPUT,
                        "%s: the range %s is empty: its first value is above its last", key->name,
                        range);
-    if (to - from >= STUDY_MOST_RUNS)
+    if (to - from >= STUDY_MAX_RUNS)
         return err_set(err, STATUS_INPUT, "%s: the range %s has more than %d values", key->name,
-                       range, STUDY_MOST_RUNS);
+                       range, STUDY_MAX_RUNS);
     for (long long i = from; i <= to; i++) {
         char number[24], *written = NULL;
         snprintf(number, sizeof number, "%lld", i);
@@ -231,9 +231,9 @@ static Status take_line(void *user, const char *section, const char *name, const
     TRY(add_key(plan, name, &key, err));
     TRY(add_list(key, option, value, err));
     TRY(check_different(key, err));
-    if (key->n > STUDY_MOST_RUNS / plan->runs)
+    if (key->n > STUDY_MAX_RUNS / plan->runs)
         return err_set(err, STATUS_INPUT, "%s: the plan has more than %d combinations", name,
-                       STUDY_MOST_RUNS);
+                       STUDY_MAX_RUNS);
     plan->runs *= key->n;
     return STATUS_OK;
 }
