@@ -250,6 +250,11 @@ test_extensions_lengthen_ends_along_their_axes() {
         if (($25 - radii * $10)^2 > 1e-16 || (radii > 0) != ($26 > 0)) exit 1
         volume += radii * $10 * $11
     } END { print volume; exit NR != 8 }' >volume || fail "ends: $(cat a.ends.csv b.ends.csv)"
+    run_ok corcast convert t.swc t.csv --fields pressure,length --quiet
+    awk -F, '/^#|^id/ { next }
+        FILENAME == "t.csv" { parent[$1] = $2; mmhg[$1] = $2 < 0 ? 100 : $8; mm[$1] = $9; next }
+        FNR > 1 { n++; if (((mmhg[parent[$3]] - mmhg[$3]) / mm[$3] * $13 - $14)^2 > 1e-16) exit 1 }
+        END { exit n != 8 }' t.csv b.ends.csv || fail "expected the pressure gradients of the segments: $(cat b.ends.csv)"
     jq -s --argjson more "$(cat volume)" '(.[1].volume_mm3 - .[0].volume_mm3) / $more | . > 0.99 and . < 1.01' \
         a.vtp.json b.vtp.json | grep -qx true || fail "the volumes differ by other than that of the extensions"
     run corcast export t.swc --extend 60 -o c.vtp
