@@ -255,7 +255,7 @@ class _Options(_Handle):
                 answer = self._progress(step.decode(), fraction)
                 self._stopped = answer is not None and not answer
                 return int(self._stopped)
-        except BaseException as raised:  # must not propagate into the library; `run` raises it again
+        except BaseException as raised:  # must not enter the library; `run` raises it again
             self._raised = raised
             return 1
         return 0
@@ -278,7 +278,7 @@ class _Options(_Handle):
             if self._raised:
                 raise self._raised from None
             if error.kind == "cancelled" and not self._stopped:
-                raise KeyboardInterrupt from None  # Ctrl-C came before _show began, and ctypes ignored it
+                raise KeyboardInterrupt from None  # ctypes ignored Ctrl-C before _show began
             raise
         if self._raised:
             raise self._raised
@@ -482,9 +482,9 @@ class Tree(_Handle):
         return Page(self.export_bytes("tree.html", **options)["tree.html"])
 
     def verify(self, folder, **options):
-        """Draws the tree with POV-Ray and with corcast, and compares the pictures. `folder` receives
-        the scene, the pictures and the report. Returns a report, in which `agrees` is true if the
-        renderers agree."""
+        """Draws the tree with POV-Ray and with corcast, and compares the pictures. `folder`
+        receives the scene, the pictures and the report. Returns a report, in which `agrees` is
+        true if the renderers agree."""
         options = _Options("verify", options)
         report = _ReportHandle()
         status = options.run("verify", self._handle, options._handle, _text(folder),
