@@ -208,6 +208,11 @@ static inline Form3 form3_of(double x, double y, double z)
     return (Form3){form_of(x, 0), form_of(y, 0), form_of(z, 0)};
 }
 
+static inline Form3 form3_neg(Form3 a)
+{
+    return (Form3){form_neg(a.x), form_neg(a.y), form_neg(a.z)};
+}
+
 static inline Form3 form3_add(Form3 a, Form3 b)
 {
     return (Form3){form_add(a.x, b.x), form_add(a.y, b.y), form_add(a.z, b.z)};
@@ -239,6 +244,12 @@ static inline Form3 form3_cross(Form3 a, Form3 b)
 static inline Form form3_length(Form3 a)
 {
     return form_sqrt(form3_dot(a, a));
+}
+
+/* Returns a / length of a. */
+static inline Form3 form3_unit(Form3 a)
+{
+    return form3_mul(a, form_inverse(form3_length(a)));
 }
 
 #endif

@@ -9,89 +9,10 @@
 
 typedef struct AnswerJob {
     AnswerPlan plan;
-    AnswerWork *works; /* per thread; owned */
+    AnswerWorkspace *works; /* per thread; owned */
     int threads, columns, rows;
     Plane plane;
 } AnswerJob;
-
-/* ---- digest ---------------------------------------------------------------------------------- */
-
-static void add_numbers(Hash *hash, const double *numbers, size_t n)
-{
-    hash_add(hash, numbers, n * sizeof *numbers);
-}
-
-static void add_vector(Hash *hash, Vec3 v)
-{
-    add_numbers(hash, (const double[]){v.x, v.y, v.z}, 3);
-}
-
-static void add_rgb(Hash *hash, Rgb color)
-{
-    add_vector(hash, vec3((double)color.r, (double)color.g, (double)color.b));
-}
-
-static void add_finish(Hash *hash, const Finish *f)
-{
-    const double numbers[] = {(double)f->ambient,  (double)f->diffuse,    (double)f->brilliance,
-                              (double)f->phong,    (double)f->phong_size, (double)f->specular,
-                              (double)f->roughness};
-    add_numbers(hash, numbers, sizeof numbers / sizeof *numbers);
-}
-
-static void add_view(Hash *hash, const View *view, bool shadows)
-{
-    const Camera *camera = &view->camera;
-    add_numbers(hash, (const double[]){camera->projection, camera->width, camera->height, shadows},
-                4);
-    const Vec3 vectors[] = {camera->location, camera->right, camera->up, camera->direction,
-                            view->ground.normal};
-    for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++)
-        add_vector(hash, vectors[i]);
-    for (size_t i = 0; i < view->n_lights; i++) {
-        const Light *light = &view->lights[i];
-        add_vector(hash, light->location);
-        add_vector(hash, light->target);
-        add_vector(hash, light->sides[0]);
-        add_vector(hash, light->sides[1]);
-        add_rgb(hash, light->color);
-        add_numbers(hash, (const double[]){light->parallel, light->casts_shadows, light->samples},
-                    3);
-    }
-    add_numbers(hash, (const double[]){view->ground.present, view->ground.offset_mm}, 2);
-    add_rgb(hash, view->ground.color);
-    add_finish(hash, &view->ground.finish);
-    add_rgb(hash, view->background);
-    add_numbers(hash,
-                (const double[]){view->fade.nearest, view->fade.farthest, view->fade.near_mm,
-                                 view->fade.far_mm},
-                4);
-}
-
-HashText answer_scene_hash(const Scene *scene, bool shadows)
-{
-    const Geometry *geometry = &scene->geometry;
-    Hash hash;
-    hash_begin(&hash);
-    hash_add_text(&hash, models[geometry->model].name);
-    for (size_t i = 0; i < geometry->n_primitives; i++) {
-        const Primitive *primitive = &geometry->primitives[i];
-        add_vector(&hash, primitive->a);
-        add_vector(&hash, primitive->b);
-        add_numbers(&hash, (const double[]){primitive->kind, primitive->radius_mm}, 2);
-        add_rgb(&hash, appearance_color(&scene->appearance, primitive->segment));
-    }
-    for (size_t i = 0; i < geometry->n_segments; i++) {
-        const FieldSegment *segment = &geometry->segments[i];
-        add_vector(&hash, segment->a);
-        add_vector(&hash, segment->b);
-        add_numbers(&hash, &segment->radius_mm, 1);
-        add_rgb(&hash, appearance_color(&scene->appearance, segment->segment));
-    }
-    add_finish(&hash, &scene->appearance.finish);
-    add_view(&hash, &scene->view, shadows);
-    return hash_text(&hash);
-}
 
 /* ---- pixels ---------------------------------------------------------------------------------- */
 
@@ -107,17 +28,17 @@ static float rounded_up(double value)
     return (double)near < value ? nextafterf(near, INFINITY) : near;
 }
 
-static void store(const AnswerPlan *plan, const ColorSpan *span, const Center *center,
+static void store(const AnswerPlan *plan, const ColorInterval *interval, const Center *center,
                   float *values)
 {
     const uint32_t *ids = plan->scene->geometry.ids;
     for (int c = 0; c < 3; c++) {
-        values[ANSWER_LOW + c] = rounded_down(span->low[c]);
-        values[ANSWER_HIGH + c] = rounded_up(span->high[c]);
+        values[ANSWER_LOW + c] = rounded_down(interval->low[c]);
+        values[ANSWER_HIGH + c] = rounded_up(interval->high[c]);
     }
-    values[ANSWER_STATE] = span_width(span) <= plan->params.width ? ANSWER_DECIDED
-                           : plan->params.pattern > 0             ? ANSWER_UNDECIDED
-                                                                  : ANSWER_OVER_BUDGET;
+    values[ANSWER_STATE] = interval_width(interval) <= plan->params.width ? ANSWER_DECIDED
+                           : plan->params.pattern > 0                     ? ANSWER_UNDECIDED
+                                                                          : ANSWER_OVER_BUDGET;
     values[ANSWER_ID] =
         center->face == UINT32_MAX ? 0 : (float)ids[plan->faces[center->face].segment];
     values[ANSWER_NEAR] = rounded_down(center->near);
@@ -125,7 +46,7 @@ static void store(const AnswerPlan *plan, const ColorSpan *span, const Center *c
 }
 
 /* Lists the faces in a pixel, of those in its tile. */
-static void list_pixel(AnswerWork *work, int i, int j)
+static void list_pixel(AnswerWorkspace *work, int i, int j)
 {
     const AnswerPlan *plan = work->plan;
     work->pixel.n = 0;
@@ -139,29 +60,29 @@ static void list_pixel(AnswerWork *work, int i, int j)
         work->pixel.faces[work->pixel.n++] = (uint32_t)plan->n;
 }
 
-static Status pixel_span(AnswerWork *work, int i, int j, ColorSpan *span, Err *err)
+static Status pixel_interval(AnswerWorkspace *work, int i, int j, ColorInterval *interval, Err *err)
 {
     if (work->plan->params.pattern == 0)
-        return area_answer(work, i, j, span, err);
-    *span = pattern_answer(work, i, j);
+        return area_answer(work, i, j, interval, err);
+    *interval = pattern_answer(work, i, j);
     return STATUS_OK;
 }
 
-static Status answer_pixel(AnswerWork *work, int i, int j, float *values, Err *err)
+static Status answer_pixel(AnswerWorkspace *work, int i, int j, float *values, Err *err)
 {
     const Beam ray = answerplan_ray(work->plan, i + 0.5, j + 0.5);
     Center center;
-    ColorSpan span;
+    ColorInterval interval;
     list_pixel(work, i, j);
     find_center(work, &ray, &center);
-    TRY(pixel_span(work, i, j, &span, err));
-    store(work->plan, &span, &center, values);
+    TRY(pixel_interval(work, i, j, &interval, err));
+    store(work->plan, &interval, &center, values);
     work->undecided += values[ANSWER_STATE] != ANSWER_DECIDED;
     return STATUS_OK;
 }
 
 /* Lists the faces in a tile. */
-static void list_tile(AnswerWork *work, const PixelRect *tile)
+static void list_tile(AnswerWorkspace *work, const PixelRect *tile)
 {
     work->tile.n = 0;
     for (size_t k = 0; k < work->plan->n; k++) {
@@ -184,7 +105,7 @@ static Status report(const AnswerJob *job, size_t tile, int worker, Err *err)
 static Status answer_tile(size_t tile, int worker, void *context, Err *err)
 {
     AnswerJob *job = context;
-    AnswerWork *work = &job->works[worker];
+    AnswerWorkspace *work = &job->works[worker];
     const Camera *camera = &job->plan.scene->view.camera;
     const int left = (int)(tile % (size_t)job->columns) * TILE_SIDE;
     const int top = (int)(tile / (size_t)job->columns) * TILE_SIDE;
@@ -204,25 +125,25 @@ static Status answer_tile(size_t tile, int worker, void *context, Err *err)
  * show a vessel at their center. */
 static Status certify(AnswerJob *job, Err *err)
 {
-    AnswerWork *work = &job->works[0];
+    AnswerWorkspace *work = &job->works[0];
     const AnswerParams *params = &job->plan.params;
     const size_t width = (size_t)job->plane.width, n = width * (size_t)job->plane.height;
     size_t shown = 0, seen = 0;
     for (size_t pixel = 0; pixel < n; pixel++)
         shown += !isinf(job->plane.values[pixel * ANSWER_CHANNELS + ANSWER_NEAR]);
     const size_t step = shown / (size_t)params->certified + 1;
-    certificate_put_scene(&job->plan, params->certificate);
+    certificate_begin(&job->plan, params->certificate);
     for (size_t pixel = 0; pixel < n; pixel++) {
         const int i = (int)(pixel % width), j = (int)(pixel / width);
-        ColorSpan span;
+        ColorInterval interval;
         if (isinf(job->plane.values[pixel * ANSWER_CHANNELS + ANSWER_NEAR]) || seen++ % step != 0)
             continue;
         list_tile(work, &(PixelRect){i, j, 1, 1});
         list_pixel(work, i, j);
-        TRY(pixel_span(work, i, j, &span, err));
-        certificate_put_pixel(work, i, j, &span, params->certificate);
+        TRY(pixel_interval(work, i, j, &interval, err));
+        certificate_put_pixel(work, i, j, &interval, seen == 1, params->certificate);
     }
-    text_printf(params->certificate, "null]}\n");
+    text_puts(params->certificate, "]}\n");
     return text_check(params->certificate, err);
 }
 
@@ -231,7 +152,7 @@ static Status make_works(AnswerJob *job, Err *err)
     job->threads = job->plan.params.threads > 0 ? job->plan.params.threads : threads_available();
     TRY(mem_calloc(&job->works, (size_t)job->threads, sizeof *job->works, "workspaces", err));
     for (int i = 0; i < job->threads; i++) {
-        AnswerWork *work = &job->works[i];
+        AnswerWorkspace *work = &job->works[i];
         work->plan = &job->plan;
         FaceList *lists[] = {&work->tile, &work->pixel, &work->blockers};
         for (size_t k = 0; k < sizeof lists / sizeof *lists; k++)

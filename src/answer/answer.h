@@ -79,5 +79,9 @@ void answer_release(Answer *answer);
 /* Returns a digest of everything in a scene that determines its colors. Two answers with the same
  * digest and the same pattern bound the same colors. */
 HashText answer_scene_hash(const Scene *scene, bool shadows);
+/* Returns all numbers of a scene of cylinders and balls as JSON, for programs that read no scene
+ * language: lengths in mm, linear colors. The caller releases it. Returns NULL if memory runs
+ * out. */
+json_t *answer_scene_json(const Scene *scene, bool shadows);
 
 #endif

@@ -67,11 +67,6 @@ static Status check_lights(const AnswerPlan *plan, Err *err)
 
 /* ---- making ---------------------------------------------------------------------------------- */
 
-static Form3 exact(Vec3 v)
-{
-    return form3_of(v.x, v.y, v.z);
-}
-
 static Status make_tree(AnswerPlan *plan, Err *err)
 {
     const Box bounds = plan->scene->geometry.bounds;
@@ -107,8 +102,7 @@ static Status make_lights(AnswerPlan *plan, Err *err)
         if (!light->parallel)
             continue;
         rays->towards =
-            beam_of(form3_of(0, 0, 0), form3_sub(exact(light->location), exact(light->target)))
-                .unit;
+            form3_unit(form3_sub(form3_exact(light->location), form3_exact(light->target)));
         TRY(make_frames(plan, rays->towards, &rays->frames, err));
     }
     return STATUS_OK;
@@ -222,13 +216,15 @@ Beam answerplan_beam(const AnswerPlan *plan, double x, double y, const double al
                         across[0] / camera->width, error};
     const Form up = {0.5 - y / camera->height, -along[1] / camera->height,
                      -across[1] / camera->height, error};
-    const Form3 offset =
-        form3_add(form3_mul(exact(camera->right), right), form3_mul(exact(camera->up), up));
+    const Form3 offset = form3_add(form3_mul(form3_exact(camera->right), right),
+                                   form3_mul(form3_exact(camera->up), up));
     Beam beam;
     if (camera->projection == PROJECTION_PERSPECTIVE) {
-        beam = beam_of(exact(camera->location), form3_add(exact(camera->direction), offset));
+        beam = beam_of(form3_exact(camera->location),
+                       form3_add(form3_exact(camera->direction), offset));
     } else {
-        beam = beam_of(form3_add(exact(camera->location), offset), exact(camera->direction));
+        beam = beam_of(form3_add(form3_exact(camera->location), offset),
+                       form3_exact(camera->direction));
         beam.frames = plan->frames;
     }
     return beam;

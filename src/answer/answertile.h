@@ -28,61 +28,62 @@ typedef struct AreaLeaf {
 } AreaLeaf;
 
 /* Faces that may block a light on the part of a face that is visible in the present pixel:
- * AnswerWork.cached_faces[begin] to [begin + n - 1]. */
-typedef struct CachedBlockers {
+ * AnswerWorkspace.cached_faces[begin] to [begin + n - 1]. */
+typedef struct BlockerCacheEntry {
     const Face *face;
     size_t light, begin, n;
-} CachedBlockers;
+} BlockerCacheEntry;
 
 /* Capacities of the cache. If it is full, blockers are searched again for each leaf. */
 enum { MAX_CACHED = 32, CACHE_FACES = 4096 };
 
 /* The workspace of a thread. */
-typedef struct AnswerWork {
+typedef struct AnswerWorkspace {
     const AnswerPlan *plan;
     FaceList tile, pixel; /* faces in the present tile, and in the present pixel; owned */
     FaceList blockers;    /* result of the last answerplan_blockers; owned */
-    CachedBlockers cached[MAX_CACHED]; /* area answers: valid in the present pixel */
+    BlockerCacheEntry cached[MAX_CACHED]; /* area answers: valid in the present pixel */
     size_t n_cached, n_cached_faces;
     uint32_t cached_faces[CACHE_FACES];
     Beam whole;             /* area answers: all rays of the present pixel */
-    FaceHit hits[MAX_HITS]; /* result of the last tile_look */
+    FaceHit hits[MAX_HITS]; /* result of the last beam_hits */
     LightBlocker blocker;
     size_t beams, undecided; /* counts of this thread, for Answer */
     ARRAY(AreaLeaf) leaves;  /* area answers: leaves of the present pixel; owned */
-    Text *record; /* receives the parts of a leaf for a certificate; NULL: no certificate;
-                   * borrowed */
-    Heap heap;    /* indices in `leaves`; the leaf with the widest interval first; owned */
-} AnswerWork;
+    json_t **record;         /* array that receives the parts of a leaf for a certificate; NULL: no
+                              * certificate; borrowed */
+    Heap heap; /* indices in `leaves`; the leaf with the widest interval first; owned */
+} AnswerWorkspace;
 
 /* A proven interval of linear colors: bounds per channel. */
-typedef struct ColorSpan {
+typedef struct ColorInterval {
     double low[3], high[3];
-} ColorSpan;
+} ColorInterval;
 
 /* Returns the interval that contains every color of the scene. */
-ColorSpan span_any(const AnswerPlan *plan);
-/* Returns the interval of all values of a form, clamped to span_any. */
-ColorSpan span_of(const AnswerPlan *plan, const FormColor *color);
-/* Extends *span so that it contains *other. */
-void span_include(ColorSpan *span, const ColorSpan *other);
+ColorInterval interval_of_scene(const AnswerPlan *plan);
+ColorInterval interval_of_background(const AnswerPlan *plan);
+/* Returns the interval of all values of a form, clamped to interval_of_scene. */
+ColorInterval interval_of_form(const AnswerPlan *plan, const FormColor *color);
+/* Extends *interval so that it contains *other. */
+void interval_include(ColorInterval *interval, const ColorInterval *other);
 /* Returns the width of the widest channel, in sRGB from 0 to 1. Rounding errors are ignored,
  * because the width only chooses which leaf is divided and which pixel counts as decided. The proof
  * does not depend on it. */
-double span_width(const ColorSpan *span);
+double interval_width(const ColorInterval *interval);
 /* Sets slopes[c] to the slope of the sRGB curve at the middle of channel c. */
-void span_slopes(const ColorSpan *span, double slopes[3]);
+void interval_slopes(const ColorInterval *interval, double slopes[3]);
 
 /* The faces that may be visible in a beam: work->hits[0] to work->hits[n - 1]. */
-typedef struct Seen {
+typedef struct BeamHits {
     size_t n;
-    bool crowded; /* there are more than MAX_HITS; the beam may have any color of the scene */
-    bool covered; /* all rays of the beam hit one of the faces: the background is not visible */
-} Seen;
+    bool overflows; /* there are more than MAX_HITS; the beam may have any color of the scene */
+    bool covered;   /* all rays of the beam hit one of the faces: the background is not visible */
+} BeamHits;
 
 /* Intersects a beam with the faces of `list`. Sets work->hits to the hits that may be the first hit
  * of any ray of the beam. */
-Seen tile_look(AnswerWork *work, const Beam *beam, const FaceList *list);
+BeamHits beam_hits(AnswerWorkspace *work, const Beam *beam, const FaceList *list);
 
 /* The vessel at the center of a pixel. */
 typedef struct Center {
@@ -92,12 +93,12 @@ typedef struct Center {
 } Center;
 
 /* Finds the vessel that a ray hits first, among the faces in work->pixel. */
-void find_center(AnswerWork *work, const Beam *ray, Center *center);
+void find_center(AnswerWorkspace *work, const Beam *ray, Center *center);
 
 /* Computes the pattern answer of the pixel in column i and row j, from the faces in work->pixel. */
-ColorSpan pattern_answer(AnswerWork *work, int i, int j);
+ColorInterval pattern_answer(AnswerWorkspace *work, int i, int j);
 /* Computes the area answer of the pixel in column i and row j, from the faces in work->pixel.
  * Errors: STATUS_MEMORY. */
-MUST_CHECK Status area_answer(AnswerWork *work, int i, int j, ColorSpan *out, Err *err);
+MUST_CHECK Status area_answer(AnswerWorkspace *work, int i, int j, ColorInterval *out, Err *err);
 
 #endif

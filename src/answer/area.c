@@ -48,7 +48,7 @@ static void fit_leaf(AreaLeaf *leaf)
     leaf->along[1] *= half;
 }
 
-void arealeaf_measure(AnswerWork *work, int i, int j, AreaLeaf *leaf)
+void arealeaf_measure(AnswerWorkspace *work, int i, int j, AreaLeaf *leaf)
 {
     const LeafPolygon polygon = arealeaf_polygon(leaf);
     const double scale = fabs(leaf->along[0] * leaf->across[1] - leaf->along[1] * leaf->across[0]);
@@ -142,24 +142,25 @@ static double weight_of(const AreaLeaf *leaf, const double slopes[3])
     return weight;
 }
 
-static ColorSpan span_of_leaves(const AnswerPlan *plan, const AreaLeaf *leaves, const Heap *heap)
+static ColorInterval interval_of_leaves(const AnswerPlan *plan, const AreaLeaf *leaves,
+                                        const Heap *heap)
 {
-    ColorSpan span = {{0}, {0}};
+    ColorInterval interval = {{0}, {0}};
     for (size_t k = 0; k < heap->n; k++)
         for (int c = 0; c < 3; c++) {
-            span.low[c] += leaves[heap->items[k].value].low[c];
-            span.high[c] += leaves[heap->items[k].value].high[c];
+            interval.low[c] += leaves[heap->items[k].value].low[c];
+            interval.high[c] += leaves[heap->items[k].value].high[c];
         }
     /* Each leaf's area has an error below 1e-13 of a pixel. */
     for (int c = 0; c < 3; c++) {
         const double error = (1e-13 * (double)heap->n + 1e-11) * plan->most[c];
-        span.low[c] = box_max(span.low[c] - error, plan->least[c]);
-        span.high[c] = box_min(span.high[c] + error, plan->most[c]);
+        interval.low[c] = box_max(interval.low[c] - error, plan->least[c]);
+        interval.high[c] = box_min(interval.high[c] + error, plan->most[c]);
     }
-    return span;
+    return interval;
 }
 
-static Status push(AnswerWork *work, Heap *heap, size_t leaf, const double slopes[3], Err *err)
+static Status push(AnswerWorkspace *work, Heap *heap, size_t leaf, const double slopes[3], Err *err)
 {
     const double weight = weight_of(&work->leaves.items[leaf], slopes);
     return heap_push(
@@ -168,17 +169,18 @@ static Status push(AnswerWork *work, Heap *heap, size_t leaf, const double slope
 }
 
 /* Divides leaves until the sum of their widths is small enough. */
-static Status refine(AnswerWork *work, int i, int j, Heap *heap, ColorSpan *span, Err *err)
+static Status refine(AnswerWorkspace *work, int i, int j, Heap *heap, ColorInterval *interval,
+                     Err *err)
 {
     const AnswerPlan *plan = work->plan;
     double slopes[3];
     for (;;) {
-        *span = span_of_leaves(plan, work->leaves.items, heap);
-        if (span_width(span) <= plan->params.width)
+        *interval = interval_of_leaves(plan, work->leaves.items, heap);
+        if (interval_width(interval) <= plan->params.width)
             return STATUS_OK;
         if ((int)work->leaves.n >= plan->params.leaves)
             return STATUS_OK;
-        span_slopes(span, slopes);
+        interval_slopes(interval, slopes);
         /* Several leaves at once, because the sum over all leaves takes its time, too. */
         const size_t count = heap->n / 8 + 1;
         for (size_t k = 0; k < count; k++) {
@@ -196,7 +198,7 @@ static Status refine(AnswerWork *work, int i, int j, Heap *heap, ColorSpan *span
     }
 }
 
-Status area_answer(AnswerWork *work, int i, int j, ColorSpan *out, Err *err)
+Status area_answer(AnswerWorkspace *work, int i, int j, ColorInterval *out, Err *err)
 {
     static const double slopes[3] = {1, 1, 1};
     AreaLeaf whole = {.across = {0, 0.5}, .along = {0.5, 0}};

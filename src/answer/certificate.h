@@ -6,16 +6,18 @@
 
 #include "answer/region.h"
 
-/* Appends the scene. Numbers have 17 digits, so that reading them gives the same doubles. */
-void certificate_put_scene(const AnswerPlan *plan, Text *out);
-/* Appends the pixel in column i and row j with its interval `span`. For an area answer, also
+/* Appends the beginning of a certificate with the scene, up to the list of pixels. */
+void certificate_begin(const AnswerPlan *plan, Text *out);
+/* Appends the pixel in column i and row j with its interval `interval`. For an area answer, also
  * appends the leaves in work->heap, which must be those of this pixel. */
-void certificate_put_pixel(AnswerWork *work, int i, int j, const ColorSpan *span, Text *out);
+void certificate_put_pixel(AnswerWorkspace *work, int i, int j, const ColorInterval *interval,
+                           bool is_first, Text *out);
 
-/* Append a part of the present leaf: `weight` times the integral of a color over a polygon, or an
- * area in which the color may be any of a span. Do nothing if `out` is NULL. */
-void certificate_put_form(Text *out, const LeafPolygon *polygon, const FormColor *color,
+/* Add a part of the present leaf to AnswerWorkspace.record: `weight` times the integral of a color
+ * over a polygon, or an area in which the color may be any of an interval. Do nothing if `parts` is
+ * NULL. */
+void certificate_add_form(json_t **parts, const LeafPolygon *polygon, const FormColor *color,
                           double weight);
-void certificate_put_span(Text *out, double area, const ColorSpan *span);
+void certificate_add_interval(json_t **parts, double area, const ColorInterval *interval);
 
 #endif

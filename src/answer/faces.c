@@ -68,7 +68,7 @@ static bool hit_wall_end_on(const Face *face, const Beam *beam, Form3 from, Face
 
 static bool hit_wall(const Face *face, size_t index, const Beam *beam, FaceHit *hit)
 {
-    const Form3 from = form3_sub(beam->origin, form3_of(face->at.x, face->at.y, face->at.z));
+    const Form3 from = form3_sub(beam->origin, form3_exact(face->at));
     if (!beam->frames)
         hit->own_frame = wall_frame(face, beam);
     const WallFrame *frame = beam->frames ? &beam->frames[index] : &hit->own_frame;
@@ -90,7 +90,7 @@ static bool hit_wall(const Face *face, size_t index, const Beam *beam, FaceHit *
 
 static bool hit_ball(const Face *face, const Beam *beam, FaceHit *hit)
 {
-    const Form3 from = form3_sub(beam->origin, form3_of(face->at.x, face->at.y, face->at.z));
+    const Form3 from = form3_sub(beam->origin, form3_exact(face->at));
     const Form along = form3_dot(from, beam->unit);
     hit->v = form3_sub(from, form3_mul(beam->unit, along));
     const Form radius = form_of(face->radius, 0);
@@ -113,7 +113,7 @@ static bool misses_edge_on(const Face *face, const Beam *beam, Form3 from, Form 
 
 static bool hit_disc(const Face *face, const Beam *beam, FaceHit *hit)
 {
-    const Form3 from = form3_sub(beam->origin, form3_of(face->at.x, face->at.y, face->at.z));
+    const Form3 from = form3_sub(beam->origin, form3_exact(face->at));
     const Form facing = form3_dot(face->axis, beam->direction);
     const Form height = form3_dot(from, face->axis);
     if (form_low(facing) >= 0)
@@ -180,7 +180,7 @@ Form3 hit_normal(const FaceHit *hit, const Beam *beam)
     }
     /* The ground shows the side that faces the viewer. */
     const Form rate = form3_dot(face->axis, beam->direction);
-    const Form3 back = {form_neg(face->axis.x), form_neg(face->axis.y), form_neg(face->axis.z)};
+    const Form3 back = form3_neg(face->axis);
     return form_high(rate) <= 0 ? face->axis
            : form_low(rate) >= 0
                ? back
@@ -196,11 +196,6 @@ bool faces_form_capsule(const Face *wall, const Face *ball)
 }
 
 /* ---- making ---------------------------------------------------------------------------------- */
-
-static Form3 unit_of(Form3 v)
-{
-    return form3_mul(v, form_inverse(form3_length(v)));
-}
 
 static Face disc_of(const Primitive *primitive, uint32_t solid, Vec3 at, Form3 outward)
 {
@@ -231,13 +226,12 @@ static size_t add_faces(const Primitive *primitive, uint32_t solid, bool round, 
                                         primitive->radius_mm)};
     if (face->kind == FACE_BALL)
         return n;
-    const Form3 span = form3_sub(form3_of(b.x, b.y, b.z), form3_of(a.x, a.y, a.z));
+    const Form3 span = form3_sub(form3_exact(b), form3_exact(a));
     face->length = form3_length(span);
-    face->axis = unit_of(span);
+    face->axis = form3_unit(span);
     const Form3 axis = face->axis;
     if (!round && !primitive->round_a)
-        faces[n++] = disc_of(primitive, solid, a,
-                             (Form3){form_neg(axis.x), form_neg(axis.y), form_neg(axis.z)});
+        faces[n++] = disc_of(primitive, solid, a, form3_neg(axis));
     if (!round && !primitive->round_b)
         faces[n++] = disc_of(primitive, solid, b, axis);
     return n;
@@ -252,10 +246,9 @@ Status faces_make(const Geometry *geometry, const Ground *ground, Face **faces, 
     for (size_t i = 0; i < geometry->n_primitives; i++)
         *n += add_faces(&geometry->primitives[i], (uint32_t)i, round, made + *n);
     if (ground->present) {
-        const Vec3 normal = ground->normal;
         made[(*n)++] = (Face){.kind = FACE_GROUND,
                               .solid = (uint32_t)geometry->n_primitives,
-                              .axis = form3_of(normal.x, normal.y, normal.z),
+                              .axis = form3_exact(ground->normal),
                               .offset = ground->offset_mm};
     }
     *faces = made;

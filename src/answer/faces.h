@@ -15,6 +15,12 @@
 #include "answer/affine.h"
 #include "scene/scene.h"
 
+/* Returns a point or vector without error. */
+static inline Form3 form3_exact(Vec3 v)
+{
+    return form3_of(v.x, v.y, v.z);
+}
+
 /* The lateral surface of a cylinder, a sphere, an end of a cylinder, the ground plane. */
 typedef enum FaceKind { FACE_WALL, FACE_BALL, FACE_DISC, FACE_GROUND } FaceKind;
 

@@ -1,11 +1,6 @@
 /* Computes the shading model of render/light/shade.c in real numbers. */
 #include "answer/light.h"
 
-static Form3 exact(Vec3 v)
-{
-    return form3_of(v.x, v.y, v.z);
-}
-
 static const Form one = {1, 0, 0, 0};
 
 /* ---- surfaces -------------------------------------------------------------------------------- */
@@ -79,8 +74,7 @@ static Form3 direction_to(const AnswerPlan *plan, const FormSurface *s, size_t l
     const LightRays *rays = &plan->lights[light];
     if (rays->light->parallel)
         return rays->towards;
-    const Form3 towards = form3_sub(exact(rays->light->location), s->point);
-    return form3_mul(towards, form_inverse(form3_length(towards)));
+    return form3_unit(form3_sub(form3_exact(rays->light->location), s->point));
 }
 
 /* Where the surface may face away, a highlight may be there or not. */
@@ -89,27 +83,27 @@ static Form maybe_none(Form light, bool faces)
     return faces ? light : form_hull(light, form_of(0, 0));
 }
 
-Lit light_at(const AnswerPlan *plan, const FormSurface *s, size_t light)
+LightTerm light_term(const AnswerPlan *plan, const FormSurface *s, size_t light)
 {
     const Finish *finish = s->finish;
     const Rgb color = plan->lights[light].light->color;
     const Form3 towards = direction_to(plan, s, light);
     const Form cosine = form_known(form3_dot(s->normal, towards), -1, 1);
-    const bool lit = form_low(cosine) > 0;
+    const bool faces = form_low(cosine) > 0;
     if (form_high(cosine) <= 0)
-        return (Lit){.dark = true};
-    Lit result = {.faces = form_low(cosine) > LIGHT_GRAZES};
+        return (LightTerm){.is_zero = true};
+    LightTerm result = {.is_facing = form_low(cosine) > LIGHT_GRAZES};
     const Form diffuse =
         form_scale(finish->brilliance == 1 ? form_positive(cosine)
                                            : form_power(cosine, (double)finish->brilliance),
                    (double)finish->diffuse);
     Form gloss = form_of(0, 0);
     if (finish->phong > 0)
-        gloss = form_add(gloss, maybe_none(phong_of(s, towards, cosine), lit));
+        gloss = form_add(gloss, maybe_none(phong_of(s, towards, cosine), faces));
     if (finish->specular > 0)
-        gloss = form_add(gloss, maybe_none(specular_of(s, towards), lit));
+        gloss = form_add(gloss, maybe_none(specular_of(s, towards), faces));
     for (int c = 0; c < 3; c++)
-        result.adds.channels[c] =
+        result.color.channels[c] =
             form_mul(form_scale(form_add(form_scale(diffuse, rgb_channel(s->pigment, c)), gloss),
                                 rgb_channel(color, c)),
                      s->keep);
@@ -131,7 +125,22 @@ Beam light_beam(const AnswerPlan *plan, const FormSurface *s, size_t light, int 
         return beam;
     }
     const Light at = light_at_point(rays->light, point);
-    return beam_of(s->point, form3_sub(exact(at.location), s->point));
+    return beam_of(s->point, form3_sub(form3_exact(at.location), s->point));
+}
+
+double surface_reach(const FormSurface *s)
+{
+    const Form3 p = s->point;
+    return box_max(form_high(p.x) - p.x.c, box_max(form_high(p.y) - p.y.c, form_high(p.z) - p.z.c));
+}
+
+void light_blockers(const AnswerPlan *plan, const FormSurface *s, const Beam *beam, size_t light,
+                    double reach, FaceList *list)
+{
+    const Vec3 from = vec3(s->point.x.c, s->point.y.c, s->point.z.c);
+    const Vec3 towards = vec3(beam->direction.x.c, beam->direction.y.c, beam->direction.z.c);
+    const double far = plan->lights[light].light->parallel ? (double)INFINITY : 1 + 1e-6;
+    answerplan_blockers(plan, from, reach, towards, far, list);
 }
 
 /* Returns true if the faces belong to one convex solid. */
@@ -177,7 +186,7 @@ int ground_blocks(const AnswerPlan *plan, const FormSurface *s, const Beam *beam
         return 0;
     Form distance = one;
     if (plan->lights[light].light->parallel)
-        distance = form3_dot(form3_sub(exact(plan->lights[light].light->location), s->point),
+        distance = form3_dot(form3_sub(form3_exact(plan->lights[light].light->location), s->point),
                              beam->direction);
     const Form begins = height_of(ground, s->point);
     const Form ends = height_of(ground, form3_add(s->point, form3_mul(beam->direction, distance)));

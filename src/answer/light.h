@@ -26,11 +26,11 @@ typedef struct FormSurface {
 FormSurface surface_at(const AnswerPlan *plan, const Beam *beam, const FaceHit *hit);
 
 /* The color that a light adds to a surface if nothing blocks the light. */
-typedef struct Lit {
-    bool dark;      /* the light adds nothing, because all of the surface faces away from it */
-    bool faces;     /* the cosine of the incidence angle is above LIGHT_GRAZES everywhere */
-    FormColor adds; /* not set if `dark` */
-} Lit;
+typedef struct LightTerm {
+    bool is_zero;    /* the light adds nothing, because all of the surface faces away from it */
+    bool is_facing;  /* the cosine of the incidence angle is above LIGHT_GRAZES everywhere */
+    FormColor color; /* not set if `is_zero` */
+} LightTerm;
 
 /* Cosine of the incidence angle up to which shadows of single rays are not searched. Rounding
  * errors would decide there whether the surface blocks its own light, so the interval includes both
@@ -39,11 +39,18 @@ typedef struct Lit {
 
 /* Returns the color that the light with this index adds to a surface. An area light shades as a
  * point light at its location. */
-Lit light_at(const AnswerPlan *plan, const FormSurface *surface, size_t light);
+LightTerm light_term(const AnswerPlan *plan, const FormSurface *surface, size_t light);
 
 /* Returns the beam of shadow rays from a surface to point `point` of a light, 0 <= point <
  * max(LightRays.points, 1). Depth 1 is the light, except for a parallel light. */
 Beam light_beam(const AnswerPlan *plan, const FormSurface *surface, size_t light, int point);
+
+/* Returns the largest difference of a coordinate of the surface from the middle of its form, mm. */
+double surface_reach(const FormSurface *surface);
+/* Lists the faces that may block a beam of light_beam, for surface points up to `reach` mm from the
+ * middle of the surface's form. */
+void light_blockers(const AnswerPlan *plan, const FormSurface *surface, const Beam *beam,
+                    size_t light, double reach, FaceList *list);
 
 /* A face that may block the shadow rays of a beam. A ray is blocked if the edges of `hit` and those
  * in `between` are >= 0. */

@@ -5,35 +5,43 @@
 
 #include <math.h>
 
-ColorSpan span_any(const AnswerPlan *plan)
+ColorInterval interval_of_scene(const AnswerPlan *plan)
 {
-    ColorSpan span;
+    ColorInterval interval;
     for (int c = 0; c < 3; c++) {
-        span.low[c] = plan->least[c];
-        span.high[c] = plan->most[c];
+        interval.low[c] = plan->least[c];
+        interval.high[c] = plan->most[c];
     }
-    return span;
+    return interval;
 }
 
-/* Comparisons with NaN are false. A bound that is NaN therefore keeps its value of span_any. */
-ColorSpan span_of(const AnswerPlan *plan, const FormColor *color)
+ColorInterval interval_of_background(const AnswerPlan *plan)
 {
-    ColorSpan span = span_any(plan);
+    const Rgb color = plan->scene->view.background;
+    const double r = rgb_channel(color, 0), g = rgb_channel(color, 1), b = rgb_channel(color, 2);
+    return (ColorInterval){{r, g, b}, {r, g, b}};
+}
+
+/* Comparisons with NaN are false. A bound that is NaN therefore keeps its value of
+ * interval_of_scene. */
+ColorInterval interval_of_form(const AnswerPlan *plan, const FormColor *color)
+{
+    ColorInterval interval = interval_of_scene(plan);
     for (int c = 0; c < 3; c++) {
         const double low = form_low(color->channels[c]), high = form_high(color->channels[c]);
-        if (low > span.low[c])
-            span.low[c] = low;
-        if (high < span.high[c])
-            span.high[c] = high;
+        if (low > interval.low[c])
+            interval.low[c] = low;
+        if (high < interval.high[c])
+            interval.high[c] = high;
     }
-    return span;
+    return interval;
 }
 
-void span_include(ColorSpan *span, const ColorSpan *other)
+void interval_include(ColorInterval *interval, const ColorInterval *other)
 {
     for (int c = 0; c < 3; c++) {
-        span->low[c] = box_min(span->low[c], other->low[c]);
-        span->high[c] = box_max(span->high[c], other->high[c]);
+        interval->low[c] = box_min(interval->low[c], other->low[c]);
+        interval->high[c] = box_max(interval->high[c], other->high[c]);
     }
 }
 
@@ -43,18 +51,18 @@ static double srgb(double linear)
     return v <= 0.0031308 ? 12.92 * v : 1.055 * elementary_pow(v, 1 / 2.4) - 0.055;
 }
 
-double span_width(const ColorSpan *span)
+double interval_width(const ColorInterval *interval)
 {
     double width = 0;
     for (int c = 0; c < 3; c++)
-        width = box_max(width, srgb(span->high[c]) - srgb(span->low[c]));
+        width = box_max(width, srgb(interval->high[c]) - srgb(interval->low[c]));
     return width;
 }
 
-void span_slopes(const ColorSpan *span, double slopes[3])
+void interval_slopes(const ColorInterval *interval, double slopes[3])
 {
     for (int c = 0; c < 3; c++) {
-        const double v = 0.5 * (span->low[c] + span->high[c]);
+        const double v = 0.5 * (interval->low[c] + interval->high[c]);
         slopes[c] = v <= 0.0031308 ? 12.92 : 1.055 / 2.4 * elementary_pow(v, 1 / 2.4 - 1);
     }
 }
@@ -62,7 +70,7 @@ void span_slopes(const ColorSpan *span, double slopes[3])
 /* ---- first hits ------------------------------------------------------------------------------ */
 
 /* Returns the depth behind which no ray of the beam sees anything. */
-static double farthest_seen(const AnswerWork *work, size_t n)
+static double farthest_seen(const AnswerWorkspace *work, size_t n)
 {
     double far = (double)INFINITY;
     for (size_t i = 0; i < n; i++)
@@ -82,7 +90,7 @@ static void copy_hit(FaceHit *to, const FaceHit *from)
 }
 
 /* Returns true if hit `index` is a ball behind the wall of its capsule. */
-static bool is_behind_wall(const AnswerWork *work, size_t n, size_t index)
+static bool is_behind_wall(const AnswerWorkspace *work, size_t n, size_t index)
 {
     if (work->hits[index].face->kind != FACE_BALL)
         return false;
@@ -93,7 +101,7 @@ static bool is_behind_wall(const AnswerWork *work, size_t n, size_t index)
     return false;
 }
 
-static size_t drop_hidden(AnswerWork *work, size_t n)
+static size_t drop_hidden(AnswerWorkspace *work, size_t n)
 {
     const double far = farthest_seen(work, n);
     size_t kept = 0;
@@ -103,38 +111,34 @@ static size_t drop_hidden(AnswerWork *work, size_t n)
     return kept;
 }
 
-Seen tile_look(AnswerWork *work, const Beam *beam, const FaceList *list)
+BeamHits beam_hits(AnswerWorkspace *work, const Beam *beam, const FaceList *list)
 {
-    Seen seen = {0};
+    BeamHits found = {0};
     for (size_t i = 0; i < list->n; i++) {
         const uint32_t face = list->faces[i];
-        if (seen.n == MAX_HITS)
-            seen.n = drop_hidden(work, seen.n);
-        if (seen.n == MAX_HITS) {
-            seen.crowded = true;
-            return seen;
+        if (found.n == MAX_HITS)
+            found.n = drop_hidden(work, found.n);
+        if (found.n == MAX_HITS) {
+            found.overflows = true;
+            return found;
         }
-        seen.n += face_hit(&work->plan->faces[face], face, beam, &work->hits[seen.n]);
+        found.n += face_hit(&work->plan->faces[face], face, beam, &work->hits[found.n]);
     }
-    seen.n = drop_hidden(work, seen.n);
-    for (size_t i = 0; i < seen.n; i++)
-        seen.covered = seen.covered || work->hits[i].pending == 0;
-    return seen;
+    found.n = drop_hidden(work, found.n);
+    for (size_t i = 0; i < found.n; i++)
+        found.covered = found.covered || work->hits[i].pending == 0;
+    return found;
 }
 
 /* ---- colors ---------------------------------------------------------------------------------- */
 
 /* Counts the points of a light. `sure` points are visible from the surface for certain; `may`
  * points are or may be visible. */
-static void count_visible(AnswerWork *work, const FormSurface *surface, size_t light, int *sure,
-                          int *may)
+static void count_visible_points(AnswerWorkspace *work, const FormSurface *surface, size_t light,
+                                 int *sure, int *may)
 {
     const AnswerPlan *plan = work->plan;
-    const Vec3 from = vec3(surface->point.x.c, surface->point.y.c, surface->point.z.c);
-    const double reach = box_max(
-        form_high(surface->point.x) - from.x,
-        box_max(form_high(surface->point.y) - from.y, form_high(surface->point.z) - from.z));
-    const bool parallel = plan->lights[light].light->parallel;
+    const double reach = surface_reach(surface);
     *sure = *may = 0;
     for (int k = 0; k < plan->lights[light].points; k++) {
         const Beam beam = light_beam(plan, surface, light, k);
@@ -143,11 +147,9 @@ static void count_visible(AnswerWork *work, const FormSurface *surface, size_t l
             blocked = own_solid_blocks(surface, &beam);
         if (!(reach < plan->pad_mm))
             blocked = blocked == 1 ? 1 : -1;
-        const Vec3 towards = vec3(beam.direction.x.c, beam.direction.y.c, beam.direction.z.c);
         work->blockers.n = 0;
         if (blocked != 1)
-            answerplan_blockers(plan, from, 0, towards, parallel ? (double)INFINITY : 1 + 1e-6,
-                                &work->blockers);
+            light_blockers(plan, surface, &beam, light, 0, &work->blockers);
         for (size_t i = 0; i < work->blockers.n && blocked != 1; i++)
             if (blocker_at(plan, surface, &beam, light, work->blockers.faces[i], &work->blocker))
                 blocked = work->blocker.hit.pending == 0 && work->blocker.pending == 0 ? 1 : -1;
@@ -157,48 +159,49 @@ static void count_visible(AnswerWork *work, const FormSurface *surface, size_t l
 }
 
 /* Returns the fraction of a light that reaches a surface, as a form. */
-static Form visible_part(AnswerWork *work, const FormSurface *surface, size_t light, bool faces)
+static Form visible_fraction(AnswerWorkspace *work, const FormSurface *surface, size_t light,
+                             bool faces)
 {
     const int points = work->plan->lights[light].points;
     int sure = points, may = points;
     if (points == 0)
         return form_of(1, 0);
     if (faces)
-        count_visible(work, surface, light, &sure, &may);
+        count_visible_points(work, surface, light, &sure, &may);
     else
         sure = 0;
     const Form part = form_of(0.5 * (sure + may) / points, 0.5 * (may - sure) / points);
     return form_rounded(part, 4);
 }
 
-static ColorSpan hit_color(AnswerWork *work, const Beam *beam, const FaceHit *hit)
+static ColorInterval hit_color(AnswerWorkspace *work, const Beam *beam, const FaceHit *hit)
 {
     const AnswerPlan *plan = work->plan;
     const FormSurface surface = surface_at(plan, beam, hit);
     FormColor color = surface.base;
     for (size_t light = 0; light < plan->scene->view.n_lights; light++) {
-        const Lit lit = light_at(plan, &surface, light);
-        if (lit.dark)
+        const LightTerm term = light_term(plan, &surface, light);
+        if (term.is_zero)
             continue;
-        const Form part = visible_part(work, &surface, light, lit.faces);
+        const Form part = visible_fraction(work, &surface, light, term.is_facing);
         for (int c = 0; c < 3; c++)
-            color.channels[c] = form_add(color.channels[c], form_mul(lit.adds.channels[c], part));
+            color.channels[c] = form_add(color.channels[c], form_mul(term.color.channels[c], part));
     }
-    return span_of(plan, &color);
+    return interval_of_form(plan, &color);
 }
 
 /* ---- rays ------------------------------------------------------------------------------------ */
 
 /* The face is set only if it is certain. */
-void find_center(AnswerWork *work, const Beam *ray, Center *center)
+void find_center(AnswerWorkspace *work, const Beam *ray, Center *center)
 {
-    const Seen found = tile_look(work, ray, &work->pixel), *seen = &found;
+    const BeamHits found = beam_hits(work, ray, &work->pixel);
     const FaceHit *hits = work->hits;
     const double nothing = (double)INFINITY;
     const Face *first = NULL;
-    bool sure = seen->covered && !seen->crowded;
-    *center = (Center){UINT32_MAX, nothing, seen->n > 0 ? 0 : nothing};
-    for (size_t i = 0; i < seen->n; i++) {
+    bool sure = found.covered && !found.overflows;
+    *center = (Center){UINT32_MAX, nothing, found.n > 0 ? 0 : nothing};
+    for (size_t i = 0; i < found.n; i++) {
         const Form depth = form_mul(hits[i].depth, ray->length);
         sure = sure && hits[i].face->kind != FACE_GROUND &&
                (!first || first->segment == hits[i].face->segment);
@@ -215,44 +218,41 @@ void find_center(AnswerWork *work, const Beam *ray, Center *center)
 }
 
 /* Returns the color of a single ray. */
-static ColorSpan ray_answer(AnswerWork *work, const Beam *beam)
+static ColorInterval ray_answer(AnswerWorkspace *work, const Beam *beam)
 {
     const AnswerPlan *plan = work->plan;
-    const Seen seen = tile_look(work, beam, &work->pixel);
-    const Rgb paper = plan->scene->view.background;
-    ColorSpan span = {.low = {rgb_channel(paper, 0), rgb_channel(paper, 1), rgb_channel(paper, 2)}};
+    const BeamHits found = beam_hits(work, beam, &work->pixel);
+    ColorInterval interval = interval_of_background(plan);
     work->beams++;
-    for (int c = 0; c < 3; c++)
-        span.high[c] = span.low[c];
-    if (seen.crowded)
-        return span_any(plan);
-    for (size_t i = 0; i < seen.n; i++) {
-        const ColorSpan color = hit_color(work, beam, &work->hits[i]);
-        if (i == 0 && seen.covered)
-            span = color;
+    if (found.overflows)
+        return interval_of_scene(plan);
+    for (size_t i = 0; i < found.n; i++) {
+        const ColorInterval color = hit_color(work, beam, &work->hits[i]);
+        if (i == 0 && found.covered)
+            interval = color;
         else
-            span_include(&span, &color);
+            interval_include(&interval, &color);
     }
-    return span;
+    return interval;
 }
 
-ColorSpan pattern_answer(AnswerWork *work, int i, int j)
+ColorInterval pattern_answer(AnswerWorkspace *work, int i, int j)
 {
     const int n = work->plan->params.pattern;
     const double x = i + 0.5, y = j + 0.5;
     double offsets[ANSWER_MAX_PATTERN];
     Beam beam = answerplan_ray(work->plan, x, y);
-    ColorSpan sum = ray_answer(work, &beam);
+    ColorInterval sum = ray_answer(work, &beam);
     if (n < 2)
         return sum;
     camera_sample_offsets(n, offsets);
     for (int row = 0; row < n; row++)
         for (int column = 0; column < n; column++) {
             beam = answerplan_ray(work->plan, x + offsets[column], y + offsets[row]);
-            const ColorSpan span = ray_answer(work, &beam);
+            const ColorInterval interval = ray_answer(work, &beam);
             for (int c = 0; c < 3; c++) {
-                sum.low[c] += span.low[c];
-                sum.high[c] += span.high[c];
+                sum.low[c] += interval.low[c];
+                sum.high[c] += interval.high[c];
             }
         }
     /* Sums of at most 4000 terms have relative errors below 1e-12. */

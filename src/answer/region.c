@@ -26,20 +26,20 @@ typedef struct Piece {
 
 /* A hit's surface and light, computed when first needed. */
 typedef struct HitLight {
-    bool made, spanned;
+    bool made, has_range;
     FormSurface surface;
-    Lit lit[VIEW_MAX_LIGHTS];
-    ColorSpan range; /* of all colors that it can have in the beam */
+    LightTerm terms[VIEW_MAX_LIGHTS];
+    ColorInterval range; /* of all colors that it can have in the beam */
 } HitLight;
 
 /* A blocker in a light beam, with all its edges. */
-typedef struct Shade {
+typedef struct BlockerEdges {
     Form edges[HIT_EDGES + 2];
     int n;
-} Shade;
+} BlockerEdges;
 
 typedef struct Region {
-    AnswerWork *work;
+    AnswerWorkspace *work;
     const Beam *beam;
     RegionSum sum;
     int cuts;
@@ -102,14 +102,14 @@ static const double area_error = 1e-13;
 
 /* ---- sums ------------------------------------------------------------------------------------ */
 
-/* Adds an area that has any color of a span. */
-static void add_span(Region *r, double area, const ColorSpan *span)
+/* Adds an area that has any color of an interval. */
+static void add_interval(Region *r, double area, const ColorInterval *interval)
 {
-    certificate_put_span(r->work->record, area, span);
+    certificate_add_interval(r->work->record, area, interval);
     for (int c = 0; c < 3; c++) {
-        r->sum.low[c] += area * span->low[c];
-        r->sum.high[c] += area * span->high[c];
-        r->sum.strips += area * (span->high[c] - span->low[c]);
+        r->sum.low[c] += area * interval->low[c];
+        r->sum.high[c] += area * interval->high[c];
+        r->sum.strips += area * (interval->high[c] - interval->low[c]);
     }
 }
 
@@ -118,7 +118,7 @@ static void add_span(Region *r, double area, const ColorSpan *span)
 static void add_form(Region *r, const LeafPolygon *polygon, const FormColor *color, double weight)
 {
     const PolygonMoments moments = moments_of(polygon), *m = &moments;
-    certificate_put_form(r->work->record, polygon, color, weight);
+    certificate_add_form(r->work->record, polygon, color, weight);
     for (int c = 0; c < 3; c++) {
         const Form f = color->channels[c];
         const double value = f.c * m->area + f.x * m->x + f.y * m->y;
@@ -140,26 +140,26 @@ static HitLight *light_of(Region *r, size_t hit)
     if (light->made)
         return light;
     light->made = true;
-    light->spanned = false;
+    light->has_range = false;
     light->surface = surface_at(plan, r->beam, &r->work->hits[hit]);
     for (size_t i = 0; i < plan->scene->view.n_lights; i++)
-        light->lit[i] = light_at(plan, &light->surface, i);
+        light->terms[i] = light_term(plan, &light->surface, i);
     return light;
 }
 
 /* Returns the range of a hit's colors in the beam, with and without shadows. */
-static const ColorSpan *range_of(Region *r, size_t hit)
+static const ColorInterval *range_of(Region *r, size_t hit)
 {
     const AnswerPlan *plan = r->work->plan;
     HitLight *light = light_of(r, hit);
-    if (light->spanned)
+    if (light->has_range)
         return &light->range;
-    light->spanned = true;
-    light->range = span_of(plan, &light->surface.base);
+    light->has_range = true;
+    light->range = interval_of_form(plan, &light->surface.base);
     for (size_t i = 0; i < plan->scene->view.n_lights; i++) {
-        if (light->lit[i].dark)
+        if (light->terms[i].is_zero)
             continue;
-        const ColorSpan adds = span_of(plan, &light->lit[i].adds);
+        const ColorInterval adds = interval_of_form(plan, &light->terms[i].color);
         for (int c = 0; c < 3; c++) {
             const bool may_block = plan->lights[i].points > 0;
             light->range.low[c] += may_block ? box_min(adds.low[c], 0) : adds.low[c];
@@ -179,14 +179,14 @@ typedef struct ShadowPiece {
     LeafPolygon polygon;
     int n, depth;
     struct {
-        uint8_t shade, pending;
+        uint8_t blocker, pending;
     } items[MAX_BLOCKERS];
 } ShadowPiece;
 
 typedef struct ShadowCuts {
-    const Shade *shades;
+    const BlockerEdges *blockers;
     const FormColor *adds;
-    ColorSpan range; /* of what the light adds, blocked or not, times the weight */
+    ColorInterval range; /* of what the light adds, blocked or not, times the weight */
     double weight;
 } ShadowCuts;
 
@@ -201,6 +201,20 @@ static int side_of(Form edge, const LeafPolygon *p)
     }
     const double error = edge.e + 64 * FORM_U * form_span(edge);
     return low >= error ? 1 : high < -error ? -1 : 0;
+}
+
+/* Clears the bits of `pending` whose edges are surely >= 0 over the polygon. Returns false if an
+ * edge with a bit is surely negative. */
+static bool decide_edges(const Form *edges, const LeafPolygon *p, uint8_t *pending)
+{
+    for (int k = 0; k < 8 && *pending >> k; k++) {
+        const int side = *pending >> k & 1 ? side_of(edges[k], p) : 0;
+        if (side < 0)
+            return false;
+        if (side > 0)
+            *pending &= (uint8_t) ~(1 << k);
+    }
+    return true;
 }
 
 /* Cuts a polygon at an edge. Returns the area of the strip in which it is not decided. */
@@ -222,20 +236,11 @@ static void add_lit(Region *r, const ShadowCuts *cuts, ShadowPiece *piece)
         return;
     int first = -1;
     for (int i = 0; i < piece->n; i++) {
-        const Shade *shade = &cuts->shades[piece->items[i].shade];
-        bool misses = false;
-        for (int k = 0; k < shade->n && !misses; k++) {
-            if (!(piece->items[i].pending & 1 << k))
-                continue;
-            const int side = side_of(shade->edges[k], &piece->polygon);
-            misses = side < 0;
-            if (side > 0)
-                piece->items[i].pending &= (uint8_t) ~(1 << k);
-        }
-        if (!misses && !piece->items[i].pending)
-            return; /* all in shadow */
-        if (misses)
+        const Form *edges = cuts->blockers[piece->items[i].blocker].edges;
+        if (!decide_edges(edges, &piece->polygon, &piece->items[i].pending))
             piece->items[i--] = piece->items[--piece->n];
+        else if (!piece->items[i].pending)
+            return; /* all in shadow */
         else if (first < 0)
             first = i;
     }
@@ -246,15 +251,15 @@ static void add_lit(Region *r, const ShadowCuts *cuts, ShadowPiece *piece)
     first = first < piece->n ? first : 0;
     const int edge = __builtin_ctz(piece->items[first].pending);
     if (r->cuts >= MAX_CUTS || piece->depth >= MAX_DEPTH) {
-        add_span(r, polygon_area(&piece->polygon), &cuts->range);
+        add_interval(r, polygon_area(&piece->polygon), &cuts->range);
         return;
     }
     ShadowPiece inside = *piece, outside = *piece;
     inside.depth = outside.depth = piece->depth + 1;
-    add_span(r,
-             cut_at(r, &piece->polygon, cuts->shades[piece->items[first].shade].edges[edge],
-                    &inside.polygon, &outside.polygon),
-             &cuts->range);
+    add_interval(r,
+                 cut_at(r, &piece->polygon, cuts->blockers[piece->items[first].blocker].edges[edge],
+                        &inside.polygon, &outside.polygon),
+                 &cuts->range);
     inside.items[first].pending &= (uint8_t) ~(1 << edge);
     outside.items[first] = outside.items[--outside.n];
     add_lit(r, cuts, &inside);
@@ -263,24 +268,19 @@ static void add_lit(Region *r, const ShadowCuts *cuts, ShadowPiece *piece)
 
 /* Lists the faces that may block the light on a surface. Returns false if its extent is not
  * known. */
-static bool find_blockers(AnswerWork *work, const FormSurface *surface, const Beam *beam,
+static bool find_blockers(AnswerWorkspace *work, const FormSurface *surface, const Beam *beam,
                           size_t light)
 {
-    const Form3 p = surface->point;
-    const Vec3 from = vec3(p.x.c, p.y.c, p.z.c);
-    const Vec3 towards = vec3(beam->direction.x.c, beam->direction.y.c, beam->direction.z.c);
-    const double reach =
-        box_max(form_high(p.x) - from.x, box_max(form_high(p.y) - from.y, form_high(p.z) - from.z));
-    const bool parallel = work->plan->lights[light].light->parallel;
+    const double reach = surface_reach(surface);
     if (!isfinite(reach))
         return false;
-    answerplan_blockers(work->plan, from, reach, towards, parallel ? (double)INFINITY : 1 + 1e-6,
-                        &work->blockers);
+    light_blockers(work->plan, surface, beam, light, reach, &work->blockers);
     return true;
 }
 
 /* Finds the blockers of a face for all of the pixel, once. Returns NULL if they cannot be kept. */
-static const CachedBlockers *cached_blockers(AnswerWork *work, const Face *face, size_t light)
+static const BlockerCacheEntry *cached_blockers(AnswerWorkspace *work, const Face *face,
+                                                size_t light)
 {
     const AnswerPlan *plan = work->plan;
     for (size_t i = 0; i < work->n_cached; i++)
@@ -295,19 +295,19 @@ static const CachedBlockers *cached_blockers(AnswerWork *work, const Face *face,
     if (!find_blockers(work, &surface, &beam, light) ||
         work->n_cached_faces + work->blockers.n > CACHE_FACES)
         return NULL;
-    CachedBlockers *made = &work->cached[work->n_cached++];
-    *made = (CachedBlockers){face, light, work->n_cached_faces, work->blockers.n};
+    BlockerCacheEntry *made = &work->cached[work->n_cached++];
+    *made = (BlockerCacheEntry){face, light, work->n_cached_faces, work->blockers.n};
     for (size_t i = 0; i < made->n; i++)
         work->cached_faces[work->n_cached_faces++] = work->blockers.faces[i];
     return made;
 }
 
 /* Lists the blockers of a light beam with their edges. Returns false if there are too many. */
-static bool list_shades(Region *r, const FormSurface *surface, const Beam *beam, size_t light,
-                        Shade *shades, int *n)
+static bool list_blockers(Region *r, const FormSurface *surface, const Beam *beam, size_t light,
+                          BlockerEdges *blockers, int *n)
 {
-    AnswerWork *work = r->work;
-    const CachedBlockers *cached = cached_blockers(work, surface->hit->face, light);
+    AnswerWorkspace *work = r->work;
+    const BlockerCacheEntry *cached = cached_blockers(work, surface->hit->face, light);
     if (!cached && !find_blockers(work, surface, beam, light))
         return false;
     const uint32_t *faces = cached ? work->cached_faces + cached->begin : work->blockers.faces;
@@ -319,12 +319,12 @@ static bool list_shades(Region *r, const FormSurface *surface, const Beam *beam,
             continue;
         if (*n == MAX_BLOCKERS)
             return false;
-        Shade *shade = &shades[(*n)++];
-        shade->n = 0;
+        BlockerEdges *edges = &blockers[(*n)++];
+        edges->n = 0;
         for (int k = 0; k < blocker->hit.pending; k++)
-            shade->edges[shade->n++] = blocker->hit.edges[k];
+            edges->edges[edges->n++] = blocker->hit.edges[k];
         for (int k = 0; k < blocker->pending; k++)
-            shade->edges[shade->n++] = blocker->between[k];
+            edges->edges[edges->n++] = blocker->between[k];
     }
     return true;
 }
@@ -334,9 +334,9 @@ static void add_light(Region *r, HitLight *hit, size_t light, int point, const L
 {
     const AnswerPlan *plan = r->work->plan;
     const int points = plan->lights[light].points;
-    Shade shades[MAX_BLOCKERS + 1];
-    ShadowCuts cuts = {shades, &hit->lit[light].adds, span_of(plan, &hit->lit[light].adds),
-                       1.0 / points};
+    BlockerEdges blockers[MAX_BLOCKERS + 1];
+    ShadowCuts cuts = {blockers, &hit->terms[light].color,
+                       interval_of_form(plan, &hit->terms[light].color), 1.0 / points};
     ShadowPiece piece = {.polygon = *polygon};
     const Beam beam = light_beam(plan, &hit->surface, light, point);
     const int ground = ground_blocks(plan, &hit->surface, &beam, light);
@@ -346,25 +346,25 @@ static void add_light(Region *r, HitLight *hit, size_t light, int point, const L
     }
     if (ground == 1)
         return;
-    const bool few = list_shades(r, &hit->surface, &beam, light, shades, &piece.n);
+    const bool few = list_blockers(r, &hit->surface, &beam, light, blockers, &piece.n);
     if (points > 1 && few) { /* the solid itself blocks rays that begin inwards */
         const int own = own_solid_blocks(&hit->surface, &beam);
         if (own == 1)
             return;
         if (own == -1) {
-            shades[piece.n].n = 1;
-            shades[piece.n].edges[0] = form_neg(form3_dot(hit->surface.normal, beam.unit));
-            shades[piece.n].edges[0].e += 0.5 * SHADOW_FROM_MM / hit->surface.hit->face->radius;
+            blockers[piece.n].n = 1;
+            blockers[piece.n].edges[0] = form_neg(form3_dot(hit->surface.normal, beam.unit));
+            blockers[piece.n].edges[0].e += 0.5 * SHADOW_FROM_MM / hit->surface.hit->face->radius;
             piece.n++;
         }
     }
     if (!few || ground == -1 || piece.n > MAX_BLOCKERS) {
-        add_span(r, polygon_area(polygon), &cuts.range);
+        add_interval(r, polygon_area(polygon), &cuts.range);
         return;
     }
     for (int i = 0; i < piece.n; i++) {
-        piece.items[i].shade = (uint8_t)i;
-        piece.items[i].pending = (uint8_t)((1 << shades[i].n) - 1);
+        piece.items[i].blocker = (uint8_t)i;
+        piece.items[i].pending = (uint8_t)((1 << blockers[i].n) - 1);
     }
     add_lit(r, &cuts, &piece);
 }
@@ -376,11 +376,11 @@ static void add_hit(Region *r, size_t index, const LeafPolygon *polygon)
     HitLight *hit = light_of(r, index);
     FormColor color = hit->surface.base;
     for (size_t i = 0; i < plan->scene->view.n_lights; i++) {
-        if (hit->lit[i].dark)
+        if (hit->terms[i].is_zero)
             continue;
         if (plan->lights[i].points == 0)
             for (int c = 0; c < 3; c++)
-                color.channels[c] = form_add(color.channels[c], hit->lit[i].adds.channels[c]);
+                color.channels[c] = form_add(color.channels[c], hit->terms[i].color.channels[c]);
         for (int k = 0; k < plan->lights[i].points; k++)
             add_light(r, hit, i, k, polygon);
     }
@@ -394,48 +394,36 @@ static void add_hit(Region *r, size_t index, const LeafPolygon *polygon)
 
 static void add_background(Region *r, const LeafPolygon *polygon)
 {
-    const Rgb paper = r->work->plan->scene->view.background;
-    const FormColor color = {{form_of(rgb_channel(paper, 0), 0), form_of(rgb_channel(paper, 1), 0),
-                              form_of(rgb_channel(paper, 2), 0)}};
+    const ColorInterval shown = interval_of_background(r->work->plan);
+    const FormColor color = {
+        {form_of(shown.low[0], 0), form_of(shown.low[1], 0), form_of(shown.low[2], 0)}};
     add_form(r, polygon, &color, 1);
 }
 
 /* Returns the range of all colors that a piece may have. */
-static ColorSpan range_of_piece(Region *r, const Piece *piece)
+static ColorInterval range_of_piece(Region *r, const Piece *piece)
 {
-    const Rgb paper = r->work->plan->scene->view.background;
-    ColorSpan span = {{rgb_channel(paper, 0), rgb_channel(paper, 1), rgb_channel(paper, 2)},
-                      {rgb_channel(paper, 0), rgb_channel(paper, 1), rgb_channel(paper, 2)}};
+    ColorInterval interval = interval_of_background(r->work->plan);
     for (size_t i = 0; i < piece->n; i++) {
-        const ColorSpan *range = range_of(r, piece->hits[i].hit);
+        const ColorInterval *range = range_of(r, piece->hits[i].hit);
         if (i == 0 && piece->covered)
-            span = *range;
+            interval = *range;
         else
-            span_include(&span, range);
+            interval_include(&interval, range);
     }
-    return span;
+    return interval;
 }
 
 /* Decides edges over the piece. Drops hits that no ray of it has. */
-static void decide_edges(Region *r, Piece *piece)
+static void decide_hits(Region *r, Piece *piece)
 {
     piece->covered = false;
     for (size_t i = 0; i < piece->n; i++) {
         PieceHit *hit = &piece->hits[i];
-        const FaceHit *of = &r->work->hits[hit->hit];
-        bool misses = false;
-        for (int k = 0; k < of->pending && !misses; k++) {
-            if (!(hit->pending & 1 << k))
-                continue;
-            const int side = side_of(of->edges[k], &piece->polygon);
-            misses = side < 0;
-            if (side > 0)
-                hit->pending &= (uint8_t) ~(1 << k);
-        }
-        if (misses)
-            piece->hits[i--] = piece->hits[--piece->n];
-        else
+        if (decide_edges(r->work->hits[hit->hit].edges, &piece->polygon, &hit->pending))
             piece->covered = piece->covered || !hit->pending;
+        else
+            piece->hits[i--] = piece->hits[--piece->n];
     }
 }
 
@@ -495,9 +483,9 @@ static void add_piece(Region *r, Piece *piece);
 static void add_cut(Region *r, const Piece *piece, Form edge, PieceHit hit, int bit, uint8_t other)
 {
     Piece inside = *piece, outside = *piece;
-    const ColorSpan range = range_of_piece(r, piece);
+    const ColorInterval range = range_of_piece(r, piece);
     inside.depth = outside.depth = piece->depth + 1;
-    add_span(r, cut_at(r, &piece->polygon, edge, &inside.polygon, &outside.polygon), &range);
+    add_interval(r, cut_at(r, &piece->polygon, edge, &inside.polygon, &outside.polygon), &range);
     for (size_t i = 0; i < inside.n && bit >= 0; i++)
         if (inside.hits[i].hit == hit.hit)
             inside.hits[i].pending &= (uint8_t) ~(1 << bit);
@@ -512,7 +500,7 @@ static void add_piece(Region *r, Piece *piece)
 {
     if (piece->polygon.n < 3)
         return;
-    decide_edges(r, piece);
+    decide_hits(r, piece);
     drop_behind(r, piece);
     const size_t next = next_pending(r, piece);
     if (piece->n == 0) {
@@ -520,8 +508,8 @@ static void add_piece(Region *r, Piece *piece)
     } else if (next == piece->n && piece->n == 1) {
         add_hit(r, piece->hits[0].hit, &piece->polygon);
     } else if (r->cuts >= MAX_CUTS || piece->depth >= MAX_DEPTH) {
-        const ColorSpan range = range_of_piece(r, piece);
-        add_span(r, polygon_area(&piece->polygon), &range);
+        const ColorInterval range = range_of_piece(r, piece);
+        add_interval(r, polygon_area(&piece->polygon), &range);
     } else if (next < piece->n) {
         const PieceHit hit = piece->hits[next];
         const int bit = __builtin_ctz(hit.pending);
@@ -534,19 +522,19 @@ static void add_piece(Region *r, Piece *piece)
     }
 }
 
-RegionSum region_integrate(AnswerWork *work, const Beam *beam, const FaceList *list,
+RegionSum region_integrate(AnswerWorkspace *work, const Beam *beam, const FaceList *list,
                            const LeafPolygon *polygon)
 {
     HitLight lights[MAX_HITS];
     Region region = {.work = work, .beam = beam, .lights = lights};
-    const Seen seen = tile_look(work, beam, list);
-    Piece whole = {.polygon = *polygon, .n = seen.n};
-    if (seen.crowded) {
-        const ColorSpan any = span_any(work->plan);
-        add_span(&region, polygon_area(polygon), &any);
+    const BeamHits found = beam_hits(work, beam, list);
+    Piece whole = {.polygon = *polygon, .n = found.n};
+    if (found.overflows) {
+        const ColorInterval any = interval_of_scene(work->plan);
+        add_interval(&region, polygon_area(polygon), &any);
         return region.sum;
     }
-    for (size_t i = 0; i < seen.n; i++) {
+    for (size_t i = 0; i < found.n; i++) {
         lights[i].made = false;
         whole.hits[i] = (PieceHit){(uint8_t)i, (uint8_t)((1 << work->hits[i].pending) - 1)};
     }

@@ -39,7 +39,7 @@ typedef struct RegionSum {
 
 /* Integrates the color over a polygon in the beam's rectangle. Only the faces of `list` may be
  * visible there; any face of the scene may cast shadows. Overwrites work->hits. */
-RegionSum region_integrate(AnswerWork *work, const Beam *beam, const FaceList *list,
+RegionSum region_integrate(AnswerWorkspace *work, const Beam *beam, const FaceList *list,
                            const LeafPolygon *polygon);
 
 /* Returns the leaf as a polygon in the coordinates of its rectangle; empty if nothing is left. */
@@ -47,6 +47,6 @@ LeafPolygon arealeaf_polygon(const AreaLeaf *leaf);
 /* Integrates the color over a leaf of the pixel in column i and row j. Sets leaf->low and
  * leaf->high, and leaf->turn and leaf->is_mixed, which decide how the leaf is divided. Only the
  * faces of work->pixel may be visible. */
-void arealeaf_measure(AnswerWork *work, int i, int j, AreaLeaf *leaf);
+void arealeaf_measure(AnswerWorkspace *work, int i, int j, AreaLeaf *leaf);
 
 #endif

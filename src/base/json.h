@@ -42,6 +42,12 @@ typedef struct JsonMember {
 MUST_CHECK json_t *json_with(json_t *object, const char *key, json_t *value);
 /* Adds `n` members to `object`, as json_with does. On failure releases `object` and all values. */
 MUST_CHECK json_t *json_with_members(json_t *object, const JsonMember *members, size_t n);
+/* Adds members, each {key, value}, to an object, or makes an object of them. Use:
+ * JSON_OBJECT({"nodes", json_count(n)}, {"file", json_text(path)}). */
+#define JSON_WITH(object, ...)                                                                     \
+    json_with_members(object, (const JsonMember[]){__VA_ARGS__},                                   \
+                      sizeof((const JsonMember[]){__VA_ARGS__}) / sizeof(JsonMember))
+#define JSON_OBJECT(...) JSON_WITH(json_object(), __VA_ARGS__)
 /* Appends an item to `array`, and returns `array`. On failure releases both, and returns NULL. */
 MUST_CHECK json_t *json_with_item(json_t *array, json_t *value);
 

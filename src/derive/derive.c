@@ -52,7 +52,7 @@ static const FieldRule rules[] = {
      field_diameter_strahler},
     {"branch", "", "main branch", "number of the branch; a branch follows the thickest daughter",
      field_branch},
-    {"tree", "", NULL, "number of the tree in a forest", field_tree},
+    {"tree", "", NULL, "number of the connected tree or network", field_tree},
     {"type", "", "SWC type", "SWC type code of the segment; in some files the name of its artery",
      field_type},
 };

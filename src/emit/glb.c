@@ -162,12 +162,10 @@ static json_t *root_extras(const EmitParams *params)
                   "mm, y up; the scale of this node makes metres of them");
     if (!params->appearance->colors)
         return extras;
-    const JsonMember colors[] = {
-        {"color_by", json_text(scale->name)},        {"color_unit", json_text(scale->unit)},
+    return JSON_WITH(
+        extras, {"color_by", json_text(scale->name)}, {"color_unit", json_text(scale->unit)},
         {"color_low", json_number(scale->range[0])}, {"color_high", json_number(scale->range[1])},
-        {"color_log", json_boolean(scale->log)},
-    };
-    return json_with_members(extras, colors, sizeof colors / sizeof *colors);
+        {"color_log", json_boolean(scale->log)});
 }
 
 /* Returns the root node, node 0. Its children are the nodes 1 to n of the orders. */

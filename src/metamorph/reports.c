@@ -125,10 +125,9 @@ static void put_commands(const MetamorphParams *params, const TrialScene scenes[
         char scene[40], picture[40];
         snprintf(scene, sizeof scene, "%s.%s", sides[side], adapter->name);
         snprintf(picture, sizeof picture, "%s.%s", sides[side], adapter->picture);
-        const TrialFiles files = {scene, picture};
         text_puts(out, "  ");
-        trial_command(params->renderer.command, params->renderer.format, &scenes[side], &files,
-                      out);
+        trial_command(params->renderer.shell.command, params->renderer.format, &scenes[side], scene,
+                      picture, out);
         text_puts(out, "\n");
     }
 }
@@ -217,26 +216,24 @@ void metamorph_text(const Metamorph *result, Text *out)
 
 static json_t *count_json(const Relation *relation, const RelationCount *count)
 {
-    const JsonMember members[] = {
+    return JSON_OBJECT(
         {"relation", json_text(relation->name)}, {"change", json_text(relation->change)},
-        {"pairs", json_count(count->pairs)},     {"not_drawn", json_count(count->none)},
-        {"failed", json_count(count->failed)},   {"confirmed", json_count(count->confirmed)},
-        {"seconds", json_number(count->seconds)}};
-    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+        {"pairs", json_count(count->pairs)}, {"not_drawn", json_count(count->none)},
+        {"failed", json_count(count->failed)}, {"confirmed", json_count(count->confirmed)},
+        {"seconds", json_number(count->seconds)});
 }
 
 static json_t *cause_json(const MetamorphCause *cause)
 {
-    const JsonMember members[] = {{"name", json_text(cause->name)},
-                                  {"relation", json_text(cause->pair.relation->name)},
-                                  {"failure", json_text(verdict_names[cause->verdict.kind])},
-                                  {"shapes", json_count((uint64_t)cause->pair.first.n_shapes)},
-                                  {"width_px", json_count((uint64_t)cause->pair.first.width_px)},
-                                  {"height_px", json_count((uint64_t)cause->pair.first.height_px)},
-                                  {"pixels", json_count((uint64_t)cause->verdict.pixels)},
-                                  {"codes", json_count((uint64_t)cause->verdict.codes)},
-                                  {"confirmed", json_count(cause->confirmed)}};
-    json_t *object = json_with_members(json_object(), members, sizeof members / sizeof *members);
+    json_t *object = JSON_OBJECT({"name", json_text(cause->name)},
+                                 {"relation", json_text(cause->pair.relation->name)},
+                                 {"failure", json_text(verdict_names[cause->verdict.kind])},
+                                 {"shapes", json_count((uint64_t)cause->pair.first.n_shapes)},
+                                 {"width_px", json_count((uint64_t)cause->pair.first.width_px)},
+                                 {"height_px", json_count((uint64_t)cause->pair.first.height_px)},
+                                 {"pixels", json_count((uint64_t)cause->verdict.pixels)},
+                                 {"codes", json_count((uint64_t)cause->verdict.codes)},
+                                 {"confirmed", json_count(cause->confirmed)});
     if (!relation_scales(cause->pair.relation))
         return object;
     json_t *sweep = json_array();
@@ -254,10 +251,8 @@ json_t *metamorph_json(const Metamorph *result)
             counts = json_with_item(counts, count_json(&relations[i], &result->counts[i]));
     for (size_t i = 0; i < result->causes.n; i++)
         causes = json_with_item(causes, cause_json(&result->causes.items[i]));
-    const JsonMember members[] = {{"format", json_text(trial_adapters[result->format].name)},
-                                  {"pairs", json_count(total_pairs(result))},
-                                  {"seconds", json_number(result->seconds)},
-                                  {"relations", counts},
-                                  {"causes", causes}};
-    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+    return JSON_OBJECT({"format", json_text(trial_adapters[result->format].name)},
+                       {"pairs", json_count(total_pairs(result))},
+                       {"seconds", json_number(result->seconds)}, {"relations", counts},
+                       {"causes", causes});
 }

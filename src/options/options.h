@@ -232,6 +232,7 @@ typedef struct Command {
     bool writes_last;  /* the last operand is a file to write; all others are files to read */
     bool is_lookup;    /* operands are names, not files; they are not checked as files */
     bool reads_tree;   /* the command has the options for reading trees, which set Parsed.reading */
+    bool trees_only;   /* reading_tree refuses networks with links */
     bool own_recipe;   /* the command prints the recipe of --dump-recipe itself */
     bool own_check;    /* options_finish does not call options_check for this command */
     /* Names, separated by blanks, of options that the first table replaces or that the command does

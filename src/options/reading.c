@@ -42,8 +42,8 @@ static const Option rows[] = {
     {.name = "break-loops",
      SETS(FLAG, ReadOptions, break_loops),
      .group = GROUP_INPUT,
-     .help = "cut each loop of a network at its thinnest line; required if there are loops, since "
-             "a tree has none"},
+     .help = "cut each loop of a network at its thinnest line; without it loops are kept, and what "
+             "needs a tree is refused"},
     {.name = "radius",
      SETS(NUMBER, ReadOptions, radius_mm),
      FROM_TO(0, 1e3),
@@ -185,6 +185,15 @@ static Status copy_given(const Parsed *parsed, Tree *tree, TreeReading *reading,
     return tree_pruned(parsed->given, 0, tree, err);
 }
 
+static Status refuse_loops(const Command *command, const char *path, Tree *tree, Err *err)
+{
+    tree_release(tree);
+    return err_set(err, STATUS_INPUT,
+                   "%s: the network has loops, and `corcast %s` needs a tree; --break-loops cuts "
+                   "each loop at its thinnest line",
+                   path, command->name);
+}
+
 Status reading_tree(const Parsed *parsed, const char *path, Tree *tree, TreeReading *reading,
                     Err *err)
 {
@@ -192,6 +201,8 @@ Status reading_tree(const Parsed *parsed, const char *path, Tree *tree, TreeRead
     Status status = parsed->given && path == parsed->given_name
                         ? copy_given(parsed, tree, &own, err)
                         : read_file(parsed, path, tree, &own, err);
+    if (status == STATUS_OK && parsed->command->trees_only && tree->link)
+        status = refuse_loops(parsed->command, path, tree, err);
     if (status == STATUS_OK && reading)
         *reading = own;
     else

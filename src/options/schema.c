@@ -88,15 +88,11 @@ static json_t *option_schema(const Parsed *plain, const Setting *setting)
     const Option *option = setting->option;
     Text argument = TEXT_INIT;
     option_put_argument(option, &argument);
-    const JsonMember members[] = {
-        {"name", json_text(option->name)},
-        {"help", json_text(option->help)},
-        {"group", json_text(option_group_names[option->group])},
-        {"kind", json_text(option_kind_name(option->kind))},
-        {"common", json_boolean(setting_is_common(plain, setting))},
-        {"repeats", json_boolean(option->kind == OPTION_VECTORS)},
-    };
-    json_t *json = json_with_members(json_object(), members, sizeof members / sizeof *members);
+    json_t *json = JSON_OBJECT({"name", json_text(option->name)}, {"help", json_text(option->help)},
+                               {"group", json_text(option_group_names[option->group])},
+                               {"kind", json_text(option_kind_name(option->kind))},
+                               {"common", json_boolean(setting_is_common(plain, setting))},
+                               {"repeats", json_boolean(option->kind == OPTION_VECTORS)});
     json = with_put(json, "argument", &argument);
     json = with_text(json, "unit", option_unit(option));
     json = with_range(json, option_range(option));
@@ -114,16 +110,11 @@ json_t *command_schema(const Parsed *plain)
     json_t *options = json_array();
     for (size_t i = 0; i < plain->n_settings; i++)
         options = json_with_item(options, option_schema(plain, &plain->settings[i]));
-    const JsonMember members[] = {
-        {"name", json_text(command->name)},
-        {"summary", json_text(command->summary)},
-        {"operands", json_text(command->operands)},
-        {"min_operands", json_integer(command->min_operands)},
-        {"max_operands", json_integer(command->max_operands)},
-        {"needs_output", json_boolean(command->needs_output)},
-        {"options", options},
-    };
-    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+    return JSON_OBJECT({"name", json_text(command->name)}, {"summary", json_text(command->summary)},
+                       {"operands", json_text(command->operands)},
+                       {"min_operands", json_integer(command->min_operands)},
+                       {"max_operands", json_integer(command->max_operands)},
+                       {"needs_output", json_boolean(command->needs_output)}, {"options", options});
 }
 
 Status schema_add(const Command *command, json_t **commands, Err *err)
@@ -137,6 +128,5 @@ Status schema_add(const Command *command, json_t **commands, Err *err)
 
 json_t *schema_document(json_t *commands)
 {
-    const JsonMember members[] = {{"generator", json_text(GENERATOR)}, {"commands", commands}};
-    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+    return JSON_OBJECT({"generator", json_text(GENERATOR)}, {"commands", commands});
 }

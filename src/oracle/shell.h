@@ -3,6 +3,7 @@
 #define CORCAST_ORACLE_SHELL_H
 
 #include "base/base.h"
+#include <sys/types.h>
 
 /* A placeholder in a command, such as "{scene}", and the text that replaces it. Both are
  * borrowed. */
@@ -16,12 +17,6 @@ typedef struct ShellMark {
  * placeholder, also appends the texts of the first `appended` placeholders. */
 void shell_fill(const char *command, const ShellMark *marks, size_t n, size_t appended, Text *out);
 
-/* How a command ended. */
-typedef struct ShellEnd {
-    int exit_status; /* 127 if a signal ended it */
-    bool timed_out;  /* it was killed because it exceeded the time limit */
-} ShellEnd;
-
 /* Runs a command with sh -c and waits for it. If a signal ends this process, the command and all
  * processes that it started are ended as well.
  *
@@ -30,19 +25,13 @@ typedef struct ShellEnd {
  * Errors       STATUS_TOOL if the command cannot be run, or is ended by a signal. */
 MUST_CHECK Status shell_run(const char *command, bool heard, int *exit_status, Err *err);
 
-/* A command of shell_run_all. The strings are borrowed. */
-typedef struct ShellCommand {
-    const char *command;
-    const char *log; /* path of the file that receives the output of the command */
-    ShellEnd end;    /* set by shell_run_all */
-} ShellCommand;
-
-/* Runs commands with sh -c, at most `jobs` (1 to 32) at the same time, and waits for them. A
- * command that runs longer than `seconds` is killed with all processes that it started. If a signal
- * ends this process, all commands are killed.
+/* Starts a command with sh -c as a process group. If a signal ends this process, the process group
+ * is killed. The caller must wait for *child and then call file_spare_on_signal.
  *
- * Errors  STATUS_TOOL if no process can be started. A command that fails is not an error. */
-MUST_CHECK Status shell_run_all(ShellCommand *commands, size_t n, int jobs, double seconds,
-                                Err *err);
+ * output  file descriptor that receives the output of the command; -1: the output is discarded.
+ * Errors  STATUS_TOOL if no process can be started. */
+MUST_CHECK Status shell_start(const char *command, int output, pid_t *child, Err *err);
+/* Returns the exit status in a status of waitpid; 127 if a signal ended the command. */
+int shell_exit_status(int ended);
 
 #endif

@@ -23,10 +23,9 @@ static json_t *lights_json(const Look *look)
     json_t *lights = json_array();
     for (int i = 0; i < look->n_lights; i++) {
         const LookLight *light = &look->lights[i];
-        const JsonMember members[] = {{"point", json_boolean(light->is_point)},
-                                      {"direction", vector_json(light->direction)},
-                                      {"color", color_json(light->color)}};
-        lights = json_with_item(lights, json_with_members(json_object(), members, 3));
+        lights = json_with_item(lights, JSON_OBJECT({"point", json_boolean(light->is_point)},
+                                                    {"direction", vector_json(light->direction)},
+                                                    {"color", color_json(light->color)}));
     }
     return lights;
 }
@@ -35,20 +34,15 @@ static json_t *look_json(const PageParams *params)
 {
     const Look *look = params->look;
     const Finish *finish = &look->finish;
-    const JsonMember members[] = {
-        {"name", json_text(params->look_name)},
-        {"isChosen", json_boolean(params->is_look_chosen)},
-        {"color", color_json(look->color)},
-        {"ambient", json_number((double)finish->ambient)},
+    return JSON_OBJECT(
+        {"name", json_text(params->look_name)}, {"isChosen", json_boolean(params->is_look_chosen)},
+        {"color", color_json(look->color)}, {"ambient", json_number((double)finish->ambient)},
         {"diffuse", json_number((double)finish->diffuse)},
         {"brilliance", json_number((double)finish->brilliance)},
         {"phong", json_number((double)finish->phong)},
         {"phongSize", json_number((double)finish->phong_size)},
         {"specular", json_number((double)finish->specular)},
-        {"roughness", json_number((double)finish->roughness)},
-        {"lights", lights_json(look)},
-    };
-    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+        {"roughness", json_number((double)finish->roughness)}, {"lights", lights_json(look)});
 }
 
 static json_t *fields_json(const PageParams *params)
@@ -59,13 +53,11 @@ static json_t *fields_json(const PageParams *params)
         json_t *times = json_array();
         for (size_t k = 0; series->time && k < series->frames; k++)
             times = json_with_item(times, json_number(series->time[k]));
-        const JsonMember members[] = {{"name", json_text(series->field.name)},
-                                      {"title", json_text(derive_field_title(series->field.name))},
-                                      {"unit", json_text(series->field.unit)},
-                                      {"whole", json_boolean(field_is_whole(series))},
-                                      {"times", times}};
         fields = json_with_item(
-            fields, json_with_members(json_object(), members, sizeof members / sizeof *members));
+            fields, JSON_OBJECT({"name", json_text(series->field.name)},
+                                {"title", json_text(derive_field_title(series->field.name))},
+                                {"unit", json_text(series->field.unit)},
+                                {"whole", json_boolean(field_is_whole(series))}, {"times", times}));
     }
     return fields;
 }
@@ -75,9 +67,8 @@ static json_t *maps_json(const PageParams *params)
     json_t *maps = json_array();
     for (size_t i = 0; i < params->n_maps; i++) {
         const PageMap *map = &params->maps[i];
-        const JsonMember members[] = {{"name", json_text(map->name)},
-                                      {"separate", json_boolean(map->map.separate)}};
-        maps = json_with_item(maps, json_with_members(json_object(), members, 2));
+        maps = json_with_item(maps, JSON_OBJECT({"name", json_text(map->name)},
+                                                {"separate", json_boolean(map->map.separate)}));
     }
     return maps;
 }
@@ -87,28 +78,19 @@ static json_t *start_json(const PageParams *params)
     const ColorScale *scale = params->scale;
     if (!scale)
         return json_null();
-    const JsonMember members[] = {
-        {"field", json_text(scale->name)},
-        {"map", json_text(params->map)},
+    return JSON_OBJECT(
+        {"field", json_text(scale->name)}, {"map", json_text(params->map)},
         {"kind", params->is_scale_chosen ? json_text(scale->log ? "log" : "linear") : json_null()},
-        {"low", json_number(scale->range[0])},
-        {"high", json_number(scale->range[1])}};
-    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+        {"low", json_number(scale->range[0])}, {"high", json_number(scale->range[1])});
 }
 
 static json_t *properties_json(const PageParams *params)
 {
-    const JsonMember members[] = {
-        {"name", json_text(params->title)},
-        {"generator", json_text(params->generator)},
-        {"command", json_text(params->command)},
-        {"origin", vector_json(params->origin)},
-        {"look", look_json(params)},
-        {"fields", fields_json(params)},
-        {"maps", maps_json(params)},
-        {"start", start_json(params)},
-    };
-    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+    return JSON_OBJECT(
+        {"name", json_text(params->title)}, {"generator", json_text(params->generator)},
+        {"command", json_text(params->command)}, {"origin", vector_json(params->origin)},
+        {"look", look_json(params)}, {"fields", fields_json(params)}, {"maps", maps_json(params)},
+        {"start", start_json(params)});
 }
 
 static void put_properties(const PageParams *params, Text *out)

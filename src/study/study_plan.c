@@ -27,6 +27,7 @@ static void set_defaults(void *options)
 static const Command growth_command = {
     .name = "grow",
     .reads_tree = true,
+    .trees_only = true,
     .size = sizeof(StudyGrowth),
     .set_defaults = set_defaults,
     .tables = {{&own_table, 0},

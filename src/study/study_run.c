@@ -155,10 +155,9 @@ static json_t *measured_json(const Tree *tree, const GrowReport *report, Err *er
     TreeSummary summary;
     if (derive_summary(tree, &(TreeMeta){0}, &summary, err) != STATUS_OK)
         return NULL;
-    const JsonMember grown[] = {{"complete", json_boolean(report->complete)},
-                                {"thickness", json_number(report->thickness)},
-                                {"broken", json_count(report->broken)}};
-    return json_with_members(summary_json(&summary), grown, sizeof grown / sizeof *grown);
+    return JSON_WITH(summary_json(&summary), {"complete", json_boolean(report->complete)},
+                     {"thickness", json_number(report->thickness)},
+                     {"broken", json_count(report->broken)});
 }
 
 /* Writes the tree if params->trees is true. Sets *hash to the hash of the tree's file, or to JSON
@@ -212,18 +211,12 @@ static json_t *line_json(const StudyRunParams *params, const StudyRun *run, json
     const StudyPlan *plan = params->plan;
     const char *key;
     json_t *value;
-    const JsonMember of_shard[] = {{"plan", json_text(plan->hash.hex)},
-                                   {"runs", json_count(plan->runs)},
-                                   {"made_from", json_text(run->made_from.hex)},
-                                   {"tree", hash}};
-    const JsonMember first[] = {
-        {"run", json_count(run->number)},
-        {"grow", values_json(plan, run->number - 1)},
-        {"generator", json_text(GENERATOR)},
+    json_t *line = JSON_WITH(
+        result ? json_object() : NULL, {"run", json_count(run->number)},
+        {"grow", values_json(plan, run->number - 1)}, {"generator", json_text(GENERATOR)},
         {"command", json_text(run->command)},
-        {"shard", json_with_members(json_object(), of_shard, sizeof of_shard / sizeof *of_shard)}};
-    json_t *line =
-        json_with_members(result ? json_object() : NULL, first, sizeof first / sizeof *first);
+        {"shard", JSON_OBJECT({"plan", json_text(plan->hash.hex)}, {"runs", json_count(plan->runs)},
+                              {"made_from", json_text(run->made_from.hex)}, {"tree", hash})});
     json_object_foreach(result, key, value)
     {
         if (!json_object_get(line, key))

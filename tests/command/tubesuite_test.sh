@@ -36,10 +36,10 @@ END
     expect_status 1
     expect_stdout '^1 of 72 scenes certified, 70 not drawn$'
     expect_stdout '^rounded-plain: [0-9]+ of 4096 pixels wrong, by up to '
-    expect_stdout '^rounded-two: not drawn: exit status 7, see '
+    expect_stdout '^rounded-two: not drawn: exit status 7$'
     grade --format json --render 'true'
     expect_status 3
-    expect_sentence 'the renderer drew none of 72 scenes: the command wrote no picture'
+    expect_sentence 'the renderer drew none of 72 scenes: it wrote no picture'
     expect_json card/scenes/rounded-fade.json '(.shapes | length) == 6 and (.lights | length) == 1 and .fade[1] == 0.7
         and .camera.width == 64 and .ground == null'
 }

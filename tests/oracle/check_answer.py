@@ -9,6 +9,7 @@ usage: check_answer.py C.json [POINTS_PER_PIXEL [SEED]]
 """
 import json
 import random
+import struct
 import sys
 from decimal import Decimal as D
 from decimal import getcontext
@@ -83,31 +84,40 @@ def enter(solid, o, d):
         return enter_ground(solid, o, d)
     return enter_ball(solid, o, d) if solid["ball"] else enter_cylinder(solid, o, d)
 
+def finish(f):
+    """The exponent of Blinn's highlight is 1 / roughness in single precision."""
+    sharpness = struct.unpack("f", struct.pack("f", 1 / f["roughness"]))[0]
+    return vec([f[k] for k in ("ambient", "diffuse", "brilliance", "phong", "phong_size", "specular")] + [sharpness])
+
 class Scene:
     def __init__(self, data):
-        self.data = data
-        self.solids, self.lights = data["solids"][:-1], data["lights"][:-1]
+        self.data, camera = data, data["camera"]
+        self.solids, self.lights = data["shapes"], data["lights"]
         for s in self.solids:
             s["a"], s["b"], s["r"], s["color"] = vec(s["a"]), vec(s["b"]), D(s["radius"]), vec(s["color"])
+            s["ball"] = s["kind"] == "sphere"
             span = sub(s["b"], s["a"])
             s["length"] = dot(span, span).sqrt()
             s["axis"] = scaled(span, 1 / s["length"]) if not s["ball"] else None
-            s["finish"] = vec(data["finish"])
+            s["finish"] = finish(data["finish"])
         ground = data["ground"]
         if ground:
-            ground = {"offset": D(ground["offset"])} | {k: vec(ground[k]) for k in ("normal", "color", "finish")}
+            ground = {"offset": D(ground["offset"]), "finish": finish(ground["finish"])} | {
+                k: vec(ground[k]) for k in ("normal", "color")}
             self.solids.append(ground)
         for light in self.lights:
             light["location"], light["target"] = vec(light["location"]), vec(light["target"])
             light["color"] = vec(light["color"])
+            light["shadows"] = data["shadows"] and light["casts_shadows"]
         self.least = -100 if any(min(light["color"]) < 0 for light in self.lights) else 0
-        self.camera = {k: vec(data[k]) for k in ("location", "right", "up", "direction")}
+        self.camera = {k: vec(camera[k]) for k in ("location", "right", "up", "direction")}
+        self.size, self.perspective = (camera["width"], camera["height"]), camera["projection"] == "perspective"
         self.background = vec(data["background"])
 
     def ray(self, x, y):
-        c, (w, h) = self.camera, self.data["size"]
+        c, (w, h) = self.camera, self.size
         offset = along(scaled(c["right"], dec(F(x) / w - F(1, 2))), c["up"], dec(F(1, 2) - F(y) / h))
-        if self.data["perspective"]:
+        if self.perspective:
             return c["location"], unit(along(c["direction"], offset, 1))
         return along(c["location"], offset, 1), unit(c["direction"])
 
@@ -152,8 +162,8 @@ class Scene:
 def inside(color, low, high):
     return all(D(a) - D("1e-14") <= c <= D(b) + D("1e-14") for a, c, b in zip(low, color, high))
 
-def check_pattern(scene, pixel):
-    n, (i, j) = scene.data["pattern"], pixel["pixel"]
+def check_pattern(scene, n, pixel):
+    (i, j) = pixel["pixel"]
     offsets = [F(2 * k + 1, 2 * n) - F(1, 2) for k in range(n)] if n > 1 else []
     places = [(F(0), F(0))] + [(x, y) for y in offsets for x in offsets]
     colors = [scene.color(i + F(1, 2) + x, j + F(1, 2) + y) for x, y in places]
@@ -173,10 +183,10 @@ def contains(polygon, x, y):
     return len(polygon) > 2 and (min(sides) >= 0 or max(sides) <= 0)
 
 def exact(points):
-    return [(F(x), F(y)) for x, y in points[:-1]]
+    return [(F(x), F(y)) for x, y in points]
 
 def read_leaf(leaf):
-    leaf["polygon"], leaf["parts"] = exact(leaf["polygon"]), leaf["parts"][:-1]
+    leaf["polygon"] = exact(leaf["polygon"])
     for part in leaf["parts"]:
         if "form" in part:
             part["polygon"] = exact(part["polygon"])
@@ -223,7 +233,7 @@ def check_point(scene, leaf, x, y):
     return inside(color, map(dec, low), map(dec, high))
 
 def check_area(scene, pixel, points, rng):
-    leaves, (i, j) = pixel["leaves"][:-1], pixel["pixel"]
+    leaves, (i, j) = pixel["leaves"], pixel["pixel"]
     faults = []
     for leaf in leaves:
         read_leaf(leaf)
@@ -252,14 +262,14 @@ def check_area(scene, pixel, points, rng):
 def main():
     data = json.load(open(sys.argv[1]))
     points, rng = int((sys.argv + ["", ""])[2] or 8), random.Random(int((sys.argv + ["", ""])[3] or 1))
-    assert all(light["samples"] < 2 for light in data["lights"][:-1])
-    scene, faults = Scene(data), 0
-    for pixel in data["pixels"][:-1]:
-        found = check_pattern(scene, pixel) if data["pattern"] else check_area(scene, pixel, points, rng)
+    assert all(light["samples"] == 1 for light in data["scene"]["lights"])
+    scene, faults, n = Scene(data["scene"]), 0, data["pattern"]
+    for pixel in data["pixels"]:
+        found = check_pattern(scene, n, pixel) if n else check_area(scene, pixel, points, rng)
         faults += bool(found)
         for fault in sorted(set(found)):
             print(f"pixel {pixel['pixel'][0]},{pixel['pixel'][1]}: {fault}")
-    print(f"{len(data['pixels']) - 1 - faults} of {len(data['pixels']) - 1} pixels proved")
+    print(f"{len(data['pixels']) - faults} of {len(data['pixels'])} pixels proved")
     sys.exit(1 if faults else 0)
 
 main()

@@ -23,13 +23,12 @@ static json_t *json_lines(Text *text)
 static Status print_json(FigureFindings *found, const char *path, const CheckFigureOptions *options,
                          Err *err)
 {
-    const JsonMember members[] = {{"file", json_text(file_name(path))},
+    return json_write(JSON_OBJECT({"file", json_text(file_name(path))},
                                   {"preset", json_text(options->preset)},
                                   {"kind", json_text(content_kinds[options->kind])},
                                   {"accepted", json_boolean(found->n_refused == 0)},
                                   {"refused", json_lines(&found->refused)},
-                                  {"not_checked", json_lines(&found->unchecked)}};
-    return json_write(json_with_members(json_object(), members, sizeof members / sizeof *members),
+                                  {"not_checked", json_lines(&found->unchecked)}),
                       "-", err);
 }
 

@@ -265,15 +265,10 @@ void choice_text(const Choice *choice, Text *out)
 
 json_t *choice_json(const Choice *choice)
 {
-    const JsonMember members[] = {{"color_levels", json_integer(choice->levels)},
-                                  {"color_ppm", json_number(choice->ppm)},
-                                  {"pixels", json_count(choice->pixels)},
-                                  {"renderings", json_count(choice->n)},
-                                  {"rank", json_count(choice->rank)},
-                                  {"rate", json_number(choice->rate)},
-                                  {"rate_95", json_number(choice->bound)},
-                                  {"left_out_alarms", json_count(choice->alarms)},
-                                  {"missed", json_count(choice->missed)},
-                                  {"planted", json_count(choice->planted)}};
-    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+    return JSON_OBJECT(
+        {"color_levels", json_integer(choice->levels)}, {"color_ppm", json_number(choice->ppm)},
+        {"pixels", json_count(choice->pixels)}, {"renderings", json_count(choice->n)},
+        {"rank", json_count(choice->rank)}, {"rate", json_number(choice->rate)},
+        {"rate_95", json_number(choice->bound)}, {"left_out_alarms", json_count(choice->alarms)},
+        {"missed", json_count(choice->missed)}, {"planted", json_count(choice->planted)});
 }

@@ -235,11 +235,9 @@ static json_t *case_json(const PowerCase *one)
     for (int rule = 0; rule < POWER_RULES; rule++)
         found = json_with(found, rule ? published_rules[rule - 1].name : "rule",
                           json_boolean(one->found[rule]));
-    const JsonMember members[] = {{"fault", json_text(one->fault->name)},
-                                  {"size", one->fault->unit ? json_number(one->size) : json_null()},
-                                  {"unit", json_text_or_null(one->fault->unit)},
-                                  {"found", found}};
-    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+    return JSON_OBJECT({"fault", json_text(one->fault->name)},
+                       {"size", one->fault->unit ? json_number(one->size) : json_null()},
+                       {"unit", json_text_or_null(one->fault->unit)}, {"found", found});
 }
 
 json_t *power_json(const Power *power)
@@ -248,19 +246,15 @@ json_t *power_json(const Power *power)
     for (int rule = 0; rule < POWER_RULES; rule++)
         rules = json_with_item(
             rules,
-            json_pack("{s:o, s:o, s:o, s:o}", "name", json_text(rule_name(power, rule)), "says",
-                      json_text_or_null(rule ? published_rules[rule - 1].says : NULL), "missed",
-                      json_count(power->missed[rule]), "false_alarm",
-                      json_boolean(power->alarm[rule])));
+            JSON_OBJECT({"name", json_text(rule_name(power, rule))},
+                        {"says", json_text_or_null(rule ? published_rules[rule - 1].says : NULL)},
+                        {"missed", json_count(power->missed[rule])},
+                        {"false_alarm", json_boolean(power->alarm[rule])}));
     for (size_t i = 0; i < power->n; i++)
         if (power->cases[i].exists)
             cases = json_with_item(cases, case_json(&power->cases[i]));
-    const JsonMember members[] = {{"width", json_integer(power->width)},
-                                  {"height", json_integer(power->height)},
-                                  {"bits", json_integer(power->bits)},
-                                  {"repeats", json_boolean(power->repeats)},
-                                  {"planted", json_count(power->planted)},
-                                  {"rules", rules},
-                                  {"faults", cases}};
-    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+    return JSON_OBJECT(
+        {"width", json_integer(power->width)}, {"height", json_integer(power->height)},
+        {"bits", json_integer(power->bits)}, {"repeats", json_boolean(power->repeats)},
+        {"planted", json_count(power->planted)}, {"rules", rules}, {"faults", cases});
 }

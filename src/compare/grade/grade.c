@@ -230,20 +230,13 @@ void answergrade_text(const AnswerGrade *grade, Text *out)
 
 json_t *answergrade_json(const AnswerGrade *grade)
 {
-    const JsonMember members[] = {
-        {"certified", json_boolean(grade->certified)},
-        {"pixels", json_count(grade->pixels)},
-        {"outside", json_count(grade->outside)},
-        {"undecided", json_count(grade->undecided)},
-        {"brighter", json_count(grade->brighter)},
-        {"darker", json_count(grade->darker)},
-        {"worst_levels", json_number(grade->worst)},
-        {"worst_column", json_count((size_t)grade->x)},
+    return JSON_OBJECT(
+        {"certified", json_boolean(grade->certified)}, {"pixels", json_count(grade->pixels)},
+        {"outside", json_count(grade->outside)}, {"undecided", json_count(grade->undecided)},
+        {"brighter", json_count(grade->brighter)}, {"darker", json_count(grade->darker)},
+        {"worst_levels", json_number(grade->worst)}, {"worst_column", json_count((size_t)grade->x)},
         {"worst_row", json_count((size_t)grade->y)},
         {"worst_channel", json_text(channel_names[grade->channel])},
-        {"mean_red", json_number(grade->mean[0])},
-        {"mean_green", json_number(grade->mean[1])},
-        {"mean_blue", json_number(grade->mean[2])},
-    };
-    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+        {"mean_red", json_number(grade->mean[0])}, {"mean_green", json_number(grade->mean[1])},
+        {"mean_blue", json_number(grade->mean[2])});
 }

@@ -58,11 +58,8 @@ json_t *witness_json(const Witness *witness)
                                     json_text(witness->pairs[pair].agrees ? "agree" : "differ"),
                                     "id", compare_json(witness->pairs[pair].ids), "depth",
                                     compare_json(witness->pairs[pair].depth)));
-    const JsonMember members[] = {{"verdict", json_text(witness->agrees ? "agree" : "differ")},
-                                  {"sentence", json_text(witness->sentence)},
-                                  {"name", json_text(witness->name)},
-                                  {"version", json_text(witness->version)},
-                                  {"seconds", json_number(witness->seconds)},
-                                  {"pairs", pairs}};
-    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+    return JSON_OBJECT({"verdict", json_text(witness->agrees ? "agree" : "differ")},
+                       {"sentence", json_text(witness->sentence)},
+                       {"name", json_text(witness->name)}, {"version", json_text(witness->version)},
+                       {"seconds", json_number(witness->seconds)}, {"pairs", pairs});
 }

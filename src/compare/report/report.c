@@ -22,19 +22,13 @@ json_t *report_json(const ReportCase *report)
             planes = json_with(planes, plane_kind_name(kind), compare_json(report->planes[kind]));
     for (size_t i = 0; i < report->n_commands; i++)
         commands = json_with_item(commands, json_text(report->commands[i]));
-    const JsonMember members[] = {
+    json_t *json = JSON_OBJECT(
         {"verdict", json_text(reason ? "differ" : "agree")},
-        {"severity", json_number(report_severity(report))},
-        {"reason", json_text_or_null(reason)},
-        {"name", json_text(report->name)},
-        {"model", json_text(report->model)},
-        {"tier", json_text(report->planes[PLANE_COLOR]->tolerance.tier)},
-        {"planes", planes},
-        {report->a.key, side_json(&report->a)},
-        {report->b.key, side_json(&report->b)},
-        {"commands", commands},
-    };
-    json_t *json = json_with_members(json_object(), members, sizeof members / sizeof *members);
+        {"severity", json_number(report_severity(report))}, {"reason", json_text_or_null(reason)},
+        {"name", json_text(report->name)}, {"model", json_text(report->model)},
+        {"tier", json_text(report->planes[PLANE_COLOR]->tolerance.tier)}, {"planes", planes},
+        {report->a.key, side_json(&report->a)}, {report->b.key, side_json(&report->b)},
+        {"commands", commands});
     if (report->surface)
         json = json_with(json, "surface", surface_check_json(report->surface));
     if (report->alpha)
@@ -60,7 +54,7 @@ Status report_write_page(const ReportCase *report, const char *templates, const 
                          Err *err)
 {
     Picture heat;
-    TRY(heat_picture(&heat, report->a.picture, report->b.picture, err));
+    TRY(heat_picture(&heat, report->a.shown.picture, report->b.shown.picture, err));
     Status status = report_page(report, &heat, templates, path, err);
     picture_release(&heat);
     return status;
@@ -72,7 +66,7 @@ Status report_write(const ReportCase *report, const char *templates, const char 
     Text json = TEXT_INIT, xml = TEXT_INIT;
     char *diff = NULL, *page = NULL;
     Status status = STATUS_OK;
-    TRY_GOTO(heat_picture(&heat, report->a.picture, report->b.picture, err));
+    TRY_GOTO(heat_picture(&heat, report->a.shown.picture, report->b.shown.picture, err));
     TRY_GOTO(file_join(folder, "diff.png", &diff, err));
     TRY_GOTO(picture_write(&heat, diff, ENCODING_SRGB, NULL, NULL, err));
     text_json(&json, report_json(report), 2);

@@ -87,15 +87,13 @@ static json_t *value_json(const CompareResult *result, const Measure *measure)
 json_t *compare_json(const CompareResult *result)
 {
     const PixelBox *box = &result->box;
-    const JsonMember verdict[] = {
+    json_t *json = JSON_OBJECT(
         {"verdict", json_text(result->agrees ? "agree" : "differ")},
         {"reason", json_text_or_null(*result->reason ? result->reason : NULL)},
         {"cause", json_text_or_null(*result->cause ? result->cause : NULL)},
         {"box", box->width > 0 ? json_pack("[i, i, i, i]", box->x, box->y, box->width, box->height)
                                : json_null()},
-        {"tier", json_text(result->tolerance.tier)},
-    };
-    json_t *json = json_with_members(json_object(), verdict, sizeof verdict / sizeof *verdict);
+        {"tier", json_text(result->tolerance.tier)});
     for (size_t i = 0; i < n_measures; i++)
         if (measures[i].key && measure_is_for(&measures[i], result))
             json = json_with(json, measures[i].key, value_json(result, &measures[i]));

@@ -29,7 +29,7 @@ static Status add_parts(SuitePage *page, const ReportCase *report, Err *err)
     Picture heat = {0};
     Text row = TEXT_INIT, section = TEXT_INIT;
     Status status = STATUS_OK;
-    TRY_GOTO(heat_picture(&heat, report->a.picture, report->b.picture, err));
+    TRY_GOTO(heat_picture(&heat, report->a.shown.picture, report->b.shown.picture, err));
     TRY_GOTO(report_parts(report, &heat, page->templates, &row, &section, err));
     TRY_GOTO(text_check(&row, err));
     TRY_GOTO(text_check(&section, err));
@@ -66,12 +66,12 @@ static Status add_pair(SuitePage *page, const SuiteCase *entry, SuitePair *pair,
               .key = "a",
               .version = "",
               .seconds = (double)NAN,
-              .picture = &shown[0]},
+              .shown.picture = &shown[0]},
         .b = {.name = "picture",
               .key = "b",
               .version = "",
               .seconds = (double)NAN,
-              .picture = &shown[1]},
+              .shown.picture = &shown[1]},
         .sentence = entry->is_reference && entry->is_picture ? NULL : entry->sentence,
         .accept = text_chars(&accept),
         .commands = commands,

@@ -220,15 +220,13 @@ typedef struct CaseFiles {
 static Status judge_reference(SuiteCase *entry, const CaseFiles *files, const char *name,
                               const float background[3], Err *err)
 {
-    Text path = TEXT_INIT;
-    Status status;
-    text_printf(&path, "%.*s%s", (int)(file_name(files->reference) - files->reference),
-                files->reference, name);
-    TRY_GOTO(text_check(&path, err));
-    const char *const paths[2] = {text_chars(&path), files->picture};
-    status = judge_pair(entry, paths, files->mask, background, files->tolerance, err);
-done:
-    text_release(&path);
+    char *path;
+    TRY(file_format_name(&path, err, "%.*s%s",
+                         (int)(file_name(files->reference) - files->reference), files->reference,
+                         name));
+    const char *const paths[2] = {path, files->picture};
+    Status status = judge_pair(entry, paths, files->mask, background, files->tolerance, err);
+    free(path);
     return status;
 }
 
@@ -378,17 +376,15 @@ json_t *suite_json(const Suite *suite)
     json_t *cases = json_array(), *unused = json_array();
     for (size_t i = 0; i < suite->n; i++) {
         const SuiteCase *entry = &suite->cases[i];
-        const JsonMember members[] = {
-            {"name", json_text(entry->name)},
-            {"state", json_text(suite_state_name(entry->state))},
-            {"reason", json_text_or_null(*entry->sentence ? entry->sentence : NULL)},
-            {"reference", json_text_or_null(entry->agreed)},
-            {"differing_pixels", json_count(entry->differing)},
-            {"masked_pixels", json_count(entry->masked)},
-            {"seconds", json_number(entry->seconds)},
-        };
         cases = json_with_item(
-            cases, json_with_members(json_object(), members, sizeof members / sizeof *members));
+            cases,
+            JSON_OBJECT({"name", json_text(entry->name)},
+                        {"state", json_text(suite_state_name(entry->state))},
+                        {"reason", json_text_or_null(*entry->sentence ? entry->sentence : NULL)},
+                        {"reference", json_text_or_null(entry->agreed)},
+                        {"differing_pixels", json_count(entry->differing)},
+                        {"masked_pixels", json_count(entry->masked)},
+                        {"seconds", json_number(entry->seconds)}));
     }
     json_t *json =
         json_with(json_object(), "verdict", json_text(suite->agrees ? "agree" : "differ"));

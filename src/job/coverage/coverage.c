@@ -448,9 +448,8 @@ static json_t *json_pairs(const char *at, const char *value, double (*pair)[2], 
 {
     json_t *array = json_array();
     for (size_t i = 0; i < n; i++) {
-        const JsonMember members[] = {{at, json_number(pair[i][0])},
-                                      {value, json_number(pair[i][1])}};
-        array = json_with_item(array, json_with_members(json_object(), members, 2));
+        array = json_with_item(
+            array, JSON_OBJECT({at, json_number(pair[i][0])}, {value, json_number(pair[i][1])}));
     }
     return array;
 }
@@ -469,28 +468,23 @@ static json_t *json_of(const CoverageResult *result, const char *command)
         beyond[i][1] = (double)report->beyond[i] / (double)report->tissue_voxels;
     }
     const Vec3 at = report->largest_at;
-    const JsonMember members[] = {
-        {"generator", json_text(GENERATOR)},
-        {"command", json_text(command)},
+    return JSON_OBJECT(
+        {"generator", json_text(GENERATOR)}, {"command", json_text(command)},
         {"dimension", json_count((uint64_t)result->dimension)},
         {"voxel_mm", json_number(result->spacing_mm)},
         {"tissue_voxels", json_integer(report->tissue_voxels)},
         {result->dimension == 2 ? "tissue_mm2" : "tissue_mm3", json_number(report->tissue_volume)},
         {result->dimension == 2 ? "vessels_mm2" : "vessels_mm3",
          json_number(report->vessel_volume)},
-        {"terminals", json_count(result->terminals)},
-        {"mean_mm", json_number(report->mean_mm)},
+        {"terminals", json_count(result->terminals)}, {"mean_mm", json_number(report->mean_mm)},
         {"quantiles", json_pairs("part", "distance_mm", quantiles, COVERAGE_QUANTILES)},
         {"beyond", json_pairs("distance_mm", "share", beyond, result->beyond.n)},
         {"largest_mm", json_number(report->largest_mm)},
         {"largest_error_mm", json_number(report->largest_error_mm)},
         {"largest_at_mm", json_numbers((const double[]){at.x, at.y, at.z}, 3)},
-        {"law_mean_mm", json_number(law->mean_mm)},
-        {"law_95_mm", json_number(law->within_95_mm)},
+        {"law_mean_mm", json_number(law->mean_mm)}, {"law_95_mm", json_number(law->within_95_mm)},
         {"law_largest_mm", json_number(law->largest_mm)},
-        {"law_terminals_per_mm3", json_number(law->density_needed)},
-    };
-    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+        {"law_terminals_per_mm3", json_number(law->density_needed)});
 }
 
 static Status put_files(const void *job, const char *command, FileSlot files[], Err *err)
@@ -523,13 +517,9 @@ static Status name_files(const CoverageOptions *options, const VolumeFormat *for
     TRY(copy_path(options->json, &at[FILE_JSON].path, err));
     if (!options->territories)
         return STATUS_OK;
-    Text path = TEXT_INIT;
-    text_append(&path, options->territories, strlen(options->territories) - strlen(format->suffix));
-    text_puts(&path, ".csv");
+    const size_t stem = strlen(options->territories) - strlen(format->suffix);
     at[FILE_TABLE].role = "the table of territories";
-    Status status = text_take(&path, &at[FILE_TABLE].path, err);
-    text_release(&path);
-    return status;
+    return file_format_name(&at[FILE_TABLE].path, err, "%.*s.csv", (int)stem, options->territories);
 }
 
 static Status prepare(Measuring *made, Parsed *parsed, FileSet *files, Err *err)

@@ -61,12 +61,9 @@ static json_t *segment_ids(const VesselTree *vessels, const uint32_t *list, size
 static json_t *with_wall(json_t *object, const MeshResult *made)
 {
     const PrintParams *params = &made->print->params;
-    const JsonMember members[] = {
-        {"wall_mm", json_number(params->wall_mm)},
-        {"wall_over_radius", json_number(params->wall_ratio)},
-        {"outer_mm3", json_number(made->printed.outer_mm3)},
-    };
-    return json_with_members(object, members, sizeof members / sizeof *members);
+    return JSON_WITH(object, {"wall_mm", json_number(params->wall_mm)},
+                     {"wall_over_radius", json_number(params->wall_ratio)},
+                     {"outer_mm3", json_number(made->printed.outer_mm3)});
 }
 
 /* Returns the size of the smallest feature, in mm: the minimum of the vessel diameters, wall
@@ -87,7 +84,7 @@ static json_t *print_json(const MeshResult *made)
     const PrintReport *report = &made->printed;
     double size[3];
     printing_size(&made->mesh, size);
-    const JsonMember members[] = {
+    json_t *all = JSON_OBJECT(
         {"scale", json_number(settings->scale)},
         {"min_diameter_mm", json_number(settings->min_diameter_mm)},
         {"segments_thickened", json_count(changes->thickened)},
@@ -98,20 +95,30 @@ static json_t *print_json(const MeshResult *made)
         {"segments_lengthened", segment_ids(vessels, report->lengthened, report->n_lengthened)},
         {"openings", json_count(report->openings)},
         {"closed_ends", segment_ids(vessels, report->closed, report->n_closed)},
-        {"lumen_mm3", json_number(report->lumen_mm3)},
-        {"pins", json_count(report->pins)},
+        {"lumen_mm3", json_number(report->lumen_mm3)}, {"pins", json_count(report->pins)},
         {"hanging", json_count(report->unsupported)},
-        {"closed_cavities", json_count(report->cavities)},
-        {"rings", json_count(report->rings)},
+        {"closed_cavities", json_count(report->cavities)}, {"rings", json_count(report->rings)},
         {"least_gap_mm", report->has_closest ? json_number(report->closest.gap_mm) : json_null()},
         {"least_gap_between",
          segment_ids(vessels, report->closest.segments, 2 * report->has_closest)},
-        {"smallest_feature_mm", json_number(smallest_of(made))},
-        {"size_mm", json_numbers(size, 3)},
-        {"bed_mm", settings->bed_mm[2] > 0 ? json_numbers(settings->bed_mm, 3) : json_null()},
-    };
-    json_t *all = json_with_members(json_object(), members, sizeof members / sizeof *members);
+        {"smallest_feature_mm", json_number(smallest_of(made))}, {"size_mm", json_numbers(size, 3)},
+        {"bed_mm", settings->bed_mm[2] > 0 ? json_numbers(settings->bed_mm, 3) : json_null()});
     return print_has_wall(&settings->params) ? with_wall(all, made) : all;
+}
+
+static json_t *layers_json(const PrismLayers *layers)
+{
+    const JsonMember members[] = {
+        {"layers", json_count(layers->n_layers)},
+        {"prisms", json_count(layers->n_prisms)},
+        {"inverted", json_count(0)}, /* else there is no file */
+        {"points_thinner", json_count(layers->n_thinner)},
+        {"mean_thickness", json_number(layers->mean_part)},
+        {"least_thickness", json_number(layers->least_part)},
+        {"volume_mm3", json_number(layers->volume_mm3)},
+        {"core_volume_mm3", json_number(layers->core_volume_mm3)},
+    };
+    return json_with_members(json_object(), members, sizeof members / sizeof *members);
 }
 
 static json_t *pair_list(const VesselTree *vessels, const MeshReport *report)
@@ -119,12 +126,10 @@ static json_t *pair_list(const VesselTree *vessels, const MeshReport *report)
     json_t *pairs = json_array();
     for (size_t i = 0; i < report->n_near; i++) {
         const NearPair *pair = &report->near[i];
-        const JsonMember members[] = {
-            {"segments", json_pack("[i,i]", (int)vessels->ids[pair->segments[0]],
-                                   (int)vessels->ids[pair->segments[1]])},
-            {"gap_mm", json_number(pair->gap_mm)},
-        };
-        pairs = json_with_item(pairs, json_with_members(json_object(), members, 2));
+        pairs = json_with_item(
+            pairs, JSON_OBJECT({"segments", json_pack("[i,i]", (int)vessels->ids[pair->segments[0]],
+                                                      (int)vessels->ids[pair->segments[1]])},
+                               {"gap_mm", json_number(pair->gap_mm)}));
     }
     return pairs;
 }
@@ -134,18 +139,14 @@ json_t *mesh_manifest(const MeshResult *made)
     const VesselTree *vessels = &made->vessels;
     const VesselMesh *mesh = &made->mesh;
     const MeshReport *report = &made->report;
-    const JsonMember members[] = {
-        {"generator", json_text(GENERATOR)},
-        {"model", json_text(vessel_body_names[vessels->body])},
-        {"unit", json_text("mm")},
-        {"trees", json_count(report->trees)},
-        {"components", json_count(report->components)},
-        {"genus", json_count(report->genus)},
+    json_t *all = JSON_OBJECT(
+        {"generator", json_text(GENERATOR)}, {"model", json_text(vessel_body_names[vessels->body])},
+        {"unit", json_text("mm")}, {"trees", json_count(report->trees)},
+        {"components", json_count(report->components)}, {"genus", json_count(report->genus)},
         {"euler", json_integer(report->euler)},
         {"watertight", json_boolean(report->open_edges == 0)},
         {"self_intersections", json_count(report->crossings)},
-        {"bridges", json_count(report->bridges)},
-        {"segments", json_count(vessels->n_segments)},
+        {"bridges", json_count(report->bridges)}, {"segments", json_count(vessels->n_segments)},
         {"segments_present", json_count(vessels->n_segments - report->n_missing -
                                         report->n_enclosed - report->n_slivers)},
         {"segments_missing", segment_ids(vessels, report->missing, report->n_missing)},
@@ -154,14 +155,12 @@ json_t *mesh_manifest(const MeshResult *made)
         {"segments_thinned", segment_ids(vessels, made->thinned.at, made->thinned.n)},
         {"segments_lengthened", segment_ids(vessels, made->longer.at, made->longer.n)},
         {"round_ends", segment_ids(vessels, report->round, report->n_round)},
-        {"near_pairs", pair_list(vessels, report)},
-        {"triangles", json_count(mesh->n_triangles)},
-        {"points", json_count(mesh->n_points)},
-        {"volume_mm3", json_number(report->volume_mm3)},
+        {"near_pairs", pair_list(vessels, report)}, {"triangles", json_count(mesh->n_triangles)},
+        {"points", json_count(mesh->n_points)}, {"volume_mm3", json_number(report->volume_mm3)},
         {"tolerance", json_number(report->tolerance)},
         {"max_distance_mm", json_number(report->deviation.mm)},
-        {"max_distance_over_radius", json_number(report->deviation.ratio)},
-    };
-    json_t *all = json_with_members(json_object(), members, sizeof members / sizeof *members);
+        {"max_distance_over_radius", json_number(report->deviation.ratio)});
+    if (made->emitter->has_layers)
+        all = json_with(all, "layers", layers_json(&made->layers));
     return made->print ? json_with(all, "print", print_json(made)) : all;
 }

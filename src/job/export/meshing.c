@@ -27,6 +27,15 @@ static Status take_vessels(MeshResult *made, VesselBody body, const Talk *talk, 
     return STATUS_OK;
 }
 
+/* Finds the Strahler order of each segment; 0 in a network with links. */
+static Status find_orders(const Tree *tree, Field *orders, Err *err)
+{
+    if (!tree->link)
+        return derive_rule(tree, &(TreeMeta){0}, "strahler", orders, err);
+    *orders = (Field){.name = "strahler", .unit = "", .n = tree->n};
+    return mem_calloc(&orders->value, tree->n, sizeof *orders->value, "orders", err);
+}
+
 /* Finds the colors of the segments, and the Strahler orders by which the file groups them. */
 static Status color_vessels(const MeshingOptions *options, const Talk *talk, MeshResult *made,
                             Err *err)
@@ -37,7 +46,7 @@ static Status color_vessels(const MeshingOptions *options, const Talk *talk, Mes
     TRY(coloring_appearance(&options->coloring, &tree, &look, &made->appearance, err));
     coloring_say(&made->appearance, talk);
     TRY(stage_anatomy(tree.drawn, picture_pieces(&made->of), vec3(0, 0, 0), &made->anatomy, err));
-    return derive_rule(tree.drawn, &(TreeMeta){0}, "strahler", &made->orders, err);
+    return find_orders(tree.drawn, &made->orders, err);
 }
 
 /* ---- triangles ------------------------------------------------------------------------------- */
@@ -120,6 +129,18 @@ static void say_result(const MeshResult *made, const Talk *talk)
         mesh_say_print(made, talk);
 }
 
+static void say_layers(const PrismLayers *layers, const Talk *talk)
+{
+    talk_note(talk, "%zu prisms, none of them inverted, fill %s mm\xC2\xB3", layers->n_prisms,
+              READABLE(layers->volume_mm3, 6));
+    if (layers->n_thinner)
+        talk_note(
+            talk,
+            "the layers are thinner than asked for at %zu of %zu points; their mean thickness "
+            "is %.3f of it, their smallest %.2g",
+            layers->n_thinner, layers->n_wall_points, layers->mean_part, layers->least_part);
+}
+
 static Status triangulate(const MeshingOptions *options, const Common *common, MeshResult *made,
                           Err *err)
 {
@@ -133,8 +154,14 @@ static Status triangulate(const MeshingOptions *options, const Common *common, M
     TRY(work_make(&work, &job, NULL, common->talk, err));
     TRY(meshreport_check(&made->report, &made->vessels, err));
     say_result(made, common->talk);
-    return made->emitter->has_parts ? meshends_find(&made->mesh, &made->vessels, &made->ends, err)
-                                    : STATUS_OK;
+    if (made->emitter->has_parts)
+        TRY(meshends_find(&made->mesh, &made->vessels, &made->ends, err));
+    if (!made->emitter->has_layers)
+        return STATUS_OK;
+    TRY(prismlayers_sweep(&made->mesh, &made->vessels, &options->layers, common->threads,
+                          &made->layers, err));
+    say_layers(&made->layers, common->talk);
+    return STATUS_OK;
 }
 
 Status meshing_make(const Emitter *emitter, const MeshingOptions *options, PictureTree *of,
@@ -170,6 +197,7 @@ void meshing_release(MeshResult *mesh)
     vesselmesh_release(&mesh->mesh);
     meshreport_release(&mesh->report);
     meshends_release(&mesh->ends);
+    prismlayers_release(&mesh->layers);
     printreport_release(&mesh->printed);
     free(mesh->thinned.at);
     free(mesh->longer.at);
@@ -183,6 +211,9 @@ static Status put_beside(const MeshResult *made, FileSlot files[], Err *err)
     work_put_json(&files[MESH_MANIFEST], mesh_manifest(made));
     if (files[MESH_GMSH].path)
         solver_gmsh(&made->ends, file_name(files[SCENE_FILE].path), &files[MESH_GMSH].text);
+    if (files[MESH_CORE].path)
+        solver_core(&made->ends, &made->layers, file_name(files[SCENE_FILE].path),
+                    &files[MESH_CORE].text);
     if (!made->emitter->has_parts)
         return STATUS_OK;
     TRY(solver_ends(&made->ends, &made->of.tree, &made->vessels, &made->said,
@@ -201,6 +232,7 @@ static Status put_mesh(const void *job, const char *command, FileSlot files[], E
                                .orders = made->orders.value,
                                .anatomy = emitter->has_colors ? &made->anatomy : NULL,
                                .ends = &made->ends,
+                               .layers = &made->layers,
                                .digits = EMIT_DIGITS,
                                .command = command};
     if (emitter->of_meshes)

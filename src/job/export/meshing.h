@@ -20,6 +20,7 @@ typedef struct MeshingOptions {
                                  * thinner */
     const PrintSettings *print; /* makes a solid for a 3D printer; NULL: only the surface;
                                  * borrowed */
+    LayerParams layers;         /* used if the emitter has layers */
     const char *look;           /* name of a look or path; used if the emitter has colors */
     Coloring coloring;          /* used if the emitter has colors */
 } MeshingOptions;
@@ -42,6 +43,7 @@ typedef struct MeshResult {
     SegmentList longer;     /* segments that were lengthened to make room for a flat cut of their
                              * ends */
     MeshEnds ends;          /* the named parts, if the emitter writes them */
+    PrismLayers layers;     /* the layers of prisms, if the emitter writes them */
     Appearance appearance;  /* set if the emitter has colors, as are `orders` and `anatomy` */
     Field orders;           /* Strahler orders */
     Anatomy anatomy;
@@ -58,7 +60,7 @@ typedef struct MeshResult {
  * out     is released with meshing_release.
  * Errors  STATUS_DIFFERS if the mesh is invalid; STATUS_INPUT if the printer's nozzle is too wide
  *         or its bed too small; those of stage_vessels, coloring_appearance, work_make,
- *         vesselmesh_build, print_build and meshends_find. */
+ *         vesselmesh_build, print_build, meshends_find and prismlayers_sweep. */
 MUST_CHECK Status meshing_make(const Emitter *emitter, const MeshingOptions *options,
                                PictureTree *of, const Common *common, MeshResult *out, Err *err);
 void meshing_release(MeshResult *mesh);

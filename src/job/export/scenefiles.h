@@ -14,6 +14,7 @@ typedef enum SceneFile {
     MESH_ENDS,      /* a table of its ends */
     MESH_CENTERLINE,
     MESH_GMSH, /* geometry for gmsh, with named surfaces and volumes */
+    MESH_CORE, /* geometry for gmsh: the space inside the layers of prisms */
     SCENE_FILES
 } SceneFile;
 

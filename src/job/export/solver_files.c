@@ -168,13 +168,18 @@ static void put_volume(const MeshEnds *ends, bool (*bounds)(const MeshEnds *, si
                 name, number);
 }
 
-void solver_gmsh(const MeshEnds *ends, const char *file, Text *out)
+static void put_merge(const char *file, Text *out)
 {
-    bool is_hollow = false;
     text_puts(out, "Merge \"");
     for (const char *c = file; *c; c++)
         text_printf(out, "%s%c", *c == '"' || *c == '\\' ? "\\" : "", *c);
     text_puts(out, "\";\n");
+}
+
+void solver_gmsh(const MeshEnds *ends, const char *file, Text *out)
+{
+    bool is_hollow = false;
+    put_merge(file, out);
     for (size_t part = 0; part < meshends_parts(ends); part++) {
         const char *name = meshends_part_name(ends, part);
         is_hollow = is_hollow || strcmp(name, "outer") == 0;
@@ -183,4 +188,26 @@ void solver_gmsh(const MeshEnds *ends, const char *file, Text *out)
     put_volume(ends, bounds_blood, "blood", 1, out);
     if (is_hollow)
         put_volume(ends, bounds_wall, "wall", 2, out);
+}
+
+/* Appends a volume: the core of one tree. gmsh_write [emit/gmsh.c] numbers the surfaces: the
+ * triangles of part k are k + 1, and the inner surfaces come behind those of all triangles and
+ * quadrangles. */
+static void put_core(const MeshEnds *ends, const PrismLayers *layers, size_t tree, Text *out)
+{
+    const size_t number = tree + 2; /* volume 1 has the prisms */
+    text_printf(out, "Surface Loop(%zu) = {", number);
+    for (size_t end = 0; end < ends->n; end++)
+        if (layers->trees[ends->ends[end].segment] == tree)
+            text_printf(out, "%zu, ", ends->n_walls + end + 1);
+    text_printf(out, "%zu};\nVolume(%zu) = {%zu};\n", 2 * meshends_parts(ends) + 1 + tree, number,
+                number);
+}
+
+void solver_core(const MeshEnds *ends, const PrismLayers *layers, const char *file, Text *out)
+{
+    put_merge(file, out);
+    for (size_t tree = 0; tree < layers->n_trees; tree++)
+        put_core(ends, layers, tree, out);
+    text_printf(out, "Physical Volume(\"core\", 2) = {2:%zu};\n", layers->n_trees + 1);
 }

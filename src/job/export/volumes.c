@@ -255,25 +255,20 @@ static json_t *manifest(const Volumes *made, const char *command)
     const VoxelGrid *grid = &made->params.grid;
     const VoxelReport *report = &made->report;
     Vec3 first = vec3_add(grid->first, grid->origin);
-    const JsonMember members[] = {
-        {"generator", json_text(GENERATOR)},
-        {"command", json_text(command)},
-        {"model", json_text("rounded")},
-        {"unit", json_text("mm")},
-        {"voxels", json_pack("[I,I,I]", (json_int_t)grid->n[0], (json_int_t)grid->n[1],
-                             (json_int_t)grid->n[2])},
-        {"voxel_mm", json_vector(grid->step)},
-        {"first_voxel_mm", json_vector(first)},
-        {"full", json_number(sample_full(made->streams[0].type))},
-        {"segments", json_count(made->geometry.drawn)},
-        {"segments_within_others", json_count(made->within)},
-        {"labels", json_text(label_kinds[made->options->labels])},
-        {"labels_given_a_voxel", json_count(report->n_given_voxels)},
-        {"filled_voxels", json_integer(report->filled)},
-        {"volume_mm3", json_number(report->volume_mm3)},
-        {"union_mm3", json_number(report->union_mm3)},
-    };
-    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+    return JSON_OBJECT({"generator", json_text(GENERATOR)}, {"command", json_text(command)},
+                       {"model", json_text("rounded")}, {"unit", json_text("mm")},
+                       {"voxels", json_pack("[I,I,I]", (json_int_t)grid->n[0],
+                                            (json_int_t)grid->n[1], (json_int_t)grid->n[2])},
+                       {"voxel_mm", json_vector(grid->step)},
+                       {"first_voxel_mm", json_vector(first)},
+                       {"full", json_number(sample_full(made->streams[0].type))},
+                       {"segments", json_count(made->geometry.drawn)},
+                       {"segments_within_others", json_count(made->within)},
+                       {"labels", json_text(label_kinds[made->options->labels])},
+                       {"labels_given_a_voxel", json_count(report->n_given_voxels)},
+                       {"filled_voxels", json_integer(report->filled)},
+                       {"volume_mm3", json_number(report->volume_mm3)},
+                       {"union_mm3", json_number(report->union_mm3)});
 }
 
 /* Returns the volume's box, as the scene of a density file needs it. */

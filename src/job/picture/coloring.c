@@ -327,15 +327,9 @@ json_t *coloring_json(const Appearance *appearance)
     json_t *bounds = json_array();
     for (int i = 0; i < scale->n_bounds; i++)
         bounds = json_with_item(bounds, json_number(scale->bounds[i]));
-    const JsonMember members[] = {
-        {"field", json_text(scale->name)},
-        {"unit", json_text(scale->unit)},
-        {"low", json_number(scale->range[0])},
-        {"high", json_number(scale->range[1])},
-        {"log", json_boolean(scale->log)},
-        {"classes", json_integer(colorscale_steps(scale))},
-        {"bounds", bounds},
-        {"said", json_text(appearance->meaning)},
-    };
-    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+    return JSON_OBJECT({"field", json_text(scale->name)}, {"unit", json_text(scale->unit)},
+                       {"low", json_number(scale->range[0])},
+                       {"high", json_number(scale->range[1])}, {"log", json_boolean(scale->log)},
+                       {"classes", json_integer(colorscale_steps(scale))}, {"bounds", bounds},
+                       {"said", json_text(appearance->meaning)});
 }

@@ -204,13 +204,10 @@ json_t *rendering_json(const Rendering *r)
                   "rays", (json_int_t)stats.rays, "threads",
                   r->params.threads ? r->params.threads : threads_available());
     if (model_has(scene->geometry.model, MODEL_JOINTS)) {
-        const JsonMember of_joints[] = {
-            {"joints", json_count(staged->joints)},
-            {"places_short", json_count(staged->places_short)},
-            {"places_sharp", json_count(staged->places_sharp)},
-            {"places_crowded", json_count(staged->places_crowded)},
-        };
-        report = json_with_members(report, of_joints, sizeof of_joints / sizeof *of_joints);
+        report = JSON_WITH(report, {"joints", json_count(staged->joints)},
+                           {"places_short", json_count(staged->places_short)},
+                           {"places_sharp", json_count(staged->places_sharp)},
+                           {"places_crowded", json_count(staged->places_crowded)});
     }
     if (r->report.smooth.pieces)
         report = json_with(report, "smooth", smooth_json(&r->report.smooth));

@@ -541,23 +541,20 @@ json_t *pulsing_json(const Pulsing *made)
     const PulsingReport *report = &made->report;
     const Pulse *pulse = &made->pulse;
     const Phasor z = pulse_root_impedance(pulse, 0, 1);
-    const JsonMember members[] = {
-        {"period_s", json_number(pulse->period_s)},
-        {"harmonics", json_count((uint64_t)pulse->params.harmonics)},
-        {"drive", json_text(made->options->drive)},
-        {"drive_is", json_text(drive_kinds[made->drive.is_flow])},
-        {"womersley", json_numbers(report->alpha, 2)},
-        {"wave_speed_m_s", json_numbers(report->wave_speed, 2)},
-        {"inlet_pressure_mmhg", json_numbers(report->inlet_mmhg, 2)},
-        {"impedance_mmhg_s_ml", json_numbers((double[]){z.re, z.im}, 2)},
-        {"resistance_mmhg_s_ml", json_number(pulse_root_impedance(pulse, 0, 0).re)},
-        {"osi_max", json_number(report->osi)},
-        {"oscillating_fraction", json_number(report->oscillating)},
-        {"reversing_fraction", json_number(report->reversing)},
-        {"area_strain_max", json_number(report->strain)},
-        {"velocity_over_wave_speed_max", json_number(report->mach)},
-    };
-    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+    return JSON_OBJECT({"period_s", json_number(pulse->period_s)},
+                       {"harmonics", json_count((uint64_t)pulse->params.harmonics)},
+                       {"drive", json_text(made->options->drive)},
+                       {"drive_is", json_text(drive_kinds[made->drive.is_flow])},
+                       {"womersley", json_numbers(report->alpha, 2)},
+                       {"wave_speed_m_s", json_numbers(report->wave_speed, 2)},
+                       {"inlet_pressure_mmhg", json_numbers(report->inlet_mmhg, 2)},
+                       {"impedance_mmhg_s_ml", json_numbers((double[]){z.re, z.im}, 2)},
+                       {"resistance_mmhg_s_ml", json_number(pulse_root_impedance(pulse, 0, 0).re)},
+                       {"osi_max", json_number(report->osi)},
+                       {"oscillating_fraction", json_number(report->oscillating)},
+                       {"reversing_fraction", json_number(report->reversing)},
+                       {"area_strain_max", json_number(report->strain)},
+                       {"velocity_over_wave_speed_max", json_number(report->mach)});
 }
 
 /* The kinds of the output and of the outlets decide which options have an effect. */
@@ -584,6 +581,7 @@ const Command command_pulse = {
     .min_operands = 1,
     .max_operands = 1,
     .reads_tree = true,
+    .trees_only = true,
     .size = sizeof(PulsingOptions),
     .set_defaults = set_defaults,
     .tables = {{&table, 0}, {&blood_table, offsetof(PulsingOptions, blood)}},

@@ -193,19 +193,12 @@ json_t *certified_json(const Certified *found)
     json_t *parts = json_object();
     for (int k = 0; k < PARTS; k++)
         parts = json_with(parts, part_rows[k].key, json_number(found->part[k]));
-    const JsonMember members[] = {
-        {"target", json_number(bound->target)},
-        {"lambda", json_number(bound->lambda)},
-        {"bound", json_number(bound->bound)},
-        {"gap", json_number(bound->best / bound->bound - 1)},
-        {"best_geometry", json_number(bound->best)},
-        {"best_murray", json_number(bound->murray)},
-        {"refined", json_number(found->refined)},
-        {"parts", parts},
-        {"terminals", json_count(bound->outlets)},
-        {"seconds", json_number(found->seconds)},
-    };
-    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+    return JSON_OBJECT(
+        {"target", json_number(bound->target)}, {"lambda", json_number(bound->lambda)},
+        {"bound", json_number(bound->bound)}, {"gap", json_number(bound->best / bound->bound - 1)},
+        {"best_geometry", json_number(bound->best)}, {"best_murray", json_number(bound->murray)},
+        {"refined", json_number(found->refined)}, {"parts", parts},
+        {"terminals", json_count(bound->outlets)}, {"seconds", json_number(found->seconds)});
 }
 
 Status bound_json(const Tree *tree, const TreeMeta *said, json_t **out, Err *err)
@@ -218,10 +211,8 @@ Status bound_json(const Tree *tree, const TreeMeta *said, json_t **out, Err *err
         return STATUS_OK;
     Bound bound;
     TRY(bound_tree(tree, lambda, &bound, err));
-    const JsonMember members[] = {{"target", json_number(bound.target)},
-                                  {"bound", json_number(bound.bound)},
-                                  {"above", json_number(bound.target / bound.bound - 1)}};
-    *out = json_with_members(json_object(), members, sizeof members / sizeof *members);
+    *out = JSON_OBJECT({"target", json_number(bound.target)}, {"bound", json_number(bound.bound)},
+                       {"above", json_number(bound.target / bound.bound - 1)});
     bound_release(&bound);
     return STATUS_OK;
 }
@@ -236,6 +227,7 @@ const Command command_certify = {
     .min_operands = 1,
     .max_operands = 1,
     .reads_tree = true,
+    .trees_only = true,
     .size = sizeof(CertifyOptions),
     .tables = {{&table, 0}},
 };

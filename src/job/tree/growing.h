@@ -10,6 +10,9 @@
 typedef struct Growing {
     GrowParams params; /* its pointers borrow from the other members */
     const char *domain_spec, *from_path, *demand_spec; /* NULL: not given; borrowed */
+    const char *fill;       /* name of the published table by which the tree is filled; NULL: the
+                             * tree is grown */
+    int fill_from, fill_to; /* as FillRules */
     VectorList inlet;
     NumberList inlet_share;
     bool given[META_KEYS]; /* per key of the metadata: an option specified its value */
@@ -36,8 +39,9 @@ MUST_CHECK Status growing_prepare(Growing *growing, Parsed *parsed, Err *err);
  * of demand_read. */
 MUST_CHECK Status growing_read_demand(Growing *growing, Err *err);
 
-/* Grows a tree and shows progress. If growth stopped early, as --partial allows, warns and states
- * the reason. Errors: those of grow_tree. */
+/* Grows a tree, or fills the tree of --from if `fill` is set, and shows progress. If growth stopped
+ * early, as --partial allows, warns and states the reason. Errors: those of grow_tree, fill_tree
+ * and morphometry_read. */
 MUST_CHECK Status growing_run(Growing *growing, const Parsed *parsed, Tree *tree,
                               GrowReport *report, Err *err);
 

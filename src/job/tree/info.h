@@ -17,9 +17,9 @@ typedef struct InfoReport {
     bool has_statistics, has_morphometry; /* the user asked for them */
     TreeStatistics statistics;            /* set if has_statistics */
     Morphometry table;                    /* the published table; set if has_morphometry */
-    MorphometryComparison comparison;     /* the tree against the table; set if has_morphometry */
-    json_t *bound;                        /* the result of bound_json [certify.h]; owned; NULL: not
-                                           * requested */
+    MorphometryComparison comparison[MORPHOMETRY_ORDERS]; /* set if has_morphometry */
+    MorphometryOrders orders; /* the comparison whose numbers are reported one by one */
+    json_t *bound;            /* the result of bound_json [certify.h]; owned; NULL: not requested */
 } InfoReport;
 
 /* Measures the tree that is the first operand.

@@ -80,21 +80,18 @@ static Status make_report(const RefineReport *report, MadeTree *made, Err *err)
 {
     json_t *bound;
     TRY(bound_json(&made->tree, &made->tree.meta, &bound, err));
-    const JsonMember members[] = {
-        {"generator", json_text(GENERATOR)},
-        {"seconds", json_number(report->seconds)},
-        {"target_before", json_number(report->target_before)},
-        {"target", json_number(report->target_after)},
-        {"moves_tried", json_count(report->moves_tried)},
-        {"moves_kept", json_count(report->moves_kept)},
-        {"thickness", json_number(report->thickness)},
-        {"broken", json_count(report->broken)},
-        {"apart_mm", json_number(report->apart_mm)},
-        {"stopped", json_boolean(report->stopped)},
-        {"bound", bound},
-    };
     return madetree_report(
-        made, json_with_members(json_object(), members, sizeof members / sizeof *members), err);
+        made,
+        JSON_OBJECT({"generator", json_text(GENERATOR)}, {"seconds", json_number(report->seconds)},
+                    {"target_before", json_number(report->target_before)},
+                    {"target", json_number(report->target_after)},
+                    {"moves_tried", json_count(report->moves_tried)},
+                    {"moves_kept", json_count(report->moves_kept)},
+                    {"thickness", json_number(report->thickness)},
+                    {"broken", json_count(report->broken)},
+                    {"apart_mm", json_number(report->apart_mm)},
+                    {"stopped", json_boolean(report->stopped)}, {"bound", bound}),
+        err);
 }
 
 /* Reads the tree and the domain. *found is false if there is no domain. */
@@ -140,6 +137,7 @@ const Command command_refine = {
     .max_operands = 1,
     .needs_output = true,
     .reads_tree = true,
+    .trees_only = true,
     .size = sizeof(RefineOptions),
     .set_defaults = set_defaults,
     .tables = {{&own_table, 0}, {&refining_table, offsetof(RefineOptions, refining)}},

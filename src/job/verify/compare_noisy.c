@@ -65,16 +65,12 @@ static Status read_variance(Plane *variance, const char *path, Err *err)
 
 json_t *noise_json(const NoiseResult *result)
 {
-    const JsonMember members[] = {
+    return JSON_OBJECT(
         {"verdict", json_text(result->agrees ? "agree" : "differ")},
-        {"alarm_rate", json_number(result->rate)},
-        {"sigmas", json_number(result->sigmas)},
-        {"sigmas_allowed", json_number(result->limit)},
-        {"gain", json_number(result->gain)},
+        {"alarm_rate", json_number(result->rate)}, {"sigmas", json_number(result->sigmas)},
+        {"sigmas_allowed", json_number(result->limit)}, {"gain", json_number(result->gain)},
         {"tile_sigmas", json_number(result->tile_sigmas)},
-        {"tile_sigmas_allowed", json_number(result->tile_limit)},
-    };
-    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+        {"tile_sigmas_allowed", json_number(result->tile_limit)});
 }
 
 void noise_text(const NoiseResult *result, Text *out)

@@ -1,0 +1,164 @@
+/* All numbers that determine the colors of a scene, as a digest and as JSON. */
+#include "answer/answer.h"
+
+/* ---- digest ---------------------------------------------------------------------------------- */
+
+static void add_numbers(Hash *hash, const double *numbers, size_t n)
+{
+    hash_add(hash, numbers, n * sizeof *numbers);
+}
+
+static void add_vector(Hash *hash, Vec3 v)
+{
+    add_numbers(hash, (const double[]){v.x, v.y, v.z}, 3);
+}
+
+static void add_rgb(Hash *hash, Rgb color)
+{
+    add_vector(hash, vec3((double)color.r, (double)color.g, (double)color.b));
+}
+
+static void add_finish(Hash *hash, const Finish *f)
+{
+    const double numbers[] = {(double)f->ambient,  (double)f->diffuse,    (double)f->brilliance,
+                              (double)f->phong,    (double)f->phong_size, (double)f->specular,
+                              (double)f->roughness};
+    add_numbers(hash, numbers, sizeof numbers / sizeof *numbers);
+}
+
+static void add_view(Hash *hash, const View *view, bool shadows)
+{
+    const Camera *camera = &view->camera;
+    add_numbers(hash, (const double[]){camera->projection, camera->width, camera->height, shadows},
+                4);
+    const Vec3 vectors[] = {camera->location, camera->right, camera->up, camera->direction,
+                            view->ground.normal};
+    for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++)
+        add_vector(hash, vectors[i]);
+    for (size_t i = 0; i < view->n_lights; i++) {
+        const Light *light = &view->lights[i];
+        add_vector(hash, light->location);
+        add_vector(hash, light->target);
+        add_vector(hash, light->sides[0]);
+        add_vector(hash, light->sides[1]);
+        add_rgb(hash, light->color);
+        add_numbers(hash, (const double[]){light->parallel, light->casts_shadows, light->samples},
+                    3);
+    }
+    add_numbers(hash, (const double[]){view->ground.present, view->ground.offset_mm}, 2);
+    add_rgb(hash, view->ground.color);
+    add_finish(hash, &view->ground.finish);
+    add_rgb(hash, view->background);
+    add_numbers(hash,
+                (const double[]){view->fade.nearest, view->fade.farthest, view->fade.near_mm,
+                                 view->fade.far_mm},
+                4);
+}
+
+HashText answer_scene_hash(const Scene *scene, bool shadows)
+{
+    const Geometry *geometry = &scene->geometry;
+    Hash hash;
+    hash_begin(&hash);
+    hash_add_text(&hash, models[geometry->model].name);
+    for (size_t i = 0; i < geometry->n_primitives; i++) {
+        const Primitive *primitive = &geometry->primitives[i];
+        add_vector(&hash, primitive->a);
+        add_vector(&hash, primitive->b);
+        add_numbers(&hash, (const double[]){primitive->kind, primitive->radius_mm}, 2);
+        add_rgb(&hash, appearance_color(&scene->appearance, primitive->segment));
+    }
+    for (size_t i = 0; i < geometry->n_segments; i++) {
+        const FieldSegment *segment = &geometry->segments[i];
+        add_vector(&hash, segment->a);
+        add_vector(&hash, segment->b);
+        add_numbers(&hash, &segment->radius_mm, 1);
+        add_rgb(&hash, appearance_color(&scene->appearance, segment->segment));
+    }
+    add_finish(&hash, &scene->appearance.finish);
+    add_view(&hash, &scene->view, shadows);
+    return hash_text(&hash);
+}
+
+/* ---- JSON ------------------------------------------------------------------------------------ */
+
+static json_t *vector_json(Vec3 v)
+{
+    return json_numbers((const double[]){v.x, v.y, v.z}, 3);
+}
+
+static json_t *color_json(Rgb c)
+{
+    return json_numbers((const double[]){(double)c.r, (double)c.g, (double)c.b}, 3);
+}
+
+static json_t *finish_json(const Finish *finish)
+{
+    return JSON_OBJECT({"ambient", json_number((double)finish->ambient)},
+                       {"diffuse", json_number((double)finish->diffuse)},
+                       {"brilliance", json_number((double)finish->brilliance)},
+                       {"phong", json_number((double)finish->phong)},
+                       {"phong_size", json_number((double)finish->phong_size)},
+                       {"specular", json_number((double)finish->specular)},
+                       {"roughness", json_number((double)finish->roughness)});
+}
+
+static json_t *camera_json(const Camera *camera)
+{
+    const bool perspective = camera->projection == PROJECTION_PERSPECTIVE;
+    return JSON_OBJECT({"projection", json_text(perspective ? "perspective" : "orthographic")},
+                       {"location", vector_json(camera->location)},
+                       {"right", vector_json(camera->right)}, {"up", vector_json(camera->up)},
+                       {"direction", vector_json(camera->direction)},
+                       {"width", json_count((uint64_t)camera->width)},
+                       {"height", json_count((uint64_t)camera->height)});
+}
+
+static json_t *light_json(const Light *light)
+{
+    return JSON_OBJECT(
+        {"location", vector_json(light->location)}, {"target", vector_json(light->target)},
+        {"parallel", json_boolean(light->parallel)},
+        {"casts_shadows", json_boolean(light->casts_shadows)}, {"color", color_json(light->color)},
+        {"samples", json_count((uint64_t)light_points(light))},
+        {"side_a", vector_json(light->sides[0])}, {"side_b", vector_json(light->sides[1])});
+}
+
+static json_t *shape_json(const Scene *scene, const Primitive *primitive)
+{
+    const Appearance *look = &scene->appearance;
+    const bool is_ball = primitive->kind == PRIMITIVE_SPHERE;
+    return JSON_OBJECT(
+        {"kind", json_text(is_ball ? "sphere" : "cylinder")}, {"a", vector_json(primitive->a)},
+        {"b", vector_json(is_ball ? primitive->a : primitive->b)},
+        {"radius", json_number(primitive->radius_mm)},
+        {"color",
+         color_json(look->colors ? appearance_color(look, primitive->segment) : look->color)});
+}
+
+static json_t *ground_json(const Ground *ground)
+{
+    return ground->present ? JSON_OBJECT({"normal", vector_json(ground->normal)},
+                                         {"offset", json_number(ground->offset_mm)},
+                                         {"color", color_json(ground->color)},
+                                         {"finish", finish_json(&ground->finish)})
+                           : json_null();
+}
+
+json_t *answer_scene_json(const Scene *scene, bool shadows)
+{
+    json_t *lights = json_array(), *shapes = json_array();
+    for (size_t i = 0; i < scene->view.n_lights; i++)
+        lights = json_with_item(lights, light_json(&scene->view.lights[i]));
+    for (size_t i = 0; i < scene->geometry.n_primitives; i++)
+        shapes = json_with_item(shapes, shape_json(scene, &scene->geometry.primitives[i]));
+    const Fade *fade = &scene->view.fade;
+    return JSON_OBJECT(
+        {"camera", camera_json(&scene->view.camera)},
+        {"background", color_json(scene->view.background)},
+        {"finish", finish_json(&scene->appearance.finish)}, {"shadows", json_boolean(shadows)},
+        {"fade",
+         json_numbers((const double[]){fade->nearest, fade->farthest, fade->near_mm, fade->far_mm},
+                      4)},
+        {"ground", ground_json(&scene->view.ground)}, {"lights", lights}, {"shapes", shapes});
+}
