@@ -46,7 +46,7 @@ static void put_extension(const MeshEnd *end, size_t node, const Tree *tree, con
     text_number(out, length);
     text_puts(out, ",");
     if (wss->value && isfinite(wss->value[node]))
-        text_number(out, 2 * wss->value[node] * length / tree->radius_mm[node]);
+        text_number(out, mmhg_from_pa(2 * wss->value[node] * length / tree->radius_mm[node]));
     text_puts(out, ",");
     if (reynolds->value && isfinite(reynolds->value[node]))
         text_number(out, extension_entrance(tree, reynolds, node));
