@@ -148,7 +148,6 @@ test_what_needs_a_tree_refuses_loops() {
 certify a.csv
 refine a.csv -o out.swc
 grow --from a.csv --terminals 20 -o out.swc
-diagram a.csv -o out.svg
 pulse a.csv -o out.csv
 info a.csv --json --bound
 info a.csv --morphometry kassab-lad
