@@ -501,7 +501,9 @@ static Status compute(Flowing *made, const TreeMeta *said, Err *err)
     if (status == STATUS_OK)
         status = solve(made, err);
     if (status == STATUS_INPUT && closed > 0)
-        err_prefix(err, "%zu segments are too narrow for flow (`repair_radii`, `radius`); ",
+        err_prefix(err,
+                   "%zu segments carry no flow, because their radius is 0 or, by Pries's law, "
+                   "their diameter at most 1.1 um; ",
                    closed);
     TRY(status);
     TRY(add_fields(made, err));
