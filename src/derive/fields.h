@@ -19,6 +19,9 @@ static inline const TreeMeta *value_source(const Tree *tree, const TreeMeta *ove
     return overrides->known[key] ? overrides : &tree->meta;
 }
 
+/* Sets `value` to NAN: a network with links has no orders. */
+void clear_orders(const Tree *tree, double *value);
+
 /* Finds a value that a field needs. Errors: STATUS_INPUT if neither the overrides nor the tree have
  * it, with a sentence that continues "the field NAME ". */
 MUST_CHECK Status needed_value(const Tree *tree, const TreeMeta *overrides, MetaKey key,

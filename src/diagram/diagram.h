@@ -27,8 +27,8 @@
  * segment that ends at node FigureBar.index, the link to that segment, or the cross bar at its end.
  */
 typedef struct Diagram {
-    FigureBar
-        *bar; /* owned; links first, then cross bars, then segments in the order of the tree */
+    /* Owned: links first, then cross bars, then segments in the order of the tree. */
+    FigureBar *bar;
     size_t n, n_links, n_crosses;
     double width_mm, height_mm; /* of all bars */
 } Diagram;

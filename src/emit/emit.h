@@ -35,10 +35,12 @@ typedef struct EmitParams {
     const VesselTree *vessels;    /* for emitters of curves; and for emitters of meshes, where the
                                    * labels of the mesh are indices of its segments */
     const Appearance *appearance; /* for emitters with has_colors */
-    const double *orders;    /* for emitters with has_colors: Strahler order per segment index */
-    const MeshEnds *ends;    /* for emitters with has_parts */
-    const char *templates;   /* the folder of templates, with a folder for each language */
-    const char *file;        /* name of the file, without folders, for comments in the file */
+    const double *orders;      /* for emitters with has_colors: Strahler order per segment index;
+                                * NAN: none */
+    const MeshEnds *ends;      /* for emitters with has_parts */
+    const PrismLayers *layers; /* for emitters with has_layers */
+    const char *templates;     /* the folder of templates, with a folder for each language */
+    const char *file;          /* name of the file, without folders, for comments in the file */
     const char *second_file; /* name of the second file, without folders; NULL: one file has all */
     const char *description; /* what the scene shows, in words; line ends become blanks */
     const char *settings;    /* name of the settings file; NULL: none is written */
@@ -86,6 +88,7 @@ typedef struct Emitter {
     bool of_lines;      /* writes params->vessels as curves, with params->anatomy; not the scene */
     bool has_colors;    /* writes params->appearance, and groups by params->orders */
     bool has_parts;     /* writes params->ends */
+    bool has_layers;    /* writes params->layers */
     const char *option; /* the option that selects it; NULL: it is the default of its extension */
     unsigned elements;  /* it can write models of these elements: bits ModelProperty */
     /* Checks the name of the second file. Errors: STATUS_USAGE. NULL: any name is allowed. */

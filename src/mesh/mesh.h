@@ -28,6 +28,7 @@
 #include "mesh/regions/adjust.h"    // IWYU pragma: export
 #include "mesh/regions/junctions.h" // IWYU pragma: export
 #include "mesh/regions/nearpairs.h" // IWYU pragma: export
+#include "mesh/sweep.h"             // IWYU pragma: export
 #include "scene/scene.h"
 
 /* The expected cost of a mesh, in most cases right within a factor of 2. */

@@ -68,6 +68,7 @@ typedef enum Condition {
     WHEN_COLORS,
     WHEN_MESH,
     WHEN_NAMED_PARTS,
+    WHEN_LAYERS,
     WHEN_VOLUME,
     WHEN_NO_VOLUME,
     WHEN_NO_PAGE,

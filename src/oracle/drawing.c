@@ -25,20 +25,12 @@ void drawing_command(const char *command, const DrawingMarks *marks, Text *out)
     shell_fill(command, all, sizeof all / sizeof *all, marks->needs_camera ? 3 : 2, out);
 }
 
-static Status name_file(const char *folder, const char *name, const char *extension, char **path,
-                        Err *err)
-{
-    char file[256];
-    snprintf(file, sizeof file, "%.200s.%s", name, extension);
-    return file_join(folder, file, path, err);
-}
-
 Status drawing_name(ShellDrawing *drawing, const char *folder, const char *name,
                     const char *scene_extension, const char *picture_extension, Err *err)
 {
-    TRY(name_file(folder, name, scene_extension, &drawing->scene, err));
-    TRY(name_file(folder, name, picture_extension, &drawing->picture, err));
-    return name_file(folder, name, "log", &drawing->log, err);
+    TRY(file_format_name(&drawing->scene, err, "%s/%s.%s", folder, name, scene_extension));
+    TRY(file_format_name(&drawing->picture, err, "%s/%s.%s", folder, name, picture_extension));
+    return file_format_name(&drawing->log, err, "%s/%s.log", folder, name);
 }
 
 void drawing_release(ShellDrawing *drawing)

@@ -388,7 +388,7 @@ test_level_of_detail_keeps_about_that_part_of_the_triangles() {
 test_refuses_an_unknown_extension() {
     run corcast export "$DATA/bifurcation.swc" -o m.xyz
     expect_status 2
-    expect_sentence "'m.xyz' does not end in .scad, .stl, .vtp, .ply, .glb, .obj, .3mf, .py, .usda or .inc"
+    expect_sentence "'m.xyz' does not end in .scad, .stl, .vtp, .msh, .vtu, .ply, .glb, .obj, .3mf, .py, .usda or .inc"
 }
 
 run_tests "$@"

@@ -130,7 +130,7 @@ test_a_wall_is_a_second_surface_and_tetgen_fills_wall_and_lumen() {
 test_refuses_a_wall_without_named_parts_and_beside_a_print() {
     run corcast export "$DATA/bifurcation.swc" --wall 0.3 -o m.stl
     expect_status 2
-    expect_sentence '--wall is for named parts: a \.vtp, or an \.stl with --parts'
+    expect_sentence '--wall is for named parts: a \.vtp, \.msh or \.vtu, or an \.stl with --parts'
     run corcast export "$DATA/bifurcation.swc" --wall 0.3 --print scale=2 -o m.vtp
     expect_status 2
     expect_sentence '--wall and --print exclude each other'
@@ -214,7 +214,7 @@ test_several_trees_have_inlets_by_their_ids() {
 test_refuses_parts_where_a_format_has_no_names_of_parts() {
     run corcast export "$DATA/bifurcation.swc" --parts -o m.glb
     expect_status 2
-    expect_sentence '--parts needs an \.stl or \.vtp output'
+    expect_sentence '--parts needs an \.stl, \.vtp, \.msh or \.vtu output'
     expect_only
 }
 
@@ -242,7 +242,16 @@ test_extensions_lengthen_ends_along_their_axes() {
     run_ok corcast grow --terminals 7 --domain disc:12 --seed 2 -o t.swc --quiet
     run_ok corcast export t.swc --mesh-tolerance 0.2 -o a.vtp --quiet
     printf 'id,radii\n6,2\n13,0\n' >some.csv
-    run_ok corcast export t.swc --mesh-tolerance 0.2 --extend 3 --extend-inlet 5 --extend-outlet some.csv -o b.vtp --quiet
+    run_ok corcast export t.swc --mesh-tolerance 0.2 --extend 3 --extend-inlet 5 --extend-outlet some.csv -o b.vtp
+    mv stderr entrances
+    run_ok corcast convert t.swc t.csv --fields reynolds --quiet
+    # The entrance length is 0.06 times the Reynolds number times the diameter, and is printed beside the extension.
+    awk -F, 'NR == FNR { for (k = 1; k <= NF; k++) if ($k ~ /reynolds/) c = k; re[$1] = $c; next }
+        FNR > 1 { if (($15 / (0.12 * re[$3] * $10) - 1)^2 > 1e-16) exit 1; if ($1 == "inlet") print $15, re[$3], $13 }' \
+        <(grep -v '^#' t.csv) b.ends.csv >entrance || fail "entrance lengths: $(cat t.csv b.ends.csv)"
+    read -r long re here <entrance
+    grep -qF "$(printf 'needs up to %.4g mm to develop at the inlets (segment 2, Reynolds number %.4g); the extension there has %.4g mm' \
+        "$long" "$re" "$here")" entrances || fail "$(cat entrances)"
     paste -d, <(sed 1d a.ends.csv) <(sed 1d b.ends.csv) | awk -F, '{
         radii = $3 == 13 ? 0 : $3 == 6 ? 2 : $1 == "inlet" ? 5 : 3
         if ($1 != $13 || $10 != $22 || $12 != $24) exit 1
@@ -264,6 +273,75 @@ test_extensions_lengthen_ends_along_their_axes() {
     run corcast export t.swc --extend 2 -o c.glb
     expect_status 2
     expect_sentence 'named parts'
+}
+
+# gmsh itself fills the core in tests/all/gmsh_test.sh.
+test_layers_of_prisms_fit_the_wall_and_each_other_without_an_inverted_one() {
+    run_ok corcast grow --terminals 7 --domain ball:41 --seed 7 -o t.swc --quiet
+    run_ok corcast export t.swc --parts --mesh-tolerance 0.1 --extend 2 -o t.stl --quiet
+    # Half a radius needs thinner layers in many places.
+    run_ok corcast export t.swc --mesh-tolerance 0.1 --extend 2 --layers 2 --layer-thickness 0.5 --layer-growth 1.7 -o t.msh
+    grep -qE '[0-9]+ prisms, none of them inverted' stderr || fail "it does not say so: $(cat stderr)"
+    expect_json t.msh.json '.layers | .layers == 2 and .inverted == 0 and .points_thinner > 50 and .mean_thickness > 0.8 and .least_thickness > 0.01'
+    run /usr/bin/python3 "$REPO/tests/oracle/prisms.py" t.msh t.msh.json t.ends.csv t.stl
+    expect_status 0
+    run_ok corcast export t.swc --mesh-tolerance 0.1 --extend 2 --layers 2 --layer-thickness 0.5 --layer-growth 1.7 --threads 3 -o same.msh --quiet
+    expect_same <(sed 5,6d t.msh) <(sed 5,6d same.msh)
+    # The second layer is 1.7 times as thick as the first one where a point is between them.
+    awk '/^\$Elements/ { e = 1 } $2 == "" { next } !e && NF == 4 { for (k = 0; k < 3; k++) x[$1, k] = $(k + 2) }
+        e && $2 == 6 { for (k = 6; k < 9; k++) outer[$k] = $(k + 3) }
+        END { for (i in outer) if (outer[i] in outer) {
+            n++
+            for (k = 0; k < 3; k++) d = x[i, k] - x[outer[i], k] - 1.7 * (x[outer[i], k] - x[outer[outer[i]], k])
+            if (d ^ 2 > 1e-10) exit 1
+        } exit n < 300 }' t.msh || fail "expected layers of the ratio 1.7"
+}
+
+test_vtk_reads_layers_of_prisms_as_wedges_of_its_own_orientation() {
+    /usr/bin/python3 -c 'import vtk' 2>import.log || skip "python3-vtk9 is not installed"
+    run_ok corcast grow --terminals 3 --domain ball:41 --seed 7 -o t.swc --quiet
+    run_ok corcast export t.swc --mesh-tolerance 0.1 -o t.vtu --quiet
+    run_ok corcast export t.swc --mesh-tolerance 0.1 -o t.msh --quiet
+    /usr/bin/python3 - >said <<'END' || fail "$(cat said)"
+import json, sys
+import numpy as np, vtk
+from vtk.util.numpy_support import vtk_to_numpy
+reader = vtk.vtkXMLUnstructuredGridReader()
+reader.SetFileName("t.vtu")
+reader.Update()
+grid = reader.GetOutput()
+layers = json.load(open("t.vtu.json"))["layers"]
+def expect(what, is_so):
+    if not is_so:
+        sys.exit(print("VTK:", what) or 1)
+types = np.array([grid.GetCellType(i) for i in range(grid.GetNumberOfCells())])
+names = grid.GetFieldData().GetAbstractArray("FaceNames")
+faces, layer = (vtk_to_numpy(grid.GetCellData().GetArray(name)) for name in ("ModelFaceID", "layer"))
+expect("names", [names.GetValue(i) for i in range(names.GetNumberOfValues())][:2] == ["wall", "inlet"])
+expect("wedges", (types == vtk.VTK_WEDGE).sum() == layers["prisms"])
+expect("parts", set(faces[types == vtk.VTK_WEDGE]) == {0} and set(faces[types == vtk.VTK_QUAD]) == {2, 3, 4, 5})
+expect("inner surface", set(faces[types == vtk.VTK_TRIANGLE]) == {1, 2, 3, 4, 5, 6})
+expect("layers", set(layer[types == vtk.VTK_WEDGE]) == {1, 2, 3} and set(layer[types == vtk.VTK_TRIANGLE]) == {0})
+corners = lambda at: [at.GetPointId(k) + 1 for k in range(6)]
+wedges = [corners(grid.GetCell(i)) for i in np.flatnonzero(types == vtk.VTK_WEDGE)]
+prisms = [[int(x) for x in line.split()[5:]] for line in open("t.msh") if line.split()[1:2] == ["6"] and len(line.split()) == 11]
+expect("corners", wedges == [p[3:] + p[:3] for p in prisms])
+x = vtk_to_numpy(grid.GetPoints().GetData()).astype(float)
+a, b, c, d = (x[np.array(wedges)[:, k] - 1] for k in range(4))
+expect("orientation", (np.einsum("ij,ij->i", np.cross(b - a, c - a), a - d) > 0).all())
+END
+}
+
+test_refuses_layers_where_there_are_none() {
+    run corcast export "$DATA/bifurcation.swc" --layers 4 -o m.vtp
+    expect_status 2
+    expect_sentence '--layers is for layers of prisms: a \.msh or \.vtu'
+    run corcast export "$DATA/bifurcation.swc" --layer-thickness 0.7 -o m.msh
+    expect_status 2
+    run corcast export "$DATA/bifurcation.swc" --wall 0.3 -o m.msh
+    expect_status 2
+    expect_sentence '--wall: layers of prisms need vessels as they are; write an \.stl or \.vtp'
+    expect_only
 }
 
 test_centrelines_have_the_arrays_of_simvascular() {

@@ -314,32 +314,6 @@ Status light_of_codes(const Picture *picture, Plane *lights, Err *err)
     return status;
 }
 
-typedef struct RowsWork {
-    RowSums *row;
-    const void *context;
-    double *sums; /* n for each row */
-    size_t n;
-} RowsWork;
-
-static void sum_row(size_t y, int worker, void *context)
-{
-    (void)worker;
-    const RowsWork *work = context;
-    work->row(work->context, (int)y, work->sums + y * work->n);
-}
-
-Status rows_sum(int height, RowSums *row, const void *context, double *sums, size_t n, Err *err)
-{
-    RowsWork work = {.row = row, .context = context, .n = n};
-    const size_t all = (size_t)height * n;
-    TRY(mem_calloc(&work.sums, all, sizeof *work.sums, "sums of rows", err));
-    threads_for((size_t)height, 0, sum_row, &work);
-    for (size_t i = 0; i < all; i++)
-        sums[i % n] += work.sums[i];
-    free(work.sums);
-    return STATUS_OK;
-}
-
 /* ---- all of them ----------------------------------------------------------------------------- */
 
 Status compare_cause(const Picture *a, const Picture *b, CompareResult *result, Err *err)

@@ -7,7 +7,7 @@
 #ifndef CORCAST_COMPARE_CAUSE_GUESSES_H
 #define CORCAST_COMPARE_CAUSE_GUESSES_H
 
-#include "compare/result.h"
+#include "compare/pixels.h"
 
 enum { CAUSE_SAMPLES = 256 };
 
@@ -45,13 +45,6 @@ static inline size_t asked_code(const Picture *picture, const Samples *samples, 
 /* Makes a plane of one row with the linear light of each code of such a picture. The caller
  * releases it. Errors: STATUS_MEMORY. */
 MUST_CHECK Status light_of_codes(const Picture *picture, Plane *lights, Err *err);
-
-/* Adds up numbers over the rows of a picture, which several threads compute: `n` sums, of which
- * `row` adds those of row y to `sums`. The order of adding does not depend on the threads. Errors:
- * STATUS_MEMORY. */
-typedef void RowSums(const void *context, int y, double *sums);
-MUST_CHECK Status rows_sum(int height, RowSums *row, const void *context, double *sums, size_t n,
-                           Err *err);
 
 /* A sentence about the cause. */
 typedef struct Sentence {

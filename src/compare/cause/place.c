@@ -20,7 +20,6 @@
  */
 #include "compare/cause/guesses.h"
 #include "compare/measures/labels.h"
-#include "compare/pixels.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -69,6 +69,25 @@ static const Option own[] = {
      .when = OF_SURFACE,
      .help = "STL only: write the wall and each vessel end as a named solid, as text; a VTP file "
              "always has them"},
+    {.name = "layers",
+     SETS(WHOLE, ExportOptions, meshing.layers.n_layers),
+     .group = GROUP_VESSELS,
+     FROM_TO(1, LAYERS_MAX),
+     .when = WHEN(LAYERS) | OF_SURFACE,
+     .help = "number of layers of prisms along the wall, for flow solvers; gmsh and VTU only"},
+    {.name = "layer-thickness",
+     SETS(NUMBER, ExportOptions, meshing.layers.thickness),
+     .group = GROUP_VESSELS,
+     FROM_TO(0.001, 0.5),
+     .when = WHEN(LAYERS) | OF_SURFACE,
+     .help = "thickness of all layers together, as a fraction of the local radius; layers are "
+             "thinner where prisms would be inverted"},
+    {.name = "layer-growth",
+     SETS(NUMBER, ExportOptions, meshing.layers.growth),
+     .group = GROUP_VESSELS,
+     FROM_TO(1, 2),
+     .when = WHEN(LAYERS) | OF_SURFACE,
+     .help = "thickness of a layer divided by the thickness of the layer nearer to the wall"},
     {.name = "lattice",
      SETS(FLAG, ExportOptions, lattice),
      .group = GROUP_VESSELS,
@@ -108,6 +127,7 @@ static void set_defaults(void *options)
     ExportOptions *own_options = options;
     own_options->meshing.tolerance = MESHING_TOLERANCE;
     own_options->meshing.lod = 1;
+    own_options->meshing.layers = (LayerParams){.n_layers = 3, .thickness = 0.2, .growth = 1.3};
     own_options->meshing.look = "cast";
     coloring_set_defaults(&own_options->meshing.coloring);
 }
@@ -124,8 +144,9 @@ static Status find_emitter(const ExportOptions *options, const Emitter **emitter
     else
         return STATUS_OK;
     if (options->parts && !asked && !(*emitter)->has_parts)
-        return err_set(err, STATUS_USAGE,
-                       "--parts needs an .stl or .vtp output, whose formats store names of parts");
+        return err_set(
+            err, STATUS_USAGE,
+            "--parts needs an .stl, .vtp, .msh or .vtu output, whose formats store names of parts");
     if (options->lattice && !asked)
         return err_set(err, STATUS_USAGE,
                        "--lattice needs a .3mf output, whose format stores beams");
@@ -153,6 +174,10 @@ static Status read_print(ExportOptions *options, const Emitter *emitter, Err *er
         return err_set(
             err, STATUS_USAGE,
             "`print` needs an output that stores solids; .inc is part of a POV-Ray scene");
+    if (emitter->has_layers)
+        return err_set(err, STATUS_USAGE,
+                       "`%s`: layers of prisms need vessels as they are; write an .stl or .vtp",
+                       options->print ? "print" : "wall");
     if (print_is_joined(&print->params) && options->meshing.body != BODY_POTENTIAL)
         return err_set(
             err, STATUS_USAGE,
@@ -182,7 +207,10 @@ static Status read_tree(const ExportOptions *options, unsigned properties, Parse
                         PictureTree *of, Err *err)
 {
     TRY(picture_read_tree(&options->meshing.coloring, options->prune_radius_mm, parsed, of, err));
+    const TreeMeta said = blood_said(&options->meshing.coloring.blood);
     Status status = extension_apply(&options->extension, parsed, &of->tree, err);
+    if (status == STATUS_OK)
+        status = extension_say(&of->tree, &said, parsed->common.talk, err);
     if (status == STATUS_OK && options->smooth)
         status = picture_smooth_tree(of, model_with(properties), err);
     if (status != STATUS_OK)
@@ -304,9 +332,10 @@ static ConditionSet unmet(const void *set, const Parsed *parsed)
     if (options->output && volume_format_find(options->output))
         return WHEN(COLORS) | WHEN(NO_VOLUME);
     return WHEN(VOLUME) |
-           (emitter ? UNLESS(emitter->has_colors, COLORS) | UNLESS(emitter->of_meshes, MESH) |
-                          UNLESS(emitter->has_parts, NAMED_PARTS)
-                    : 0);
+           (emitter
+                ? UNLESS(emitter->has_colors, COLORS) | UNLESS(emitter->of_meshes, MESH) |
+                      UNLESS(emitter->has_parts, NAMED_PARTS) | UNLESS(emitter->has_layers, LAYERS)
+                : 0);
 }
 
 static const OptionTable own_table = {OPTION_ROWS(own), .settle = settle, .unmet = unmet};

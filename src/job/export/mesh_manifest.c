@@ -106,6 +106,18 @@ static json_t *print_json(const MeshResult *made)
     return print_has_wall(&settings->params) ? with_wall(all, made) : all;
 }
 
+static json_t *layers_json(const PrismLayers *layers)
+{
+    /* A file with inverted prisms is not written. */
+    return JSON_OBJECT({"layers", json_count(layers->n_layers)},
+                       {"prisms", json_count(layers->n_prisms)}, {"inverted", json_count(0)},
+                       {"points_thinner", json_count(layers->n_thinner)},
+                       {"mean_thickness", json_number(layers->mean_part)},
+                       {"least_thickness", json_number(layers->least_part)},
+                       {"volume_mm3", json_number(layers->volume_mm3)},
+                       {"core_volume_mm3", json_number(layers->core_volume_mm3)});
+}
+
 static json_t *pair_list(const VesselTree *vessels, const MeshReport *report)
 {
     json_t *pairs = json_array();
@@ -145,5 +157,7 @@ json_t *mesh_manifest(const MeshResult *made)
         {"tolerance", json_number(report->tolerance)},
         {"max_distance_mm", json_number(report->deviation.mm)},
         {"max_distance_over_radius", json_number(report->deviation.ratio)});
+    if (made->emitter->has_layers)
+        all = json_with(all, "layers", layers_json(&made->layers));
     return made->print ? json_with(all, "print", print_json(made)) : all;
 }

@@ -19,6 +19,7 @@ typedef struct MeshingOptions {
     bool part_overlaps;         /* makes thin vessels thinner that overlap vessels to which they are
                                  * not connected */
     const PrintSettings *print; /* makes a solid for a printer; NULL: the surface alone; borrowed */
+    LayerParams layers;         /* used if the emitter has layers */
     const char *look;           /* name or path; read if the emitter has colors */
     Coloring coloring;          /* used if the emitter has colors */
 } MeshingOptions;
@@ -40,6 +41,7 @@ typedef struct MeshResult {
     SegmentList thinned;    /* segments that part_overlaps made thinner */
     SegmentList longer;     /* segments that were lengthened, so that their ends are flat */
     MeshEnds ends;          /* the named parts, if the emitter writes them */
+    PrismLayers layers;     /* the layers, if the emitter writes them */
     Appearance appearance;  /* this and the next two are set if the emitter has colors */
     Field orders;           /* Strahler orders */
     Anatomy anatomy;
@@ -55,7 +57,7 @@ typedef struct MeshResult {
  * out     is released with meshing_release.
  * Errors  STATUS_DIFFERS if the mesh is not sound; STATUS_INPUT if the printer's nozzle or bed is
  *         too large or too small; those of stage_vessels, coloring_appearance, work_make,
- *         vesselmesh_build, print_build and meshends_find. */
+ *         vesselmesh_build, print_build, meshends_find and prismlayers_sweep. */
 MUST_CHECK Status meshing_make(const Emitter *emitter, const MeshingOptions *options,
                                PictureTree *of, const Common *common, MeshResult *out, Err *err);
 void meshing_release(MeshResult *mesh);

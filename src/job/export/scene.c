@@ -108,10 +108,6 @@ static Status make_scene(const PictureOptions *picture, const Parsed *parsed, Sc
     PictureReport report;
     TRY(picture_scene_of(picture, &made->source, parsed, &made->scene, &made->anatomy, &report,
                          err));
-    Appearance *appearance = &made->scene.appearance;
-    if (picture->beat > 0 && appearance->n_frames > 0)
-        TRY(picture_widths(picture, &made->source.of, appearance->n_frames, &appearance->widths,
-                           err));
     TRY(picture_say(&made->scene, &report, parsed->common.talk, err));
     return made->emitter->has_view
                ? picture_say_effects(picture, "the scene omits them", parsed->common.talk, err)

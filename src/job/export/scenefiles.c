@@ -45,6 +45,8 @@ static const struct {
     [MESH_CENTERLINE] = {"the centreline", ".centreline.vtp", .of_mesh = true, .of_parts = true},
     [MESH_GMSH] = {"the geometry for gmsh", ".geo", .of_mesh = true, .of_parts = true,
                    .of_extension = "stl"},
+    [MESH_CORE] = {"the geometry of the core for gmsh", ".core.geo", .of_mesh = true,
+                   .of_parts = true, .of_extension = "msh"},
 };
 
 /* Returns true if the emitter writes this file beside its first one. */

@@ -14,6 +14,7 @@ typedef enum SceneFile {
     MESH_ENDS,      /* a table of its ends */
     MESH_CENTERLINE,
     MESH_GMSH, /* its surfaces and volumes by name, for gmsh */
+    MESH_CORE, /* what is inside its layers of prisms, for gmsh */
     SCENE_FILES
 } SceneFile;
 

@@ -246,11 +246,11 @@ static Status write_pictures(const TubeSuiteOptions *options, const TubeCase *on
                              const Image *image, const Plane *distances, Err *err)
 {
     Picture far = {0}, shown = {0};
-    char *beside = NULL, *path = NULL, *distance_path = NULL;
+    const char *folder = options->renderer.folder;
+    char *path = NULL, *distance_path = NULL;
     Status status;
-    TRY_GOTO(file_join(options->renderer.folder, file_name(one->drawing->scene), &beside, err));
-    TRY_GOTO(file_with_suffix(beside, ".png", &path, err));
-    TRY_GOTO(file_with_suffix(beside, ".distance.png", &distance_path, err));
+    TRY_GOTO(file_format_name(&path, err, "%s/%s.png", folder, one->name));
+    TRY_GOTO(file_format_name(&distance_path, err, "%s/%s.distance.png", folder, one->name));
     TRY_GOTO(answergrade_picture(distances, &far, err));
     TRY_GOTO(image->plane.values ? picture_from_plane(&shown, &image->plane, ENCODING_SRGB, 8, err)
                                  : picture_to_srgb(&shown, &image->picture, 8, err));
@@ -259,7 +259,6 @@ static Status write_pictures(const TubeSuiteOptions *options, const TubeCase *on
 done:
     picture_release(&far);
     picture_release(&shown);
-    free(beside);
     free(path);
     free(distance_path);
     return status;
