@@ -1,5 +1,5 @@
-/* The facts about a mesh, in notes for its user and in its manifest. Other programs read the keys
- * of the manifest, so that they stay when names in the code change. */
+/* Writes the facts about a mesh as notes for the user and as a manifest. Other programs read the
+ * keys of the manifest, so the keys must not change when names in the code change. */
 #include "job/export/meshing.h"
 #include "options/output.h"
 #include <math.h>
@@ -66,8 +66,8 @@ static json_t *with_wall(json_t *object, const MeshResult *made)
                      {"outer_mm3", json_number(made->printed.outer_mm3)});
 }
 
-/* Returns the minimum of the vessels' diameters, the walls' thicknesses and the gaps between
- * vessels, in mm. */
+/* Returns the size of the smallest feature, in mm: the minimum of the vessel diameters, wall
+ * thicknesses and gaps between vessels. */
 static double smallest_of(const MeshResult *made)
 {
     double least = made->changes.thinnest_mm;

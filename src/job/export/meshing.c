@@ -1,5 +1,5 @@
-/* The surface is proved before anything is written: the manifest describes the same triangles that
- * go into the file, and a mesh that is not sound is not written. */
+/* The mesh is validated before any file is written. The manifest therefore describes exactly the
+ * triangles in the file, and an invalid mesh is never written. */
 #include "job/export/meshing.h"
 
 #include "derive/derive.h"
@@ -27,7 +27,7 @@ static Status take_vessels(MeshResult *made, VesselBody body, const Talk *talk, 
     return STATUS_OK;
 }
 
-/* Finds the colors of the segments, and the orders by which the file groups them. */
+/* Finds the colors of the segments, and the Strahler orders by which the file groups them. */
 static Status color_vessels(const MeshingOptions *options, const Talk *talk, MeshResult *made,
                             Err *err)
 {
@@ -42,7 +42,7 @@ static Status color_vessels(const MeshingOptions *options, const Talk *talk, Mes
 
 /* ---- triangles ------------------------------------------------------------------------------- */
 
-/* A surface that is being triangulated. */
+/* The job of triangulating a surface. */
 typedef struct Triangulation {
     MeshResult *made;
     MeshParams params;

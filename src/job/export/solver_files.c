@@ -1,5 +1,6 @@
-/* The ends come from the mesh, and the flow through them from the tree. Radii and positions come
- * from the vessels, which may have been made thinner, and longer at their ends. */
+/* The ends are those of the mesh, and the flow through them is that of the tree. Radii and
+ * positions are those of the vessels, which may have been thinned, or lengthened at their ends,
+ * since the tree was read. */
 #include "job/export/solver_files.h"
 
 #include "derive/derive.h"
@@ -8,7 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Computes the fraction of all blood that passes each segment. *parts is owned. */
+/* Computes, per segment, the fraction of the total flow of all roots that passes it. The caller
+ * frees *parts. */
 static Status find_flow_parts(const Tree *tree, double **parts, Err *err)
 {
     double total = 0;
@@ -32,8 +34,9 @@ static void put_vector(Vec3 v, Text *out)
     }
 }
 
-/* Appends the length of an end's extension, the pressure drop of steady flow along it, mmHg: 2 wss
- * L / r, and the entrance length of laminar flow, mm. */
+/* Appends the length of an end's extension, in mm; the pressure drop of steady Poiseuille flow along
+ * it, 2 wss L / r, in mmHg; and the entrance length of laminar flow, in mm. What is unknown is left
+ * empty. */
 static void put_extension(const MeshEnd *end, size_t node, const Tree *tree, const Field *wss,
                           const Field *reynolds, Text *out)
 {
@@ -43,7 +46,7 @@ static void put_extension(const MeshEnd *end, size_t node, const Tree *tree, con
     text_number(out, length);
     text_puts(out, ",");
     if (wss->value && isfinite(wss->value[node]))
-        text_number(out, 2 * wss->value[node] * length / tree->radius_mm[node]);
+        text_number(out, mmhg_from_pa(2 * wss->value[node] * length / tree->radius_mm[node]));
     text_puts(out, ",");
     if (reynolds->value && isfinite(reynolds->value[node]))
         text_number(out, extension_entrance(tree, reynolds, node));
@@ -88,7 +91,7 @@ done:
     return status;
 }
 
-/* Copies the arrays of a tree that solver_centerline changes. */
+/* Copies the arrays that solver_centerline changes. */
 static Status copy_arrays(const Tree *tree, Tree *copy, Err *err)
 {
     const size_t n = tree->n;
@@ -130,7 +133,7 @@ done:
     return status;
 }
 
-/* Returns true if the part bounds the blood in the lumen. */
+/* Returns true if the part is on the boundary of the lumen. */
 static bool bounds_blood(const MeshEnds *ends, size_t part)
 {
     if (part < ends->n_walls)
@@ -138,13 +141,14 @@ static bool bounds_blood(const MeshEnds *ends, size_t part)
     return !ends->ends[part - ends->n_walls].is_ring;
 }
 
-/* Returns true if the part bounds the wall around the lumen. */
+/* Returns true if the part is on the boundary of the vessel wall. */
 static bool bounds_wall(const MeshEnds *ends, size_t part)
 {
     return part < ends->n_walls || ends->ends[part - ends->n_walls].is_ring;
 }
 
-/* Appends a volume. gmsh numbers the surfaces from 1, in the order of the file. */
+/* Appends a volume that is enclosed by the parts for which `bounds` returns true. gmsh numbers the
+ * surfaces from 1, in the order of the file. */
 static void put_volume(const MeshEnds *ends, bool (*bounds)(const MeshEnds *, size_t),
                        const char *name, int number, Text *out)
 {
