@@ -54,14 +54,14 @@ static json_t *notes_json(const TreeReading *reading)
 
 static json_t *network_json(const NetworkReading *network)
 {
-    return JSON_OBJECT({"points", json_count(network->points)},
-                       {"lines", json_count(network->lines)},
-                       {"lines_against", json_count(network->against)},
-                       {"merged_points", json_count(network->merged)},
-                       {"unused_points", json_count(network->unused)},
-                       {"lines_without_length", json_count(network->without_length)},
-                       {"repeated_lines", json_count(network->repeated)},
-                       {"loops", json_count(network->loops)}, {"cuts", cuts_json(network)});
+    return JSON_OBJECT(
+        {"points", json_count(network->points)}, {"lines", json_count(network->lines)},
+        {"lines_against", json_count(network->against)},
+        {"merged_points", json_count(network->merged)},
+        {"unused_points", json_count(network->unused)},
+        {"lines_without_length", json_count(network->without_length)},
+        {"repeated_lines", json_count(network->repeated)},
+        {"loops", json_count(network->loops + network->links)}, {"cuts", cuts_json(network)});
 }
 
 static json_t *reading_json(const TreeReading *reading)
@@ -138,19 +138,26 @@ static json_t *connectivity_json(const TreeStatistics *statistics)
 
 static json_t *statistics_json(const TreeStatistics *statistics)
 {
+    const bool orders = statistics->has_orders;
+    const OrderRatios none = {NAN, NAN, NAN};
+    size_t branch_points = 0;
+    for (int k = 3; k <= READ_MAX_DEGREE; k++)
+        branch_points += statistics->nodes_of_degree[k];
     return JSON_OBJECT(
         {"vessels", json_count(statistics->vessels)},
         {"volume_mm3", json_number(statistics->volume_mm3)},
         {"by_level", table_json("level", &statistics->by_level)},
         {"by_strahler", table_json("order", &statistics->by_strahler)},
-        {"strahler_ratios", ratios_json(&statistics->strahler_ratios)},
+        {"strahler_ratios", ratios_json(orders ? &statistics->strahler_ratios : &none)},
         {"by_diameter_strahler", table_json("order", &statistics->by_diameter_strahler)},
-        {"diameter_strahler_ratios", ratios_json(&statistics->diameter_strahler_ratios)},
+        {"diameter_strahler_ratios",
+         ratios_json(orders ? &statistics->diameter_strahler_ratios : &none)},
         {"connectivity", connectivity_json(statistics)},
         {"diameter_rounds", json_integer(statistics->diameter_rounds)},
         {"diameter_orders_converged", json_boolean(statistics->diameter_orders_converged)},
-        {"symmetry", bifurcations_json(&statistics->symmetry)},
-        {"area_ratio", bifurcations_json(&statistics->area_ratio)});
+        {"symmetry", orders ? bifurcations_json(&statistics->symmetry) : json_null()},
+        {"area_ratio", orders ? bifurcations_json(&statistics->area_ratio) : json_null()},
+        {"branch_points", json_count(branch_points)});
 }
 
 /* ---- morphometry ----------------------------------------------------------------------------- */
