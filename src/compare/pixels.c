@@ -78,3 +78,37 @@ double angle_deg(const float *a, const float *b)
     double x = ay * bz - az * by, y = az * bx - ax * bz, z = ax * by - ay * bx;
     return elementary_atan2(sqrt(x * x + y * y + z * z), ax * bx + ay * by + az * bz) * 180 / PI;
 }
+
+void add_integers(void *to, const void *from, size_t bytes)
+{
+    uint64_t *sums = to;
+    const uint64_t *added = from;
+    for (size_t i = 0; i < bytes / sizeof *sums; i++)
+        sums[i] += added[i];
+}
+
+typedef struct RowsWork {
+    RowSums *row;
+    const void *context;
+    double *sums; /* n for each row */
+    size_t n;
+} RowsWork;
+
+static void sum_row(size_t y, int worker, void *context)
+{
+    (void)worker;
+    const RowsWork *work = context;
+    work->row(work->context, (int)y, work->sums + y * work->n);
+}
+
+Status rows_sum(int height, RowSums *row, const void *context, double *sums, size_t n, Err *err)
+{
+    RowsWork work = {.row = row, .context = context, .n = n};
+    const size_t all = (size_t)height * n;
+    TRY(mem_calloc(&work.sums, all, sizeof *work.sums, "sums of rows", err));
+    threads_for((size_t)height, 0, sum_row, &work);
+    for (size_t i = 0; i < all; i++)
+        sums[i % n] += work.sums[i];
+    free(work.sums);
+    return STATUS_OK;
+}

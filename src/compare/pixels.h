@@ -28,6 +28,16 @@ bool geometry_differs(const Rendering *a, const Rendering *b, size_t pixel, doub
  * all do not exceed. Reorders the values. Cost O(n). */
 double percentile(double *values, size_t n, double fraction);
 
+/* Adds structs that consist of 64-bit integers alone, member by member. */
+void add_integers(void *to, const void *from, size_t bytes);
+
+/* Adds up numbers over the rows of a picture, which several threads compute: `n` sums, of which
+ * `row` adds those of row y to `sums`. The order of adding does not depend on the threads. Errors:
+ * STATUS_MEMORY. */
+typedef void RowSums(const void *context, int y, double *sums);
+MUST_CHECK Status rows_sum(int height, RowSums *row, const void *context, double *sums, size_t n,
+                           Err *err);
+
 /* Returns the angle between two vectors in degrees. It is exact for small angles, too. */
 double angle_deg(const float *a, const float *b);
 

@@ -45,8 +45,22 @@ typedef struct BifurcationSpread {
     double mean, sd, median; /* NAN if count is 0 */
 } BifurcationSpread;
 
+/* A vessel, as a row of a table. */
+typedef struct VesselRow {
+    int32_t start, end; /* nodes: its ends; equal in a vessel that closes a loop alone */
+    double radius_mm, length_mm;
+    double chord_mm; /* distance between its ends */
+} VesselRow;
+
 typedef struct TreeStatistics {
     size_t vessels;
+    VesselRow *vessel; /* per vessel; owned */
+    uint8_t *degree;   /* per node: number of segments that meet there, at most 255; 0 for a node
+                        * with a link, which is the same point as another node; owned */
+    size_t nodes_of_degree[READ_MAX_DEGREE + 1]; /* the last entry counts higher degrees, too */
+    size_t components, loops;                    /* connected components and independent loops */
+    bool has_orders;   /* false for a network with links: without Strahler orders, symmetry and area
+                        * ratio, because its vessels have no daughters */
     double volume_mm3; /* sum of pi r^2 l over the segments */
     StatisticsTable by_level, by_strahler, by_diameter_strahler;
     OrderRatios strahler_ratios, diameter_strahler_ratios;

@@ -2,9 +2,6 @@
  * All numbers are written with as many digits as they need to be read back exactly. */
 #include "metamorph/adapters.h"
 
-#include "oracle/shell.h"
-#include <stdio.h>
-
 static const double palette[TRIAL_COLORS][3] = {
     {1, 0.5, 0.25}, {0.25, 0.75, 1}, {0.5, 1, 0.5}, {0.75, 0.25, 0.75}};
 
@@ -305,22 +302,19 @@ const TrialAdapter trial_adapters[TRIAL_FORMATS] = {
 };
 
 void trial_command(const char *command, TrialFormat format, const TrialScene *scene,
-                   const TrialFiles *files, Text *out)
+                   const char *path, const char *picture, Text *out)
 {
     Text camera = TEXT_INIT;
-    char width[16], height[16];
-    snprintf(width, sizeof width, "%d", scene->width_px);
-    snprintf(height, sizeof height, "%d", scene->height_px);
     put_camera(scene, &camera);
-    if (text_chars(&camera)) {
-        const ShellMark marks[] = {{"{scene}", files->scene, false},
-                                   {"{picture}", files->picture, false},
-                                   {"{camera}", text_chars(&camera), true},
-                                   {"{width}", width, true},
-                                   {"{height}", height, true}};
-        shell_fill(command, marks, 5, format == TRIAL_SWC ? 3 : 2, out);
-    } else {
+    const DrawingMarks marks = {.scene = path,
+                                .picture = picture,
+                                .camera = text_chars(&camera),
+                                .width = scene->width_px,
+                                .height = scene->height_px,
+                                .needs_camera = format == TRIAL_SWC};
+    if (marks.camera)
+        drawing_command(command, &marks, out);
+    else
         text_puts(out, NULL);
-    }
     text_release(&camera);
 }

@@ -3,6 +3,7 @@
 #define CORCAST_METAMORPH_ADAPTERS_H
 
 #include "metamorph/trial.h"
+#include "oracle/drawing.h"
 
 /* The formats of scenes: POV-Ray, Tachyon, and trees for `corcast render`. */
 typedef enum TrialFormat { TRIAL_POV, TRIAL_TACHYON, TRIAL_SWC, TRIAL_FORMATS } TrialFormat;
@@ -18,18 +19,10 @@ typedef struct TrialAdapter {
 /* Per TrialFormat. */
 extern const TrialAdapter trial_adapters[TRIAL_FORMATS];
 
-/* Paths of the files of one drawing. Borrowed. */
-typedef struct TrialFiles {
-    const char *scene, *picture;
-} TrialFiles;
-
-/* Appends the shell command that draws a scene.
- *
- * Replaces the marks {scene}, {picture}, {width}, {height} and {camera} in the user's `command`.
- * {camera} stands for options of `corcast render` that state the camera, the size and the shadows,
- * because a file of the format swc does not hold them. If {scene} is missing, appends the paths of
- * the scene and of the picture as words and, for the format swc, the options of {camera}. */
+/* Appends the shell command that draws a scene, with the paths of scene and picture
+ * [drawing_command]. The camera is stated by options of `corcast render`, as are the size and the
+ * shadows; a file of the format swc does not hold them. */
 void trial_command(const char *command, TrialFormat format, const TrialScene *scene,
-                   const TrialFiles *files, Text *out);
+                   const char *path, const char *picture, Text *out);
 
 #endif

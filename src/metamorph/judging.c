@@ -1,9 +1,6 @@
-/* Each drawing has a scene, a picture and a log in the renderer's folder, with the index of the
- * drawing as name. A drawing without a picture is a finding, not an error: the pair decides what it
- * means. */
+/* A drawing without a picture is a finding, not an error: the pair decides what it means. */
 #include "metamorph/judging.h"
 
-#include "oracle/shell.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,143 +13,74 @@ const char *const verdict_names[VERDICT_KINDS] = {[VERDICT_NONE] = "none",
 
 /* ---- drawing --------------------------------------------------------------------------------- */
 
-/* The files and the command of one drawing; owned. */
-typedef struct DrawingJob {
-    char *scene, *picture, *log, *command;
-} DrawingJob;
-
-static void job_release(DrawingJob *job)
-{
-    free(job->scene);
-    free(job->picture);
-    free(job->log);
-    free(job->command);
-}
-
-static Status name_file(const TrialRenderer *renderer, size_t index, const char *extension,
-                        char **path, Err *err)
-{
-    char name[40];
-    snprintf(name, sizeof name, "%zu.%s", index, extension);
-    return file_join(renderer->folder, name, path, err);
-}
-
-/* Writes the scene and prepares the command. An old picture is removed. */
-static Status job_prepare(const TrialRenderer *renderer, const TrialScene *scene, size_t index,
-                          DrawingJob *job, Err *err)
+/* Writes the scene and prepares the command. The name is the index of the drawing. */
+static Status prepare_drawing(const TrialRenderer *renderer, const TrialScene *scene, size_t index,
+                              ShellDrawing *drawing, Err *err)
 {
     const TrialAdapter *adapter = &trial_adapters[renderer->format];
     Text text = TEXT_INIT, command = TEXT_INIT;
+    char name[24];
     Status status;
-    TRY_GOTO(name_file(renderer, index, adapter->name, &job->scene, err));
-    TRY_GOTO(name_file(renderer, index, adapter->picture, &job->picture, err));
-    TRY_GOTO(name_file(renderer, index, "log", &job->log, err));
+    snprintf(name, sizeof name, "%zu", index);
+    TRY_GOTO(drawing_name(drawing, renderer->folder, name, adapter->name, adapter->picture, err));
     adapter->write(scene, &text);
-    TRY_GOTO(file_write_text(job->scene, &text, err));
-    remove(job->picture);
-    const TrialFiles files = {job->scene, job->picture};
-    trial_command(renderer->command, renderer->format, scene, &files, &command);
-    status = text_take(&command, &job->command, err);
+    TRY_GOTO(file_write_text(drawing->scene, &text, err));
+    trial_command(renderer->shell.command, renderer->format, scene, drawing->scene,
+                  drawing->picture, &command);
+    status = text_take(&command, &drawing->command, err);
 done:
     text_release(&text);
     text_release(&command);
     return status;
 }
 
-/* Copies the last line of a log that is not empty. */
-static void last_line(const char *path, char *line, size_t size)
+/* Converts the picture of a scene to codes. */
+static Status take_picture(const TrialScene *scene, const Image *image, Picture *picture, Err *err)
 {
-    char buffer[4096] = "";
-    FILE *file = fopen(path, "rb");
-    if (file) {
-        if (fseek(file, -(long)(sizeof buffer - 1), SEEK_END) != 0)
-            rewind(file);
-        buffer[fread(buffer, 1, sizeof buffer - 1, file)] = '\0';
-        fclose(file);
-    }
-    size_t end = strlen(buffer);
-    while (end > 0 && strchr("\n\r ", buffer[end - 1]))
-        buffer[--end] = '\0';
-    const char *start = strrchr(buffer, '\n');
-    snprintf(line, size, "%.300s", start ? start + 1 : buffer);
-}
-
-static Status read_drawing(const TrialScene *scene, const char *path, TrialDrawing *drawing,
-                           Err *err)
-{
-    static const float black[3] = {0, 0, 0};
-    Image image;
-    Status status;
-    TRY(image_read(&image, path, ALPHA_KEPT, NULL, err));
-    TRY_GOTO(image_composite(&image, black, err));
-    const int width = image.plane.values ? image.plane.width : image.picture.width;
-    const int height = image.plane.values ? image.plane.height : image.picture.height;
-    const int channels = image.plane.values ? image.plane.channels : image.picture.channels;
+    const bool floats = image->plane.values;
+    const int width = floats ? image->plane.width : image->picture.width;
+    const int height = floats ? image->plane.height : image->picture.height;
+    const int channels = floats ? image->plane.channels : image->picture.channels;
     if (width != scene->width_px || height != scene->height_px || channels != 3)
-        TRY_GOTO(err_set(err, STATUS_INPUT,
-                         "the picture has %d x %d pixels of %d channels, not %d x %d of 3", width,
-                         height, channels, scene->width_px, scene->height_px));
-    status = image.plane.values
-                 ? picture_from_plane(&drawing->picture, &image.plane, ENCODING_SRGB, 8, err)
-                 : picture_to_srgb(&drawing->picture, &image.picture, 8, err);
-done:
-    image_release(&image);
-    return status;
+        return err_set(err, STATUS_INPUT,
+                       "the picture has %d x %d pixels of %d channels, not %d x %d of 3", width,
+                       height, channels, scene->width_px, scene->height_px);
+    return floats ? picture_from_plane(picture, &image->plane, ENCODING_SRGB, 8, err)
+                  : picture_to_srgb(picture, &image->picture, 8, err);
 }
 
-/* Writes the clause that tells why a drawing has no picture. */
-static void give_reason(const TrialRenderer *renderer, const DrawingJob *job, const ShellEnd *end,
-                        const Err *why, char *reason)
-{
-    char line[320];
-    last_line(job->log, line, sizeof line);
-    if (end->timed_out)
-        snprintf(reason, TRIAL_REASON, "it did not end within %g s", renderer->timeout_s);
-    else if (end->exit_status != 0)
-        snprintf(reason, TRIAL_REASON, "exit status %d%s%s", end->exit_status, *line ? ": " : "",
-                 line);
-    else
-        snprintf(reason, TRIAL_REASON, "%.390s",
-                 file_bytes(job->picture) > 0 ? why->text : "it wrote no picture");
-}
-
-/* Reads the picture of a drawing that has ended, or tells why there is none. */
-static Status take_drawing(const TrialRenderer *renderer, const TrialScene *scene,
-                           const DrawingJob *job, const ShellEnd *end, TrialDrawing *drawing,
+/* Reads the picture of a drawing, or takes the reason why there is none. */
+static Status take_drawing(const TrialScene *scene, ShellDrawing *drawing, TrialDrawing *out,
                            Err *err)
 {
+    Image image;
     Err why = {""};
-    Status status = STATUS_TOOL;
-    if (!end->timed_out && end->exit_status == 0)
-        status = read_drawing(scene, job->picture, drawing, &why);
-    if (status == STATUS_MEMORY)
-        return err_set(err, STATUS_MEMORY, "%s", why.text);
+    TRY(drawing_read(drawing, &image, err));
+    Status status = STATUS_OK;
+    if (drawing->is_drawn)
+        status = take_picture(scene, &image, &out->picture, &why);
+    image_release(&image);
     if (status != STATUS_OK)
-        give_reason(renderer, job, end, &why, drawing->reason);
+        TRY(drawing_refuse(drawing, status, &why, err));
+    snprintf(out->reason, sizeof out->reason, "%s", drawing->reason);
     return STATUS_OK;
 }
 
 Status trials_draw(const TrialRenderer *renderer, const TrialScene *scenes, size_t n,
-                   TrialDrawing *drawings, Err *err)
+                   TrialDrawing *out, Err *err)
 {
-    DrawingJob *jobs = NULL;
-    ShellCommand *commands = NULL;
-    Status status;
-    TRY_GOTO(mem_calloc(&jobs, n, sizeof *jobs, "drawings", err));
-    TRY_GOTO(mem_calloc(&commands, n, sizeof *commands, "commands", err));
-    for (size_t i = 0; i < n; i++) {
-        TRY_GOTO(job_prepare(renderer, &scenes[i], i, &jobs[i], err));
-        commands[i].command = jobs[i].command;
-        commands[i].log = jobs[i].log;
-    }
-    TRY_GOTO(shell_run_all(commands, n, renderer->jobs, renderer->timeout_s, err));
+    ShellDrawing *drawings;
+    Status status = STATUS_OK;
+    TRY(mem_calloc(&drawings, n, sizeof *drawings, "drawings", err));
     for (size_t i = 0; i < n; i++)
-        TRY_GOTO(take_drawing(renderer, &scenes[i], &jobs[i], &commands[i].end, &drawings[i], err));
+        TRY_GOTO(prepare_drawing(renderer, &scenes[i], i, &drawings[i], err));
+    TRY_GOTO(drawings_run(&renderer->shell, drawings, n, err));
+    for (size_t i = 0; i < n; i++)
+        TRY_GOTO(take_drawing(&scenes[i], &drawings[i], &out[i], err));
 done:
-    for (size_t i = 0; jobs && i < n; i++)
-        job_release(&jobs[i]);
-    free(jobs);
-    free(commands);
+    for (size_t i = 0; i < n; i++)
+        drawing_release(&drawings[i]);
+    free(drawings);
     return status;
 }
 

@@ -6,23 +6,21 @@
 #include "image/image.h"
 #include "metamorph/relations.h"
 
-/* The renderer that is tested. All strings are borrowed. */
+/* The renderer that is tested. */
 typedef struct TrialRenderer {
-    const char *command; /* shell command that draws a scene, with the marks of trial_command */
+    ShellRenderer shell;
     TrialFormat format;
-    const char *folder; /* an existing folder for scenes and pictures; absolute */
-    double timeout_s;   /* a command that runs longer is killed */
-    int jobs;           /* drawings at the same time, from 1 to TRIAL_JOBS */
+    const char *folder; /* an existing folder for scenes and pictures; absolute; borrowed */
 } TrialRenderer;
 
-/* Maximum number of drawings at the same time, and size of a reason in bytes. */
-enum { TRIAL_JOBS = 32, TRIAL_REASON = 400 };
+/* Size of a reason in bytes. */
+enum { TRIAL_REASON = 400 };
 
 /* The result of drawing one scene. */
 typedef struct TrialDrawing {
     Picture picture;           /* 8-bit sRGB of three channels; zeroed if the renderer drew none;
                                 * owned */
-    char reason[TRIAL_REASON]; /* why it drew none: "exit status 1: no such file" */
+    char reason[TRIAL_REASON]; /* why it drew none: ShellDrawing.reason */
 } TrialDrawing;
 
 /* Releases the pictures of `n` drawings, not the array. */

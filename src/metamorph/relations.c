@@ -286,46 +286,11 @@ static bool split(TrialScene *scene, TrialFormat format, Random *random)
 /* ---- other ways to write a shape ------------------------------------------------------------- */
 
 /* Sets a form of all shapes of these kinds. Returns false if there is none. */
-static bool set_form(TrialScene *scene, unsigned kinds, ShapeForm form)
+static bool set_form(TrialScene *scene, unsigned kinds, unsigned form)
 {
-    bool any = false;
-    for (int i = 0; i < scene->n_shapes; i++) {
-        TrialShape *shape = &scene->shapes[i];
-        const bool changes = kinds >> shape->kind & 1;
-        shape->form |= changes ? form : 0U;
-        any = any || changes;
-    }
-    return any;
-}
-
-static bool use_sturm(TrialScene *scene, TrialFormat format, Random *random)
-{
-    (void)format, (void)random;
-    return set_form(scene, 1U << SHAPE_TORUS | 1U << SHAPE_BLOB, FORM_STURM);
-}
-
-static bool use_bounds(TrialScene *scene, TrialFormat format, Random *random)
-{
-    (void)format, (void)random;
-    return set_form(scene, ~0U, FORM_BOUNDED);
-}
-
-static bool use_cancelled(TrialScene *scene, TrialFormat format, Random *random)
-{
-    (void)format, (void)random;
-    return set_form(scene, 1U << SHAPE_BLOB, FORM_CANCELLED);
-}
-
-static bool use_wide(TrialScene *scene, TrialFormat format, Random *random)
-{
-    (void)format, (void)random;
-    return set_form(scene, 1U << SHAPE_ISOSURFACE, FORM_WIDE);
-}
-
-static bool use_fine(TrialScene *scene, TrialFormat format, Random *random)
-{
-    (void)format, (void)random;
-    return set_form(scene, 1U << SHAPE_ISOSURFACE, FORM_FINE);
+    for (int i = 0; i < scene->n_shapes; i++)
+        scene->shapes[i].form |= kinds >> scene->shapes[i].kind & 1 ? form : 0U;
+    return (trial_kinds(scene) & kinds) != 0;
 }
 
 static bool use_union(TrialScene *scene, TrialFormat format, Random *random)
@@ -338,15 +303,12 @@ static bool use_union(TrialScene *scene, TrialFormat format, Random *random)
 static bool use_cones(TrialScene *scene, TrialFormat format, Random *random)
 {
     (void)format, (void)random;
-    bool any = false;
-    for (int i = 0; i < scene->n_shapes; i++) {
-        TrialShape *shape = &scene->shapes[i];
-        if (shape->kind != SHAPE_CYLINDER)
-            continue;
-        shape->kind = SHAPE_CONE;
-        shape->radius[1] = shape->radius[0];
-        any = true;
-    }
+    const bool any = trial_kinds(scene) >> SHAPE_CYLINDER & 1;
+    for (int i = 0; i < scene->n_shapes; i++)
+        if (scene->shapes[i].kind == SHAPE_CYLINDER) {
+            scene->shapes[i].kind = SHAPE_CONE;
+            scene->shapes[i].radius[1] = scene->shapes[i].radius[0];
+        }
     return any;
 }
 
@@ -385,14 +347,16 @@ const Relation relations[] = {
     {"cone", "cylinders are written as cones with equal radii", ON_POV, .codes = 1,
      .apply = use_cones},
     {"union", "all shapes are parts of a union", ON_POV, .codes = 1, .apply = use_union},
-    {"bounds", "each shape gets a bounding sphere", ON_POV, .codes = 1, .apply = use_bounds},
-    {"sturm", "tori and blobs are solved with sturm", ON_POV, .codes = 1, .apply = use_sturm},
+    {"bounds", "each shape gets a bounding sphere", ON_POV, .codes = 1, .kinds = ~0U,
+     .form = FORM_BOUNDED},
+    {"sturm", "tori and blobs are solved with sturm", ON_POV, .codes = 1,
+     .kinds = 1U << SHAPE_TORUS | 1U << SHAPE_BLOB, .form = FORM_STURM},
     {"cancelled", "blobs get two components that cancel each other", ON_POV, .codes = 1,
-     .apply = use_cancelled},
+     .kinds = 1U << SHAPE_BLOB, .form = FORM_CANCELLED},
     {"container", "the containers of isosurfaces are 1.25 times as wide", ON_POV, .codes = 2,
-     .apply = use_wide},
+     .kinds = 1U << SHAPE_ISOSURFACE, .form = FORM_WIDE},
     {"accuracy", "the accuracy of isosurfaces is 16 times as fine", ON_POV, .codes = 2,
-     .apply = use_fine},
+     .kinds = 1U << SHAPE_ISOSURFACE, .form = FORM_FINE},
     {0},
 };
 
@@ -405,6 +369,8 @@ bool pair_second(const TrialPair *pair, TrialScene *second)
 {
     Random random;
     random_seed(&random, pair->seed);
+    const Relation *relation = pair->relation;
     *second = pair->first;
-    return pair->relation->apply(second, pair->format, &random);
+    return relation->form ? set_form(second, relation->kinds, relation->form)
+                          : relation->apply(second, pair->format, &random);
 }

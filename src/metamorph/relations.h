@@ -13,6 +13,8 @@ typedef struct Relation {
     int codes;          /* allowed difference of two 8-bit codes */
     bool flips;         /* the second picture is the mirror image of the first */
     bool crops;         /* the first picture is the middle half of the second one's rows */
+    unsigned kinds, form; /* form not 0: all shapes of these kinds (bits 1 << ShapeKind) get this
+                           * ShapeForm, and `apply` is NULL */
     /* Changes `scene`. Returns false if the relation does not apply to the scene, which may be
      * changed even then. */
     bool (*apply)(TrialScene *scene, TrialFormat format, Random *random);

@@ -125,10 +125,9 @@ static void put_commands(const MetamorphParams *params, const TrialScene scenes[
         char scene[40], picture[40];
         snprintf(scene, sizeof scene, "%s.%s", sides[side], adapter->name);
         snprintf(picture, sizeof picture, "%s.%s", sides[side], adapter->picture);
-        const TrialFiles files = {scene, picture};
         text_puts(out, "  ");
-        trial_command(params->renderer.command, params->renderer.format, &scenes[side], &files,
-                      out);
+        trial_command(params->renderer.shell.command, params->renderer.format, &scenes[side], scene,
+                      picture, out);
         text_puts(out, "\n");
     }
 }

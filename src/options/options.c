@@ -28,7 +28,7 @@ static const Option common_options[] = {
      SETS(SEED, Common, seed),
      .group = GROUP_RUN,
      .when = WHEN(OWN_SEED),
-     .help = "seed of the random numbers; the same seed gives the same result"},
+     .help = "seed of the random numbers; the same seed makes the same random choices"},
     {.name = "threads",
      SETS(WHOLE, Common, threads),
      FROM_TO(0, 256),

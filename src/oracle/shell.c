@@ -3,10 +3,8 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <signal.h>
 #include <string.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
 static void put_mark(const ShellMark *mark, Text *out)
@@ -49,95 +47,34 @@ static void become_command(const char *command, int output)
     _exit(127);
 }
 
-static int exit_status_of(int ended)
+int shell_exit_status(int ended)
 {
     return WIFEXITED(ended) ? WEXITSTATUS(ended) : 127;
+}
+
+Status shell_start(const char *command, int output, pid_t *child, Err *err)
+{
+    *child = fork();
+    if (*child == 0)
+        become_command(command, output);
+    if (*child < 0)
+        return err_set(err, STATUS_TOOL, "a shell cannot be started: %s", strerror(errno));
+    setpgid(*child, *child); /* in both processes, because either may run first */
+    file_kill_on_signal(*child);
+    return STATUS_OK;
 }
 
 Status shell_run(const char *command, bool heard, int *exit_status, Err *err)
 {
     int ended = 0;
-    pid_t child = fork();
-    if (child == 0)
-        become_command(command, heard ? STDERR_FILENO : -1);
-    if (child < 0)
-        return err_set(err, STATUS_TOOL, "a shell cannot be started: %s", strerror(errno));
-    setpgid(child, child); /* in both processes, because either may run first */
-    file_kill_on_signal(child);
+    pid_t child;
+    TRY(shell_start(command, heard ? STDERR_FILENO : -1, &child, err));
     while (waitpid(child, &ended, 0) < 0 && errno == EINTR)
         ;
     file_spare_on_signal(child);
-    *exit_status = exit_status_of(ended);
+    *exit_status = shell_exit_status(ended);
     if (*exit_status < 126)
         return STATUS_OK;
     return err_set(err, STATUS_TOOL, "the command could not be run, or a signal ended it: %s",
                    command);
-}
-
-/* ---- several commands ------------------------------------------------------------------------ */
-
-enum { MAX_JOBS = 32 };
-
-/* A running command. */
-typedef struct ShellJob {
-    pid_t child; /* 0: none */
-    double start_s;
-    ShellCommand *command;
-} ShellJob;
-
-static Status start_job(ShellJob *job, ShellCommand *command, Err *err)
-{
-    pid_t child = fork();
-    if (child == 0) {
-        const int log = open(command->log, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-        become_command(command->command, log);
-    }
-    if (child < 0)
-        return err_set(err, STATUS_TOOL, "a shell cannot be started: %s", strerror(errno));
-    setpgid(child, child);
-    file_kill_on_signal(child);
-    *job = (ShellJob){child, clock_seconds(), command};
-    command->end = (ShellEnd){0};
-    return STATUS_OK;
-}
-
-/* Takes the end of a job, if it has ended or is too old. Returns false if it goes on. */
-static bool end_job(ShellJob *job, double seconds)
-{
-    int ended = 0;
-    const bool too_old = clock_seconds() - job->start_s > seconds;
-    if (too_old)
-        kill(-job->child, SIGKILL);
-    const pid_t done = waitpid(job->child, &ended, too_old ? 0 : WNOHANG);
-    if (done == 0 || (done < 0 && errno == EINTR))
-        return false;
-    kill(-job->child, SIGKILL); /* what the command left running */
-    file_spare_on_signal(job->child);
-    job->command->end = (ShellEnd){exit_status_of(ended), too_old};
-    job->child = 0;
-    return true;
-}
-
-Status shell_run_all(ShellCommand *commands, size_t n, int jobs, double seconds, Err *err)
-{
-    static const struct timespec pause = {0, 500000};
-    ShellJob running[MAX_JOBS] = {{0}};
-    Status status = STATUS_OK;
-    size_t next = 0, ended = 0;
-    while (ended < (status == STATUS_OK ? n : next)) {
-        bool idle = true;
-        for (int i = 0; i < jobs; i++) {
-            if (!running[i].child && next < n && status == STATUS_OK) {
-                status = start_job(&running[i], &commands[next], err);
-                next += status == STATUS_OK;
-                idle = false;
-            } else if (running[i].child && end_job(&running[i], seconds)) {
-                ended++;
-                idle = false;
-            }
-        }
-        if (idle)
-            nanosleep(&pause, NULL);
-    }
-    return status;
 }

@@ -7,7 +7,7 @@
 static Status print(const MetamorphOptions *options, const Metamorph *result, Err *err)
 {
     Text text = TEXT_TO(stdout);
-    if (options->json)
+    if (options->renderer.json)
         return json_write(metamorph_json(result), "-", err);
     metamorph_text(result, &text);
     Status status = text_flush(&text, err);

@@ -7,7 +7,7 @@
 static Status print(const TubeSuiteOptions *options, const TubeSuite *suite, Err *err)
 {
     Text text = TEXT_TO(stdout);
-    if (options->json)
+    if (options->renderer.json)
         return json_write(tubesuite_json(suite), "-", err);
     tubesuite_text(suite, &text);
     Status status = text_flush(&text, err);
@@ -18,7 +18,8 @@ static Status print(const TubeSuiteOptions *options, const TubeSuite *suite, Err
 Status run_suite(void *options, Parsed *parsed, Err *err)
 {
     TubeSuite suite = {0};
-    Status status = tubesuite_run(options, parsed, &suite, err);
+    (void)parsed;
+    Status status = tubesuite_run(options, &suite, err);
     if (status == STATUS_OK)
         status = print(options, &suite, err);
     if (status == STATUS_OK && suite.certified < suite.cases.n)

@@ -12,39 +12,26 @@
 
 enum { NUMBERS = 6, STEPS = 10, COARSEST = 20, FINEST = 700, LEVELS_MAX = 12, MARGIN = 4 };
 
-/* Planes of one size: the channels, or their mean, in levels. */
-typedef struct Planes {
-    float *values; /* owned */
-    int width, height, channels;
-} Planes;
-
 /* The place in A of pixel (x, y) of B: a linear map of the distances from the middle of the
  * picture, plus the middle and a shift. */
 typedef struct Affine {
     double m[2][2], shift[2];
 } Affine;
 
-static float *value_at(const Planes *planes, int x, int y, int c)
+static float *value_at(const Plane *plane, int x, int y, int c)
 {
-    return planes->values +
-           ((size_t)y * (size_t)planes->width + (size_t)x) * (size_t)planes->channels + c;
-}
-
-static Status planes_init(Planes *planes, int width, int height, int channels, Err *err)
-{
-    *planes = (Planes){.width = width, .height = height, .channels = channels};
-    return mem_calloc(&planes->values, (size_t)width * (size_t)height * (size_t)channels,
-                      sizeof *planes->values, "pixels", err);
+    return plane->values +
+           ((size_t)y * (size_t)plane->width + (size_t)x) * (size_t)plane->channels + c;
 }
 
 /* Smooths by the binomial filter 1 4 6 4 1 along both axes. */
-static Status smooth(Planes *planes, Err *err)
+static Status smooth(Plane *plane, Err *err)
 {
     static const float taps[5] = {0.0625F, 0.25F, 0.375F, 0.25F, 0.0625F};
-    const int width = planes->width, height = planes->height, channels = planes->channels;
+    const int width = plane->width, height = plane->height, channels = plane->channels;
     for (int axis = 0; axis < 2; axis++) {
-        Planes out;
-        TRY(planes_init(&out, width, height, channels, err));
+        Plane out;
+        TRY(plane_init(&out, width, height, channels, err));
         for (int y = 0; y < height; y++)
             for (int x = 0; x < width; x++)
                 for (int k = -2; k <= 2; k++) {
@@ -52,35 +39,35 @@ static Status smooth(Planes *planes, Err *err)
                     u = u < 0 ? 0 : u < width ? u : width - 1;
                     v = v < 0 ? 0 : v < height ? v : height - 1;
                     for (int c = 0; c < channels; c++)
-                        *value_at(&out, x, y, c) += taps[k + 2] * *value_at(planes, u, v, c);
+                        *value_at(&out, x, y, c) += taps[k + 2] * *value_at(plane, u, v, c);
                 }
-        free(planes->values);
-        *planes = out;
+        plane_release(plane);
+        *plane = out;
     }
     return STATUS_OK;
 }
 
-static Status planes_of(Planes *planes, const Picture *picture, bool is_mean, Err *err)
+static Status take_plane(Plane *plane, const Picture *picture, bool is_mean, Err *err)
 {
     const float level = picture->bits == 8 ? 1 : 1 / 257.0F;
     const int channels = picture->channels;
-    TRY(planes_init(planes, picture->width, picture->height, is_mean ? 1 : channels, err));
+    TRY(plane_init(plane, picture->width, picture->height, is_mean ? 1 : channels, err));
     size_t n = (size_t)picture->width * (size_t)picture->height;
     for (size_t i = 0; i < n; i++)
         for (int c = 0; c < channels; c++) {
             float value = level * picture_code(picture, i * (size_t)channels + (size_t)c);
             if (is_mean)
-                planes->values[i] += value / (float)channels;
+                plane->values[i] += value / (float)channels;
             else
-                planes->values[i * (size_t)channels + (size_t)c] = value;
+                plane->values[i * (size_t)channels + (size_t)c] = value;
         }
     return STATUS_OK;
 }
 
 /* Halves both sides: a pixel is the mean of four. */
-static Status halve(const Planes *from, Planes *to, Err *err)
+static Status halve(const Plane *from, Plane *to, Err *err)
 {
-    TRY(planes_init(to, from->width / 2, from->height / 2, 1, err));
+    TRY(plane_init(to, from->width / 2, from->height / 2, 1, err));
     for (int y = 0; y < to->height; y++)
         for (int x = 0; x < to->width; x++)
             *value_at(to, x, y, 0) =
@@ -111,7 +98,7 @@ static void place_in_a(const Affine *map, const LevelFrame *frame, int x, int y,
 }
 
 /* The value between pixels, linearly, and its slopes; false outside of the picture. */
-static bool sample(const Planes *planes, const double at[2], int c, double out[3])
+static bool sample(const Plane *planes, const double at[2], int c, double out[3])
 {
     int x = (int)floor(at[0]), y = (int)floor(at[1]);
     if (x < 1 || y < 1 || x + 2 >= planes->width || y + 2 >= planes->height)
@@ -149,7 +136,7 @@ static bool solve(double matrix[NUMBERS][NUMBERS + 1], double out[NUMBERS])
 
 /* Improves the map by one step. Returns the largest change at an end of the picture, in pixels of
  * the level; -1 if there is no step. */
-static double improve(const Planes *a, const Planes *b, const LevelFrame *frame, Affine *map)
+static double improve(const Plane *a, const Plane *b, const LevelFrame *frame, Affine *map)
 {
     double normal[NUMBERS][NUMBERS + 1] = {{0}}, step[NUMBERS], from[2], to[2], value[3];
     for (int y = 0; y < b->height; y++)
@@ -188,10 +175,10 @@ typedef struct Leavings {
                                * pixels at which A is neither black nor white */
 } Leavings;
 
-static void add_leavings(const Planes planes[2], const LevelFrame *frame, const Affine *map, int x,
+static void add_leavings(const Plane planes[2], const LevelFrame *frame, const Affine *map, int x,
                          int y, Leavings *sums)
 {
-    const Planes *a = &planes[0], *b = &planes[1];
+    const Plane *a = &planes[0], *b = &planes[1];
     double from[2], to[2], value[3];
     place_in_a(map, frame, x, y, from, to);
     const int row = 2 * y / b->height, column = 2 * x / b->width;
@@ -224,9 +211,9 @@ static bool keeps_tones(const Leavings *sums)
     return true;
 }
 
-static bool explains(const Planes planes[2], const LevelFrame *frame, const Affine *map)
+static bool explains(const Plane planes[2], const LevelFrame *frame, const Affine *map)
 {
-    const Planes *b = &planes[1];
+    const Plane *b = &planes[1];
     Leavings found = {0}, *sums = &found;
     for (int y = MARGIN; y < b->height - MARGIN; y++)
         for (int x = MARGIN; x < b->width - MARGIN; x++)
@@ -259,14 +246,14 @@ static bool is_sane(const Affine *map)
 /* Finds the map from reduced pictures to larger ones. */
 static Status find_map(const Picture *a, const Picture *b, Affine *map, bool *found, Err *err)
 {
-    Planes levels[2][LEVELS_MAX] = {{{0}}};
+    Plane levels[2][LEVELS_MAX] = {{{0}}};
     int n = 1, last = 0;
     const LevelFrame whole = {{a->width / 2.0, a->height / 2.0}, 1};
     Status status = STATUS_OK;
     *map = (Affine){.m = {{1, 0}, {0, 1}}};
     *found = true;
     for (int side = 0; side < 2; side++) {
-        TRY_GOTO(planes_of(&levels[side][0], side ? b : a, true, err));
+        TRY_GOTO(take_plane(&levels[side][0], side ? b : a, true, err));
         TRY_GOTO(smooth(&levels[side][0], err));
     }
     while (n < LEVELS_MAX && levels[0][n - 1].width >= 2 * COARSEST &&
@@ -291,30 +278,30 @@ static Status find_map(const Picture *a, const Picture *b, Affine *map, bool *fo
     if (*found) { /* before the channels are looked at */
         LevelFrame frame = whole;
         frame.scale = (double)(1 << last);
-        const Planes both[2] = {levels[0][last], levels[1][last]};
+        const Plane both[2] = {levels[0][last], levels[1][last]};
         *found = explains(both, &frame, map);
     }
 done:
     for (int i = 0; i < LEVELS_MAX; i++) {
-        free(levels[0][i].values);
-        free(levels[1][i].values);
+        plane_release(&levels[0][i]);
+        plane_release(&levels[1][i]);
     }
     return status;
 }
 
 static Status try_map(const Picture *a, const Picture *b, const Affine *map, bool *fits, Err *err)
 {
-    Planes planes[2] = {{0}, {0}};
+    Plane planes[2] = {{0}, {0}};
     const LevelFrame whole = {{b->width / 2.0, b->height / 2.0}, 1};
     Status status = STATUS_OK;
     for (int side = 0; side < 2; side++) {
-        TRY_GOTO(planes_of(&planes[side], side ? b : a, false, err));
+        TRY_GOTO(take_plane(&planes[side], side ? b : a, false, err));
         TRY_GOTO(smooth(&planes[side], err));
     }
     *fits = explains(planes, &whole, map);
 done:
-    free(planes[0].values);
-    free(planes[1].values);
+    plane_release(&planes[0]);
+    plane_release(&planes[1]);
     return status;
 }
 

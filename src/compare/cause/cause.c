@@ -62,12 +62,6 @@ static void choose_samples(const Picture *a, const Picture *b, size_t differing,
             take_row(a, b, y, step, &seen, samples);
 }
 
-static int code_at(const Picture *picture, int x, int y, int c)
-{
-    size_t pixel = (size_t)y * (size_t)picture->width + (size_t)x;
-    return picture_code(picture, pixel * (size_t)picture->channels + (size_t)c);
-}
-
 /* Whether what is left of the differences is at most a part of them. */
 static bool leaves(double before, double after, double part)
 {
@@ -304,6 +298,20 @@ bool cause_shift(const Picture *a, const Picture *b, const Samples *samples, con
                  "B is %sA moved by (%d, %d) pixels (right and down are positive)",
                  trial.after > 0 ? "nearly " : "", shift->dx, shift->dy);
     return false;
+}
+
+/* ---- kit of all guesses ---------------------------------------------------------------------- */
+
+Status light_of_codes(const Picture *picture, Plane *lights, Err *err)
+{
+    Picture codes;
+    TRY(picture_init(&codes, 1 << picture->bits, 1, 1, picture->bits, err));
+    codes.gamma = picture->gamma;
+    for (int i = 0; i < codes.width; i++)
+        picture_set(&codes, (size_t)i, (uint16_t)i);
+    Status status = plane_from_picture(lights, &codes, err);
+    picture_release(&codes);
+    return status;
 }
 
 /* ---- all of them ----------------------------------------------------------------------------- */

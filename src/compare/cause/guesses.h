@@ -7,7 +7,7 @@
 #ifndef CORCAST_COMPARE_CAUSE_GUESSES_H
 #define CORCAST_COMPARE_CAUSE_GUESSES_H
 
-#include "compare/result.h"
+#include "compare/pixels.h"
 
 enum { CAUSE_SAMPLES = 256 };
 
@@ -16,6 +16,35 @@ typedef struct Samples {
     PixelPlace at[CAUSE_SAMPLES];
     int n;
 } Samples;
+
+/* Returns the index of the first code of pixel (x, y). */
+static inline size_t first_code(const Picture *picture, int x, int y)
+{
+    return ((size_t)y * (size_t)picture->width + (size_t)x) * (size_t)picture->channels;
+}
+
+/* Returns the code of pixel (x, y) in channel c. */
+static inline int code_at(const Picture *picture, int x, int y, int c)
+{
+    return picture_code(picture, first_code(picture, x, y) + (size_t)c);
+}
+
+/* Returns the number of pixels in question: those of the samples, or all if `samples` is NULL. */
+static inline size_t n_asked(const Picture *picture, const Samples *samples)
+{
+    return samples ? (size_t)samples->n : (size_t)picture->width * (size_t)picture->height;
+}
+
+/* Returns the index of the first code of pixel i of those in question. */
+static inline size_t asked_code(const Picture *picture, const Samples *samples, size_t i)
+{
+    return samples ? first_code(picture, samples->at[i].x, samples->at[i].y)
+                   : i * (size_t)picture->channels;
+}
+
+/* Makes a plane of one row with the linear light of each code of such a picture. The caller
+ * releases it. Errors: STATUS_MEMORY. */
+MUST_CHECK Status light_of_codes(const Picture *picture, Plane *lights, Err *err);
 
 /* A sentence about the cause. */
 typedef struct Sentence {

@@ -113,20 +113,20 @@ static double slack_of(const MapOf *map)
     return map->map == HEXAGON ? 4.01 : 2.01;
 }
 
-static void levels_at(const Picture *picture, size_t pixel, double out[3])
+static void levels_at(const Picture *picture, size_t code, double out[3])
 {
     for (size_t c = 0; c < 3; c++)
-        out[c] = picture_code(picture, 3 * pixel + c) / (picture->bits == 8 ? 255.0 : 65535.0);
+        out[c] = picture_code(picture, code + c) / (picture->bits == 8 ? 255.0 : 65535.0);
 }
 
-/* Adds a pixel. Channels at which B is clipped are not compared. */
-static void add_pixel(const MapOf *map, const Picture *a, const Picture *b, size_t pixel,
+/* Adds the pixel whose first code has the index `code`. */
+static void add_pixel(const MapOf *map, const Picture *a, const Picture *b, size_t code,
                       ColorFit *fit)
 {
     double from[3], to[3], mapped[3], worst = 0, off = 0;
     const double slack = slack_of(map);
-    levels_at(a, pixel, from);
-    levels_at(b, pixel, to);
+    levels_at(a, code, from);
+    levels_at(b, code, to);
     const double chroma =
         fmax(from[0], fmax(from[1], from[2])) - fmin(from[0], fmin(from[1], from[2]));
     double in[3] = {from[0], from[1], from[2]};
@@ -145,22 +145,13 @@ static void add_pixel(const MapOf *map, const Picture *a, const Picture *b, size
     fit->misfits += worst > slack;
 }
 
-static ColorFit fit_samples(const MapOf *map, const Picture *a, const Picture *b,
-                            const Samples *samples)
+/* Of the samples, or of all pixels if `samples` is NULL. */
+static ColorFit fit_of(const MapOf *map, const Picture *a, const Picture *b, const Samples *samples)
 {
     ColorFit fit = {0};
-    for (int i = 0; i < samples->n; i++)
-        add_pixel(map, a, b, (size_t)samples->at[i].y * (size_t)a->width + (size_t)samples->at[i].x,
-                  &fit);
-    return fit;
-}
-
-static ColorFit fit_all(const MapOf *map, const Picture *a, const Picture *b)
-{
-    ColorFit fit = {0};
-    size_t n = (size_t)a->width * (size_t)a->height;
+    const size_t n = n_asked(a, samples);
     for (size_t i = 0; i < n; i++)
-        add_pixel(map, a, b, i, &fit);
+        add_pixel(map, a, b, asked_code(a, samples, i), &fit);
     return fit;
 }
 
@@ -175,7 +166,7 @@ static double squares_of(MapOf *map, double number, const Picture *a, const Pict
                          const Samples *samples)
 {
     map->number = number;
-    return fit_samples(map, a, b, samples).squares;
+    return fit_of(map, a, b, samples).squares;
 }
 
 /* Finds the number that leaves the least squares: on a grid, then by golden section. */
@@ -220,7 +211,7 @@ static bool changes_greys(const Picture *a, const Samples *samples)
     int grey = 0;
     for (int i = 0; i < samples->n; i++) {
         double c[3];
-        levels_at(a, (size_t)samples->at[i].y * (size_t)a->width + (size_t)samples->at[i].x, c);
+        levels_at(a, asked_code(a, samples, (size_t)i), c);
         grey += fmax(c[0], fmax(c[1], c[2])) - fmin(c[0], fmin(c[1], c[2])) <= 2 / 255.0;
     }
     return 10 * grey > samples->n;
@@ -234,10 +225,10 @@ void cause_hue(const Picture *a, const Picture *b, const Samples *samples, Sente
         for (int in_light = 0; in_light < 2 && !*out->text; in_light++) {
             MapOf map = {.map = kind, .in_light = in_light};
             find_number(&map, a, b, samples);
-            ColorFit fit = fit_samples(&map, a, b, samples);
+            ColorFit fit = fit_of(&map, a, b, samples);
             if (!fits(&fit) || (kind < SATURATIONS && fabs(map.number - 1) < 0.02))
                 continue;
-            fit = fit_all(&map, a, b);
+            fit = fit_of(&map, a, b, NULL);
             if (fits(&fit))
                 say(&map, out);
         }

@@ -28,12 +28,6 @@ typedef struct NoiseImages {
     double levels; /* levels of a code */
 } NoiseImages;
 
-static int code_of(const Picture *picture, int x, int y, int c)
-{
-    size_t pixel = (size_t)y * (size_t)picture->width + (size_t)x;
-    return picture_code(picture, pixel * (size_t)picture->channels + (size_t)c);
-}
-
 static bool is_clipped(int code, int most)
 {
     return code <= most / 128 || code >= most - most / 128;
@@ -45,8 +39,8 @@ static bool difference_at(const NoiseImages *self, int x, int y, int c, double *
     const Picture *a = self->a;
     if (x < 0 || y < 0 || x >= a->width || y >= a->height)
         return false;
-    int most = a->bits == 8 ? 255 : 65535, from = code_of(a, x, y, c),
-        to = code_of(self->b, x, y, c);
+    int most = a->bits == 8 ? 255 : 65535, from = code_at(a, x, y, c),
+        to = code_at(self->b, x, y, c);
     *d = (to - from) * self->levels;
     return !is_clipped(from, most) && !is_clipped(to, most);
 }
@@ -57,10 +51,10 @@ static void add_slopes(const NoiseImages *self, int x, int y, int c, double d, W
     const Picture *a = self->a;
     if (x < 1 || y < 1 || x + 1 >= a->width || y + 1 >= a->height)
         return;
-    int left = code_of(a, x - 1, y, c), right = code_of(a, x + 1, y, c);
-    int up = code_of(a, x, y - 1, c), down = code_of(a, x, y + 1, c);
+    int left = code_at(a, x - 1, y, c), right = code_at(a, x + 1, y, c);
+    int up = code_at(a, x, y - 1, c), down = code_at(a, x, y + 1, c);
     const double slopes[3] = {(right - left) * self->levels, (down - up) * self->levels,
-                              (left + right + up + down - 4 * code_of(a, x, y, c)) * self->levels};
+                              (left + right + up + down - 4 * code_at(a, x, y, c)) * self->levels};
     for (int i = 0; i < 3; i++) {
         sums->slope[i] += d * slopes[i];
         sums->slopes[i] += slopes[i] * slopes[i];
@@ -74,9 +68,9 @@ static void add_slopes(const NoiseImages *self, int x, int y, int c, double d, W
 static void add_channel(const NoiseImages *self, int x, int y, int c, WhitenessSums *sums)
 {
     double d, other;
-    int from = code_of(self->a, x, y, c), most = self->a->bits == 8 ? 255 : 65535;
+    int from = code_at(self->a, x, y, c), most = self->a->bits == 8 ? 255 : 65535;
     sums->clipped += from == 0 || from == most;
-    sums->changed += (from == 0 || from == most) && from != code_of(self->b, x, y, c);
+    sums->changed += (from == 0 || from == most) && from != code_at(self->b, x, y, c);
     if (!difference_at(self, x, y, c, &d))
         return;
     int column = GRID * x / self->a->width, row = GRID * y / self->a->height;

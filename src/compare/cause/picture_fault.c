@@ -40,11 +40,6 @@ static double code_of(double linear)
     return (double)srgb_encode((float)clamp(linear, 0, 1));
 }
 
-static double brightened(double code, double percent)
-{
-    return code_of(light(code) * (1 + percent / 100));
-}
-
 static bool in_part(const Planting *p, int x, int y)
 {
     return x >= p->left && x < p->left + p->side && y >= p->top && y < p->top + p->side;
@@ -73,11 +68,6 @@ static double larger(const Planting *p, int x, int y, int c)
                    c);
 }
 
-static double part_shifted(const Planting *p, int x, int y, int c)
-{
-    return in_part(p, x, y) ? shifted(p, x, y, c) : at(p->from, x, y, c);
-}
-
 static double blurred(const Planting *p, int x, int y, int c)
 {
     int reach = (int)ceil(3 * p->size);
@@ -95,17 +85,12 @@ static double blurred(const Planting *p, int x, int y, int c)
 
 static double brighter(const Planting *p, int x, int y, int c)
 {
-    return brightened(at(p->from, x, y, c), p->size);
+    return code_of(light(at(p->from, x, y, c)) * (1 + p->size / 100));
 }
 
 static double redder(const Planting *p, int x, int y, int c)
 {
     return c ? at(p->from, x, y, c) : brighter(p, x, y, c);
-}
-
-static double part_brighter(const Planting *p, int x, int y, int c)
-{
-    return in_part(p, x, y) ? brighter(p, x, y, c) : at(p->from, x, y, c);
 }
 
 static double darker_codes(const Planting *p, int x, int y, int c)
@@ -198,28 +183,28 @@ static double row_repeated(const Planting *p, int x, int y, int c)
 }
 
 const PictureFault picture_faults[] = {
-    {"picture shifted", "px", {0.01, 0.03, 0.1, 0.3, 1, 3}, shifted},
-    {"picture turned", "deg", {0.003, 0.01, 0.03, 0.1, 0.3, 1}, turned},
-    {"picture larger", "%", {0.01, 0.03, 0.1, 0.3, 1, 3}, larger},
-    {"a part shifted", "px", {0.01, 0.03, 0.1, 0.3, 1, 3}, part_shifted},
-    {"blurred", "px", {0.3, 0.5, 1}, blurred},
-    {"brighter", "% of light", {0.1, 0.3, 1, 3, 10, 30}, brighter},
-    {"redder", "% of light", {0.1, 0.3, 1, 3, 10, 30}, redder},
-    {"a part brighter", "% of light", {0.1, 0.3, 1, 3, 10, 30}, part_brighter},
-    {"highlights dimmer", "% of light", {1, 3, 10, 30, 100}, highlights_dimmer},
-    {"codes lower", "levels", {0.3, 1, 3, 10, 30}, darker_codes},
-    {"gamma off", "%", {0.1, 0.3, 1, 3, 10, 30}, gamma_off},
-    {"noise", "levels", {0.3, 1, 3, 10, 30}, noisy},
-    {"bits lost", "bits", {1, 2, 3, 4}, fewer_bits},
-    {"a square lost", "px", {1, 3, 8, 24}, part_lost},
-    {"gamma 2.2 instead of sRGB", NULL, {0}, gamma_22},
-    {"linear values as codes", NULL, {0}, unencoded},
-    {"red and blue swapped", NULL, {0}, channels_swapped},
-    {"a row repeated", NULL, {0}, row_repeated},
-    {"rows upside down", NULL, {0}, upside_down},
-    {"mirrored", NULL, {0}, mirrored},
-    {"rows one pixel too long", NULL, {0}, long_rows},
-    {"stride is the height", NULL, {0}, transposed_stride},
+    {"picture shifted", "px", {0.01, 0.03, 0.1, 0.3, 1, 3}, .value = shifted},
+    {"picture turned", "deg", {0.003, 0.01, 0.03, 0.1, 0.3, 1}, .value = turned},
+    {"picture larger", "%", {0.01, 0.03, 0.1, 0.3, 1, 3}, .value = larger},
+    {"a part shifted", "px", {0.01, 0.03, 0.1, 0.3, 1, 3}, .value = shifted, .of_part = true},
+    {"blurred", "px", {0.3, 0.5, 1}, .value = blurred},
+    {"brighter", "% of light", {0.1, 0.3, 1, 3, 10, 30}, .value = brighter},
+    {"redder", "% of light", {0.1, 0.3, 1, 3, 10, 30}, .value = redder},
+    {"a part brighter", "% of light", {0.1, 0.3, 1, 3, 10, 30}, .value = brighter, .of_part = true},
+    {"highlights dimmer", "% of light", {1, 3, 10, 30, 100}, .value = highlights_dimmer},
+    {"codes lower", "levels", {0.3, 1, 3, 10, 30}, .value = darker_codes},
+    {"gamma off", "%", {0.1, 0.3, 1, 3, 10, 30}, .value = gamma_off},
+    {"noise", "levels", {0.3, 1, 3, 10, 30}, .value = noisy},
+    {"bits lost", "bits", {1, 2, 3, 4}, .value = fewer_bits},
+    {"a square lost", "px", {1, 3, 8, 24}, .value = part_lost},
+    {"gamma 2.2 instead of sRGB", NULL, {0}, .value = gamma_22},
+    {"linear values as codes", NULL, {0}, .value = unencoded},
+    {"red and blue swapped", NULL, {0}, .value = channels_swapped},
+    {"a row repeated", NULL, {0}, .value = row_repeated},
+    {"rows upside down", NULL, {0}, .value = upside_down},
+    {"mirrored", NULL, {0}, .value = mirrored},
+    {"rows one pixel too long", NULL, {0}, .value = long_rows},
+    {"stride is the height", NULL, {0}, .value = transposed_stride},
 };
 const size_t n_picture_faults = sizeof picture_faults / sizeof *picture_faults;
 
@@ -273,8 +258,9 @@ Status picture_fault_plant(const PictureFault *fault, double size, const Picture
     for (int y = 0; y < from->height; y++)
         for (int x = 0; x < from->width; x++)
             for (int c = 0; c < from->channels; c++) {
-                double code = clamp(fault->value(&planting, x, y, c), 0, 1);
-                picture_set(out, i++, (uint16_t)(code * largest + 0.5));
+                const bool faulty = !fault->of_part || in_part(&planting, x, y);
+                double code = faulty ? fault->value(&planting, x, y, c) : at(from, x, y, c);
+                picture_set(out, i++, (uint16_t)(clamp(code, 0, 1) * largest + 0.5));
             }
     return STATUS_OK;
 }

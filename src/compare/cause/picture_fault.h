@@ -22,6 +22,7 @@ typedef struct PictureFault {
     /* Returns what the faulty picture has at (x, y) in channel c, as a fraction of the largest
      * code. */
     double (*value)(const Planting *planting, int x, int y, int c);
+    bool of_part; /* only the square of the Planting has the fault */
 } PictureFault;
 
 extern const PictureFault picture_faults[];

@@ -20,39 +20,29 @@
  */
 #include "compare/cause/guesses.h"
 #include "compare/measures/labels.h"
-#include "compare/pixels.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-static size_t first_code(const Picture *picture, int x, int y)
-{
-    return ((size_t)y * (size_t)picture->width + (size_t)x) * (size_t)picture->channels;
-}
-
 static bool is_seen(const Labels *labels, const Picture *picture, int side, int x, int y)
 {
-    size_t at = first_code(picture, x, y);
     for (int c = 0; c < picture->channels; c++)
-        if (picture_code(picture, at + (size_t)c) != labels->background[side][c])
+        if (code_at(picture, x, y, c) != labels->background[side][c])
             return true;
     return false;
 }
 
 /* ---- another background ---------------------------------------------------------------------- */
 
-/* Pixels of a row that are not background on both sides: those that are equal, those that differ
- * beside background, which are mixed with it, and others that differ. */
-typedef struct RowBackground {
-    size_t equal, rims, others;
-} RowBackground;
+/* Pixels that are not background on both sides: those that are equal, those that differ beside
+ * background, which are mixed with it, and others that differ. */
+enum { EQUAL_PIXELS, RIM_PIXELS, OTHER_PIXELS, BACKGROUND_SUMS };
 
 typedef struct Backgrounds {
     const Picture *pictures[2];
     Labels labels;
-    RowBackground *rows; /* owned */
 } Backgrounds;
 
 static bool touches_background(const Backgrounds *self, int x, int y)
@@ -67,32 +57,30 @@ static bool touches_background(const Backgrounds *self, int x, int y)
     return false;
 }
 
-static void count_background_at(const Backgrounds *self, int x, int y, RowBackground *count)
+static void count_background_at(const Backgrounds *self, int x, int y, double *sums)
 {
     const Picture *a = self->pictures[0], *b = self->pictures[1];
     if (!is_seen(&self->labels, a, 0, x, y) && !is_seen(&self->labels, b, 1, x, y))
         return;
-    if (picture_rows_equal(a, b, y, x, 1))
-        count->equal++;
-    else
-        ++*(touches_background(self, x, y) ? &count->rims : &count->others);
+    sums[picture_rows_equal(a, b, y, x, 1) ? EQUAL_PIXELS
+         : touches_background(self, x, y)  ? RIM_PIXELS
+                                           : OTHER_PIXELS]++;
 }
 
-static void count_background(size_t y, int worker, void *context)
+static void count_background(const void *context, int y, double *sums)
 {
-    (void)worker;
     const Backgrounds *self = context;
     for (int x = 0; x < self->labels.width; x++)
-        count_background_at(self, x, (int)y, &self->rows[y]);
+        count_background_at(self, x, y, sums);
 }
 
 /* Whether it is worth while to ask all pixels. */
 static bool may_be_background(const Backgrounds *self, const Samples *samples)
 {
-    RowBackground count = {0};
+    double sums[BACKGROUND_SUMS] = {0};
     for (int i = 0; i < samples->n; i++)
-        count_background_at(self, samples->at[i].x, samples->at[i].y, &count);
-    return count.others <= 2 + (size_t)samples->n / 50;
+        count_background_at(self, samples->at[i].x, samples->at[i].y, sums);
+    return sums[OTHER_PIXELS] <= 2 + samples->n / 50;
 }
 
 /* "(12, 30, 41)" */
@@ -105,16 +93,11 @@ static void describe_background(const Labels *labels, int side, int channels, ch
         snprintf(out, 32, "(%u, %u, %u)", codes[0], codes[1], codes[2]);
 }
 
-static void say_background(const Backgrounds *self, Sentence *out)
+static void say_background(const Backgrounds *self, const double *sums, Sentence *out)
 {
-    RowBackground sum = {0};
     char colors[2][32];
-    for (int y = 0; y < self->labels.height; y++) {
-        sum.equal += self->rows[y].equal;
-        sum.rims += self->rows[y].rims;
-        sum.others += self->rows[y].others;
-    }
-    if (sum.equal == 0 || 4 * sum.equal < sum.rims || 50 * sum.others > sum.equal)
+    if (sums[EQUAL_PIXELS] == 0 || 4 * sums[EQUAL_PIXELS] < sums[RIM_PIXELS] ||
+        50 * sums[OTHER_PIXELS] > sums[EQUAL_PIXELS])
         return;
     for (int side = 0; side < 2; side++)
         describe_background(&self->labels, side, self->pictures[side]->channels, colors[side]);
@@ -135,13 +118,11 @@ Status cause_background(const Picture *a, const Picture *b, const Samples *sampl
                         Err *err)
 {
     Backgrounds self = {.pictures = {a, b}, .labels = labels_from_background(a, b)};
-    size_t height = (size_t)a->height;
+    double sums[BACKGROUND_SUMS] = {0};
     if (!have_backgrounds_unlike(&self.labels, a->channels) || !may_be_background(&self, samples))
         return STATUS_OK;
-    TRY(mem_calloc(&self.rows, height, sizeof *self.rows, "counts of rows", err));
-    threads_for(height, 0, count_background, &self);
-    say_background(&self, out);
-    free(self.rows);
+    TRY(rows_sum(a->height, count_background, &self, sums, BACKGROUND_SUMS, err));
+    say_background(&self, sums, out);
     return STATUS_OK;
 }
 
@@ -235,7 +216,7 @@ static int contrast(const Picture *picture, int x, int y)
         int low = 65535, high = 0;
         for (int v = y > 0 ? y - 1 : 0; v <= y + 1 && v < picture->height; v++)
             for (int u = x > 0 ? x - 1 : 0; u <= x + 1 && u < picture->width; u++) {
-                int code = picture_code(picture, first_code(picture, u, v) + (size_t)c);
+                int code = code_at(picture, u, v, c);
                 low = code < low ? code : low;
                 high = code > high ? code : high;
             }
@@ -246,18 +227,15 @@ static int contrast(const Picture *picture, int x, int y)
 
 enum { LEVELS = 32, SLIGHT = 2, BLOCK = 64 };
 
-/* Pixels of a row that differ by more than SLIGHT, at edges and off them, and others off
- * edges and the background, of which `changed` differ at all. */
-typedef struct RowOutlines {
-    size_t at_edges, off, inner, changed;
-} RowOutlines;
+/* Pixels that differ by more than SLIGHT, at edges and off them, and others off edges and the
+ * background, of which CHANGED_PIXELS differ at all. */
+enum { AT_EDGES, OFF_EDGES, INNER_PIXELS, CHANGED_PIXELS, OUTLINE_SUMS };
 
 typedef struct OutlineCounts {
     const Picture *a, *b;
     Labels labels;
-    int slight;        /* codes */
-    size_t enough;     /* when a row has this many inner pixels the rest of it is not looked at */
-    RowOutlines *rows; /* owned */
+    int slight;    /* codes */
+    double enough; /* when a row has this many inner pixels the rest of it is not looked at */
 } OutlineCounts;
 
 static bool is_edge(const OutlineCounts *self, int x, int y)
@@ -276,32 +254,29 @@ static bool is_slight(const OutlineCounts *self, int x, int y)
     return codes_off(self, x, y) <= self->slight;
 }
 
-static void count_differing(size_t row, int worker, void *context)
+static void count_differing(const void *context, int y, double *sums)
 {
-    (void)worker;
     const OutlineCounts *self = context;
-    int width = self->a->width, y = (int)row;
+    int width = self->a->width;
     for (int from = 0; from < width; from += BLOCK) {
         int to = from + BLOCK < width ? from + BLOCK : width;
         if (picture_rows_equal(self->a, self->b, y, from, to - from))
             continue;
         for (int x = from; x < to; x++)
             if (!is_slight(self, x, y))
-                ++*(is_edge(self, x, y) ? &self->rows[y].at_edges : &self->rows[y].off);
+                sums[is_edge(self, x, y) ? AT_EDGES : OFF_EDGES]++;
     }
 }
 
-static void count_inner(size_t row, int worker, void *context)
+static void count_inner(const void *context, int y, double *sums)
 {
-    (void)worker;
     const OutlineCounts *self = context;
     bool known = self->labels.source == LABELS_BACKGROUND;
-    int y = (int)row;
-    for (int x = 0; x < self->a->width && self->rows[y].inner < self->enough; x++) {
+    for (int x = 0; x < self->a->width && sums[INNER_PIXELS] < self->enough; x++) {
         bool inner = (!known || is_seen(&self->labels, self->a, 0, x, y)) &&
                      is_slight(self, x, y) && !is_edge(self, x, y);
-        self->rows[y].inner += inner;
-        self->rows[y].changed += inner && codes_off(self, x, y) > 0;
+        sums[INNER_PIXELS] += inner;
+        sums[CHANGED_PIXELS] += inner && codes_off(self, x, y) > 0;
     }
 }
 
@@ -315,18 +290,6 @@ static bool may_be_outlines(const OutlineCounts *self, const Samples *samples)
     return at_edges > 0 && (off < 8 || 10 * off < at_edges);
 }
 
-static RowOutlines sum_rows(const OutlineCounts *self)
-{
-    RowOutlines sum = {0};
-    for (int y = 0; y < self->a->height; y++) {
-        sum.at_edges += self->rows[y].at_edges;
-        sum.off += self->rows[y].off;
-        sum.inner += self->rows[y].inner;
-        sum.changed += self->rows[y].changed;
-    }
-    return sum;
-}
-
 static Status say_outlines(const Picture *a, const Picture *b, const Samples *samples,
                            const CompareResult *result, Sentence *out, Err *err)
 {
@@ -334,23 +297,20 @@ static Status say_outlines(const Picture *a, const Picture *b, const Samples *sa
                           .b = b,
                           .labels = labels_from_background(a, b),
                           .slight = a->bits == 8 ? SLIGHT : 257 * SLIGHT};
-    size_t height = (size_t)a->height;
+    double sums[OUTLINE_SUMS] = {0};
     if (!may_be_outlines(&self, samples))
         return STATUS_OK;
-    TRY(mem_calloc(&self.rows, height, sizeof *self.rows, "counts of rows", err));
-    threads_for(height, 0, count_differing, &self);
-    RowOutlines sum = sum_rows(&self);
-    self.enough = (sum.at_edges + 3) / 4;
-    if (99 * sum.off <= sum.at_edges)
-        threads_for(height, 0, count_inner, &self);
-    sum = sum_rows(&self);
-    if (99 * sum.off <= sum.at_edges && sum.inner >= self.enough && 2 * sum.changed <= sum.inner)
+    TRY(rows_sum(a->height, count_differing, &self, sums, OUTLINE_SUMS, err));
+    self.enough = floor((sums[AT_EDGES] + 3) / 4);
+    if (99 * sums[OFF_EDGES] > sums[AT_EDGES])
+        return STATUS_OK;
+    TRY(rows_sum(a->height, count_inner, &self, sums, OUTLINE_SUMS, err));
+    if (sums[INNER_PIXELS] >= self.enough && 2 * sums[CHANGED_PIXELS] <= sums[INNER_PIXELS])
         snprintf(out->text, out->size,
                  "differences above %d levels are only at outlines: up to %.4g levels, on %.3g %% "
                  "of the pixels",
                  SLIGHT, result->values[MEASURE_MAX_ABS],
-                 100.0 * (double)sum.at_edges / result->values[MEASURE_PIXELS]);
-    free(self.rows);
+                 100.0 * sums[AT_EDGES] / result->values[MEASURE_PIXELS]);
     return STATUS_OK;
 }
 
@@ -366,8 +326,8 @@ typedef struct LightSums {
     double colored_rounding; /* what the rounding of their codes makes */
     /* Of those so colored that light midway between white and their own is neither: */
     double telling;       /* squares */
-    size_t pixels, plain; /* all; in white or own light alone */
-} LightSums;
+    double pixels, plain; /* counts: all; in white or own light alone */
+} LightSums;              /* of doubles alone, so that rows_sum adds them up */
 
 /* The square of what is left of `more` beside `along`. */
 static double beside(const double more[3], const double along[3])
@@ -452,64 +412,28 @@ static void add_light(const Plane *table, const Picture *a, const Picture *b, si
 
 typedef struct Lights {
     const Picture *a, *b;
-    Plane table;       /* owned; the light of each code */
-    LightSums *lights; /* owned; of each row */
+    Plane table; /* owned; the light of each code */
 } Lights;
 
-static void add_row_light(size_t y, int worker, void *context)
+static void add_row_light(const void *context, int y, double *sums)
 {
-    (void)worker;
     const Lights *self = context;
-    if (picture_rows_equal(self->a, self->b, (int)y, 0, self->a->width))
+    if (picture_rows_equal(self->a, self->b, y, 0, self->a->width))
         return;
     for (int x = 0; x < self->a->width; x++)
-        add_light(&self->table, self->a, self->b, first_code(self->a, x, (int)y), &self->lights[y]);
-}
-
-/* The light of each code of a picture. */
-static Status light_of_codes(const Picture *picture, Plane *table, Err *err)
-{
-    Picture codes;
-    TRY(picture_init(&codes, 1 << picture->bits, 1, 1, picture->bits, err));
-    codes.gamma = picture->gamma;
-    for (int i = 0; i < codes.width; i++)
-        picture_set(&codes, (size_t)i, (uint16_t)i);
-    Status status = plane_from_picture(table, &codes, err);
-    picture_release(&codes);
-    return status;
-}
-
-static void add_lights(LightSums *to, const LightSums *from)
-{
-    to->squares += from->squares;
-    to->white += from->white;
-    to->own += from->own;
-    to->rest += from->rest;
-    to->rounding += from->rounding;
-    to->colored_rounding += from->colored_rounding;
-    to->telling += from->telling;
-    to->pixels += from->pixels;
-    to->plain += from->plain;
-    for (int c = 0; c < 3; c++)
-        for (int d = 0; d < 3; d++)
-            to->moments[c][d] += from->moments[c][d];
+        add_light(&self->table, self->a, self->b, first_code(self->a, x, y), (LightSums *)sums);
 }
 
 static Status sum_light(const Picture *a, const Picture *b, LightSums *all, Err *err)
 {
     Lights self = {.a = a, .b = b};
-    size_t height = (size_t)a->height;
     *all = (LightSums){0};
     if (a->channels != 3)
         return STATUS_OK;
     TRY(light_of_codes(a, &self.table, err));
-    Status status = mem_calloc(&self.lights, height, sizeof *self.lights, "light of rows", err);
-    if (status == STATUS_OK)
-        threads_for(height, 0, add_row_light, &self);
-    for (size_t y = 0; y < height && status == STATUS_OK; y++)
-        add_lights(all, &self.lights[y]);
+    Status status =
+        rows_sum(a->height, add_row_light, &self, (double *)all, sizeof *all / sizeof(double), err);
     plane_release(&self.table);
-    free(self.lights);
     return status;
 }
 

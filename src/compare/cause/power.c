@@ -246,10 +246,10 @@ json_t *power_json(const Power *power)
     for (int rule = 0; rule < POWER_RULES; rule++)
         rules = json_with_item(
             rules,
-            json_pack("{s:o, s:o, s:o, s:o}", "name", json_text(rule_name(power, rule)), "says",
-                      json_text_or_null(rule ? published_rules[rule - 1].says : NULL), "missed",
-                      json_count(power->missed[rule]), "false_alarm",
-                      json_boolean(power->alarm[rule])));
+            JSON_OBJECT({"name", json_text(rule_name(power, rule))},
+                        {"says", json_text_or_null(rule ? published_rules[rule - 1].says : NULL)},
+                        {"missed", json_count(power->missed[rule])},
+                        {"false_alarm", json_boolean(power->alarm[rule])}));
     for (size_t i = 0; i < power->n; i++)
         if (power->cases[i].exists)
             cases = json_with_item(cases, case_json(&power->cases[i]));

@@ -41,17 +41,11 @@ typedef struct Meaning {
 
 static Status meaning_init(Meaning *meaning, const Picture *picture, Err *err)
 {
-    Picture codes;
     Plane linear;
-    int n = 1 << picture->bits;
-    TRY(picture_init(&codes, n, 1, 1, picture->bits, err));
-    codes.gamma = picture->gamma;
-    for (int i = 0; i < n; i++)
-        picture_set(&codes, (size_t)i, (uint16_t)i);
-    Status status = plane_from_picture(&linear, &codes, err);
-    picture_release(&codes);
-    TRY(status);
-    status = mem_calloc(&meaning->linear, (size_t)n * (3 + KINDS), sizeof(float), "codes", err);
+    TRY(light_of_codes(picture, &linear, err));
+    const int n = linear.width;
+    Status status =
+        mem_calloc(&meaning->linear, (size_t)n * (3 + KINDS), sizeof(float), "codes", err);
     if (status == STATUS_OK) {
         meaning->n = n;
         meaning->level = meaning->linear + n;
@@ -176,19 +170,14 @@ typedef struct Codes {
 
 static Codes codes_of(const Picture *a, const Picture *b, const Samples *samples)
 {
-    size_t n =
-        samples ? (size_t)samples->n * (size_t)a->channels : picture_stride(a) * (size_t)a->height;
-    return (Codes){a, b, samples, n, {-1, -1, -1}};
+    return (Codes){a, b, samples, n_asked(a, samples) * (size_t)a->channels, {-1, -1, -1}};
 }
 
 static void take(const Codes *codes, size_t i, int *in_a, int *in_b)
 {
-    size_t channels = (size_t)codes->a->channels, at = i;
-    if (codes->samples) {
-        const PixelPlace *place = &codes->samples->at[i / channels];
-        at = ((size_t)place->y * (size_t)codes->a->width + (size_t)place->x) * channels +
-             i % channels;
-    }
+    const size_t channels = (size_t)codes->a->channels;
+    const size_t at =
+        codes->samples ? asked_code(codes->a, codes->samples, i / channels) + i % channels : i;
     *in_a = picture_code(codes->a, at);
     *in_b = picture_code(codes->b, at);
 }
@@ -296,8 +285,7 @@ static bool has_colors(const Picture *picture, const Samples *samples)
     enum { LEVELS = 32, ENOUGH = 12 };
     int colored = 0;
     for (int i = 0; i < samples->n && picture->channels == 3; i++) {
-        const PixelPlace *at = &samples->at[i];
-        size_t first = 3 * ((size_t)at->y * (size_t)picture->width + (size_t)at->x);
+        size_t first = first_code(picture, samples->at[i].x, samples->at[i].y);
         int red = picture_code(picture, first), green = picture_code(picture, first + 1);
         int blue = picture_code(picture, first + 2);
         colored += abs(red - green) >= LEVELS || abs(green - blue) >= LEVELS;

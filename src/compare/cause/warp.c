@@ -41,8 +41,7 @@ static float level_at(const Picture *picture, int x, int y, int channel, const f
 {
     x = x < 0 ? 0 : x < picture->width ? x : picture->width - 1;
     y = y < 0 ? 0 : y < picture->height ? y : picture->height - 1;
-    size_t channels = (size_t)picture->channels;
-    size_t i = ((size_t)y * (size_t)picture->width + (size_t)x) * channels;
+    const size_t channels = (size_t)picture->channels, i = first_code(picture, x, y);
     float sum = 0;
     if (channel >= 0 && channel < CHROMA)
         return 255 * levels[picture_code(picture, i + (size_t)channel)];
@@ -418,13 +417,8 @@ static bool is_one_displacement(const Patches *patches)
 static int pixels_apart(const Picture *a, int x, int y, const Picture *b, int u, int v)
 {
     int sum = 0;
-    if (u < 0 || u >= b->width || v < 0 || v >= b->height)
-        return 0;
-    size_t channels = (size_t)a->channels;
-    size_t at = ((size_t)y * (size_t)a->width + (size_t)x) * channels;
-    size_t other = ((size_t)v * (size_t)b->width + (size_t)u) * channels;
-    for (size_t c = 0; c < channels; c++)
-        sum += abs(picture_code(a, at + c) - picture_code(b, other + c));
+    for (int c = 0; c < a->channels && u >= 0 && u < b->width && v >= 0 && v < b->height; c++)
+        sum += abs(code_at(a, x, y, c) - code_at(b, u, v, c));
     return sum;
 }
 

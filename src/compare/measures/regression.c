@@ -8,9 +8,9 @@
  * errors, Liang and Zeger 1986]. The largest error counts: that of independent samples, or that of
  * the runs in one of the four directions. */
 #include "compare/measures/pixel_counts.h"
+#include "compare/pixels.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* With d = b - a: gain - 1 = cov(a, d) / var(a). All in codes. */
@@ -30,12 +30,11 @@ static const int directions[DIRECTIONS][2] = {{1, 0}, {0, 1}, {1, 1}, {-1, 1}};
 typedef struct Runs {
     const Rendering *a, *b;
     const Line *line;
-    LineError *errors; /* owned; DIRECTIONS for each row, of the runs that begin in it */
 } Runs;
 
 static LineError error_of_samples(const PixelSums *sums, const Line *line)
 {
-    double rest = (double)sums->line.dd - line->n * line->mean_d * line->mean_d -
+    double rest = (double)sums->total.line.dd - line->n * line->mean_d * line->mean_d -
                   line->slope * line->slope * line->squares_a;
     double variance = fmax(0, rest) / line->n;
     return (LineError){variance / line->squares_a,
@@ -84,11 +83,11 @@ static void add_run(const Runs *runs, int x, int y, int length, LineError *error
     }
 }
 
-static void add_row_of_runs(size_t row, int worker, void *context)
+/* Adds the errors of the runs that begin in a row, DIRECTIONS LineErrors. */
+static void add_row_of_runs(const void *context, int y, double *sums)
 {
-    (void)worker;
-    Runs *runs = context;
-    const int y = (int)row;
+    const Runs *runs = context;
+    LineError *errors = (LineError *)sums;
     for (int x = 0; x < runs->a->picture->width; x++) {
         if (!is_common(runs, x, y))
             continue;
@@ -99,7 +98,7 @@ static void add_row_of_runs(size_t row, int worker, void *context)
                 continue;
             while (repeats(runs, x, y, x + length * step[0], y + length * step[1]))
                 length++;
-            add_run(runs, x, y, length, &runs->errors[row * DIRECTIONS + (size_t)i]);
+            add_run(runs, x, y, length, &errors[i]);
         }
     }
 }
@@ -107,20 +106,14 @@ static void add_row_of_runs(size_t row, int worker, void *context)
 /* Raises the errors to those of the runs in each direction. */
 static Status raise_by_runs(const Counting *counting, const Line *line, LineError *error, Err *err)
 {
-    Runs runs = {.a = counting->a, .b = counting->b, .line = line};
-    size_t height = (size_t)counting->labels->height;
-    TRY(mem_calloc(&runs.errors, height * DIRECTIONS, sizeof *runs.errors, "errors of rows", err));
-    threads_for(height, 0, add_row_of_runs, &runs);
-    for (size_t i = 0; i < DIRECTIONS; i++) {
-        LineError sum = {0};
-        for (size_t y = 0; y < height; y++) {
-            sum.slope += runs.errors[y * DIRECTIONS + i].slope;
-            sum.offset += runs.errors[y * DIRECTIONS + i].offset;
-        }
-        error->slope = fmax(error->slope, sum.slope);
-        error->offset = fmax(error->offset, sum.offset);
+    const Runs runs = {.a = counting->a, .b = counting->b, .line = line};
+    LineError sums[DIRECTIONS] = {{0}};
+    TRY(rows_sum(counting->labels->height, add_row_of_runs, &runs, &sums[0].slope, 2 * DIRECTIONS,
+                 err));
+    for (int i = 0; i < DIRECTIONS; i++) {
+        error->slope = fmax(error->slope, sums[i].slope);
+        error->offset = fmax(error->offset, sums[i].offset);
     }
-    free(runs.errors);
     return STATUS_OK;
 }
 
@@ -134,17 +127,18 @@ Status regression_take(const Counting *counting, double code_levels, CompareResu
                        Err *err)
 {
     const PixelSums *sums = counting->sums;
-    double n = (double)sums->line.n, a = (double)sums->line.a, d = (double)sums->line.d;
-    double variance = n * (double)sums->line.aa - a * a;
+    double n = (double)sums->total.line.n, a = (double)sums->total.line.a,
+           d = (double)sums->total.line.d;
+    double variance = n * (double)sums->total.line.aa - a * a;
     if (!(variance > 0))
         return STATUS_OK;
     const Line line = {.n = n,
                        .mean_a = a / n,
                        .mean_d = d / n,
-                       .slope = (n * (double)sums->line.ad - a * d) / variance,
+                       .slope = (n * (double)sums->total.line.ad - a * d) / variance,
                        .squares_a = variance / n};
     LineError error = error_of_samples(sums, &line);
-    if (sums->line.dd > 0)
+    if (sums->total.line.dd > 0)
         TRY(raise_by_runs(counting, &line, &error, err));
     double *values = result->values;
     values[MEASURE_GAIN] = 1 + line.slope;

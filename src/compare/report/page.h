@@ -33,8 +33,8 @@ typedef enum ReportPlane {
 } ReportPlane;
 /* Appends these pictures as data: URIs, "data:," for planes that are unknown or larger than 4
  * million pixels. Sets the range of depths. Errors: STATUS_MEMORY. */
-MUST_CHECK Status report_planes(const ReportSide *a, const ReportSide *b,
-                                Text *parts[REPORT_PLANES], double range_mm[2], Err *err);
+MUST_CHECK Status report_planes(const Rendering *a, const Rendering *b, Text *parts[REPORT_PLANES],
+                                double range_mm[2], Err *err);
 /* Makes a copy at most 96 pixels wide, each pixel of which is the mean of a square. The caller
  * releases it. Errors: STATUS_MEMORY. */
 MUST_CHECK Status report_thumbnail(Picture *out, const Picture *picture, Err *err);

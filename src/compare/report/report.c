@@ -54,7 +54,7 @@ Status report_write_page(const ReportCase *report, const char *templates, const 
                          Err *err)
 {
     Picture heat;
-    TRY(heat_picture(&heat, report->a.picture, report->b.picture, err));
+    TRY(heat_picture(&heat, report->a.shown.picture, report->b.shown.picture, err));
     Status status = report_page(report, &heat, templates, path, err);
     picture_release(&heat);
     return status;
@@ -66,7 +66,7 @@ Status report_write(const ReportCase *report, const char *templates, const char 
     Text json = TEXT_INIT, xml = TEXT_INIT;
     char *diff = NULL, *page = NULL;
     Status status = STATUS_OK;
-    TRY_GOTO(heat_picture(&heat, report->a.picture, report->b.picture, err));
+    TRY_GOTO(heat_picture(&heat, report->a.shown.picture, report->b.shown.picture, err));
     TRY_GOTO(file_join(folder, "diff.png", &diff, err));
     TRY_GOTO(picture_write(&heat, diff, ENCODING_SRGB, NULL, NULL, err));
     text_json(&json, report_json(report), 2);

@@ -30,9 +30,8 @@ typedef struct ReportSide {
     const char *version; /* "3.7.0.10"; "": none */
     double seconds;      /* wall-clock time of the color picture, sum over tiles; NAN: unknown */
     size_t tiles;        /* tiles that the picture was drawn in; 0: unknown */
-    const Picture *picture;
-    const IdPlane *ids;          /* NULL, in both sides: unknown */
-    const Plane *depth, *normal; /* NULL, in both sides: unknown */
+    Rendering shown;     /* its picture, and ids, depth and normal, each of which is NULL in both
+                          * sides if it is unknown */
 } ReportSide;
 
 /* One scene as A, the reference, and B have it. All members are borrowed. */

@@ -109,21 +109,6 @@ static Status put_legend(const char *templates, Text *out, Err *err)
     return STATUS_OK;
 }
 
-static Status class_map(const ReportCase *report, Picture *classes, Err *err)
-{
-    const ReportSide *a = &report->a, *b = &report->b;
-    bool geometry = a->depth && a->normal && b->depth && b->normal;
-    const Rendering in_a = {.picture = a->picture,
-                            .ids = a->ids,
-                            .depth = geometry ? a->depth : NULL,
-                            .normal = geometry ? a->normal : NULL};
-    const Rendering in_b = {.picture = b->picture,
-                            .ids = b->ids,
-                            .depth = geometry ? b->depth : NULL,
-                            .normal = geometry ? b->normal : NULL};
-    return class_picture(classes, &in_a, &in_b, &report->planes[PLANE_COLOR]->tolerance, err);
-}
-
 /* The large pictures of a case, each encoded by a thread. */
 enum { SHOWN = 4 };
 typedef struct Shown {
@@ -141,10 +126,11 @@ static Status put_shown(size_t i, int worker, void *context, Err *err)
 static Status picture_parts(const ReportCase *report, const Picture *heat, Markup *parts, Err *err)
 {
     Picture classes;
-    Shown shown = {.pictures = {report->a.picture, report->b.picture, heat, &classes},
+    Shown shown = {.pictures = {report->a.shown.picture, report->b.shown.picture, heat, &classes},
                    .parts = {markup_raw(parts, "image_a"), markup_raw(parts, "image_b"),
                              markup_raw(parts, "image_heat"), markup_raw(parts, "classes")}};
-    TRY(class_map(report, &classes, err));
+    TRY(class_picture(&classes, &report->a.shown, &report->b.shown,
+                      &report->planes[PLANE_COLOR]->tolerance, err));
     Status status = threads_try(SHOWN, 0, put_shown, &shown, err);
     picture_release(&classes);
     return status;
@@ -161,7 +147,7 @@ static Status plane_parts(const ReportCase *report, Markup *parts, Err *err)
     double range_mm[2];
     for (int i = 0; i < REPORT_PLANES; i++)
         planes[i] = markup_raw(parts, names[i]);
-    TRY(report_planes(&report->a, &report->b, planes, range_mm, err));
+    TRY(report_planes(&report->a.shown, &report->b.shown, planes, range_mm, err));
     text_printf(markup_text(parts, "depth_range"), "%.9g %.9g", range_mm[0], range_mm[1]);
     return STATUS_OK;
 }
@@ -232,8 +218,8 @@ static void fill_words(const ReportCase *report, Markup *parts)
         put_sentence(report, markup_text(parts, "sentence"));
     text_puts(markup_text(parts, "accept"), report->accept ? report->accept : "");
     text_puts(markup_text(parts, "options"), options_of(report));
-    text_printf(markup_text(parts, "size"), "%d × %d", report->a.picture->width,
-                report->a.picture->height);
+    text_printf(markup_text(parts, "size"), "%d × %d", report->a.shown.picture->width,
+                report->a.shown.picture->height);
     text_puts(markup_text(parts, "tier"), color->tolerance.tier);
     text_puts(markup_text(parts, "name_a"), report->a.name);
     text_puts(markup_text(parts, "name_b"), report->b.name);
@@ -258,8 +244,8 @@ static Status put_case(const ReportCase *report, const Picture *heat, const char
     TRY_GOTO(report_tables(report, templates, rules, measures, err));
     TRY_GOTO(put_legend(templates, markup_raw(&parts, "legend"), err));
     TRY_GOTO(picture_parts(report, heat, &parts, err));
-    TRY_GOTO(ids_part(markup_raw(&parts, "ids_a"), report->a.ids, err));
-    TRY_GOTO(ids_part(markup_raw(&parts, "ids_b"), report->b.ids, err));
+    TRY_GOTO(ids_part(markup_raw(&parts, "ids_a"), report->a.shown.ids, err));
+    TRY_GOTO(ids_part(markup_raw(&parts, "ids_b"), report->b.shown.ids, err));
     TRY_GOTO(plane_parts(report, &parts, err));
     status = markup_put(&parts, templates, "case.html", out, err);
 done:
@@ -285,7 +271,7 @@ static Status put_row(const ReportCase *report, const char *templates, Text *row
     Markup parts = {0};
     Picture thumbnail;
     Status status = STATUS_OK;
-    TRY(report_thumbnail(&thumbnail, report->b.picture, err));
+    TRY(report_thumbnail(&thumbnail, report->b.shown.picture, err));
     TRY_GOTO(picture_put_uri(&thumbnail, markup_raw(&parts, "thumbnail"), err));
     text_puts(markup_text(&parts, "name"), report->name);
     text_puts(markup_text(&parts, "options"), options_of(report));

@@ -86,7 +86,7 @@ static bool can_show(const Plane *a, const Plane *b)
     return a && b && (double)a->width * a->height <= MOST_PIXELS;
 }
 
-Status report_planes(const ReportSide *a, const ReportSide *b, Text *parts[REPORT_PLANES],
+Status report_planes(const Rendering *a, const Rendering *b, Text *parts[REPORT_PLANES],
                      double range_mm[2], Err *err)
 {
     Picture pictures[REPORT_PLANES] = {0};

@@ -67,11 +67,7 @@ static Status remove_file(const char *path, Err *err)
 /* Replaces the last component of `path`. */
 static Status beside(const char *path, const char *name, char **out, Err *err)
 {
-    Text text = TEXT_INIT;
-    text_printf(&text, "%.*s%s", (int)(file_name(path) - path), path, name);
-    Status status = text_take(&text, out, err);
-    text_release(&text);
-    return status;
+    return file_format_name(out, err, "%.*s%s", (int)(file_name(path) - path), path, name);
 }
 
 /* ---- one case -------------------------------------------------------------------------------- */
@@ -107,11 +103,11 @@ done:
 /* The name of the reference that the picture becomes: "views/front.ref-gpu.png" */
 static Status target_name(const SuiteCase *entry, const char *label, char **out, Err *err)
 {
-    char suffix[128];
+    const char *extension = file_extension(entry->name);
     if (!label)
         return mem_strdup(out, entry->name, err);
-    snprintf(suffix, sizeof suffix, "%s%s.%s", REFERENCE_MARK, label, file_extension(entry->name));
-    return file_with_suffix(entry->name, suffix, out, err);
+    return file_format_name(out, err, "%.*s" REFERENCE_MARK "%s.%s",
+                            (int)(extension - entry->name) - 1, entry->name, label, extension);
 }
 
 static Status accept_case(const SuiteFolders *folders, const SuiteCase *entry,

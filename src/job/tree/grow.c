@@ -204,6 +204,7 @@ const Command command_grow = {
                 "  corcast grow --inlet 0,50 --inlet 30,-40 --inlet-shares 0.7,0.3 -o forest.swc\n",
     .needs_output = true,
     .reads_tree = true,
+    .trees_only = true,
     .size = sizeof(GrowOptions),
     .set_defaults = set_defaults,
     .tables = {{&own_table, 0},

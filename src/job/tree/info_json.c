@@ -54,14 +54,14 @@ static json_t *notes_json(const TreeReading *reading)
 
 static json_t *network_json(const NetworkReading *network)
 {
-    return JSON_OBJECT({"points", json_count(network->points)},
-                       {"lines", json_count(network->lines)},
-                       {"lines_against", json_count(network->against)},
-                       {"merged_points", json_count(network->merged)},
-                       {"unused_points", json_count(network->unused)},
-                       {"lines_without_length", json_count(network->without_length)},
-                       {"repeated_lines", json_count(network->repeated)},
-                       {"loops", json_count(network->loops)}, {"cuts", cuts_json(network)});
+    return JSON_OBJECT(
+        {"points", json_count(network->points)}, {"lines", json_count(network->lines)},
+        {"lines_against", json_count(network->against)},
+        {"merged_points", json_count(network->merged)},
+        {"unused_points", json_count(network->unused)},
+        {"lines_without_length", json_count(network->without_length)},
+        {"repeated_lines", json_count(network->repeated)},
+        {"loops", json_count(network->loops + network->links)}, {"cuts", cuts_json(network)});
 }
 
 static json_t *reading_json(const TreeReading *reading)
@@ -138,19 +138,26 @@ static json_t *connectivity_json(const TreeStatistics *statistics)
 
 static json_t *statistics_json(const TreeStatistics *statistics)
 {
+    const bool orders = statistics->has_orders;
+    const OrderRatios none = {NAN, NAN, NAN};
+    size_t branch_points = 0;
+    for (int k = 3; k <= READ_MAX_DEGREE; k++)
+        branch_points += statistics->nodes_of_degree[k];
     return JSON_OBJECT(
         {"vessels", json_count(statistics->vessels)},
         {"volume_mm3", json_number(statistics->volume_mm3)},
         {"by_level", table_json("level", &statistics->by_level)},
         {"by_strahler", table_json("order", &statistics->by_strahler)},
-        {"strahler_ratios", ratios_json(&statistics->strahler_ratios)},
+        {"strahler_ratios", ratios_json(orders ? &statistics->strahler_ratios : &none)},
         {"by_diameter_strahler", table_json("order", &statistics->by_diameter_strahler)},
-        {"diameter_strahler_ratios", ratios_json(&statistics->diameter_strahler_ratios)},
+        {"diameter_strahler_ratios",
+         ratios_json(orders ? &statistics->diameter_strahler_ratios : &none)},
         {"connectivity", connectivity_json(statistics)},
         {"diameter_rounds", json_integer(statistics->diameter_rounds)},
         {"diameter_orders_converged", json_boolean(statistics->diameter_orders_converged)},
-        {"symmetry", bifurcations_json(&statistics->symmetry)},
-        {"area_ratio", bifurcations_json(&statistics->area_ratio)});
+        {"symmetry", orders ? bifurcations_json(&statistics->symmetry) : json_null()},
+        {"area_ratio", orders ? bifurcations_json(&statistics->area_ratio) : json_null()},
+        {"branch_points", json_count(branch_points)});
 }
 
 /* ---- morphometry ----------------------------------------------------------------------------- */
@@ -159,31 +166,22 @@ static json_t *pair_json(const MorphometryPair *pair)
 {
     json_t *whole = pair->order > 0 ? json_integer(pair->order) : json_null();
     json_t *other = pair->order > 0 ? json_integer(pair->published_order) : json_null();
-    const JsonMember members[] = {
-        {"measure", json_text(morphometry_names[pair->measure].name)},
-        {"unit", json_text(morphometry_names[pair->measure].unit)},
-        {"order", whole},
-        {"published_order", other},
-        {"value", json_number(pair->value)},
-        {"published_mean", json_number(pair->published.mean)},
-        {"published_sd", json_number(pair->published.sd)},
-        {"published_se", json_number(pair->se)},
-        {"room", json_number(pair->room)},
-        {"pass", json_boolean(pair->agrees)},
-        {"pass_strict", json_boolean(pair->agrees_strictly)},
-    };
-    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+    return JSON_OBJECT({"measure", json_text(morphometry_names[pair->measure].name)},
+                       {"unit", json_text(morphometry_names[pair->measure].unit)}, {"order", whole},
+                       {"published_order", other}, {"value", json_number(pair->value)},
+                       {"published_mean", json_number(pair->published.mean)},
+                       {"published_sd", json_number(pair->published.sd)},
+                       {"published_se", json_number(pair->se)}, {"room", json_number(pair->room)},
+                       {"pass", json_boolean(pair->agrees)},
+                       {"pass_strict", json_boolean(pair->agrees_strictly)});
 }
 
 /* Adds the counts of a comparison to an object. */
 static json_t *with_counts(json_t *object, const MorphometryComparison *comparison)
 {
-    const JsonMember members[] = {
-        {"compared", json_count(comparison->n)},
-        {"passed", json_count(comparison->agreeing)},
-        {"passed_strict", json_count(comparison->agreeing_strictly)},
-    };
-    return json_with_members(object, members, sizeof members / sizeof *members);
+    return JSON_WITH(object, {"compared", json_count(comparison->n)},
+                     {"passed", json_count(comparison->agreeing)},
+                     {"passed_strict", json_count(comparison->agreeing_strictly)});
 }
 
 static json_t *morphometry_json(const InfoReport *report)
@@ -195,14 +193,9 @@ static json_t *morphometry_json(const InfoReport *report)
     for (int k = 0; k < MORPHOMETRY_ORDERS; k++)
         counts = json_with(counts, morphometry_orders_names[k],
                            with_counts(json_object(), &report->comparison[k]));
-    const JsonMember members[] = {
-        {"source", json_text(report->table.source)},
-        {"orders", json_text(morphometry_orders_names[report->orders])},
-        {"counts", counts},
-        {"rows", pairs},
-    };
-    return json_with_members(with_counts(json_object(), chosen), members,
-                             sizeof members / sizeof *members);
+    json_t *json = JSON_OBJECT({"source", json_text(report->table.source)},
+                               {"orders", json_text(morphometry_orders_names[report->orders])});
+    return JSON_WITH(with_counts(json, chosen), {"counts", counts}, {"rows", pairs});
 }
 
 /* ---- the whole ------------------------------------------------------------------------------- */

@@ -40,12 +40,12 @@ static void put_ledger(const Comparison *comparison, const char *name, Text *out
 static ReportSide side_of(const Comparison *comparison, int i)
 {
     const ComparedSide *side = &comparison->sides[i];
-    return (ReportSide){.name = side->name,
-                        .key = i ? "b" : "a",
-                        .version = "",
-                        .seconds = (double)NAN,
-                        .picture = side_shown(side),
-                        .ids = side->ids.ids ? &side->ids : NULL};
+    return (ReportSide){
+        .name = side->name,
+        .key = i ? "b" : "a",
+        .version = "",
+        .seconds = (double)NAN,
+        .shown = {.picture = side_shown(side), .ids = side->ids.ids ? &side->ids : NULL}};
 }
 
 /* Writes the page alone, or the folder that `report` merges with others, or both. */

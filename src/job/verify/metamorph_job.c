@@ -7,14 +7,6 @@
 static const char *const formats[] = {"pov", "tachyon", "swc", NULL};
 
 static const Option own[] = {
-    {.name = "render",
-     SETS(TEXT, MetamorphOptions, render),
-     .argument = "COMMAND",
-     .help =
-         "shell command that renders the file {scene} into the PNG, PPM, TIFF or EXR file "
-         "{picture} of {width} x {height} pixels; if COMMAND lacks {scene}, corcast appends the "
-         "names of the files of scene and picture to COMMAND; {camera}, only with --format swc, "
-         "stands for the camera options of `corcast render`"},
     {.name = "format",
      SETS(CHOICE, MetamorphOptions, format),
      .choices = formats,
@@ -31,30 +23,18 @@ static const Option own[] = {
      SETS(NUMBER, MetamorphOptions, seconds),
      FROM_TO(0.001, 1e6),
      .unit = "s",
-     .help = "duration of the search; confirming, making scenes small and reports come on top"},
+     .help =
+         "duration of the search, without confirming, making scenes small and reports; how many "
+         "pairs it has depends on the machine, unless --pairs ends it"},
     {.name = "pairs",
      SETS(COUNT, MetamorphOptions, max_pairs),
      FROM_TO(0, 1e9),
      .argument = "N",
      .help = "maximum number of pairs; 0: no limit"},
-    {.name = "timeout",
-     SETS(NUMBER, MetamorphOptions, timeout_s),
-     FROM_TO(0.1, 1e5),
-     .unit = "s",
-     .help = "a rendering that takes longer is ended and does not count as a defect"},
-    {.name = "jobs",
-     SETS(WHOLE, MetamorphOptions, jobs),
-     FROM_TO(1, TRIAL_JOBS),
-     .aside = true,
-     .argument = "N",
-     .help = "renderings that run at the same time"},
     {.name = "output",
-     SETS(FOLDER, MetamorphOptions, folder),
+     SETS(FOLDER, MetamorphOptions, renderer.folder),
      .argument = "DIR",
      .help = "folder for metamorph.json and a folder for each cause"},
-    {.name = "json",
-     SETS(FLAG, MetamorphOptions, json),
-     .help = "print the result as JSON on standard output"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);
@@ -63,63 +43,41 @@ static void set_defaults(void *options)
 {
     MetamorphOptions *metamorph = options;
     metamorph->seconds = 60;
-    metamorph->timeout_s = 20;
-    metamorph->jobs = 16;
+    metamorph->renderer.shell = (ShellRenderer){.timeout_s = 20, .jobs = 16};
 }
 
 static Status write_result(const MetamorphOptions *options, const Metamorph *result, Err *err)
 {
     char *path = NULL;
-    TRY(file_join(options->folder, "metamorph.json", &path, err));
+    TRY(file_join(options->renderer.folder, "metamorph.json", &path, err));
     Status status = json_write(metamorph_json(result), path, err);
     free(path);
-    return status;
-}
-
-/* The commands may change the folder, so that the scenes have absolute paths. */
-static Status make_folders(const MetamorphOptions *options, char **scenes, Err *err)
-{
-    char *beside = NULL, *absolute = NULL;
-    Status status;
-    TRY_GOTO(file_make_folder(options->folder, err));
-    absolute = realpath(options->folder, NULL);
-    if (!absolute)
-        TRY_GOTO(err_set(err, STATUS_IO, "%s: the folder no longer exists", options->folder));
-    TRY_GOTO(file_join(absolute, "scenes", &beside, err));
-    status = file_temporary_folder(beside, scenes, err);
-done:
-    free(absolute);
-    free(beside);
     return status;
 }
 
 Status metamorph_make(const MetamorphOptions *options, Parsed *parsed, Metamorph *result, Err *err)
 {
     Progress progress;
-    char *scenes = NULL;
+    char *folder = NULL, *beside = NULL, *scenes = NULL;
     Status status;
-    if (!options->render || !*options->render)
-        return err_set(err, STATUS_USAGE,
-                       "--render needs a command, such as --render 'povray +I{scene} +O{picture} "
-                       "+W{width} +H{height} -D'");
-    if (!options->folder)
-        return err_set(err, STATUS_USAGE,
-                       "-o DIR, the folder that receives the reports, is missing");
     progress_start(&progress, "testing", parsed->common.talk);
-    TRY_GOTO(make_folders(options, &scenes, err));
-    const MetamorphParams params = {
-        .renderer = {options->render, options->format, scenes, options->timeout_s, options->jobs},
-        .relations = options->relations,
-        .seed = parsed->common.seed,
-        .max_pairs = options->max_pairs,
-        .seconds = options->seconds,
-        .output = options->folder,
-        .progress = progress_report,
-        .progress_context = &progress};
+    TRY_GOTO(renderer_open_folder(&options->renderer, "the reports", &folder, err));
+    TRY_GOTO(file_join(folder, "scenes", &beside, err));
+    TRY_GOTO(file_temporary_folder(beside, &scenes, err));
+    const MetamorphParams params = {.renderer = {options->renderer.shell, options->format, scenes},
+                                    .relations = options->relations,
+                                    .seed = parsed->common.seed,
+                                    .max_pairs = options->max_pairs,
+                                    .seconds = options->seconds,
+                                    .output = options->renderer.folder,
+                                    .progress = progress_report,
+                                    .progress_context = &progress};
     TRY_GOTO(metamorph_run(&params, result, err));
     status = write_result(options, result, err);
 done:
     progress_end(&progress);
+    free(folder);
+    free(beside);
     file_forget(scenes);
     return status;
 }
@@ -146,5 +104,5 @@ const Command command_metamorph = {
     .max_operands = 0,
     .size = sizeof(MetamorphOptions),
     .set_defaults = set_defaults,
-    .tables = {{&own_table, 0}},
+    .tables = {{&renderer_options, offsetof(MetamorphOptions, renderer)}, {&own_table, 0}},
 };

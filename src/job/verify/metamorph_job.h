@@ -3,26 +3,23 @@
 #ifndef CORCAST_JOB_VERIFY_METAMORPH_JOB_H
 #define CORCAST_JOB_VERIFY_METAMORPH_JOB_H
 
+#include "job/verify/renderer_options.h"
 #include "metamorph/metamorph.h"
-#include "options/options.h"
 
 /* What the options of `metamorph` set. */
 typedef struct MetamorphOptions {
-    const char *render;    /* shell command that draws a scene */
-    const char *folder;    /* output folder */
+    RendererOptions renderer;
     const char *relations; /* names, separated by commas; NULL: all */
     TrialFormat format;
-    double seconds, timeout_s;
+    double seconds;
     size_t max_pairs; /* 0: no limit */
-    int jobs;         /* drawings at the same time */
-    bool json;        /* for the command line: the result is printed as JSON */
 } MetamorphOptions;
 
 /* Describes the operation. Its options set a MetamorphOptions. */
 extern const Command command_metamorph;
 
 /* Searches for broken relations, and writes the folder of each cause and metamorph.json into
- * options->folder, which is created if it is missing.
+ * options->renderer.folder, which is created if it is missing.
  *
  * result  zeroed before; release it with metamorph_release even after an error. A broken relation
  *         is not an error.

@@ -5,8 +5,8 @@
 static void put_verdict(const TubeCase *one, Text *out)
 {
     const AnswerGrade *grade = &one->grade;
-    if (!one->drawn)
-        text_printf(out, "not drawn: %s", one->reason);
+    if (!one->drawing->is_drawn)
+        text_printf(out, "not drawn: %s", one->drawing->reason);
     else if (one->certified)
         text_printf(out, "certified, %zu undecided", grade->undecided);
     else
@@ -36,10 +36,10 @@ static json_t *case_json(const TubeCase *one)
     return JSON_OBJECT(
         {"name", json_text(one->name)}, {"group", json_text(one->group)},
         {"look", json_text(one->look)}, {"options", json_text(one->options)},
-        {"rows", json_count((uint64_t)one->rows)}, {"drawn", json_boolean(one->drawn)},
+        {"rows", json_count((uint64_t)one->rows)}, {"drawn", json_boolean(one->drawing->is_drawn)},
         {"certified", json_boolean(one->certified)}, {"wrong", json_count(one->wrong)},
-        {"reason", json_text_or_null(one->drawn ? NULL : one->reason)},
-        {"grade", one->drawn ? answergrade_json(&one->grade) : json_null()});
+        {"reason", json_text_or_null(one->drawing->is_drawn ? NULL : one->drawing->reason)},
+        {"grade", one->drawing->is_drawn ? answergrade_json(&one->grade) : json_null()});
 }
 
 json_t *tubesuite_json(const TubeSuite *suite)
@@ -47,10 +47,11 @@ json_t *tubesuite_json(const TubeSuite *suite)
     json_t *cases = json_array();
     for (size_t i = 0; i < suite->cases.n; i++)
         cases = json_with_item(cases, case_json(&suite->cases.items[i]));
-    return JSON_OBJECT({"renderer", json_text(suite->options->title ? suite->options->title
-                                                                    : suite->options->render)},
-                       {"scenes", json_count(suite->cases.n)}, {"drawn", json_count(suite->drawn)},
-                       {"certified", json_count(suite->certified)}, {"cases", cases});
+    return JSON_OBJECT(
+        {"renderer", json_text(suite->options->title ? suite->options->title
+                                                     : suite->options->renderer.shell.command)},
+        {"scenes", json_count(suite->cases.n)}, {"drawn", json_count(suite->drawn)},
+        {"certified", json_count(suite->certified)}, {"cases", cases});
 }
 
 static void put_row(const TubeCase *one, Text *out)
@@ -62,7 +63,7 @@ static void put_row(const TubeCase *one, Text *out)
     text_escaped(out, text_chars(&verdict) ? text_chars(&verdict) : "");
     text_release(&verdict);
     text_puts(out, "</td><td>");
-    if (one->drawn)
+    if (one->drawing->is_drawn)
         text_printf(out,
                     "<img src=\"%s.png\" alt=\"picture\"> <img src=\"%s.distance.png\" "
                     "alt=\"distance from the answer\">",
@@ -72,7 +73,8 @@ static void put_row(const TubeCase *one, Text *out)
 
 void tubesuite_page(const TubeSuite *suite, Text *out)
 {
-    const char *title = suite->options->title ? suite->options->title : suite->options->render;
+    const char *title =
+        suite->options->title ? suite->options->title : suite->options->renderer.shell.command;
     text_puts(out, "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<title>"
                    "Score card</title>\n<style>body{font:16px sans-serif;margin:2em}"
                    "td,th{padding:.2em .8em;text-align:left}img{image-rendering:pixelated;"

@@ -5,16 +5,16 @@
 
 static ReportSide side_of(const Verification *v, int side)
 {
-    const OraclePlanes *planes = side ? &v->native : &v->povray;
+    const Frame *frame = side ? &v->native.frame : &v->povray.frame;
     return (ReportSide){.name = side ? "corcast" : "POV-Ray",
                         .key = side ? "native" : "povray",
                         .version = side ? CORCAST_VERSION : v->run.version,
                         .seconds = side ? v->stats.prepare_s + v->stats.trace_s : v->run.seconds,
                         .tiles = side ? 0 : v->n_tiles,
-                        .picture = verification_shown(v, side),
-                        .ids = &planes->frame.id,
-                        .depth = &planes->frame.depth,
-                        .normal = &planes->frame.normal};
+                        .shown = {.picture = verification_shown(v, side),
+                                  .ids = &frame->id,
+                                  .depth = &frame->depth,
+                                  .normal = &frame->normal}};
 }
 
 ReportCase verification_report(const Verification *v)

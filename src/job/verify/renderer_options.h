@@ -1,0 +1,26 @@
+/* The options of `metamorph` and `suite` that name the renderer under test and the output folder.
+ */
+#ifndef CORCAST_JOB_VERIFY_RENDERER_OPTIONS_H
+#define CORCAST_JOB_VERIFY_RENDERER_OPTIONS_H
+
+#include "options/options.h"
+#include "oracle/drawing.h"
+
+typedef struct RendererOptions {
+    ShellRenderer shell;
+    const char *folder; /* output folder; NULL: not given */
+    bool json;          /* for the command line: the result is printed as JSON */
+} RendererOptions;
+
+/* Sets a RendererOptions, except `folder`. */
+extern const OptionTable renderer_options;
+
+/* Creates the output folder. Sets *path to its absolute path, because the command may change the
+ * folder; the caller frees it.
+ *
+ * content  the content of the folder, for the message: "the reports".
+ * Errors   STATUS_USAGE if the command or the folder is missing; STATUS_IO; STATUS_MEMORY. */
+MUST_CHECK Status renderer_open_folder(const RendererOptions *options, const char *content,
+                                       char **path, Err *err);
+
+#endif

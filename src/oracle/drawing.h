@@ -1,0 +1,58 @@
+/* Lets a user's renderer draw scene files: one shell command for each scene, several at a time. */
+#ifndef CORCAST_ORACLE_DRAWING_H
+#define CORCAST_ORACLE_DRAWING_H
+
+#include "image/image.h"
+
+/* The renderer. Strings are borrowed. */
+typedef struct ShellRenderer {
+    const char *command; /* shell command that draws a scene, with the marks of drawing_command */
+    double timeout_s;    /* a command that runs longer is killed */
+    int jobs;            /* maximum number of commands at the same time, from 1 to DRAWING_JOBS */
+} ShellRenderer;
+
+enum { DRAWING_JOBS = 32 };
+
+/* What the marks of a command stand for. Strings are borrowed. */
+typedef struct DrawingMarks {
+    const char *scene, *picture; /* paths */
+    const char *camera;          /* words of the shell that state the camera */
+    int width, height;           /* size of the picture, pixels */
+    bool needs_camera;           /* the file of the scene does not state the camera */
+} DrawingMarks;
+
+/* Appends the shell command that draws a scene.
+ *
+ * Replaces the marks {scene}, {picture}, {camera}, {width} and {height} in the user's `command`. If
+ * {scene} is missing, appends the scene, the picture and, if needs_camera is true, the camera. */
+void drawing_command(const char *command, const DrawingMarks *marks, Text *out);
+
+/* The files and the command of one drawing. Zeroed: none. All strings are owned. */
+typedef struct ShellDrawing {
+    char *scene, *picture, *log; /* paths */
+    char *command;
+    bool is_drawn;    /* the renderer ended in time with exit status 0, and wrote a file */
+    char reason[400]; /* why there is no picture: "exit status 1: no such file"; "" if there is */
+} ShellDrawing;
+
+/* Names the files folder/NAME with these extensions, and NAME.log. Errors: STATUS_MEMORY. */
+MUST_CHECK Status drawing_name(ShellDrawing *drawing, const char *folder, const char *name,
+                               const char *scene_extension, const char *picture_extension,
+                               Err *err);
+void drawing_release(ShellDrawing *drawing);
+
+/* Runs the commands of drawings that were never run, and waits for them. Removes old pictures.
+ * Sets is_drawn and reason. A command that is too late is killed, with everything that it started.
+ * A renderer that draws nothing is not an error. Errors: STATUS_TOOL if no process can be
+ * started. */
+MUST_CHECK Status drawings_run(const ShellRenderer *renderer, ShellDrawing *drawings, size_t n,
+                               Err *err);
+/* Reads the picture of a drawing and composites it over black. If there is no picture or it cannot
+ * be read, sets is_drawn to false and the reason, and leaves *image empty; this is not an error.
+ * The caller releases *image. Errors: STATUS_MEMORY. */
+MUST_CHECK Status drawing_read(ShellDrawing *drawing, Image *image, Err *err);
+/* Records why the picture of a drawing cannot be used, an error of this status and text. Returns
+ * STATUS_OK; if memory ran out, returns STATUS_MEMORY and sets *err. */
+MUST_CHECK Status drawing_refuse(ShellDrawing *drawing, Status status, const Err *why, Err *err);
+
+#endif
