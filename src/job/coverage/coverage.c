@@ -447,7 +447,7 @@ static Status put_territories(const Measuring *made, Text *text, Err *err)
     return status;
 }
 
-static json_t *json_of(const CoverageResult *result, const char *command)
+json_t *coverage_json(const CoverageResult *result, const char *command)
 {
     const CoverageReport *report = &result->report;
     const CoverageLaw *law = &result->law;
@@ -490,7 +490,7 @@ static Status put_files(const void *job, const char *command, FileSlot files[], 
     if (files[FILE_TABLE].path)
         TRY(put_territories(made, &files[FILE_TABLE].text, err));
     if (files[FILE_JSON].path)
-        work_put_json(&files[FILE_JSON], json_of(made->result, command));
+        work_put_json(&files[FILE_JSON], coverage_json(made->result, command));
     return STATUS_OK;
 }
 

@@ -41,6 +41,9 @@ extern const double coverage_quantiles[COVERAGE_QUANTILES];
  *          errors of reading_tree, tree_domain_parse, volume_check, work_make, coverage_measure
  *          and work_write. */
 MUST_CHECK Status coverage_make(void *options, Parsed *parsed, CoverageResult *result, Err *err);
+/* Returns the result as JSON: a new reference; NULL if memory runs out. `command` is the command
+ * line for provenance. */
+json_t *coverage_json(const CoverageResult *result, const char *command);
 void coverageresult_release(CoverageResult *result);
 
 #endif
