@@ -35,7 +35,8 @@ typedef struct EmitParams {
     const VesselTree *vessels;    /* for emitters of curves; and for emitters of meshes, where the
                                    * labels of the mesh are indices of its segments */
     const Appearance *appearance; /* for emitters with has_colors */
-    const double *orders;      /* for emitters with has_colors: Strahler order per segment index */
+    const double *orders;      /* for emitters with has_colors: Strahler order per segment index;
+                                * NAN: none */
     const MeshEnds *ends;      /* for emitters with has_parts */
     const PrismLayers *layers; /* for emitters with has_layers */
     const char *templates;     /* the folder of templates, with a folder for each language */

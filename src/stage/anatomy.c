@@ -7,9 +7,11 @@
 static Status set_orders(const Tree *tree, int *order, Err *err)
 {
     Field strahler = {0};
+    if (tree->link)
+        return STATUS_OK;
     TRY(derive_rule(tree, &(TreeMeta){0}, "strahler", &strahler, err));
     for (size_t i = 0; i < tree->n; i++)
-        order[i] = strahler.value[i] > 0 ? (int)strahler.value[i] : 0;
+        order[i] = tree_is_segment(tree, i) ? (int)strahler.value[i] : 0;
     field_release(&strahler);
     return STATUS_OK;
 }

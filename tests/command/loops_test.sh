@@ -91,12 +91,36 @@ test_voxels_fill_the_ring() {
         fail "the mesh has $(jq .volume_mm3 m.stl.json) mm^3, the voxels $(jq .volume_mm3 v.nrrd.json)"
 }
 
+test_curves_and_scenes_hold_each_segment_once() {
+    ring 12 0.8 0 2
+    run_ok corcast export ring.vtk -o r.usda --quiet
+    awk -F '[][]' '/curveVertexCounts/ { n = split($4, counts, ","); for (i = 1; i <= n; i++) segments += counts[i] - 1 }
+        END { exit segments != 14 }' r.usda || fail "expected 14 segments: $(grep curveVertexCounts r.usda)"
+    run_ok corcast export ring.vtk -o r.py --quiet
+    run_ok corcast export ring.vtk --model rounded --mesh-tolerance 0.2 -o r.glb --quiet
+    run_ok corcast scene ring.vtk --model rounded -o r.pov --quiet
+    [ "$(grep -c '^Vessel_Cylinder' r.inc)" = 14 ] || fail "expected a cylinder for each segment"
+    [ "$(grep -c '^Vessel_Sphere' r.inc)" = 14 ] || fail "expected one ball at each point"
+}
+
 test_diagrams_and_pages_show_where_a_loop_closes() {
     ring 12 0.8 0 2
     run_ok corcast diagram ring.vtk -o d.svg --quiet
     [ "$(grep -o 'id="c[0-9]*"' d.svg | wc -l)" = 1 ] || fail "expected one cross bar: $(grep -o 'id="[a-z][0-9]*"' d.svg | tr '\n' ' ')"
     run_ok corcast export ring.vtk -o ring.html --quiet
     grep -q 'id="place"' ring.html || fail "the page does not say where the loop closes"
+}
+
+# As they stand, but small.
+test_the_pictures_of_the_guide_are_drawn_by_the_commands_beside_them() {
+    local command
+    [ -d "$SHARED" ] || skip "$SHARED is missing"
+    cp "$SHARED/microvesselchaste/retinal.vtp" .
+    command=$(sed -n 's/^    corcast \(render retinal.*\)/\1/p' "$REPO/docs/NETWORKS.md")
+    # shellcheck disable=SC2086
+    run_ok corcast ${command/1200x900/120x90} --quiet
+    expect_file retina.jpg
+    [ "$(stat -c %s "$REPO/docs/images/retina.jpg")" -le 300000 ] || fail "expected at most 300 kB"
 }
 
 run_tests "$@"

@@ -148,15 +148,39 @@ test_what_needs_a_tree_refuses_loops() {
 certify a.csv
 refine a.csv -o out.swc
 grow --from a.csv --terminals 20 -o out.swc
-diagram a.csv -o out.svg
 pulse a.csv -o out.csv
 info a.csv --json --bound
 info a.csv --morphometry kassab-lad
 convert a.csv out.csv --fields strahler
 convert a.csv out.csv --fields diameter-strahler
+convert a.csv out.swc
 render a.csv -o out.png --prune-radius 0.2
+render a.csv -o out.png --color-by strahler
+export a.csv -o out.nii --labels strahler
 END
     expect_only ring.csv a.csv
+}
+
+test_what_draws_and_exports_takes_loops() {
+    local model file
+    ring
+    run_ok corcast convert --quiet ring.csv a.csv
+    corcast models | cut -f 1 >models
+    while read -r model; do
+        run_ok corcast render a.csv --model "$model" --size 40x30 -o out.ppm
+    done <models
+    run_ok corcast render a.csv --color-by flow --q-perf 1 --p-perf 90 --viscosity 3.5 --size 40x30 -o out.ppm
+    run_ok corcast render a.csv --growth 3 --size 40x30 -o out%d.ppm
+    run_ok corcast coverage a.csv --domain hull:1 --territories out.nii.gz
+    for file in out.ply out.3mf out.html out.nii out.py out.usda; do
+        run_ok corcast export a.csv -o "$file" --quiet
+        expect_file "$file"
+    done
+    run_ok corcast export a.csv --parts -o out.vtp --quiet
+    run_ok corcast info out.centreline.vtp --json
+    expect_json stdout '.loops == 2 and .segments == 7'
+    run_ok corcast scene a.csv -o out.pov
+    run_ok corcast info a.csv --stats
 }
 
 run_tests "$@"

@@ -243,7 +243,16 @@ test_extensions_lengthen_ends_along_their_axes() {
     run_ok corcast grow --terminals 7 --domain disc:12 --seed 2 -o t.swc --quiet
     run_ok corcast export t.swc --mesh-tolerance 0.2 -o a.vtp --quiet
     printf 'id,radii\n6,2\n13,0\n' >some.csv
-    run_ok corcast export t.swc --mesh-tolerance 0.2 --extend 3 --extend-inlet 5 --extend-outlet some.csv -o b.vtp --quiet
+    run_ok corcast export t.swc --mesh-tolerance 0.2 --extend 3 --extend-inlet 5 --extend-outlet some.csv -o b.vtp
+    mv stderr entrances
+    run_ok corcast convert t.swc t.csv --fields reynolds --quiet
+    # The entrance length is 0.06 times the Reynolds number times the diameter, and is printed beside the extension.
+    awk -F, 'NR == FNR { for (k = 1; k <= NF; k++) if ($k ~ /reynolds/) c = k; re[$1] = $c; next }
+        FNR > 1 { if (($15 / (0.12 * re[$3] * $10) - 1)^2 > 1e-16) exit 1; if ($1 == "inlet") print $15, re[$3], $13 }' \
+        <(grep -v '^#' t.csv) b.ends.csv >entrance || fail "entrance lengths: $(cat t.csv b.ends.csv)"
+    read -r long re here <entrance
+    grep -qF "$(printf 'needs up to %.4g mm to develop at the inlets (segment 2, Reynolds number %.4g); the extension there has %.4g mm' \
+        "$long" "$re" "$here")" entrances || fail "$(cat entrances)"
     paste -d, <(sed 1d a.ends.csv) <(sed 1d b.ends.csv) | awk -F, '{
         radii = $3 == 13 ? 0 : $3 == 6 ? 2 : $1 == "inlet" ? 5 : 3
         if ($1 != $13 || $10 != $22 || $12 != $24) exit 1

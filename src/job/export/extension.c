@@ -2,6 +2,7 @@
  * makes the segment longer: no transition to a circle is needed, and the mesh has no kink. */
 #include "job/export/extension.h"
 
+#include "options/talk.h"
 #include "treeio/treeio.h"
 #include <stdlib.h>
 #include <string.h>
@@ -216,6 +217,53 @@ static Status lengthen(Tree *tree, const Capsule *extension, size_t n, Err *err)
         *end = vec3_add(*end, extension[i].along);
         column[extension[i].node] = vec3_length(extension[i].along);
     }
+    return STATUS_OK;
+}
+
+/* ---- the flow in them ------------------------------------------------------------------------ */
+
+Status extension_field(const Tree *tree, const TreeMeta *said, const char *name, Field *field,
+                       Err *err)
+{
+    *field = (Field){0};
+    Status status = derive_rule(tree, said, name, field, err);
+    return status == STATUS_INPUT ? STATUS_OK : status;
+}
+
+double extension_entrance(const Tree *tree, const Field *reynolds, size_t segment)
+{
+    return 0.06 * reynolds->value[segment] * 2 * tree->radius_mm[segment];
+}
+
+static void say_entrance(const Tree *tree, const Field *reynolds, bool of_inlets, const Talk *talk)
+{
+    const double *length = tree_column(tree, extension_column)->value;
+    double most = 0;
+    size_t at = 0;
+    for (size_t i = 0; i < tree->n; i++) {
+        if (!tree_is_segment(tree, i) || !(length[of_inlets ? (size_t)tree->parent[i] : i] > 0) ||
+            !(extension_entrance(tree, reynolds, i) > most))
+            continue;
+        most = extension_entrance(tree, reynolds, i);
+        at = i;
+    }
+    if (most > 0)
+        talk_note(talk,
+                  "laminar flow needs up to %.4g mm to develop at the %s (segment %d, Reynolds "
+                  "number %.4g); the extension there has %.4g mm",
+                  most, of_inlets ? "inlets" : "outlets", tree->id[at], reynolds->value[at],
+                  length[of_inlets ? (size_t)tree->parent[at] : at]);
+}
+
+Status extension_say(const Tree *tree, const TreeMeta *said, const Talk *talk, Err *err)
+{
+    Field reynolds;
+    if (!tree_column(tree, extension_column))
+        return STATUS_OK;
+    TRY(extension_field(tree, said, "reynolds", &reynolds, err));
+    for (int of_inlets = 1; of_inlets >= 0 && reynolds.value; of_inlets--)
+        say_entrance(tree, &reynolds, of_inlets, talk);
+    field_release(&reynolds);
     return STATUS_OK;
 }
 

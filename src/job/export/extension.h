@@ -3,6 +3,7 @@
 #ifndef CORCAST_JOB_EXPORT_EXTENSION_H
 #define CORCAST_JOB_EXPORT_EXTENSION_H
 
+#include "derive/derive.h"
 #include "options/options.h"
 #include "tree/tree.h"
 
@@ -27,5 +28,18 @@ extern const char extension_column[];
  *          files_read and tree_read_values; STATUS_MEMORY. */
 MUST_CHECK Status extension_apply(const ExtensionOptions *options, Parsed *parsed, Tree *tree,
                                   Err *err);
+
+/* Computes a field of the blood. *field is empty if the flow or the viscosity is unknown. Errors:
+ * as derive_rule. */
+MUST_CHECK Status extension_field(const Tree *tree, const TreeMeta *said, const char *name,
+                                  Field *field, Err *err);
+/* Returns the length of a straight vessel with a segment's radius after which laminar flow is
+ * developed, mm: 0.06 times the Reynolds number times the diameter. */
+double extension_entrance(const Tree *tree, const Field *reynolds, size_t segment);
+
+/* Reports the largest entrance length of the inlets and of the outlets, beside the length of the
+ * extension there. Does nothing if no end was lengthened or the flow is unknown. Errors: as
+ * extension_field. */
+MUST_CHECK Status extension_say(const Tree *tree, const TreeMeta *said, const Talk *talk, Err *err);
 
 #endif

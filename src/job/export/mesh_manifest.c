@@ -108,17 +108,14 @@ static json_t *print_json(const MeshResult *made)
 
 static json_t *layers_json(const PrismLayers *layers)
 {
-    const JsonMember members[] = {
-        {"layers", json_count(layers->n_layers)},
-        {"prisms", json_count(layers->n_prisms)},
-        {"inverted", json_count(0)}, /* else there is no file */
-        {"points_thinner", json_count(layers->n_thinner)},
-        {"mean_thickness", json_number(layers->mean_part)},
-        {"least_thickness", json_number(layers->least_part)},
-        {"volume_mm3", json_number(layers->volume_mm3)},
-        {"core_volume_mm3", json_number(layers->core_volume_mm3)},
-    };
-    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+    /* A file with inverted prisms is not written. */
+    return JSON_OBJECT({"layers", json_count(layers->n_layers)},
+                       {"prisms", json_count(layers->n_prisms)}, {"inverted", json_count(0)},
+                       {"points_thinner", json_count(layers->n_thinner)},
+                       {"mean_thickness", json_number(layers->mean_part)},
+                       {"least_thickness", json_number(layers->least_part)},
+                       {"volume_mm3", json_number(layers->volume_mm3)},
+                       {"core_volume_mm3", json_number(layers->core_volume_mm3)});
 }
 
 static json_t *pair_list(const VesselTree *vessels, const MeshReport *report)

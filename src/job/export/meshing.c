@@ -27,15 +27,6 @@ static Status take_vessels(MeshResult *made, VesselBody body, const Talk *talk, 
     return STATUS_OK;
 }
 
-/* Finds the Strahler order of each segment; 0 in a network with links. */
-static Status find_orders(const Tree *tree, Field *orders, Err *err)
-{
-    if (!tree->link)
-        return derive_rule(tree, &(TreeMeta){0}, "strahler", orders, err);
-    *orders = (Field){.name = "strahler", .unit = "", .n = tree->n};
-    return mem_calloc(&orders->value, tree->n, sizeof *orders->value, "orders", err);
-}
-
 /* Finds the colors of the segments, and the Strahler orders by which the file groups them. */
 static Status color_vessels(const MeshingOptions *options, const Talk *talk, MeshResult *made,
                             Err *err)
@@ -46,7 +37,7 @@ static Status color_vessels(const MeshingOptions *options, const Talk *talk, Mes
     TRY(coloring_appearance(&options->coloring, &tree, &look, &made->appearance, err));
     coloring_say(&made->appearance, talk);
     TRY(stage_anatomy(tree.drawn, picture_pieces(&made->of), vec3(0, 0, 0), &made->anatomy, err));
-    return find_orders(tree.drawn, &made->orders, err);
+    return derive_rule(tree.drawn, &(TreeMeta){0}, "strahler", &made->orders, err);
 }
 
 /* ---- triangles ------------------------------------------------------------------------------- */

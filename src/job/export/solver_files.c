@@ -34,19 +34,11 @@ static void put_vector(Vec3 v, Text *out)
     }
 }
 
-/* Computes the wall shear stress of each segment, Pa. *wss is empty if the flow or the viscosity is
- * unknown. */
-static Status find_wss(const Tree *tree, const TreeMeta *said, Field *wss, Err *err)
-{
-    *wss = (Field){0};
-    Status status = derive_rule(tree, said, "wss", wss, err);
-    return status == STATUS_INPUT ? STATUS_OK : status;
-}
-
-/* Appends the length of an end's extension, in mm, and the pressure drop of steady Poiseuille flow
- * along it, 2 wss L / r, in mmHg. The drop is left empty if the wall shear stress is unknown. */
+/* Appends the length of an end's extension, in mm; the pressure drop of steady Poiseuille flow along
+ * it, 2 wss L / r, in mmHg; and the entrance length of laminar flow, in mm. What is unknown is left
+ * empty. */
 static void put_extension(const MeshEnd *end, size_t node, const Tree *tree, const Field *wss,
-                          Text *out)
+                          const Field *reynolds, Text *out)
 {
     size_t at = end->is_inlet ? (size_t)tree->parent[node] : node;
     double length = tree_column(tree, extension_column)->value[at];
@@ -55,6 +47,9 @@ static void put_extension(const MeshEnd *end, size_t node, const Tree *tree, con
     text_puts(out, ",");
     if (wss->value && isfinite(wss->value[node]))
         text_number(out, mmhg_from_pa(2 * wss->value[node] * length / tree->radius_mm[node]));
+    text_puts(out, ",");
+    if (reynolds->value && isfinite(reynolds->value[node]))
+        text_number(out, extension_entrance(tree, reynolds, node));
 }
 
 Status solver_ends(const MeshEnds *ends, const Tree *tree, const VesselTree *vessels,
@@ -62,16 +57,14 @@ Status solver_ends(const MeshEnds *ends, const Tree *tree, const VesselTree *ves
 {
     const bool is_extended = tree_column(tree, extension_column);
     double *parts = NULL;
-    Field wss;
-    TRY(find_wss(tree, said, &wss, err));
-    Status status = find_flow_parts(tree, &parts, err);
-    if (status != STATUS_OK) {
-        field_release(&wss);
-        return status;
-    }
+    Field wss = {0}, reynolds = {0};
+    Status status;
+    TRY_GOTO(extension_field(tree, said, "wss", &wss, err));
+    TRY_GOTO(extension_field(tree, said, "reynolds", &reynolds, err));
+    TRY_GOTO(find_flow_parts(tree, &parts, err));
     text_puts(out, "name,face,id,x_mm,y_mm,z_mm,normal_x,normal_y,normal_z,radius_mm,area_mm2,"
                    "flow_part");
-    text_puts(out, is_extended ? ",extension_mm,extension_drop_mmhg\n" : "\n");
+    text_puts(out, is_extended ? ",extension_mm,extension_drop_mmhg,entrance_mm\n" : "\n");
     for (size_t i = 0; i < ends->n; i++) {
         const MeshEnd *end = &ends->ends[i];
         text_printf(out, "%s,%zu,%u,", end->name, ends->n_walls + i + 1,
@@ -85,14 +78,17 @@ Status solver_ends(const MeshEnds *ends, const Tree *tree, const VesselTree *ves
         if (!end->is_ring)
             text_number(out, parts[vessels->segments[end->segment].segment]);
         if (is_extended && !end->is_ring)
-            put_extension(end, vessels->segments[end->segment].segment, tree, &wss, out);
+            put_extension(end, vessels->segments[end->segment].segment, tree, &wss, &reynolds, out);
         else if (is_extended)
-            text_puts(out, ",,");
+            text_puts(out, ",,,");
         text_puts(out, "\n");
     }
+    status = text_check(out, err);
+done:
     field_release(&wss);
+    field_release(&reynolds);
     free(parts);
-    return text_check(out, err);
+    return status;
 }
 
 /* Copies the arrays that solver_centerline changes. */

@@ -5,6 +5,7 @@
 #include "derive/derive.h"
 #include "emit/emit.h"
 #include "options/output.h"
+#include "options/reading.h"
 #include "options/talk.h"
 #include "options/templates.h"
 #include "stage/stage.h"
@@ -147,6 +148,8 @@ static Status label_segments(Volumes *made, Err *err)
     Field field = {0};
     if (kind == LABEL_NONE)
         return STATUS_OK;
+    if (kind == LABEL_STRAHLER)
+        TRY(reading_refuse_loops(tree, made->of->path, "--labels strahler", err));
     TRY(mem_calloc(&made->labels, tree->n, sizeof *made->labels, "labels", err));
     if (kind != LABEL_SEGMENT)
         TRY(derive_rule(tree, &(TreeMeta){0}, label_kinds[kind], &field, err));

@@ -277,7 +277,6 @@ const Command command_diagram = {
     .max_operands = 1,
     .needs_output = true,
     .reads_tree = true,
-    .trees_only = true,
     .size = sizeof(DiagramOptions),
     .set_defaults = set_defaults,
     .tables = {{&own_table, 0},
