@@ -34,9 +34,9 @@ static void put_vector(Vec3 v, Text *out)
     }
 }
 
-/* Appends the length of an end's extension, in mm; the pressure drop of steady Poiseuille flow along
- * it, 2 wss L / r, in mmHg; and the entrance length of laminar flow, in mm. What is unknown is left
- * empty. */
+/* Appends the length of an end's extension, in mm; the pressure drop of steady Poiseuille flow
+ * along it, 2 wss L / r, in mmHg; and the entrance length of laminar flow, in mm. What is unknown
+ * is left empty. */
 static void put_extension(const MeshEnd *end, size_t node, const Tree *tree, const Field *wss,
                           const Field *reynolds, Text *out)
 {
