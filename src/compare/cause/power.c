@@ -10,7 +10,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-const PublishedRule published_rules[PUBLISHED_RULES] = {
+/* A rule that a project publishes for its own tests. The rule counts either the pixels that
+ * pixelmatch marks, or the pixels whose difference exceeds `levels`. */
+typedef struct PublishedRule {
+    const char *name;   /* name of the project: "Blender" */
+    const char *says;   /* the rule in words */
+    double pixelmatch;  /* threshold of pixelmatch, which may mark no pixel; NAN: the members below
+                         * define the rule */
+    double levels, ppm; /* at most `ppm` parts per million of the pixels may differ by more than
+                         * `levels` (of 255) */
+    double most_levels; /* no pixel may differ by more than this; INFINITY: no limit */
+} PublishedRule;
+
+static const PublishedRule published_rules[PUBLISHED_RULES] = {
     {.name = "pixelmatch",
      .says = "no pixel by pixelmatch 7.2.0 at 0.1, its own",
      .pixelmatch = 0.1},
