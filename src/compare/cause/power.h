@@ -32,6 +32,10 @@ typedef struct PowerCase {
                               * then the published rules follow in their order */
 } PowerCase;
 
+/* Lists every fault in every size, ordered by fault, then by rising size. The caller frees *cases.
+ * Errors: STATUS_MEMORY. */
+MUST_CHECK Status powercases_list(PowerCase **cases, size_t *n, Err *err);
+
 /* The result of power_measure. Arrays of POWER_RULES are per rule, in the order of
  * PowerCase.found. */
 typedef struct Power {
