@@ -48,6 +48,7 @@ EMBREE := $(BUILD)/tests/bench/embree
 FRAMES := $(BUILD)/tests/bench/frames
 MESHES := $(BUILD)/tests/bench/meshes
 PULSES := $(BUILD)/tests/bench/pulse
+FLOWS := $(BUILD)/tests/bench/flow
 FIT := $(BUILD)/tests/fit/fit_blob
 OPTIMA := $(BUILD)/tests/optima/optima
 FUZZ_SOURCES := $(wildcard tests/fuzz/*.c)
@@ -109,7 +110,7 @@ LINK = $(CC) $(OWN_LDFLAGS) $(LDFLAGS)
 VIEWER := $(or $(wildcard templates/page/viewer.js),build/viewer/viewer.js)
 LIBS := $(PACKAGE_LIBS) $(PLAIN_LIBS)
 
-.PHONY: all lib abi api-programs deps page demo figures gallery hero validate bench bench-grow bench-render bench-view bench-compare bench-mesh bench-trees bench-pulse bench-large export-all verify-all coronary answers-long power power-program metamorph suite fit-blob optima check check-all check-quick program unit \
+.PHONY: all lib abi api-programs deps page demo figures gallery hero validate bench bench-grow bench-render bench-view bench-compare bench-mesh bench-trees bench-pulse bench-flow bench-large export-all verify-all coronary answers-long power power-program metamorph suite fit-blob optima check check-all check-quick program unit \
 	unit-programs layers format format-check asan tsan \
 	fuzz fuzz-programs golden-update reference install uninstall dist clean help packages libraries
 .DELETE_ON_ERROR:
@@ -191,6 +192,10 @@ bench-pulse: ## time pulse waves of 16 harmonics in 10^6 segments
 	$(Q)mkdir -p out/bench
 	$(Q)[ -s out/bench/pulse.swc ] || build/corcast grow --quiet --domain ball:40 --terminals 500000 -o out/bench/pulse.swc
 	$(Q)$(PULSES) out/bench/pulse.swc
+
+bench-flow: ## time steady flow in a random network of 10^6 segments
+	$(Q)$(AGAIN) $(FLOWS)
+	$(Q)$(FLOWS)
 
 bench-large: ## time growing, reading and drawing 10^6 terminals; BENCH=full adds 10^7
 	$(Q).ci/deps build check
@@ -330,7 +335,7 @@ $(API_PROGRAMS): $(BUILD)/tests/api/%: tests/api/%.c src/corcast.h $(BUILD)/$(SO
 
 api-programs: $(API_PROGRAMS)
 
-$(OPTIMA) $(FIT) $(PULSES): %: %.o $(BUILD)/rooms.a
+$(OPTIMA) $(FIT) $(PULSES) $(FLOWS): %: %.o $(BUILD)/rooms.a
 	$(call say,LINK,$@)
 	$(Q)mkdir -p $(@D)
 	$(Q)$(LINK) -o $@ $^ $(LIBS)
@@ -385,7 +390,7 @@ $(BUILD)/src/options/templates.o: OWN_CPPFLAGS += '-DCORCAST_PREFIX="$(PREFIX)"'
 # Kernels of pictures read no input and write to arrays of fixed size. The stack protector would cost them 2 % of their speed.
 $(filter %kernels.o %kernels.avx2.o %kernels.avx512.o,$(ROOM_OBJECTS)): HARDEN_release += -fno-stack-protector
 
--include $(ROOM_OBJECTS:.o=.d) $(CLI_OBJECTS:.o=.d) $(TEST_OBJECTS:.o=.d) $(POWER_OBJECTS:.o=.d) $(EMBREE).d $(FRAMES).d $(MESHES).d $(PULSES).d $(FIT).d $(FUZZ_SOURCES:%.c=$(BUILD)/%.d)
+-include $(ROOM_OBJECTS:.o=.d) $(CLI_OBJECTS:.o=.d) $(TEST_OBJECTS:.o=.d) $(POWER_OBJECTS:.o=.d) $(EMBREE).d $(FRAMES).d $(MESHES).d $(PULSES).d $(FLOWS).d $(FIT).d $(FUZZ_SOURCES:%.c=$(BUILD)/%.d)
 
 libraries:
 ifeq ($(and $(strip $(PACKAGE_LIBS)),$(NIFTI)),)

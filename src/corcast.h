@@ -486,8 +486,8 @@ typedef struct corcast_triangles {
 } corcast_triangles;
 
 /* Makes the closed surface of a tree, as `export` writes it. `options` is NULL or options of
- * "export" about the surface: "model", "tolerance", "lod", "print", ...
- * Stability: provisional. */
+ * "export" about the surface: "model", "mesh-tolerance", "lod", "print", ... Stability:
+ * provisional. */
 CORCAST_API int corcast_mesh_new(const corcast_tree *tree, const corcast_options *options,
                                  corcast_mesh **out, corcast_error *error);
 

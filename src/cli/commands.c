@@ -30,6 +30,7 @@ const CommandRow command_rows[] = {
     {&command_grow, run_tree_maker, COMMANDS_GROW, OBEYS_ALL},
     {&command_info, run_info, COMMANDS_GROW, OBEYS_RUN},
     {&command_coverage, run_coverage, COMMANDS_GROW, OBEYS_MOST},
+    {&command_flow, run_flow, COMMANDS_GROW, OBEYS_ALL},
     {&command_refine, run_tree_maker, COMMANDS_GROW, OBEYS_ALL},
     {&command_bifurcation, run_tree_maker, COMMANDS_GROW, OBEYS_RUN},
     {&command_study, run_study, COMMANDS_GROW, OBEYS_MOST},

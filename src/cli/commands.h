@@ -22,10 +22,10 @@ extern const Command command_study, command_view, command_models, command_fields
  * Errors   of the command. */
 typedef Status RunCommand(void *options, Parsed *parsed, Err *err);
 
-RunCommand run_tree_maker, run_study, run_info, run_coverage, run_certify, run_pulse, run_render,
-    run_povray, run_merge, run_figure, run_view, run_verify, run_compare, run_report, run_power,
-    run_check_figure, run_models, run_list, run_colormaps, run_help, run_version, run_answer,
-    run_metamorph, run_suite;
+RunCommand run_tree_maker, run_study, run_info, run_coverage, run_flow, run_certify, run_pulse,
+    run_render, run_povray, run_merge, run_figure, run_view, run_verify, run_compare, run_report,
+    run_power, run_check_figure, run_models, run_list, run_colormaps, run_help, run_version,
+    run_answer, run_metamorph, run_suite;
 
 /* The headings of `corcast --help`, in its order. Each command is under one of them. */
 typedef enum CommandGroup {

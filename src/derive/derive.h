@@ -1,13 +1,15 @@
 /* The public header of the module derive: quantities computed from a tree, per segment (fields) and
  * for the whole tree (summary, statistics, morphometry).
  *
- * A terminal is a leaf that is not a root. A bifurcation is a node with at least two children. */
+ * A terminal is a leaf that is not a root and has no link. A bifurcation is a node with at least
+ * two children or links to it. */
 #ifndef CORCAST_DERIVE_DERIVE_H
 #define CORCAST_DERIVE_DERIVE_H
 
 #include "base/base.h"
 #include "derive/morphometry.h" // IWYU pragma: export
 #include "derive/statistics.h"  // IWYU pragma: export
+#include "derive/treenetwork.h" // IWYU pragma: export
 #include "geom/geom.h"
 #include "tree/tree.h"
 #include <stdbool.h>
@@ -33,12 +35,13 @@ typedef struct Field {
  *     pressure   mmHg    p_perf less the drops 8 mu l Q / (pi r^4) along the path (Poiseuille)
  *     wss        Pa      wall shear stress 4 mu Q / (pi r^3)
  *     reynolds           2 rho v r / mu, rho = 1.05e-3 g/mm^3
- *     level              bifurcations from the root to the segment's start
+ *     level              bifurcations from the root to the segment's start; in a network with
+ *                        links, the minimum over all paths from a root to one of its ends
  *     strahler           1 at terminals; the largest order m of the daughters, m + 1 if at least
  *                        two have it [Strahler 1957]
  *     diameter-strahler  an order by diameters, see below
  *     branch             index of the branch, from 1, see below
- *     tree               index of the tree in a forest, from 1, in the order of the roots
+ *     tree               index of the connected component, from 1, in the order of the roots
  *     type               SWC type code
  *
  * Diameter-defined Strahler orders are 1 at terminals. Elsewhere the order is m, the largest order
@@ -51,18 +54,22 @@ typedef struct Field {
  * several equal ones) continues the branch of its parent; every other daughter starts a branch, and
  * so does every segment that leaves a root.
  *
- * Flow shares are the tree's, or those of tree/outlets.h. mu is the constant viscosity of the
+ * In a network with links, flow and pressure are those of Kirchhoff's laws with the same boundary
+ * conditions [derive/treenetwork.h], and flow is its size. Flow shares are the tree's, or those of
+ * tree/outlets.h. mu is the constant viscosity of the
  * blood, or viscosity_pries_pa_s of each segment's radius. Velocity, wall shear stress and Reynolds
  * number of a segment of radius 0 are NAN, and so are the pressures at and below it.
  *
  * overrides     values that the user specified; they take precedence over those of the tree.
  * field    is released with field_release. Its names are borrowed, from the tree if it is a column.
  * Errors   STATUS_USAGE for an unknown name; STATUS_INPUT if a value is missing that the field
- *          needs, naming the option and the key of the file; STATUS_MEMORY. */
+ *          needs, naming the option and the key of the file, and for an order of a network with
+ *          links; STATUS_MEMORY. */
 MUST_CHECK Status derive_field(const Tree *tree, const TreeMeta *overrides, const char *name,
                                Field *field, Err *err);
 void field_release(Field *field);
-/* Computes a field as derive_field does, but never copies a column. */
+/* Computes a field as derive_field does, but never copies a column. The orders of a network with
+ * links are NAN. */
 MUST_CHECK Status derive_rule(const Tree *tree, const TreeMeta *overrides, const char *name,
                               Field *field, Err *err);
 
@@ -93,8 +100,10 @@ typedef struct TreeSummary {
     struct {
         bool target, lambda;
         bool terminal_pressure; /* its inputs are known, and blood reaches all terminals */
+        bool orders;            /* the tree has no links */
     } has;
     size_t nodes, roots, segments, terminals, bifurcations;
+    size_t components, loops; /* connected components and independent loops */
     double total_length_mm;
     double volume_mm3;     /* sum of pi r^2 l */
     double target;         /* sum of l r^lambda [Neumann et al. 1996, eq. 2] */
@@ -103,7 +112,7 @@ typedef struct TreeSummary {
     double root_radius_mm; /* the largest of the roots and of the segments that leave them */
     double min_radius_mm;  /* of all segments; NAN if there are none */
     int max_level;         /* 0 if there is no segment */
-    int max_strahler;      /* 0 if there is no segment */
+    int max_strahler;      /* 0 if there is no segment, or !has.orders */
     Box bounds;            /* tree_bounds */
     double terminal_pressure_min_mmhg, terminal_pressure_mean_mmhg, terminal_pressure_max_mmhg;
 } TreeSummary;

@@ -98,10 +98,32 @@ done:
     return status;
 }
 
+Status vessels_bounded_orders(const Vessels *vessels, const double *bound_mm, size_t n,
+                              int32_t **order, Err *err)
+{
+    int32_t *made;
+    TRY(mem_calloc(&made, vessels->n, sizeof *made, "orders", err));
+    for (size_t v = vessels->n; v-- > 0;) {
+        /* made[v] is the largest order among the daughters so far. */
+        int32_t own = 1, parent = vessels->vessel[v].parent;
+        for (size_t k = 0; k < n; k++)
+            own += 2 * vessels->vessel[v].radius_mm > bound_mm[k];
+        made[v] = own > made[v] ? own : made[v];
+        if (parent != NO_VESSEL && made[v] > made[parent])
+            made[parent] = made[v];
+    }
+    *order = made;
+    return STATUS_OK;
+}
+
 Status field_diameter_strahler(const Tree *tree, const TreeMeta *overrides, double *value, Err *err)
 {
     (void)overrides;
     Vessels vessels;
+    if (tree->link) {
+        clear_orders(tree, value);
+        return STATUS_OK;
+    }
     TRY(vessels_init(&vessels, tree, err));
     int32_t *order = NULL;
     DiameterOrders result;

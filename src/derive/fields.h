@@ -19,6 +19,20 @@ static inline const TreeMeta *value_source(const Tree *tree, const TreeMeta *ove
     return overrides->known[key] ? overrides : &tree->meta;
 }
 
+/* Sets `value` to NAN: a network with links has no orders. */
+void clear_orders(const Tree *tree, double *value);
+
+/* Finds a value that a field needs. Errors: STATUS_INPUT if neither the overrides nor the tree have
+ * it, with a sentence that continues "the field NAME ". */
+MUST_CHECK Status needed_value(const Tree *tree, const TreeMeta *overrides, MetaKey key,
+                               double *value, Err *err);
+
+/* Solves a network with links [treenetwork_set_terminals]: the size of the flow in each segment,
+ * mm^3/s, and the inflow of each root; the pressure at each node, Pa. Either array may be NULL.
+ * Errors: as those of a FieldFunction and of flownetwork_solve. */
+MUST_CHECK Status solve_links(const Tree *tree, const TreeMeta *overrides, double *flow,
+                              double *pressure, Err *err);
+
 /* Returns true if no input of field_pressure is missing. */
 bool pressure_is_known(const Tree *tree, const TreeMeta *overrides);
 

@@ -6,9 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The sentence goes on from "the field NAME ". */
-static Status need(const Tree *tree, const TreeMeta *overrides, MetaKey key, double *value,
-                   Err *err)
+Status needed_value(const Tree *tree, const TreeMeta *overrides, MetaKey key, double *value,
+                    Err *err)
 {
     const TreeMeta *source = value_source(tree, overrides, key);
     const MetaRow *row = &meta_rows[key];
@@ -40,10 +39,10 @@ static Status blood_of(const Tree *tree, const TreeMeta *overrides, Blood *blood
     Blood made = {.law = derive_viscosity_law(tree, overrides)};
     bool constant = made.law == VISCOSITY_CONSTANT;
     double viscosity_cp;
-    TRY(need(tree, overrides, constant ? META_VISCOSITY : META_PLASMA_VISCOSITY, &viscosity_cp,
-             err));
+    TRY(needed_value(tree, overrides, constant ? META_VISCOSITY : META_PLASMA_VISCOSITY,
+                     &viscosity_cp, err));
     if (!constant)
-        TRY(need(tree, overrides, META_HEMATOCRIT, &made.hematocrit, err));
+        TRY(needed_value(tree, overrides, META_HEMATOCRIT, &made.hematocrit, err));
     made.viscosity_pa_s = pa_s_from_cp(viscosity_cp);
     *blood = made;
     return STATUS_OK;
@@ -70,8 +69,8 @@ bool pressure_is_known(const Tree *tree, const TreeMeta *overrides)
 {
     Blood blood;
     double value;
-    return need(tree, overrides, META_Q_PERF, &value, NULL) == STATUS_OK &&
-           need(tree, overrides, META_P_PERF, &value, NULL) == STATUS_OK &&
+    return needed_value(tree, overrides, META_Q_PERF, &value, NULL) == STATUS_OK &&
+           needed_value(tree, overrides, META_P_PERF, &value, NULL) == STATUS_OK &&
            blood_of(tree, overrides, &blood, NULL) == STATUS_OK;
 }
 
@@ -96,7 +95,9 @@ static Status gather_shares(const Tree *tree, double *value, double *total, Err 
 static Status flow_mm3_s(const Tree *tree, const TreeMeta *overrides, double *value, Err *err)
 {
     double q_perf_ml_min, total;
-    TRY(need(tree, overrides, META_Q_PERF, &q_perf_ml_min, err));
+    if (tree->link)
+        return solve_links(tree, overrides, value, NULL, err);
+    TRY(needed_value(tree, overrides, META_Q_PERF, &q_perf_ml_min, err));
     double q_perf = mm3_s_from_ml_min(q_perf_ml_min);
     TRY(gather_shares(tree, value, &total, err));
     for (size_t i = 0; i < tree->n; i++)
@@ -157,8 +158,14 @@ Status field_pressure(const Tree *tree, const TreeMeta *overrides, double *value
 {
     double p_perf_mmhg;
     Blood blood;
-    TRY(need(tree, overrides, META_P_PERF, &p_perf_mmhg, err));
+    TRY(needed_value(tree, overrides, META_P_PERF, &p_perf_mmhg, err));
     TRY(blood_of(tree, overrides, &blood, err));
+    if (tree->link) {
+        TRY(solve_links(tree, overrides, NULL, value, err));
+        for (size_t i = 0; i < tree->n; i++)
+            value[i] = mmhg_from_pa(value[i]);
+        return STATUS_OK;
+    }
     TRY(flow_mm3_s(tree, overrides, value, err));
     for (size_t i = 0; i < tree->n; i++) {
         if (!tree_is_segment(tree, i)) {

@@ -1,7 +1,7 @@
 /* A published table is a text of numbers. The statistics of a tree have the same rows, so that the
- * comparison is one loop over measures and orders. Orders are matched by diameter alone. Diameters
- * grow by nearly the same ratio from order to order, so that a wrong shift shows in every order.
- * Lengths and numbers depend on the diameter down to which a tree was measured. */
+ * comparison is one loop over measures and orders. Found orders are matched by diameter alone.
+ * Diameters grow by nearly the same ratio from order to order, so that a wrong shift shows in every
+ * order. Lengths and numbers depend on the diameter down to which a tree was measured. */
 #include "derive/morphometry.h"
 
 #include <math.h>
@@ -22,7 +22,10 @@ const struct MorphometryName morphometry_names[MORPHOMETRY_MEASURES] = {
     [COMPARED_LENGTH_RATIO] = {"ratio of lengths", ""},
 };
 
-enum { ROW_NUMBERS = 8 + DAUGHTER_ORDERS, RATIO_NUMBERS = 3 };
+const char *const morphometry_orders_names[MORPHOMETRY_ORDERS + 1] = {
+    [ORDERS_PUBLISHED] = "published", [ORDERS_FOUND] = "found"};
+
+enum { ROW_NUMBERS = 8, LONG_ROW_NUMBERS = ROW_NUMBERS + DAUGHTER_ORDERS, RATIO_NUMBERS = 3 };
 
 void morphometry_release(Morphometry *table)
 {
@@ -40,11 +43,14 @@ static const char *after_word(const char *line, const char *word)
 
 static Status take_row(Morphometry *table, size_t *capacity, const char *line, Err *err)
 {
-    double c[ROW_NUMBERS];
-    if (!numbers_parse(line, ROW_NUMBERS, c))
+    const Estimate none = {(double)NAN, (double)NAN};
+    double c[LONG_ROW_NUMBERS];
+    bool is_long = numbers_parse(line, LONG_ROW_NUMBERS, c);
+    if (!is_long && !numbers_parse(line, ROW_NUMBERS, c))
         return err_set(err, STATUS_INPUT,
-                       "'%.40s' is neither a source, nor ratios, nor the %d numbers of an order",
-                       line, ROW_NUMBERS);
+                       "'%.40s' is neither a source, nor ratios, nor the daughters of the order "
+                       "above, nor the %d or %d numbers of an order",
+                       line, ROW_NUMBERS, LONG_ROW_NUMBERS);
     if (c[0] != (double)(table->n + 1) || !(c[1] > 0))
         return err_set(err, STATUS_INPUT,
                        "the row begins with order %g and diameter %g; it must be order %zu, and "
@@ -56,8 +62,26 @@ static Status take_row(Morphometry *table, size_t *capacity, const char *line, E
                             .length_mm = {c[3], c[4]},
                             .elements = c[5],
                             .vessels_per_element = {c[6], c[7]}};
-    memcpy(row->daughters, &c[8], sizeof row->daughters);
+    for (int k = 0; k < PUBLISHED_DAUGHTERS; k++)
+        row->daughters[k] = none;
+    for (int k = 0; is_long && k < DAUGHTER_ORDERS; k++)
+        row->daughters[k].mean = c[ROW_NUMBERS + k];
     return STATUS_OK;
+}
+
+/* Returns true if the text is the order of the last row and pairs of numbers, one for each order
+ * from that order down. They become the row's daughters. */
+static bool take_daughters(Morphometry *table, const char *text)
+{
+    double c[1 + 2 * PUBLISHED_DAUGHTERS];
+    for (size_t n = 1; n <= PUBLISHED_DAUGHTERS && n <= table->n; n++) {
+        if (!numbers_parse(text, 1 + 2 * n, c) || c[0] != (double)table->n)
+            continue;
+        for (size_t k = 0; k < n; k++)
+            table->row[table->n - 1].daughters[k] = (Estimate){c[1 + 2 * k], c[2 + 2 * k]};
+        return true;
+    }
+    return false;
 }
 
 /* Returns true if the text is an order for each ratio, which are then the table's. */
@@ -77,13 +101,13 @@ static bool take_fitted_from(Morphometry *table, const char *text)
 static Status take_line(Morphometry *table, size_t *capacity, const char *line, Err *err)
 {
     const char *source = after_word(line, "source"), *ratios = after_word(line, "ratios");
-    const char *from = after_word(line, "fitted-from");
+    const char *from = after_word(line, "fitted-from"), *daughters = after_word(line, "daughters");
     double ratio[RATIO_NUMBERS];
     if (*line == '#' || *line == '\0')
         return STATUS_OK;
     if (source && !table->source)
         return mem_strdup(&table->source, source, err);
-    if (from && take_fitted_from(table, from))
+    if ((from && take_fitted_from(table, from)) || (daughters && take_daughters(table, daughters)))
         return STATUS_OK;
     if (!ratios || !numbers_parse(ratios, RATIO_NUMBERS, ratio))
         return take_row(table, capacity, line, err);
@@ -117,38 +141,67 @@ Status morphometry_read(Morphometry *table, const char *path, Err *err)
     return status;
 }
 
-/* Of an order's row of the tree. */
-static MorphometryRow row_of_tree(const TreeStatistics *statistics, size_t k)
+double morphometry_bound_mm(const Morphometry *table, int order)
 {
-    const StatisticsRow *own = &statistics->by_diameter_strahler.row[k];
-    size_t n = statistics->by_diameter_strahler.n;
-    MorphometryRow row = {.diameter_mm = {2 * own->radius_mm.mean, 2 * own->radius_mm.sd},
-                          .length_mm = own->length_mm,
-                          .elements = (double)own->elements,
-                          .vessels_per_element.mean = (double)own->vessels / (double)own->elements};
-    for (size_t less = 0; less < DAUGHTER_ORDERS; less++)
-        row.daughters[less] = less <= k ? statistics->daughters[k * n + k - less] : (double)NAN;
-    return row;
+    if (order < 1)
+        return 0;
+    if (order >= (int)table->n)
+        return HUGE_VAL;
+    Spread low = table->row[order - 1].diameter_mm, high = table->row[order].diameter_mm;
+    return (low.mean + (isfinite(low.sd) ? low.sd : 0) + high.mean -
+            (isfinite(high.sd) ? high.sd : 0)) /
+           2;
 }
 
-/* A value of a row, and its standard deviation where there is one. */
-static Spread row_value(const MorphometryRow *row, MorphometryMeasure measure)
+/* ---- comparison ------------------------------------------------------------------------------ */
+
+/* The elements of a tree by order. `daughters` is as in TreeStatistics, where n is the last row's
+ * order; orders without elements have no row. */
+typedef struct ComparedOrders {
+    const StatisticsTable *elements;
+    const double *daughters;
+    int shift; /* order k stands beside the published order k + shift */
+} ComparedOrders;
+
+/* Returns the tree's mean number of daughters k orders below those of a row, NAN if the tree has no
+ * orders that low. */
+static double daughters_of(const ComparedOrders *orders, const StatisticsRow *row, int k)
 {
-    if (measure == COMPARED_DIAMETER)
-        return row->diameter_mm;
-    if (measure == COMPARED_LENGTH)
-        return row->length_mm;
-    if (measure == COMPARED_VESSELS)
-        return row->vessels_per_element;
-    return (Spread){row->daughters[measure - COMPARED_DAUGHTERS], (double)NAN};
+    const StatisticsTable *elements = orders->elements;
+    int n = elements->row[elements->n - 1].number;
+    bool has = row->number - k >= elements->row[0].number;
+    return has ? orders->daughters[(row->number - 1) * n + row->number - k - 1] : (double)NAN;
+}
+
+/* Sets the two numbers of a pair whose measure is known. */
+static void set_values(const ComparedOrders *orders, const StatisticsRow *own,
+                       const MorphometryRow *published, MorphometryPair *pair)
+{
+    int k = (int)pair->measure - COMPARED_DAUGHTERS;
+    pair->se = (double)NAN;
+    if (pair->measure == COMPARED_DIAMETER) {
+        pair->value = 2 * own->radius_mm.mean;
+        pair->published = published->diameter_mm;
+    } else if (pair->measure == COMPARED_LENGTH) {
+        pair->value = own->length_mm.mean;
+        pair->published = published->length_mm;
+    } else if (pair->measure == COMPARED_VESSELS) {
+        pair->value = (double)own->vessels / (double)own->elements;
+        pair->published = published->vessels_per_element;
+    } else {
+        /* The counts of a single element have no error that could be compared with. */
+        pair->value = published->elements > 1 ? daughters_of(orders, own, k) : (double)NAN;
+        pair->published = (Spread){published->daughters[k].mean, (double)NAN};
+        pair->se = published->daughters[k].se;
+    }
 }
 
 /* Mean of the squared logarithms of the diameters' ratios; infinite where no order has both. */
-static double misfit(const TreeStatistics *statistics, const Morphometry *table, int shift)
+static double misfit(const StatisticsTable *elements, const Morphometry *table, int shift)
 {
     double sum = 0, count = 0;
-    for (int k = 0; k < (int)statistics->by_diameter_strahler.n; k++) {
-        double own = 2 * statistics->by_diameter_strahler.row[k].radius_mm.mean;
+    for (int k = 0; k < (int)elements->n; k++) {
+        double own = 2 * elements->row[k].radius_mm.mean;
         if (k + shift < 0 || k + shift >= (int)table->n || !(own > 0))
             continue;
         double off = elementary_log(own / table->row[k + shift].diameter_mm.mean);
@@ -158,27 +211,16 @@ static double misfit(const TreeStatistics *statistics, const Morphometry *table,
     return count > 0 ? sum / count : HUGE_VAL;
 }
 
-/* Finds the best shift. At every shift that is tried, one of the two ranges of orders contains
- * the other. */
-static int best_shift(const TreeStatistics *statistics, const Morphometry *table)
+/* Finds the best shift for orders without gaps. At every shift that is tried, one of the two ranges
+ * of orders contains the other. */
+static int best_shift(const StatisticsTable *elements, const Morphometry *table)
 {
-    int spare = (int)table->n - (int)statistics->by_diameter_strahler.n;
+    int spare = (int)table->n - (int)elements->n;
     int best = spare < 0 ? spare : 0, last = spare > 0 ? spare : 0;
     for (int shift = best; shift <= last; shift++)
-        if (misfit(statistics, table, shift) < misfit(statistics, table, best))
+        if (misfit(elements, table, shift) < misfit(elements, table, best))
             best = shift;
     return best;
-}
-
-/* The tree's ratios, each over the orders that gave the published one. */
-static OrderRatios ratios_beside(const TreeStatistics *statistics, const Morphometry *table,
-                                 int shift)
-{
-    OrderRatios over[RATIO_NUMBERS];
-    for (int k = 0; k < RATIO_NUMBERS; k++)
-        over[k] = statistics_ratios(&statistics->by_diameter_strahler,
-                                    table->fitted_from[k] - shift, (int)table->n - shift);
-    return (OrderRatios){over[0].number, over[1].diameter, over[2].length};
 }
 
 /* Appends a pair, which there is room for, when both have a value. */
@@ -186,50 +228,84 @@ static void add_pair(MorphometryComparison *comparison, MorphometryPair pair)
 {
     if (!isfinite(pair.value) || !isfinite(pair.published.mean))
         return;
-    pair.room = isfinite(pair.published.sd) ? pair.published.sd
-                                            : MORPHOMETRY_ROOM * fabs(pair.published.mean);
-    pair.agrees = fabs(pair.value - pair.published.mean) <= pair.room;
+    double off = fabs(pair.value - pair.published.mean);
+    double strict = isfinite(pair.published.sd) ? pair.published.sd
+                                                : MORPHOMETRY_ROOM * fabs(pair.published.mean);
+    pair.room = fmax(strict, MORPHOMETRY_ERRORS * pair.se); /* fmax ignores NAN */
+    pair.agrees = off <= pair.room;
+    pair.agrees_strictly = off <= strict;
     comparison->agreeing += pair.agrees;
+    comparison->agreeing_strictly += pair.agrees_strictly;
     comparison->pair[comparison->n++] = pair;
 }
 
-static void add_ratios(MorphometryComparison *comparison, const OrderRatios *own,
-                       const OrderRatios *published)
+/* Appends the tree's ratios, each over the orders that gave the published one. */
+static void add_ratios(MorphometryComparison *comparison, const ComparedOrders *orders,
+                       const Morphometry *table)
 {
     const double none = (double)NAN;
-    add_pair(comparison, (MorphometryPair){.measure = COMPARED_NUMBER_RATIO,
-                                           .value = own->number,
-                                           .published = {published->number, none}});
-    add_pair(comparison, (MorphometryPair){.measure = COMPARED_DIAMETER_RATIO,
-                                           .value = own->diameter,
-                                           .published = {published->diameter, none}});
-    add_pair(comparison, (MorphometryPair){.measure = COMPARED_LENGTH_RATIO,
-                                           .value = own->length,
-                                           .published = {published->length, none}});
+    OrderRatios over[RATIO_NUMBERS];
+    for (int k = 0; k < RATIO_NUMBERS; k++)
+        over[k] = statistics_ratios(orders->elements, table->fitted_from[k] - orders->shift,
+                                    (int)table->n - orders->shift);
+    const double own[] = {over[0].number, over[1].diameter, over[2].length};
+    const double published[] = {table->ratios.number, table->ratios.diameter, table->ratios.length};
+    for (int k = 0; k < RATIO_NUMBERS; k++)
+        add_pair(comparison,
+                 (MorphometryPair){.measure = (MorphometryMeasure)(COMPARED_NUMBER_RATIO + k),
+                                   .value = own[k],
+                                   .published = {published[k], none},
+                                   .se = none});
 }
 
-Status morphometry_compare(const TreeStatistics *statistics, const Morphometry *table,
-                           MorphometryComparison *comparison, Err *err)
+static Status compare_orders(const ComparedOrders *orders, const Morphometry *table,
+                             MorphometryComparison *comparison, Err *err)
 {
-    MorphometryComparison made = {0};
-    int shift = best_shift(statistics, table), orders = (int)statistics->by_diameter_strahler.n;
-    TRY(mem_calloc(&made.pair, (size_t)(orders + 1) * MORPHOMETRY_MEASURES, sizeof *made.pair,
-                   "compared numbers", err));
+    const StatisticsTable *elements = orders->elements;
+    TRY(mem_calloc(&comparison->pair, (elements->n + 1) * MORPHOMETRY_MEASURES,
+                   sizeof *comparison->pair, "compared numbers", err));
     for (int measure = 0; measure < COMPARED_NUMBER_RATIO; measure++)
-        for (int k = 0; k < orders; k++) {
-            if (k + shift < 0 || k + shift >= (int)table->n)
+        for (size_t i = 0; i < elements->n; i++) {
+            const StatisticsRow *row = &elements->row[i];
+            MorphometryPair pair = {.measure = (MorphometryMeasure)measure,
+                                    .order = row->number,
+                                    .published_order = row->number + orders->shift};
+            if (pair.published_order < 1 || pair.published_order > (int)table->n)
                 continue;
-            MorphometryRow own = row_of_tree(statistics, (size_t)k);
-            add_pair(&made,
-                     (MorphometryPair){.measure = (MorphometryMeasure)measure,
-                                       .order = k + 1,
-                                       .published_order = k + 1 + shift,
-                                       .value = row_value(&own, (MorphometryMeasure)measure).mean,
-                                       .published = row_value(&table->row[k + shift],
-                                                              (MorphometryMeasure)measure)});
+            set_values(orders, row, &table->row[pair.published_order - 1], &pair);
+            add_pair(comparison, pair);
         }
-    OrderRatios own = ratios_beside(statistics, table, shift);
-    add_ratios(&made, &own, &table->ratios);
-    *comparison = made;
+    add_ratios(comparison, orders, table);
     return STATUS_OK;
+}
+
+/* Compares the tree by published orders. */
+static Status compare_published(const Tree *tree, const Morphometry *table,
+                                MorphometryComparison *comparison, Err *err)
+{
+    StatisticsTable elements = {0};
+    double *daughters = NULL, *bound = NULL;
+    TRY(mem_calloc(&bound, table->n, sizeof *bound, "orders", err));
+    for (size_t k = 0; k < table->n; k++)
+        bound[k] = morphometry_bound_mm(table, (int)k + 1);
+    Status status = statistics_by_bounds(tree, bound, table->n, &elements, &daughters, err);
+    free(bound);
+    if (status == STATUS_OK)
+        status = compare_orders(&(ComparedOrders){.elements = &elements, .daughters = daughters},
+                                table, comparison, err);
+    free(elements.row);
+    free(daughters);
+    return status;
+}
+
+Status morphometry_compare(const Tree *tree, const TreeStatistics *statistics,
+                           const Morphometry *table,
+                           MorphometryComparison comparison[MORPHOMETRY_ORDERS], Err *err)
+{
+    const StatisticsTable *elements = &statistics->by_diameter_strahler;
+    const ComparedOrders found = {elements, statistics->daughters, best_shift(elements, table)};
+    for (int k = 0; k < MORPHOMETRY_ORDERS; k++)
+        comparison[k] = (MorphometryComparison){0};
+    TRY(compare_orders(&found, table, &comparison[ORDERS_FOUND], err));
+    return compare_published(tree, table, &comparison[ORDERS_PUBLISHED], err);
 }

@@ -5,18 +5,63 @@
 #include "derive/fields.h"
 
 #include <stdlib.h>
+#include <string.h>
+
+/* Lowers the level of a segment to the level behind the node `from`, one of its ends. `at` has, per
+ * node, the lowest level of a segment there, 0 at roots. Returns true if a number changed. */
+static bool lower_level(double *level, double *at, size_t from, size_t to, const int32_t *others)
+{
+    double behind = at[from] + (others[from] >= 2);
+    bool lowers = behind < *level;
+    if (lowers)
+        *level = behind;
+    if (!(*level < at[to]))
+        return lowers;
+    at[to] = *level;
+    return true;
+}
+
+/* Lowers the levels of a network, whose shortest paths may lead along links and against segments.
+ * Sweeps in both directions of the arrays end when no level changes. */
+static Status lower_levels(const Tree *tree, const int32_t *others, double *value, Err *err)
+{
+    double *at = NULL;
+    bool changes = true;
+    TRY(mem_alloc(&at, tree->n, sizeof *at, "levels", err));
+    memcpy(at, value, tree->n * sizeof *at);
+    for (bool forward = true; changes; forward = !forward) {
+        changes = false;
+        for (size_t k = 0; k < tree->n; k++) {
+            size_t i = forward ? k : tree->n - 1 - k;
+            if (!tree_is_segment(tree, i))
+                continue;
+            size_t start = (size_t)tree->parent[i], end = tree_place(tree, i);
+            changes |= lower_level(&value[i], at, start, end, others);
+            changes |= lower_level(&value[i], at, end, start, others);
+        }
+    }
+    free(at);
+    return STATUS_OK;
+}
 
 Status field_level(const Tree *tree, const TreeMeta *overrides, double *value, Err *err)
 {
     (void)overrides;
-    int32_t *children = NULL;
-    TRY(tree_child_counts(tree, &children, err));
+    int32_t *others = NULL;
+    TRY(tree_child_counts(tree, &others, err));
     for (size_t i = 0; i < tree->n; i++) {
         int32_t parent = tree->parent[i];
-        value[i] = parent == TREE_NO_PARENT ? 0 : value[parent] + (children[parent] >= 2);
+        value[i] = parent == TREE_NO_PARENT ? 0 : value[parent] + (others[parent] >= 2);
     }
-    free(children);
-    return STATUS_OK;
+    Status status = tree->link ? lower_levels(tree, others, value, err) : STATUS_OK;
+    free(others);
+    return status;
+}
+
+void clear_orders(const Tree *tree, double *value)
+{
+    for (size_t i = 0; i < tree->n; i++)
+        value[i] = (double)NAN;
 }
 
 /* The backward sweep visits all children of a node before the node. Until then value[i] is
@@ -26,6 +71,10 @@ Status field_strahler(const Tree *tree, const TreeMeta *overrides, double *value
 {
     (void)overrides;
     int32_t *alike = NULL;
+    if (tree->link) {
+        clear_orders(tree, value);
+        return STATUS_OK;
+    }
     TRY(mem_calloc(&alike, tree->n, sizeof *alike, "counts of equal orders", err));
     for (size_t i = tree->n; i-- > 0;) {
         if (!tree_is_segment(tree, i))
@@ -46,10 +95,13 @@ Status field_strahler(const Tree *tree, const TreeMeta *overrides, double *value
 
 Status field_tree(const Tree *tree, const TreeMeta *overrides, double *value, Err *err)
 {
-    (void)overrides, (void)err;
-    double trees = 0;
+    (void)overrides;
+    uint32_t *component = NULL;
+    size_t n;
+    TRY(tree_components(tree, &component, &n, err));
     for (size_t i = 0; i < tree->n; i++)
-        value[i] = tree_is_segment(tree, i) ? value[tree->parent[i]] : ++trees;
+        value[i] = component[i] + 1.0;
+    free(component);
     return STATUS_OK;
 }
 

@@ -77,7 +77,7 @@ static void count_daughters(const Vessels *vessels, const int32_t *element_of,
     }
 }
 
-/* `daughters`, not NULL for orders without gaps, is set (owned). */
+/* Sets *daughters (owned) if `daughters` is not NULL; groups are then orders, from 1. */
 static Status make_table(const Vessels *vessels, const int32_t *group, const int32_t *heir,
                          StatisticsTable *table, double **daughters, Err *err)
 {
@@ -246,6 +246,22 @@ done:
     return status;
 }
 
+Status statistics_by_bounds(const Tree *tree, const double *bound_mm, size_t n,
+                            StatisticsTable *elements, double **daughters, Err *err)
+{
+    Vessels vessels;
+    int32_t *order = NULL;
+    OrderRatios ratios;
+    TRY(vessels_init(&vessels, tree, err));
+    Status status = STATUS_OK;
+    TRY_GOTO(vessels_bounded_orders(&vessels, bound_mm, n, &order, err));
+    TRY_GOTO(make_order_table(&vessels, order, elements, &ratios, daughters, err));
+done:
+    free(order);
+    vessels_release(&vessels);
+    return status;
+}
+
 static double volume_mm3(const Tree *tree)
 {
     double volume = 0;
@@ -254,12 +270,68 @@ static double volume_mm3(const Tree *tree)
     return volume;
 }
 
+/* Computes what a tree without links has: orders, symmetry and area ratio. */
+static Status make_orders(const Tree *tree, const Vessels *vessels, TreeStatistics *made, Err *err)
+{
+    int32_t *strahler = NULL, *diameter_order = NULL;
+    DiameterOrders result;
+    Status status;
+    TRY_GOTO(mem_calloc(&strahler, vessels->n, sizeof *strahler, "orders", err));
+    for (size_t v = 0; v < vessels->n; v++)
+        strahler[v] = vessels->vessel[v].strahler;
+    TRY_GOTO(
+        make_order_table(vessels, strahler, &made->by_strahler, &made->strahler_ratios, NULL, err));
+    TRY_GOTO(vessels_diameter_orders(vessels, &diameter_order, &result, err));
+    made->diameter_rounds = result.rounds;
+    made->diameter_orders_converged = result.converged;
+    TRY_GOTO(make_order_table(vessels, diameter_order, &made->by_diameter_strahler,
+                              &made->diameter_strahler_ratios, &made->daughters, err));
+    TRY_GOTO(measure_forks(tree, vessels, made, err));
+done:
+    free(strahler);
+    free(diameter_order);
+    return status;
+}
+
+static Status list_vessels(const Tree *tree, const Vessels *vessels, TreeStatistics *made, Err *err)
+{
+    TRY(mem_calloc(&made->vessel, vessels->n, sizeof *made->vessel, "vessels", err));
+    for (size_t v = 0; v < vessels->n; v++) {
+        const Vessel *vessel = &vessels->vessel[v];
+        double chord = vec3_distance(tree->position[vessel->start], tree->position[vessel->end]);
+        made->vessel[v] =
+            (VesselRow){vessel->start, vessel->end, vessel->radius_mm, vessel->length_mm, chord};
+    }
+    return STATUS_OK;
+}
+
+static Status count_degrees(const Tree *tree, TreeStatistics *made, Err *err)
+{
+    int32_t *others = NULL;
+    uint32_t *component = NULL;
+    Status status;
+    TRY_GOTO(tree_child_counts(tree, &others, err));
+    TRY_GOTO(tree_components(tree, &component, &made->components, err));
+    TRY_GOTO(tree_loop_count(tree, &made->loops, err));
+    TRY_GOTO(mem_calloc(&made->degree, tree->n, sizeof *made->degree, "degrees", err));
+    for (size_t i = 0; i < tree->n; i++) {
+        if (tree_is_link(tree, i))
+            continue;
+        int32_t degree = others[i] + tree_is_segment(tree, i);
+        made->degree[i] = (uint8_t)(degree < UINT8_MAX ? degree : UINT8_MAX);
+        made->nodes_of_degree[degree < READ_MAX_DEGREE ? degree : READ_MAX_DEGREE]++;
+    }
+done:
+    free(others);
+    free(component);
+    return status;
+}
+
 Status derive_statistics(const Tree *tree, TreeStatistics *statistics, Err *err)
 {
-    TreeStatistics made = {.volume_mm3 = volume_mm3(tree)};
+    TreeStatistics made = {.volume_mm3 = volume_mm3(tree), .has_orders = !tree->link};
     Vessels vessels;
-    int32_t *group = NULL, *diameter_order = NULL;
-    DiameterOrders result;
+    int32_t *group = NULL;
     TRY(vessels_init(&vessels, tree, err));
     made.vessels = vessels.n;
     Status status = STATUS_OK;
@@ -267,28 +339,23 @@ Status derive_statistics(const Tree *tree, TreeStatistics *statistics, Err *err)
     for (size_t v = 0; v < vessels.n; v++)
         group[v] = vessels.vessel[v].level;
     TRY_GOTO(make_table(&vessels, group, NULL, &made.by_level, NULL, err));
-    for (size_t v = 0; v < vessels.n; v++)
-        group[v] = vessels.vessel[v].strahler;
-    TRY_GOTO(
-        make_order_table(&vessels, group, &made.by_strahler, &made.strahler_ratios, NULL, err));
-    TRY_GOTO(vessels_diameter_orders(&vessels, &diameter_order, &result, err));
-    made.diameter_rounds = result.rounds;
-    made.diameter_orders_converged = result.converged;
-    TRY_GOTO(make_order_table(&vessels, diameter_order, &made.by_diameter_strahler,
-                              &made.diameter_strahler_ratios, &made.daughters, err));
-    TRY_GOTO(measure_forks(tree, &vessels, &made, err));
+    TRY_GOTO(list_vessels(tree, &vessels, &made, err));
+    TRY_GOTO(count_degrees(tree, &made, err));
+    if (made.has_orders)
+        TRY_GOTO(make_orders(tree, &vessels, &made, err));
     *statistics = made;
     made = (TreeStatistics){0};
 done:
     statistics_release(&made);
     free(group);
-    free(diameter_order);
     vessels_release(&vessels);
     return status;
 }
 
 void statistics_release(TreeStatistics *statistics)
 {
+    free(statistics->vessel);
+    free(statistics->degree);
     free(statistics->by_level.row);
     free(statistics->by_strahler.row);
     free(statistics->by_diameter_strahler.row);

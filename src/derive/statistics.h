@@ -45,8 +45,22 @@ typedef struct BifurcationSpread {
     double mean, sd, median; /* NAN if count is 0 */
 } BifurcationSpread;
 
+/* A vessel, as a row of a table. */
+typedef struct VesselRow {
+    int32_t start, end; /* nodes: its ends; equal in a vessel that closes a loop alone */
+    double radius_mm, length_mm;
+    double chord_mm; /* distance between its ends */
+} VesselRow;
+
 typedef struct TreeStatistics {
     size_t vessels;
+    VesselRow *vessel; /* per vessel; owned */
+    uint8_t *degree;   /* per node: number of segments that meet there, at most 255; 0 for a node
+                        * with a link, which is the same point as another node; owned */
+    size_t nodes_of_degree[READ_MAX_DEGREE + 1]; /* the last entry counts higher degrees, too */
+    size_t components, loops;                    /* connected components and independent loops */
+    bool has_orders;   /* false for a network with links: without Strahler orders, symmetry and area
+                        * ratio, because its vessels have no daughters */
     double volume_mm3; /* sum of pi r^2 l over the segments */
     StatisticsTable by_level, by_strahler, by_diameter_strahler;
     OrderRatios strahler_ratios, diameter_strahler_ratios;
@@ -65,6 +79,16 @@ typedef struct TreeStatistics {
  * Release *statistics with statistics_release. Errors: STATUS_MEMORY. */
 MUST_CHECK Status derive_statistics(const Tree *tree, TreeStatistics *statistics, Err *err);
 void statistics_release(TreeStatistics *statistics);
+
+/* Computes the elements of the orders that n bounds of diameter define. A vessel has the order 1 +
+ * the number of bounds below its diameter, or the largest order of its daughters if that is higher.
+ *
+ * elements   receives a row for each order that has vessels; the caller frees `row`.
+ * daughters  receives the connectivity as in TreeStatistics, where n is the last row's order;
+ *            owned by the caller.
+ * Errors     STATUS_MEMORY. */
+MUST_CHECK Status statistics_by_bounds(const Tree *tree, const double *bound_mm, size_t n,
+                                       StatisticsTable *elements, double **daughters, Err *err);
 
 /* Computes the ratios from the rows with numbers `first` to `last`. */
 OrderRatios statistics_ratios(const StatisticsTable *table, int first, int last);

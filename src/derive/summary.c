@@ -34,6 +34,14 @@ static void count_ends(const Tree *tree, const int32_t *children, TreeSummary *s
     }
 }
 
+static Status count_components(const Tree *tree, TreeSummary *summary, Err *err)
+{
+    uint32_t *component;
+    TRY(tree_components(tree, &component, &summary->components, err));
+    free(component);
+    return tree_loop_count(tree, &summary->loops, err);
+}
+
 /* The largest value of a field that is a count; 0 when there is no segment. */
 static Status largest(const Tree *tree, const TreeMeta *overrides, const char *name, int *out,
                       Err *err)
@@ -83,7 +91,10 @@ Status derive_summary(const Tree *tree, const TreeMeta *overrides, TreeSummary *
     made.has.lambda = made.has.target = lambda->known[META_LAMBDA];
     sum_segments(tree, &made);
     TRY(largest(tree, overrides, "level", &made.max_level, err));
-    TRY(largest(tree, overrides, "strahler", &made.max_strahler, err));
+    made.has.orders = !tree->link;
+    if (made.has.orders)
+        TRY(largest(tree, overrides, "strahler", &made.max_strahler, err));
+    TRY(count_components(tree, &made, err));
     int32_t *children = NULL;
     TRY(tree_child_counts(tree, &children, err));
     count_ends(tree, children, &made);

@@ -31,6 +31,7 @@ static void find_vessels(const Tree *tree, const int32_t *children, const double
                                              .strahler = (int32_t)strahler[i],
                                              .radius_mm = tree->radius_mm[i]};
         made->of_node[i] = begins ? (int32_t)made->n++ : above;
+        made->vessel[made->of_node[i]].end = (int32_t)tree_place(tree, i);
         extend(&made->vessel[made->of_node[i]], tree->radius_mm[i], tree_segment_length(tree, i));
     }
 }
@@ -48,7 +49,8 @@ Status vessels_init(Vessels *vessels, const Tree *tree, Err *err)
     TRY_GOTO(mem_calloc(&strahler, tree->n, sizeof *strahler, "Strahler orders", err));
     TRY_GOTO(tree_child_counts(tree, &children, err));
     TRY_GOTO(field_level(tree, &none, level, err));
-    TRY_GOTO(field_strahler(tree, &none, strahler, err));
+    if (!tree->link)
+        TRY_GOTO(field_strahler(tree, &none, strahler, err));
     find_vessels(tree, children, level, strahler, &made);
     *vessels = made;
     made = (Vessels){0};

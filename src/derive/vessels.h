@@ -12,7 +12,9 @@ enum { NO_VESSEL = -1 };
 typedef struct Vessel {
     int32_t parent; /* index of the parent vessel; NO_VESSEL if it starts at a root */
     int32_t start;  /* the node at which it starts */
-    int32_t level, strahler;
+    int32_t end;    /* the place at which it ends */
+    int32_t level;
+    int32_t strahler; /* 0 in a network with links */
     double radius_mm; /* mean of its segments' radii, weighted by length; if all lengths are 0, the
                        * first segment's radius */
     double length_mm;
@@ -43,5 +45,10 @@ typedef struct DiameterOrders {
  * *order has an entry per vessel and is owned by the caller. Errors: STATUS_MEMORY. */
 MUST_CHECK Status vessels_diameter_orders(const Vessels *vessels, int32_t **order,
                                           DiameterOrders *result, Err *err);
+
+/* Computes the order of each vessel by bounds of diameter [statistics_by_bounds]. *order has an
+ * entry per vessel and is owned by the caller. Errors: STATUS_MEMORY. */
+MUST_CHECK Status vessels_bounded_orders(const Vessels *vessels, const double *bound_mm, size_t n,
+                                         int32_t **order, Err *err);
 
 #endif

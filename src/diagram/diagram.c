@@ -7,8 +7,12 @@
 static void put_label(const void *context, size_t bar, Text *id, Text *title)
 {
     const DiagramStyle *style = context;
-    const int32_t node = style->diagram->bar[bar].index, segment = style->tree->id[node];
-    text_printf(id, "%c%d", bar < style->diagram->n_links ? 'l' : 's', segment);
+    const Diagram *diagram = style->diagram;
+    const int32_t node = diagram->bar[bar].index, segment = style->tree->id[node];
+    const char kind = bar < diagram->n_links                        ? 'l'
+                      : bar < diagram->n_links + diagram->n_crosses ? 'c'
+                                                                    : 's';
+    text_printf(id, "%c%d", kind, segment);
     text_printf(title, "segment %d", segment);
     if (!style->name)
         return;

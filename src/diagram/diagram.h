@@ -5,8 +5,10 @@
  * The horizontal position of a bar is the path length from the root. Thin links lead from a branch
  * to the branches that leave it. No bars or links cross: daughter branches are above and below
  * their parent. If a branch would overlap another that leaves the parent farther along, the first
- * one is placed farther out. In such diagrams people find low wall shear stress far more often than
- * in 3D pictures [Borkin et al., IEEE Trans. Vis. Comput. Graph. 17 (2011) 2479-2488].
+ * one is placed farther out. A network with loops is unrolled along its parents. Where a branch
+ * closes a loop, it ends at a cross bar: its end is the same point as a node elsewhere. In such
+ * diagrams people find low wall shear stress far more often than in 3D pictures [Borkin et al.,
+ * IEEE Trans. Vis. Comput. Graph. 17 (2011) 2479-2488].
  *
  *     TRY(diagram_lay_out(&tree, 0, &diagram, err));
  *     const FigureBars bars = diagram_bars(&style);
@@ -22,10 +24,12 @@
 #include <stddef.h>
 
 /* The layout of a tree, in mm: x to the right from the roots, y down from the top. A bar is the
- * segment that ends at node FigureBar.index, or the link to that segment. */
+ * segment that ends at node FigureBar.index, the link to that segment, or the cross bar at its end.
+ */
 typedef struct Diagram {
-    FigureBar *bar; /* owned; links first, then segments in the order of the tree */
-    size_t n, n_links;
+    /* Owned: links first, then cross bars, then segments in the order of the tree. */
+    FigureBar *bar;
+    size_t n, n_links, n_crosses;
     double width_mm, height_mm; /* of all bars */
 } Diagram;
 
@@ -54,8 +58,9 @@ typedef struct DiagramStyle {
     const double *values;    /* per node: value of its segment; NAN where there is none */
 } DiagramStyle;
 
-/* Returns the bars of a diagram. Their ids are "s" and the SWC id of the segment, or "l" and the
- * SWC id of the segment that a link leads to. Borrows `style`. */
+/* Returns the bars of a diagram. Their ids are "s" and the SWC id of the segment, "l" and the SWC
+ * id of the segment that a link leads to, or "c" and the SWC id of a segment that ends at a cross
+ * bar. Borrows `style`. */
 FigureBars diagram_bars(const DiagramStyle *style);
 
 /* Makes a page of the bars and margins, true to size. Release *page with figure_release. The page

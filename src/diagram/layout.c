@@ -61,6 +61,7 @@ typedef struct TreeLayout {
     /* At most 4 per branch: two of its own, one where it is attached, one at its end. */
     ContourStep *step;
     size_t n_steps;
+    double gap_mm; /* space between rows */
 } TreeLayout;
 
 enum { STEPS_A_BRANCH = 4 };
@@ -357,13 +358,31 @@ static FigureBar bar_of(const TreeLayout *layout, size_t node)
                        .index = (int32_t)node};
 }
 
+/* Returns the cross bar at the end of a segment that closes a loop. Those of two neighbouring rows
+ * leave a third of the space between the rows. */
+static FigureBar cross_of(const TreeLayout *layout, size_t node)
+{
+    FigureBar bar = bar_of(layout, node);
+    const double radius = layout->tree->radius_mm[node];
+    const double beyond = fmin(radius, layout->gap_mm / 3);
+    bar.x[0] = fmax(bar.x[0], bar.x[1] - radius / 2);
+    bar.y[0] -= beyond;
+    bar.y[1] += beyond;
+    return bar;
+}
+
 static Status make_bars(const TreeLayout *layout, Diagram *diagram, Err *err)
 {
-    TRY(mem_calloc(&diagram->bar, layout->n + layout->tree->n, sizeof *diagram->bar, "bars", err));
+    TRY(mem_calloc(&diagram->bar, layout->n + 2 * layout->tree->n, sizeof *diagram->bar, "bars",
+                   err));
     for (size_t b = 0; b < layout->n; b++)
         if (layout->branch[b].parent != NONE)
             diagram->bar[diagram->n_links++] = link_to(layout, &layout->branch[b]);
     diagram->n = diagram->n_links;
+    for (size_t i = 0; i < layout->tree->n; i++)
+        if (tree_is_link(layout->tree, i) && tree_segment_length(layout->tree, i) > 0)
+            diagram->bar[diagram->n++] = cross_of(layout, i);
+    diagram->n_crosses = diagram->n - diagram->n_links;
     for (size_t i = 0; i < layout->tree->n; i++)
         if (layout->of_node[i] != NONE && tree_segment_length(layout->tree, i) > 0)
             diagram->bar[diagram->n++] = bar_of(layout, i);
@@ -389,6 +408,7 @@ Status diagram_lay_out(const Tree *tree, double gap_mm, Diagram *diagram, Err *e
         mem_calloc(&layout.step, STEPS_A_BRANCH * layout.n, sizeof *layout.step, "steps", err));
     if (!(gap_mm > 0))
         TRY_GOTO(choose_gap(&layout, &gap_mm, err));
+    layout.gap_mm = gap_mm;
     made.height_mm = lay_out_rows(&layout, gap_mm);
     TRY_GOTO(make_bars(&layout, &made, err));
     *diagram = made;

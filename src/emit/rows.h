@@ -11,6 +11,7 @@ Status obj_check_name(const char *second_file, Err *err);
 
 Status blender_write(const EmitParams *params, EmitOutput *to, Err *err);
 Status glb_write(const EmitParams *params, EmitOutput *to, Err *err);
+Status gmsh_write(const EmitParams *params, EmitOutput *to, Err *err);
 Status lattice_write(const EmitParams *params, EmitOutput *to, Err *err);
 Status obj_write(const EmitParams *params, EmitOutput *to, Err *err);
 Status openscad_write(const EmitParams *params, EmitOutput *to, Err *err);
@@ -24,5 +25,6 @@ Status tachyon_write(const EmitParams *params, EmitOutput *to, Err *err);
 Status threemf_write(const EmitParams *params, EmitOutput *to, Err *err);
 Status usd_write(const EmitParams *params, EmitOutput *to, Err *err);
 Status vtp_write_mesh(const EmitParams *params, EmitOutput *to, Err *err);
+Status vtu_write_layers(const EmitParams *params, EmitOutput *to, Err *err);
 
 #endif

@@ -149,13 +149,12 @@ done:
     return status;
 }
 
-static Status describe(const GrowParams *params, const Domain *domain, TreeMeta *meta, Err *err)
+Status finish_describe(const GrowParams *params, const Domain *domain, TreeMeta *meta, Err *err)
 {
     grow_describe(params, meta);
     meta_set_number(meta, META_DIMENSION, domain->dimension);
     TRY(meta_set_text(meta, META_GENERATOR, "corcast " CORCAST_VERSION, err));
-    TRY(describe_domain(domain, meta, err));
-    return meta_add_lines(meta, err);
+    return describe_domain(domain, meta, err);
 }
 
 Status finish_tree(Network *net, const GrowParams *params, const Domain *domain, Tree *out,
@@ -168,7 +167,8 @@ Status finish_tree(Network *net, const GrowParams *params, const Domain *domain,
     Status status = STATUS_OK;
     TRY_GOTO(tree_init(&made, net->n, err));
     TRY_GOTO(write_radii(net, params, &made, err));
-    TRY_GOTO(describe(params, domain, &made.meta, err));
+    TRY_GOTO(finish_describe(params, domain, &made.meta, err));
+    TRY_GOTO(meta_add_lines(&made.meta, err));
     static_assert(TREE_NO_PARENT == -1, "as in a Segment");
     for (size_t i = 0; i < net->n; i++) {
         made.type[i] = TREE_VESSEL_TYPE;

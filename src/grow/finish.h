@@ -17,4 +17,9 @@
 MUST_CHECK Status finish_tree(Network *net, const GrowParams *params, const Domain *domain,
                               Tree *out, Err *err);
 
+/* Sets the keys that describe a tree grown with these parameters in this domain, without lines for
+ * them. Errors: STATUS_MEMORY. */
+MUST_CHECK Status finish_describe(const GrowParams *params, const Domain *domain, TreeMeta *meta,
+                                  Err *err);
+
 #endif

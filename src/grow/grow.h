@@ -15,7 +15,8 @@
  *     TRY(grow_tree(&params, &domain, &tree, NULL, err));   (then tree_release)
  *
  * Refinement (refine_tree) lowers the target of a whole tree by moving its bifurcations and by
- * connecting its subtrees elsewhere.
+ * connecting its subtrees elsewhere. Filling (fill_tree) adds small vessels as published tables
+ * describe them.
  *
  * Source: Schreiner & Buxbaum, IEEE Trans. Biomed. Eng. 40 (1993) 482-491; in space: Karch et al.,
  * Comput. Biol. Med. 29 (1999) 19-38. */
@@ -23,6 +24,7 @@
 #define CORCAST_GROW_GROW_H
 
 #include "base/base.h"
+#include "derive/derive.h"
 #include "domain/domain.h"
 #include "geom/geom.h"
 #include "grow/bound/bound.h" // IWYU pragma: export
@@ -96,10 +98,27 @@ typedef struct GrowParams {
  * relaxed up to 300 terminals, GROW_TOSS_SEGMENT. All else is 0. */
 GrowParams grow_defaults(void);
 
+/* What a filling is drawn from. */
+typedef struct FillRules {
+    const Morphometry *table; /* borrowed */
+    const char *name;         /* of the table, for the metadata; borrowed */
+    int from; /* vessels of this order and above are grown; from 2 to the highest order of the table
+               */
+    int to;   /* the lowest order that is drawn; from 1 to below `from` */
+} FillRules;
+
+/* The result of a filling. Zeroed: the tree was not filled. */
+typedef struct FillReport {
+    size_t elements;    /* number of elements that were drawn and placed */
+    size_t left_out;    /* number of elements that were drawn but had no place in the domain */
+    double flow_ml_min; /* flow through all inlets */
+    double flow_spread; /* standard deviation of the terminals' flows over their mean */
+} FillReport;
+
 typedef struct GrowReport {
     double seconds; /* wall clock */
     size_t terminals;
-    double target;         /* sum of l r^lambda, mm^(1 + lambda) */
+    double target;         /* sum of l r^lambda, mm^(1 + lambda); NAN for a filled tree */
     double root_radius_mm; /* the largest root radius */
     uint64_t tosses;       /* random points drawn */
     uint64_t rejected;     /* points in vessels, in full cells, or without room for a connection */
@@ -114,6 +133,7 @@ typedef struct GrowReport {
      * if it is at least twice `clearance_mm` and at least `pair_mm`. */
     double apart_mm;
     bool complete; /* false: a partial tree; err has the sentence that states why */
+    FillReport fill;
 } GrowReport;
 
 /* Sets in *meta the keys that describe a tree grown with these parameters. */
@@ -123,6 +143,10 @@ void grow_describe(const GrowParams *params, TreeMeta *meta);
  * viscosity law in *meta, viscosity is constant; without a rule of the terminals' flow, all
  * terminals have the same flow. */
 void grow_take(GrowParams *params, const TreeMeta *meta, const bool given[META_KEYS]);
+
+/* Checks the exponents, pressures, flow and viscosity. Errors: STATUS_USAGE with a sentence that
+ * names the wrong parameter in backquotes. */
+MUST_CHECK Status grow_blood_check(const GrowParams *params, Err *err);
 
 /* Checks whether growth can begin with these parameters in this domain. Errors:
  * STATUS_USAGE, and STATUS_INPUT for `from`, with a sentence that names the wrong parameter
@@ -161,6 +185,30 @@ MUST_CHECK Status grow_params_check(const GrowParams *params, const Domain *doma
  *          that keep their radii are too narrow for their flow. STATUS_MEMORY. */
 MUST_CHECK Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out,
                             GrowReport *report, Err *err);
+
+/* Fills a tree by a published table: the grown tree has the large vessels, and the smaller ones are
+ * drawn from the table [grow/fill/fill_draw.h] and placed in the domain, the largest first.
+ *
+ * Orders are defined by diameter, with the bounds of the table. Daughters leave a grown element at
+ * random places. Each segment of a drawn element takes the direction, of some that are random, in
+ * which it is farthest from other vessels, and has its full length; where no straight segment stays
+ * in the domain, it is bent. Segments that come too near to others are moved.
+ *
+ * All radii of params->from are kept, and drawn radii do not follow Murray's law. The metadata has
+ * no gamma and no target exponent, and names the table. The flow shares are the flows, in ml/min,
+ * at which all terminals are at p_term; the flow through the inlet follows from the pressures.
+ *
+ * params   `from` is the tree, with segments of positive radius. Also read: seed, blood, progress.
+ * domain   has three dimensions.
+ * out      receives the tree; release it with tree_release. It has all nodes of `from`, with their
+ *          ids, types and columns; new nodes have no values in columns.
+ * report   may be NULL. `broken` counts drawn segments that are shorter than wide, or too near to
+ *          segments they share no node with.
+ * Errors   STATUS_USAGE for parameters out of range; STATUS_INPUT for a tree without flow;
+ *          STATUS_INFEASIBLE for too many elements; STATUS_MEMORY.
+ * Threads  One. */
+MUST_CHECK Status fill_tree(const GrowParams *params, const FillRules *rules, const Domain *domain,
+                            Tree *out, GrowReport *report, Err *err);
 
 /* Computes the least distance of the walls of vessels of different trees of a forest. Shares no
  * code with growth, so that it can prove its result.

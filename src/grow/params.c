@@ -66,7 +66,7 @@ void grow_take(GrowParams *params, const TreeMeta *meta, const bool given[META_K
         params->blood.terminal_flow = (TerminalFlow)meta_number(meta, META_TERMINAL_FLOW);
 }
 
-static Status check_physics(const GrowParams *params, Err *err)
+Status grow_blood_check(const GrowParams *params, Err *err)
 {
     TreeMeta meta = {0};
     grow_describe(params, &meta);
@@ -175,7 +175,7 @@ Status grow_params_check(const GrowParams *params, const Domain *domain, Err *er
     if (params->terminals < 1 || params->terminals > GROW_MAX_TERMINALS)
         return err_set(err, STATUS_USAGE, "`terminals` %zu: must be from 1 to %d",
                        params->terminals, GROW_MAX_TERMINALS);
-    TRY(check_physics(params, err));
+    TRY(grow_blood_check(params, err));
     TRY(check_lengths(params, err));
     if (params->clearance_mm > 0 && !params->from && params->inlets <= 1)
         return err_set(err, STATUS_USAGE,

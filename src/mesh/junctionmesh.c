@@ -2,11 +2,11 @@
  *
  * The steps are: extract the surface from the lattice, cut it at the end planes of the stubs,
  * collapse edges, split triangles that are too far from the surface. Then the result is proved to
- * be a sphere with one hole per stub:
+ * be a sphere with one hole per stub, and with one handle per loop of the region's whole segments:
  * - each edge has two triangles, one on each side, or is on a rim;
  * - each stub has one rim, a closed loop that goes about the stub's axis once;
  * - the mesh is connected;
- * - vertices - edges + triangles = 2 - stubs.
+ * - vertices - edges + triangles = 2 - stubs - 2 loops.
  * If the proof fails, the steps are repeated with smaller cells. */
 #include "mesh/junctionmesh.h"
 
@@ -156,7 +156,9 @@ static Status prove(const JunctionBuild *build, bool *sound)
     TRY(follow_edges(build, &n_edges, sound));
     long long euler =
         (long long)patch->n_points - (long long)n_edges + (long long)patch->n_triangles;
-    *sound = *sound && patch->n_triangles > 0 && euler == 2 - (long long)n_stubs;
+    long long expected = 2 - (long long)n_stubs - 2 * (long long)build->plan->n_loops;
+    mesh->loops_are_closed = *sound && euler > expected;
+    *sound = *sound && patch->n_triangles > 0 && euler == expected;
     if (!*sound)
         return STATUS_OK;
     for (size_t i = 0; i < patch->n_points; i++)
@@ -409,6 +411,52 @@ static Status keep_patch(JunctionWorkspace *workspace, double grid, JunctionMesh
     return STATUS_OK;
 }
 
+/* Returns true if one of the region's whole segments in `kept` meets no other one at this end. */
+static bool is_dead_end(const JunctionBuild *build, const bool *kept, uint32_t term, int end)
+{
+    const JunctionField *field = &build->plan->field;
+    const uint32_t node = build->tree->nodes[field->terms[term].segment][end];
+    for (uint32_t i = 0; i < field->n_terms; i++) {
+        const uint32_t *its = build->tree->nodes[field->terms[i].segment];
+        if (i != term && kept[i] && (its[0] == node || its[1] == node))
+            return false;
+    }
+    return true;
+}
+
+/* Names the region's whole segments that are part of a loop: those that remain when segments with a
+ * dead end are removed again and again. */
+static Status refuse_loop(const JunctionBuild *build, Err *err)
+{
+    enum { MOST_NAMED = 12 };
+    const JunctionField *field = &build->plan->field;
+    bool *kept, again = true;
+    char names[16 * MOST_NAMED] = "";
+    size_t n = 0, length = 0;
+    TRY(mem_calloc(&kept, field->n_terms, sizeof *kept, "terms", err));
+    for (uint32_t i = 0; i < field->n_terms; i++)
+        kept[i] = field->terms[i].stub == NO_STUB;
+    while (again) {
+        again = false;
+        for (uint32_t i = 0; i < field->n_terms; i++)
+            if (kept[i] && (is_dead_end(build, kept, i, 0) || is_dead_end(build, kept, i, 1))) {
+                kept[i] = false;
+                again = true;
+            }
+    }
+    for (uint32_t i = 0; i < field->n_terms; i++)
+        if (kept[i] && n++ < MOST_NAMED)
+            length +=
+                (size_t)snprintf(names + length, sizeof names - length, "%s%u", n > 1 ? ", " : "",
+                                 build->tree->ids[field->terms[i].segment]);
+    free(kept);
+    return err_set(
+        err, STATUS_INFEASIBLE,
+        "the loop of segments %s%s is narrower than its vessels: its hole closes, so its "
+        "surface is not that of the network; use thinner vessels, or `break_loops`",
+        names, n > MOST_NAMED ? " and others" : "");
+}
+
 static Status refuse(const JunctionBuild *build, double grid_mm, Err *err)
 {
     const uint32_t *ids = build->tree->ids;
@@ -421,6 +469,8 @@ static Status refuse(const JunctionBuild *build, double grid_mm, Err *err)
             "segment %u and the segments that it meets are so short for their radii that "
             "they have no surface",
             ids[build->plan->field.terms[0].segment]);
+    if (build->mesh->loops_are_closed)
+        return refuse_loop(build, err);
     if (find_gap(build, pair) < 0)
         return err_set(err, STATUS_INFEASIBLE,
                        "the vessels of segments %u and %u overlap where they are unconnected, so "

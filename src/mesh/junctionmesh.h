@@ -3,8 +3,8 @@
  * A region holds one or several nodes of the tree [regions/junctions.h]. Its surface is extracted
  * from a lattice of tetrahedra in an octree, cut at the end planes of the branch stubs, simplified,
  * and split where it is too far from the exact surface. Then it is proved to be a sphere with one
- * hole per stub. The boundary loop of a hole is called a rim; a tube begins there. Private to the
- * module mesh.
+ * hole per stub, and one handle per loop of the region's whole segments. The boundary loop of a
+ * hole is called a rim; a tube begins there. Private to the module mesh.
  *
  *     JunctionWorkspace workspace = {0};
  *     JunctionInput input = {&tree, &plan, &fineness};
@@ -42,6 +42,8 @@ typedef struct JunctionMesh {
     size_t n_rims;
     uint32_t *rim_points;    /* indices of points, for all rims */
     int repeats;             /* number of attempts with finer cells; 0: the first one succeeded */
+    bool loops_are_closed;   /* the surface has fewer handles than the region has loops, so it is
+                              * not valid */
     MeshDeviation deviation; /* at the middles of triangles and of their longest edges */
 } JunctionMesh;
 
@@ -96,8 +98,8 @@ typedef struct JunctionInput {
     const MeshFineness *fineness; /* of the first attempt */
 } JunctionInput;
 
-/* Builds the surface of a region, and proves that it is a sphere with one hole per stub. Tries
- * again with finer cells if the proof fails.
+/* Builds the surface of a region, and proves that it is a sphere with one hole per stub and one
+ * handle per loop. Tries again with finer cells if the proof fails.
  *
  * mesh      receives the surface; release it with junctionmesh_release.
  * statuses  per segment of the tree. The SegmentStatus of each segment that is wholly in the region

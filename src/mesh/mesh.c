@@ -2,9 +2,10 @@
  * by a lattice of its own (octree.c, lattice.c), cut at the planes of its stubs (planecut.c),
  * simplified (collapse.c), and proved to be a sphere with holes (junctionmesh.c). Strips and caps
  * join the regions (assemble.c). Over a whole tree that gives one sphere: regions are spheres with
- * k holes, strips are rings, caps are discs. Two things can still go wrong: vessels that meet
- * although they do not blend, and rounding. They are found on the finished triangles (topology.c,
- * crossings.c). If triangles cross, all is made again, with finer cells in the regions about them.
+ * k holes, strips are rings, caps are discs. Each loop of a network adds a handle to it. Two things
+ * can still go wrong: vessels that meet although they do not blend, and rounding. They are found on
+ * the finished triangles (topology.c, crossings.c). If triangles cross, all is made again, with
+ * finer cells in the regions about them.
  *
  * One octree for all regions was tried, and its mesh was not valid: cells join vessels whose gap is
  * narrower than a cell. Swept rings alone cannot be used, because two junctions of five are in
@@ -248,15 +249,28 @@ static Status refuse_overlap(const MeshBuild *build, Err *err)
         build->junctions.n_overlapping);
 }
 
+/* Finds the topology of the mesh, and that of a valid one. */
+static Status find_topology(const MeshBuild *build, const VesselMesh *mesh, MeshReport *report,
+                            Err *err)
+{
+    uint32_t *trees = NULL, *loops = NULL;
+    Status status;
+    TRY_GOTO(meshcheck_trees(build->tree, &trees, &report->trees, err));
+    TRY_GOTO(meshcheck_loops(build->tree, trees, &loops, err));
+    report->expected_components = report->trees;
+    for (size_t i = 0; i < build->tree->n_nodes; i++)
+        report->expected_genus += loops[i];
+    TRY_GOTO(meshcheck_topology(mesh, trees, report, err));
+done:
+    free(trees);
+    free(loops);
+    return status;
+}
+
 static Status fill_report(MeshBuild *build, const VesselMesh *mesh, atomic_bool *crossed,
                           MeshReport *report, Err *err)
 {
-    uint32_t *trees;
-    TRY(meshcheck_trees(build->tree, &trees, &report->trees, err));
-    report->expected_components = report->trees;
-    Status status = meshcheck_topology(mesh, trees, report, err);
-    free(trees);
-    TRY(status);
+    TRY(find_topology(build, mesh, report, err));
     TRY(meshcheck_crossings(mesh, build->fineness.grid_mm, build->params->threads, crossed,
                             &report->crossings, err));
     TRY(find_slivers(build, mesh, err));

@@ -11,7 +11,7 @@
  * [regions/junctions.h]. Each region gets a mesh of its own from a lattice of tetrahedra
  * [junctionmesh.h]. A tube is a strip of triangles between two regions, a flat end is a disc
  * [assemble.h]. The finished triangles are then checked: closed, without crossings, one component
- * of genus 0 per tree [meshreport.h].
+ * per tree, whose genus is the number of the tree's independent loops [meshreport.h].
  *
  *     MeshParams params = {.tolerance = 0.02};
  *     TRY(vesselmesh_build(&tree, &params, &mesh, &report, err));
@@ -28,6 +28,7 @@
 #include "mesh/regions/adjust.h"    // IWYU pragma: export
 #include "mesh/regions/junctions.h" // IWYU pragma: export
 #include "mesh/regions/nearpairs.h" // IWYU pragma: export
+#include "mesh/sweep.h"             // IWYU pragma: export
 #include "scene/scene.h"
 
 /* The expected cost of a mesh, in most cases right within a factor of 2. */

@@ -36,9 +36,9 @@ Status meshreport_check(const MeshReport *report, const VesselTree *tree, Err *e
                                 mesh_grid(mesh_max_coordinate(tree)), err);
     return err_set(
         err, STATUS_DIFFERS,
-        "the mesh is not valid: %zu components for %zu trees, genus %zu, %zu open edges, "
-        "%zu crossing pairs of triangles, %zu bridges between trees; no file was written "
+        "the mesh is not valid: %zu components for %zu trees, genus %zu for %zu loops, %zu open "
+        "edges, %zu crossing pairs of triangles, %zu bridges between trees; no file was written "
         "(a smaller `tolerance` may help)",
-        report->components, report->trees, report->genus, report->open_edges, report->crossings,
-        report->bridges);
+        report->components, report->trees, report->genus, report->expected_genus,
+        report->open_edges, report->crossings, report->bridges);
 }

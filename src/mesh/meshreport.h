@@ -52,7 +52,8 @@ typedef struct MeshReport {
     size_t genus;               /* sum over all components */
     size_t expected_components; /* of a valid mesh: the number of trees. A solid for printing sets
                                  * another number. */
-    size_t expected_genus;      /* of a valid mesh: 0. A solid for printing sets another number. */
+    size_t expected_genus;      /* of a valid mesh: the number of independent loops. A solid for
+                                 * printing sets another number. */
     long long euler;            /* Euler number: points - edges + triangles */
     size_t open_edges;          /* edges that do not have two triangles, one in each direction */
     size_t crossings;  /* pairs of triangles with a common point that is not on a corner or edge of

@@ -29,6 +29,7 @@ static const ConditionRow rows[] = {
     [WHEN_OWN_SEED] = {.sentence = "has no effect here: the plan sets the seeds"},
     [WHEN_LUMPED] = {.sentence = "has no effect on --outlets structured"},
     [WHEN_STRUCTURED] = {.sentence = "is for --outlets structured"},
+    [WHEN_ESTIMATED] = {.sentence = "is for --ends estimate"},
     [WHEN_PICTURE] = {.sentence = "is for pictures", .groups = GROUP(PRESS)},
     [WHEN_PIXELS] = {.sentence =
                          "is for images of pixels; a page (.svg, .pdf, .eps) has the true size",
@@ -70,7 +71,9 @@ static const ConditionRow rows[] = {
     [WHEN_OPENSCAD] = {.sentence = "is for models of OpenSCAD (.scad)"},
     [WHEN_COLORS] = {.sentence = "is for formats with colors"},
     [WHEN_MESH] = {.sentence = "is for formats of triangles"},
-    [WHEN_NAMED_PARTS] = {.sentence = "is for named parts: a .vtp, or an .stl with --parts"},
+    [WHEN_NAMED_PARTS] = {.sentence =
+                              "is for named parts: a .vtp, .msh or .vtu, or an .stl with --parts"},
+    [WHEN_LAYERS] = {.sentence = "is for layers of prisms: a .msh or .vtu"},
     [WHEN_VOLUME] = {.sentence = "is for volumes, as V.nii.gz", .groups = GROUP(VOXELS)},
     [WHEN_NO_VOLUME] = {.sentence =
                             "is for surfaces; a volume always contains cylinders and balls"},

@@ -30,6 +30,7 @@ typedef enum Condition {
     WHEN_OWN_SEED,
     WHEN_LUMPED,
     WHEN_STRUCTURED,
+    WHEN_ESTIMATED,
     /* of the file of a picture */
     WHEN_PICTURE,
     WHEN_PIXELS,
@@ -67,6 +68,7 @@ typedef enum Condition {
     WHEN_COLORS,
     WHEN_MESH,
     WHEN_NAMED_PARTS,
+    WHEN_LAYERS,
     WHEN_VOLUME,
     WHEN_NO_VOLUME,
     WHEN_NO_PAGE,

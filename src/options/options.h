@@ -232,6 +232,7 @@ typedef struct Command {
     bool writes_last;  /* the last operand is a file to write; all others are files to read */
     bool is_lookup;    /* operands are names, not files; they are not checked as files */
     bool reads_tree;   /* the command has the options for reading trees, which set Parsed.reading */
+    bool trees_only;   /* reading_tree refuses networks with links */
     bool own_recipe;   /* the command prints the recipe of --dump-recipe itself */
     bool own_check;    /* options_finish does not call options_check for this command */
     /* Names, separated by blanks, of options that the first table replaces or that the command does
@@ -312,7 +313,7 @@ extern const char parsed_memory[]; /* "the tree" */
  * Errors  STATUS_USAGE, with the option, its value and the accepted values; also if an operand or
  *         an option is missing, unknown or without effect. STATUS_INPUT or STATUS_IO if the recipe
  *         cannot be read. The errors of files_read and files_write. The errors of
- * OptionTable.settle. STATUS_MEMORY. */
+ *         OptionTable.settle. STATUS_MEMORY. */
 MUST_CHECK Status options_parse(Parsed *parsed, int argc, char **argv, Err *err);
 
 /* Sets an option by its name, which has no dashes. A value replaces the value before, except that

@@ -42,8 +42,8 @@ static const Option rows[] = {
     {.name = "break-loops",
      SETS(FLAG, ReadOptions, break_loops),
      .group = GROUP_INPUT,
-     .help = "cut each loop of a network at its thinnest line; required if there are loops, since "
-             "a tree has none"},
+     .help = "cut each loop of a network at its thinnest line; without it loops are kept, and what "
+             "needs a tree is refused"},
     {.name = "radius",
      SETS(NUMBER, ReadOptions, radius_mm),
      FROM_TO(0, 1e3),
@@ -185,6 +185,28 @@ static Status copy_given(const Parsed *parsed, Tree *tree, TreeReading *reading,
     return tree_pruned(parsed->given, 0, tree, err);
 }
 
+Status reading_refuse_loops(const Tree *tree, const char *path, const char *what, Err *err)
+{
+    if (!tree->link)
+        return STATUS_OK;
+    return err_set(
+        err, STATUS_INPUT,
+        "%s: the network has loops, and %s needs a tree; --break-loops cuts each loop at "
+        "its thinnest line",
+        path, what);
+}
+
+/* Refuses a network that a command cannot use, and releases it. */
+static Status check_kind(const Command *command, const char *path, Tree *tree, Err *err)
+{
+    if (!command->trees_only)
+        return STATUS_OK;
+    Status status = reading_refuse_loops(tree, path, command->name, err);
+    if (status != STATUS_OK)
+        tree_release(tree);
+    return status;
+}
+
 Status reading_tree(const Parsed *parsed, const char *path, Tree *tree, TreeReading *reading,
                     Err *err)
 {
@@ -192,6 +214,8 @@ Status reading_tree(const Parsed *parsed, const char *path, Tree *tree, TreeRead
     Status status = parsed->given && path == parsed->given_name
                         ? copy_given(parsed, tree, &own, err)
                         : read_file(parsed, path, tree, &own, err);
+    if (status == STATUS_OK)
+        status = check_kind(parsed->command, path, tree, err);
     if (status == STATUS_OK && reading)
         *reading = own;
     else

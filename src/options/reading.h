@@ -15,12 +15,18 @@ extern const OptionTable reading_table; /* sets a ReadOptions */
  * unit the radii look like if it is another than the one used.
  *
  * reading  receives what was found; release it with reading_release. NULL: not wanted.
- * Errors   as tree_read_as; STATUS_USAGE for an option of reading if the tree is in memory. */
+ * Errors   as tree_read_as; STATUS_INPUT for a network with links if Command.trees_only is set;
+ *          STATUS_USAGE for an option of reading if the tree is in memory. */
 MUST_CHECK Status reading_tree(const Parsed *parsed, const char *path, Tree *tree,
                                TreeReading *reading, Err *err);
 /* Reads a tree from the bytes of a file as the options say, with the notes of reading_tree. Errors:
  * as tree_read_bytes. */
 MUST_CHECK Status reading_tree_bytes(const Parsed *parsed, const MemoryFile *file, Tree *tree,
                                      Err *err);
+
+/* Refuses a network with links: "PATH: the network has loops, and WHAT needs a tree; ...". Errors:
+ * STATUS_INPUT. */
+MUST_CHECK Status reading_refuse_loops(const Tree *tree, const char *path, const char *what,
+                                       Err *err);
 
 #endif

@@ -3,6 +3,8 @@
  *     position  float x 3 per node, relative to the origin, mm
  *     radius    float per node, mm
  *     parent    uint32 per node: index of its parent; a root has its own index
+ *     place     uint32 per node: index of the node that its link names, or its own index; only for
+ *               a network with loops
  *     id        uint32 per node
  *     field-K   per node, time after time: float; or uint16 if all values are integers,
  *               with 65535 for no value
@@ -107,6 +109,12 @@ static void put_nodes(BlockPacker *packer, const Tree *tree, Vec3 origin)
     for (size_t i = 0; i < tree->n; i++)
         put_word(packer, tree_is_segment(tree, i) ? (uint32_t)tree->parent[i] : (uint32_t)i, 4);
     end(packer);
+    if (tree->link) {
+        begin(packer, "place", 0, false);
+        for (size_t i = 0; i < tree->n; i++)
+            put_word(packer, (uint32_t)tree_place(tree, i), 4);
+        end(packer);
+    }
     begin(packer, "id", 0, false);
     for (size_t i = 0; i < tree->n; i++)
         put_word(packer, (uint32_t)tree->id[i], 4);

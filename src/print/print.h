@@ -1,11 +1,12 @@
 /* The public header of the module print: solids for 3D printing, made from the surfaces of vessels.
  *
  * A print is one of these: solid vessels; vessels with a wall about a lumen; a block with the
- * vessels as cavities; any vessels on a base plate. A solid is put together from closed surfaces
- * without holes, each of them valid by meshreport_check. The surfaces are opened at flat ends and
+ * vessels as cavities; any vessels on a base plate. A solid is put together from closed surfaces,
+ * each of them valid by meshreport_check. The surfaces are opened at flat ends and
  * joined there by rings of triangles. No boolean operation is needed. So the solid has as many
  * connected components as the graph of surfaces and rings, and its genus is
- * rings - surfaces + components. print_build proves that the triangles have this topology.
+ * rings - surfaces + components + loops of the surfaces. print_build proves that the triangles have
+ * this topology.
  *
  *     PrintParams params = {.mesh = {.tolerance = 0.02}, .wall_mm = 1};
  *     TRY(print_build(&tree, &params, &mesh, &report, &print, err));

@@ -1,6 +1,7 @@
 /* A ring takes a disc off either end of what it joins. With them it takes 2 from the sum of Euler
- * numbers. So a part of the solid that is made of s spheres and r rings has the Euler number 2 (s -
- * r). The part must be connected in the mesh as it is in the graph. */
+ * numbers, and so does each handle of a surface. So a part of the solid that is made of s surfaces
+ * with h handles and r rings has the Euler number 2 (s - r - h). The part must be connected in the
+ * mesh as it is in the graph. */
 #include "print/seams.h"
 
 #include "mesh/mesh.h"
@@ -11,6 +12,7 @@
 void seams_release(Seams *seams)
 {
     free(seams->trees);
+    free(seams->loops);
     free(seams->root);
     free(seams->rings);
     free(seams->is_used);
@@ -28,6 +30,7 @@ Status seams_make(const VesselTree *tree, Seams *out, Err *err)
     size_t n_trees, n = surface_count(&seams);
     Status status;
     TRY_GOTO(meshcheck_trees(tree, &seams.trees, &n_trees, err));
+    TRY_GOTO(meshcheck_loops(tree, seams.trees, &seams.loops, err));
     TRY_GOTO(mem_calloc(&seams.root, n, sizeof *seams.root, "trees", err));
     TRY_GOTO(mem_calloc(&seams.rings, n, sizeof *seams.rings, "trees", err));
     TRY_GOTO(mem_calloc(&seams.is_used, n, sizeof *seams.is_used, "trees", err));
@@ -70,6 +73,13 @@ size_t seams_count_unjoined(const Seams *seams, uint32_t kind)
     return n;
 }
 
+/* Returns the Euler number of a surface. */
+static long long surface_euler(const Seams *seams, uint32_t surface)
+{
+    bool is_casing = surface == 2 * seams->n_nodes;
+    return is_casing ? 2 : 2 - 2 * (long long)seams->loops[surface % seams->n_nodes];
+}
+
 /* Finds the Euler number that each part of the graph must have, at the surface that represents the
  * part. */
 static void expect(const Seams *seams, long long *euler, MeshReport *report)
@@ -80,8 +90,8 @@ static void expect(const Seams *seams, long long *euler, MeshReport *report)
         uint32_t root = sets_find(seams->root, i);
         if (!seams->is_used[i])
             continue;
-        euler[root] += 2;
-        sum += 2;
+        euler[root] += surface_euler(seams, i);
+        sum += surface_euler(seams, i);
         if (root == i) {
             report->expected_components++;
             euler[root] -= 2 * (long long)seams->rings[root];

@@ -1,9 +1,10 @@
 /* The expected topology of a solid, and the proof that its triangles have it.
  *
- * A solid is put together from closed surfaces without holes, which are joined by rings of
- * triangles. A Seams is the graph of them: surfaces are nodes, rings are edges. The caller adds
- * every surface and every ring to the graph while it adds them to the solid. seams_prove then
- * compares the triangles with the graph. Private to the module print. */
+ * A solid is put together from closed surfaces, which are joined by rings of triangles. The surface
+ * of a tree has one handle per independent loop of the tree. A Seams is the graph of them: surfaces
+ * are nodes, rings are edges. The caller adds every surface and every ring to the graph while it
+ * adds them to the solid. seams_prove then compares the triangles with the graph. Private to the
+ * module print. */
 #ifndef CORCAST_PRINT_SEAMS_H
 #define CORCAST_PRINT_SEAMS_H
 
@@ -14,6 +15,7 @@
  * owned. */
 typedef struct Seams {
     uint32_t *trees; /* per segment: the number of its tree, below n_nodes [meshcheck_trees] */
+    uint32_t *loops; /* per number of a tree: the number of its loops [meshcheck_loops] */
     size_t n_segments;
     uint32_t n_nodes;
     uint32_t *root;  /* per surface: disjoint sets of joined surfaces [base/sets.h] */
@@ -45,7 +47,8 @@ size_t seams_count_unjoined(const Seams *seams, uint32_t kind);
  * grid_mm  all coordinates are integer multiples of it.
  * threads  number of threads; 0: one per processor.
  * Errors   STATUS_DIFFERS if a component of the graph does not have the Euler number
- *          2 (surfaces - rings) in the mesh; STATUS_MEMORY. Call meshreport_check for the rest. */
+ *          2 (surfaces - rings - loops of its surfaces) in the mesh; STATUS_MEMORY. Call
+ * meshreport_check for the rest. */
 MUST_CHECK Status seams_prove(const Seams *seams, const VesselMesh *mesh, double grid_mm,
                               int threads, MeshReport *report, Err *err);
 

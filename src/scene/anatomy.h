@@ -9,9 +9,10 @@
 
 /* Immutable once made [stage_anatomy]. All arrays are owned. */
 typedef struct Anatomy {
-    int *order;     /* per node: Strahler order of the segment that ends there; 0 at roots */
-    uint32_t *tree; /* per node: index of its tree, from 0 */
-    Vec3 *root;     /* per tree: position of its root */
+    int *order;     /* per node: Strahler order of the segment that ends there; 0 at roots, and in a
+                     * network with loops, which has no orders */
+    uint32_t *tree; /* per node: index of its tree or connected network, from 0 */
+    Vec3 *root;     /* per tree: position of its first root */
     size_t n_trees; /* at least 1 */
     Vec3 *path;     /* the main branch of the first tree, from its root; no point occurs twice */
     size_t n_path;  /* at least 1 */

@@ -41,6 +41,36 @@ void geometry_release(Geometry *geometry)
     *geometry = (Geometry){0};
 }
 
+/* The spheres at ends are inside the balls that are added here. */
+void geometry_find_bounds(Geometry *geometry)
+{
+    Box box = box_empty();
+    for (size_t i = 0, n = geometry_balls(geometry) - 2 * geometry->n_ends; i < n; i++) {
+        Ball ball = geometry_ball(geometry, i);
+        box = box_with_ball(box, ball.center, ball.radius);
+    }
+    geometry->bounds = box;
+}
+
+Status geometry_beaten(const Geometry *still, const double *factors, Geometry *out, Err *err)
+{
+    Geometry made = *still;
+    const size_t n = still->n_primitives;
+    TRY(mem_calloc(&made.primitives, n, sizeof *made.primitives, "vessels", err));
+    Status status = mem_calloc(&made.ids, still->n_ids, sizeof *made.ids, "segments", err);
+    if (status != STATUS_OK) {
+        free(made.primitives);
+        return status;
+    }
+    memcpy(made.ids, still->ids, still->n_ids * sizeof *made.ids);
+    memcpy(made.primitives, still->primitives, n * sizeof *made.primitives);
+    for (size_t i = 0; i < n; i++)
+        made.primitives[i].radius_mm *= factors[made.primitives[i].segment];
+    geometry_find_bounds(&made);
+    *out = made;
+    return STATUS_OK;
+}
+
 size_t geometry_balls(const Geometry *geometry)
 {
     return 2 * (geometry->n_primitives + geometry->n_segments);

@@ -115,6 +115,14 @@ typedef struct Geometry {
 /* Frees the arrays and zeroes *geometry. */
 void geometry_release(Geometry *geometry);
 
+/* Finds the bounds of primitives and field segments. A field has no spheres at ends. */
+void geometry_find_bounds(Geometry *geometry);
+/* Copies a geometry of cylinders and spheres for a moment at which vessels beat. Each radius is
+ * multiplied by factors[segment]. So a sphere keeps its segment, of which it has the color, and
+ * fits that segment's cylinder. Release *out with geometry_release. Errors: STATUS_MEMORY. */
+MUST_CHECK Status geometry_beaten(const Geometry *still, const double *factors, Geometry *out,
+                                  Err *err);
+
 /* Returns the segment index of primitive `item`, or of field segment `item` of a model without
  * primitives. */
 static inline uint32_t geometry_segment(const Geometry *geometry, size_t item)

@@ -19,6 +19,7 @@
 #include "scene/geometry.h"
 #include "scene/meshends.h"
 #include "scene/models.h"
+#include "scene/prisms.h"
 #include "scene/rayvolume.h"
 #include "scene/strokes.h"
 #include "scene/triangles.h"

@@ -13,8 +13,8 @@ typedef enum VesselBody {
 } VesselBody;
 
 /* Segments, each with its ends a and b, and the nodes at these ends. The segments form any number
- * of trees: a segment connects two different nodes, and there are no loops, which is not checked.
- * Coordinates are in mm. All arrays are owned. */
+ * of connected trees or networks. A segment connects two different nodes, and no two segments
+ * connect the same two nodes, which is not checked. Coordinates are in mm. All arrays are owned. */
 typedef struct VesselTree {
     FieldSegment *segments;
     uint32_t (*nodes)[2]; /* per segment: the nodes at a and b, each below n_nodes */

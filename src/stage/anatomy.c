@@ -1,5 +1,4 @@
-/* Orders and the main branch are fields of `derive`. The index of a segment's tree is passed on
- * from parent to child, which works because parents precede children. */
+/* Orders and the main branch are fields of `derive`. A network with loops has no orders. */
 #include "derive/derive.h"
 #include "stage/stage.h"
 
@@ -8,6 +7,8 @@
 static Status set_orders(const Tree *tree, int *order, Err *err)
 {
     Field strahler = {0};
+    if (tree->link)
+        return STATUS_OK;
     TRY(derive_rule(tree, &(TreeMeta){0}, "strahler", &strahler, err));
     for (size_t i = 0; i < tree->n; i++)
         order[i] = tree_is_segment(tree, i) ? (int)strahler.value[i] : 0;
@@ -15,16 +16,14 @@ static Status set_orders(const Tree *tree, int *order, Err *err)
     return STATUS_OK;
 }
 
-static void set_trees(const Tree *tree, Vec3 origin, Anatomy *anatomy)
+/* Trees that links connect are one tree, whose root is the first of their roots. */
+static Status set_trees(const Tree *tree, Vec3 origin, Anatomy *anatomy, Err *err)
 {
-    for (size_t i = 0; i < tree->n; i++) {
-        if (tree_is_segment(tree, i)) {
-            anatomy->tree[i] = anatomy->tree[tree->parent[i]];
-            continue;
-        }
-        anatomy->tree[i] = (uint32_t)anatomy->n_trees;
-        anatomy->root[anatomy->n_trees++] = vec3_sub(tree->position[i], origin);
-    }
+    TRY(tree_components(tree, &anatomy->tree, &anatomy->n_trees, err));
+    for (size_t i = tree->n; i-- > 0;)
+        if (!tree_is_segment(tree, i))
+            anatomy->root[anatomy->tree[i]] = vec3_sub(tree->position[i], origin);
+    return STATUS_OK;
 }
 
 static void add_to_path(Anatomy *anatomy, Vec3 point)
@@ -69,12 +68,11 @@ Status stage_anatomy(const Tree *tree, const SmoothTree *smooth, Vec3 origin, An
     Anatomy made = {0};
     Status status;
     TRY_GOTO(mem_calloc(&made.order, tree->n, sizeof *made.order, "orders", err));
-    TRY_GOTO(mem_calloc(&made.tree, tree->n, sizeof *made.tree, "trees", err));
     TRY_GOTO(mem_calloc(&made.root, tree->n, sizeof *made.root, "roots", err));
     TRY_GOTO(mem_calloc(&made.path, smooth ? smooth->tree.n : tree->n, sizeof *made.path,
                         "main branch", err));
     TRY_GOTO(set_orders(tree, made.order, err));
-    set_trees(tree, origin, &made);
+    TRY_GOTO(set_trees(tree, origin, &made, err));
     TRY_GOTO(set_path(tree, smooth, origin, &made, err));
     *anatomy = made;
     made = (Anatomy){0};

@@ -1,7 +1,8 @@
 /* Measured trees contain several segments between the same two points. The thinner ones lie inside
  * the thickest one and are left out. Such a pair consists either of two sisters, which start at the
  * same junction and end at the same junction, or of a segment and a daughter that leads from the
- * segment's distal end back to its proximal junction. */
+ * segment's distal end back to its proximal junction. In a network with loops, both segments of a
+ * pair may end at links. Such a pair is found by its junctions. */
 #include "stage/coincidence.h"
 
 #include <stdlib.h>
@@ -205,6 +206,48 @@ static Status init_bins(const Tree *tree, SisterBins *bins, Err *err)
     return mem_calloc(&bins->next, bins->n, sizeof *bins->next, "nodes", err);
 }
 
+/* Compares a drawn segment with the one that connects the same junctions, if there is one. */
+static Status compare_pair(const Tree *tree, Coincidence *found, KeyMap *drawn, size_t i, Err *err)
+{
+    const uint32_t start = (uint32_t)found->junction[tree->parent[i]];
+    uint32_t *thickest;
+    bool is_first;
+    TRY(keymap_put(drawn, key_of_pair(start, (uint32_t)found->junction[i]), &thickest, &is_first,
+                   err));
+    if (is_first) {
+        *thickest = (uint32_t)i;
+        return STATUS_OK;
+    }
+    const bool is_thicker = tree->radius_mm[i] > tree->radius_mm[*thickest];
+    found->twin[is_thicker ? *thickest : (uint32_t)i] = BACKWARD_TWIN;
+    *thickest = is_thicker ? (uint32_t)i : *thickest;
+    return STATUS_OK;
+}
+
+/* Makes one junction of the two nodes of each link. */
+static Status join_links(const Tree *tree, Coincidence *found, Err *err)
+{
+    uint32_t *root = NULL;
+    KeyMap drawn = {0};
+    Status status;
+    TRY_GOTO(mem_calloc(&root, tree->n, sizeof *root, "nodes", err));
+    sets_begin(root, tree->n);
+    for (size_t i = 0; i < tree->n; i++) {
+        sets_join(root, (uint32_t)i, (uint32_t)found->junction[i]);
+        sets_join(root, (uint32_t)i, (uint32_t)tree_place(tree, i));
+    }
+    for (size_t i = 0; i < tree->n; i++)
+        found->junction[i] = (int32_t)sets_find(root, (uint32_t)i);
+    TRY_GOTO(keymap_begin(&drawn, tree->n, "segments", err));
+    for (size_t i = 0; i < tree->n; i++)
+        if (coincidence_draws(found, i))
+            TRY_GOTO(compare_pair(tree, found, &drawn, i, err));
+done:
+    keymap_release(&drawn);
+    free(root);
+    return status;
+}
+
 Status coincidence_find(const Tree *tree, Coincidence *coincidence, Err *err)
 {
     SisterBins bins = {0};
@@ -217,6 +260,8 @@ Status coincidence_find(const Tree *tree, Coincidence *coincidence, Err *err)
     find_backward_twins(tree, found.twin);
     for (size_t i = 0; i < tree->n; i++)
         found.junction[i] = junction_of(tree, &found, i);
+    if (tree->link)
+        TRY_GOTO(join_links(tree, &found, err));
     *coincidence = found;
     found = (Coincidence){0};
 done:

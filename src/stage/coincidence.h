@@ -1,8 +1,9 @@
 /* Finds which nodes and segments of a tree coincide. Two vessel surfaces at the same position would
  * make pictures undefined, so one of them is left out.
  *
- * A junction is a set of nodes at the same position: nodes that segments without length connect.
- * One node of the set represents the junction. Of the segments between the same two junctions, the
+ * A junction is a set of nodes at the same position: nodes that links or segments without length
+ * connect. One node of the set represents the junction. Nodes of unconnected vessels that happen to
+ * be at the same position are not one junction. Of the segments between the same two junctions, the
  * thickest is drawn, and of equally thick ones the first. It is the twin of the others, which are
  * not drawn. Private to the module stage.
  *

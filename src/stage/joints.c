@@ -1,5 +1,6 @@
 /* At each junction, the end of the parent (the trunk) meets the ends of the daughters. If a tree
- * starts with several vessels, the thickest one is the trunk. All ends are cut back [cuts.c], and a
+ * starts with several vessels, or if several vessels of a network end at a junction, the thickest
+ * one of these is the trunk. All ends are cut back [cuts.c], and a
  * ruled surface leads from the rim of the trunk to the rim of each daughter. Cylinders remain
  * closed, so every joint is a solid between two discs. Its surface neither folds nor has holes as
  * long as each disc lies on one side of the other disc's plane, which the cuts ensure.
@@ -89,15 +90,14 @@ static Status collect_ends(JointBuilder *builder, Err *err)
     return STATUS_OK;
 }
 
-/* Returns the end at which all joints of a junction start. */
+/* Returns the end at which all joints of a junction start. Ends of vessels come before starts. */
 static size_t trunk_of(const JointBuilder *builder, size_t junction)
 {
+    const double *radius = builder->tree->radius_mm;
     size_t trunk = builder->ends.items[builder->ends.first[junction]];
     for (size_t k = builder->ends.first[junction]; k < builder->ends.first[junction + 1]; k++) {
         size_t end = builder->ends.items[k];
-        if (end % 2)
-            return end;
-        if (builder->tree->radius_mm[end / 2] > builder->tree->radius_mm[trunk / 2])
+        if (end % 2 != trunk % 2 ? end % 2 == 1 : radius[end / 2] > radius[trunk / 2])
             trunk = end;
     }
     return trunk;

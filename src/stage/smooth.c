@@ -35,7 +35,8 @@ typedef struct Smoother {
     const Tree *tree;
     Coincidence found;
     /* Per node that represents a junction: the thickest segment that ends there, and the main
-     * one of the segments that start there; -1: none. Owned. */
+     * one of the segments that start there; -1: none. In a network with loops, the other segments
+     * that end at the junction count as starting there. Owned. */
     int32_t *incoming, *main;
     /* Per node: points of curves nearer than this are left out, to make space for joints; 0: none.
      * Owned. */
@@ -66,9 +67,17 @@ static Vec3 chord_of(const Smoother *smoother, size_t i)
 
 /* ---- the main path --------------------------------------------------------------------------- */
 
+/* Returns the vector from a junction along segment i, which starts there or ends there. */
+static Vec3 chord_from(const Smoother *smoother, size_t i, size_t junction)
+{
+    Vec3 chord = chord_of(smoother, i);
+    return start_of(smoother, i) == junction ? chord : vec3_scale(chord, -1);
+}
+
 /* Returns true if segment i replaces `best` as the main segment of a junction: the thickest one, of
  * equally thick ones the straightest, then that with the lowest id. */
-static bool is_better(const Smoother *smoother, size_t i, int32_t best, int32_t incoming)
+static bool is_better(const Smoother *smoother, size_t i, size_t junction, int32_t best,
+                      int32_t incoming)
 {
     const Tree *tree = smoother->tree;
     if (best < 0 || tree->radius_mm[i] != tree->radius_mm[best])
@@ -76,8 +85,8 @@ static bool is_better(const Smoother *smoother, size_t i, int32_t best, int32_t 
     double turn[2] = {0};
     if (incoming >= 0) {
         Vec3 along = chord_of(smoother, (size_t)incoming);
-        turn[0] = vec3_dot(along, vec3_normalized(chord_of(smoother, i)));
-        turn[1] = vec3_dot(along, vec3_normalized(chord_of(smoother, (size_t)best)));
+        turn[0] = vec3_dot(along, vec3_normalized(chord_from(smoother, i, junction)));
+        turn[1] = vec3_dot(along, vec3_normalized(chord_from(smoother, (size_t)best, junction)));
     }
     return turn[0] != turn[1] ? turn[0] > turn[1] : tree->id[i] < tree->id[best];
 }
@@ -90,16 +99,19 @@ static Status find_main_paths(Smoother *smoother, Err *err)
     memset(smoother->incoming, 0xff, tree->n * sizeof *smoother->incoming);
     memset(smoother->main, 0xff, tree->n * sizeof *smoother->main);
     for (size_t i = 0; i < tree->n; i++) {
-        int32_t *best = &smoother->incoming[smoother->found.junction[i]];
-        if (coincidence_draws(&smoother->found, i) && is_better(smoother, i, *best, -1))
+        const size_t end = (size_t)smoother->found.junction[i];
+        int32_t *best = &smoother->incoming[end];
+        if (coincidence_draws(&smoother->found, i) && is_better(smoother, i, end, *best, -1))
             *best = (int32_t)i;
     }
-    for (size_t i = 0; i < tree->n; i++) {
+    for (size_t end = 0; end < 2 * tree->n; end++) {
+        const size_t i = end / 2;
         if (!coincidence_draws(&smoother->found, i))
             continue;
-        size_t start = start_of(smoother, i);
-        if (is_better(smoother, i, smoother->main[start], smoother->incoming[start]))
-            smoother->main[start] = (int32_t)i;
+        size_t at = end % 2 ? (size_t)smoother->found.junction[i] : start_of(smoother, i);
+        if ((end % 2 == 0 || smoother->incoming[at] != (int32_t)i) &&
+            is_better(smoother, i, at, smoother->main[at], smoother->incoming[at]))
+            smoother->main[at] = (int32_t)i;
     }
     return STATUS_OK;
 }
@@ -122,31 +134,40 @@ static Vec3 natural(Vec3 chord, Vec3 other_end)
     return vec3_scale(vec3_sub(vec3_scale(chord, 3), other_end), 0.5);
 }
 
+/* Sets the curve's derivative and radius at the segment's end 0 or 1. Returns false if the curve is
+ * free there, and leaves both as they were. */
+static bool set_end(const Smoother *smoother, size_t i, int end, SmoothCurve *curve)
+{
+    const Tree *tree = smoother->tree;
+    const size_t at = end ? (size_t)smoother->found.junction[i] : start_of(smoother, i);
+    const int32_t incoming = smoother->incoming[at], main = smoother->main[at];
+    const int32_t other = end && incoming == (int32_t)i ? main : incoming;
+    Vec3 *derivative = end ? &curve->in : &curve->out;
+    if (other < 0)
+        return false;
+    Vec3 along = vec3_scale(chord_from(smoother, (size_t)other, at), end ? 1 : -1);
+    if (main == (int32_t)i || other == main) {
+        *derivative = centripetal(curve->chord, along);
+        curve->radius[end] = (tree->radius_mm[i] + tree->radius_mm[other]) / 2;
+    } else {
+        *derivative =
+            vec3_add_scaled(vec3_scale(curve->chord, 1 - branch_share), vec3_normalized(along),
+                            branch_share * vec3_length(curve->chord));
+    }
+    return true;
+}
+
 /* Returns the curve of segment i, which must be drawn. */
 static SmoothCurve curve_of(const Smoother *smoother, size_t i)
 {
     const Tree *tree = smoother->tree;
     const double radius = tree->radius_mm[i];
-    const size_t start = start_of(smoother, i), end = (size_t)smoother->found.junction[i];
-    const int32_t before = smoother->incoming[start];
-    const int32_t after = smoother->incoming[end] == (int32_t)i ? smoother->main[end] : -1;
     const Vec3 chord = chord_of(smoother, i);
     SmoothCurve curve = {tree->position[tree->parent[i]], chord, chord, chord, {radius, radius}};
-    if (before >= 0 && smoother->main[start] == (int32_t)i) {
-        curve.out = centripetal(chord, chord_of(smoother, (size_t)before));
-        curve.radius[0] = (radius + tree->radius_mm[before]) / 2;
-    } else if (before >= 0) {
-        Vec3 along = vec3_normalized(chord_of(smoother, (size_t)before));
-        curve.out = vec3_add_scaled(vec3_scale(chord, 1 - branch_share), along,
-                                    branch_share * vec3_length(chord));
-    }
-    if (after >= 0) {
-        curve.in = centripetal(chord, chord_of(smoother, (size_t)after));
-        curve.radius[1] = (radius + tree->radius_mm[after]) / 2;
-    }
-    if (before < 0)
+    const bool is_set[2] = {set_end(smoother, i, 0, &curve), set_end(smoother, i, 1, &curve)};
+    if (!is_set[0])
         curve.out = natural(chord, curve.in);
-    if (after < 0)
+    if (!is_set[1])
         curve.in = natural(chord, curve.out);
     return curve;
 }
@@ -319,6 +340,8 @@ static void put_node(const Smoother *smoother, size_t i, const size_t *first, Sm
         out->tree.type[node] = tree->type[i];
     }
     out->junction[last] = (int32_t)(first[rep + 1] - 1);
+    if (tree->link)
+        out->tree.link[last] = tree_is_link(tree, i) ? (int32_t)(first[tree->link[i] + 1] - 1) : -1;
     out->tree.position[last] = tree->position[i];
     out->tree.radius_mm[last] = tree->radius_mm[i];
     out->tree.parent[first[i]] =
@@ -340,6 +363,8 @@ static Status divide(Smoother *smoother, size_t *first, SmoothTree *out, Err *er
     count_all_pieces(smoother, first);
     TRY(tree_init(&out->tree, first[tree->n], err));
     TRY(reserve_nodes(first[tree->n], out, err));
+    if (tree->link)
+        TRY(tree_add_links(&out->tree, err));
     out->report.tolerance = smoother->tolerance * distance_tolerance;
     for (size_t i = 0; i < tree->n; i++) {
         put_node(smoother, i, first, out);

@@ -116,10 +116,11 @@ static void find_thickest(const Solids *solids)
     int32_t *thickest = solids->thickest;
     for (size_t i = 0; i < tree->n; i++)
         thickest[i] = coincidence_can_draw(coincidence, i) ? (int32_t)i : -1;
-    for (size_t i = 0; i < tree->n; i++) {
-        if (!coincidence_can_draw(coincidence, i))
+    for (size_t end = 0; end < 2 * tree->n; end++) {
+        const size_t i = end / 2;
+        if (end % 2 ? !coincidence_draws(coincidence, i) : !coincidence_can_draw(coincidence, i))
             continue;
-        int32_t *best = &thickest[coincidence->junction[tree->parent[i]]];
+        int32_t *best = &thickest[coincidence->junction[end % 2 ? i : (size_t)tree->parent[i]]];
         if (*best < 0 || is_before(tree, i, *best))
             *best = (int32_t)i;
     }

@@ -115,18 +115,6 @@ static Status copy_ids(const Tree *tree, Geometry *geometry, Err *err)
     return STATUS_OK;
 }
 
-/* A field has no spheres at ends. The spheres of cylinders are inside the balls that are added
- * here. */
-static void find_bounds(Geometry *geometry)
-{
-    Box box = box_empty();
-    for (size_t i = 0, n = geometry_balls(geometry) - 2 * geometry->n_ends; i < n; i++) {
-        Ball ball = geometry_ball(geometry, i);
-        box = box_with_ball(box, ball.center, ball.radius);
-    }
-    geometry->bounds = box;
-}
-
 /* A tree is far from the origin beyond this many times its size. */
 static const double far_sizes = 16;
 
@@ -175,7 +163,7 @@ Status stage_geometry(const Tree *tree, const GeometryParams *params, Geometry *
     TRY_GOTO(copy_ids(tree, &built, err));
     TRY_GOTO(add_model(tree, &coincidence, params, &built, &counted, err));
     TRY_GOTO(geometry_check(&built, err));
-    find_bounds(&built);
+    geometry_find_bounds(&built);
     move_to_origin(&built);
     if (model_has(built.model, MODEL_TRIANGLES))
         TRY_GOTO(add_mesh(tree, params, &built, &counted, err));

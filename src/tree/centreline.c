@@ -89,9 +89,14 @@ typedef struct BranchResampling {
     int32_t pieces;
 } BranchResampling;
 
-static int32_t count_pieces(double length, double step)
+/* Returns the number of new segments of a branch of `n` segments. A branch that ends with a link may
+ * begin where it ends, or lie beside another branch, and keeps up to 3 segments. */
+static int32_t count_pieces(const Tree *tree, const int32_t *segment, size_t n, double length,
+                            double step)
 {
-    return length > step ? (int32_t)fmin(floor(length / step + 0.5), TREE_MAX_ID) : 1;
+    int32_t least = !tree_is_link(tree, (size_t)segment[n - 1]) ? 1 : n < 3 ? (int32_t)n : 3;
+    double pieces = fmin(floor(length / step + 0.5), TREE_MAX_ID);
+    return pieces > least ? (int32_t)pieces : least;
 }
 
 /* Sums over the part of a branch that a new segment replaces. */
@@ -166,7 +171,8 @@ static double count_nodes(const Tree *tree, const Branches *branches, double ste
     for (size_t i = 0; i < tree->n; i++)
         n += !tree_is_segment(tree, i);
     for (size_t k = 0, at = 0; k < branches->n; at = branches->end[k++])
-        n += count_pieces(branch_length(tree, branches->node + at, branches->end[k] - at), step);
+        n += count_pieces(tree, branches->node + at, branches->end[k] - at,
+                          branch_length(tree, branches->node + at, branches->end[k] - at), step);
     return n;
 }
 
@@ -180,6 +186,8 @@ static Status start_tree(const Tree *tree, double n, Tree *out, Err *err)
     TRY(meta_copy(&out->meta, &tree->meta, err));
     if (tree->flow_share)
         TRY(tree_add_flow_shares(out, err));
+    if (tree->link)
+        TRY(tree_add_links(out, err));
     for (size_t k = 0; k < tree->n_columns; k++)
         TRY(tree_add_column(out, tree->column[k].name, tree->column[k].unit, &value, err));
     return STATUS_OK;
@@ -211,7 +219,7 @@ static void fill(const Tree *tree, const Branches *branches, double step, int32_
         size_t count = branches->end[k] - at;
         double length = branch_length(tree, segment, count);
         const BranchResampling branch = {tree,  out,    segment,
-                                         count, length, count_pieces(length, step)};
+                                         count, length, count_pieces(tree, segment, count, length, step)};
         for (int32_t piece = 0; piece < branch.pieces; piece++)
             out->parent[n + (size_t)piece] =
                 piece ? (int32_t)n + piece - 1 : place[tree->parent[segment[0]]];
@@ -219,6 +227,9 @@ static void fill(const Tree *tree, const Branches *branches, double step, int32_
         n += (size_t)branch.pieces;
         place[segment[count - 1]] = (int32_t)n - 1;
     }
+    for (size_t i = 0; i < tree->n && tree->link; i++)
+        if (tree_is_link(tree, i))
+            out->link[place[i]] = place[tree->link[i]];
     tree_renumber(out);
 }
 

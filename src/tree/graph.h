@@ -6,9 +6,10 @@
  *  1. It scales all lengths to mm, and merges points that have the same position or are closer than
  *     ReadOptions.merge_tolerance_mm.
  *  2. It removes what a tree cannot hold: points without a line, lines from a point to itself, and
- *     lines that repeat another line.
- *  3. It refuses loops, or cuts each loop at its thinnest line [ReadOptions.break_loops].
- *  4. It chooses a root in each component, and directs all lines away from the root.
+ *     lines that repeat another line: they have the same points, radii and values.
+ *  3. It cuts each loop at its thinnest line if ReadOptions.break_loops is set.
+ *  4. It chooses a root in each component, and directs all lines away from the root. A line that
+ *     closes a loop gets a node with a link [Tree.link].
  *  5. It adds the nodes to a TreeBuilder. The TreeReading counts what was found and changed.
  *
  *     Graph graph = {.name = "vessels.vtp", .options = options, .reading = &reading};
@@ -37,6 +38,8 @@ typedef struct GraphPoint {
     int32_t type;      /* SWC type code; a point without one gets TREE_VESSEL_TYPE */
     double flow_share; /* as Tree.flow_share; 0: the file states none */
     int64_t id;        /* id of the node; 0: the point's number + 1 */
+    bool is_link;      /* the point is the distal end of a line with a link_id. Its description
+                        * counts only if it is joined to no other point */
     size_t record;     /* line or number of the record in the file, for errors */
 } GraphPoint;
 
@@ -47,6 +50,8 @@ typedef struct GraphLine {
     bool is_directed; /* blood flows from a to b */
     bool is_part;     /* the line is part of a polyline of several lines; a column of lines has the
                        * same value for all lines of a polyline */
+    int64_t link_id;  /* id of the node with a link at point b, in a file that states that the line
+                       * closes a loop; 0: none */
     size_t record;    /* line or number of the record in the file, for errors */
 } GraphLine;
 
@@ -72,7 +77,8 @@ typedef struct Graph {
                           * different points: they stay apart if merging them closes a loop */
     bool is_tree;        /* The file was written from a tree: each line is directed and leads from
                           * parent to child, and each point has its own id, except points that are
-                          * joined. Nothing is merged or removed. */
+                          * joined. Nothing is merged or removed. Lines close loops only if they
+                          * have a link_id */
     /* Filled by the functions below. All arrays are owned. */
     GraphPoint *point;
     size_t n_points, points_capacity;
@@ -130,13 +136,23 @@ MUST_CHECK Status graph_value(Graph *graph, size_t column, size_t at, double val
  * builder  has its name set, and no nodes. The caller then calls builder_build.
  * Errors   STATUS_INPUT if there is no line, or all lines have length 0; if a line or a join refers
  *          to a point that does not exist; if neither a line nor its distal point has a radius, and
- *          the options supply none; if there is a loop and options->break_loops is false.
+ *          the options supply none; if the lines of an is_tree graph form a loop.
  *          STATUS_INFEASIBLE if there are more than TREE_MAX_ID nodes. STATUS_MEMORY.
  * Cost     O(n log n) for n points and lines. */
 MUST_CHECK Status graph_build(Graph *graph, TreeBuilder *builder, Err *err);
 
-/* Counts the nodes of a tree that have the position of an earlier node. If the tree is written as a
- * network and read again, graph_build merges each of them with the earlier node.
+/* Replaces a network with links by the tree that graph_build makes of it with
+ * ReadOptions.break_loops. Ids, values and metadata are kept, except that a segment whose direction
+ * changes gives its values to its new distal node, and a cut link leaves no node.
+ *
+ * tree     is changed on success only.
+ * reading  receives the counts and places of the cuts.
+ * Errors   STATUS_MEMORY. */
+MUST_CHECK Status tree_break_loops(Tree *tree, TreeReading *reading, Err *err);
+
+/* Counts the nodes of a tree that have the position of an earlier node and are not its links. If
+ * the tree is written as a network and read again, graph_build merges each of them with the earlier
+ * node.
  *
  * n        receives the count.
  * Errors   STATUS_MEMORY.

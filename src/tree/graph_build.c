@@ -1,14 +1,17 @@
 /* Builds the tree of a network in three steps.
  *
- * Loops: if the merged lines form loops, the lines are sorted, thickest first, and taken one by one
- * unless they close a loop (Kruskal, Proc. AMS 7 (1956), 48). The lines that are left out are then
- * the thinnest line of each loop.
+ * Loops: if loops are to be cut, the lines are sorted, thickest first, and taken one by one unless
+ * they close a loop (Kruskal, Proc. AMS 7 (1956), 48). The lines that are left out are then the
+ * thinnest line of each loop.
  *
  * Roots: the root of a component is the first of the points with the highest rank. The ranks, from
  * high to low, are: a stated inlet; a point that directed lines only leave; an end; any point.
  * Among points of equal rank the thickest wins.
  *
- * Directions: a breadth-first search from each root directs the lines. */
+ * Directions: a breadth-first search from each root directs the lines. It follows vessels, the
+ * chains of lines between points that do not join just two lines, from end to end. A line that
+ * reaches a point for the second time closes a loop, and gets a node with a link. It is therefore
+ * the last line of its vessel. */
 #include "tree/graph_parts.h"
 #include "tree/tree.h"
 
@@ -22,6 +25,7 @@ typedef struct GraphLink {
     uint32_t a, b;
     uint32_t line;    /* index in Graph.line */
     double thickness; /* mm */
+    bool is_stated;   /* the file states that the line gets a node with a link */
 } GraphLink;
 
 typedef struct Building {
@@ -38,6 +42,10 @@ typedef struct Building {
     uint32_t *at;        /* indices of links, the list of one point after another */
     uint32_t *parent;    /* per kept point: its parent + 1; 0: none */
     uint32_t *above;     /* per kept point: the link to its parent */
+    bool *used;          /* per link: it has been directed; `a` is then its proximal point */
+    uint32_t *closing;   /* the links that get nodes with links */
+    size_t n_closing;
+    size_t n_spanning; /* number of the links that close no loop */
 } Building;
 
 static void release(Building *building)
@@ -50,6 +58,8 @@ static void release(Building *building)
     free(building->at);
     free(building->parent);
     free(building->above);
+    free(building->used);
+    free(building->closing);
 }
 
 /* ---- lines ---- */
@@ -76,7 +86,8 @@ static Status link_lines(Building *building, Err *err)
                                        line->a > line->b ? line->a : line->b, graph->n_points),
                                err);
         GraphLink link = {building->representative[line->a], building->representative[line->b],
-                          (uint32_t)i, thickness_of(graph, line)};
+                          (uint32_t)i, thickness_of(graph, line),
+                          line->link_id > 0 && !building->options->break_loops};
         if (link.a == link.b)
             building->reading->network.without_length++;
         else
@@ -101,7 +112,7 @@ static int thickest_first(const void *a, const void *b)
 /* Describes a link by numbers that are equal for two links exactly if one repeats the other: both
  * points, the radii, and the values of the line and of its two ends in all columns. Polylines of
  * several lines may overlap, such as polylines that each lead from the root to one outlet; for
- * their lines, only points and radii count. `out` has space for 4 numbers and 2 per column. Returns
+ * their lines, only points and radii count. `out` has space for 5 numbers and 2 per column. Returns
  * the count of numbers. */
 static size_t describe_link(const Building *building, const GraphLink *link, double *out)
 {
@@ -114,6 +125,7 @@ static size_t describe_link(const Building *building, const GraphLink *link, dou
     out[n++] = turned ? link->a : link->b;
     for (size_t side = 0; side < 2; side++)
         out[n++] = isnan(line->radius) ? graph->point[ends[side]].radius : line->radius;
+    out[n++] = (double)line->link_id;
     for (size_t k = 0; k < graph->n_columns && !line->is_part; k++) {
         const GraphColumn *column = &graph->column[k];
         const bool of_lines = column->of == GRAPH_LINES;
@@ -163,7 +175,7 @@ static Status take_link(const Building *building, LinkTable *table, size_t kept,
 
 static Status begin_links(const Building *building, LinkTable *table, Err *err)
 {
-    const size_t most = 4 + 2 * building->graph->n_columns;
+    const size_t most = 5 + 2 * building->graph->n_columns;
     TRY(keymap_begin(&table->last, building->n_links, "slots for lines", err));
     TRY(mem_calloc(&table->next, building->n_links, sizeof *table->next, "lines", err));
     TRY(mem_calloc(&table->one, most, sizeof *table->one, "values of a line", err));
@@ -211,8 +223,9 @@ static Status note_cut(Building *building, const GraphLink *link, Err *err)
     return STATUS_OK;
 }
 
-/* Finds a spanning forest: takes the links in their order, and moves each link that closes a loop
- * to the end. *kept receives the count of links before the first moved one. */
+/* Finds a spanning forest: takes the links in their order, and moves each link that closes a loop,
+ * or of which the file states it, to the end. *kept receives the count of links before the first
+ * moved one. */
 static void span(Building *building, size_t *kept)
 {
     uint32_t *component = building->component;
@@ -220,7 +233,7 @@ static void span(Building *building, size_t *kept)
     sets_begin(component, building->graph->n_points);
     *kept = 0;
     for (size_t i = 0; i < building->n_links; i++) {
-        if (!sets_join(component, link[i].a, link[i].b))
+        if (link[i].is_stated || !sets_join(component, link[i].a, link[i].b))
             continue;
         GraphLink taken = link[i];
         link[i] = link[*kept];
@@ -261,17 +274,27 @@ static Status count_loops(Building *building, size_t *loops, size_t *components,
     return STATUS_OK;
 }
 
+static bool has_stated_links(const Graph *graph)
+{
+    size_t i = 0;
+    while (i < graph->n_lines && graph->line[i].link_id == 0)
+        i++;
+    return i < graph->n_lines;
+}
+
 /* Merges points at one position. Exception: if merging closes loops in a file whose lines name
- * their points, and if the names alone give the same number of components without loops, points
- * stay apart. A vessel may end at a position where another vessel passes. */
+ * their points, points stay apart if the names alone give the same number of components without
+ * loops, or if the file states which lines close loops. A vessel may end at a position where
+ * another vessel passes. */
 static Status connect(Building *building, Err *err)
 {
     Graph *graph = building->graph;
     size_t loops, components, named_loops, named_components;
     TRY(mem_calloc(&building->component, graph->n_points, sizeof *building->component, "components",
                    err));
-    TRY(connect_points(building, !graph->is_tree, err));
-    if (!graph->is_named || graph->is_tree)
+    const bool by_name = graph->is_tree || has_stated_links(graph);
+    TRY(connect_points(building, !by_name, err));
+    if (!graph->is_named || by_name)
         return STATUS_OK;
     TRY(count_loops(building, &loops, &components, err));
     if (loops == 0)
@@ -294,22 +317,36 @@ static Status refuse_loops(const Building *building, const GraphLink *link, size
                        err);
 }
 
-static Status cut_loops(Building *building, Err *err)
+/* Drops the thinnest link of each loop, from the index `kept` on after sorting. */
+static Status cut_loops(Building *building, size_t *kept, Err *err)
+{
+    size_t loops = building->reading->network.loops = building->n_links - *kept;
+    qsort(building->link, building->n_links, sizeof *building->link, thickest_first);
+    span(building, kept);
+    qsort(building->link + *kept, loops, sizeof *building->link, order_lines);
+    for (size_t i = *kept; i < building->n_links; i++)
+        TRY(note_cut(building, &building->link[i], err));
+    building->n_links = *kept;
+    return STATUS_OK;
+}
+
+/* Cuts the loops, or counts the links that close them. Refuses loops of parents. */
+static Status treat_loops(Building *building, Err *err)
 {
     size_t kept;
     span(building, &kept);
-    size_t loops = building->reading->network.loops = building->n_links - kept;
-    if (loops > 0 && !building->options->break_loops)
-        return refuse_loops(building, &building->link[kept], loops, err);
-    if (loops > 0) {
-        qsort(building->link, building->n_links, sizeof *building->link, thickest_first);
-        span(building, &kept);
-        qsort(building->link + kept, loops, sizeof *building->link, order_lines);
-        for (size_t i = kept; i < building->n_links; i++)
-            TRY(note_cut(building, &building->link[i], err));
-    }
-    building->n_links = kept;
-    return STATUS_OK;
+    building->n_spanning = kept;
+    if (kept == building->n_links)
+        return STATUS_OK;
+    if (building->options->break_loops)
+        return cut_loops(building, &kept, err);
+    for (size_t i = kept; i < building->n_links && building->graph->is_tree; i++)
+        if (!building->link[i].is_stated)
+            return refuse_loops(building, &building->link[i], building->n_links - kept, err);
+    building->reading->network.links = building->n_links - kept;
+    qsort(building->link, building->n_links, sizeof *building->link, order_lines);
+    return mem_calloc(&building->closing, building->n_links - kept, sizeof *building->closing,
+                      "links", err);
 }
 
 /* ---- roots ---- */
@@ -364,7 +401,8 @@ static LinkCandidate judge(const Building *building, uint32_t point)
     bool leads_away = true;
     for (uint32_t k = 0; k < building->degree[point]; k++) {
         const GraphLink *link = link_at(building, point, k);
-        leads_away = leads_away && graph->line[link->line].is_directed && link->a == point;
+        leads_away = leads_away &&
+                     (link->is_stated || (graph->line[link->line].is_directed && link->a == point));
         made.thickness = fmax(made.thickness, link->thickness);
     }
     made.rank = graph->point[point].is_inlet   ? RANK_INLET
@@ -425,26 +463,66 @@ static Status note_other_inlets(const Building *building, Err *err)
         "stated inlets that are not roots: %zu (each tree has one root, the thickest)", inlets);
 }
 
-/* Sets the parents of all points of the root's component, breadth first. `queue` has space for
- * all points. */
-static void direct_from(Building *building, uint32_t root, uint32_t *queue)
+/* Makes `from` the proximal point of a link, and returns its distal point. */
+static uint32_t direct_link(Building *building, GraphLink *link, uint32_t from)
+{
+    bool turned = link->b == from;
+    building->reading->network.against += turned && building->graph->line[link->line].is_directed;
+    link->b = turned ? link->a : link->b;
+    link->a = from;
+    return link->b;
+}
+
+enum { NO_POINT = UINT32_MAX };
+
+/* Directs a vessel, from its link `at` at the point `from` on. Returns the point at its other end
+ * if no link led there before, else NO_POINT. */
+static uint32_t direct_vessel(Building *building, uint32_t from, uint32_t at, bool *reached)
+{
+    while (!building->used[at]) {
+        building->used[at] = true;
+        uint32_t to = direct_link(building, &building->link[at], from);
+        if (reached[to]) {
+            building->closing[building->n_closing++] = at;
+            return NO_POINT;
+        }
+        reached[to] = true;
+        building->parent[to] = from + 1;
+        building->above[to] = at;
+        if (building->degree[to] != 2)
+            return to;
+        const uint32_t *both = &building->at[building->first[to]];
+        at = both[both[0] == at];
+        from = to;
+    }
+    return NO_POINT;
+}
+
+/* Sets the parents of all points of the root's component, breadth first. `queue` and `reached` have
+ * space for all points. */
+static void direct_from(Building *building, uint32_t root, uint32_t *queue, bool *reached)
 {
     size_t done = 0, n = 0;
     queue[n++] = root;
+    reached[root] = true;
     while (done < n) {
         uint32_t point = queue[done++];
         for (uint32_t k = 0; k < building->degree[point]; k++) {
-            const GraphLink *link = link_at(building, point, k);
-            uint32_t other = link->a ^ link->b ^ point;
-            if (other + 1 == building->parent[point])
-                continue;
-            building->parent[other] = point + 1;
-            building->above[other] = (uint32_t)(link - building->link);
-            building->reading->network.against +=
-                building->graph->line[link->line].is_directed && link->a == other;
-            queue[n++] = other;
+            uint32_t at = building->at[building->first[point] + k];
+            uint32_t end = direct_vessel(building, point, at, reached);
+            if (end != NO_POINT)
+                queue[n++] = end;
         }
     }
+}
+
+static void use_stated(Building *building)
+{
+    for (size_t i = 0; i < building->n_links; i++)
+        if (building->link[i].is_stated) {
+            building->used[i] = true;
+            building->closing[building->n_closing++] = (uint32_t)i;
+        }
 }
 
 static Status direct_links(Building *building, Err *err)
@@ -452,79 +530,100 @@ static Status direct_links(Building *building, Err *err)
     size_t n = building->graph->n_points;
     LinkCandidate *best = NULL;
     uint32_t *queue = NULL;
+    bool *reached = NULL;
     Status status = STATUS_OK;
     TRY_GOTO(mem_calloc(&best, n, sizeof *best, "roots", err));
     TRY_GOTO(choose_roots(building, best, err));
     TRY_GOTO(note_other_inlets(building, err));
     TRY_GOTO(mem_calloc(&queue, n, sizeof *queue, "points", err));
+    TRY_GOTO(mem_calloc(&reached, n, sizeof *reached, "points", err));
+    TRY_GOTO(mem_calloc(&building->used, building->n_links, sizeof *building->used, "lines", err));
     TRY_GOTO(mem_calloc(&building->parent, n, sizeof *building->parent, "parents", err));
     TRY_GOTO(mem_calloc(&building->above, n, sizeof *building->above, "parents", err));
+    use_stated(building);
     for (size_t i = 0; i < building->reading->n_roots; i++)
-        direct_from(building, (uint32_t)building->reading->root[i].id - 1, queue);
+        direct_from(building, (uint32_t)building->reading->root[i].id - 1, queue, reached);
 done:
     free(best);
     free(queue);
+    free(reached);
     return status;
 }
 
 /* ---- nodes ---- */
 
-/* Chooses the ids of all nodes. They are the ids of the file if all nodes have one; else the
- * points' numbers + 1; else, if these exceed TREE_MAX_ID, 1, 2, ... in order. The caller
- * frees *id. */
-static Status number_points(const Building *building, int32_t **id, Err *err)
+/* Returns the id that the file gives to node `i`: a kept point or, from the number of points on,
+ * the node with a link of a closing line. 0: none. */
+static int32_t stated_id(const Building *building, size_t i)
 {
     const Graph *graph = building->graph;
-    int32_t *made = NULL, n = 0;
+    if (i < graph->n_points)
+        return (int32_t)graph->point[i].id;
+    return (int32_t)graph->line[building->link[building->closing[i - graph->n_points]].line]
+        .link_id;
+}
+
+/* Chooses the ids of all nodes, the nodes with links after those of points. The ids of points are
+ * those of the file if all kept points have one, else the points' numbers + 1. Nodes with links
+ * have the ids of the file or the next ids. If these exceed TREE_MAX_ID, all ids are 1, 2, ... in
+ * order. The caller frees *id. */
+static Status number_nodes(const Building *building, int32_t **id, Err *err)
+{
+    const size_t points = building->graph->n_points, most = points + building->n_closing;
+    int32_t *made = NULL;
     bool given = true;
-    size_t last = 0;
-    for (size_t i = 0; i < graph->n_points; i++)
+    size_t last = 0, n = building->n_closing;
+    for (size_t i = 0; i < points; i++)
         if (is_node(building, i)) {
-            given = given && graph->point[i].id != 0;
-            last = i + 1;
+            given = given && stated_id(building, i) != 0;
             n++;
         }
     if (n > TREE_MAX_ID)
-        return err_set(err, STATUS_INFEASIBLE, "%s: a tree of %d nodes is too large: at most %d",
-                       graph->name, n, TREE_MAX_ID);
-    TRY(mem_calloc(&made, graph->n_points, sizeof *made, "ids", err));
+        return err_set(err, STATUS_INFEASIBLE, "%s: a tree of %zu nodes is too large: at most %d",
+                       building->graph->name, n, TREE_MAX_ID);
+    TRY(mem_calloc(&made, most, sizeof *made, "ids", err));
+    for (size_t i = 0; i < most; i++)
+        if (i >= points || is_node(building, i)) {
+            made[i] = given ? stated_id(building, i) : i < points ? (int32_t)i + 1 : 0;
+            last = (size_t)made[i] > last ? (size_t)made[i] : last;
+        }
+    for (size_t i = points; i < most; i++)
+        if (made[i] == 0)
+            made[i] = (int32_t)++last;
     n = 0;
-    for (size_t i = 0; i < graph->n_points; i++)
-        if (is_node(building, i))
-            made[i] = given                ? (int32_t)graph->point[i].id
-                      : last > TREE_MAX_ID ? ++n
-                                           : (int32_t)i + 1;
+    for (size_t i = 0; i < most && last > TREE_MAX_ID; i++)
+        made[i] = made[i] ? (int32_t)++n : 0;
     *id = made;
     return STATUS_OK;
 }
 
-/* Returns the point of the file whose values the node of a kept point gets: the distal end of the
- * line that leads to it, before merging; for a root, the kept point itself. */
-static size_t distal_point(const Building *building, uint32_t kept)
+/* Returns the point of the file at the distal end of a link, before merging. */
+static size_t distal_point(const Building *building, const GraphLink *link)
 {
-    if (!building->parent[kept])
-        return kept;
-    const GraphLink *link = &building->link[building->above[kept]];
     const GraphLine *line = &building->graph->line[link->line];
-    return link->b == kept ? line->b : line->a;
+    return building->representative[line->b] == link->b ? line->b : line->a;
 }
 
-static Status radius_of(const Building *building, uint32_t kept, double *radius, Err *err)
+static Status radius_of_link(const Building *building, const GraphLink *link, double *radius,
+                             Err *err)
+{
+    const Graph *graph = building->graph;
+    const GraphLine *line = &graph->line[link->line];
+    *radius =
+        isnan(line->radius) ? graph->point[distal_point(building, link)].radius : line->radius;
+    if (!isnan(*radius) || building->options->repair_radii || building->options->radius_mm > 0)
+        return STATUS_OK;
+    return graph_blame(graph, GRAPH_LINES, line->record,
+                       err_set(err, STATUS_INPUT,
+                               "neither the line nor its distal point has a radius; `radius` "
+                               "gives one"),
+                       err);
+}
+
+static Status radius_of_root(const Building *building, uint32_t kept, double *radius, Err *err)
 {
     const Graph *graph = building->graph;
     double thickest = 0;
-    if (building->parent[kept]) {
-        const GraphLine *line = &graph->line[building->link[building->above[kept]].line];
-        *radius =
-            isnan(line->radius) ? graph->point[distal_point(building, kept)].radius : line->radius;
-        if (!isnan(*radius) || building->options->repair_radii || building->options->radius_mm > 0)
-            return STATUS_OK;
-        return graph_blame(graph, GRAPH_LINES, line->record,
-                           err_set(err, STATUS_INPUT,
-                                   "neither the line nor its distal point has a radius; `radius` "
-                                   "gives one"),
-                           err);
-    }
     if (graph->is_tree && !isnan(graph->point[kept].radius)) {
         *radius = graph->point[kept].radius;
         return STATUS_OK;
@@ -532,14 +631,16 @@ static Status radius_of(const Building *building, uint32_t kept, double *radius,
     for (uint32_t k = 0; k < building->degree[kept]; k++) {
         const GraphLink *link = link_at(building, kept, k);
         double of_link;
-        TRY(radius_of(building, link->a ^ link->b ^ kept, &of_link, err));
-        thickest = fmax(thickest, of_link);
+        TRY(radius_of_link(building, link, &of_link, err));
+        if (link->a == kept)
+            thickest = fmax(thickest, of_link);
     }
     *radius = thickest;
     return STATUS_OK;
 }
 
-static Status add_values(const Building *building, TreeBuilder *builder, uint32_t kept,
+/* `link` leads to the node; NULL at a root. Its values are those of the point `distal`. */
+static Status add_values(const Building *building, TreeBuilder *builder, const GraphLink *link,
                          size_t distal, Err *err)
 {
     const Graph *graph = building->graph;
@@ -547,30 +648,60 @@ static Status add_values(const Building *building, TreeBuilder *builder, uint32_
         const GraphColumn *column = &graph->column[k];
         size_t at = distal;
         if (column->of == GRAPH_LINES)
-            at = building->parent[kept] ? building->link[building->above[kept]].line : column->n;
+            at = link ? link->line : column->n;
         if (at < column->n && !isnan(column->value[at]))
             TRY(builder_value(builder, k, column->value[at], err));
     }
     return STATUS_OK;
 }
 
-static Status add_node(const Building *building, TreeBuilder *builder, uint32_t kept,
-                       const int32_t *id, Err *err)
+/* Adds the node of a kept point. */
+static Status add_point(const Building *building, TreeBuilder *builder, uint32_t kept,
+                        const int32_t *id, Err *err)
 {
-    size_t distal = distal_point(building, kept);
     const GraphPoint *point = &building->graph->point[kept];
     uint32_t parent = building->parent[kept];
+    const GraphLink *link = parent ? &building->link[building->above[kept]] : NULL;
     BuilderNode node = {.id = id[kept],
                         .parent = parent ? id[parent - 1] : TREE_NO_PARENT,
                         .type = point->has_type ? point->type : TREE_VESSEL_TYPE,
                         .position = point->position,
                         .record = point->record};
-    TRY(radius_of(building, kept, &node.radius_mm, err));
+    TRY(link ? radius_of_link(building, link, &node.radius_mm, err)
+             : radius_of_root(building, kept, &node.radius_mm, err));
     TRY(graph_blame(building->graph, GRAPH_POINTS, point->record, builder_node(builder, &node, err),
                     err));
     if (point->flow_share > 0)
         TRY(builder_share(builder, node.id, point->flow_share, node.record, err));
-    return add_values(building, builder, kept, distal, err);
+    return add_values(building, builder, link, link ? distal_point(building, link) : kept, err);
+}
+
+/* Adds the node with a link at the distal end of closing link `k`. */
+static Status add_closing(const Building *building, TreeBuilder *builder, size_t k,
+                          const int32_t *id, Err *err)
+{
+    const Graph *graph = building->graph;
+    const GraphLink *link = &building->link[building->closing[k]];
+    size_t distal = distal_point(building, link), record = graph->line[link->line].record;
+    const GraphPoint *point = &graph->point[distal];
+    BuilderNode node = {.id = id[graph->n_points + k],
+                        .parent = id[link->a],
+                        .type = point->has_type ? point->type : TREE_VESSEL_TYPE,
+                        .position = graph->point[link->b].position,
+                        .record = record};
+    TRY(radius_of_link(building, link, &node.radius_mm, err));
+    TRY(graph_blame(graph, GRAPH_LINES, record, builder_node(builder, &node, err), err));
+    TRY(builder_link(builder, node.id, id[link->b], record, err));
+    return add_values(building, builder, link, distal, err);
+}
+
+/* Adds node `i`, which is numbered as in number_nodes. */
+static Status add_node(const Building *building, TreeBuilder *builder, uint32_t i,
+                       const int32_t *id, Err *err)
+{
+    const size_t points = building->graph->n_points;
+    return i < points ? add_point(building, builder, i, id, err)
+                      : add_closing(building, builder, i - points, id, err);
 }
 
 static bool has_column(const Graph *graph, GraphElement of, const char *name)
@@ -601,10 +732,10 @@ done:
     return status;
 }
 
-/* A kept point and its id. */
+/* A node, numbered as in number_nodes, and its id. */
 typedef struct Numbered {
     int32_t id;
-    uint32_t point;
+    uint32_t node;
 } Numbered;
 
 static int by_id(const void *a, const void *b)
@@ -613,14 +744,14 @@ static int by_id(const void *a, const void *b)
     return (one->id > other->id) - (one->id < other->id);
 }
 
-/* Lists the kept points (their ids are above 0) by rising id. The caller frees *order. */
-static Status order_points(const Building *building, const int32_t *id, Numbered **order, size_t *n,
-                           Err *err)
+/* Lists the nodes (their ids are above 0) by rising id. The caller frees *order. */
+static Status order_nodes(const Building *building, const int32_t *id, Numbered **order, size_t *n,
+                          Err *err)
 {
     Numbered *made = NULL;
-    size_t count = 0;
-    TRY(mem_calloc(&made, building->graph->n_points, sizeof *made, "ids", err));
-    for (uint32_t i = 0; i < building->graph->n_points; i++)
+    size_t count = 0, most = building->graph->n_points + building->n_closing;
+    TRY(mem_calloc(&made, most, sizeof *made, "ids", err));
+    for (uint32_t i = 0; i < most; i++)
         if (id[i] > 0)
             made[count++] = (Numbered){id[i], i};
     qsort(made, count, sizeof *made, by_id);
@@ -633,19 +764,19 @@ static Status order_points(const Building *building, const int32_t *id, Numbered
  * id: the tree's nodes were in this order, but the file's points may be in any order. */
 static Status add_nodes(const Building *building, TreeBuilder *builder, const int32_t *id, Err *err)
 {
-    size_t n = building->graph->n_points;
+    size_t n = building->graph->n_points + building->n_closing;
     if (!building->graph->is_tree) {
         for (uint32_t i = 0; i < n; i++)
-            if (is_node(building, i))
+            if (id[i] > 0)
                 TRY(add_node(building, builder, i, id, err));
         return STATUS_OK;
     }
     Numbered *order = NULL;
     size_t count = 0;
-    TRY(order_points(building, id, &order, &count, err));
+    TRY(order_nodes(building, id, &order, &count, err));
     Status status = STATUS_OK;
     for (size_t k = 0; k < count && status == STATUS_OK; k++)
-        status = add_node(building, builder, order[k].point, id, err);
+        status = add_node(building, builder, order[k].node, id, err);
     free(order);
     return status;
 }
@@ -656,7 +787,7 @@ static Status hand_over(Building *building, TreeBuilder *builder, Err *err)
     TreeReading *reading = building->reading;
     int32_t *id = NULL;
     Status status = STATUS_OK;
-    TRY(number_points(building, &id, err));
+    TRY(number_nodes(building, &id, err));
     builder->record = graph->point_record;
     builder->meta = graph->meta;
     building->graph->meta = (TreeMeta){0};
@@ -719,7 +850,7 @@ static Status find_near_ends(Building *building, Err *err)
     Status status = STATUS_OK;
     for (size_t i = 0; i < graph->n_points; i++)
         nodes += is_node(building, i);
-    if (nodes == building->n_links + 1) /* one component */
+    if (nodes == building->n_spanning + 1) /* one component */
         return STATUS_OK;
     TRY(median_thickness(building, &median, err));
     if (median == 0)
@@ -751,6 +882,19 @@ static void describe(const Graph *graph, const ReadOptions *options, TreeReading
         !reading->voxels && !graph->unit_is_stated && looks_like_voxels(graph);
 }
 
+/* Completes the description of a kept point by that of a point that is merged with it. */
+static void describe_merged(GraphPoint *kept, const GraphPoint *point)
+{
+    if (kept->is_link && !point->is_link) {
+        double radius = kept->radius;
+        bool is_inlet = kept->is_inlet;
+        *kept = *point;
+        kept->radius = radius;
+        kept->is_inlet |= is_inlet;
+    }
+    kept->is_inlet |= point->is_inlet;
+}
+
 static Status build(Building *building, TreeBuilder *builder, Err *err)
 {
     Graph *graph = building->graph;
@@ -761,13 +905,13 @@ static Status build(Building *building, TreeBuilder *builder, Err *err)
     graph_scale(graph);
     TRY(connect(building, err));
     for (size_t i = 0; i < graph->n_points; i++)
-        graph->point[building->representative[i]].is_inlet |= graph->point[i].is_inlet;
+        describe_merged(&graph->point[building->representative[i]], &graph->point[i]);
     if (building->n_links == 0 && !graph->is_tree)
         return err_set(err, STATUS_INPUT,
                        "%s: each line has both ends at the same position; a tree needs a line that "
                        "is longer than 0",
                        graph->name);
-    TRY(cut_loops(building, err));
+    TRY(treat_loops(building, err));
     TRY(list_links(building, err));
     if (!graph->is_tree)
         TRY(find_near_ends(building, err));
@@ -785,5 +929,71 @@ Status graph_build(Graph *graph, TreeBuilder *builder, Err *err)
     Status status = build(&building, builder, err);
     release(&building);
     reading_release(&own);
+    return status;
+}
+
+/* ---- trees with links ---- */
+
+/* Adds a tree to an empty graph: each node as a point, each segment as a line. */
+static Status put_tree(const Tree *tree, Graph *graph, Err *err)
+{
+    size_t column;
+    for (size_t i = 0; i < tree->n; i++) {
+        const GraphPoint point = {.position = tree->position[i],
+                                  .radius = (double)NAN,
+                                  .is_inlet = !tree_is_segment(tree, i),
+                                  .has_type = true,
+                                  .type = tree->type[i],
+                                  .flow_share = tree->flow_share ? tree->flow_share[i] : 0,
+                                  .id = tree->id[i],
+                                  .is_link = tree_is_link(tree, i),
+                                  .record = i};
+        TRY(graph_point(graph, &point, err));
+        if (tree_is_link(tree, i))
+            TRY(graph_join(graph, i, (size_t)tree->link[i], err));
+        if (!tree_is_segment(tree, i))
+            continue;
+        TRY(graph_line(graph,
+                       &(GraphLine){.a = (size_t)tree->parent[i],
+                                    .b = i,
+                                    .radius = tree->radius_mm[i],
+                                    .is_directed = true,
+                                    .record = i},
+                       err));
+    }
+    for (size_t k = 0; k < tree->n_columns; k++) {
+        size_t line = 0;
+        TRY(graph_column(graph, GRAPH_LINES, tree->column[k].name, tree->column[k].unit, &column,
+                         err));
+        for (size_t i = 0; i < tree->n; i++)
+            if (tree_is_segment(tree, i))
+                TRY(graph_value(graph, column, line++, tree->column[k].value[i], err));
+    }
+    return STATUS_OK;
+}
+
+Status tree_break_loops(Tree *tree, TreeReading *reading, Err *err)
+{
+    const ReadOptions options = {.break_loops = true};
+    TreeReading found = {0};
+    TreeBuilder builder = {.name = "the network"};
+    Graph graph = {.name = "the network", .options = &options, .reading = &found, .is_tree = true};
+    Tree made = {0};
+    Status status;
+    TRY_GOTO(put_tree(tree, &graph, err));
+    TRY_GOTO(meta_copy(&graph.meta, &tree->meta, err));
+    TRY_GOTO(graph_build(&graph, &builder, err));
+    TRY_GOTO(builder_build(&builder, &made, err));
+    tree_release(tree);
+    *tree = made;
+    free(reading->network.cut);
+    reading->network.loops = found.network.loops;
+    reading->network.cut = found.network.cut;
+    reading->network.n_cuts = found.network.n_cuts;
+    found.network.cut = NULL;
+done:
+    graph_release(&graph);
+    builder_release(&builder);
+    reading_release(&found);
     return status;
 }

@@ -205,6 +205,7 @@ Status graph_count_merged(const Tree *tree, size_t *n, Err *err)
     *n = 0;
     for (size_t i = 0; i < tree->n; i++)
         *n += representative[i] != i;
+    *n -= tree_link_count(tree);
 done:
     free(representative);
     free(graph.point);

@@ -76,6 +76,9 @@ const MetaRow meta_rows[META_KEYS] = {
                         .unit = "mm",
                         .meaning = "least distance of the walls of vessels of different trees",
                         .range = {0, RANGE_NO_END}},
+    [META_FILL] = {.name = "fill",
+                   .meaning = "published table that the radii of these orders were drawn from",
+                   .kind = META_TEXT},
 };
 
 void meta_release(TreeMeta *meta)

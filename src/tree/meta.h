@@ -37,6 +37,7 @@ typedef enum MetaKey {
     META_PLASMA_VISCOSITY, /* viscosity of the plasma in Pries's law, cP */
     META_TERMINAL_FLOW,    /* a TerminalFlow */
     META_CLEARANCE,        /* minimum distance between walls of different trees, mm */
+    META_FILL,             /* published table and orders whose radii the tree has [fill_tree] */
     META_KEYS              /* number of keys; as a key: none */
 } MetaKey;
 

@@ -32,7 +32,7 @@ typedef struct ReadOptions {
     bool voxel_radii; /* radii are in voxels, too; they are multiplied by the geometric mean
                        * of voxel_size */
     double merge_tolerance_mm; /* points this close are merged; 0: only points at one position */
-    bool break_loops;          /* cut each loop at its thinnest line; false: a loop is an error */
+    bool break_loops;          /* cut each loop at its thinnest line; false: keep it by a link */
     const char *radius_array;  /* name of the array with the radii; NULL: search for usual names */
     const char *graphml_keys;  /* "x=KEY,y=KEY,...": the GraphML keys of the attributes */
     const char *columns;       /* "x=NAME,y=NAME,...": the columns of a table */
@@ -94,6 +94,7 @@ typedef struct NetworkReading {
     size_t repeated;       /* count of lines that repeat another line */
     size_t against;        /* count of lines whose direction in the file is towards the root */
     size_t loops;          /* count of lines that were cut because they closed a loop */
+    size_t links;          /* count of lines that close a loop and were kept */
     size_t near_ends;      /* count of ends that nearly touch another component */
     double near_mm;        /* the widest gap at such an end */
     ReadCut *cut;          /* owned; the first READ_MAX_CUTS of the lines that were cut */
@@ -108,7 +109,7 @@ typedef struct TreeReading {
     NetworkReading network;
     ReadRoot *root; /* the roots, one per component; owned */
     size_t n_roots, roots_capacity;
-    size_t degree[READ_MAX_DEGREE + 1]; /* degree[k]: count of nodes where k segments meet;
+    size_t degree[READ_MAX_DEGREE + 1]; /* degree[k]: count of places where k segments meet;
                                          * the last entry counts higher degrees, too */
     size_t without_radius;              /* count of segments with radius 0 */
     size_t given_radius;                /* count of segments that got ReadOptions.radius_mm */

@@ -356,13 +356,14 @@ static void drop_empty_links(Tree *tree)
  * node becomes the node that the other links name. */
 static Status prune_links(const Tree *tree, const int32_t *place, Tree *out, Err *err)
 {
+    int32_t *now = NULL; /* per node that links name: the node that they name in `out` */
+    Status status = STATUS_OK;
     if (!tree->link)
         return STATUS_OK;
-    int32_t *now = NULL; /* per node that links name: the node that they name in `out` */
-    TRY(mem_alloc(&now, tree->n, sizeof *now, "links", err));
+    TRY_GOTO(tree_add_links(out, err));
+    TRY_GOTO(mem_alloc(&now, tree->n, sizeof *now, "links", err));
     memcpy(now, place, tree->n * sizeof *now);
-    Status status = tree_add_links(out, err);
-    for (size_t i = 0; i < tree->n && status == STATUS_OK; i++) {
+    for (size_t i = 0; i < tree->n; i++) {
         if (!tree_is_link(tree, i) || place[i] == DROPPED)
             continue;
         int32_t *to = &now[tree->link[i]];
@@ -371,8 +372,8 @@ static Status prune_links(const Tree *tree, const int32_t *place, Tree *out, Err
         else
             out->link[place[i]] = *to;
     }
-    if (status == STATUS_OK)
-        drop_empty_links(out);
+    drop_empty_links(out);
+done:
     free(now);
     return status;
 }

@@ -32,3 +32,8 @@ double viscosity_pries_pa_s(double radius_mm, double hematocrit, double plasma_v
     double relative = (1 + (at_45 - 1) * hematocrit_factor(hematocrit, exponent) * w) * w;
     return relative * plasma_viscosity_pa_s;
 }
+
+double viscosity_cell_scale(double cell_fl)
+{
+    return elementary_cbrt(RED_CELL_FL / cell_fl);
+}

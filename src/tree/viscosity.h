@@ -23,7 +23,17 @@ typedef enum ViscosityLaw {
  *     C = (0.8 + exp(-0.075 D)) (-1 + e) + e,   e = 1 / (1 + 1e-11 D^12).
  *
  * `hematocrit` is in [0, MAX_HEMATOCRIT], and `plasma_viscosity_pa_s` is above 0. Returns INFINITY
- * for D <= 1.1, where by this law no blood flows. */
+ * for D <= 1.1, where by this law no blood flows.
+ *
+ * The law holds for human red cells, whose volume is RED_CELL_FL. For other cells multiply the
+ * radius by viscosity_cell_scale. */
 double viscosity_pries_pa_s(double radius_mm, double hematocrit, double plasma_viscosity_pa_s);
+
+/* Mean corpuscular volume of human red cells, fl. */
+#define RED_CELL_FL 92
+/* Returns the size of human red cells divided by that of cells of this mean corpuscular volume, fl,
+ * which is above 0: the cube root of the ratio of the volumes [Pries & Secomb, in: Handbook of
+ * Physiology, Microcirculation (2008) 3]. */
+double viscosity_cell_scale(double cell_fl);
 
 #endif

@@ -127,8 +127,9 @@ MUST_CHECK Status csv_row(char *line, char separator, char **field, size_t n, Er
 /* Cuts "name [unit]" into name and unit, in place. Returns the unit, or "" if there is none. */
 const char *csv_unit(char *title);
 
-/* The titles of the first columns of a CSV of segments, beginning with "id". NULL ends the list. */
-enum { CSV_SEGMENT_TITLES = 10 };
+/* The titles of the first columns of a CSV of segments, beginning with "id". The last, "same_as",
+ * is in files of networks with loops alone. NULL ends the list. */
+enum { CSV_SEGMENT_TITLES = 11 };
 extern const char *const csv_segment_titles[CSV_SEGMENT_TITLES + 1];
 
 /* ---- folders ---- */

@@ -34,6 +34,8 @@ enum {
     LOSES_ROOT_VALUES = 8, /* of columns, which are of segments there */
     LOSES_ROOT_RADII = 16,
     LOSES_IDS = 32, /* readers tell nodes apart by their places */
+    LOSES_LINKS = 64,
+    LOSES_LINK_RADII = 128, /* radii are of points */
     IS_NETWORK = LOSES_TYPES | LOSES_SHARES | LOSES_ROOT_RADII | LOSES_IDS
 };
 
@@ -68,7 +70,7 @@ typedef struct Format {
 
 static const Format formats[] = {
     {.name = "SWC",
-     .loses = LOSES_COLUMNS,
+     .loses = LOSES_COLUMNS | LOSES_LINKS,
      .stores = swc_stores,
      .takes = UNIT | VOXELS,
      .description = "id type x y z radius parent, a node a line, in mm",
@@ -156,7 +158,7 @@ static const Format formats[] = {
      .detect = amiraxml_detect,
      .read_graph = amiraxml_read},
     {.name = "SimVascular 1-D",
-     .loses = IS_NETWORK | LOSES_COLUMNS,
+     .loses = IS_NETWORK | LOSES_COLUMNS | LOSES_LINKS,
      .stores = oned_stores,
      .description = "a deck of svOneDSolver: nodes, segments and joints, in cm",
      .extensions = {"in"},
@@ -167,7 +169,7 @@ static const Format formats[] = {
      .keywords = oned_keywords,
      .write = oned_write},
     {.name = "VMV",
-     .loses = IS_NETWORK | LOSES_COLUMNS,
+     .loses = IS_NETWORK | LOSES_COLUMNS | LOSES_LINK_RADII,
      .description = "vertices and strands of VessMorphoVis, in um",
      .extensions = {"vmv"},
      .takes = ANY_GRAPH,
@@ -348,6 +350,14 @@ static Status look_at_roots(const Tree *tree, TreeLosses *lost, Err *err)
     return STATUS_OK;
 }
 
+static bool has_link_radii(const Tree *tree)
+{
+    for (size_t i = 0; i < tree->n; i++)
+        if (tree->radius_mm[i] != tree->radius_mm[tree_place(tree, i)])
+            return true;
+    return false;
+}
+
 /* A file without flow shares may not state that terminals have them: the key terminal_flow goes
  * with the shares. */
 static bool loses_rule(const Format *format, const Tree *tree)
@@ -370,7 +380,8 @@ Status tree_format_losses(const char *path, const Tree *tree, TreeLosses *out, E
     TreeLosses lost = {.types = (loses & LOSES_TYPES) && has_types(tree),
                        .flow_shares = (loses & LOSES_SHARES) && tree->flow_share,
                        .terminal_flow = loses_rule(format, tree),
-                       .root_values = (loses & LOSES_ROOT_VALUES) && has_root_values(tree)};
+                       .root_values = (loses & LOSES_ROOT_VALUES) && has_root_values(tree),
+                       .link_radii = (loses & LOSES_LINK_RADII) && has_link_radii(tree)};
     for (size_t k = 0; k < tree->n_columns; k++)
         lost.columns += !tree_format_stores(path, &tree->column[k]);
     if (loses & LOSES_ROOT_RADII)
@@ -632,6 +643,8 @@ static Status read_source(const TreeSource *source, Tree *tree, const ReadOption
     Tree made = {0};
     Status status = STATUS_OK;
     TRY_GOTO(build_tree(source, &made, options, reading, err));
+    if (options->break_loops && made.link)
+        TRY_GOTO(tree_break_loops(&made, reading, err));
     status = reading_fill_radii(reading, options, &made, err);
     if (status == STATUS_INPUT)
         err_prefix(err, "%s: ", source->name);
@@ -696,6 +709,11 @@ static Status write_to(const char *path, const Tree *tree, Text *text, Err *err)
     size_t i = 0;
     while (format->loses & LOSES_IDS && i < tree->n && !tree_is_segment(tree, i))
         i++;
+    if (tree->link && format->loses & LOSES_LINKS)
+        return err_set(err, STATUS_INPUT,
+                       "%s: the network has loops, which %s cannot store; `break_loops` cuts each "
+                       "loop at its thinnest line",
+                       path, format->form.name);
     if (i == tree->n)
         return err_set(err, STATUS_INPUT,
                        "%s: %s stores only segments, and the tree has no segments", path,

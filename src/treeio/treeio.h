@@ -36,6 +36,7 @@ typedef struct TreeLosses {
     bool root_values;    /* values of roots, in columns whose other values are written */
     bool root_radii;     /* radii of roots that differ from the root's thickest segment */
     bool isolated_roots; /* roots without segments */
+    bool link_radii;     /* radii of links that differ from that of the node that the link names */
     size_t columns;      /* number of columns for which tree_format_stores returns false */
     size_t merged; /* number of nodes at the position of an earlier node; the format identifies
                     * nodes by position, so that a reader merges them */
@@ -92,9 +93,9 @@ MUST_CHECK Status tree_read_bytes(Tree *tree, const MemoryFile *file, const Read
 /* Writes the metadata of a tree, then its nodes in array order. Every number reads back as the same
  * double. Leaves out what tree_format_losses reports. "-" is standard output.
  *
- * Errors   those of tree_format_check; STATUS_INPUT for a tree that tree_check refuses, and for a
- *          tree without segments in a format that stores only segments; STATUS_IO, STATUS_MEMORY.
- */
+ * Errors   those of tree_format_check; STATUS_INPUT for a tree that tree_check refuses, for links
+ *          in a format that stores none, and for a tree without segments in a format that stores
+ *          only segments; STATUS_IO, STATUS_MEMORY. */
 MUST_CHECK Status tree_write(const Tree *tree, const char *path, Err *err);
 
 /* Appends to `out` the bytes that tree_write would write to `path`. Errors: those of tree_write. */

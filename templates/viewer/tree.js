@@ -28,6 +28,7 @@ export function readPage() {
     position: block("position", Float32Array), // x, y, z per node
     radius: block("radius", Float32Array), // per node
     parent: block("parent", Uint32Array), // index per node; a root has its own
+    place: document.getElementById("place") && block("place", Uint32Array), // index per node, of a network with loops
     id: block("id", Uint32Array), // per node
     fields: properties.fields.map((field, k) => ({ ...field, values: readField(k, field) })), // NaN: no value
     maps: properties.maps.map((map, k) => ({ ...map, bytes: block("map-" + k, Uint8Array) })),
@@ -58,9 +59,10 @@ export class Tree {
     this.fields = source.fields.map((properties) => new Field(properties, this)).filter((field) => field.finite.length > 0);
   }
 
-  // Finds the segments that have a length and a radius, the index of each by its id, and the daughters of each node.
+  // Finds the segments that have a length and a radius, the index of each by its id, and the daughters of each node. A
+  // segment that closes a loop continues in the segments that meet at the point where it ends.
   findSegments() {
-    const { n, parent, position, radius } = this;
+    const { n, parent, place, radius } = this;
     this.segments = [];
     this.numberOf = new Map();
     this.daughters = Array.from({ length: n }, () => []);
@@ -70,6 +72,7 @@ export class Tree {
       this.segments.push(i);
       this.numberOf.set(this.id[i], i);
     }
+    place?.forEach((node, i) => { if (node !== i) this.daughters[i] = [node, ...this.daughters[node]].filter((k) => k !== i); });
   }
 
   // Finds the box of the segments, and the path length along the vessels from the root to each node, mm.

@@ -2,7 +2,8 @@
 # Files that `export` writes for solvers, filled with tetrahedra by gmsh.
 . "$(dirname "$0")/../lib.sh"
 
-# Gmsh makes a surface of each solid, in their order, keeps its triangles, and takes the names of t.geo.
+# gmsh makes a surface of each solid, in the order of the file, keeps its triangles, and uses the
+# names in t.geo.
 test_gmsh_fills_the_parts_of_an_stl_with_tetrahedra() {
     command -v gmsh >/dev/null || skip "gmsh is not installed"
     run_ok corcast grow --terminals 9 --domain ball:41 --seed 7 -o t.swc --quiet
@@ -39,6 +40,17 @@ volumes = np.einsum("ij,ij->i", x[:, 1] - x[:, 0], np.cross(x[:, 2] - x[:, 0], x
 expect("a tetrahedron that is inside out", min(volumes) > 0 or max(volumes) < 0)
 expect("volume", abs(abs(volumes.sum()) / manifest["volume_mm3"] - 1) < 1e-5)
 END
+}
+
+# The tetrahedra of gmsh share the faces of the prisms, in each tree.
+test_gmsh_fills_the_core_of_layers_of_prisms() {
+    command -v gmsh >/dev/null || skip "gmsh is not installed"
+    run_ok corcast grow --terminals 8 --inlet 0,40 --inlet 0,-40 --domain disc:41 --seed 3 -o t.swc --quiet
+    run_ok corcast export t.swc --parts --mesh-tolerance 0.1 --tube-edge 2 -o t.stl --quiet
+    run_ok corcast export t.swc --mesh-tolerance 0.1 --tube-edge 2 -o t.msh --quiet
+    run_ok timeout 300 gmsh -3 -format msh2 t.core.geo -o all.msh
+    run_ok /usr/bin/python3 "$REPO/tests/oracle/prisms.py" all.msh t.msh.json t.ends.csv t.stl
+    grep -qE '^[0-9]+ prisms, [0-9]{4,} tetrahedra' stdout || fail "$(cat stdout)"
 }
 
 run_tests "$@"

@@ -79,12 +79,23 @@ test_a_film_and_a_scene_show_the_same_beat() {
     run_ok corcast pulse tree.swc --fields wss --frames 3 --size 240x240 -o beat.pov
     run_ok povray +Ibeat.pov +Ob.png +W240 +H240 -D +KFI1 +KFF3
     for k in 1 2 3; do
-        expect_differing 0 3 b$k.png f$k.png
+        expect_differing 0 0 b$k.png f$k.png
     done
     expect_differing 500 57600 f1.png f2.png
     run_ok corcast pulse tree.swc --fields wss,dilation --frames 3 -o t.vtp
     run_ok corcast render t.vtp --color-by wss --beat 10 --moments all --size 240x240 --antialias 1 -o g%d.png
     expect_differing 0 0 f2.png g2.png
+    # At a factor of 30 the vessel that is thickest at a bifurcation is another one than at rest.
+    run_ok corcast scene t.vtp --color-by wss --beat 30 --size 240x240 -o s.pov
+    run_ok povray +Is.pov +Os.png +W240 +H240 -D +KFI1 +KFF3
+    run_ok corcast render t.vtp --color-by wss --beat 30 --moments all --size 240x240 --antialias 1 --exact -o h%d.png
+    expect_differing 0 0 s1.png h1.png
+    expect_differing 0 0 s3.png h3.png
+    run_ok corcast verify t.vtp --color-by wss --beat 30 --moment 1 --size 240x240 --antialias 1 -o check --json
+    mv stdout said.json
+    expect_json said.json '.verdict == "agree"'
+    run corcast verify t.vtp --color-by wss --beat 30 --model joined -o no
+    expect_sentence 'rounded and cylinders'
     run corcast scene t.vtp --color-by wss --beat 10 --model joined -o s.pov
     expect_sentence 'rounded and cylinders'
     run corcast render tree.swc --color-by wss --beat 10 --moment 1 -o s.png

@@ -39,15 +39,49 @@ test_a_tree_stands_beside_every_published_table() {
         run_ok corcast info tree.swc --morphometry "$name" --json
         expect_json stdout '.morphometry | (.source | test("Kassab")) and .compared > 20 and
             .compared == (.rows | length) and .passed == (.rows | map(select(.pass)) | length)'
+        expect_json stdout '.morphometry | .orders == "published" and (.rows | all(.order == .published_order))'
+        expect_json stdout '.morphometry | .counts.published == {compared, passed, passed_strict}'
+        run_ok corcast info tree.swc --morphometry "$name" --orders found --json
         expect_json stdout '.morphometry.rows | map(select(.measure == "diameter")
             | .published_order - .order) | length > 3 and (unique | length) == 1'
+        expect_json stdout '.morphometry | .counts.found == {compared, passed, passed_strict}'
         run_ok corcast info tree.swc --morphometry "$name"
         expect_stdout 'ratio of diameters  *all  *all'
-        expect_stdout '[0-9]* of [0-9]* pass$'
+        expect_stdout 'by published orders: [0-9]* of [0-9]* pass \([0-9]* without standard errors\)$'
     done <names
     run corcast info tree.swc --morphometry kassab
     expect_status 2
     expect_sentence "--morphometry: 'kassab' is unknown; available: kassab-lad, kassab-lcx or kassab-rca"
+}
+
+# sampled TABLE LOWEST SEED: tree.swc is sampled from a table [tests/oracle/sampled_tree.py].
+sampled() {
+    run_ok python3 "$REPO/tests/oracle/sampled_tree.py" "$1" "$2" "$3"
+    mv stdout tree.swc
+}
+
+test_trees_sampled_from_a_table_agree_with_it() {
+    local tables=$REPO/templates/morphometry name lowest seed compared
+    while read -r name lowest seed compared; do
+        sampled "$tables/$name.txt" "$lowest" "$seed"
+        run_ok corcast info tree.swc --morphometry "$name" --json
+        expect_json stdout ".morphometry | .compared == $compared and .passed >= $compared - 3 and .counts.found.passed < $compared - 3"
+    done <<'END'
+kassab-lad 3 1 56
+kassab-lad 3 2 56
+kassab-lcx 4 1 42
+kassab-rca 4 1 48
+END
+}
+
+test_a_tree_sampled_from_another_table_fails_where_the_tables_differ() {
+    sed 's/2.50 0.080  1.91 0.111/2.50 0.080  3.5 0.111/; s/^8 462 41 4.99/8 462 41 9.5/' "$REPO/templates/morphometry/kassab-lad.txt" >other.txt
+    sampled other.txt 5 3
+    run_ok corcast info tree.swc --morphometry kassab-lad --json
+    expect_json stdout '.morphometry.rows | map(select(.pass | not) | [.measure, .order])
+        | contains([["length", 8], ["daughters two orders less", 7]])'
+    run_ok corcast info tree.swc --morphometry ./other.txt --json
+    expect_json stdout '.morphometry | .passed >= .compared - 3'
 }
 
 test_a_tree_of_one_segment_has_stats_without_ratios() {
@@ -74,7 +108,8 @@ test_flow_shares_and_viscosity_law_reach_the_pressures() {
 4 3 4 -1 0 .02 2
 END
     run_ok corcast info tree.swc --json
-    # Both worked out from Poiseuille's law; of METHODS.md, section 1.4, the viscosity of the first.
+    # Both were computed by hand from Poiseuille's law, with the viscosity of METHODS.md, section
+    # 1.4.
     expect_json stdout '.terminal_pressure_mmHg | (.min - 37.5921283 | fabs) < 1e-6 and (.max - 63.6321965 | fabs) < 1e-6'
     run_ok corcast info tree.swc --json --viscosity 3.6
     expect_json stdout '.terminal_pressure_mmHg | (.min - 22.1269296 | fabs) < 1e-6 and (.max - 55.8915634 | fabs) < 1e-6'

@@ -204,10 +204,25 @@ static void put_square(Net *net)
     put_line(net, 4, 1, radius[4]);
 }
 
-static void refuses_loops_unless_told_to_cut_them(void **state)
+static void keeps_loops_by_links_at_the_ends_of_vessels(void **state)
 {
     (void)state;
     Net net = {0};
+    Tree tree;
+    put_square(&net);
+    must(build(&net, &tree), &net.err);
+    must(tree_check(&tree, &net.err), &net.err);
+    assert_tree(&tree, "1<-1:0.9 2<1:0.9 3<2:0.8 4<3:0.7 5<4:0.2 6<5:0.6");
+    assert_int_equal(tree.link[5], 1);
+    assert_int_equal(net.reading.network.links, 1);
+    assert_int_equal(net.reading.network.loops, 0);
+    release(&net, &tree);
+}
+
+static void a_loop_of_parents_is_refused(void **state)
+{
+    (void)state;
+    Net net = {.graph.is_tree = true};
     put_square(&net);
     refused(&net, "net:204: the line closes a loop at 0, 2.5, 0 mm (loops in the network: 1); "
                   "use `break_loops` to cut each loop at its thinnest line");
@@ -350,7 +365,8 @@ int main(void)
         cmocka_unit_test(an_inlet_among_merged_points_is_one_and_others_are_told),
         cmocka_unit_test(merges_points_at_one_place_and_drops_what_is_not_needed),
         cmocka_unit_test(what_is_not_connected_is_a_forest),
-        cmocka_unit_test(refuses_loops_unless_told_to_cut_them),
+        cmocka_unit_test(keeps_loops_by_links_at_the_ends_of_vessels),
+        cmocka_unit_test(a_loop_of_parents_is_refused),
         cmocka_unit_test(cuts_a_loop_at_its_thinnest_line),
         cmocka_unit_test(joined_points_are_one_wherever_they_lie),
         cmocka_unit_test(scales_units_and_voxels),

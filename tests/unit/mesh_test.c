@@ -691,6 +691,32 @@ static void all_pairs_of_boxes_that_meet_are_found_once(void **state)
     assert_int_equal(boxes.found, expected);
 }
 
+/* A tetrahedron with one face inside out, at whose points no direction leads away from all faces.
+ */
+static void layers_of_a_wall_without_an_inner_side_are_refused(void **state)
+{
+    (void)state;
+    float points[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, normals[4][3] = {{0}};
+    uint32_t triangles[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}, labels[4] = {0};
+    VesselMesh mesh = {points, normals, 4, triangles, labels, 4};
+    const LayerParams params = {.n_layers = 2, .thickness = 0.1, .growth = 1};
+    PrismLayers layers;
+    Sketch sketch;
+    Err err = {""};
+    sketch_begin(&sketch, vec3(0, 0, 0));
+    sketch_to(&sketch, 0, vec3(1, 1, 1), 0.5);
+    must(prismlayers_sweep(&mesh, &sketch.tree, &params, 1, &layers, &err), &err);
+    assert_int_equal(layers.n_prisms, 8);
+    assert_true(fabs(layers.volume_mm3 + layers.core_volume_mm3 - 1.0 / 6) < 1e-9);
+    prismlayers_release(&layers);
+    memcpy(triangles[1], (const uint32_t[3]){0, 1, 2}, sizeof triangles[1]);
+    mesh.n_triangles = 2;
+    assert_int_equal(prismlayers_sweep(&mesh, &sketch.tree, &params, 1, &layers, &err),
+                     STATUS_INFEASIBLE);
+    assert_non_null(strstr(err.text, "inverted prisms"));
+    assert_non_null(strstr(err.text, "segment 2"));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -718,6 +744,7 @@ int main(void)
         cmocka_unit_test(triangles_about_a_point_may_cross_or_not),
         cmocka_unit_test(zones_in_which_triangles_cross_are_made_again),
         cmocka_unit_test(all_pairs_of_boxes_that_meet_are_found_once),
+        cmocka_unit_test(layers_of_a_wall_without_an_inner_side_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -214,28 +214,41 @@ static const MorphometryPair *find_pair(const MorphometryComparison *comparison,
     return NULL;
 }
 
-/* The tree's orders 1 to 3, of diameters 1.97, 4 and 8 mm, are orders 2 to 4 of the table. */
-static void a_tree_stands_beside_the_published_orders_of_its_diameters(void **state)
+static const char five_orders[] =
+    "# the head\nsource Nobody (1999)\nratios 2.44 nan 1.3\nfitted-from 1 1 3\n"
+    "1 1000 100 1.1 .1 80 2 nan .1 nan nan nan\n"
+    "2 1900 80 1.3 .7 24 1.2 nan .2 2.2 nan nan\n"
+    "3 4100 90 7.9 3 8 1.9 nan\ndaughters 3 nan nan 2.4 .01 .4 nan\n"
+    "4 8100 nan 13 nan 3 1 .6\ndaughters 4 .2 nan 2.3 .4 .1 .06 .3 nan\n"
+    "5 16000 nan nan nan 1 3 nan nan nan nan nan\n";
+
+/* Compares by the table of five orders. */
+static void compare_with_five(const Tree *tree, MorphometryComparison comparison[])
 {
-    (void)state;
-    write_table("# the head\nsource Nobody (1999)\nratios 2.44 nan 1.3\nfitted-from 1 1 3\n"
-                "1 1000 100 1.1 .1 80 2 nan .1 nan nan nan\n"
-                "2 1900 80 1.3 .7 24 1.2 nan .2 2.2 nan nan\n"
-                "3 4100 90 7.9 3 8 1.9 nan nan 2.4 .4 nan\n"
-                "4 8100 nan 13 nan 3 1 .6 .2 2.3 .1 .3\n"
-                "5 16000 nan nan nan 1 3 nan nan nan nan nan\n");
-    Tree tree = make_tree(HAND_N, hand_parent, hand_radius, hand_length);
-    TreeStatistics statistics = statistics_of(&tree);
+    TreeStatistics statistics = statistics_of(tree);
     Morphometry table;
-    MorphometryComparison beside;
     Err err;
+    write_table(five_orders);
     must(morphometry_read(&table, table_path, &err), &err);
     assert_string_equal(table.source, "Nobody (1999)");
     assert_int_equal(table.n, 5);
-    must(morphometry_compare(&statistics, &table, &beside, &err), &err);
+    must(morphometry_compare(tree, &statistics, &table, comparison, &err), &err);
+    morphometry_release(&table);
+    statistics_release(&statistics);
+}
+
+/* The tree's orders 1 to 3, of diameters 1.97, 4 and 8 mm, are orders 2 to 4 of the table. Both
+ * kinds of orders have the same vessels. */
+static void a_tree_stands_beside_the_published_orders_of_its_diameters(void **state)
+{
+    (void)state;
+    Tree tree = make_tree(HAND_N, hand_parent, hand_radius, hand_length);
+    TreeStatistics statistics = statistics_of(&tree);
+    MorphometryComparison beside[MORPHOMETRY_ORDERS];
+    compare_with_five(&tree, beside);
     const struct {
         MorphometryMeasure measure;
-        int order, published;
+        int order, published; /* order: the one found */
         double value, mean, room;
     } pairs[] = {
         {COMPARED_DIAMETER, 1, 2, 2 * 5.92 / 6, 1.9, 0.08},
@@ -245,29 +258,58 @@ static void a_tree_stands_beside_the_published_orders_of_its_diameters(void **st
         {COMPARED_VESSELS, 3, 4, 1, 1, 0.6},
         {COMPARED_DAUGHTERS, 1, 2, 1.0 / 6, 0.2, 0.05},
         {COMPARED_DAUGHTERS_1_LESS, 2, 3, 2.5, 2.4, 0.6},
-        {COMPARED_DAUGHTERS_2_LESS, 3, 4, 0, 0.1, 0.025},
+        {COMPARED_DAUGHTERS_1_LESS, 3, 4, 2, 2.3, 0.8}, /* of 2 standard errors */
+        {COMPARED_DAUGHTERS_2_LESS, 3, 4, 0, 0.1, 0.12},
         {COMPARED_NUMBER_RATIO, 0, 0, statistics.diameter_strahler_ratios.number, 2.44, 0.61},
         {COMPARED_LENGTH_RATIO, 0, 0, 9 / 7.5, 1.3, 0.325}};
-    for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
-        const MorphometryPair *pair = find_pair(&beside, pairs[i].measure, pairs[i].order);
-        assert_non_null(pair);
-        assert_int_equal(pair->published_order, pairs[i].published);
-        assert_true(fabs(pair->value - pairs[i].value) < 1e-12);
-        assert_close(pair->published.mean, pairs[i].mean);
-        assert_close(pair->room, pairs[i].room);
-        assert_true(pair->agrees == (pairs[i].measure != COMPARED_DAUGHTERS_2_LESS));
+    for (int kind = 0; kind < MORPHOMETRY_ORDERS; kind++) {
+        int more = kind == ORDERS_PUBLISHED;
+        for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
+            const MorphometryPair *pair = find_pair(&beside[kind], pairs[i].measure,
+                                                    pairs[i].order + (pairs[i].order ? more : 0));
+            assert_non_null(pair);
+            assert_int_equal(pair->published_order, pairs[i].published);
+            assert_true(fabs(pair->value - pairs[i].value) < 1e-12);
+            assert_close(pair->published.mean, pairs[i].mean);
+            assert_close(pair->room, pairs[i].room);
+            assert_true(pair->agrees);
+            assert_true(pair->agrees_strictly == (pairs[i].measure != COMPARED_DAUGHTERS_2_LESS));
+        }
+        /* not published, or not of a tree of three orders */
+        assert_null(find_pair(&beside[kind], COMPARED_DIAMETER_RATIO, 0));
+        assert_null(find_pair(&beside[kind], COMPARED_DAUGHTERS, 2 + more));
+        assert_null(find_pair(&beside[kind], COMPARED_DAUGHTERS_3_LESS, 3 + more));
+        size_t agreeing = 0, strictly = 0;
+        for (size_t i = 0; i < beside[kind].n; i++) {
+            agreeing += beside[kind].pair[i].agrees;
+            strictly += beside[kind].pair[i].agrees_strictly;
+        }
+        assert_int_equal(beside[kind].agreeing, agreeing);
+        assert_int_equal(beside[kind].agreeing_strictly, strictly);
+        free(beside[kind].pair);
     }
-    /* not published, or not of a tree of three orders */
-    assert_null(find_pair(&beside, COMPARED_DIAMETER_RATIO, 0));
-    assert_null(find_pair(&beside, COMPARED_DAUGHTERS, 2));
-    assert_null(find_pair(&beside, COMPARED_DAUGHTERS_3_LESS, 3));
-    size_t agreeing = 0;
-    for (size_t i = 0; i < beside.n; i++)
-        agreeing += beside.pair[i].agrees;
-    assert_int_equal(beside.agreeing, agreeing);
-    free(beside.pair);
-    morphometry_release(&table);
     statistics_release(&statistics);
+    tree_release(&tree);
+}
+
+/* A vessel of 1 mm, of order 1 by its diameter, with daughters of 4 mm (order 3) and 1 mm. */
+static void a_published_order_is_never_below_that_of_a_daughter(void **state)
+{
+    (void)state;
+    static const int32_t parent[] = {-1, 0, 1, 1};
+    static const double radius[] = {0.5, 0.5, 2, 0.5}, length[] = {0, 3, 2, 1};
+    Tree tree = make_tree(4, parent, radius, length);
+    MorphometryComparison beside[MORPHOMETRY_ORDERS];
+    compare_with_five(&tree, beside);
+    const MorphometryComparison *own = &beside[ORDERS_PUBLISHED];
+    assert_close(find_pair(own, COMPARED_LENGTH, 3)->value, 5);
+    assert_close(find_pair(own, COMPARED_VESSELS, 3)->value, 2);
+    assert_close(find_pair(own, COMPARED_LENGTH, 1)->value, 1);
+    assert_null(find_pair(own, COMPARED_LENGTH, 2));
+    assert_true(find_pair(own, COMPARED_DAUGHTERS_1_LESS, 3)->value == 0);
+    assert_close(find_pair(own, COMPARED_DAUGHTERS_2_LESS, 3)->value, 1);
+    for (int kind = 0; kind < MORPHOMETRY_ORDERS; kind++)
+        free(beside[kind].pair);
     tree_release(&tree);
 }
 
@@ -284,7 +326,11 @@ static void rejects_a_table_of_morphometry_that_is_none(void **state)
         {"source X\nratios 2 3\n", ":2: 'ratios 2 3' is neither a source, nor ratios"},
         {"source X\nfitted-from 1 1 2.5\n", ":2: 'fitted-from 1 1 2.5' is neither"},
         {"source X\nfitted-from 1 nan 1\n", ":2: 'fitted-from 1 nan 1' is neither"},
-        {"source X\nsource Y\n", ":2: 'source Y' is neither"}};
+        {"source X\nsource Y\n", ":2: 'source Y' is neither"},
+        {"source X\ndaughters 1 2 .1\n", ":2: 'daughters 1 2 .1' is neither"},
+        {"source X\n1 9 1 1 1 9 2 nan\ndaughters 2 2 .1\n", ":3: 'daughters 2 2 .1' is neither"},
+        {"source X\n1 9 1 1 1 9 2 nan\ndaughters 1 2\n", ":3: 'daughters 1 2' is neither"},
+        {"source X\n1 9 1 1 1 9 2 nan\ndaughters 1 2 .1 3 .1\n", ":3: 'daughters 1 2 .1 3"}};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         Morphometry table;
         Err err;
@@ -565,6 +611,7 @@ int main(void)
         cmocka_unit_test(tables_of_a_tree_by_hand),
         cmocka_unit_test(elements_spring_from_elements_of_their_own_and_higher_orders),
         cmocka_unit_test(a_tree_stands_beside_the_published_orders_of_its_diameters),
+        cmocka_unit_test(a_published_order_is_never_below_that_of_a_daughter),
         cmocka_unit_test(rejects_a_table_of_morphometry_that_is_none),
         cmocka_unit_test(a_perfect_tree_has_the_ratios_it_was_made_with),
         cmocka_unit_test(bifurcations_spread_as_a_calculator_says),

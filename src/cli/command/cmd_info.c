@@ -65,8 +65,12 @@ static void print_summary(const char *path, const TreeSummary *summary)
     if (summary->segments > 0)
         printf(", %s mm at the thinnest", READABLE(summary->min_radius_mm, 6));
     printf("\n");
-    printf("  orders        bifurcation level %d, Strahler %d\n", summary->max_level,
-           summary->max_strahler);
+    if (summary->has.orders)
+        printf("  orders        bifurcation level %d, Strahler %d\n", summary->max_level,
+               summary->max_strahler);
+    else
+        printf("  loops         %zu; the maximum level is %d, and there are no Strahler orders\n",
+               summary->loops, summary->max_level);
     if (summary->has.terminal_pressure)
         printf("  terminals at  %.9g to %.9g mmHg\n", summary->terminal_pressure_min_mmhg,
                summary->terminal_pressure_max_mmhg);
@@ -171,10 +175,10 @@ static void print_network(const TreeReading *reading)
                reading->network.against == 1 ? " is" : "s are");
 }
 
-static void print_roots(const TreeReading *reading)
+static void print_roots(const TreeReading *reading, size_t components)
 {
     enum { SHOWN = 5 };
-    printf("  components    %zu\n", reading->n_roots);
+    printf("  components    %zu\n", components);
     for (size_t i = 0; i < reading->n_roots && i < SHOWN; i++)
         printf("  root          %d, %s; %zu node%s\n", reading->root[i].id,
                root_reason_texts[reading->root[i].reason], reading->root[i].nodes,
@@ -212,11 +216,11 @@ static Status print_read_unit(const TreeReading *reading, Err *err)
     return STATUS_OK;
 }
 
-static Status print_reading(const TreeReading *reading, Err *err)
+static Status print_reading(const TreeReading *reading, size_t components, Err *err)
 {
     if (reading->is_network)
         print_network(reading);
-    print_roots(reading);
+    print_roots(reading, components);
     print_degrees(reading);
     TRY(print_read_unit(reading, err));
     for (size_t i = 0; i < reading->n_notes; i++)
@@ -266,10 +270,8 @@ static void print_spread(const char *title, const BifurcationSpread *spread)
            spread->median, spread->count);
 }
 
-static void print_statistics(const TreeStatistics *statistics)
+static void print_orders(const TreeStatistics *statistics)
 {
-    print_table("By bifurcation level (mean ± standard deviation of the vessels)", "level",
-                &statistics->by_level);
     print_table("By Strahler order (of the elements)", "order", &statistics->by_strahler);
     print_ratios(&statistics->strahler_ratios);
     print_table("By diameter-defined Strahler order (of the elements)", "order",
@@ -281,6 +283,14 @@ static void print_statistics(const TreeStatistics *statistics)
     printf("\nBifurcations (mean ± standard deviation)\n");
     print_spread("symmetry, r_thinnest / r_thickest", &statistics->symmetry);
     print_spread("area ratio, sum of r² / r_parent²", &statistics->area_ratio);
+}
+
+static void print_statistics(const TreeStatistics *statistics)
+{
+    print_table("By bifurcation level (mean ± standard deviation of the vessels)", "level",
+                &statistics->by_level);
+    if (statistics->has_orders)
+        print_orders(statistics);
     printf("  total volume %s mm³ in %zu vessels\n", READABLE(statistics->volume_mm3, 6),
            statistics->vessels);
 }
@@ -298,19 +308,25 @@ static void print_pair(const MorphometryPair *pair)
     print_number(10, pair->value, 4);
     printf("  ");
     print_mean(pair->published.mean, pair->room);
-    printf(" %s\n", pair->agrees ? "pass" : "fail");
+    printf(" %s\n", pair->agrees_strictly ? "pass" : pair->agrees ? "pass by 2 SE" : "fail");
 }
 
-static void print_morphometry(const Morphometry *table, const MorphometryComparison *comparison)
+static void print_morphometry(const InfoReport *report)
 {
-    printf("\nBeside %s\n", table->source);
-    printf("  (± the published standard deviation or, where there is none, %g %%; lengths in mm)\n",
-           100 * MORPHOMETRY_ROOM);
+    const MorphometryComparison *comparison = &report->comparison[report->orders];
+    printf("\nBeside %s, by %s orders\n", report->table.source,
+           morphometry_orders_names[report->orders]);
+    printf("  (± the published standard deviation; where there is none, the wider of %g %% and %d\n"
+           "  published standard errors (SE); lengths in mm)\n",
+           100 * MORPHOMETRY_ROOM, MORPHOMETRY_ERRORS);
     printf("  %-27s %5s %9s  %10s  %s\n", "of the elements", "order", "published", "this tree",
            "published");
     for (size_t i = 0; i < comparison->n; i++)
         print_pair(&comparison->pair[i]);
-    printf("  %zu of %zu pass\n", comparison->agreeing, comparison->n);
+    for (int k = 0; k < MORPHOMETRY_ORDERS; k++)
+        printf("  by %s orders: %zu of %zu pass (%zu without standard errors)\n",
+               morphometry_orders_names[k], report->comparison[k].agreeing, report->comparison[k].n,
+               report->comparison[k].agreeing_strictly);
 }
 
 /* ---- the command ----------------------------------------------------------------------------- */
@@ -319,11 +335,11 @@ static Status print(const InfoReport *report, Err *err)
 {
     print_summary(report->name, &report->summary);
     TRY(print_columns(&report->tree, err));
-    TRY(print_reading(&report->reading, err));
+    TRY(print_reading(&report->reading, report->summary.components, err));
     if (report->has_statistics)
         print_statistics(&report->statistics);
     if (report->has_morphometry)
-        print_morphometry(&report->table, &report->comparison);
+        print_morphometry(report);
     return STATUS_OK;
 }
 

@@ -9,7 +9,8 @@
 #include "options/talk.h"
 #include <string.h>
 
-/* A .glb of more triangles, about 3 MB, is large for a web page. */
+/* Maximum number of triangles of a .glb, about 3 MB, that is not too large for a web page. Above
+ * it, a note suggests --lod. */
 enum { MANY_TRIANGLES = 100000 };
 
 #define OF_SURFACE WHEN(NO_VOLUME) | WHEN(NO_PAGE)
@@ -69,6 +70,25 @@ static const Option own[] = {
      .when = OF_SURFACE,
      .help = "STL only: write the wall and each vessel end as a named solid, as text; a VTP file "
              "always has them"},
+    {.name = "layers",
+     SETS(WHOLE, ExportOptions, meshing.layers.n_layers),
+     .group = GROUP_VESSELS,
+     FROM_TO(1, LAYERS_MAX),
+     .when = WHEN(LAYERS) | OF_SURFACE,
+     .help = "number of layers of prisms along the wall, for flow solvers; gmsh and VTU only"},
+    {.name = "layer-thickness",
+     SETS(NUMBER, ExportOptions, meshing.layers.thickness),
+     .group = GROUP_VESSELS,
+     FROM_TO(0.001, 0.5),
+     .when = WHEN(LAYERS) | OF_SURFACE,
+     .help = "thickness of all layers together, as a fraction of the local radius; layers are "
+             "thinner where prisms would be inverted"},
+    {.name = "layer-growth",
+     SETS(NUMBER, ExportOptions, meshing.layers.growth),
+     .group = GROUP_VESSELS,
+     FROM_TO(1, 2),
+     .when = WHEN(LAYERS) | OF_SURFACE,
+     .help = "thickness of a layer divided by the thickness of the layer nearer to the wall"},
     {.name = "lattice",
      SETS(FLAG, ExportOptions, lattice),
      .group = GROUP_VESSELS,
@@ -108,11 +128,13 @@ static void set_defaults(void *options)
     ExportOptions *own_options = options;
     own_options->meshing.tolerance = MESHING_TOLERANCE;
     own_options->meshing.lod = 1;
+    own_options->meshing.layers = (LayerParams){.n_layers = 3, .thickness = 0.2, .growth = 1.3};
     own_options->meshing.look = "cast";
     coloring_set_defaults(&own_options->meshing.coloring);
 }
 
-/* Finds the emitter for the extension of the output, or the emitter that an option selects. */
+/* Finds the emitter that --parts or --lattice selects, or else the default emitter for the
+ * extension of the output. */
 static Status find_emitter(const ExportOptions *options, const Emitter **emitter, Err *err)
 {
     const Emitter *asked = NULL;
@@ -124,8 +146,9 @@ static Status find_emitter(const ExportOptions *options, const Emitter **emitter
     else
         return STATUS_OK;
     if (options->parts && !asked && !(*emitter)->has_parts)
-        return err_set(err, STATUS_USAGE,
-                       "--parts needs an .stl or .vtp output, whose formats store names of parts");
+        return err_set(
+            err, STATUS_USAGE,
+            "--parts needs an .stl, .vtp, .msh or .vtu output, whose formats store names of parts");
     if (options->lattice && !asked)
         return err_set(err, STATUS_USAGE,
                        "--lattice needs a .3mf output, whose format stores beams");
@@ -133,7 +156,8 @@ static Status find_emitter(const ExportOptions *options, const Emitter **emitter
     return STATUS_OK;
 }
 
-/* Reads --wall and --print. Returns STATUS_USAGE if one of them cannot have its effect. */
+/* Reads --wall and --print into options->settings. Errors: STATUS_USAGE if they exclude each other,
+ * or if the format or the model cannot have a wall or a print. */
 static Status read_print(ExportOptions *options, const Emitter *emitter, Err *err)
 {
     PrintSettings *print = &options->settings;
@@ -153,6 +177,10 @@ static Status read_print(ExportOptions *options, const Emitter *emitter, Err *er
         return err_set(
             err, STATUS_USAGE,
             "`print` needs an output that stores solids; .inc is part of a POV-Ray scene");
+    if (emitter->has_layers)
+        return err_set(err, STATUS_USAGE,
+                       "`%s`: layers of prisms need vessels as they are; write an .stl or .vtp",
+                       options->print ? "print" : "wall");
     if (print_is_joined(&print->params) && options->meshing.body != BODY_POTENTIAL)
         return err_set(
             err, STATUS_USAGE,
@@ -161,8 +189,8 @@ static Status read_print(ExportOptions *options, const Emitter *emitter, Err *er
     return STATUS_OK;
 }
 
-/* Finds the format of the mesh or the lines, and checks the options against it. Without an output,
- * a mesh in memory has what a PLY file holds. */
+/* Finds the emitter of the mesh or the lines, and checks the options against it. Without an output,
+ * the mesh is made as for a PLY file. */
 static Status plan_mesh(ExportOptions *options, const Emitter **emitter, Err *err)
 {
     if (options->output)
@@ -177,12 +205,15 @@ static Status plan_mesh(ExportOptions *options, const Emitter **emitter, Err *er
 }
 
 /* Reads the tree, and divides its segments into smooth curves if --smooth is on. `properties` are
- * those of the model that is exported. */
+ * the bits of ModelProperty of the exported model. */
 static Status read_tree(const ExportOptions *options, unsigned properties, Parsed *parsed,
                         PictureTree *of, Err *err)
 {
     TRY(picture_read_tree(&options->meshing.coloring, options->prune_radius_mm, parsed, of, err));
+    const TreeMeta said = blood_said(&options->meshing.coloring.blood);
     Status status = extension_apply(&options->extension, parsed, &of->tree, err);
+    if (status == STATUS_OK)
+        status = extension_say(&of->tree, &said, parsed->common.talk, err);
     if (status == STATUS_OK && options->smooth)
         status = picture_smooth_tree(of, model_with(properties), err);
     if (status != STATUS_OK)
@@ -270,7 +301,8 @@ Status export_run(void *options, Parsed *parsed, Err *err)
     return export_write(options, parsed, NULL, err);
 }
 
-/* Finds the emitter for the output; NULL for a volume, a page, or a file that is refused later. */
+/* Returns the emitter for the output; NULL for a volume or a page, and for an output that is
+ * refused later. */
 static const Emitter *emitter_of(const ExportOptions *options)
 {
     const Emitter *emitter;
@@ -281,7 +313,8 @@ static const Emitter *emitter_of(const ExportOptions *options)
     return found ? emitter : NULL;
 }
 
-/* Flow parts a mesh with named ends, and a page holds fields of the blood. */
+/* A mesh with named ends states the flow through each end, so options about flow have an effect. A
+ * page contains fields of the blood, so options about blood have an effect. */
 static Status settle(void *set, const Parsed *parsed, Err *err)
 {
     (void)parsed;
@@ -304,9 +337,10 @@ static ConditionSet unmet(const void *set, const Parsed *parsed)
     if (options->output && volume_format_find(options->output))
         return WHEN(COLORS) | WHEN(NO_VOLUME);
     return WHEN(VOLUME) |
-           (emitter ? UNLESS(emitter->has_colors, COLORS) | UNLESS(emitter->of_meshes, MESH) |
-                          UNLESS(emitter->has_parts, NAMED_PARTS)
-                    : 0);
+           (emitter
+                ? UNLESS(emitter->has_colors, COLORS) | UNLESS(emitter->of_meshes, MESH) |
+                      UNLESS(emitter->has_parts, NAMED_PARTS) | UNLESS(emitter->has_layers, LAYERS)
+                : 0);
 }
 
 static const OptionTable own_table = {OPTION_ROWS(own), .settle = settle, .unmet = unmet};

@@ -1,5 +1,5 @@
-/* The facts about a mesh, in notes for its user and in its manifest. Other programs read the keys
- * of the manifest, so that they stay when names in the code change. */
+/* Writes the facts about a mesh as notes for the user and as a manifest. Other programs read the
+ * keys of the manifest, so the keys must not change when names in the code change. */
 #include "job/export/meshing.h"
 #include "options/output.h"
 #include <math.h>
@@ -66,8 +66,8 @@ static json_t *with_wall(json_t *object, const MeshResult *made)
                      {"outer_mm3", json_number(made->printed.outer_mm3)});
 }
 
-/* Returns the minimum of the vessels' diameters, the walls' thicknesses and the gaps between
- * vessels, in mm. */
+/* Returns the size of the smallest feature, in mm: the minimum of the vessel diameters, wall
+ * thicknesses and gaps between vessels. */
 static double smallest_of(const MeshResult *made)
 {
     double least = made->changes.thinnest_mm;
@@ -104,6 +104,18 @@ static json_t *print_json(const MeshResult *made)
         {"smallest_feature_mm", json_number(smallest_of(made))}, {"size_mm", json_numbers(size, 3)},
         {"bed_mm", settings->bed_mm[2] > 0 ? json_numbers(settings->bed_mm, 3) : json_null()});
     return print_has_wall(&settings->params) ? with_wall(all, made) : all;
+}
+
+static json_t *layers_json(const PrismLayers *layers)
+{
+    /* A file with inverted prisms is not written. */
+    return JSON_OBJECT({"layers", json_count(layers->n_layers)},
+                       {"prisms", json_count(layers->n_prisms)}, {"inverted", json_count(0)},
+                       {"points_thinner", json_count(layers->n_thinner)},
+                       {"mean_thickness", json_number(layers->mean_part)},
+                       {"least_thickness", json_number(layers->least_part)},
+                       {"volume_mm3", json_number(layers->volume_mm3)},
+                       {"core_volume_mm3", json_number(layers->core_volume_mm3)});
 }
 
 static json_t *pair_list(const VesselTree *vessels, const MeshReport *report)
@@ -145,5 +157,7 @@ json_t *mesh_manifest(const MeshResult *made)
         {"tolerance", json_number(report->tolerance)},
         {"max_distance_mm", json_number(report->deviation.mm)},
         {"max_distance_over_radius", json_number(report->deviation.ratio)});
+    if (made->emitter->has_layers)
+        all = json_with(all, "layers", layers_json(&made->layers));
     return made->print ? json_with(all, "print", print_json(made)) : all;
 }

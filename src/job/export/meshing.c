@@ -1,5 +1,5 @@
-/* The surface is proved before anything is written: the manifest describes the same triangles that
- * go into the file, and a mesh that is not sound is not written. */
+/* The mesh is validated before any file is written. The manifest therefore describes exactly the
+ * triangles in the file, and an invalid mesh is never written. */
 #include "job/export/meshing.h"
 
 #include "derive/derive.h"
@@ -27,7 +27,7 @@ static Status take_vessels(MeshResult *made, VesselBody body, const Talk *talk, 
     return STATUS_OK;
 }
 
-/* Finds the colors of the segments, and the orders by which the file groups them. */
+/* Finds the colors of the segments, and the Strahler orders by which the file groups them. */
 static Status color_vessels(const MeshingOptions *options, const Talk *talk, MeshResult *made,
                             Err *err)
 {
@@ -42,7 +42,7 @@ static Status color_vessels(const MeshingOptions *options, const Talk *talk, Mes
 
 /* ---- triangles ------------------------------------------------------------------------------- */
 
-/* A surface that is being triangulated. */
+/* The job of triangulating a surface. */
 typedef struct Triangulation {
     MeshResult *made;
     MeshParams params;
@@ -120,6 +120,18 @@ static void say_result(const MeshResult *made, const Talk *talk)
         mesh_say_print(made, talk);
 }
 
+static void say_layers(const PrismLayers *layers, const Talk *talk)
+{
+    talk_note(talk, "%zu prisms, none of them inverted, fill %s mm\xC2\xB3", layers->n_prisms,
+              READABLE(layers->volume_mm3, 6));
+    if (layers->n_thinner)
+        talk_note(
+            talk,
+            "the layers are thinner than asked for at %zu of %zu points; their mean thickness "
+            "is %.3f of it, their smallest %.2g",
+            layers->n_thinner, layers->n_wall_points, layers->mean_part, layers->least_part);
+}
+
 static Status triangulate(const MeshingOptions *options, const Common *common, MeshResult *made,
                           Err *err)
 {
@@ -133,8 +145,14 @@ static Status triangulate(const MeshingOptions *options, const Common *common, M
     TRY(work_make(&work, &job, NULL, common->talk, err));
     TRY(meshreport_check(&made->report, &made->vessels, err));
     say_result(made, common->talk);
-    return made->emitter->has_parts ? meshends_find(&made->mesh, &made->vessels, &made->ends, err)
-                                    : STATUS_OK;
+    if (made->emitter->has_parts)
+        TRY(meshends_find(&made->mesh, &made->vessels, &made->ends, err));
+    if (!made->emitter->has_layers)
+        return STATUS_OK;
+    TRY(prismlayers_sweep(&made->mesh, &made->vessels, &options->layers, common->threads,
+                          &made->layers, err));
+    say_layers(&made->layers, common->talk);
+    return STATUS_OK;
 }
 
 Status meshing_make(const Emitter *emitter, const MeshingOptions *options, PictureTree *of,
@@ -170,6 +188,7 @@ void meshing_release(MeshResult *mesh)
     vesselmesh_release(&mesh->mesh);
     meshreport_release(&mesh->report);
     meshends_release(&mesh->ends);
+    prismlayers_release(&mesh->layers);
     printreport_release(&mesh->printed);
     free(mesh->thinned.at);
     free(mesh->longer.at);
@@ -183,6 +202,9 @@ static Status put_beside(const MeshResult *made, FileSlot files[], Err *err)
     work_put_json(&files[MESH_MANIFEST], mesh_manifest(made));
     if (files[MESH_GMSH].path)
         solver_gmsh(&made->ends, file_name(files[SCENE_FILE].path), &files[MESH_GMSH].text);
+    if (files[MESH_CORE].path)
+        solver_core(&made->ends, &made->layers, file_name(files[SCENE_FILE].path),
+                    &files[MESH_CORE].text);
     if (!made->emitter->has_parts)
         return STATUS_OK;
     TRY(solver_ends(&made->ends, &made->of.tree, &made->vessels, &made->said,
@@ -201,6 +223,7 @@ static Status put_mesh(const void *job, const char *command, FileSlot files[], E
                                .orders = made->orders.value,
                                .anatomy = emitter->has_colors ? &made->anatomy : NULL,
                                .ends = &made->ends,
+                               .layers = &made->layers,
                                .digits = EMIT_DIGITS,
                                .command = command};
     if (emitter->of_meshes)

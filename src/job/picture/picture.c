@@ -487,6 +487,7 @@ static bool has_segments(const Tree *tree)
 static Status prune(double radius_mm, bool keep_whole, PictureTree *of, Err *err)
 {
     Tree rest;
+    TRY(reading_refuse_loops(&of->tree, of->path, "--prune-radius", err));
     TRY(tree_pruned(&of->tree, radius_mm, &rest, err));
     of->pruned = of->tree.n - rest.n;
     if (of->pruned > 0 && !has_segments(&rest)) {
@@ -647,30 +648,50 @@ Status picture_widths(const PictureOptions *options, const PictureTree *tree, si
     return STATUS_OK;
 }
 
-/* Makes the geometry of one frame of a beating tree. */
+/* Makes the geometry of a tree whose vessels have other radii. */
+static Status widened_geometry(const PictureOptions *options, const PictureSource *source,
+                               const double *factors, const Common *common, Geometry *geometry,
+                               StageReport *report, Err *err)
+{
+    PictureSource at = *source;
+    double *radius;
+    TRY(mem_calloc(&radius, at.of.tree.n, sizeof *radius, "radii", err));
+    for (size_t i = 0; i < at.of.tree.n; i++)
+        radius[i] = at.of.tree.radius_mm[i] * factors[i];
+    at.of.tree.radius_mm = radius;
+    Status status = picture_geometry(options, &at, common, geometry, report, err);
+    free(radius);
+    return status;
+}
+
+/* Makes the geometry of one frame of a beating tree. Cylinders and spheres are those of the tree at
+ * rest with other radii, as in a scene of POV-Ray that contains all frames. */
 static Status beating_geometry(const PictureOptions *options, const PictureSource *source,
                                const Common *common, Geometry *geometry, StageReport *report,
                                Err *err)
 {
     const Tree *tree = &source->of.tree;
     PictureOptions still = *options;
-    PictureSource at = *source;
+    const size_t frame = (size_t)options->coloring.frame - 1;
     Series series;
-    double *widths = NULL, *radius = NULL;
-    Status status = STATUS_OK;
+    Geometry resting = {0};
+    double *widths = NULL;
+    Status status;
     still.beat = 0;
     TRY(tree_series(tree, "dilation", &series, err));
-    const size_t frames = series.n, frame = (size_t)options->coloring.frame - 1;
+    const size_t frames = series.n;
     series_release(&series);
-    TRY_GOTO(picture_widths(options, &source->of, frames, &widths, err));
-    TRY_GOTO(mem_calloc(&radius, tree->n, sizeof *radius, "radii", err));
-    for (size_t i = 0; i < tree->n; i++)
-        radius[i] = tree->radius_mm[i] * (frame < frames ? widths[frame * tree->n + i] : 1);
-    at.of.tree.radius_mm = radius;
-    status = picture_geometry(&still, &at, common, geometry, report, err);
+    TRY(picture_widths(options, &source->of, frames, &widths, err));
+    const double *factors = &widths[(frame < frames ? frame : 0) * tree->n];
+    if (model_is_of((SceneModel)options->model, MODEL_CYLINDERS | MODEL_BALLS)) {
+        TRY_GOTO(picture_geometry(&still, source, common, &resting, report, err));
+        status = geometry_beaten(&resting, factors, geometry, err);
+    } else {
+        status = widened_geometry(&still, source, factors, common, geometry, report, err);
+    }
 done:
+    geometry_release(&resting);
     free(widths);
-    free(radius);
     return status;
 }
 
@@ -727,6 +748,8 @@ Status picture_appearance(const PictureOptions *options, const PictureSource *so
     else
         TRY(coloring_by_radius(&tree, &source->look, &made, err));
     Status status = blend(options, &made, err);
+    if (status == STATUS_OK && options->beat > 0 && made.n_frames > 0)
+        status = picture_widths(options, &source->of, made.n_frames, &made.widths, err);
     if (status == STATUS_OK)
         *appearance = made;
     else

@@ -581,6 +581,7 @@ const Command command_pulse = {
     .min_operands = 1,
     .max_operands = 1,
     .reads_tree = true,
+    .trees_only = true,
     .size = sizeof(PulsingOptions),
     .set_defaults = set_defaults,
     .tables = {{&table, 0}, {&blood_table, offsetof(PulsingOptions, blood)}},

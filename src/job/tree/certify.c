@@ -227,6 +227,7 @@ const Command command_certify = {
     .min_operands = 1,
     .max_operands = 1,
     .reads_tree = true,
+    .trees_only = true,
     .size = sizeof(CertifyOptions),
     .tables = {{&table, 0}},
 };

@@ -50,6 +50,18 @@ static void set_defaults(void *options)
 
 static void note_grown(const Talk *talk, const GrowReport *report, const GrowParams *params)
 {
+    const FillReport *fill = &report->fill;
+    if (fill->elements > 0) {
+        talk_note(talk,
+                  "filled with %zu elements in %.3g s: %zu terminals, %.4g ml/min; the terminals' "
+                  "flows vary by %.0f %% of their mean (standard deviation)",
+                  fill->elements, report->seconds, report->terminals, fill->flow_ml_min,
+                  100 * fill->flow_spread);
+        if (fill->left_out > 0)
+            talk_warn(talk, "%zu elements have no place in the tissue shape and were left out",
+                      fill->left_out);
+        return;
+    }
     talk_note(talk, "grew %zu terminals in %.3g s: target %.6g, root radius %.4g mm",
               report->terminals, report->seconds, report->target, report->root_radius_mm);
     if (params->pair_mm > 0)
@@ -95,6 +107,17 @@ static json_t *change_json(const GrowReport *report)
                      report->least_change, "max", report->greatest_change);
 }
 
+/* Returns JSON null if the tree was not filled. */
+static json_t *fill_json(const FillReport *fill)
+{
+    if (fill->elements == 0)
+        return json_null();
+    return JSON_OBJECT({"elements", json_count(fill->elements)},
+                       {"left_out", json_count(fill->left_out)},
+                       {"flow_ml_min", json_number(fill->flow_ml_min)},
+                       {"flow_spread", json_number(fill->flow_spread)});
+}
+
 static Status make_report(const GrowOptions *options, int threads, const GrowReport *report,
                           MadeTree *made, Err *err)
 {
@@ -112,7 +135,8 @@ static Status make_report(const GrowOptions *options, int threads, const GrowRep
             {"complete", json_boolean(report->complete)},
             {"threads", json_integer(threads ? threads : threads_available())},
             {"radius_change", change_json(report)}, {"apart_mm", json_number(report->apart_mm)},
-            {"terminal_pairs", pairs_json(&made->tree)}, {"bound", bound}),
+            {"terminal_pairs", pairs_json(&made->tree)}, {"fill", fill_json(&report->fill)},
+            {"bound", bound}),
         err);
 }
 
@@ -180,6 +204,7 @@ const Command command_grow = {
                 "  corcast grow --inlet 0,50 --inlet 30,-40 --inlet-shares 0.7,0.3 -o forest.swc\n",
     .needs_output = true,
     .reads_tree = true,
+    .trees_only = true,
     .size = sizeof(GrowOptions),
     .set_defaults = set_defaults,
     .tables = {{&own_table, 0},

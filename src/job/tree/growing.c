@@ -6,7 +6,9 @@
 #include "job/tree/tree_domain.h"
 #include "options/reading.h"
 #include "options/talk.h"
+#include "options/templates.h"
 #include <stdio.h>
+#include <stdlib.h>
 
 static const char *const tosses[] = {
     [GROW_TOSS_SEGMENT] = "segment", [GROW_TOSS_TERMINAL] = "terminal", NULL};
@@ -147,6 +149,27 @@ static const Option rows[] = {
      .group = GROUP_OPTIMUM,
      .help = "what a new terminal must keep its distance from: segment (all vessel axes), terminal "
              "(only other terminals)"},
+    {.name = "fill",
+     SETS(LOOKUP, Growing, fill),
+     .group = GROUP_TREE,
+     .needs = "from stages",
+     .list = "morphometries",
+     .help = "do not grow, but fill the tree with small vessels drawn from a published data set: "
+             "its name, or the path of a file of your own (with a '/')"},
+    {.name = "fill-from",
+     SETS(WHOLE, Growing, fill_from),
+     FROM_TO(2, 100),
+     .group = GROUP_TREE,
+     .argument = "ORDER",
+     .needs = "fill stages",
+     .help = "--fill: vessels of this order and above are grown; lower orders are drawn"},
+    {.name = "fill-to",
+     SETS(WHOLE, Growing, fill_to),
+     FROM_TO(1, 99),
+     .group = GROUP_TREE,
+     .argument = "ORDER",
+     .needs = "fill stages",
+     .help = "--fill: the lowest order that is drawn"},
     {.name = "partial",
      SETS(FLAG, Growing, params.partial),
      .group = GROUP_TREE,
@@ -164,6 +187,8 @@ const OptionTable growing_table = {OPTION_ROWS(rows), .unmet = unmet};
 void growing_set_defaults(Growing *growing)
 {
     growing->params = grow_defaults();
+    growing->fill_from = 7;
+    growing->fill_to = 1;
 }
 
 /* Takes the parameters that no option gives from the metadata of the tree to continue. */
@@ -242,10 +267,34 @@ static void warn_of_partial(const Parsed *parsed, const Err *why)
     talk_warn(parsed->common.talk, "%s", named.text);
 }
 
+/* Fills the tree of --from. */
+static Status fill(Growing *growing, const Parsed *parsed, Tree *tree, GrowReport *report, Err *err)
+{
+    Progress progress;
+    Morphometry table = {0};
+    char *path = NULL;
+    TRY(template_file("fill", "morphometry", growing->fill, ".txt", &path, err));
+    Status status = morphometry_read(&table, path, err);
+    free(path);
+    if (status != STATUS_OK)
+        return status;
+    const FillRules rules = {&table, file_name(growing->fill), growing->fill_from,
+                             growing->fill_to};
+    growing->params.progress = progress_report;
+    growing->params.progress_context = &progress;
+    progress_start(&progress, "filling", parsed->common.talk);
+    status = fill_tree(&growing->params, &rules, &growing->domain, tree, report, err);
+    progress_end(&progress);
+    morphometry_release(&table);
+    return status;
+}
+
 Status growing_run(Growing *growing, const Parsed *parsed, Tree *tree, GrowReport *report, Err *err)
 {
     Progress progress;
     const Talk *talk = parsed->common.talk;
+    if (growing->fill)
+        return fill(growing, parsed, tree, report, err);
     TRY(grow_params_check(&growing->params, &growing->domain, err));
     if (growing->params.pair_mm > 0 && growing->domain.dimension == 2)
         talk_note(talk, "two trees that must not cross block each other in the plane: usually only "

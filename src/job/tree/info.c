@@ -10,7 +10,8 @@
 typedef struct InfoOptions {
     bool json, stats, bound;
     const char *morphometry; /* NULL: beside none */
-    const char *output;      /* CSV file for the statistics; NULL: none */
+    MorphometryOrders orders;
+    const char *output; /* CSV file for the statistics; NULL: none */
     BloodOptions blood;
 } InfoOptions;
 
@@ -27,7 +28,8 @@ static const Option own[] = {
      .otherwise = "",
      .needs = "stats",
      .help =
-         "with --stats: also write the statistics as CSV, a row per level or order and quantity"},
+         "with --stats: also write the statistics as CSV, a row per quantity of each level, order, "
+         "vessel, branch point and end"},
     {.name = "bound",
      SETS(FLAG, InfoOptions, bound),
      .group = GROUP_OPTIMUM,
@@ -38,6 +40,12 @@ static const Option own[] = {
      .list = "morphometries",
      .help = "compare the tree with a published data set: its name, or the path of a file of your "
              "own (with a '/')"},
+    {.name = "orders",
+     SETS(CHOICE, InfoOptions, orders),
+     .choices = morphometry_orders_names,
+     .needs = "morphometry",
+     .help = "orders of the tree that are compared: published (by the diameters of the data set), "
+             "found (by the diameters of the tree)"},
     {.name = "lambda",
      SETS_KEY(InfoOptions, blood.said.number[META_LAMBDA], blood.said.known, LAMBDA),
      .group = GROUP_OPTIMUM,
@@ -56,19 +64,24 @@ static Status compare(const char *name, InfoReport *report, Err *err)
     free(path);
     TRY(status);
     report->has_morphometry = true;
-    return morphometry_compare(&report->statistics, &report->table, &report->comparison, err);
+    return morphometry_compare(&report->tree, &report->statistics, &report->table,
+                               report->comparison, err);
 }
 
 static Status measure(const InfoOptions *options, InfoReport *report, Err *err)
 {
     const Tree *tree = &report->tree;
     const TreeMeta said = blood_said(&options->blood);
+    if (options->morphometry || options->bound)
+        TRY(reading_refuse_loops(tree, report->name, options->bound ? "--bound" : "--morphometry",
+                                 err));
     TRY(derive_summary(tree, &said, &report->summary, err));
     if (options->bound)
         TRY(bound_json(tree, &said, &report->bound, err));
     if (options->stats || options->morphometry)
         TRY(derive_statistics(tree, &report->statistics, err));
     report->has_statistics = options->stats;
+    report->orders = options->orders;
     return options->morphometry ? compare(options->morphometry, report, err) : STATUS_OK;
 }
 
@@ -116,27 +129,73 @@ static void put_ratios(Text *text, const char *name, const OrderRatios *ratios)
     put_count(text, name, -1, "length_ratio", ratios->length);
 }
 
-static Status write_statistics(const TreeStatistics *statistics, const char *path, Err *err)
+static void put_orders(Text *text, const TreeStatistics *statistics)
 {
     const size_t n = statistics->by_diameter_strahler.n;
-    const BifurcationSpread *symmetry = &statistics->symmetry, *area = &statistics->area_ratio;
     char name[40];
+    put_table(text, "strahler", &statistics->by_strahler);
+    put_ratios(text, "strahler", &statistics->strahler_ratios);
+    put_table(text, "diameter-strahler", &statistics->by_diameter_strahler);
+    put_ratios(text, "diameter-strahler", &statistics->diameter_strahler_ratios);
+    for (size_t i = 0; i < n * n; i++) {
+        snprintf(name, sizeof name, "daughters_of_order_%zu", i % n + 1);
+        if (i % n <= i / n)
+            put_count(text, "diameter-strahler", (int)(i / n) + 1, name, statistics->daughters[i]);
+    }
+}
+
+static void put_vessels(Text *text, const Tree *tree, const TreeStatistics *statistics)
+{
+    for (size_t v = 0; v < statistics->vessels; v++) {
+        const VesselRow *vessel = &statistics->vessel[v];
+        const int number = (int)v + 1;
+        put_count(text, "vessel", number, "start_id", tree->id[vessel->start]);
+        put_count(text, "vessel", number, "end_id", tree->id[vessel->end]);
+        put_count(text, "vessel", number, "radius_mm", vessel->radius_mm);
+        put_count(text, "vessel", number, "length_mm", vessel->length_mm);
+        put_count(text, "vessel", number, "straightness", vessel->chord_mm / vessel->length_mm);
+        if (vessel->chord_mm > 0)
+            put_count(text, "vessel", number, "tortuosity", vessel->length_mm / vessel->chord_mm);
+    }
+}
+
+/* Appends the ends and the branch points, which are numbered by their ids. */
+static void put_points(Text *text, const Tree *tree, const TreeStatistics *statistics)
+{
+    for (size_t i = 0; i < tree->n; i++) {
+        const int degree = statistics->degree[i];
+        const char *table = degree == 1 ? "end" : "branch-point";
+        if (degree != 1 && degree < 3)
+            continue;
+        put_count(text, table, tree->id[i], "x_mm", tree->position[i].x);
+        put_count(text, table, tree->id[i], "y_mm", tree->position[i].y);
+        put_count(text, table, tree->id[i], "z_mm", tree->position[i].z);
+        put_count(text, table, tree->id[i], "degree", degree);
+    }
+}
+
+static Status write_statistics(const Tree *tree, const TreeStatistics *statistics, const char *path,
+                               Err *err)
+{
+    const BifurcationSpread *symmetry = &statistics->symmetry, *area = &statistics->area_ratio;
     Text text = TEXT_INIT;
     text_puts(&text, "table,number,quantity,mean,sd\n");
     put_count(&text, "tree", -1, "vessels", (double)statistics->vessels);
     put_count(&text, "tree", -1, "volume_mm3", statistics->volume_mm3);
-    put_row(&text, "tree", -1, "symmetry", (Spread){symmetry->mean, symmetry->sd});
-    put_row(&text, "tree", -1, "area_ratio", (Spread){area->mean, area->sd});
-    put_table(&text, "level", &statistics->by_level);
-    put_table(&text, "strahler", &statistics->by_strahler);
-    put_ratios(&text, "strahler", &statistics->strahler_ratios);
-    put_table(&text, "diameter-strahler", &statistics->by_diameter_strahler);
-    put_ratios(&text, "diameter-strahler", &statistics->diameter_strahler_ratios);
-    for (size_t i = 0; i < n * n; i++) {
-        snprintf(name, sizeof name, "daughters_of_order_%zu", i % n + 1);
-        if (i % n <= i / n)
-            put_count(&text, "diameter-strahler", (int)(i / n) + 1, name, statistics->daughters[i]);
+    put_count(&text, "tree", -1, "components", (double)statistics->components);
+    put_count(&text, "tree", -1, "loops", (double)statistics->loops);
+    if (statistics->has_orders) {
+        put_row(&text, "tree", -1, "symmetry", (Spread){symmetry->mean, symmetry->sd});
+        put_row(&text, "tree", -1, "area_ratio", (Spread){area->mean, area->sd});
     }
+    for (int k = 0; k <= READ_MAX_DEGREE; k++)
+        if (statistics->nodes_of_degree[k] > 0)
+            put_count(&text, "degree", k, "nodes", (double)statistics->nodes_of_degree[k]);
+    put_table(&text, "level", &statistics->by_level);
+    if (statistics->has_orders)
+        put_orders(&text, statistics);
+    put_vessels(&text, tree, statistics);
+    put_points(&text, tree, statistics);
     Status status = file_write_text(path, &text, err);
     text_release(&text);
     return status;
@@ -149,8 +208,9 @@ Status info_make(void *options, Parsed *parsed, InfoReport *report, Err *err)
     TRY(reading_tree(parsed, report->name, &report->tree, &report->reading, err));
     TRY(blood_settle(&own_options->blood, parsed, &report->tree, err));
     TRY(measure(own_options, report, err));
-    return own_options->output ? write_statistics(&report->statistics, own_options->output, err)
-                               : STATUS_OK;
+    return own_options->output
+               ? write_statistics(&report->tree, &report->statistics, own_options->output, err)
+               : STATUS_OK;
 }
 
 void inforeport_release(InfoReport *report)
@@ -158,7 +218,8 @@ void inforeport_release(InfoReport *report)
     reading_release(&report->reading);
     statistics_release(&report->statistics);
     morphometry_release(&report->table);
-    free(report->comparison.pair);
+    for (int k = 0; k < MORPHOMETRY_ORDERS; k++)
+        free(report->comparison[k].pair);
     json_decref(report->bound);
     tree_release(&report->tree);
 }

@@ -54,14 +54,14 @@ static json_t *notes_json(const TreeReading *reading)
 
 static json_t *network_json(const NetworkReading *network)
 {
-    return JSON_OBJECT({"points", json_count(network->points)},
-                       {"lines", json_count(network->lines)},
-                       {"lines_against", json_count(network->against)},
-                       {"merged_points", json_count(network->merged)},
-                       {"unused_points", json_count(network->unused)},
-                       {"lines_without_length", json_count(network->without_length)},
-                       {"repeated_lines", json_count(network->repeated)},
-                       {"loops", json_count(network->loops)}, {"cuts", cuts_json(network)});
+    return JSON_OBJECT(
+        {"points", json_count(network->points)}, {"lines", json_count(network->lines)},
+        {"lines_against", json_count(network->against)},
+        {"merged_points", json_count(network->merged)},
+        {"unused_points", json_count(network->unused)},
+        {"lines_without_length", json_count(network->without_length)},
+        {"repeated_lines", json_count(network->repeated)},
+        {"loops", json_count(network->loops + network->links)}, {"cuts", cuts_json(network)});
 }
 
 static json_t *reading_json(const TreeReading *reading)
@@ -138,19 +138,26 @@ static json_t *connectivity_json(const TreeStatistics *statistics)
 
 static json_t *statistics_json(const TreeStatistics *statistics)
 {
+    const bool orders = statistics->has_orders;
+    const OrderRatios none = {NAN, NAN, NAN};
+    size_t branch_points = 0;
+    for (int k = 3; k <= READ_MAX_DEGREE; k++)
+        branch_points += statistics->nodes_of_degree[k];
     return JSON_OBJECT(
         {"vessels", json_count(statistics->vessels)},
         {"volume_mm3", json_number(statistics->volume_mm3)},
         {"by_level", table_json("level", &statistics->by_level)},
         {"by_strahler", table_json("order", &statistics->by_strahler)},
-        {"strahler_ratios", ratios_json(&statistics->strahler_ratios)},
+        {"strahler_ratios", ratios_json(orders ? &statistics->strahler_ratios : &none)},
         {"by_diameter_strahler", table_json("order", &statistics->by_diameter_strahler)},
-        {"diameter_strahler_ratios", ratios_json(&statistics->diameter_strahler_ratios)},
+        {"diameter_strahler_ratios",
+         ratios_json(orders ? &statistics->diameter_strahler_ratios : &none)},
         {"connectivity", connectivity_json(statistics)},
         {"diameter_rounds", json_integer(statistics->diameter_rounds)},
         {"diameter_orders_converged", json_boolean(statistics->diameter_orders_converged)},
-        {"symmetry", bifurcations_json(&statistics->symmetry)},
-        {"area_ratio", bifurcations_json(&statistics->area_ratio)});
+        {"symmetry", orders ? bifurcations_json(&statistics->symmetry) : json_null()},
+        {"area_ratio", orders ? bifurcations_json(&statistics->area_ratio) : json_null()},
+        {"branch_points", json_count(branch_points)});
 }
 
 /* ---- morphometry ----------------------------------------------------------------------------- */
@@ -164,17 +171,31 @@ static json_t *pair_json(const MorphometryPair *pair)
                        {"published_order", other}, {"value", json_number(pair->value)},
                        {"published_mean", json_number(pair->published.mean)},
                        {"published_sd", json_number(pair->published.sd)},
-                       {"room", json_number(pair->room)}, {"pass", json_boolean(pair->agrees)});
+                       {"published_se", json_number(pair->se)}, {"room", json_number(pair->room)},
+                       {"pass", json_boolean(pair->agrees)},
+                       {"pass_strict", json_boolean(pair->agrees_strictly)});
 }
 
-static json_t *morphometry_json(const Morphometry *table, const MorphometryComparison *comparison)
+/* Adds the counts of a comparison to an object. */
+static json_t *with_counts(json_t *object, const MorphometryComparison *comparison)
 {
-    json_t *pairs = json_array();
-    for (size_t i = 0; i < comparison->n; i++)
-        pairs = json_with_item(pairs, pair_json(&comparison->pair[i]));
-    return JSON_OBJECT({"source", json_text(table->source)},
-                       {"compared", json_count(comparison->n)},
-                       {"passed", json_count(comparison->agreeing)}, {"rows", pairs});
+    return JSON_WITH(object, {"compared", json_count(comparison->n)},
+                     {"passed", json_count(comparison->agreeing)},
+                     {"passed_strict", json_count(comparison->agreeing_strictly)});
+}
+
+static json_t *morphometry_json(const InfoReport *report)
+{
+    const MorphometryComparison *chosen = &report->comparison[report->orders];
+    json_t *pairs = json_array(), *counts = json_object();
+    for (size_t i = 0; i < chosen->n; i++)
+        pairs = json_with_item(pairs, pair_json(&chosen->pair[i]));
+    for (int k = 0; k < MORPHOMETRY_ORDERS; k++)
+        counts = json_with(counts, morphometry_orders_names[k],
+                           with_counts(json_object(), &report->comparison[k]));
+    json_t *json = JSON_OBJECT({"source", json_text(report->table.source)},
+                               {"orders", json_text(morphometry_orders_names[report->orders])});
+    return JSON_WITH(with_counts(json, chosen), {"counts", counts}, {"rows", pairs});
 }
 
 /* ---- the whole ------------------------------------------------------------------------------- */
@@ -200,8 +221,7 @@ json_t *inforeport_json(const InfoReport *report)
     if (report->has_statistics)
         json = json_with(json, "stats", statistics_json(&report->statistics));
     if (report->has_morphometry)
-        json =
-            json_with(json, "morphometry", morphometry_json(&report->table, &report->comparison));
+        json = json_with(json, "morphometry", morphometry_json(report));
     json = json_with(json, "reading", reading_json(&report->reading));
     return report->bound ? json_with(json, "bound", json_incref(report->bound)) : json;
 }

@@ -48,7 +48,8 @@ static void put_left_out(const Tree *tree, const char *path, const TreeLosses *l
                   {lost->terminal_flow, "the key terminal_flow"},
                   {lost->root_values, "the roots' values"},
                   {lost->root_radii, "the roots' own radii"},
-                  {lost->isolated_roots, "the roots without segments"}};
+                  {lost->isolated_roots, "the roots without segments"},
+                  {lost->link_radii, "the radii of segments that close loops"}};
     size_t n = 0;
     for (size_t k = 0; k < tree->n_columns; k++)
         if (!tree_format_stores(path, &tree->column[k]))

@@ -137,6 +137,7 @@ const Command command_refine = {
     .max_operands = 1,
     .needs_output = true,
     .reads_tree = true,
+    .trees_only = true,
     .size = sizeof(RefineOptions),
     .set_defaults = set_defaults,
     .tables = {{&own_table, 0}, {&refining_table, offsetof(RefineOptions, refining)}},

@@ -24,6 +24,7 @@ typedef struct Staging {
     const char *last_name; /* the stage before; NULL: none */
     LogCurve last_gamma;
     double last_p_term;
+    bool last_fill;        /* the stage before fills its tree */
     size_t last_terminals; /* 0 if a minimum radius may have ended its growth */
 } Staging;
 
@@ -101,7 +102,12 @@ done:
 static Status check_stage(const Staging *staging, const char *name, Err *err)
 {
     const GrowParams *params = &staging->growing->params;
-    if (!staging->last_name)
+    if (staging->last_fill)
+        return err_set(err, STATUS_INPUT,
+                       "%s: [%s]: the stage before it, [%s], fills the tree; that must be the last "
+                       "stage",
+                       staging->path, name, staging->last_name);
+    if (!staging->last_name || staging->growing->fill)
         return STATUS_OK;
     if (!params->keep_radii && !logcurve_is_same(&params->gamma, &staging->last_gamma))
         return refuse_gamma(staging, name, err);
@@ -125,6 +131,7 @@ static void take_note(Staging *staging, const char *name)
     const GrowParams *params = &staging->growing->params;
     staging->last_name = name;
     staging->last_gamma = params->gamma;
+    staging->last_fill = staging->growing->fill != NULL;
     staging->last_p_term = params->blood.p_term_mmhg;
     staging->last_terminals = params->min_radius_mm > 0 ? 0 : params->terminals;
 }

@@ -19,6 +19,7 @@ json_t *summary_json(const TreeSummary *summary)
     json_t *json = JSON_OBJECT(
         {"segments", json_count(summary->segments)}, {"terminals", json_count(summary->terminals)},
         {"bifurcations", json_count(summary->bifurcations)}, {"roots", json_count(summary->roots)},
+        {"components", json_count(summary->components)}, {"loops", json_count(summary->loops)},
         {"total_length_mm", json_number(summary->total_length_mm)},
         {"volume_mm3", json_number(summary->volume_mm3)},
         {"target", summary->has.target ? json_number(summary->target) : json_null()},
@@ -27,7 +28,7 @@ json_t *summary_json(const TreeSummary *summary)
         {"root_radius_mm", json_number(summary->root_radius_mm)},
         {"min_radius_mm", json_number(summary->min_radius_mm)},
         {"max_level", json_integer(summary->max_level)},
-        {"max_strahler", json_integer(summary->max_strahler)},
+        {"max_strahler", summary->has.orders ? json_integer(summary->max_strahler) : json_null()},
         {"bbox_mm", json_pack("[[f,f,f],[f,f,f]]", box->low.x, box->low.y, box->low.z, box->high.x,
                               box->high.y, box->high.z)});
     if (gamma->n > 1)

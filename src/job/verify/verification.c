@@ -22,6 +22,7 @@ void verification_release(Verification *v)
     if (v->moments.n_frames > 0)
         v->scene.appearance = v->moments;
     scene_release(&v->scene);
+    geometry_release(&v->resting);
     planes_release(&v->povray);
     planes_release(&v->native);
     frame_release(&v->exact);
@@ -148,6 +149,12 @@ Status verification_pick_frame(Verification *v, int frame, Err *err)
         return STATUS_OK;
     v->moments = *all;
     v->scene.appearance = appearance_frame(&v->moments, (size_t)v->frame - 1);
+    if (!v->scene.appearance.widths)
+        return STATUS_OK;
+    Geometry beaten;
+    TRY(geometry_beaten(&v->scene.geometry, v->scene.appearance.widths, &beaten, err));
+    v->resting = v->scene.geometry;
+    v->scene.geometry = beaten;
     return STATUS_OK;
 }
 
@@ -225,6 +232,8 @@ static Status draw_both(Verification *v, const SceneTexts *texts, Err *err)
     Progress progress;
     if (v->moments.n_frames > 0)
         written.appearance = v->moments;
+    if (v->moments.widths)
+        written.geometry = v->resting;
     const PovrayTilesParams params = {.emit = emit_params(v, &written, texts),
                                       .folder = v->options->folder,
                                       .clock = clock_of(v),

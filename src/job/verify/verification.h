@@ -42,6 +42,8 @@ typedef struct Verification {
     const char *tree;    /* path of the tree, for sentences */
     char *name;          /* name of the tree, for the report */
     Scene scene;         /* the scene at the time step that is compared */
+    Geometry resting;    /* geometry of the vessels at rest, if they beat; the scene's geometry is
+                          * then that at the time step */
     Appearance moments;  /* appearance at all moments if the colors change with time; the scene's
                           * appearance is then a view of it */
     int frame;           /* number of the moment, from 1 on */

@@ -19,6 +19,7 @@ static const Option own[] = {
      .is_told = true,
      .help = "folder for the report, the POV-Ray scene, and the color, depth, normal and id images "
              "of both renderers"},
+    {BEAT_OPTION(VerifyOptions, picture.beat)},
     {.name = "bits",
      SETS(WHOLE, VerifyOptions, bits),
      .range = &bits_range,
@@ -68,6 +69,9 @@ static Status check(const VerifyOptions *options, Err *err)
                        "-o: a report is a folder and cannot be written to standard output");
     TRY(bits_check(options->bits, err));
     TRY(picture_check_povray(picture, err));
+    if (picture->beat > 0 &&
+        !model_is_of((SceneModel)picture->model, MODEL_CYLINDERS | MODEL_BALLS))
+        return err_set(err, STATUS_USAGE, "--beat is for --model rounded and cylinders");
     if (options->witness == WITNESS_TACHYON)
         TRY(emit_check_model(emitter_find("tachyon", false), (SceneModel)picture->model, err));
     return picture_fits(picture->size.pixels[0], picture->size.pixels[1], 120, err);

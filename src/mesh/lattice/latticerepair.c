@@ -10,7 +10,8 @@
  * be, too [G. Bertrand: Simple points, topological numbers and geodesic neighborhoods in cubic
  * grids, 1994, for tetrahedra]. The outside of a sphere is a ball and stays one, so the inside is
  * one, too. A tunnel is entered from both its ends, and is closed where its points are nearest to
- * the surface. */
+ * the surface. If the vessels of the region form loops, as many tunnels are wanted. The widest ones
+ * are opened then: at a point whose neighbours outside have two parts, and those inside one. */
 #include "mesh/lattice/latticerepair.h"
 
 #include <stdlib.h>
@@ -71,9 +72,9 @@ static bool join_triangle(const Repairer *repairer, PointLink *link, const uint3
     return true;
 }
 
-/* Fills the link of a point. Returns true if its points outside are connected, and those inside,
- * too. */
-static bool is_simple(const Repairer *repairer, uint32_t point, PointLink *link)
+/* Fills the link of a point. Returns true if its points inside are connected, and its points
+ * outside have this number of parts. */
+static bool has_parts(const Repairer *repairer, uint32_t point, int outside, PointLink *link)
 {
     const IndexLists *around = &repairer->around;
     int parts[2] = {0};
@@ -84,7 +85,7 @@ static bool is_simple(const Repairer *repairer, uint32_t point, PointLink *link)
     for (uint32_t i = 0; i < link->n; i++)
         if (link->root[i] == i)
             parts[repairer->states.items[link->points[i]] == POINT_OUTSIDE]++;
-    return parts[0] == 1 && parts[1] == 1;
+    return parts[0] == 1 && parts[1] == outside;
 }
 
 static Status push_neighbors(Repairer *repairer, const Lattice *lattice, uint32_t point, Err *err)
@@ -129,20 +130,20 @@ static bool seed(Repairer *repairer, const Lattice *lattice, const Octree *tree)
     return outside;
 }
 
+static Status add_outside(Repairer *repairer, const Lattice *lattice, uint32_t point, Err *err)
+{
+    repairer->states.items[point] = POINT_OUTSIDE;
+    return push_neighbors(repairer, lattice, point, err);
+}
+
 static Status grow(Repairer *repairer, const Lattice *lattice, Err *err)
 {
     PointLink link;
-    repairer->heap.n = 0;
-    for (uint32_t i = 0; i < lattice->n_points; i++)
-        if (repairer->states.items[i] == POINT_OUTSIDE)
-            TRY(push_neighbors(repairer, lattice, i, err));
     while (repairer->heap.n) {
         uint32_t point = heap_pop(&repairer->heap).value;
         repairer->states.items[point] = POINT_INSIDE;
-        if (!is_simple(repairer, point, &link))
-            continue;
-        repairer->states.items[point] = POINT_OUTSIDE;
-        TRY(push_neighbors(repairer, lattice, point, err));
+        if (has_parts(repairer, point, 1, &link))
+            TRY(add_outside(repairer, lattice, point, err));
     }
     return STATUS_OK;
 }
@@ -150,6 +151,21 @@ static Status grow(Repairer *repairer, const Lattice *lattice, Err *err)
 static bool is_closed_up(const Repairer *repairer, const Lattice *lattice, size_t point)
 {
     return lattice->points[point].height >= 0 && repairer->states.items[point] != POINT_OUTSIDE;
+}
+
+/* Opens the widest tunnel that the outside was kept from, if there is one: adds the point that is
+ * farthest from the surface. */
+static Status open_tunnel(Repairer *repairer, const Lattice *lattice, Err *err)
+{
+    PointLink link;
+    uint32_t best = 0;
+    for (uint32_t i = 1; i < lattice->n_points; i++)
+        if (is_closed_up(repairer, lattice, i) && has_parts(repairer, i, 2, &link) &&
+            (best == 0 || lattice->points[i].height > lattice->points[best].height))
+            best = i;
+    if (best)
+        TRY(add_outside(repairer, lattice, best, err));
+    return grow(repairer, lattice, err);
 }
 
 /* Returns the maximum distance from the surface of the points that the outside has not reached, in
@@ -198,7 +214,13 @@ Status repair_apply(Repairer *repairer, Lattice *lattice, const JunctionSurface 
     TRY(prepare(repairer, lattice, surface, err));
     if (!seed(repairer, lattice, surface->tree))
         return STATUS_OK;
+    repairer->heap.n = 0;
+    for (uint32_t i = 0; i < lattice->n_points; i++)
+        if (repairer->states.items[i] == POINT_OUTSIDE)
+            TRY(push_neighbors(repairer, lattice, i, err));
     TRY(grow(repairer, lattice, err));
+    for (size_t i = 0; i < surface->plan->n_loops; i++)
+        TRY(open_tunnel(repairer, lattice, err));
     *width = find_width(repairer, lattice);
     if (*width > farthest)
         return STATUS_OK;

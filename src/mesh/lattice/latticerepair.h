@@ -2,7 +2,8 @@
  *
  * Such tunnels are artefacts: where two vessels part at a small angle, the groove between them is
  * narrower than any cell. The repair marks lattice points in the tunnels as inside, so that the
- * surface gets the topology of a ball. Private to the module mesh. */
+ * surface gets the topology of a ball, with one tunnel per loop of the region's vessels. Private to
+ * the module mesh. */
 #ifndef CORCAST_MESH_LATTICE_LATTICEREPAIR_H
 #define CORCAST_MESH_LATTICE_LATTICEREPAIR_H
 
@@ -19,9 +20,9 @@ typedef struct Repairer {
 
 void repairer_release(Repairer *repairer);
 
-/* Replaces the surface that lattice_make left in the patch by a surface that bounds a ball. The
- * stubs of the region lead out of the ball through their planes. Lattice points in tunnels and
- * hollows become inside.
+/* Replaces the surface that lattice_make left in the patch by a surface that bounds a ball with
+ * n_loops tunnels. The stubs of the region lead out of the ball through their planes. Lattice
+ * points in other tunnels and in hollows become inside.
  *
  * farthest  in local radii: a tunnel with a point farther from the surface is too wide to be an
  *           artefact of the lattice. If there is one, the patch stays as it was.

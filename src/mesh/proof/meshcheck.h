@@ -19,6 +19,15 @@ double vesselmesh_volume(const VesselMesh *mesh);
 MUST_CHECK Status meshcheck_trees(const VesselTree *tree, uint32_t **trees, size_t *n_trees,
                                   Err *err);
 
+/* Counts the independent loops of each tree: segments - nodes + 1.
+ *
+ * trees   per segment: the number of its tree, from meshcheck_trees.
+ * loops   receives, per node that numbers a tree, the number of the tree's loops, and 0 for other
+ *         nodes; free it with free().
+ * Errors  STATUS_MEMORY. */
+MUST_CHECK Status meshcheck_loops(const VesselTree *tree, const uint32_t *trees, uint32_t **loops,
+                                  Err *err);
+
 /* Fills components, genus, euler, open_edges, volume_mm3 and bridges of the report.
  *
  * trees    per segment: a number of its tree, as from meshcheck_trees.

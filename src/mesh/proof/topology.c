@@ -136,6 +136,24 @@ done:
     return status;
 }
 
+Status meshcheck_loops(const VesselTree *tree, const uint32_t *trees, uint32_t **loops, Err *err)
+{
+    bool *is_counted;
+    TRY(mem_calloc(&is_counted, tree->n_nodes, sizeof *is_counted, "nodes", err));
+    Status status = mem_calloc(loops, tree->n_nodes, sizeof **loops, "nodes", err);
+    for (size_t i = 0; i < tree->n_segments && status == STATUS_OK; i++) {
+        uint32_t *own = &(*loops)[trees[i]];
+        *own += 1;
+        for (int end = 0; end < 2; end++) {
+            bool *counted = &is_counted[tree->nodes[i][end]];
+            *own -= !*counted && tree->nodes[i][end] != trees[i];
+            *counted = true;
+        }
+    }
+    free(is_counted);
+    return status;
+}
+
 Status meshcheck_topology(const VesselMesh *mesh, const uint32_t *trees, MeshReport *report,
                           Err *err)
 {

@@ -174,6 +174,17 @@ static int compare_numbers(const void *a, const void *b)
     return (one > other) - (one < other);
 }
 
+/* Lists a node that the search reached, unless a path that is not longer is known. Few nodes are
+ * within the reach, so the list itself is searched. */
+static Status reach(EndSearch *search, BlendStep step, Err *err)
+{
+    for (size_t i = 0; i < search->steps.n; i++)
+        if (search->steps.items[i].node == step.node &&
+            search->steps.items[i].path_mm <= step.path_mm)
+            return STATUS_OK;
+    return ARRAY_PUSH(&search->steps, "terms", err, step);
+}
+
 /* Lists the segments on this side that blend with the segment at one of the nodes where it blends.
  * A segment may be listed several times. */
 static Status list_others(EndSearch *search, const FreeEndInput *input, uint32_t segment, Err *err)
@@ -181,8 +192,7 @@ static Status list_others(EndSearch *search, const FreeEndInput *input, uint32_t
     const VesselTree *tree = input->tree;
     const IndexLists *blending = input->blending, *incident = input->incident;
     double limit = BLEND_REACH * search->self->radius_mm;
-    TRY(ARRAY_PUSH(&search->steps, "terms", err,
-                   (BlendStep){tree->nodes[segment][search->end], segment, 0}));
+    TRY(reach(search, (BlendStep){tree->nodes[segment][search->end], segment, 0}, err));
     for (size_t i = 0; i < search->steps.n; i++) {
         const BlendStep step = search->steps.items[i];
         for (uint32_t k = blending->first[step.node]; k < blending->first[step.node + 1]; k++) {
@@ -196,7 +206,7 @@ static Status list_others(EndSearch *search, const FreeEndInput *input, uint32_t
             double path_mm = step.path_mm + segment_length(&tree->segments[next]);
             uint32_t beyond = tree->nodes[next][!segment_end_at(tree, next, step.node)];
             if (next != step.from && path_mm <= limit)
-                TRY(ARRAY_PUSH(&search->steps, "terms", err, (BlendStep){beyond, next, path_mm}));
+                TRY(reach(search, (BlendStep){beyond, next, path_mm}, err));
         }
     }
     return STATUS_OK;

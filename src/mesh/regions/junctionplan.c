@@ -62,19 +62,26 @@ static Status add_node(JunctionPlanner *planner, uint32_t node, Err *err)
     return STATUS_OK;
 }
 
+/* Orders terms by segment, and the two stubs of one segment by index. */
 static int compare_terms(const void *a, const void *b)
 {
     const PotentialTerm *one = a, *other = b;
-    return (one->segment > other->segment) - (one->segment < other->segment);
+    int order = (one->segment > other->segment) - (one->segment < other->segment);
+    return order ? order : (one->stub > other->stub) - (one->stub < other->stub);
 }
 
-/* Returns the index of a segment's term, or n_terms. The terms are ordered by segment. */
-static uint32_t term_index(const JunctionField *field, uint32_t segment)
+/* Returns the index of the first term whose segment has at least this index. */
+static uint32_t first_term(const JunctionField *field, uint32_t segment)
 {
-    const PotentialTerm key = {.segment = segment};
-    const PotentialTerm *found =
-        bsearch(&key, field->terms, field->n_terms, sizeof key, compare_terms);
-    return found ? (uint32_t)(found - field->terms) : field->n_terms;
+    uint32_t low = 0, high = field->n_terms;
+    while (low < high) {
+        uint32_t middle = low + (high - low) / 2;
+        if (field->terms[middle].segment < segment)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
 }
 
 static Status add_group(JunctionPlanner *planner, uint32_t node, Err *err)
@@ -82,12 +89,13 @@ static Status add_group(JunctionPlanner *planner, uint32_t node, Err *err)
     JunctionField *field = &planner->plan.field;
     const uint32_t *first = planner->junctions->blending.first;
     TRY(mem_reserve(&field->members, &planner->member_capacity,
-                    planner->n_members + first[node + 1] - first[node], sizeof *field->members,
-                    "terms", err));
+                    planner->n_members + 2 * (first[node + 1] - first[node]),
+                    sizeof *field->members, "terms", err));
     for (uint32_t i = first[node]; i < first[node + 1]; i++) {
-        uint32_t index = term_index(field, planner->junctions->blending.items[i]);
-        if (index < field->n_terms)
-            field->members[planner->n_members++] = index;
+        uint32_t segment = planner->junctions->blending.items[i];
+        for (uint32_t k = first_term(field, segment);
+             k < field->n_terms && field->terms[k].segment == segment; k++)
+            field->members[planner->n_members++] = k;
     }
     field->first[++field->n_groups] = (uint32_t)planner->n_members;
     return STATUS_OK;
@@ -130,6 +138,7 @@ Status junctionplan_make(const VesselTree *tree, const Junctions *junctions, uin
         TRY_GOTO(add_node(&planner, nodes[i], err));
     qsort(plan->field.terms, plan->field.n_terms, sizeof *plan->field.terms, compare_terms);
     TRY_GOTO(add_groups(&planner, nodes, n_nodes, err));
+    plan->n_loops = plan->field.n_terms - plan->n_stubs + 1 - n_nodes;
     *out = *plan;
     return STATUS_OK;
 done:

@@ -150,6 +150,17 @@ static bool place_planes(const Divider *divider, uint32_t segment)
     return is_clear || divider->junctions->is_close[segment];
 }
 
+/* Returns true if a segment with both its ends in one region may be a tube all the same: its two
+ * stubs must not overlap, and the region's nodes must be connected without it. They are, because
+ * nodes are joined along the spanning forest. */
+static bool may_return(const Divider *divider, uint32_t segment)
+{
+    const FieldSegment *self = &divider->tree->segments[segment];
+    const double *plane = divider->junctions->plane[segment];
+    return !treeorder_has(&divider->order, divider->tree, segment) &&
+           plane[0] + plane[1] + 2 * STUB_TAIL * self->radius_mm <= segment_length(self);
+}
+
 /* Joins the nodes of each segment that is not a tube. */
 static bool join_short(Divider *divider)
 {
@@ -157,8 +168,9 @@ static bool join_short(Divider *divider)
     bool changed = false;
     for (uint32_t i = 0; i < tree->n_segments; i++) {
         uint32_t a = tree->nodes[i][0], b = tree->nodes[i][1];
-        divider->junctions->is_tube[i] = !divider->is_whole[i] && place_planes(divider, i) &&
-                                         root_of(divider, a) != root_of(divider, b);
+        divider->junctions->is_tube[i] =
+            !divider->is_whole[i] && place_planes(divider, i) &&
+            (root_of(divider, a) != root_of(divider, b) || may_return(divider, i));
         if (!divider->junctions->is_tube[i])
             changed |= join_nodes(divider, a, b);
     }

@@ -28,7 +28,8 @@ typedef struct Junctions {
     double (*plane)[2]; /* per segment that is a tube: distance of the plane at each end from that
                          * end, mm; 0 at a flat end */
     bool *is_tube;      /* per segment: it is cut into stubs and a tube. If false, all of it belongs
-                         * to one region. */
+                         * to one region. Both stubs may be in one region, if a loop leads out of
+                         * the region and back. */
     bool *is_close;     /* per segment: its two planes are close together, where the surface is only
                          * nearly a cylinder, so that the rims are not circles */
     double max_shift;   /* maximum distance by which other vessels move a tube's surface, in units
@@ -73,6 +74,7 @@ typedef struct JunctionPlan {
     JunctionField field; /* owned; a stub's term continues STUB_TAIL radii beyond its plane */
     BranchStub *stubs;   /* owned */
     size_t n_stubs;
+    size_t n_loops; /* number of independent loops of the region's whole segments */
 } JunctionPlan;
 
 /* How far a stub's term continues beyond its plane, in units of the radius: far enough that the

@@ -1,5 +1,7 @@
 /* Nodes are taken from a stack, so that all that lies beyond a node follows it at once; then, from
- * the last node to the first, each tells the one before it where its part of the order ends. */
+ * the last node to the first, each tells the one before it where its part of the order ends. In a
+ * network a node may be on the stack several times. It takes its position and its previous node
+ * from the copy that was pushed last. */
 #include "mesh/regions/treeorder.h"
 
 #include <stdlib.h>
@@ -21,12 +23,14 @@ static uint32_t order_tree(const VesselTree *tree, const IndexLists *incident, u
     order->previous[root] = root;
     while (top) {
         uint32_t node = stack[--top];
+        if (order->position[node] != UINT32_MAX)
+            continue;
         order->position[node] = order->last_beyond[node] = n;
         ordered[n++] = node;
         for (uint32_t i = incident->first[node]; i < incident->first[node + 1]; i++) {
             uint32_t segment = incident->items[i];
             uint32_t next = tree->nodes[segment][!segment_end_at(tree, segment, node)];
-            if (next == order->previous[node])
+            if (order->position[next] != UINT32_MAX)
                 continue;
             order->previous[next] = node;
             stack[top++] = next;
@@ -44,7 +48,7 @@ Status treeorder_make(const VesselTree *tree, const IndexLists *incident, TreeOr
     TRY_GOTO(mem_calloc(&order.position, tree->n_nodes, sizeof *order.position, "nodes", err));
     TRY_GOTO(
         mem_calloc(&order.last_beyond, tree->n_nodes, sizeof *order.last_beyond, "nodes", err));
-    TRY_GOTO(mem_calloc(&stack, tree->n_nodes, sizeof *stack, "nodes", err));
+    TRY_GOTO(mem_calloc(&stack, tree->n_segments + 1, sizeof *stack, "nodes", err));
     TRY_GOTO(mem_calloc(&ordered, tree->n_nodes, sizeof *ordered, "nodes", err));
     for (uint32_t i = 0; i < tree->n_nodes; i++)
         order.position[i] = UINT32_MAX;
@@ -65,12 +69,31 @@ done:
     return status;
 }
 
+bool treeorder_has(const TreeOrder *order, const VesselTree *tree, uint32_t segment)
+{
+    const uint32_t *ends = tree->nodes[segment];
+    return order->previous[ends[1]] == ends[0] || order->previous[ends[0]] == ends[1];
+}
+
+/* Returns the end of a segment that is nearer to the middle of another segment. */
+static int nearer_end(const FieldSegment *segment, const FieldSegment *other)
+{
+    Vec3 middle = vec3_scale(vec3_add(other->a, other->b), 0.5);
+    return vec3_distance(segment->b, middle) < vec3_distance(segment->a, middle);
+}
+
 int treeorder_end_towards(const TreeOrder *order, const VesselTree *tree, uint32_t segment,
                           uint32_t other)
 {
-    const uint32_t *ends = tree->nodes[segment];
+    const uint32_t *ends = tree->nodes[segment], *its = tree->nodes[other];
+    for (int end = 0; end < 2; end++)
+        if (its[0] == ends[end] || its[1] == ends[end])
+            return end;
     int outer = order->previous[ends[1]] == ends[0];
-    bool beyond = treeorder_is_beyond(order, tree->nodes[other][0], ends[outer]) &&
-                  treeorder_is_beyond(order, tree->nodes[other][1], ends[outer]);
-    return beyond ? outer : !outer;
+    bool beyond[2];
+    for (int end = 0; end < 2; end++)
+        beyond[end] = treeorder_is_beyond(order, its[end], ends[outer]);
+    if (!treeorder_has(order, tree, segment) || beyond[0] != beyond[1])
+        return nearer_end(&tree->segments[segment], &tree->segments[other]);
+    return beyond[0] ? outer : !outer;
 }

@@ -1,4 +1,5 @@
-/* An order of the nodes of a forest that answers on which side of a segment a node is.
+/* An order of the nodes of a forest that answers on which side of a segment a node is. A network
+ * with loops is ordered along a spanning forest.
  *
  * The root of a tree is its node of lowest index. The nodes are listed in depth-first order from
  * the root, so the nodes beyond a given node are consecutive. Private to the module mesh. */
@@ -34,8 +35,12 @@ static inline bool treeorder_is_beyond(const TreeOrder *order, uint32_t node, ui
            order->position[node] <= order->last_beyond[through];
 }
 
+/* Returns true if a segment is in the spanning forest. Its ends must be different nodes. */
+bool treeorder_has(const TreeOrder *order, const VesselTree *tree, uint32_t segment);
+
 /* Returns the end of `segment`, 0 or 1, through which the path to `other` leads. Both segments must
- * be in one tree. */
+ * be in one tree. If a loop holds both segments, that is the end at which they meet, or else the
+ * end that is nearer to `other`. */
 int treeorder_end_towards(const TreeOrder *order, const VesselTree *tree, uint32_t segment,
                           uint32_t other);
 

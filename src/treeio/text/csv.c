@@ -10,16 +10,18 @@
 #include <string.h>
 #include <strings.h>
 
-typedef enum NodeColumn { ID, PARENT, X, Y, Z, RADIUS, TYPE, SHARE, NODE_COLUMNS } NodeColumn;
+typedef enum NodeColumn { ID, PARENT, X, Y, Z, RADIUS, TYPE, SHARE, LINK, NODE_COLUMNS } NodeColumn;
 
 static const char *const node_columns[NODE_COLUMNS] = {
-    [ID] = "id",  [PARENT] = "parent",    [X] = "x_mm",    [Y] = "y_mm",
-    [Z] = "z_mm", [RADIUS] = "radius_mm", [TYPE] = "type", [SHARE] = "flow_share"};
+    [ID] = "id",     [PARENT] = "parent",    [X] = "x_mm",
+    [Y] = "y_mm",    [Z] = "z_mm",           [RADIUS] = "radius_mm",
+    [TYPE] = "type", [SHARE] = "flow_share", [LINK] = "same_as"};
 
 enum { LAST_NEEDED = RADIUS };
 
 const char *const csv_segment_titles[CSV_SEGMENT_TITLES + 1] = {
-    "id", "parent", "x0_mm", "y0_mm", "z0_mm", "x1_mm", "y1_mm", "z1_mm", "radius_mm", "length_mm"};
+    "id",    "parent", "x0_mm",     "y0_mm",     "z0_mm",  "x1_mm",
+    "y1_mm", "z1_mm",  "radius_mm", "length_mm", "same_as"};
 
 /* A column of the file. */
 typedef struct CsvColumn {
@@ -69,29 +71,40 @@ static Status read_titles(CsvReader *reader, char *line, Err *err)
                       "values of a row", err);
 }
 
-/* An empty parent is none. */
+/* A row of the file. */
+typedef struct CsvRow {
+    BuilderNode node;
+    double share;
+    int64_t link; /* TREE_NO_LINK: none */
+} CsvRow;
+
+/* An empty parent or link is none. */
 static Status read_id(NodeColumn column, const char *text, int64_t *id, Err *err)
 {
-    bool is_parent = column == PARENT;
+    bool may_lack = column != ID;
     int32_t number = TREE_NO_PARENT;
-    if (*text || !is_parent)
-        TRY(field_integer(node_columns[column], text, is_parent ? TREE_NO_PARENT : 1, TREE_MAX_ID,
+    if (*text || !may_lack)
+        TRY(field_integer(node_columns[column], text, may_lack ? TREE_NO_PARENT : 1, TREE_MAX_ID,
                           &number, err));
     *id = number;
     return STATUS_OK;
 }
 
-static Status read_node_field(NodeColumn column, const char *text, BuilderNode *node, double *share,
-                              Err *err)
+static Status read_node_field(NodeColumn column, const char *text, CsvRow *row, Err *err)
 {
+    BuilderNode *node = &row->node;
     double *const number[NODE_COLUMNS] = {[X] = &node->position.x,
                                           [Y] = &node->position.y,
                                           [Z] = &node->position.z,
                                           [RADIUS] = &node->radius_mm,
-                                          [SHARE] = share};
+                                          [SHARE] = &row->share};
     bool not_negative = column == RADIUS || column == SHARE;
-    if (column == ID || column == PARENT)
-        return read_id(column, text, column == ID ? &node->id : &node->parent, err);
+    if (column == ID || column == PARENT || column == LINK)
+        return read_id(column, text,
+                       column == ID       ? &node->id
+                       : column == PARENT ? &node->parent
+                                          : &row->link,
+                       err);
     if (column == TYPE)
         return field_integer("type", text, INT32_MIN, INT32_MAX, &node->type, err);
     if (column == SHARE && !*text)
@@ -103,21 +116,22 @@ static Status read_node_field(NodeColumn column, const char *text, BuilderNode *
 static Status read_row(CsvReader *reader, size_t line, char *text, Err *err)
 {
     TreeBuilder *builder = reader->builder;
-    BuilderNode node = {.type = TREE_VESSEL_TYPE, .record = line};
-    double share = 0;
+    CsvRow row = {.node = {.type = TREE_VESSEL_TYPE, .record = line}, .link = TREE_NO_LINK};
     TRY(csv_row(text, ',', reader->field, reader->columns.n, err));
     for (size_t k = 0; k < reader->columns.n; k++) {
         const CsvColumn *column = &reader->columns.items[k];
         if (column->meaning < NODE_COLUMNS)
-            TRY(read_node_field((NodeColumn)column->meaning, reader->field[k], &node, &share, err));
+            TRY(read_node_field((NodeColumn)column->meaning, reader->field[k], &row, err));
         else
             TRY(field_value(column->title, reader->field[k],
                             &reader->value[column->meaning - NODE_COLUMNS], err));
     }
-    TRY(builder_node(builder, &node, err));
+    TRY(builder_node(builder, &row.node, err));
     for (size_t k = 0; k < builder->n_columns; k++)
         TRY(builder_value(builder, k, reader->value[k], err));
-    return share > 0 ? builder_share(builder, node.id, share, line, err) : STATUS_OK;
+    if (row.link != TREE_NO_LINK)
+        TRY(builder_link(builder, row.node.id, row.link, line, err));
+    return row.share > 0 ? builder_share(builder, row.node.id, row.share, line, err) : STATUS_OK;
 }
 
 static Status read_line(void *context, size_t number, char *line, Err *err)
@@ -194,12 +208,14 @@ static void put_title(const TreeColumn *column, Text *text)
     text_puts(text, "\"");
 }
 
+/* Appends the first `n` titles, and the title of links if the tree has them. */
 static void put_titles(const Tree *tree, const char *const *titles, size_t n, Text *text)
 {
     for (size_t k = 0; k < n; k++) {
         text_puts(text, k ? "," : "");
         text_puts(text, titles[k]);
     }
+    text_puts(text, tree->link ? ",same_as" : "");
     for (size_t k = 0; k < tree->n_columns; k++)
         put_title(&tree->column[k], text);
     text_puts(text, "\n");
@@ -220,9 +236,19 @@ static void put_position(Vec3 position, Text *text)
     put_number(position.z, text);
 }
 
+/* Appends the id that the link of a node names, in a tree with links. */
+static void put_link(const Tree *tree, size_t i, Text *text)
+{
+    if (tree_is_link(tree, i))
+        text_printf(text, ",%d", tree->id[tree->link[i]]);
+    else
+        text_puts(text, tree->link ? "," : "");
+}
+
 /* Appends the values of the tree's columns, and ends the row. */
 static void put_values(const Tree *tree, size_t i, Text *text)
 {
+    put_link(tree, i, text);
     for (size_t k = 0; k < tree->n_columns; k++)
         put_number(tree->column[k].value[i], text);
     text_puts(text, "\n");
@@ -232,7 +258,7 @@ Status csv_write(const Tree *tree, Text *text, Err *err)
 {
     (void)err;
     comments_put(&tree->meta, NULL, text);
-    put_titles(tree, node_columns, tree->flow_share ? NODE_COLUMNS : SHARE, text);
+    put_titles(tree, node_columns, tree->flow_share ? LINK : SHARE, text);
     for (size_t i = 0; i < tree->n; i++) {
         text_printf(text, "%d,%d", tree->id[i],
                     tree_is_segment(tree, i) ? tree->id[tree->parent[i]] : -1);
@@ -251,7 +277,7 @@ Status csv_segments_write(const Tree *tree, Text *text, Err *err)
 {
     (void)err;
     comments_put(&tree->meta, NULL, text);
-    put_titles(tree, csv_segment_titles, CSV_SEGMENT_TITLES, text);
+    put_titles(tree, csv_segment_titles, CSV_SEGMENT_TITLES - 1, text);
     for (size_t i = 0; i < tree->n; i++) {
         if (!tree_is_segment(tree, i))
             continue;

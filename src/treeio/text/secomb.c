@@ -64,6 +64,7 @@ static const DialectField fields[] = {
     {BOUNDARY, 0, FIELD_OF_POINT, "node", "", false},
     {BOUNDARY, BOUNDARY_TYPE, FIELD_NUMBER, "boundary type", "", false},
     {BOUNDARY, BOUNDARY_VALUE, FIELD_NUMBER, "boundary value", "", false},
+    {BOUNDARY, 3, FIELD_NUMBER, "boundary hematocrit", "", false},
 };
 
 /* Counts the rows of each table, and passes over the line that names its columns. */

@@ -39,6 +39,7 @@ typedef enum Role {
     ROLE_DIAMETER,
     ROLE_TYPE,
     ROLE_SHARE,
+    ROLE_LINK,
     ROLES,
     ROLE_VALUE = ROLES, /* a column of the tree */
 } Role;
@@ -79,6 +80,7 @@ static const struct {
                        true},
     [ROLE_TYPE] = {{"type"}, NODES, false},
     [ROLE_SHARE] = {{"flow_share"}, NODES, false},
+    [ROLE_LINK] = {{"same_as"}, NODES | VESSELS, false},
 };
 
 /* What an option says: the column called so, or number so, is that. */
@@ -101,7 +103,7 @@ typedef struct TableColumn {
     LengthUnit unit;   /* of a length; LENGTH_UNITS: the title says none */
 } TableColumn;
 
-/* A node and the name of its parent. */
+/* A node, and the name of its parent. For a link, of the node that is the same point. */
 typedef struct TableChild {
     size_t point, line;
     char *parent;
@@ -121,6 +123,7 @@ typedef struct Table {
     char **field;       /* room for one row */
     double radius_factor;
     ARRAY(TableChild) children;
+    ARRAY(TableChild) links;
     size_t rows;
 } Table;
 
@@ -129,6 +132,7 @@ static void release_table(Table *table)
     ARRAY_RELEASE(&table->columns);
     free(table->field);
     ARRAY_RELEASE(&table->children);
+    ARRAY_RELEASE(&table->links);
 }
 
 /* ---- what options say ---- */
@@ -311,14 +315,15 @@ static Status add_value(Table *table, size_t k, Err *err)
     return status;
 }
 
-/* Whether the table begins with the titles of a CSV of segments, and options say nothing of it. */
-static bool begins_as_own(const Table *table)
+/* Returns the number of titles of a CSV of segments with which the table begins. 0 if it begins
+ * with other titles, or if options say something about columns. */
+static size_t own_titles(const Table *table)
 {
     size_t k = 0;
     while (k < table->columns.n && k < CSV_SEGMENT_TITLES && table->columns.items[k].title &&
            strcmp(table->columns.items[k].title, csv_segment_titles[k]) == 0)
         k++;
-    return k == CSV_SEGMENT_TITLES && table->sayings->option.n == 0;
+    return k + 1 >= CSV_SEGMENT_TITLES && table->sayings->option.n == 0 ? k : 0;
 }
 
 /* Whether a column is not what its title says: tables of this kind have no such column, or it is a
@@ -331,7 +336,7 @@ static bool is_needless(const Table *table, Role role)
 /* Those that are needless are values, and so are numbers of the table's elements. */
 static Status add_values(Table *table, Err *err)
 {
-    table->first_value = begins_as_own(table) ? CSV_SEGMENT_TITLES : 0;
+    table->first_value = own_titles(table);
     for (size_t k = table->first_value; k < table->columns.n; k++) {
         TableColumn *column = &table->columns.items[k];
         if (column->role == ROLE_ID && table->kind != NODES)
@@ -513,6 +518,16 @@ static int64_t id_of(const char *field)
     return field && integer_parse(field, 1, TREE_MAX_ID, &id) ? id : 0;
 }
 
+/* Notes the link of the element that was read last, if it has one. */
+static Status note_link(Table *table, GraphPoint *point, size_t at, Err *err)
+{
+    char *link = field_of(table, ROLE_LINK);
+    point->is_link = link && *link && strcmp(link, "-1") != 0;
+    return point->is_link
+               ? ARRAY_PUSH(&table->links, "links", err, (TableChild){at, point->record, link})
+               : STATUS_OK;
+}
+
 static Status read_node(Table *table, size_t line, Err *err)
 {
     Graph *graph = table->graph;
@@ -530,6 +545,7 @@ static Status read_node(Table *table, size_t line, Err *err)
         TRY(field_integer("type", type, INT32_MIN, INT32_MAX, &point.type, err));
     if (share && *share)
         TRY(field_number("flow_share", share, 0, &point.flow_share, err));
+    TRY(note_link(table, &point, at, err));
     TRY(graph_point(graph, &point, err));
     TRY(put_values(table, at, err));
     if (!parent || !*parent || strcmp(parent, "-1") == 0)
@@ -548,6 +564,8 @@ static Status read_vessel(Table *table, size_t line, Err *err)
         char *id = field_of(table, ROLE_ID), *parent = field_of(table, ROLE_PARENT);
         ends[0].id = id_of(parent);
         ends[1].id = id_of(id);
+        TRY(note_link(table, &ends[1], vessel.b, err));
+        vessel.link_id = ends[1].is_link ? ends[1].id : 0;
         TRY(names_add(table->nodes, id, vessel.b, line, err));
         TRY(ARRAY_PUSH(&table->children, "parents", err, (TableChild){vessel.a, line, parent}));
     }
@@ -639,6 +657,19 @@ static Status join_vessels(const Table *table, Err *err)
     return STATUS_OK;
 }
 
+/* Joins the points of links to the points that they are. */
+static Status join_links(const Table *table, Err *err)
+{
+    for (size_t i = 0; i < table->links.n; i++) {
+        const TableChild *link = &table->links.items[i];
+        size_t at;
+        TRY(graph_blame(table->graph, GRAPH_LINES, link->line,
+                        names_find(table->nodes, link->parent, &at, err), err));
+        TRY(graph_join(table->graph, at, link->point, err));
+    }
+    return STATUS_OK;
+}
+
 static Status add_parents(const Table *table, Err *err)
 {
     Graph *graph = table->graph;
@@ -646,6 +677,8 @@ static Status add_parents(const Table *table, Err *err)
         const TableChild *child = &table->children.items[i];
         GraphLine line = {
             .b = child->point, .radius = (double)NAN, .is_directed = true, .record = child->line};
+        if (graph->point[line.b].is_link)
+            line.link_id = graph->point[line.b].id;
         TRY(graph_blame(graph, GRAPH_LINES, child->line,
                         names_find(table->nodes, child->parent, &line.a, err), err));
         TRY(graph_line(graph, &line, err));
@@ -696,8 +729,10 @@ static Status read_tables(Table *table, char *bytes, size_t size, Err *err)
     bool as_network = options && (options->merge_tolerance_mm > 0 || options->break_loops);
     graph->is_tree = table->kind == NODES && !edges && !as_network;
     if (table->kind == VESSELS)
-        return join_vessels(table, err);
-    return edges ? STATUS_OK : add_parents(table, err);
+        TRY(join_vessels(table, err));
+    else if (!edges)
+        TRY(add_parents(table, err));
+    return join_links(table, err);
 }
 
 Status table_read(Graph *graph, char *bytes, size_t size, Err *err)

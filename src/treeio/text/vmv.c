@@ -255,12 +255,13 @@ static void put_vertex(const Tree *tree, size_t i, Text *text)
     text_puts(text, "\n");
 }
 
+/* Nodes with links share the vertices of the nodes that they are. */
 static void put_strands(const Tree *tree, const Branches *branches, Text *text)
 {
     for (size_t k = 0, at = 0; k < branches->n; k++) {
         text_printf(text, "%zu %d", k + 1, tree->parent[branches->node[at]] + 1);
         for (; at < branches->end[k]; at++)
-            text_printf(text, " %d", branches->node[at] + 1);
+            text_printf(text, " %zu", tree_place(tree, (size_t)branches->node[at]) + 1);
         text_puts(text, "\n");
     }
 }
@@ -273,9 +274,10 @@ Status vmv_write(const Tree *tree, Text *text, Err *err)
     text_printf(text,
                 "$PARAM_BEGIN\nNUM_VERTS %zu\nNUM_STRANDS %zu\nNUM_ATTRIB_PER_VERT 4\n"
                 "$PARAM_END\n\n$VERT_LIST_BEGIN\n",
-                tree->n, branches.n);
+                tree->n - tree_link_count(tree), branches.n);
     for (size_t i = 0; i < tree->n; i++)
-        put_vertex(tree, i, text);
+        if (!tree_is_link(tree, i))
+            put_vertex(tree, i, text);
     text_puts(text, "$VERT_LIST_END\n\n$STRANDS_LIST_BEGIN\n");
     put_strands(tree, &branches, text);
     text_puts(text, "$STRANDS_LIST_END\n");

@@ -186,12 +186,16 @@ static void find_tree(VtkMeaning *meaning, const VtkData *data)
     if (!vtk_find_metadata(data) || !radius || !id || !are_ids(id) || !are_columns(points) ||
         !are_columns(&data->arrays[GRAPH_LINES]))
         return;
-    *meaning = (VtkMeaning){.radius = radius,
-                            .of = GRAPH_POINTS,
-                            .factor = 1,
-                            .id = id,
-                            .type = find_scalars(points, "type", true),
-                            .share = find_scalars(points, "flow_share", true)};
+    *meaning =
+        (VtkMeaning){.radius = radius,
+                     .of = GRAPH_POINTS,
+                     .factor = 1,
+                     .id = id,
+                     .type = find_scalars(points, "type", true),
+                     .share = find_scalars(points, "flow_share", true),
+                     .cell_radius = find_scalars(&data->arrays[GRAPH_LINES], "radius", true)};
+    for (int of = GRAPH_POINTS; of <= GRAPH_LINES; of++)
+        meaning->link[of] = find_scalars(&data->arrays[of], "link_id", true);
 }
 
 Status vtk_find_meaning(VtkMeaning *meaning, const VtkData *data, const Graph *graph, Err *err)
@@ -230,7 +234,8 @@ bool vtk_is_used(const VtkMeaning *meaning, const VtkArray *array)
     if (meaning->radius)
         to_plain(meaning->radius->name, plain);
     if (array == meaning->radius || array == meaning->id || array == meaning->type ||
-        array == meaning->share)
+        array == meaning->share || array == meaning->cell_radius ||
+        array == meaning->link[GRAPH_POINTS] || array == meaning->link[GRAPH_LINES])
         return true;
     return *plain && !meaning->id && array->components == 1 && has_plain_name(array, plain);
 }
@@ -239,7 +244,7 @@ bool vtk_is_used(const VtkMeaning *meaning, const VtkArray *array)
 
 bool vtk_is_own(const char *name)
 {
-    static const char *const own[] = {"radius", "id", "type", "flow_share"};
+    static const char *const own[] = {"radius", "id", "type", "flow_share", "link_id"};
     size_t length = strlen(name);
     while (length > 0 && name[length - 1] == '_')
         length--;

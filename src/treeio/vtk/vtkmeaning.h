@@ -14,6 +14,9 @@ typedef struct VtkMeaning {
     /* Of files that corcast wrote, which are trees: */
     const VtkArray *id;           /* of points; NULL: another program wrote the file */
     const VtkArray *type, *share; /* of points; NULL: the file has none */
+    const VtkArray *cell_radius;  /* of cells, for lines with a link_id; NULL: the file has none */
+    const VtkArray
+        *link[2]; /* per GraphElement: ids of nodes with links; NULL: the file has none */
 } VtkMeaning;
 
 /* Finds the meaning of the arrays. Errors: STATUS_INPUT, with the file's name, if there is no array

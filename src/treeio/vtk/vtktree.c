@@ -1,7 +1,9 @@
 /* Reads a tree that corcast wrote.
  *
  * Points with the same id are one node: branches have points of their own where they meet. Lines
- * lead away from the root, so that each line gives its distal node a parent. Nodes are handed over
+ * lead away from the root, so that each line gives its distal node a parent. The distal point of a
+ * line that closes a loop has the id of a node that has a parent already; the node with a link is
+ * the `link_id` of the point or of the line. Nodes are handed over
  * by rising id, which was their order in the tree that was written. */
 #include "treeio/comments.h"
 #include "treeio/formats.h"
@@ -18,11 +20,11 @@ typedef struct VtkTree {
     const VtkData *data;
     const Graph *graph;
     TreeBuilder *builder;
-    /* The nodes, by rising id. Per node: the point and the cell that have its values, + 1, and the
-     * id of its parent; 0 for none. Owned. */
+    /* The nodes, by rising id. Per node: the point and the cell that have its values, + 1, the id
+     * of its parent, and the id that its link names; 0 for none. Owned. */
     int32_t *id;
     uint32_t *point, *cell;
-    int32_t *parent;
+    int32_t *parent, *link;
     size_t n;
     /* The arrays that are columns, those of points first, as the builder has them. Owned. */
     const VtkArray **column;
@@ -63,19 +65,32 @@ static size_t node_of(const VtkTree *tree, int32_t id)
     return (size_t)(found - tree->id);
 }
 
+/* Returns number `at` of the array of links of points or lines, 0 if it is none. */
+static int32_t link_id(const VtkTree *tree, GraphElement of, size_t at)
+{
+    const VtkArray *array = tree->meaning->link[of];
+    double id = array ? array->value[at] : 0;
+    return id >= 1 && id <= TREE_MAX_ID ? (int32_t)id : 0;
+}
+
 /* Lists the ids, each once. */
 static Status list_ids(VtkTree *tree, Err *err)
 {
-    size_t points = tree->meaning->id->n;
-    TRY(mem_calloc(&tree->id, points, sizeof *tree->id, "nodes", err));
+    size_t points = tree->meaning->id->n, cells = tree->data->n_cells, n = 0;
+    TRY(mem_calloc(&tree->id, 2 * points + cells, sizeof *tree->id, "nodes", err));
     for (size_t i = 0; i < points; i++)
-        tree->id[i] = id_at(tree, i);
-    qsort(tree->id, points, sizeof *tree->id, by_id);
-    for (size_t i = 0; i < points; i++)
+        tree->id[n++] = id_at(tree, i);
+    for (int of = GRAPH_POINTS; of <= GRAPH_LINES; of++)
+        for (size_t i = 0; i < (of == GRAPH_POINTS ? points : cells); i++)
+            if (link_id(tree, (GraphElement)of, i) > 0)
+                tree->id[n++] = link_id(tree, (GraphElement)of, i);
+    qsort(tree->id, n, sizeof *tree->id, by_id);
+    for (size_t i = 0; i < n; i++)
         if (i == 0 || tree->id[i] != tree->id[i - 1])
             tree->id[tree->n++] = tree->id[i];
     TRY(mem_calloc(&tree->point, tree->n, sizeof *tree->point, "nodes", err));
     TRY(mem_calloc(&tree->cell, tree->n, sizeof *tree->cell, "nodes", err));
+    TRY(mem_calloc(&tree->link, tree->n, sizeof *tree->link, "nodes", err));
     return mem_calloc(&tree->parent, tree->n, sizeof *tree->parent, "nodes", err);
 }
 
@@ -89,7 +104,9 @@ static Status find_parents(VtkTree *tree, Err *err)
     for (size_t i = 0, at = 0; i < data->n_lines; at = data->end[i++])
         for (size_t k = at + 1; k < data->end[i]; k++) {
             size_t from = (size_t)data->corner[k - 1], to = (size_t)data->corner[k];
-            size_t node = node_of(tree, id_at(tree, to));
+            int32_t of_point = link_id(tree, GRAPH_POINTS, to);
+            int32_t link = of_point ? of_point : link_id(tree, GRAPH_LINES, data->cell[i]);
+            size_t node = node_of(tree, link ? link : id_at(tree, to));
             if (tree->parent[node])
                 return graph_blame(
                     tree->graph, GRAPH_LINES, data->cell[i],
@@ -98,10 +115,20 @@ static Status find_parents(VtkTree *tree, Err *err)
                             tree->id[node]),
                     err);
             tree->parent[node] = id_at(tree, from);
+            tree->link[node] = link ? id_at(tree, to) : 0;
             tree->point[node] = (uint32_t)to + 1;
             tree->cell[node] = (uint32_t)data->cell[i] + 1;
         }
     return STATUS_OK;
+}
+
+/* Returns the radius of a node. In files whose lines have radii, the point of a line that closes a
+ * loop has the radius of another segment. */
+static double radius_of(const VtkTree *tree, size_t node)
+{
+    const VtkArray *of_cells = tree->meaning->cell_radius;
+    return tree->link[node] && of_cells ? of_cells->value[tree->cell[node] - 1]
+                                        : tree->meaning->radius->value[tree->point[node] - 1];
 }
 
 static Status add_node(const VtkTree *tree, size_t node, Err *err)
@@ -116,9 +143,11 @@ static Status add_node(const VtkTree *tree, size_t node, Err *err)
                               .parent = tree->parent[node] ? tree->parent[node] : TREE_NO_PARENT,
                               .type = (int32_t)type,
                               .position = vtk_position(tree->data, i),
-                              .radius_mm = meaning->radius->value[i],
+                              .radius_mm = radius_of(tree, node),
                               .record = i};
     TRY(builder_node(tree->builder, &made, err));
+    if (tree->link[node])
+        return builder_link(tree->builder, made.id, tree->link[node], i, err);
     return isnan(share) || share == 0 ? STATUS_OK
                                       : builder_share(tree->builder, made.id, share, i, err);
 }
@@ -187,6 +216,7 @@ done:
     free(tree.point);
     free(tree.cell);
     free(tree.parent);
+    free(tree.link);
     free(tree.column);
     return status;
 }

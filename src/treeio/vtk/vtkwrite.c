@@ -4,9 +4,10 @@
  * A polyline has points of its own, all with the values of its segments. Its first point has the
  * values of its first segment, so that a tube around it is as thick as the vessel from end to end.
  * Points shared with the parent would make it a cone. Points of one node have the same `id`, by
- * which vtktree.c finds the tree again. The tree's metadata are lines of text in the field data.
- * Both kinds of files have the arrays of one table. Numbers pass through one buffer, for trees of
- * any size. */
+ * which vtktree.c finds the tree again. The last point of a branch that closes a loop has the `id`
+ * of the node that its link names, and its own id as `link_id`. The tree's metadata are lines of
+ * text in the field data. Both kinds of files have the arrays of one table. Numbers pass through
+ * one buffer, for trees of any size. */
 #include "treeio/comments.h"
 #include "treeio/formats.h"
 #include "treeio/vtk/vtkdata.h"
@@ -22,6 +23,7 @@ typedef enum WrittenArrayKind {
     ID,
     TYPE,
     SHARE,
+    LINK,
     POSITION,
     VERTS,
     VERT_ENDS,
@@ -40,6 +42,7 @@ static const struct {
     [ID] = {"PointData", "id", VTK_INT32, 1},
     [TYPE] = {"PointData", "type", VTK_INT32, 1},
     [SHARE] = {"PointData", "flow_share", VTK_DOUBLE, 1},
+    [LINK] = {"PointData", "link_id", VTK_INT32, 1},
     [POSITION] = {"Points", "Points", VTK_DOUBLE, 3},
     [VERTS] = {"Verts", "connectivity", VTK_INT32, 1},
     [VERT_ENDS] = {"Verts", "offsets", VTK_INT32, 1},
@@ -116,6 +119,7 @@ static Status list_arrays(VtkLines *lines, Err *err)
                              [ID] = points,
                              [TYPE] = has_types(tree) ? points : 0,
                              [SHARE] = tree->flow_share ? points : 0,
+                             [LINK] = tree->link ? points : 0,
                              [POSITION] = 3 * points,
                              [VERTS] = roots,
                              [VERT_ENDS] = roots,
@@ -139,11 +143,13 @@ static double number_at(const VtkLines *lines, const WrittenArray *array, size_t
     case RADIUS:
         return tree->radius_mm[lines->values[i]];
     case ID:
-        return tree->id[lines->node[i]];
+        return tree->id[tree_place(tree, (size_t)lines->node[i])];
     case TYPE:
         return tree->type[lines->node[i]];
     case SHARE:
         return tree->flow_share[lines->node[i]];
+    case LINK:
+        return tree_is_link(tree, (size_t)lines->node[i]) ? tree->id[lines->node[i]] : 0;
     case COLUMN:
         return tree->column[array->column].value[lines->values[i]];
     case POSITION:

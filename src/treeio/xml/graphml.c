@@ -347,6 +347,8 @@ static void put_keys(const Tree *tree, Text *text, Text *name)
     if (tree->flow_share)
         put_key(text, "v", NODE_KEYS, "node", "flow_share");
     put_key(text, "e", 0, "edge", "radius");
+    if (tree->link)
+        put_key(text, "e", 1, "edge", "link_id");
     for (size_t k = 0; k < tree->n_columns; k++) {
         text_clear(name);
         vtk_put_column_name(&tree->column[k], name);
@@ -370,8 +372,10 @@ static void put_node(const Tree *tree, size_t i, Text *text)
 static void put_edge(const Tree *tree, size_t i, Text *text)
 {
     text_printf(text, "<edge source=\"n%d\" target=\"n%d\">", tree->id[tree->parent[i]],
-                tree->id[i]);
+                tree->id[tree_place(tree, i)]);
     put_data(text, "e", 0, tree->radius_mm[i]);
+    if (tree_is_link(tree, i))
+        put_data(text, "e", 1, tree->id[i]);
     for (size_t k = 0; k < tree->n_columns; k++)
         put_data(text, "c", k, tree->column[k].value[i]);
     text_puts(text, "</edge>\n");
@@ -388,7 +392,8 @@ Status graphml_write(const Tree *tree, Text *text, Err *err)
     namednetwork_put_metadata(&tree->meta, text);
     text_puts(text, "</data>\n");
     for (size_t i = 0; i < tree->n; i++)
-        put_node(tree, i, text);
+        if (!tree_is_link(tree, i))
+            put_node(tree, i, text);
     for (size_t i = 0; i < tree->n; i++)
         if (tree_is_segment(tree, i))
             put_edge(tree, i, text);

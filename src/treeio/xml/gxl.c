@@ -168,9 +168,11 @@ static void put_node(const Tree *tree, const int32_t *children, size_t i, Text *
 
 static void put_edge(const Tree *tree, size_t i, Text *text, Text *name)
 {
-    text_printf(text, "  <edge id=\"e%d\" to=\"n%d\" from=\"n%d\">\n", tree->id[i], tree->id[i],
-                tree->id[tree->parent[i]]);
+    text_printf(text, "  <edge id=\"e%d\" to=\"n%d\" from=\"n%d\">\n", tree->id[i],
+                tree->id[tree_place(tree, i)], tree->id[tree->parent[i]]);
     put_attribute(text, "radius", tree->radius_mm[i]);
+    if (tree_is_link(tree, i))
+        put_attribute(text, "link_id", tree->id[i]);
     for (size_t k = 0; k < tree->n_columns; k++) {
         text_clear(name);
         vtk_put_column_name(&tree->column[k], name);
@@ -188,7 +190,8 @@ static void put_graph(const Tree *tree, const int32_t *children, Text *text)
     namednetwork_put_metadata(&tree->meta, text);
     text_puts(text, "</string></attr>\n</info_graph>\n");
     for (size_t i = 0; i < tree->n; i++)
-        put_node(tree, children, i, text);
+        if (!tree_is_link(tree, i))
+            put_node(tree, children, i, text);
     for (size_t i = 0; i < tree->n; i++)
         if (tree_is_segment(tree, i))
             put_edge(tree, i, text, &name);

@@ -130,8 +130,6 @@ Status namednetwork_to_graph(NamedNetwork *network, const char *const axes[3], G
     VtkData *data = &network->data;
     TRY(vtk_fill_up(&data->arrays[GRAPH_POINTS], data->n_points, network->file_size, err));
     TRY(vtk_fill_up(&data->arrays[GRAPH_LINES], data->n_cells, network->file_size, err));
-    if (data->arrays[VTK_OF_FILE].n > 0)
-        free(vtk_detach_values(&data->arrays[GRAPH_LINES], "radius"));
     TRY(add_lines(network, graph, err));
     TRY(vtk_detach_positions(data, axes, graph->name, err));
     return vtk_to_graph(data, graph, err);

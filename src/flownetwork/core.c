@@ -3,7 +3,7 @@
  * [Meijerink & van der Vorst, Math. Comp. 31 (1977) 148]. Unknowns are numbered by breadth-first
  * search, which halves the number of steps. All sums run in the order of the numbers, in one
  * thread, so that the result is always the same. */
-#include "network/reduce.h"
+#include "flownetwork/reduce.h"
 
 #include <float.h>
 #include <stdlib.h>

@@ -2,11 +2,11 @@
  * resistances behind it, as current divides between two resistors. A chain that begins and ends at
  * one node carries only the inflow of v, and no edge is made. Each node enters the stack once, when
  * no more than two edges are left at it. */
-#include "network/reduce.h"
+#include "flownetwork/reduce.h"
 
 #include <stdlib.h>
 
-static Status fill_lists(const Network *network, Reduction *reduction, Err *err)
+static Status fill_lists(const FlowNetwork *network, Reduction *reduction, Err *err)
 {
     IndexLists *lists = &reduction->lists;
     TRY(indexlists_begin(lists, network->n_nodes, "segments", err));
@@ -113,7 +113,7 @@ static void eliminate(Reduction *reduction, NodeStack *stack)
     }
 }
 
-Status reduction_make(const Network *network, double *pressure, Reduction *out, Err *err)
+Status reduction_make(const FlowNetwork *network, double *pressure, Reduction *out, Err *err)
 {
     NodeStack stack = {0};
     size_t n = network->n_nodes;

@@ -1,9 +1,8 @@
 /* Components without a known pressure get one at the node with the largest inflow, before the
  * reduction. */
-#include "network/network.h"
+#include "flownetwork/flownetwork.h"
 
-#include "base/sets.h"
-#include "network/reduce.h"
+#include "flownetwork/reduce.h"
 #include <float.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,13 +16,13 @@ typedef struct Component {
     bool has_pressure, has_segment;
 } Component;
 
-static bool is_open(const Network *network, size_t segment)
+static bool is_open(const FlowNetwork *network, size_t segment)
 {
     return network->resistance[segment] < HUGE_VAL;
 }
 
 /* Joins the nodes of open segments. */
-static void join(const Network *network, uint32_t *parent)
+static void join(const FlowNetwork *network, uint32_t *parent)
 {
     sets_begin(parent, network->n_nodes);
     for (size_t i = 0; i < network->n_segments; i++)
@@ -31,7 +30,7 @@ static void join(const Network *network, uint32_t *parent)
             sets_join(parent, network->ends[i][0], network->ends[i][1]);
 }
 
-static void measure(const Network *network, uint32_t *parent, Component *component)
+static void measure(const FlowNetwork *network, uint32_t *parent, Component *component)
 {
     for (uint32_t v = 0; v < network->n_nodes; v++) {
         uint32_t top = sets_find(parent, v);
@@ -51,27 +50,31 @@ static void measure(const Network *network, uint32_t *parent, Component *compone
 }
 
 /* Sets the pressure 0 at a node of each component without a known pressure. */
-static Status fix_pressures(const Network *network, const Component *component, double *pressure,
-                            NetworkFlow *out, Err *err)
+static Status fix_pressures(const FlowNetwork *network, const Component *component,
+                            double *pressure, NetworkFlow *out, Err *err)
 {
     for (uint32_t v = 0; v < network->n_nodes; v++) {
         const Component *at = &component[v];
         out->components += at->has_segment;
         if (at->has_pressure)
             continue;
-        if (fabs(at->sum) > NETWORK_MAX_EXCESS * at->sizes)
+        if (!network->absorbs && fabs(at->sum) > NETWORK_MAX_EXCESS * at->sizes)
             return err_set(err, STATUS_INPUT,
                            "the inflows of the vessels that are connected with node %d sum to %.6g "
                            "ml/min; they must sum to 0, because no pressure is known there",
                            network->id[at->reference], ml_min_from_mm3_s(at->sum));
-        if (at->has_segment)
-            pressure[at->reference] = 0;
-        out->floating += at->has_segment;
+        if (!at->has_segment)
+            continue;
+        pressure[at->reference] = 0;
+        out->floating++;
+        out->idle += at->sizes == 0;
+        out->idle_node = at->sizes == 0 ? v : out->idle_node;
     }
     return STATUS_OK;
 }
 
-static Status check_components(const Network *network, double *pressure, NetworkFlow *out, Err *err)
+static Status check_components(const FlowNetwork *network, double *pressure, NetworkFlow *out,
+                               Err *err)
 {
     uint32_t *parent = NULL;
     Component *component = NULL;
@@ -89,7 +92,7 @@ done:
 
 /* ---- the solution ---------------------------------------------------------------------------- */
 
-static void take_flows(const Network *network, const Reduction *reduction, NetworkFlow *out)
+static void take_flows(const FlowNetwork *network, const Reduction *reduction, NetworkFlow *out)
 {
     for (size_t i = 0; i < network->n_segments; i++) {
         out->flow[i] = reduction->edge[i].flow;
@@ -101,8 +104,24 @@ static void take_flows(const Network *network, const Reduction *reduction, Netwo
     }
 }
 
+/* Adds a number to the pressures. */
+static void shift(double *pressure, size_t n, double by)
+{
+    for (size_t v = 0; v < n; v++)
+        pressure[v] += by;
+}
+
+/* Returns a known pressure. Differences from it have smaller rounding errors than pressures. */
+static double reference(const double *fixed, size_t n)
+{
+    for (size_t v = 0; v < n; v++)
+        if (!isnan(fixed[v]))
+            return fixed[v];
+    return 0;
+}
+
 /* Measures the sum of the flows at each node, and sets the inflow at nodes of known pressure. */
-static Status balance(const Network *network, const double *fixed, NetworkFlow *out, Err *err)
+static Status balance(const FlowNetwork *network, const double *fixed, NetworkFlow *out, Err *err)
 {
     typedef struct Sum {
         double net, sizes;
@@ -131,7 +150,7 @@ static Status balance(const Network *network, const double *fixed, NetworkFlow *
     return STATUS_OK;
 }
 
-static Status allocate(const Network *network, NetworkFlow *out, Err *err)
+static Status allocate(const FlowNetwork *network, NetworkFlow *out, Err *err)
 {
     TRY(mem_calloc(&out->flow, network->n_segments, sizeof *out->flow, "flows", err));
     TRY(mem_calloc(&out->is_lost, network->n_segments, sizeof *out->is_lost, "flows", err));
@@ -139,7 +158,7 @@ static Status allocate(const Network *network, NetworkFlow *out, Err *err)
     return mem_calloc(&out->inflow, network->n_nodes, sizeof *out->inflow, "inflows", err);
 }
 
-Status network_solve(const Network *network, NetworkFlow *out, Err *err)
+Status flownetwork_solve(const FlowNetwork *network, NetworkFlow *out, Err *err)
 {
     NetworkFlow made = {0};
     Reduction reduction = {0};
@@ -150,9 +169,12 @@ Status network_solve(const Network *network, NetworkFlow *out, Err *err)
     TRY_GOTO(check_components(network, made.pressure, &made, err));
     TRY_GOTO(mem_alloc(&fixed, network->n_nodes, sizeof *fixed, "pressures", err));
     memcpy(fixed, made.pressure, network->n_nodes * sizeof *fixed);
+    double middle = reference(fixed, network->n_nodes);
+    shift(made.pressure, network->n_nodes, -middle);
     TRY_GOTO(reduction_make(network, made.pressure, &reduction, err));
     TRY_GOTO(core_solve(&reduction, network->n_nodes, &made, err));
     reduction_restore(&reduction);
+    shift(made.pressure, network->n_nodes, middle);
     take_flows(network, &reduction, &made);
     TRY_GOTO(balance(network, fixed, &made, err));
     *out = made;

@@ -1,9 +1,9 @@
 /* Exact reduction of a network: nodes with one segment (ends) and with two segments (chains) are
- * eliminated, except nodes of known pressure. Private to the module network. */
-#ifndef CORCAST_NETWORK_REDUCE_H
-#define CORCAST_NETWORK_REDUCE_H
+ * eliminated, except nodes of known pressure. Private to the module flownetwork. */
+#ifndef CORCAST_FLOWNETWORK_REDUCE_H
+#define CORCAST_FLOWNETWORK_REDUCE_H
 
-#include "network/network.h"
+#include "flownetwork/flownetwork.h"
 
 /* A segment of the network, or the vessel that replaces the two segments of an eliminated node. */
 typedef struct FlowEdge {
@@ -34,7 +34,7 @@ typedef struct Reduction {
 
 /* Reduces a network. `pressure` has an entry per node, which replaces network->pressure. Release
  * *out with reduction_release, also after an error. Errors: STATUS_MEMORY. Cost: O(n). */
-MUST_CHECK Status reduction_make(const Network *network, double *pressure, Reduction *out,
+MUST_CHECK Status reduction_make(const FlowNetwork *network, double *pressure, Reduction *out,
                                  Err *err);
 void reduction_release(Reduction *reduction);
 

@@ -1,0 +1,60 @@
+/* Layers of prisms as gmsh's format 2.2, which other programs read, too. An element has two tags:
+ * its physical group, which has a name, and its elementary entity. The triangles of part k are
+ * entity k + 1 and its quadrangles entity k + 1 + parts, because gmsh fills what triangles enclose.
+ * The inner surface is the entity behind these, without a group, so that gmsh does not save it
+ * again. */
+#include "emit/prismcells.h"
+#include "emit/rows.h"
+#include "emit/values.h"
+
+/* gmsh's numbers of element types, by PrismCellKind. */
+static const int types[] = {
+    [CELL_SURFACE] = 2, [CELL_PRISM] = 6, [CELL_RING] = 3, [CELL_INNER] = 2};
+
+static void put_name(Text *out, const void *context, size_t i)
+{
+    const MeshEnds *ends = context;
+    put_text(out, "2 %z \"%s\"\n", i + 1, meshends_part_name(ends, i));
+}
+
+static void put_point(Text *out, const void *context, size_t i)
+{
+    const PrismLayers *layers = context;
+    text_printf(out, "%zu ", i + 1);
+    put_triple(out, "", layers->points[i], " ", "\n");
+}
+
+/* Appends a cell. The normal of a prism's first triangle points to its second one. */
+static void put_cell(Text *out, const void *context, size_t place)
+{
+    const EmitParams *params = context;
+    const size_t parts = meshends_parts(params->ends);
+    PrismCell cell;
+    if (!prismcell_at(params, place, &cell))
+        return;
+    const size_t part = params->ends->parts[cell.triangle] + 1;
+    const size_t group = cell.kind == CELL_INNER ? 0 : cell.kind == CELL_PRISM ? 1 : part;
+    const uint32_t tree = params->layers->trees[mesh_segment(params->mesh, cell.triangle)];
+    const size_t entity = cell.kind == CELL_INNER  ? 2 * parts + 1 + tree
+                          : cell.kind == CELL_RING ? part + parts
+                                                   : group;
+    put_text(out, "%z %d 2 %z %z", place + 1, types[cell.kind], group, entity);
+    for (int k = 0; k < cell.n_corners; k++)
+        put_text(out, " %u", cell.corners[cell.kind == CELL_PRISM ? (k + 3) % 6 : k] + 1);
+    text_puts(out, "\n");
+}
+
+Status gmsh_write(const EmitParams *params, EmitOutput *to, Err *err)
+{
+    const size_t parts = meshends_parts(params->ends);
+    EmitParams context = *params;
+    Values values = {0};
+    add_source(&values, params);
+    add_count(&values, "n_names", parts + 1);
+    add_count(&values, "n_points", params->layers->n_points);
+    add_count(&values, "n_cells", prismcell_count(params));
+    add_list(&values, "names", put_name, params->ends, parts);
+    add_list(&values, "points", put_point, params->layers, params->layers->n_points);
+    add_list(&values, "cells", put_cell, &context, prismcell_places(params));
+    return values_expand(&values, params, "gmsh/layers.msh", to->file, err);
+}

@@ -1,0 +1,63 @@
+/* A triangle of the wall leads to a cell of the surface, a prism per layer and a cell of the inner
+ * surface; a triangle of a flat end leads to a cell of the surface and a quadrangle per layer. */
+#include "emit/prismcells.h"
+
+static size_t places_per_triangle(const EmitParams *params)
+{
+    return params->layers->n_layers + 2;
+}
+
+size_t prismcell_places(const EmitParams *params)
+{
+    return params->mesh->n_triangles * places_per_triangle(params);
+}
+
+size_t prismcell_count(const EmitParams *params)
+{
+    const size_t empty =
+        params->mesh->n_triangles - params->layers->n_prisms / params->layers->n_layers;
+    return prismcell_places(params) - empty;
+}
+
+/* Sets the corners of the quadrangle between two surfaces, at the edge of a flat end's triangle
+ * that is on the rim: the edge opposite the middle of the end. */
+static void set_ring(const PrismLayers *layers, const uint32_t triangle[3], PrismCell *cell)
+{
+    int middle = 0;
+    while (middle < 2 && layers->rank[triangle[middle]] != NO_RANK)
+        middle++;
+    const uint32_t one = triangle[(middle + 1) % 3], next = triangle[(middle + 2) % 3];
+    cell->n_corners = 4;
+    cell->corners[0] = prismlayers_point(layers, one, cell->layer);
+    cell->corners[1] = prismlayers_point(layers, one, cell->layer - 1);
+    cell->corners[2] = prismlayers_point(layers, next, cell->layer - 1);
+    cell->corners[3] = prismlayers_point(layers, next, cell->layer);
+}
+
+bool prismcell_at(const EmitParams *params, size_t place, PrismCell *cell)
+{
+    const PrismLayers *layers = params->layers;
+    const size_t own = place % places_per_triangle(params);
+    const bool is_layer = own >= 1 && own <= layers->n_layers;
+    *cell = (PrismCell){.triangle = place / places_per_triangle(params),
+                        .layer = is_layer ? own : 0,
+                        .n_corners = 3};
+    const bool is_cap = mesh_is_cap(params->mesh, cell->triangle);
+    const uint32_t *triangle = params->mesh->triangles[cell->triangle];
+    if (is_cap && is_layer) {
+        cell->kind = CELL_RING;
+        set_ring(layers, triangle, cell);
+        return true;
+    }
+    cell->kind = own == 0 ? CELL_SURFACE : is_layer ? CELL_PRISM : CELL_INNER;
+    const bool on_wall = own == 0 && !is_cap;
+    for (int k = 0; k < 3; k++) {
+        cell->corners[k] = prismlayers_point(layers, triangle[k],
+                                             on_wall    ? 0
+                                             : is_layer ? own - 1
+                                                        : layers->n_layers);
+        cell->corners[k + 3] = prismlayers_point(layers, triangle[k], cell->layer);
+    }
+    cell->n_corners = is_layer ? 6 : 3;
+    return cell->kind != CELL_INNER || !is_cap;
+}

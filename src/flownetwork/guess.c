@@ -1,0 +1,303 @@
+/* The pressures p of all nodes are a linear function of those of the open nodes, y: p = p0 + Z y.
+ * Each column of Z is a solution of the network. The objective is quadratic in p, so that its
+ * derivative by y is a system of equations as large as the number of open nodes, S y = b. Z is not
+ * stored: its transpose acts through a second solution, whose inflows are the derivative of the
+ * objective by p, and S = S0 + k S1 is computed once for all k and all directions. */
+#include "flownetwork/flownetwork.h"
+
+#include <float.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The weights k in the units of the source, mmHg and dyn/cm^2 = 0.1 Pa. */
+static const double first_weight = 0.002, last_weight = 4.096;
+enum { SOLVES_PER_WEIGHT = 5 };
+
+/* The state of an estimate. Owns its arrays. */
+typedef struct Guess {
+    const FlowNetwork *network;
+    const NetworkGuess *params;
+    uint32_t *open;  /* the open nodes */
+    size_t n;        /* their number */
+    double *weight;  /* per node: half the length of its segments */
+    double *s0, *s1; /* n x n: second derivatives of the two parts of the objective */
+    double *matrix;  /* n x n, lower triangle: Cholesky factor of S */
+} Guess;
+
+/* Which inflows and pressures a solution has. */
+typedef struct Load {
+    const double *inflow;   /* per node; NULL: 0 */
+    const double *pressure; /* per open node; NULL: 0 */
+    uint32_t unit;          /* open node with the pressure 1; UINT32_MAX: none */
+    bool is_whole;          /* known pressures and inflows are those of the network, else 0 */
+} Load;
+
+static Status solve(const Guess *made, const Load *load, NetworkFlow *flow, Err *err)
+{
+    FlowNetwork network = *made->network;
+    double *pressure = NULL, *inflow = NULL;
+    Status status = STATUS_OK;
+    TRY_GOTO(mem_calloc(&pressure, network.n_nodes, sizeof *pressure, "pressures", err));
+    TRY_GOTO(mem_calloc(&inflow, network.n_nodes, sizeof *inflow, "inflows", err));
+    for (size_t v = 0; v < network.n_nodes; v++) {
+        bool is_known = !isnan(network.pressure[v]);
+        pressure[v] = is_known && !load->is_whole ? 0 : network.pressure[v];
+        inflow[v] = load->inflow ? load->inflow[v] : load->is_whole ? network.inflow[v] : 0;
+    }
+    for (size_t b = 0; b < made->n; b++)
+        pressure[made->open[b]] = load->pressure ? load->pressure[b] : b == load->unit;
+    network.pressure = pressure;
+    network.inflow = inflow;
+    network.absorbs = !load->is_whole;
+    status = flownetwork_solve(&network, flow, err);
+done:
+    free(pressure);
+    free(inflow);
+    return status;
+}
+
+/* Returns the wall shear stress of a segment per difference of pressure. */
+static double stress_factor(const Guess *made, size_t i)
+{
+    double length = made->params->length_mm[i];
+    return length > 0 ? made->params->radius_mm[i] / (2 * length) : 0;
+}
+
+/* Adds the derivative by p of half the sum of l (tau - target)^2. `sign` is NULL for target 0. */
+static void add_stress(const Guess *made, const double *pressure, const signed char *sign,
+                       double weight, double *slope)
+{
+    for (size_t i = 0; i < made->network->n_segments; i++) {
+        const uint32_t *ends = made->network->ends[i];
+        double factor = stress_factor(made, i), drop = pressure[ends[0]] - pressure[ends[1]];
+        double excess = factor * drop - (sign ? sign[i] * made->params->stress_pa : 0);
+        double change = weight * made->params->length_mm[i] * factor * excess;
+        if (made->network->resistance[i] < HUGE_VAL) {
+            slope[ends[0]] += change;
+            slope[ends[1]] -= change;
+        }
+    }
+}
+
+static void add_pressure(const Guess *made, const double *pressure, double target, double *slope)
+{
+    for (size_t v = 0; v < made->network->n_nodes; v++)
+        slope[v] += isnan(pressure[v]) ? 0 : made->weight[v] * (pressure[v] - target);
+}
+
+/* Turns the derivative by p into that by y: the product with the transpose of Z. */
+static Status project(const Guess *made, const double *slope, double *out, Err *err)
+{
+    NetworkFlow flow = {0};
+    TRY(solve(made, &(Load){.inflow = slope, .unit = UINT32_MAX}, &flow, err));
+    for (size_t b = 0; b < made->n; b++)
+        out[b] = slope[made->open[b]] - flow.inflow[made->open[b]];
+    networkflow_release(&flow);
+    return STATUS_OK;
+}
+
+/* Computes the rows b of S0 and S1. */
+static Status fill_row(size_t b, int worker, void *context, Err *err)
+{
+    const Guess *made = context;
+    NetworkFlow flow = {0};
+    double *slope = NULL;
+    Status status = STATUS_OK;
+    (void)worker;
+    TRY_GOTO(mem_calloc(&slope, made->network->n_nodes, sizeof *slope, "derivatives", err));
+    TRY_GOTO(solve(made, &(Load){.unit = (uint32_t)b}, &flow, err));
+    add_pressure(made, flow.pressure, 0, slope);
+    TRY_GOTO(project(made, slope, made->s0 + b * made->n, err));
+    memset(slope, 0, made->network->n_nodes * sizeof *slope);
+    add_stress(made, flow.pressure, NULL, 1, slope);
+    TRY_GOTO(project(made, slope, made->s1 + b * made->n, err));
+done:
+    free(slope);
+    networkflow_release(&flow);
+    return status;
+}
+
+/* Factorizes S0 + weight S1 by Cholesky's method. */
+static void factorize(const Guess *made, double weight)
+{
+    size_t n = made->n;
+    double *a = made->matrix;
+    for (size_t i = 0; i < n; i++)
+        for (size_t j = 0; j <= i; j++) {
+            double sum = made->s0[i * n + j] + weight * made->s1[i * n + j];
+            for (size_t k = 0; k < j; k++)
+                sum -= a[i * n + k] * a[j * n + k];
+            a[i * n + j] = i == j ? sqrt(fmax(sum, DBL_MIN)) : sum / a[j * n + j];
+        }
+}
+
+static void substitute(const Guess *made, double *x)
+{
+    size_t n = made->n;
+    for (size_t i = 0; i < n; i++) {
+        for (size_t k = 0; k < i; k++)
+            x[i] -= made->matrix[i * n + k] * x[k];
+        x[i] /= made->matrix[i * n + i];
+    }
+    for (size_t i = n; i-- > 0;) {
+        x[i] /= made->matrix[i * n + i];
+        for (size_t k = 0; k < i; k++)
+            x[k] -= made->matrix[i * n + k] * x[i];
+    }
+}
+
+/* One start: the direction of the wall shear stress in each segment, and the latest solution. */
+typedef struct Start {
+    signed char *sign; /* 0: not known; owned */
+    double *pressure;  /* per open node; owned */
+    NetworkFlow flow;  /* owned */
+} Start;
+
+/* Finds the minimum for the directions of a start, and takes the directions of the solution.
+ * *turned receives whether one has changed. */
+static Status minimize(const Guess *made, const double *base, double weight, Start *start,
+                       bool *turned, Err *err)
+{
+    double *slope = NULL;
+    Status status = STATUS_OK;
+    TRY_GOTO(mem_calloc(&slope, made->network->n_nodes, sizeof *slope, "derivatives", err));
+    add_pressure(made, base, made->params->pressure_pa, slope);
+    add_stress(made, base, start->sign, weight, slope);
+    TRY_GOTO(project(made, slope, start->pressure, err));
+    for (size_t b = 0; b < made->n; b++)
+        start->pressure[b] = -start->pressure[b];
+    substitute(made, start->pressure);
+    networkflow_release(&start->flow);
+    TRY_GOTO(
+        solve(made, &(Load){.pressure = start->pressure, .is_whole = true}, &start->flow, err));
+    *turned = false;
+    for (size_t i = 0; i < made->network->n_segments; i++) {
+        signed char sign = start->flow.flow[i] < 0 ? -1 : 1;
+        if (start->flow.is_lost[i] || sign == start->sign[i])
+            continue;
+        start->sign[i] = sign;
+        *turned = true;
+    }
+done:
+    free(slope);
+    return status;
+}
+
+/* Raises the weight of the stress. The first start alone begins with the weight 0. */
+static Status raise(const Guess *made, const double *base, Start *start, NetworkSpread *spread,
+                    Err *err)
+{
+    const double unit = pa_from_mmhg(10);
+    for (double k = 0; k <= last_weight; k = k > 0 ? 2 * k : first_weight) {
+        factorize(made, k * unit * unit);
+        for (size_t s = 0; s < (k > 0 ? made->params->starts : 1); s++) {
+            bool turned = true;
+            for (int i = 0; turned && i < (k > 0 ? SOLVES_PER_WEIGHT : 1); i++) {
+                TRY(minimize(made, base, k * unit * unit, &start[s], &turned, err));
+                spread->solves += s == 0;
+            }
+        }
+    }
+    return STATUS_OK;
+}
+
+static Status begin_start(const Guess *made, size_t s, Random *random, Start *start, Err *err)
+{
+    TRY(mem_calloc(&start->sign, made->network->n_segments, 1, "directions", err));
+    TRY(mem_calloc(&start->pressure, made->n, sizeof *start->pressure, "pressures", err));
+    for (size_t i = 0; s > 0 && i < made->network->n_segments; i++)
+        start->sign[i] = random_uniform(random) < 0.5 ? -1 : 1;
+    return STATUS_OK;
+}
+
+/* Compares the flow of another start with that of the first, where its direction is known. */
+static Status compare(const Guess *made, const NetworkFlow *first, const NetworkFlow *other,
+                      NetworkSpread *spread, Err *err)
+{
+    double *change = NULL, turned = 0;
+    size_t n = 0;
+    TRY(mem_alloc(&change, made->network->n_segments, sizeof *change, "flows", err));
+    for (size_t i = 0; i < made->network->n_segments; i++) {
+        if (first->is_lost[i])
+            continue;
+        double ratio = other->flow[i] / first->flow[i];
+        turned += ratio < 0;
+        change[n++] = fabs(ratio - 1);
+    }
+    if (n > 0) {
+        double now[2] = {turned / (double)n, select_number(change, n, n / 2)};
+        spread->turned[0] = fmin(spread->turned[0], now[0]);
+        spread->turned[1] = fmax(spread->turned[1], now[0]);
+        spread->change[0] = fmin(spread->change[0], now[1]);
+        spread->change[1] = fmax(spread->change[1], now[1]);
+    }
+    free(change);
+    return STATUS_OK;
+}
+
+static Status begin(Guess *made, Err *err)
+{
+    const FlowNetwork *network = made->network;
+    TRY(mem_alloc(&made->open, network->n_nodes, sizeof *made->open, "nodes", err));
+    TRY(mem_calloc(&made->weight, network->n_nodes, sizeof *made->weight, "nodes", err));
+    for (uint32_t v = 0; v < network->n_nodes; v++)
+        if (made->params->is_open[v])
+            made->open[made->n++] = v;
+    if (made->n > NETWORK_MAX_OPEN)
+        return err_set(err, STATUS_INFEASIBLE,
+                       "%zu ends have no known pressure or flow; at most %d can be estimated",
+                       made->n, NETWORK_MAX_OPEN);
+    for (size_t i = 0; i < network->n_segments; i++)
+        for (int k = 0; k < 2; k++)
+            made->weight[network->ends[i][k]] += made->params->length_mm[i] / 2;
+    TRY(mem_alloc(&made->s0, made->n * made->n, sizeof *made->s0, "equations", err));
+    TRY(mem_alloc(&made->s1, made->n * made->n, sizeof *made->s1, "equations", err));
+    TRY(mem_alloc(&made->matrix, made->n * made->n, sizeof *made->matrix, "equations", err));
+    return threads_try(made->n, made->params->threads, fill_row, made, err);
+}
+
+static Status run(const Guess *made, Start *start, double *pressure, NetworkSpread *spread,
+                  Err *err)
+{
+    NetworkFlow base = {0};
+    Random random;
+    Status status = STATUS_OK;
+    random_seed(&random, made->params->seed);
+    for (size_t s = 0; s < made->params->starts; s++)
+        TRY(begin_start(made, s, &random, &start[s], err));
+    TRY(solve(made, &(Load){.unit = UINT32_MAX, .is_whole = true}, &base, err));
+    TRY_GOTO(raise(made, base.pressure, start, spread, err));
+    for (size_t s = 1; s < made->params->starts; s++)
+        TRY_GOTO(compare(made, &start[0].flow, &start[s].flow, spread, err));
+    for (size_t b = 0; b < made->n; b++)
+        pressure[made->open[b]] = start[0].pressure[b];
+done:
+    networkflow_release(&base);
+    return status;
+}
+
+Status flownetwork_guess(const FlowNetwork *network, const NetworkGuess *params, double *pressure,
+                         NetworkSpread *spread, Err *err)
+{
+    Guess made = {.network = network, .params = params};
+    Start *start = NULL;
+    Status status = STATUS_OK;
+    *spread = (NetworkSpread){.turned = {HUGE_VAL, 0}, .change = {HUGE_VAL, 0}};
+    TRY_GOTO(mem_calloc(&start, params->starts, sizeof *start, "starts", err));
+    TRY_GOTO(begin(&made, err));
+    spread->open = made.n;
+    TRY_GOTO(run(&made, start, pressure, spread, err));
+done:
+    for (size_t s = 0; start && s < params->starts; s++) {
+        networkflow_release(&start[s].flow);
+        free(start[s].sign);
+        free(start[s].pressure);
+    }
+    free(start);
+    free(made.open);
+    free(made.weight);
+    free(made.s0);
+    free(made.s1);
+    free(made.matrix);
+    return status;
+}

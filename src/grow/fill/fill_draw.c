@@ -1,0 +1,272 @@
+/* Elements are drawn order by order, from the highest to the lowest. While an order is drawn, its
+ * list grows by daughters of the same order. When the list is complete, radii and lengths are
+ * drawn, so that lengths can be exchanged within the order: this keeps the distribution of lengths,
+ * and the number of daughters stays independent of it. */
+#include "grow/fill/fill_draw.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Daughters of one element: more than any published mean plus one in each order. */
+enum { MOST_DAUGHTERS = 64 };
+/* Attempts to draw a diameter within its bounds, and to find a partner for an exchange. */
+enum { DRAWS = 64 };
+/* An element has this many times the length that its segments need at least. */
+static const double spare_length = 1.02;
+/* The first segment of an element is this many times as long as the sum of its radius and that of
+ * its parent: leave_thin for a thin daughter, leave_thin + leave_wide for one as wide as its parent
+ * [angles in fill_place.c]. */
+static const double leave_thin = 1.1, leave_wide = 0.4;
+
+void filling_release(Filling *filling)
+{
+    free(filling->element);
+    free(filling->first);
+    free(filling->last);
+    *filling = (Filling){0};
+}
+
+Status filling_init(Filling *filling, const FillRules *rules, uint64_t seed, Err *err)
+{
+    *filling = (Filling){.rules = *rules};
+    random_seed(&filling->random, seed);
+    size_t orders = rules->table->n + 1;
+    TRY(mem_calloc(&filling->first, orders, sizeof *filling->first, "orders", err));
+    TRY(mem_calloc(&filling->last, orders, sizeof *filling->last, "orders", err));
+    for (size_t k = 0; k < orders; k++)
+        filling->first[k] = filling->last[k] = NO_ELEMENT;
+    return STATUS_OK;
+}
+
+Status filling_add(Filling *filling, FillElement element, Err *err)
+{
+    if (filling->n > TREE_MAX_ID)
+        return err_set(err, STATUS_INFEASIBLE, "a filling has at most %d elements", TREE_MAX_ID);
+    TRY(mem_reserve(&filling->element, &filling->capacity, filling->n + 1, sizeof *filling->element,
+                    "elements", err));
+    int32_t index = (int32_t)filling->n, *last = &filling->last[element.order];
+    element.daughter = element.sister = element.peer = NO_ELEMENT;
+    if (*last == NO_ELEMENT)
+        filling->first[element.order] = index;
+    else
+        filling->element[*last].peer = index;
+    *last = index;
+    filling->element[filling->n++] = element;
+    return STATUS_OK;
+}
+
+static const MorphometryRow *row_of(const Filling *filling, int order)
+{
+    return &filling->rules.table->row[order - 1];
+}
+
+static size_t random_below(Random *random, size_t n)
+{
+    return (size_t)(random_uniform(random) * (double)n);
+}
+
+static int random_count(Random *random, double mean)
+{
+    if (!(mean > 0))
+        return 0;
+    double whole = floor(mean);
+    return (int)whole + (random_uniform(random) < mean - whole);
+}
+
+/* A number with the standard normal distribution [Box & Muller, Ann. Math. Stat. 29 (1958) 610]. */
+static double random_normal(Random *random)
+{
+    double radius = sqrt(-2 * elementary_log(1 - random_uniform(random)));
+    return radius * elementary_cos(FULL_TURN * random_uniform(random));
+}
+
+/* A standard deviation that is not published counts as 0. */
+static double sd_of(Spread spread)
+{
+    return spread.sd > 0 ? spread.sd : 0;
+}
+
+static double random_diameter(Filling *filling, int order)
+{
+    const Morphometry *table = filling->rules.table;
+    Spread spread = row_of(filling, order)->diameter_mm;
+    double low = morphometry_bound_mm(table, order - 1), high = morphometry_bound_mm(table, order);
+    for (int i = 0; i < DRAWS; i++) {
+        double mm = spread.mean + sd_of(spread) * random_normal(&filling->random);
+        if (mm > low && mm < high)
+            return mm;
+    }
+    return spread.mean;
+}
+
+/* The parameters of the normal distribution of the logarithm are those that give the published mean
+ * and standard deviation. */
+static double random_length(Filling *filling, int order)
+{
+    Spread spread = row_of(filling, order)->length_mm;
+    double variance = elementary_log1p(sd_of(spread) * sd_of(spread) / (spread.mean * spread.mean));
+    return spread.mean *
+           elementary_exp(sqrt(variance) * random_normal(&filling->random) - variance / 2);
+}
+
+/* ---- daughters ------------------------------------------------------------------------------- */
+
+typedef struct Daughters {
+    int32_t order[MOST_DAUGHTERS];
+    int n;
+} Daughters;
+
+static void push(Daughters *daughters, int order, int count)
+{
+    for (int i = 0; i < count && daughters->n < MOST_DAUGHTERS; i++)
+        daughters->order[daughters->n++] = order;
+}
+
+static void swap_orders(Daughters *daughters, int i, int j)
+{
+    int32_t order = daughters->order[i];
+    daughters->order[i] = daughters->order[j];
+    daughters->order[j] = order;
+}
+
+/* Puts daughters of lower orders, of which there are two, last. */
+static void close_element(Daughters *daughters, int order)
+{
+    for (int last = daughters->n - 1, i = last; last >= daughters->n - 2; last--) {
+        for (i = last; daughters->order[i] == order;)
+            i--;
+        swap_orders(daughters, last, i);
+    }
+}
+
+static Daughters random_daughters(Filling *filling, const FillElement *element)
+{
+    const FillRules *rules = &filling->rules;
+    const MorphometryRow *row = row_of(filling, element->order);
+    bool is_above = element->grown && element->order >= rules->from;
+    int highest = is_above ? rules->from - 1 : element->order, own = 0;
+    Daughters out = {.n = 0};
+    for (int less = 0; less < PUBLISHED_DAUGHTERS && element->order - less >= rules->to; less++) {
+        if (element->order - less > highest)
+            continue;
+        int count =
+            random_count(&filling->random, row->daughters[less].mean) - element->present[less];
+        push(&out, element->order - less, count);
+        own += less == 0 && count > 0 ? count : 0;
+    }
+    bool closes = element->order > rules->to && (!element->grown || element->is_open);
+    if (closes && out.n - own < 2)
+        push(&out, is_above ? highest : element->order - 1, 2 - (out.n - own));
+    for (int i = out.n - 1; i > 0; i--)
+        swap_orders(&out, i, (int)random_below(&filling->random, (size_t)i + 1));
+    if (closes)
+        close_element(&out, element->order);
+    return out;
+}
+
+static Status draw_daughters(Filling *filling, int32_t parent, Err *err)
+{
+    const FillElement *element = &filling->element[parent];
+    Daughters daughters = random_daughters(filling, element);
+    bool closes = element->order > filling->rules.to;
+    filling->element[parent].segments = daughters.n + (closes ? -1 : 1);
+    int32_t elder = NO_ELEMENT;
+    for (int i = 0; i < daughters.n; i++) {
+        int32_t index = (int32_t)filling->n;
+        TRY(filling_add(filling, (FillElement){.order = daughters.order[i], .parent = parent},
+                        err));
+        if (elder == NO_ELEMENT)
+            filling->element[parent].daughter = index;
+        else
+            filling->element[elder].sister = index;
+        elder = index;
+    }
+    return STATUS_OK;
+}
+
+/* ---- lengths --------------------------------------------------------------------------------- */
+
+/* Length that the first segment of an element needs, mm. A drawn one has to leave its parent, which
+ * takes more than the sum of the radii because the angle between them is not a right one, and is
+ * smaller for wide daughters. */
+static double least_first(const Filling *filling, const FillElement *element)
+{
+    double radius = element->radius_mm;
+    if (element->grown)
+        return 2 * radius;
+    double parent = filling->element[element->parent].widest_mm;
+    return (radius + parent) * (leave_thin + leave_wide * fmin(1, radius / parent));
+}
+
+static double least_length(const Filling *filling, const FillElement *element)
+{
+    return spare_length *
+           (least_first(filling, element) + 2 * element->radius_mm * (element->segments - 1));
+}
+
+static void draw_sizes(Filling *filling, FillElement *element)
+{
+    double length = random_length(filling, element->order) - element->grown_mm;
+    element->length_mm = length;
+    if (!element->grown)
+        element->radius_mm = element->widest_mm = random_diameter(filling, element->order) / 2;
+    else if (!element->is_open || length < 2 * element->radius_mm)
+        element->length_mm = 0;
+}
+
+/* Exchanges the length of an element for a sufficient one of a random other element, to which its
+ * own length is sufficient. Otherwise makes it sufficient. */
+static void exchange_length(Filling *filling, FillElement *element, const int32_t *drawn, size_t n)
+{
+    double needed = spare_length * least_length(filling, element);
+    for (int i = 0; i < DRAWS && element->length_mm < needed; i++) {
+        FillElement *other = &filling->element[drawn[random_below(&filling->random, n)]];
+        if (other->length_mm < needed ||
+            element->length_mm < spare_length * least_length(filling, other))
+            continue;
+        double length = other->length_mm;
+        other->length_mm = element->length_mm;
+        element->length_mm = length;
+    }
+    element->length_mm = fmax(element->length_mm, needed);
+}
+
+static Status draw_order(Filling *filling, int order, Err *err)
+{
+    int32_t *drawn = NULL;
+    size_t n = 0;
+    for (int32_t i = filling->first[order]; i != NO_ELEMENT; i = filling->element[i].peer)
+        TRY(draw_daughters(filling, i, err));
+    for (int32_t i = filling->first[order]; i != NO_ELEMENT; i = filling->element[i].peer) {
+        draw_sizes(filling, &filling->element[i]);
+        n += !filling->element[i].grown;
+    }
+    TRY(mem_calloc(&drawn, n + 1, sizeof *drawn, "elements", err));
+    n = 0;
+    for (int32_t i = filling->first[order]; i != NO_ELEMENT; i = filling->element[i].peer)
+        if (!filling->element[i].grown)
+            drawn[n++] = i;
+    for (size_t i = 0; i < n; i++)
+        exchange_length(filling, &filling->element[drawn[i]], drawn, n);
+    free(drawn);
+    return STATUS_OK;
+}
+
+Status filling_draw(Filling *filling, Err *err)
+{
+    for (int order = (int)filling->rules.table->n; order >= filling->rules.to; order--)
+        TRY(draw_order(filling, order, err));
+    return STATUS_OK;
+}
+
+void filling_cut(Filling *filling, const FillElement *element, double *length)
+{
+    double free = element->length_mm - least_length(filling, element), sum = 0;
+    for (int i = 0; i < element->segments; i++) {
+        length[i] = -elementary_log(1 - random_uniform(&filling->random));
+        sum += length[i];
+    }
+    for (int i = 0; i < element->segments; i++)
+        length[i] = free * length[i] / sum +
+                    (i == 0 ? least_first(filling, element) : 2 * element->radius_mm);
+}

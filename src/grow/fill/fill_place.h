@@ -1,0 +1,65 @@
+/* Gives the elements of a filling positions in the domain. */
+#ifndef CORCAST_GROW_FILL_FILL_PLACE_H
+#define CORCAST_GROW_FILL_FILL_PLACE_H
+
+#include "grow/cco/grid.h"
+#include "grow/fill/fill_draw.h"
+
+enum { NO_NODE = -1 };
+
+/* A node of the filled tree, and the segment that ends there. */
+typedef struct FillNode {
+    Vec3 at;        /* mm */
+    double radius;  /* of the segment, mm */
+    int32_t parent; /* NO_NODE for a root. A parent may have a larger index than its child */
+    int32_t origin; /* the node of the tree that is filled; NO_NODE for a new node */
+    bool grown;     /* the segment is a part of a grown segment */
+} FillNode;
+
+/* A segment that a search found, and a ball that holds it, mm. */
+typedef struct FillNear {
+    Vec3 center;
+    double radius;
+    int32_t segment;
+} FillNear;
+
+/* The nodes of the filled tree. Begin with {.domain = ..., .filling = ...}; release with
+ * places_release. */
+typedef struct Places {
+    const Domain *domain;
+    Filling *filling;
+    FillNode *node; /* owned */
+    size_t n, capacity;
+    Grid grid;       /* of all segments; owned */
+    int32_t *end;    /* per element: its most distal node so far; NO_NODE: none; owned */
+    int32_t *start;  /* per element: the node at which it branches off; NO_NODE: left out; owned */
+    uint32_t *stamp; /* per node: the last search that found its segment; owned */
+    uint32_t searches;
+    FillNear *near; /* segments that the last search found; owned */
+    size_t n_near, near_capacity;
+    size_t left_out; /* number of elements without a position */
+} Places;
+
+void places_release(Places *places);
+
+/* Copies the nodes of a tree. `end` receives NO_NODE for every element; the caller sets it to the
+ * last nodes of grown elements. Errors: STATUS_MEMORY. */
+MUST_CHECK Status places_init(Places *places, const Tree *tree, Err *err);
+
+/* Positions all elements of places->filling, which is drawn. Calls `progress` of `params` now and
+ * then. Errors: STATUS_CANCELLED if progress returns false; STATUS_MEMORY. */
+MUST_CHECK Status places_fill(Places *places, const GrowParams *params, Err *err);
+
+/* Moves nodes between drawn segments so that segments that are too near to others, or shorter than
+ * wide, become clear of them [fill_repair.c]. *broken receives how many remain. Errors:
+ * STATUS_MEMORY. */
+MUST_CHECK Status places_repair(Places *places, size_t *broken, Err *err);
+
+/* Enters segment i into the grid, or moves it there. Errors: STATUS_MEMORY. */
+MUST_CHECK Status places_enter(Places *places, int32_t i, Err *err);
+
+/* Sets near[0] to near[n_near - 1] to the segments whose walls may be within `reach` mm of the line
+ * from `a` to `b`, each once. Errors: STATUS_MEMORY. */
+MUST_CHECK Status places_search(Places *places, Vec3 a, Vec3 b, double reach, Err *err);
+
+#endif

@@ -1,0 +1,148 @@
+/* Few drawn segments are broken: nearer to others than their walls allow, or shorter than wide. The
+ * two ends of a broken segment move to the best of some positions around them, nearest first, as in
+ * the repair of grown trees [repair.c]. A node of a grown segment never moves. */
+#include "grow/fill/fill_place.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { ROUNDS = 4 };
+/* Distances that nodes are moved, in radii of the segment that ends there. */
+static const double steps[] = {0.1, 0.3, 1, 2};
+/* Segments that a repair moves keep this fraction of their width in addition. */
+static const double spare = 1e-3;
+
+typedef struct Mending {
+    Places *places;
+    int32_t *child; /* children of all nodes, node by node; owned */
+    size_t *end;    /* per node: end of its children in `child`; owned */
+} Mending;
+
+static bool are_joined(const FillNode *node, int32_t i, int32_t j)
+{
+    return i == j || node[i].parent == node[j].parent || node[i].parent == j || node[j].parent == i;
+}
+
+/* By how many mm segment i is too short, or too near to another segment with an index below
+ * `below`, whichever is more. 0 for a grown segment. */
+static Status fault_of(Places *places, int32_t i, int32_t below, double *fault, Err *err)
+{
+    const FillNode *node = places->node, *own = &node[i];
+    *fault = 0;
+    if (own->grown)
+        return STATUS_OK;
+    Vec3 a = node[own->parent].at, b = own->at;
+    *fault = fmax(0, 2 * own->radius - vec3_distance(a, b));
+    TRY(places_search(places, a, b, (1 + spare) * own->radius, err));
+    for (size_t k = 0; k < places->n_near; k++) {
+        int32_t j = places->near[k].segment;
+        if ((!node[j].grown && j >= below) || are_joined(node, i, j))
+            continue;
+        double apart2 = segment_distance2(a, b, node[node[j].parent].at, node[j].at);
+        *fault = fmax(*fault, own->radius + node[j].radius - sqrt(apart2));
+    }
+    return STATUS_OK;
+}
+
+/* The sum of the faults of the segments that meet at a node; more than `enough` if above it. */
+static Status fault_at(Mending *mending, int32_t i, double enough, double *sum, Err *err)
+{
+    double fault;
+    TRY(fault_of(mending->places, i, INT32_MAX, sum, err));
+    for (size_t k = i ? mending->end[i - 1] : 0; k < mending->end[i] && *sum < enough; k++) {
+        TRY(fault_of(mending->places, mending->child[k], INT32_MAX, &fault, err));
+        *sum += fault;
+    }
+    return STATUS_OK;
+}
+
+static bool is_inside(const Mending *mending, int32_t i)
+{
+    const Places *places = mending->places;
+    const FillNode *node = places->node;
+    bool inside = domain_holds_segment(places->domain, node[node[i].parent].at, node[i].at);
+    for (size_t k = i ? mending->end[i - 1] : 0; k < mending->end[i] && inside; k++)
+        inside = domain_holds_segment(places->domain, node[i].at, node[mending->child[k]].at);
+    return inside;
+}
+
+/* Moves a node to the best position found around it. */
+static Status move(Mending *mending, int32_t i, Err *err)
+{
+    Places *places = mending->places;
+    FillNode *node = &places->node[i];
+    const Vec3 from = node->at;
+    Vec3 best = from;
+    double least, fault;
+    if (node->grown)
+        return STATUS_OK;
+    TRY(fault_at(mending, i, INFINITY, &least, err));
+    for (int k = 0; k < 27 * (int)(sizeof steps / sizeof *steps) && least > 0; k++) {
+        Vec3 way = vec3(k % 3 - 1, k / 3 % 3 - 1, k / 9 % 3 - 1);
+        if (vec3_dot(way, way) == 0)
+            continue;
+        node->at = vec3_add_scaled(from, vec3_normalized(way), steps[k / 27] * node->radius);
+        TRY(fault_at(mending, i, least, &fault, err));
+        if (fault < least && is_inside(mending, i)) {
+            least = fault;
+            best = node->at;
+        }
+    }
+    node->at = best;
+    TRY(places_enter(places, i, err));
+    for (size_t k = i ? mending->end[i - 1] : 0; k < mending->end[i]; k++)
+        TRY(places_enter(places, mending->child[k], err));
+    return STATUS_OK;
+}
+
+static Status find_children(Mending *mending, Err *err)
+{
+    const Places *places = mending->places;
+    TRY(mem_calloc(&mending->child, places->n, sizeof *mending->child, "nodes", err));
+    TRY(mem_calloc(&mending->end, places->n + 1, sizeof *mending->end, "nodes", err));
+    for (size_t i = 0; i < places->n; i++)
+        if (places->node[i].parent != NO_NODE)
+            mending->end[places->node[i].parent + 1]++;
+    for (size_t i = 0; i < places->n; i++)
+        mending->end[i + 1] += mending->end[i];
+    for (size_t i = 0; i < places->n; i++)
+        if (places->node[i].parent != NO_NODE)
+            mending->child[mending->end[places->node[i].parent]++] = (int32_t)i;
+    return STATUS_OK;
+}
+
+/* Lists the broken segments; of two that are too near to each other, the later one. */
+static Status find_broken(Places *places, int32_t *broken, size_t *count, Err *err)
+{
+    double fault;
+    *count = 0;
+    for (size_t i = 0; i < places->n; i++) {
+        TRY(fault_of(places, (int32_t)i, (int32_t)i, &fault, err));
+        if (fault > 0)
+            broken[(*count)++] = (int32_t)i;
+    }
+    return STATUS_OK;
+}
+
+Status places_repair(Places *places, size_t *left, Err *err)
+{
+    Mending mending = {.places = places};
+    int32_t *broken = NULL;
+    Status status;
+    TRY_GOTO(find_children(&mending, err));
+    TRY_GOTO(mem_calloc(&broken, places->n, sizeof *broken, "segments", err));
+    for (int round = 0;; round++) {
+        TRY_GOTO(find_broken(places, broken, left, err));
+        if (*left == 0 || round == ROUNDS)
+            break;
+        for (size_t k = 0; k < *left; k++) {
+            TRY_GOTO(move(&mending, broken[k], err));
+            TRY_GOTO(move(&mending, places->node[broken[k]].parent, err));
+        }
+    }
+done:
+    free(broken);
+    free(mending.child);
+    free(mending.end);
+    return status;
+}

@@ -1,0 +1,315 @@
+/* The steps of a filling: find the elements of the grown tree, draw the others [fill_draw.c], place
+ * them [fill_place.c], repair [fill_repair.c], solve the flow, and write the tree. */
+#include "grow/fill/fill_place.h"
+#include "grow/finish.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* The random numbers of a filling differ from those of growth with the same seed. */
+static const uint64_t own_seed = 0x66696c6c;
+
+static Status check(const GrowParams *params, const FillRules *rules, const Domain *domain,
+                    Err *err)
+{
+    TRY(grow_blood_check(params, err));
+    if (!params->from)
+        return err_set(err, STATUS_USAGE, "`fill`: needs a tree to fill, `from`");
+    if (domain->dimension != 3)
+        return err_set(err, STATUS_USAGE,
+                       "`fill`: published tables describe vessels in space; the domain has two "
+                       "dimensions, and must have three");
+    if (rules->from < 2 || rules->from > (int)rules->table->n)
+        return err_set(err, STATUS_USAGE,
+                       "`fill_from` %d: must be from 2 to %zu, the highest order of %s",
+                       rules->from, rules->table->n, rules->name);
+    if (rules->to < 1 || rules->to >= rules->from)
+        return err_set(err, STATUS_USAGE, "`fill_to` %d: must be from 1 to below `fill_from` %d",
+                       rules->to, rules->from);
+    for (size_t i = 0; i < params->from->n; i++)
+        if (tree_is_segment(params->from, i) && !(params->from->radius_mm[i] > 0))
+            return err_set(err, STATUS_INPUT,
+                           "`fill`: node %d of the tree has radius 0; vessels need radii above 0",
+                           params->from->id[i]);
+    return STATUS_OK;
+}
+
+/* ---- the grown elements ---------------------------------------------------------------------- */
+
+/* Sets the order of each segment: by its diameter, and at least the orders of its daughters. */
+static void find_orders(const Tree *tree, const Morphometry *table, int32_t *order)
+{
+    for (size_t i = tree->n; i-- > 0;) {
+        int own = 1;
+        while (own < (int)table->n && 2 * tree->radius_mm[i] > morphometry_bound_mm(table, own))
+            own++;
+        order[i] = order[i] > own ? order[i] : own;
+        int32_t parent = tree->parent[i];
+        if (parent != TREE_NO_PARENT && order[parent] < order[i])
+            order[parent] = order[i];
+    }
+}
+
+/* Sets, per node, its thickest child of the same order, the first of several; NO_NODE: none. */
+static void find_heirs(const Tree *tree, const int32_t *order, int32_t *heir)
+{
+    for (size_t i = 0; i < tree->n; i++) {
+        int32_t parent = tree->parent[i];
+        heir[i] = NO_NODE;
+        if (parent != TREE_NO_PARENT && order[parent] == order[i] &&
+            (heir[parent] == NO_NODE || tree->radius_mm[heir[parent]] < tree->radius_mm[i]))
+            heir[parent] = (int32_t)i;
+    }
+}
+
+/* Adds the element that segment i begins, as a daughter of element `above`, which may be none. */
+static Status begin_element(Filling *filling, int32_t order, int32_t above, Err *err)
+{
+    if (above != NO_ELEMENT) {
+        int less = filling->element[above].order - order;
+        if (less < PUBLISHED_DAUGHTERS)
+            filling->element[above].present[less]++;
+    }
+    return filling_add(filling, (FillElement){.order = order, .parent = NO_ELEMENT, .grown = true},
+                       err);
+}
+
+/* Adds the elements of the grown tree, and sets `last` to the element of each segment. */
+static Status add_grown(const Tree *tree, Filling *filling, int32_t *of_node, Err *err)
+{
+    int32_t *order = NULL, *heir = NULL;
+    Status status;
+    TRY_GOTO(mem_calloc(&order, tree->n, sizeof *order, "orders", err));
+    TRY_GOTO(mem_calloc(&heir, tree->n, sizeof *heir, "orders", err));
+    find_orders(tree, filling->rules.table, order);
+    find_heirs(tree, order, heir);
+    for (size_t i = 0; i < tree->n; i++) {
+        int32_t parent = tree->parent[i];
+        of_node[i] = NO_ELEMENT;
+        if (parent == TREE_NO_PARENT)
+            continue;
+        of_node[i] = heir[parent] == (int32_t)i ? of_node[parent] : NO_ELEMENT;
+        if (of_node[i] == NO_ELEMENT) {
+            TRY_GOTO(begin_element(filling, order[i], of_node[parent], err));
+            of_node[i] = (int32_t)filling->n - 1;
+        }
+        FillElement *element = &filling->element[of_node[i]];
+        element->radius_mm = tree->radius_mm[i];
+        element->widest_mm = fmax(element->widest_mm, tree->radius_mm[i]);
+        element->grown_mm += tree_segment_length(tree, i);
+    }
+done:
+    free(order);
+    free(heir);
+    return status;
+}
+
+/* Marks the elements whose last segments are terminals. */
+static Status find_open(const Tree *tree, const int32_t *of_node, Filling *filling, Err *err)
+{
+    int32_t *children = NULL;
+    TRY(tree_child_counts(tree, &children, err));
+    for (size_t i = 0; i < tree->n; i++)
+        if (of_node[i] != NO_ELEMENT)
+            filling->element[of_node[i]].is_open = children[i] == 0;
+    free(children);
+    return STATUS_OK;
+}
+
+/* ---- the flow -------------------------------------------------------------------------------- */
+
+/* Sets the flow shares to the flows, ml/min, at which all terminals have one pressure. Conductances
+ * are summed from the terminals to the roots, and flows divided from the roots to the terminals. */
+static Status solve_flow(Tree *tree, double drop_pa, double *q_ml_min, Err *err)
+{
+    double *viscosity = NULL, *conductance = NULL, *below = NULL, *flow = NULL;
+    Status status;
+    *q_ml_min = 0;
+    TRY_GOTO(derive_viscosity(tree, &(TreeMeta){0}, &viscosity, err));
+    TRY_GOTO(mem_calloc(&conductance, tree->n, sizeof *conductance, "conductances", err));
+    TRY_GOTO(mem_calloc(&below, tree->n, sizeof *below, "conductances", err));
+    TRY_GOTO(mem_calloc(&flow, tree->n, sizeof *flow, "flows", err));
+    for (size_t i = tree->n; i-- > 0;) {
+        double r2 = tree->radius_mm[i] * tree->radius_mm[i];
+        double resistance = 8 * viscosity[i] * tree_segment_length(tree, i) / (PI * r2 * r2);
+        conductance[i] = 1 / (resistance + (below[i] > 0 ? 1 / below[i] : 0));
+        if (tree_is_segment(tree, i))
+            below[tree->parent[i]] += conductance[i];
+    }
+    for (size_t i = 0; i < tree->n; i++) {
+        int32_t parent = tree->parent[i];
+        flow[i] = parent == TREE_NO_PARENT ? ml_min_from_mm3_s(below[i] * drop_pa)
+                                           : flow[parent] * (conductance[i] / below[parent]);
+        *q_ml_min += parent == TREE_NO_PARENT ? flow[i] : 0;
+    }
+    for (size_t i = 0; i < tree->n; i++)
+        if (below[i] > 0)
+            flow[i] = 0;
+    tree_set_flow_shares(tree, flow);
+    flow = NULL;
+done:
+    free(viscosity);
+    free(conductance);
+    free(below);
+    free(flow);
+    return status;
+}
+
+/* ---- the tree -------------------------------------------------------------------------------- */
+
+/* Lists the nodes so that parents come first, each subtree in one piece, in the order of their
+ * indices. `rank` receives the position of each node. */
+static Status order_nodes(const Places *places, int32_t *rank, Err *err)
+{
+    int32_t *first = NULL, *next = NULL, *stack = NULL, listed = 0;
+    size_t depth = 0;
+    Status status;
+    TRY_GOTO(mem_calloc(&first, places->n, sizeof *first, "nodes", err));
+    TRY_GOTO(mem_calloc(&next, places->n, sizeof *next, "nodes", err));
+    TRY_GOTO(mem_calloc(&stack, places->n, sizeof *stack, "nodes", err));
+    for (size_t i = 0; i < places->n; i++)
+        first[i] = next[i] = NO_NODE;
+    for (size_t i = places->n; i-- > 0;) {
+        int32_t parent = places->node[i].parent;
+        if (parent == NO_NODE)
+            stack[depth++] = (int32_t)i;
+        else {
+            next[i] = first[parent];
+            first[parent] = (int32_t)i;
+        }
+    }
+    while (depth > 0) {
+        int32_t i = stack[--depth];
+        rank[i] = listed++;
+        if (next[i] != NO_NODE)
+            stack[depth++] = next[i];
+        if (first[i] != NO_NODE)
+            stack[depth++] = first[i];
+    }
+done:
+    free(first);
+    free(next);
+    free(stack);
+    return status;
+}
+
+static Status write_columns(const Places *places, const Tree *from, const int32_t *rank, Tree *out,
+                            Err *err)
+{
+    for (size_t k = 0; k < from->n_columns; k++) {
+        double *value;
+        TRY(tree_add_column(out, from->column[k].name, from->column[k].unit, &value, err));
+        for (size_t i = 0; i < places->n; i++)
+            if (places->node[i].origin != NO_NODE)
+                value[rank[i]] = from->column[k].value[places->node[i].origin];
+    }
+    return STATUS_OK;
+}
+
+static Status write_nodes(const Places *places, const Tree *from, Tree *out, Err *err)
+{
+    int32_t *rank = NULL, id = tree_last_id(from);
+    Status status;
+    TRY_GOTO(mem_calloc(&rank, places->n, sizeof *rank, "nodes", err));
+    TRY_GOTO(order_nodes(places, rank, err));
+    TRY_GOTO(tree_init(out, places->n, err));
+    for (size_t i = 0; i < places->n; i++) {
+        const FillNode *node = &places->node[i];
+        size_t at = (size_t)rank[i];
+        bool is_new = node->origin == NO_NODE;
+        out->id[at] = is_new ? ++id : from->id[node->origin];
+        out->type[at] = is_new ? TREE_VESSEL_TYPE : from->type[node->origin];
+        out->parent[at] = node->parent == NO_NODE ? TREE_NO_PARENT : rank[node->parent];
+        out->position[at] = node->at;
+        out->radius_mm[at] = node->radius;
+    }
+    TRY_GOTO(write_columns(places, from, rank, out, err));
+done:
+    free(rank);
+    return status;
+}
+
+static Status describe(const GrowParams *params, const FillRules *rules, const Domain *domain,
+                       TreeMeta *meta, Err *err)
+{
+    char text[128];
+    snprintf(text, sizeof text, "%s, orders %d to %d", rules->name, rules->to, rules->from - 1);
+    TRY(meta_set_text(meta, META_FILL, text, err));
+    TRY(finish_describe(params, domain, meta, err));
+    meta->known[META_GAMMA] = meta->known[META_GAMMA_BY_RADIUS] = meta->known[META_LAMBDA] = false;
+    meta->known[META_TERMINAL_FLOW] = false;
+    TRY(meta_add_lines(meta, err));
+    for (size_t i = 0; i < params->from->meta.n_lines; i++)
+        if (params->from->meta.line[i].text)
+            TRY(meta_add_text(meta, params->from->meta.line[i].key, params->from->meta.line[i].text,
+                              err));
+    return STATUS_OK;
+}
+
+/* Sets the number of terminals, and the spread of their flows. */
+static void report_flow(const Tree *tree, GrowReport *report)
+{
+    double sum = 0, squares = 0;
+    for (size_t i = 0; i < tree->n; i++) {
+        report->terminals += tree->flow_share[i] > 0;
+        sum += tree->flow_share[i];
+        squares += tree->flow_share[i] * tree->flow_share[i];
+    }
+    double n = (double)report->terminals;
+    report->fill.flow_spread = sqrt(fmax(0, squares * n / (sum * sum) - 1));
+}
+
+/* Writes the tree with its metadata and flows. */
+static Status write_tree(const Places *places, const GrowParams *params, Tree *out,
+                         GrowReport *report, Err *err)
+{
+    double drop = pa_from_mmhg(params->blood.p_perf_mmhg - params->blood.p_term_mmhg);
+    TRY(write_nodes(places, params->from, out, err));
+    TRY(describe(params, &places->filling->rules, places->domain, &out->meta, err));
+    TRY(solve_flow(out, drop, &report->fill.flow_ml_min, err));
+    meta_set_number(&out->meta, META_Q_PERF, report->fill.flow_ml_min);
+    report_flow(out, report);
+    report->root_radius_mm = tree_root_radius(out);
+    return STATUS_OK;
+}
+
+Status fill_tree(const GrowParams *params, const FillRules *rules, const Domain *domain, Tree *out,
+                 GrowReport *report, Err *err)
+{
+    TRY(check(params, rules, domain, err));
+    double begun = clock_seconds();
+    const Tree *from = params->from;
+    Filling filling = {0};
+    Places places = {.domain = domain, .filling = &filling};
+    GrowReport made = {
+        .target = (double)NAN, .thickness = 1, .apart_mm = INFINITY, .complete = true};
+    Tree tree = {0};
+    int32_t *of_node = NULL;
+    Status status;
+    TRY_GOTO(mem_calloc(&of_node, from->n, sizeof *of_node, "nodes", err));
+    TRY_GOTO(filling_init(&filling, rules, params->seed ^ own_seed, err));
+    TRY_GOTO(add_grown(from, &filling, of_node, err));
+    TRY_GOTO(find_open(from, of_node, &filling, err));
+    const size_t grown = filling.n;
+    TRY_GOTO(filling_draw(&filling, err));
+    TRY_GOTO(places_init(&places, from, err));
+    for (size_t i = 0; i < from->n; i++)
+        if (of_node[i] != NO_ELEMENT)
+            places.end[of_node[i]] = (int32_t)i;
+    TRY_GOTO(places_fill(&places, params, err));
+    TRY_GOTO(places_repair(&places, &made.broken, err));
+    TRY_GOTO(write_tree(&places, params, &tree, &made, err));
+    made.fill.elements = filling.n - grown - places.left_out;
+    made.fill.left_out = places.left_out;
+    made.seconds = clock_seconds() - begun;
+    *out = tree;
+    tree = (Tree){0};
+    if (report)
+        *report = made;
+done:
+    free(of_node);
+    tree_release(&tree);
+    places_release(&places);
+    filling_release(&filling);
+    return status;
+}

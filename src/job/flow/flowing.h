@@ -1,0 +1,71 @@
+/* The operation `flow`: computes steady flow in a network of vessels, which may have loops.
+ *
+ *     Status status = flowing_make(parsed->options, parsed, &made, err);
+ *     if (status == STATUS_OK)
+ *         status = flowing_write(&made, err);
+ *     flowing_release(&made); */
+#ifndef CORCAST_JOB_FLOW_FLOWING_H
+#define CORCAST_JOB_FLOW_FLOWING_H
+
+#include "derive/derive.h"
+#include "job/tree/blood.h"
+#include "options/options.h"
+
+extern const Command command_flow;
+
+/* What happens at ends without a boundary condition. */
+typedef enum FlowingEnds { ENDS_REFUSED, ENDS_CLOSED, ENDS_ESTIMATED } FlowingEnds;
+
+/* The options of `flow`. The help of each option describes its member. Texts are borrowed. */
+typedef struct FlowingOptions {
+    const char *output, *summary, *boundary; /* NULL: not given */
+    int ends;                                /* a FlowingEnds */
+    bool separation, json;
+    double cell_fl, target_mmhg, target_pa;
+    size_t starts;
+    BloodOptions blood;
+} FlowingOptions;
+
+/* A number of the report. */
+typedef struct FlowingRow {
+    const char *key, *title, *unit; /* in tables; in the printed report; "" for pure numbers */
+    double value;
+} FlowingRow;
+enum { FLOWING_ROWS = 40 };
+
+/* The result. Release with flowing_release. */
+typedef struct Flowing {
+    const FlowingOptions *options; /* borrowed */
+    Parsed *parsed;                /* borrowed */
+    Tree tree;                     /* owned, with the fields as columns */
+    TreeNetwork network;           /* owned, with its boundary conditions */
+    double *inflow_hematocrit;     /* per node; NAN: not stated; owned */
+    double *viscosity;             /* per segment, Pa s; owned */
+    NetworkBlood blood;            /* borrows from the other members; used by Pries's law */
+    NetworkFlow flow;              /* owned */
+    NetworkCells cells;            /* zeroed without separation; hematocrit is owned */
+    NetworkSpread spread;          /* zeroed without estimate */
+    FlowingRow row[FLOWING_ROWS];
+    size_t n_rows;
+} Flowing;
+
+/* Reads the tree, which is the first operand, and its boundary conditions; computes the flow; adds
+ * the fields flow, pressure, velocity, wss, direction and, in Pries's law, hematocrit to the tree.
+ * Warns if the iteration of the hematocrit has not converged.
+ *
+ * options  a FlowingOptions.
+ * made     release it with flowing_release even after an error.
+ * Errors   STATUS_USAGE for options without effect; STATUS_INPUT for boundary conditions that do
+ *          not determine the flow, naming the node; the errors of reading_tree, blood_settle,
+ *          tree_read_values, flownetwork_solve and flownetwork_guess. */
+MUST_CHECK Status flowing_make(void *options, Parsed *parsed, Flowing *made, Err *err);
+void flowing_release(Flowing *made);
+
+/* Writes the files that the options name. Errors: STATUS_MEMORY, those of tree_write and
+ * file_write_parts. */
+MUST_CHECK Status flowing_write(const Flowing *made, Err *err);
+
+/* Returns the report as JSON: a new reference; NULL if memory runs out. */
+json_t *flowing_json(const Flowing *made);
+
+#endif

@@ -1,0 +1,393 @@
+/* Each point of the wall moves inwards along one straight line, so that a prism is bounded by the
+ * positions of six points. The direction is the one that all triangles at the point face most: a
+ * prism with three such directions is sound if it is thin enough. So the only remedy that is needed
+ * is to make bad layers thinner, in rounds, until none is bad.
+ *
+ * That no two prisms overlap need not be tested pair by pair. The layers map (wall) x [0, 1] into
+ * space. If all Jacobians are positive, a place in space is covered as often as the outer surface
+ * winds about it more than the inner one. Both surfaces are free of crossings, so that each winds
+ * about a place once or never. Hence no place is covered twice. */
+#include "mesh/sweep.h"
+
+#include "mesh/precision.h"
+#include "mesh/proof/meshcheck.h"
+#include <stdlib.h>
+
+/* The thickness of the layers grows by at most this fraction of the distance along the wall. */
+#define STEEPEST 0.5
+/* The smallest inner face of a sound prism or stack of prisms, in parts of its outer face. Flatter
+ * prisms are correct but useless for solvers. */
+#define LEAST_FACE 0.1
+/* Rounds in which bad layers become half as thick. After 12, they are 4000 times thinner than asked
+ * for, and what is still bad has no sound direction. */
+enum { ROUNDS = 12 };
+/* Steps of the search for a direction. Its error falls as 1 / steps; a direction need not be
+ * exact. */
+enum { VIEW_STEPS = 100 };
+
+typedef struct Sweep {
+    const VesselMesh *mesh;
+    const VesselTree *tree;
+    double grid_mm;
+    double part[LAYERS_MAX + 1]; /* per surface: its depth, in parts of the last one's depth */
+    IndexLists fans;             /* per point: the triangles of the wall at it */
+    Vec3 *normals;               /* per triangle: unit, outwards */
+    /* Per point of the mesh; what is said of points of the wall is unset at other points. */
+    Vec3 *inwards;    /* unit */
+    double *asked;    /* the thickness asked for, mm */
+    double *depth;    /* thickness, mm */
+    bool *is_bad;     /* the layers must be thinner here */
+    VesselMesh inner; /* the last surface; borrows triangles and labels */
+    atomic_bool *crossed;
+    PrismLayers layers;
+} Sweep;
+
+void prismlayers_release(PrismLayers *layers)
+{
+    free(layers->points);
+    free(layers->rank);
+    free(layers->trees);
+    *layers = (PrismLayers){0};
+}
+
+static void sweep_release(Sweep *sweep)
+{
+    indexlists_release(&sweep->fans);
+    free(sweep->normals);
+    free(sweep->inwards);
+    free(sweep->asked);
+    free(sweep->depth);
+    free(sweep->is_bad);
+    free(sweep->crossed);
+    free(sweep->inner.points);
+    prismlayers_release(&sweep->layers);
+}
+
+/* ---- directions ------------------------------------------------------------------------------ */
+
+static Status list_fans(Sweep *sweep, Err *err)
+{
+    const VesselMesh *mesh = sweep->mesh;
+    TRY(indexlists_begin(&sweep->fans, mesh->n_points, "points", err));
+    for (size_t i = 0; i < mesh->n_triangles; i++)
+        for (int k = 0; k < 3 && !mesh_is_cap(mesh, i); k++)
+            indexlists_count(&sweep->fans, mesh->triangles[i][k]);
+    TRY(indexlists_allot(&sweep->fans, "points", err));
+    for (size_t i = 0; i < mesh->n_triangles; i++)
+        for (int k = 0; k < 3 && !mesh_is_cap(mesh, i); k++)
+            indexlists_put(&sweep->fans, mesh->triangles[i][k], (uint32_t)i);
+    return STATUS_OK;
+}
+
+/* Returns the direction whose largest angle to the normals of a point's triangles is smallest,
+ * reversed: the centre of the smallest ball about the normals [Badoiu, Clarkson, Optimal core-sets
+ * for balls, 2008]. */
+static Vec3 find_direction(const Sweep *sweep, uint32_t point)
+{
+    const uint32_t first = sweep->fans.first[point], last = sweep->fans.first[point + 1];
+    Vec3 center = sweep->normals[sweep->fans.items[first]];
+    for (int step = 2; step < VIEW_STEPS; step++) {
+        Vec3 farthest = center;
+        double most = -1;
+        for (uint32_t i = first; i < last; i++) {
+            Vec3 normal = sweep->normals[sweep->fans.items[i]];
+            double distance = vec3_distance(normal, center);
+            if (distance > most) {
+                most = distance;
+                farthest = normal;
+            }
+        }
+        center = vec3_add_scaled(center, vec3_sub(farthest, center), 1.0 / step);
+    }
+    return vec3_scale(vec3_normalized(center), -1);
+}
+
+/* Turns the directions of an end's rim into the plane of the end. */
+static void flatten_rim(Sweep *sweep, size_t cap)
+{
+    const FieldSegment *segment = &sweep->tree->segments[mesh_segment(sweep->mesh, cap)];
+    const Vec3 axis = vec3_normalized(vec3_sub(segment->b, segment->a));
+    for (int k = 0; k < 3; k++) {
+        Vec3 *inwards = &sweep->inwards[sweep->mesh->triangles[cap][k]];
+        *inwards = vec3_normalized(vec3_add_scaled(*inwards, axis, -vec3_dot(*inwards, axis)));
+    }
+}
+
+static void find_directions(Sweep *sweep)
+{
+    const VesselMesh *mesh = sweep->mesh;
+    for (size_t i = 0; i < mesh->n_triangles; i++) {
+        const uint32_t *corners = mesh->triangles[i];
+        Vec3 a = mesh_point(mesh, corners[0]);
+        sweep->normals[i] = vec3_normalized(vec3_cross(vec3_sub(mesh_point(mesh, corners[1]), a),
+                                                       vec3_sub(mesh_point(mesh, corners[2]), a)));
+    }
+    for (uint32_t i = 0; i < mesh->n_points; i++)
+        if (sweep->layers.rank[i] != NO_RANK)
+            sweep->inwards[i] = find_direction(sweep, i);
+    for (size_t i = 0; i < mesh->n_triangles; i++)
+        if (mesh_is_cap(mesh, i))
+            flatten_rim(sweep, i);
+}
+
+/* ---- thickness ------------------------------------------------------------------------------- */
+
+/* Makes layers thinner that would grow faster than STEEPEST. */
+static void limit_growth(Sweep *sweep)
+{
+    const VesselMesh *mesh = sweep->mesh;
+    double *depth = sweep->depth;
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (size_t i = 0; i < mesh->n_triangles; i++)
+            for (int k = 0; k < 6 && !mesh_is_cap(mesh, i); k++) {
+                uint32_t from = mesh->triangles[i][k % 3];
+                uint32_t to = mesh->triangles[i][(k + 1 + k / 3) % 3];
+                if (depth[to] <= depth[from])
+                    continue;
+                double most = depth[from] + STEEPEST * vec3_distance(mesh_point(mesh, from),
+                                                                     mesh_point(mesh, to));
+                changed = changed || depth[to] > most;
+                depth[to] = fmin(depth[to], most);
+            }
+    }
+}
+
+/* Sets the thickness asked for. At a point between segments, it is that of the thinnest. */
+static void ask_depths(Sweep *sweep, double thickness)
+{
+    const VesselMesh *mesh = sweep->mesh;
+    for (size_t i = 0; i < mesh->n_points; i++)
+        sweep->asked[i] = INFINITY;
+    for (size_t i = 0; i < mesh->n_triangles; i++)
+        for (int k = 0; k < 3 && !mesh_is_cap(mesh, i); k++) {
+            double *asked = &sweep->asked[mesh->triangles[i][k]];
+            *asked =
+                fmin(*asked, thickness * sweep->tree->segments[mesh_segment(mesh, i)].radius_mm);
+        }
+    for (size_t i = 0; i < mesh->n_points; i++)
+        sweep->depth[i] = sweep->asked[i];
+    limit_growth(sweep);
+}
+
+static void thin_bad_layers(Sweep *sweep)
+{
+    for (size_t i = 0; i < sweep->mesh->n_points; i++) {
+        sweep->depth[i] *= sweep->is_bad[i] ? 0.5 : 1;
+        sweep->is_bad[i] = false;
+    }
+    limit_growth(sweep);
+}
+
+/* ---- prisms ---------------------------------------------------------------------------------- */
+
+/* Sets the points of all surfaces, rounded as in the file. */
+static void place_points(Sweep *sweep)
+{
+    PrismLayers *layers = &sweep->layers;
+    for (uint32_t i = 0; i < layers->n_mesh_points; i++)
+        for (size_t surface = 0; surface <= layers->n_layers; surface++) {
+            Vec3 from = mesh_point(sweep->mesh, i);
+            float *to = layers->points[prismlayers_point(layers, i, surface)];
+            if (surface > 0 && layers->rank[i] != NO_RANK)
+                from = vec3_add_scaled(from, sweep->inwards[i],
+                                       sweep->depth[i] * sweep->part[surface]);
+            for (int axis = 0; axis < 3; axis++)
+                sweep->inner.points[i][axis] = to[axis] =
+                    mesh_rounded(vec3_component(from, axis), sweep->grid_mm);
+        }
+}
+
+/* Returns true if the Jacobian of the prism between two surfaces is positive everywhere. It is a
+ * mean of its values at the three edges from surface to surface, weighted by the position along the
+ * triangle; along such an edge it is a quadratic Bernstein polynomial with the coefficients
+ * at_outer, between and at_inner. */
+static bool is_sound(const Sweep *sweep, size_t triangle, size_t outer, size_t inner)
+{
+    const PrismLayers *layers = &sweep->layers;
+    Vec3 p[2][3], rise[3];
+    for (int k = 0; k < 3; k++) {
+        for (int side = 0; side < 2; side++) {
+            const float *x = layers->points[prismlayers_point(
+                layers, sweep->mesh->triangles[triangle][k], side ? inner : outer)];
+            p[side][k] = vec3((double)x[0], (double)x[1], (double)x[2]);
+        }
+        rise[k] = vec3_sub(p[0][k], p[1][k]);
+    }
+    Vec3 a1 = vec3_sub(p[0][1], p[0][0]), a2 = vec3_sub(p[0][2], p[0][0]);
+    Vec3 b1 = vec3_sub(p[1][1], p[1][0]), b2 = vec3_sub(p[1][2], p[1][0]);
+    Vec3 twice_between = vec3_add(vec3_cross(a1, b2), vec3_cross(b1, a2));
+    for (int k = 0; k < 3; k++) {
+        double at_outer = vec3_dot(rise[k], vec3_cross(a1, a2));
+        double at_inner = vec3_dot(rise[k], vec3_cross(b1, b2));
+        if (!(at_outer > 0 && at_inner >= LEAST_FACE * at_outer &&
+              vec3_dot(rise[k], twice_between) >= 0))
+            return false;
+    }
+    return true;
+}
+
+static void mark_bad(Sweep *sweep, size_t triangle)
+{
+    for (int k = 0; k < 3; k++)
+        sweep->is_bad[sweep->mesh->triangles[triangle][k]] = true;
+}
+
+/* Marks the points of stacks of prisms that are not sound. Returns their number; `found` receives
+ * the triangle of one. */
+static size_t find_bad_prisms(Sweep *sweep, size_t *found)
+{
+    const size_t n = sweep->layers.n_layers;
+    size_t bad = 0;
+    for (size_t i = 0; i < sweep->mesh->n_triangles; i++) {
+        if (mesh_is_cap(sweep->mesh, i))
+            continue;
+        bool sound = is_sound(sweep, i, 0, n);
+        for (size_t layer = 0; layer < n && sound; layer++)
+            sound = is_sound(sweep, i, layer, layer + 1);
+        if (sound)
+            continue;
+        mark_bad(sweep, i);
+        *found = i;
+        bad++;
+    }
+    return bad;
+}
+
+/* Marks the points at which the inner surface crosses itself. */
+static Status find_crossings(Sweep *sweep, int threads, size_t *crossings, size_t *found, Err *err)
+{
+    const size_t n = sweep->mesh->n_triangles;
+    for (size_t i = 0; i < n; i++)
+        sweep->crossed[i] = false;
+    TRY(meshcheck_crossings(&sweep->inner, sweep->grid_mm, threads, sweep->crossed, crossings,
+                            err));
+    for (size_t i = 0; i < n; i++)
+        if (sweep->crossed[i]) {
+            mark_bad(sweep, i);
+            *found = i;
+        }
+    return STATUS_OK;
+}
+
+static Status make_sound(Sweep *sweep, int threads, Err *err)
+{
+    for (int attempt = 0;; attempt++) {
+        size_t crossings = 0, found = 0;
+        place_points(sweep);
+        size_t bad = find_bad_prisms(sweep, &found);
+        if (bad == 0)
+            TRY(find_crossings(sweep, threads, &crossings, &found, err));
+        if (bad + crossings == 0)
+            return STATUS_OK;
+        if (attempt == ROUNDS)
+            return err_set(err, STATUS_INFEASIBLE,
+                           "the layers have %zu inverted prisms and %zu crossings, for example at "
+                           "segment %u; no file was written (a smaller `tolerance` or a thinner "
+                           "`thickness` may help)",
+                           bad, crossings, sweep->tree->ids[mesh_segment(sweep->mesh, found)]);
+        thin_bad_layers(sweep);
+    }
+}
+
+/* ---- together -------------------------------------------------------------------------------- */
+
+/* Numbers the trees: meshcheck_trees names a tree after the lowest of its nodes. */
+static Status number_trees(const VesselTree *tree, PrismLayers *layers, Err *err)
+{
+    uint32_t *index = NULL;
+    TRY(meshcheck_trees(tree, &layers->trees, &layers->n_trees, err));
+    TRY(mem_calloc(&index, tree->n_nodes, sizeof *index, "nodes", err));
+    layers->n_trees = 0;
+    for (size_t i = 0; i < tree->n_segments; i++) {
+        uint32_t *at = &index[layers->trees[i]];
+        *at = *at ? *at : (uint32_t)++layers->n_trees;
+        layers->trees[i] = *at - 1;
+    }
+    free(index);
+    return STATUS_OK;
+}
+
+/* Numbers the points of the wall, and allocates all arrays. */
+static Status prepare(Sweep *sweep, Err *err)
+{
+    const VesselMesh *mesh = sweep->mesh;
+    const size_t n = mesh->n_points;
+    PrismLayers *layers = &sweep->layers;
+    TRY(list_fans(sweep, err));
+    TRY(number_trees(sweep->tree, layers, err));
+    TRY(mem_alloc(&layers->rank, n, sizeof *layers->rank, "points", err));
+    for (size_t i = 0; i < n; i++)
+        layers->rank[i] =
+            indexlists_length(&sweep->fans, i) > 0 ? (uint32_t)layers->n_wall_points++ : NO_RANK;
+    for (size_t i = 0; i < mesh->n_triangles; i++)
+        layers->n_prisms += mesh_is_cap(mesh, i) ? 0 : layers->n_layers;
+    layers->n_mesh_points = n;
+    layers->n_points = n + layers->n_layers * layers->n_wall_points;
+    if (mesh->n_triangles * (layers->n_layers + 2) > INT32_MAX / 6)
+        return err_set(err, STATUS_INFEASIBLE,
+                       "%zu prisms are too many for the file's numbers of 31 bits; raise "
+                       "`tolerance`",
+                       layers->n_prisms);
+    TRY(mem_alloc(&layers->points, layers->n_points, sizeof *layers->points, "points", err));
+    TRY(mem_alloc(&sweep->inner.points, n, sizeof *sweep->inner.points, "points", err));
+    TRY(mem_alloc(&sweep->normals, mesh->n_triangles, sizeof *sweep->normals, "triangles", err));
+    TRY(mem_alloc(&sweep->crossed, mesh->n_triangles, sizeof *sweep->crossed, "triangles", err));
+    TRY(mem_calloc(&sweep->inwards, n, sizeof *sweep->inwards, "points", err));
+    TRY(mem_alloc(&sweep->asked, n, sizeof *sweep->asked, "points", err));
+    TRY(mem_alloc(&sweep->depth, n, sizeof *sweep->depth, "points", err));
+    return mem_calloc(&sweep->is_bad, n, sizeof *sweep->is_bad, "points", err);
+}
+
+/* Sets the depths of the surfaces, in parts of the last one's. */
+static void divide_depth(Sweep *sweep, double growth)
+{
+    const size_t n = sweep->layers.n_layers;
+    double layer = 1;
+    for (size_t i = 1; i <= n; i++, layer *= growth)
+        sweep->part[i] = sweep->part[i - 1] + layer;
+    for (size_t i = 1; i < n; i++)
+        sweep->part[i] /= sweep->part[n];
+    sweep->part[n] = 1;
+}
+
+static void describe(Sweep *sweep)
+{
+    PrismLayers *layers = &sweep->layers;
+    double sum = 0;
+    layers->least_part = 1;
+    for (size_t i = 0; i < layers->n_mesh_points; i++) {
+        if (layers->rank[i] == NO_RANK)
+            continue;
+        double part = sweep->depth[i] / sweep->asked[i];
+        layers->n_thinner += part < 1;
+        layers->least_part = fmin(layers->least_part, part);
+        sum += part;
+    }
+    layers->mean_part = sum / (double)layers->n_wall_points;
+    layers->core_volume_mm3 = vesselmesh_volume(&sweep->inner);
+    layers->volume_mm3 = vesselmesh_volume(sweep->mesh) - layers->core_volume_mm3;
+}
+
+Status prismlayers_sweep(const VesselMesh *mesh, const VesselTree *tree, const LayerParams *params,
+                         int threads, PrismLayers *out, Err *err)
+{
+    Sweep sweep = {.mesh = mesh,
+                   .tree = tree,
+                   .grid_mm = mesh_grid(mesh_max_coordinate(tree)),
+                   .inner = *mesh,
+                   .layers.n_layers = (size_t)params->n_layers};
+    Status status;
+    sweep.inner.points = NULL;
+    TRY_GOTO(prepare(&sweep, err));
+    divide_depth(&sweep, params->growth);
+    find_directions(&sweep);
+    ask_depths(&sweep, params->thickness);
+    TRY_GOTO(make_sound(&sweep, threads, err));
+    describe(&sweep);
+    *out = sweep.layers;
+    sweep.layers = (PrismLayers){0};
+done:
+    sweep_release(&sweep);
+    return status;
+}

@@ -1,0 +1,33 @@
+/* Sweeps layers of prisms from the wall of vessels inwards. Exported by the public header of the
+ * module mesh. */
+#ifndef CORCAST_MESH_SWEEP_H
+#define CORCAST_MESH_SWEEP_H
+
+#include "scene/scene.h"
+
+typedef struct LayerParams {
+    int n_layers;     /* 1 to LAYERS_MAX */
+    double thickness; /* of all layers together, in local radii, in (0, 0.5] */
+    double growth;    /* thickness of a layer / thickness of the layer outside it, in [1, 2] */
+} LayerParams;
+
+enum { LAYERS_MAX = 20 };
+
+/* Sweeps the layers of a valid mesh of BODY_POTENTIAL, without a wall of its own. Where a prism
+ * would be inverted, or where the inner surface would cross itself, the layers become thinner, and
+ * their thickness then grows by at most half the distance from there.
+ *
+ * The result is proved, on the points that are written: the Jacobian of each prism is positive
+ * everywhere in the prism, and the inner surface with its flat ends is free of crossings. So no two
+ * prisms overlap, and the core is a solid that a mesher can fill.
+ *
+ * threads  number of threads; 0: one per processor. The result does not depend on it.
+ * out      receives the layers; release it with prismlayers_release. Unchanged on error.
+ * Errors   STATUS_INFEASIBLE, with a segment, if prisms stay inverted or crossings stay, or if
+ * there are too many prisms for 31-bit numbers; STATUS_MEMORY. */
+MUST_CHECK Status prismlayers_sweep(const VesselMesh *mesh, const VesselTree *tree,
+                                    const LayerParams *params, int threads, PrismLayers *out,
+                                    Err *err);
+void prismlayers_release(PrismLayers *layers);
+
+#endif
