@@ -177,6 +177,10 @@ static Status label_territories(Measuring *made, Err *err)
     size_t n = by_outlet ? made->n_outlets : made->n_tubes;
     const uint32_t *node = by_outlet ? made->outlet_node : made->tube_node;
     Field number = {0};
+    if (n == 0)
+        return err_set(err, STATUS_INPUT,
+                       "--territories: no vessel ends at a terminal, so that none supplies tissue; "
+                       "use --territory segment or tree");
     TRY(mem_calloc(&made->labels, n, sizeof *made->labels, "labels", err));
     if (made->options->kind == TERRITORY_TREE)
         TRY(derive_rule(tree, &(TreeMeta){0}, "tree", &number, err));
