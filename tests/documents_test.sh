@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The documents: their links lead to existing files, and their numbers are those of the program.
+# The documents: links lead to existing files, and numbers agree with the program.
 . "$(dirname "$0")/lib.sh"
 
 test_documents_link_only_to_what_exists() {
@@ -11,7 +11,8 @@ test_documents_link_only_to_what_exists() {
     done
 }
 
-# But for tables, code, links to pictures, and what programs write: the reference, and the parts of `make power`.
+# Lines may be longer in tables, code, links to pictures, and generated text: the reference, and the
+# parts that `make power` writes.
 test_documents_are_wrapped_at_100_columns() {
     local document
     for document in README.md $(cd "$REPO" && ls docs/*.md docs/decisions/*.md | grep -vx docs/REFERENCE.md); do
@@ -20,14 +21,15 @@ test_documents_are_wrapped_at_100_columns() {
     done
 }
 
-# says DOCUMENT WORDS: the document of docs has these words, wherever its lines end.
+# says DOCUMENT WORDS: the document in docs contains the words, regardless of line breaks.
 says() {
     tr -s '\n ' '  ' <"$REPO/docs/$1" | grep -qF -- "$2" || fail "expected docs/$1 to say '$2'"
 }
 
-# agree DOCUMENT: lines "WORDS @ FILE @ CODE" on standard input: the document has the words, and the file of
-# that name (of src, templates or tests/fit; with its folder where the name is not unique) the code. Numbers that no result shows are held
-# so: change both.
+# agree DOCUMENT: reads lines "WORDS @ FILE @ CODE" from standard input. The document must contain
+# the words, and the file the code. The file is in src, templates or tests/fit; its folder is needed
+# if the name is not unique. This ties numbers in the documents to constants in the code that no
+# output shows. To change such a number, change both.
 agree() {
     local words file code path
     while IFS=@ read -r words file code; do
@@ -39,7 +41,7 @@ agree() {
     done
 }
 
-# A variable of a file that is not constant, and that signals or libraries leave no other place for.
+# Mutable globals exist only where signal handlers or libraries leave no alternative.
 test_architecture_names_each_mutable_global() {
     local file
     cd "$REPO" || fail "no repository"
@@ -237,7 +239,7 @@ test_formats_lists_the_keys_of_a_tree() {
     expect_same listed known
 }
 
-# `--tolerance` takes the keys that FORMATS.md lists, and no other.
+# `--tolerance` accepts exactly the keys that FORMATS.md lists.
 test_formats_lists_the_keys_of_a_tolerance() {
     sed -n '/^## Tolerances/,/^## /p' "$REPO/docs/FORMATS.md" | tr '\n' ' ' | sed 's/.*other keys are limits: `\([^`]*\)`.*/\1/; s/\. .*//' |
         tr ' ' '\n' | grep . | sort >listed
@@ -262,14 +264,14 @@ of a mesh, or 100,000 cells @ emit/povray.c @ {MODEL_POTENTIAL, find_cells, put_
 tile is narrower than 8 pixels @ povray_tiles.c @ MIN_TILE_SIDE = 8 };
 for at most 65,536 segments @ povray_blob.c @ GROUP = 256, MAX_PAINTED = GROUP * GROUP,
 END
-    # The polynomial in tanh is half of what stands in the source.
+    # The polynomial in tanh is half of the polynomial in the source.
     local linear cubic
     read -r linear cubic < <(sed -n 's/.*\[ERF_FAST\] = {-\([0-9.]*\), -\([0-9.]*\),.*/\1 \2/p' \
         "$REPO/src/field/cellfunction.c" | awk '{ printf "%.14g %.14g\n", $1 / 2, $2 / 2 }')
     says POVRAY.md "\`tanh($linear u + $cubic u^3)\`"
 }
 
-# And its deviations are what they are measured to be.
+# The stated deviations are those that fit_blob measures.
 test_the_numbers_of_the_blob_are_those_that_fit_blob_prints() {
     local line
     run_ok make -C "$REPO" --no-print-directory fit-blob

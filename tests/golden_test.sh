@@ -15,8 +15,9 @@ expect_golden() {
         fail "${1#"$REPO"/} is missing; $(printf "$HOW" "${1##*/}")"
 }
 
-# A tolerance is `levels` and `ppm`: at most that many pixels in a million are off by more than so many levels. Above
-# none it has its reason in `widened`; a snapshot has no tolerance.
+# stored_as_recorded CASE: the stored pictures match their record. A tolerance consists of `levels`
+# and `ppm`: at most `ppm` pixels in a million may differ by more than `levels` levels. A tolerance
+# other than 0 must have its reason in `widened`. A snapshot has no tolerance.
 stored_as_recorded() {
     local kind golden key
     for kind in $(case_kinds "$1"); do
@@ -39,7 +40,8 @@ stored_as_recorded() {
     expect_json "$golden" '.tolerance == {levels: 0, ppm: 0} or (.widened | length > 0)'
 }
 
-# drawn_like KIND NAME DRAW LEVELS PPM
+# drawn_like KIND NAME DRAW LEVELS PPM: the function DRAW draws the case NAME within the tolerance
+# of its stored picture.
 drawn_like() {
     local golden=$GOLDEN/$1/$2
     expect_golden "$golden"

@@ -1,7 +1,8 @@
-# Sourced by every *_test.sh. A test is a function whose name is a sentence, test_grow_.... It runs
-# in a subshell and a temporary folder of its own, and ends at its first failed expectation. A test
-# file ends with `run_tests`, which prints TAP: one "ok" or "not ok" line per test, and the reason
-# of a failure in "# " lines below it. `FILE_test.sh NAME...` runs only the named tests.
+# Sourced by every *_test.sh. A test is a function whose name is a sentence, test_grow_.... A test
+# runs in a subshell in a temporary folder of its own, and ends at its first failed expectation. A
+# test file ends with `run_tests`, which prints TAP: one line "ok" or "not ok" per test, followed by
+# the reason of a failure in lines that begin with "# ". `FILE_test.sh NAME...` runs only the named
+# tests.
 #
 #   run COMMAND ...            runs the command; its status is in $status, its output in the files ./stdout and ./stderr
 #   expect_status N            the last run had exit status N
@@ -47,7 +48,7 @@ run() {
     status=$?
 }
 
-# run_ok COMMAND ...: runs it and expects exit status 0.
+# run_ok COMMAND ...: runs the command and expects exit status 0.
 run_ok() {
     run "$@"
     expect_status 0
@@ -79,7 +80,7 @@ expect_same() {
     cmp -s "$1" "$2" || fail "expected $1 and $2 to hold the same bytes: $(cmp "$1" "$2" 2>&1)"
 }
 
-# expect_differing LEAST MOST A B: so many pixels of two PPM or PNG pictures of one size differ.
+# expect_differing MIN MAX A B: MIN to MAX pixels of two PPM or PNG pictures of equal size differ.
 expect_differing() {
     local least=$1 most=$2 header found picture
     for picture in "$3" "$4"; do
@@ -106,7 +107,8 @@ expect_only() {
         fail "expected the folder to hold '$(echo $expected)', found '$(echo $found)'"
 }
 
-# check_tree FILE: the independent checker finds a grown tree as promised; stdout holds its numbers.
+# check_tree FILE: the independent checker confirms the guarantees of a grown tree, and writes the
+# numbers that it derived to stdout.
 check_tree() {
     run "$CHECK_TREE" "$1"
     expect_status 0
@@ -132,7 +134,8 @@ npm_module() {
     command -v npm >/dev/null || [ -e "$folder/whole" ] ||
         skip "$1 is not installed, and there is no npm to install it"
     mkdir -p "$folder"
-    # Tests run side by side: one installs, the others wait. A folder of modules alone may be half installed.
+    # Tests run at the same time: one installs the modules, the others wait. The file `whole` marks
+    # a complete installation.
     (
         flock 7
         [ -e "$folder/whole" ] || {
@@ -142,18 +145,20 @@ npm_module() {
     ) 7>"$folder/lock" || skip "npm cannot install $1: $(tail -1 npm.log)"
 }
 
-# A grown tree of N terminals in ./tree.swc.
+# grow_tree N [SEED]: grows a tree of N terminals in ./tree.swc.
 grow_tree() {
     run_ok corcast grow --terminals "$1" --seed "${2:-7}" -o tree.swc
 }
 
-# hearing COMMAND ...: for a background job; a shell starts those with SIGINT ignored, and nohup with SIGHUP,
-# which corcast obeys.
+# hearing COMMAND ...: runs a command with the default action of SIGINT, SIGHUP and SIGTERM. A shell
+# starts background jobs with SIGINT ignored, and nohup with SIGHUP ignored; corcast would inherit
+# that.
 hearing() {
     exec env --default-signal=INT,HUP,TERM "$@"
 }
 
-# wait_for SECONDS COMMAND ...: polls until the command succeeds.
+# wait_for SECONDS COMMAND ...: runs the command every 0.05 s until it succeeds; fails after
+# SECONDS.
 wait_for() {
     local tries=$(($1 * 20))
     shift
@@ -165,8 +170,9 @@ wait_for() {
     return 1
 }
 
-# run_test NUMBER NAME: one test in its own folder; its TAP in the file NUMBER.tap beside it. A test that takes ten
-# seconds of a processor is named, unless the line above it says why it does: "# Slow: ...".
+# run_test NUMBER NAME: runs a test in its own folder, and writes its TAP to the file NUMBER.tap
+# beside the folder. Reports a test that takes 10 s of processor time or more, unless the line above
+# the test begins with "# Slow: " and a reason.
 run_test() {
     local number=$1 name=$2 folder=$tests_folder/$1 result reason seconds
     mkdir "$folder"
@@ -194,15 +200,17 @@ run_test() {
     rm -rf "$folder"
 }
 
-# open_slots N: so many tests run at a time from here on, of every file that this shell starts: each takes a byte out
-# of a pipe, and puts it back as it ends.
+# open_slots N: limits the number of tests that run at the same time to N, over all test files that
+# this shell starts. The limit is a pipe with N bytes: a test takes a byte when it starts, and puts
+# it back when it ends.
 open_slots() {
     exec 8<> <(:)
     printf "%${1}s" >&8
     export TEST_SLOTS=8
 }
 
-# Runs the tests named, all of the file by default, TEST_JOBS (1) at a time; with TEST_STOP up to the first that fails.
+# run_tests [NAME...]: runs the named tests, or all tests of the file, TEST_JOBS (default 1) at a
+# time. With TEST_STOP, starts no more tests after a failure.
 run_tests() {
     local number=0 name slot
     tests_folder=$(mktemp -d)

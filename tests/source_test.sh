@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The build itself: compilers, promises of the Makefile, the dependency script, and rules for the
+# The build: compilers, guarantees of the Makefile, the dependency script, and rules for the
 # sources.
 . "$(dirname "$0")/lib.sh"
 
@@ -39,8 +39,8 @@ test_the_tables_of_elementary_functions_are_those_of_their_script() {
     grep -q 'log <= 0.50001 ulp, exp <= 0.5079 ulp, pow <= 0.5172 ulp' bounds || fail "expected the bounds of METHODS.md 3.10, got: $(cat bounds)"
 }
 
-# So that no failed allocation is forgotten: whoever takes the characters of a text that failed gets NULL, and
-# JSON made of NULL is NULL.
+# No failed allocation is forgotten: the characters of a text that failed are NULL, and JSON made of
+# NULL is NULL.
 test_texts_and_json_are_made_by_the_functions_that_carry_a_failure_on() {
     local found
     found=$(cd "$REPO" && grep -nE '(\.|->)chars\b|json_(object_(set|update)|array_(append|set|insert)|string\(|dump)' \
@@ -48,7 +48,8 @@ test_texts_and_json_are_made_by_the_functions_that_carry_a_failure_on() {
     [ -z "$found" ] || fail "expected text_chars, json_with, json_text and text_json in place of: $found"
 }
 
-# Code asks for properties of a model's row, so that a model of known elements is one row.
+# Code tests properties of a model's row and never its name. A new model of known elements is
+# therefore one new row.
 test_no_source_names_a_model_outside_the_table() {
     local names found
     names=$(sed -n 's/^    X(\([A-Z]*\), .*/\1/p' "$REPO/src/scene/models.h" | paste -sd '|')
@@ -57,7 +58,7 @@ test_no_source_names_a_model_outside_the_table() {
     [ -z "$found" ] || fail "expected a property of the model [scene/models.h] in place of: $found"
 }
 
-# The later one would run twice and the earlier one never.
+# If two tests had the same name, the later one would run twice and the earlier one never.
 test_no_test_file_names_two_tests_alike() {
     local file twice
     for file in "$REPO"/tests/*_test.sh "$REPO"/tests/*/*_test.sh; do
@@ -73,7 +74,7 @@ test_every_source_opens_with_its_design() {
     done
 }
 
-# So that `make power`, which takes long and is run rarely, still plants what it says.
+# `make power` takes long and is run rarely. This test checks that its faults can still be planted.
 test_every_fault_of_make_power_changes_its_file() {
     local file edit
     sed -n "/cat <<'FAULTS'/,/^FAULTS/p" "$REPO/tests/power/run-shared" | sed '1d;$d' >shared
@@ -105,7 +106,7 @@ test_the_release_program_is_hardened() {
         fail "expected calls that check the size of their buffers, found $(grep -oE '__[a-z]+_chk@' symbols | sort -u | tr '\n' ' ')"
 }
 
-# Kernels for one kind of processor say themselves where they fuse.
+# Kernels for one kind of processor call fused multiply-add explicitly.
 test_no_other_source_than_kernels_fuses_a_product_and_a_sum() {
     [ -d "$REPO/build/release/src" ] || skip "this is not the release build"
     find "$REPO/build/release/src" -name '*.o' ! -name '*avx2.o' ! -name '*avx512.o' -exec objdump -d --no-show-raw-insn {} + >code
@@ -113,14 +114,15 @@ test_no_other_source_than_kernels_fuses_a_product_and_a_sum() {
     ! grep -E '\bvfn?m(add|sub)' code >fused || fail "$(wc -l <fused) operations are fused: $(head -1 fused)"
 }
 
-# Both change what all threads share.
+# The umask and the locale are shared by all threads.
 test_no_source_changes_the_umask_or_the_locale() {
     [ -d "$REPO/build/release/src" ] || skip "this is not the release build"
     ! find "$REPO/build/release/src" -name '*.o' -exec nm -A -u {} + | grep -E ' (umask|setlocale)$' >found ||
         fail "expected no source to change what all threads share: $(cat found)"
 }
 
-# compile_with OPTION...: an object of growth, one of base and one of kernels that have AVX2, in ./built.
+# compile_with OPTION...: compiles three objects into ./built: of growth, of base, and of kernels
+# for AVX2.
 compile_with() {
     local object objects=()
     for object in base/elementary grow/cco/grid render/light/occlusionkernels.avx2; do
@@ -210,14 +212,16 @@ test_make_dist_packs_what_is_committed_into_the_same_bytes() {
     expect_same "$REPO/build/$name.tar.gz" first.tar.gz
     tar -xzf first.tar.gz
     (cd "$name" && find . -type f -o -type l) | sed 's|^\./||' | sort >packed
-    # A release has the viewer, what it is made of, and the page that grows trees beside the commit.
+    # A release contains the viewer, the sources of the viewer, and the page that grows trees, in
+    # addition to the commit.
     git -C "$REPO" ls-tree -r --name-only HEAD | sort >committed
     grep -v -e '^templates/page/viewer.js$' -e '^templates/viewer/node_modules/three/' -e '^corcast.html$' packed >sources
     expect_same committed sources
     grep -q '^templates/page/viewer.js$' packed || fail "expected the viewer in the release"
 }
 
-# A PATH that holds only the named programs, plus a dpkg-query that knows no package.
+# bare_path PROGRAM...: makes the folder bin with only the named programs and a dpkg-query that
+# knows no package.
 bare_path() {
     local program
     mkdir bin

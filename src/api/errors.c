@@ -1,4 +1,4 @@
-/* The version, and errors: a sentence and the kind of a failure. */
+/* The version of the library, and errors. An error has a sentence and the kind of the failure. */
 #include "api/handle.h"
 
 #include <stdio.h>

@@ -1,4 +1,4 @@
-/* Files of trees: meshes, scenes, pictures and figures, by the jobs that write them. */
+/* Runs the jobs that write files of a tree: meshes, scenes, pictures and figures. */
 #include "api/reports.h"
 #include "api/request.h"
 
@@ -33,7 +33,7 @@ static const char of_export[] = "export scene render convert diagram";
 static RunJob *find_exporter(const Command *command)
 {
     size_t i = 0;
-    while (exporters[i].command != command) /* request_open has accepted it */
+    while (exporters[i].command != command) /* request_open accepts only these commands */
         i++;
     return exporters[i].run;
 }
@@ -71,11 +71,11 @@ int corcast_export(const corcast_tree *tree, const corcast_options *options, con
 
 /* ---- to a sink ------------------------------------------------------------------------------- */
 
-/* Where the bytes of files go. */
+/* The receiver of the bytes of files. */
 typedef struct Sink {
     corcast_sink *take;
     void *user;
-    locale_t before; /* the caller's */
+    locale_t before; /* locale of the caller's thread */
 } Sink;
 
 static bool give(const Sink *sink, const char *name, const void *bytes, size_t size)
@@ -114,7 +114,7 @@ static Status pass_file(const Sink *sink, const char *folder, const char *name, 
     return status;
 }
 
-/* Passes all files of a folder, in the order of their names. */
+/* Passes the bytes of all files in a folder to the sink, in the order of the files' names. */
 static Status pass_folder(const Sink *sink, const char *folder, Err *err)
 {
     struct dirent **entries = NULL;

@@ -1,4 +1,5 @@
-/* Operations that make, change and measure trees. Each does what its job does, in memory. */
+/* Operations that make, change and measure trees. Each runs the job of the command with the same
+ * name, in memory. */
 #include "api/reports.h"
 #include "api/request.h"
 
@@ -9,7 +10,8 @@
 
 /* ---- trees that are made --------------------------------------------------------------------- */
 
-/* Makes a tree, and the report that the option json asks for. */
+/* Makes a tree and, unless `report` is NULL, the report that the command line writes with
+ * --json. */
 static Status make_tree(const RequestForm *form, MadeTree *made, corcast_report **report,
                         const Call *call, Err *err)
 {
@@ -18,7 +20,7 @@ static Status make_tree(const RequestForm *form, MadeTree *made, corcast_report 
     TRY_GOTO(request_open(&request, form, call, err));
     Parsed *parsed = &request.parsed;
     const bool has_json = parsed_find(parsed, "json", strlen("json")) != NULL;
-    /* The job makes a report for a file of that name, which is not written. */
+    /* The option makes the job produce a report. The file is never written. */
     if (report && has_json)
         TRY_GOTO(options_set(parsed, "json", "report.json", err));
     TRY_GOTO(tree_maker_find(parsed->command->name)->make(parsed->options, parsed, made, err));

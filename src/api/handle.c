@@ -1,6 +1,7 @@
-/* A handle begins with a number that tells its type, so that a handle of another type, or one that
- * was freed, is an error and not a crash. Memory that was given back to the C library cannot be
- * read, so a debug build (CORCAST_DEBUG) never gives it back: it chains freed handles instead. */
+/* A handle begins with a magic number that identifies its type. Passing a handle of another type is
+ * thereby an error and not a crash. Freed memory must not be read, so the use of a freed handle is
+ * detected only in a debug build (CORCAST_DEBUG), which keeps the memory of freed handles in a
+ * linked list. */
 #include "api/handle.h"
 
 #include "options/templates.h"
@@ -14,7 +15,7 @@ static const char *const kind_names[] = {
     [HANDLE_SCENE] = "corcast_scene",   [HANDLE_IMAGE] = "corcast_image",
     [HANDLE_MESH] = "corcast_mesh"};
 
-/* Random numbers, so that no other data begins like a handle. */
+/* Random numbers: it is unlikely that other data begins with one of them. */
 #define MAGIC 0x63c7a91e5f02d84bu
 #define MAGIC_FREED 0xe10b4d7a92c66f35u
 
@@ -93,7 +94,7 @@ Status path_check(const char *path, const char *name, Err *err)
 
 /* ---- calls ----------------------------------------------------------------------------------- */
 
-/* newlocale makes "C" of static data and cannot fail. */
+/* newlocale cannot fail here: the locale "C" needs no memory. */
 Call call_begin(corcast_error *error)
 {
     Call call = {.error = handle_is(error, HANDLE_ERROR) ? error : NULL};

@@ -1,5 +1,5 @@
-/* What all functions of the library share: handles that know their type, and the beginning and end
- * of a call. */
+/* The parts that all functions of the library share: handles with a type, checks of arguments, and
+ * the begin and end of a call. */
 #ifndef CORCAST_API_HANDLE_H
 #define CORCAST_API_HANDLE_H
 
@@ -20,23 +20,25 @@ typedef enum HandleKind {
 
 /* The first member of every handle. */
 typedef struct Handle {
-    uint64_t magic; /* a number of the kind; another one after handle_free */
+    uint64_t magic; /* a number that identifies the kind; another number after handle_free */
 } Handle;
 
-/* Allocates a zeroed handle of `size` bytes, whose first member is a Handle, in *out (owned;
- * handle_free). Errors: STATUS_MEMORY. */
+/* Allocates a zeroed struct of `size` bytes whose first member is a Handle, and stores the pointer
+ * in *out. Release it with handle_free. Errors: STATUS_MEMORY. */
 MUST_CHECK Status handle_new(void *out, HandleKind kind, size_t size, Err *err);
-/* Returns true if `handle` is of this kind and was not freed. NULL is of no kind. */
+/* Returns true if `handle` is of this kind and was not freed. Returns false for NULL. */
 bool handle_is(const void *handle, HandleKind kind);
-/* Checks an argument. `name` is the parameter's. Errors: STATUS_USAGE. */
+/* Checks that `handle` is of this kind. `name` is the parameter's name in errors. Errors:
+ * STATUS_USAGE. */
 MUST_CHECK Status handle_check(const void *handle, HandleKind kind, const char *name, Err *err);
 /* Frees the memory of a handle whose content has been released. A debug build keeps the memory, so
- * that later use of the handle is found. */
+ * that later use of the handle is detected. */
 void handle_free(void *handle);
 
 /* Checks that an argument other than a handle is not NULL. Errors: STATUS_USAGE. */
 MUST_CHECK Status argument_check(const void *argument, const char *name, Err *err);
-/* Checks that a path is a name, and not "-", a standard stream. Errors: STATUS_USAGE. */
+/* Checks that a path is not NULL, "", or "-", which names a standard stream on the command line.
+ * Errors: STATUS_USAGE. */
 MUST_CHECK Status path_check(const char *path, const char *name, Err *err);
 
 struct corcast_error {
@@ -45,21 +47,23 @@ struct corcast_error {
     Status status;
 };
 
-/* A call of the library. During it the thread has the locale "C": numbers in files have a '.'. */
+/* A call of the library. During the call the thread has the locale "C", so that numbers have a '.'
+ * as the decimal point. */
 typedef struct Call {
-    corcast_error *error;  /* NULL: nobody wants the sentence */
+    corcast_error *error;  /* receives the error; NULL: it is not stored */
     locale_t before;       /* the locale of the caller's thread */
     const char *templates; /* the folder of an outer call; NULL: none */
     Err err;
 } Call;
 
-/* Begins a call. Every call ends with call_end. */
+/* Begins a call: sets the locale "C". Every call must end with call_end. */
 Call call_begin(corcast_error *error);
-/* Ends a call: stores status and sentence in the caller's error. Returns the corcast_status. */
+/* Ends a call: restores the locale, and stores the status and the sentence in the caller's error.
+ * Returns the corcast_status of `status`. */
 int call_end(Call *call, Status status);
 
-/* Surround each callback. callback_begin restores the caller's locale and returns the library's
- * own; callback_end sets the library's own locale again. */
+/* Called before and after each callback. callback_begin sets the caller's locale and returns the
+ * library's locale; callback_end sets the library's locale again. */
 locale_t callback_begin(locale_t before);
 void callback_end(locale_t own);
 

@@ -1,5 +1,5 @@
-/* Pictures in memory. Colors stay as they were made or read, as integer codes or as floats; a
- * caller who asks for another type gets a conversion. */
+/* Pictures in memory. Colors are stored as they were drawn or read: as integer codes or as floats.
+ * They are converted when the caller requests another type. */
 #include "api/image.h"
 
 #include "options/output.h"
@@ -29,7 +29,7 @@ int corcast_image_read(const char *path, corcast_image **out, corcast_error *err
     return call_end(&call, read_image(path, out, &call.err));
 }
 
-/* Returns the bytes of one number; 0 for an unknown type. */
+/* Returns the size of one number in bytes; 0 for an unknown type. */
 static size_t bytes_of(corcast_type type)
 {
     static const size_t bytes[] = {
@@ -98,7 +98,7 @@ int corcast_image_from_pixels(const corcast_pixels *pixels, corcast_image **out,
 
 /* ---- reading back ---------------------------------------------------------------------------- */
 
-/* The size of a plane; zeros if the image does not have it. */
+/* The size of a plane; all 0 if the image does not have the plane. */
 typedef struct PlaneShape {
     int width, height, channels;
 } PlaneShape;
@@ -150,7 +150,7 @@ int corcast_image_shape(const corcast_image *image, corcast_plane plane, int *wi
     return call_end(&call, status);
 }
 
-/* Converts a plane of colors with alpha in its last channel to codes. */
+/* Converts linear colors to sRGB codes. Alpha is the last channel. */
 static Status codes_of_transparent(const Plane *plane, int bits, Picture *out, Err *err)
 {
     const size_t n = (size_t)plane->width * (size_t)plane->height;
@@ -169,7 +169,7 @@ done:
     return status;
 }
 
-/* Makes the colors of an image as integer codes of sRGB. */
+/* Converts the colors of an image to integer codes of sRGB. The caller releases *out. */
 static Status codes_of(const Image *image, int bits, Picture *out, Err *err)
 {
     if (!image->plane.values)
@@ -179,7 +179,7 @@ static Status codes_of(const Image *image, int bits, Picture *out, Err *err)
     return picture_from_plane(out, &image->plane, ENCODING_SRGB, bits, err);
 }
 
-/* Copies codes that need no conversion. Returns false if they do. */
+/* Copies the codes to the buffer if they need no conversion. Otherwise returns false. */
 static bool copy_codes(const Picture *picture, int bits, void *buffer)
 {
     if (picture->width == 0 || picture->bits != bits || picture->gamma != 0)
@@ -212,7 +212,7 @@ done:
     return status;
 }
 
-/* Checks that a plane can be had as a type. */
+/* Checks that a plane can be converted to a type. */
 static Status check_type(corcast_plane plane, corcast_type type, Err *err)
 {
     const bool fits = plane == CORCAST_ID      ? type == CORCAST_U32

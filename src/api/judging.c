@@ -9,7 +9,7 @@
 
 /* ---- compare --------------------------------------------------------------------------------- */
 
-/* The parts of an image that are compared. Borrows all. */
+/* The parts of an image that are compared. All members are borrowed. */
 typedef struct ImagePart {
     Image image;
     GivenImage given; /* points to `image` */
@@ -31,7 +31,7 @@ static Status take_part(const corcast_image *of, PlaneKind kind, ImagePart *part
     return STATUS_OK;
 }
 
-/* Finds what of both images is compared: ids only if both have them. */
+/* Finds the parts that are compared: the colors, and the ids if both images have ids. */
 static Status take_parts(const corcast_image *a, const corcast_image *b, CompareOptions *options,
                          ImagePart parts[2], Err *err)
 {

@@ -1,4 +1,4 @@
-/* A report is a JSON document, and its text. */
+/* A report holds a JSON document and its text. */
 #include "api/reports.h"
 
 #include <math.h>
@@ -8,7 +8,7 @@
 struct corcast_report {
     Handle handle;
     json_t *json; /* owned */
-    Text text;    /* the same as text */
+    Text text;    /* `json` as text */
 };
 
 Status report_new(json_t *json, corcast_report **out, Err *err)
@@ -39,8 +39,8 @@ const char *corcast_report_json(const corcast_report *report)
 
 /* ---- members --------------------------------------------------------------------------------- */
 
-/* Returns the item of an array whose index the `length` characters at `name` write; NULL if there
- * is none. */
+/* Returns the item of an array whose decimal index is the `length` characters at `name`; NULL if
+ * there is none. */
 static const json_t *item_of(const json_t *array, const char *name, size_t length)
 {
     size_t index = 0;
@@ -51,7 +51,8 @@ static const json_t *item_of(const json_t *array, const char *name, size_t lengt
     return json_array_get(array, index);
 }
 
-/* Returns the member of an object of that name; NULL if there is none. */
+/* Returns the member of an object whose name is the `length` characters at `name`; NULL if there is
+ * none. */
 static const json_t *member_of(const json_t *object, const char *name, size_t length)
 {
     const char *key;
@@ -64,7 +65,8 @@ static const json_t *member_of(const json_t *object, const char *name, size_t le
     return NULL;
 }
 
-/* Finds what a key leads to. Errors: STATUS_USAGE. */
+/* Finds the value at a key: names of members and indices of items, separated by dots. Errors:
+ * STATUS_USAGE if there is none. */
 static Status find(const corcast_report *report, const char *key, const json_t **out, Err *err)
 {
     TRY(handle_check(report, HANDLE_REPORT, "report", err));

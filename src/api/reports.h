@@ -4,8 +4,8 @@
 
 #include "api/handle.h"
 
-/* Makes a report of a JSON document, which it takes over, also on failure. NULL, from a document
- * for which memory ran out, is STATUS_MEMORY. Errors: STATUS_MEMORY. */
+/* Makes a report of a JSON document. Takes over the reference to `json`, even on failure. Errors:
+ * STATUS_MEMORY, also if `json` is NULL. */
 MUST_CHECK Status report_new(json_t *json, corcast_report **out, Err *err);
 
 #endif

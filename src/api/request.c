@@ -1,5 +1,5 @@
-/* An operation works on a Parsed of its own, because jobs change it: the caller's options stay as
- * they are and serve any number of operations. */
+/* An operation makes a Parsed of its own, because jobs change their Parsed. The caller's options
+ * are therefore unchanged and can be used for any number of operations. */
 #include "api/request.h"
 
 #include "job/job.h"
@@ -15,7 +15,7 @@ const Command *request_command(const char *name)
     return NULL;
 }
 
-/* ---- what the caller hears ------------------------------------------------------------------- */
+/* ---- callbacks ------------------------------------------------------------------------------- */
 
 static void say(void *user, TalkKind kind, const char *sentence)
 {
@@ -40,7 +40,7 @@ static bool show_progress(void *user, const char *what, double fraction)
 
 /* ---- opening --------------------------------------------------------------------------------- */
 
-/* Returns true if `name` is one of the words of `names`. */
+/* Returns true if `name` is one of the words in `names`, which are separated by blanks. */
 static bool is_word_of(const char *name, const char *names)
 {
     const size_t length = strlen(name);
@@ -69,7 +69,7 @@ static Status find_command(const RequestForm *form, const Command **command, Err
                    (*command)->name, form->commands);
 }
 
-/* Sets the caller's options, with `output` in place of their own. */
+/* Sets the caller's options in `parsed`. form->output replaces the option output. */
 static Status set_options(Parsed *parsed, const RequestForm *form, Err *err)
 {
     for (size_t i = 0; form->options && i < form->options->texts.n; i++) {
@@ -88,7 +88,7 @@ static Status set_options(Parsed *parsed, const RequestForm *form, Err *err)
                : STATUS_OK;
 }
 
-/* Takes over what the caller's options say besides options. */
+/* Copies the callbacks and the folder of templates from the caller's options. */
 static Status take_surroundings(Request *request, const corcast_options *options, Err *err)
 {
     request->talk = (Talk){.say = say, .progress = show_progress, .user = request};

@@ -1,4 +1,4 @@
-/* Scenes and their pictures. A scene is the rendering of the job `render`, kept open, so that it
+/* Scenes and their pictures. A scene is a rendering of the job `render` that stays open, so that it
  * can be drawn several times. */
 #include "api/image.h"
 #include "api/reports.h"
@@ -12,7 +12,7 @@
 struct corcast_scene {
     Handle handle;
     Request request;     /* the options, which `rendering` borrows */
-    Rendering rendering; /* released if `is_open` */
+    Rendering rendering; /* must be released if `is_open` */
     bool is_open;
 };
 
@@ -23,7 +23,7 @@ static Status open_scene(corcast_scene *scene, const RequestForm *form, const Ca
     TRY(rendering_open(request->parsed.options, &request->parsed, NULL, &scene->rendering, err));
     scene->is_open = true;
     TRY(rendering_describe(&scene->rendering, err));
-    request->parsed.given = NULL; /* the scene has a copy of the tree */
+    request->parsed.given = NULL; /* the rendering has its own copy of the tree */
     return STATUS_OK;
 }
 
@@ -58,7 +58,7 @@ int corcast_scene_new(const corcast_tree *tree, const corcast_options *options, 
     return call_end(&call, new_scene(tree, options, out, &call, &call.err));
 }
 
-/* Puts alpha behind the colors that are multiplied by it. */
+/* Makes a plane of 4 channels: colors that are multiplied by alpha, and alpha. */
 static Status join_alpha(const Plane *color, const Plane *alpha, Plane *out, Err *err)
 {
     const size_t n = (size_t)color->width * (size_t)color->height;

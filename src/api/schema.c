@@ -1,4 +1,4 @@
-/* Which commands and options there are, for programs that show or check them. */
+/* The description of all commands and options, for programs that show or check them. */
 #include "api/reports.h"
 #include "api/request.h"
 

@@ -1,5 +1,6 @@
-/* Options of a command, held as the texts that set them. A Parsed beside the texts checks each one
- * and writes values back; operations make a Parsed of their own [api/request.h]. */
+/* The options of a command are stored as the texts that the caller set. A Parsed with the same
+ * values checks each text and formats values for corcast_options_get. Operations make a Parsed of
+ * their own [api/request.h]. */
 #include "api/request.h"
 
 #include "job/job.h"
@@ -21,7 +22,7 @@ Status request_find(const char *name, const Command **command, Err *err)
     return STATUS_USAGE;
 }
 
-/* Frees what parsed_new made. NULL is allowed. */
+/* Frees a Parsed of parsed_new. NULL is allowed. */
 static void parsed_free(Parsed *parsed)
 {
     if (parsed)
@@ -29,8 +30,8 @@ static void parsed_free(Parsed *parsed)
     free(parsed);
 }
 
-/* Makes the options of a command with their defaults. A Parsed points to itself and must not be
- * moved. Errors: those of parsed_init. */
+/* Makes a Parsed with the defaults of a command. It is allocated, because a Parsed points into
+ * itself and must not be moved. Errors: STATUS_MEMORY; those of parsed_init. */
 static Status parsed_new(const Command *command, Parsed **out, Err *err)
 {
     Parsed *made = NULL;
@@ -67,7 +68,8 @@ int corcast_options_new(const char *command, corcast_options **out, corcast_erro
 
 /* ---- setting --------------------------------------------------------------------------------- */
 
-/* Finds the row of an option that a program may set. */
+/* Finds the row of an option. Errors: STATUS_USAGE for an unknown option and for an option that
+ * only the command line has. */
 static Status find_option(const corcast_options *options, const char *name, const Option **option,
                           Err *err)
 {
@@ -75,7 +77,7 @@ static Status find_option(const corcast_options *options, const char *name, cons
     TRY(argument_check(name, "name", err));
     const Setting *setting = parsed_find(options->parsed, name, strlen(name));
     Text unused = TEXT_INIT;
-    if (!setting) /* for the sentence */
+    if (!setting) /* options_get sets the error */
         return options_get(options->parsed, name, &unused, err);
     *option = setting->option;
     if (is_one_of(name, printing))
@@ -89,7 +91,7 @@ static void remove_text(OptionTexts *texts, size_t at)
     memmove(&texts->items[at], &texts->items[at + 1], (--texts->n - at) * sizeof *texts->items);
 }
 
-/* Removes the texts of an option from [0, n). */
+/* Removes those of the first `n` texts that belong to the option. */
 static void remove_texts(OptionTexts *texts, const char *name, size_t n)
 {
     for (size_t i = n; i-- > 0;)
@@ -97,7 +99,8 @@ static void remove_texts(OptionTexts *texts, const char *name, size_t n)
             remove_text(texts, i);
 }
 
-/* Sets the Parsed anew from the texts, which are known to be right. */
+/* Replaces the Parsed by a new one that is set from the texts. The texts are valid, so only memory
+ * can be missing. */
 static Status parse_again(corcast_options *options, Err *err)
 {
     Parsed *made = NULL;
@@ -133,7 +136,8 @@ done:
     return status;
 }
 
-/* Refuses a value such as "mask:-,0.5", whose file "-" is standard input on the command line. */
+/* Checks that a value does not contain the file "-", as "mask:-,0.5" does. On the command line "-"
+ * is standard input. Errors: STATUS_USAGE. */
 static Status check_no_stream(const char *name, const char *value, Err *err)
 {
     for (const char *at = strstr(value, ":-"); at; at = strstr(at + 1, ":-"))
@@ -145,7 +149,8 @@ static Status check_no_stream(const char *name, const char *value, Err *err)
     return STATUS_OK;
 }
 
-/* A new text takes the place of the one before, unless the option collects values. */
+/* Sets an option. The new text replaces earlier texts of the option, unless the option may be given
+ * several times. */
 static Status set(corcast_options *options, const Option *option, const char *value, Err *err)
 {
     OptionTexts *texts = &options->texts;

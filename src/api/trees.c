@@ -1,4 +1,4 @@
-/* Trees: from files, from bytes and from arrays, and their arrays back. */
+/* Trees: reading from files, bytes and arrays, and access to their arrays. */
 #include "api/request.h"
 
 #include "derive/derive.h"
@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The commands whose options of reading are taken. */
+/* The commands whose options may be passed for reading a tree. */
 static const char of_reading[] =
     "info convert grow refine certify render scene export diagram verify";
 
@@ -31,7 +31,8 @@ Status tree_handle_new(Tree *tree, const char *name, corcast_tree **out, Err *er
     return STATUS_OK;
 }
 
-/* Gives a tree to the caller as a handle, or releases it. */
+/* Makes a handle of a tree if `status` is STATUS_OK; otherwise releases the tree. Returns the first
+ * error. */
 static Status hand_over(Status status, Tree *tree, const char *name, corcast_tree **out, Err *err)
 {
     TRY_GOTO(status);
@@ -43,13 +44,13 @@ done:
 
 /* ---- reading --------------------------------------------------------------------------------- */
 
-/* A file on disk, or in memory. */
+/* A file on disk or in memory. */
 typedef struct TreeFile {
     const char *path;
-    const MemoryFile *bytes; /* NULL: on disk */
+    const MemoryFile *bytes; /* NULL: the file is on disk */
 } TreeFile;
 
-/* Reads a tree by the options of reading of a request, as commands do. */
+/* Reads a tree with the input options of a request, as commands do. */
 static Status read_file(const Parsed *parsed, const TreeFile *file, Tree *tree, Err *err)
 {
     return file->bytes ? reading_tree_bytes(parsed, file->bytes, tree, err)

@@ -79,6 +79,14 @@ double angle_deg(const float *a, const float *b)
     return elementary_atan2(sqrt(x * x + y * y + z * z), ax * bx + ay * by + az * bz) * 180 / PI;
 }
 
+void add_integers(void *to, const void *from, size_t bytes)
+{
+    uint64_t *sums = to;
+    const uint64_t *added = from;
+    for (size_t i = 0; i < bytes / sizeof *sums; i++)
+        sums[i] += added[i];
+}
+
 typedef struct RowsWork {
     RowSums *row;
     const void *context;

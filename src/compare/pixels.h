@@ -28,6 +28,9 @@ bool geometry_differs(const Rendering *a, const Rendering *b, size_t pixel, doub
  * all do not exceed. Reorders the values. Cost O(n). */
 double percentile(double *values, size_t n, double fraction);
 
+/* Adds structs that consist of 64-bit integers alone, member by member. */
+void add_integers(void *to, const void *from, size_t bytes);
+
 /* Adds up numbers over the rows of a picture, which several threads compute: `n` sums, of which
  * `row` adds those of row y to `sums`. The order of adding does not depend on the threads. Errors:
  * STATUS_MEMORY. */

@@ -163,10 +163,22 @@ static Status derive_column(const Tree *tree, const TreeColumn *column, Field *f
     return STATUS_OK;
 }
 
+/* Returns true if networks with links do not have the field. */
+static bool is_order(const char *name)
+{
+    const FieldRule *rule = find_rule(name);
+    return rule && (rule->fill == field_strahler || rule->fill == field_diameter_strahler);
+}
+
 Status derive_field(const Tree *tree, const TreeMeta *overrides, const char *name, Field *field,
                     Err *err)
 {
     const TreeColumn *column = tree_column(tree, name);
+    if (!column && tree->link && is_order(name))
+        return err_set(err, STATUS_INPUT,
+                       "the field %s is defined for trees only, and the network has loops; "
+                       "`break_loops` cuts each loop at its thinnest line",
+                       name);
     return column ? derive_column(tree, column, field, err)
                   : derive_rule(tree, overrides, name, field, err);
 }

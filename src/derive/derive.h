@@ -38,8 +38,8 @@ typedef struct Field {
  *     level              bifurcations from the root to the segment's start; in a network with
  *                        links, the minimum over all paths from a root to one of its ends
  *     strahler           1 at terminals; the largest order m of the daughters, m + 1 if at least
- *                        two have it [Strahler 1957]; of trees without links only
- *     diameter-strahler  an order by diameters, see below; of trees without links only
+ *                        two have it [Strahler 1957]
+ *     diameter-strahler  an order by diameters, see below
  *     branch             index of the branch, from 1, see below
  *     tree               index of the connected component, from 1, in the order of the roots
  *     type               SWC type code
@@ -63,11 +63,13 @@ typedef struct Field {
  * overrides     values that the user specified; they take precedence over those of the tree.
  * field    is released with field_release. Its names are borrowed, from the tree if it is a column.
  * Errors   STATUS_USAGE for an unknown name; STATUS_INPUT if a value is missing that the field
- *          needs, naming the option and the key of the file; STATUS_MEMORY. */
+ *          needs, naming the option and the key of the file, and for an order of a network with
+ *          links; STATUS_MEMORY. */
 MUST_CHECK Status derive_field(const Tree *tree, const TreeMeta *overrides, const char *name,
                                Field *field, Err *err);
 void field_release(Field *field);
-/* Computes a field as derive_field does, but never copies a column. */
+/* Computes a field as derive_field does, but never copies a column. The orders of a network with
+ * links are NAN. */
 MUST_CHECK Status derive_rule(const Tree *tree, const TreeMeta *overrides, const char *name,
                               Field *field, Err *err);
 

@@ -120,7 +120,10 @@ Status field_diameter_strahler(const Tree *tree, const TreeMeta *overrides, doub
 {
     (void)overrides;
     Vessels vessels;
-    TRY(refuse_loops(tree, err));
+    if (tree->link) {
+        clear_orders(tree, value);
+        return STATUS_OK;
+    }
     TRY(vessels_init(&vessels, tree, err));
     int32_t *order = NULL;
     DiameterOrders result;

@@ -19,9 +19,8 @@ static inline const TreeMeta *value_source(const Tree *tree, const TreeMeta *ove
     return overrides->known[key] ? overrides : &tree->meta;
 }
 
-/* Refuses networks with links. Errors: STATUS_INPUT, with a sentence that continues the name of a
- * field. */
-MUST_CHECK Status refuse_loops(const Tree *tree, Err *err);
+/* Sets `value` to NAN: a network with links has no orders. */
+void clear_orders(const Tree *tree, double *value);
 
 /* Finds a value that a field needs. Errors: STATUS_INPUT if neither the overrides nor the tree have
  * it, with a sentence that continues "the field NAME ". */

@@ -58,13 +58,10 @@ Status field_level(const Tree *tree, const TreeMeta *overrides, double *value, E
     return status;
 }
 
-Status refuse_loops(const Tree *tree, Err *err)
+void clear_orders(const Tree *tree, double *value)
 {
-    if (!tree->link)
-        return STATUS_OK;
-    return err_set(err, STATUS_INPUT,
-                   "is defined for trees only, and the network has loops; `break_loops` cuts each "
-                   "loop at its thinnest line");
+    for (size_t i = 0; i < tree->n; i++)
+        value[i] = (double)NAN;
 }
 
 /* The backward sweep visits all children of a node before the node. Until then value[i] is
@@ -74,7 +71,10 @@ Status field_strahler(const Tree *tree, const TreeMeta *overrides, double *value
 {
     (void)overrides;
     int32_t *alike = NULL;
-    TRY(refuse_loops(tree, err));
+    if (tree->link) {
+        clear_orders(tree, value);
+        return STATUS_OK;
+    }
     TRY(mem_calloc(&alike, tree->n, sizeof *alike, "counts of equal orders", err));
     for (size_t i = tree->n; i-- > 0;) {
         if (!tree_is_segment(tree, i))

@@ -1,7 +1,8 @@
-/* A Python script of Blender's: what it does stands in the template, and C writes calls with
- * numbers. Splines have no colors of their own but materials, of which an object has few: where
- * there are more than MOST_MATERIALS colors, those whose codes agree in their leading bits become
- * one, the bits being as many as keep them that few. */
+/* Writes a Python script for Blender. The template holds the functions of the script; this file
+ * appends calls with numbers. A spline in Blender has no color, only a material, and an object
+ * should have few materials. If the segments have more than MAX_MATERIALS different colors, colors
+ * that agree in the leading bits of their codes share a material. The number of bits is the largest
+ * that gives at most MAX_MATERIALS materials. */
 #include "emit/curves.h"
 #include "emit/meshparts.h"
 #include "emit/rows.h"
@@ -9,14 +10,15 @@
 
 #include <stdlib.h>
 
-enum { MOST_MATERIALS = 64 };
+enum { MAX_MATERIALS = 64 };
 
 typedef struct Script {
     const EmitParams *params;
     Curves curves;
-    uint32_t *paints;     /* the material of each segment, by its index; owned */
-    uint32_t *painted;    /* a segment of each material; owned */
-    uint64_t *color_keys; /* the leading bits of each segment's color, and its index; owned */
+    uint32_t *paints;     /* per segment: index of its material; owned */
+    uint32_t *painted;    /* per material: a segment that has it; owned */
+    uint64_t *color_keys; /* per segment: the leading bits of its color, and its index; sorted;
+                           * owned */
     size_t n_materials;
 } Script;
 
@@ -26,8 +28,8 @@ static int compare_keys(const void *a, const void *b)
     return (*one > *other) - (*one < *other);
 }
 
-/* Sorts the segments by the `bits` leading bits of their colors' codes; returns how many
- * different codes there are. */
+/* Sorts color_keys by the `bits` leading bits of each color code. Returns the number of different
+ * colors in these bits. */
 static size_t sort_colors(Script *script, int bits)
 {
     size_t n = script->params->vessels->n_segments, found = 0;
@@ -52,7 +54,7 @@ static Status find_materials(Script *script, Err *err)
     TRY(mem_calloc(&script->paints, n, sizeof *script->paints, "materials", err));
     TRY(mem_calloc(&script->painted, n, sizeof *script->painted, "materials", err));
     TRY(mem_calloc(&script->color_keys, n, sizeof *script->color_keys, "materials", err));
-    while (sort_colors(script, bits) > MOST_MATERIALS)
+    while (sort_colors(script, bits) > MAX_MATERIALS)
         bits--;
     for (size_t i = 0; i < n; i++) {
         uint32_t segment = (uint32_t)script->color_keys[i];

@@ -1,6 +1,6 @@
-/* A segment continues the segment that ends at its start if that one is of the same kind and is not
- * continued yet. A segment that continues none begins a curve. By Strahler's rule at most one
- * daughter has the order of its parent, so curves are as long as possible. */
+/* A segment continues the curve of its parent if both have the same kind and no other daughter
+ * continues it. All other segments begin a curve. By Strahler's rule at most one daughter has the
+ * order of its parent, so curves are as long as possible. */
 #include "emit/curves.h"
 
 #include <stdlib.h>
@@ -37,8 +37,9 @@ static Status find_kinds(const EmitParams *params, const uint32_t *paints, Curve
     return STATUS_OK;
 }
 
-/* Finds the next segment in the curve of each segment, or NONE, and the segments that begin a
- * curve. `into` is workspace for all nodes. */
+/* Finds, per segment, the next segment of its curve (NONE at the end of a curve), and whether it
+ * begins a curve. `into` is workspace with one element per node: the segment that ends at the
+ * node. */
 static void chain_segments(const Curves *curves, uint32_t *into, uint32_t *next, bool *heads)
 {
     const VesselTree *vessels = curves->vessels;
@@ -57,7 +58,7 @@ static void chain_segments(const Curves *curves, uint32_t *into, uint32_t *next,
     }
 }
 
-/* The first segment of a curve, with its kind, to sort by. */
+/* The first segment of a curve, and its kind, by which curves are sorted. */
 typedef struct CurveHead {
     CurveKind kind;
     uint32_t segment;
@@ -81,7 +82,8 @@ static Status sort_heads(const Curves *curves, const bool *heads, CurveHead **so
     return STATUS_OK;
 }
 
-/* Lists the segments of each curve in their order. */
+/* Sets curves->first and curves->segments: the curves sorted by kind, and the segments of each
+ * curve from its start to its end. */
 static Status list_curves(Curves *curves, const uint32_t *next, const bool *heads, Err *err)
 {
     size_t n = curves->vessels->n_segments, at = 0;

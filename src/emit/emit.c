@@ -1,4 +1,5 @@
-/* A format is a row: its name, what it can hold, and a function that appends it to texts. */
+/* The table of formats. A row has the name of a format, its capabilities, and the function that
+ * writes it. */
 #include "emit/rows.h"
 
 #include <string.h>
@@ -13,7 +14,7 @@
     FORMAT(named, ending, holds, writer, .of_lines = true, .has_colors = true, __VA_ARGS__)
 
 const Emitter emitters[] = {
-#ifndef CORCAST_PAGE /* the page that grows trees [web/] writes STL alone */
+#ifndef CORCAST_PAGE /* the web page that grows trees [web/] writes only STL */
     FORMAT("povray", "pov", "a scene for POV-Ray 3.7", povray_write, .has_view = true,
            .elements = MODEL_ELEMENTS, .second_extension = "inc", .second_holds = "the geometry",
            .settings_extension = "ini", .check_name = povray_check_name,
@@ -58,7 +59,8 @@ static bool is_of_scenes(const Emitter *emitter)
     return !emitter->of_meshes && !emitter->of_lines;
 }
 
-/* Returns true if its extension stands for it among those of scenes, or of meshes and lines. */
+/* Returns true if the emitter is the default of its extension, among emitters of meshes and curves
+ * if `of_meshes`, else among emitters of scenes. */
 static bool is_listed(const Emitter *emitter, bool of_meshes)
 {
     return is_of_scenes(emitter) != of_meshes && !emitter->option;

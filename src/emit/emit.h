@@ -22,8 +22,8 @@
  * Reason of the value not recorded. */
 #define OPENSCAD_QUICK 100
 
-/* Significant digits of the numbers in a scene: enough for the same picture [docs/POVRAY.md], and
- * short to read. `verify` writes all digits. */
+/* Significant digits of the numbers in a scene. 9 digits give the same picture as all digits
+ * [docs/POVRAY.md] and are easier to read. `verify` writes all digits. */
 enum { EMIT_DIGITS = 9 };
 
 /* The content of a file. All pointers are borrowed. A member is read only by the emitters that its
@@ -35,34 +35,38 @@ typedef struct EmitParams {
     const VesselTree *vessels;    /* for emitters of curves; and for emitters of meshes, where the
                                    * labels of the mesh are indices of its segments */
     const Appearance *appearance; /* for emitters with has_colors */
-    const double *orders;      /* for emitters with has_colors: Strahler order per segment index */
+    const double *orders;      /* for emitters with has_colors: Strahler order per segment index;
+                                * NAN: none */
     const MeshEnds *ends;      /* for emitters with has_parts */
     const PrismLayers *layers; /* for emitters with has_layers */
     const char *templates;     /* the folder of templates, with a folder for each language */
     const char *file;          /* name of the file, without folders, for comments in the file */
     const char *second_file; /* name of the second file, without folders; NULL: one file has all */
-    const char *description; /* what the scene shows, in words; line ends become blanks */
+    const char *description; /* description of the scene's content; line ends become blanks */
     const char *settings;    /* name of the settings file; NULL: none is written */
     int antialias;           /* samples along a side of a pixel; 1: the program's default */
     int digits; /* significant digits of doubles in scenes; 0: as many as read back exactly */
     const char *generator; /* name and version of corcast */
     const char *command;   /* the command line that makes the scene */
     bool shadows;
-    bool occlusion;        /* render draws ambient occlusion; the scene only states it */
+    bool occlusion;        /* `render` draws ambient occlusion here; the scene only mentions it in a
+                            * comment */
     bool ids;              /* fields: adds the paint that the id plane needs */
     bool planes;           /* Tachyon: colors encode depth and segment */
     CellParams cells;      /* isosurface */
     const CellTree *built; /* isosurface: its cells, if they are known; NULL: they are computed */
-    const PixelRect *part; /* POV-Ray without an anatomy, and with `built`: leaves out what no ray
-                            * of this part of the picture can hit; the rest is unchanged. NULL:
-                            * writes everything */
+    const PixelRect *part; /* POV-Ray, without an anatomy, an isosurface only with `built`: objects
+                            * that no ray of this part of the picture can hit are left out; the
+                            * others are unchanged. NULL: all objects are written */
 } EmitParams;
 
 typedef struct EmitReport {
-    size_t cells;    /* of an isosurface, or of a blob that is divided into cells; else 0 */
+    size_t cells;    /* number of cells of an isosurface, or of a blob that is divided into cells;
+                      * else 0 */
     int joint_sides; /* number of sides of the mesh of a joint; 0: joints are exact shapes. POV-Ray
                       * can hold at most 349,000 exact joints [docs/POVRAY.md]. */
-    double openscad_s; /* estimated time in which OpenSCAD makes a solid; else 0 */
+    double openscad_s; /* estimated time, in seconds, that OpenSCAD takes to unite the vessels; 0
+                        * for other programs */
 } EmitReport;
 
 /* The texts that receive the files. All pointers are borrowed. */
@@ -89,7 +93,7 @@ typedef struct Emitter {
     bool has_parts;     /* writes params->ends */
     bool has_layers;    /* writes params->layers */
     const char *option; /* the option that selects it; NULL: it is the default of its extension */
-    unsigned elements;  /* it can write models of these elements: bits ModelProperty */
+    unsigned elements;  /* bits of ModelProperty: the elements of the models that it can write */
     /* Checks the name of the second file. Errors: STATUS_USAGE. NULL: any name is allowed. */
     Status (*check_name)(const char *second_file, Err *err);
     /* Appends the settings file params->settings. Errors: STATUS_USAGE if the program cannot read a
@@ -127,9 +131,9 @@ MUST_CHECK Status emit_write(const Emitter *emitter, const EmitParams *params, E
                              Err *err);
 
 /* Estimates the load of a scene for POV-Ray from the number of its pieces. POV-Ray reads a scene of
- * load 1 in about ten seconds and 1 GB, if its vessels lie as in grown trees; it can hold a load of
- * 2 of any model. Errors: STATUS_MEMORY. Cost: O(pieces), and of an isosurface without
- * params->built the cost of celltree_build. */
+ * load 1 in about ten seconds and 1 GB of memory, if its vessels are arranged as in grown trees. It
+ * can hold a load of 2 for every model. Errors: STATUS_MEMORY. Cost: O(pieces), and of an
+ * isosurface without params->built the cost of celltree_build. */
 MUST_CHECK Status povray_load(const EmitParams *params, double *load, Err *err);
 
 /* Appends the file that POV-Ray reads before a scene to draw depth, normals or ids instead of
@@ -137,7 +141,7 @@ MUST_CHECK Status povray_load(const EmitParams *params, double *load, Err *err);
  * Errors: those of Emitter.write. */
 MUST_CHECK Status povray_write_planes(const EmitParams *params, Text *out, Err *err);
 
-/* A box of voxels in a density file for POV-Ray. */
+/* The box of a density file for POV-Ray. */
 typedef struct DensityBox {
     Box box;            /* mm */
     Vec3 origin;        /* position of the box's origin in the coordinates of the tree */

@@ -1,10 +1,12 @@
-/* Binary glTF 2.0 [Khronos, glTF 2.0 specification, sections 3.7, 3.9 and 4.4]: a node for each
- * Strahler order, with a mesh of its own vertices, under one that scales millimetres to metres, so
- * that the coordinates are the very ones that were proved. y is up in both.
+/* Writes binary glTF 2.0 [Khronos, glTF 2.0 specification, sections 3.7, 3.9 and 4.4]. Each
+ * Strahler order is a node with a mesh of its own. Their parent node scales millimetres to metres,
+ * so that the coordinates in the file are exactly those of the validated mesh. Both corcast and
+ * glTF have y up.
  *
- * A point is a vertex once for the wall and once for a cap, whose normal is flat, in each order
- * that has it. All vertices stand in one buffer, order by order: positions, then normals, colors
- * and corners. */
+ * In each order that uses a point, the point becomes up to two vertices: one with its smooth normal
+ * for the wall, and one with a flat normal for a cap. One buffer holds the data of all vertices,
+ * order by order: first all positions, then all normals, all colors, and the corners of the
+ * triangles. */
 #include "emit/meshparts.h"
 #include "emit/record.h"
 #include "emit/rows.h"
@@ -15,7 +17,7 @@
 enum { COMPONENT_UINT = 5125, COMPONENT_FLOAT = 5126, ARRAY_BUFFER = 34962, INDEX_BUFFER = 34963 };
 enum { VIEW_POSITIONS, VIEW_NORMALS, VIEW_COLORS, VIEW_CORNERS, VIEWS };
 
-/* A point and the first triangle of its order that it is a corner of. */
+/* A vertex: a point of the mesh, and the first triangle of the order that uses the vertex. */
 typedef struct GlbVertex {
     uint32_t point, triangle;
 } GlbVertex;
@@ -23,13 +25,16 @@ typedef struct GlbVertex {
 typedef struct Glb {
     const EmitParams *params;
     IndexLists parts;             /* triangles by order */
-    ARRAY(GlbVertex) vertices;    /* order by order */
-    size_t first[MAX_ORDERS + 2]; /* vertex of each order, as in parts */
-    uint32_t (*corners)[3];       /* owned; of parts.items: numbers within the order */
-    uint32_t *slots; /* owned; of each point, of the wall and of a cap: 1 + its last vertex */
+    ARRAY(GlbVertex) vertices;    /* sorted by order */
+    size_t first[MAX_ORDERS + 2]; /* first[k]: index of the first vertex of order k */
+    uint32_t (*corners)[3];       /* per triangle of parts.items: its vertices, counted from the
+                                   * first vertex of the order; owned */
+    uint32_t *slots; /* per point, two slots, for the wall and for a cap: 1 + index of its latest
+                      * vertex; 0: none; owned */
 } Glb;
 
-/* The vertex of a corner, which is new when the slot's is of an earlier order. */
+/* Finds the vertex of a corner of a triangle, as an index within the order whose first vertex is
+ * `first`. Adds a vertex if the point has none in this order yet. */
 static Status find_vertex(Glb *glb, uint32_t triangle, uint32_t point, size_t first, uint32_t *out,
                           Err *err)
 {
@@ -67,9 +72,10 @@ static Status prepare(Glb *glb, Err *err)
     return find_vertices(glb, err);
 }
 
-/* ---- what the JSON says ---------------------------------------------------------------------- */
+/* ---- the JSON document ----------------------------------------------------------------------- */
 
-/* How many bytes of the buffer each view takes; all vertices take the same in the first three. */
+/* Returns the size of a buffer view in bytes. Every view has items of 12 bytes: one per vertex, or
+ * one per triangle for the corners. */
 static size_t view_bytes(const Glb *glb, int view)
 {
     return 12 * (view == VIEW_CORNERS ? glb->params->mesh->n_triangles : glb->vertices.n);
@@ -116,7 +122,8 @@ static json_t *position_accessor(const Glb *glb, size_t first, size_t n)
         "max", json_pack("[f,f,f]", (double)high[0], (double)high[1], (double)high[2]));
 }
 
-/* The four accessors of each order that there is, and its mesh and node. */
+/* The lists of the JSON document. Each order that has triangles adds four accessors, a mesh and a
+ * node. */
 typedef struct GlbLists {
     json_t *accessors, *meshes, *nodes;
     size_t n;
@@ -145,8 +152,8 @@ static void add_order(const Glb *glb, size_t order, GlbLists *lists)
     lists->n++;
 }
 
-/* What is known of the tree, and what its colors mean; flat, because assimp 5.2 aborts on objects
- * within. */
+/* Returns the description of the tree and the meaning of its colors. The object has no nested
+ * objects, because assimp 5.2 aborts on them. */
 static json_t *root_extras(const EmitParams *params)
 {
     const ColorScale *scale = &params->appearance->scale;
@@ -161,7 +168,7 @@ static json_t *root_extras(const EmitParams *params)
         {"color_log", json_boolean(scale->log)});
 }
 
-/* The node above the orders, which are nodes 1 to n. */
+/* Returns the root node, node 0. Its children are the nodes 1 to n of the orders. */
 static json_t *root_node(const Glb *glb, size_t n)
 {
     json_t *children = json_array();
@@ -243,7 +250,8 @@ static void put_chunk_head(size_t bytes, const char *kind, Text *out)
     text_append(out, kind, 4);
 }
 
-/* Appends the header, and the chunks of the JSON, padded with blanks, and of the buffer. */
+/* Appends the header, the JSON chunk, padded with blanks to a multiple of 4 bytes, and the binary
+ * chunk. */
 static Status put_file(const Glb *glb, Text *out, Err *err)
 {
     enum { HEADER_BYTES = 12, CHUNK_HEAD_BYTES = 8 };

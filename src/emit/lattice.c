@@ -1,7 +1,8 @@
-/* 3MF with a beam lattice [3MF Consortium, Beam Lattice Extension 1.1]: a beam for each segment, a
- * cylinder with a ball of its radius at either end, between nodes that segments share. Their union
- * is the model `rounded`, whatever overlaps, in one short line a segment. A program that knows
- * beams may show the preview mesh instead: a prism of four sides for each segment. */
+/* Writes 3MF with a beam lattice [3MF Consortium, Beam Lattice Extension 1.1]. Each segment is a
+ * beam: a cylinder with a ball of its radius at both ends. Beams share nodes as segments do. The
+ * union of the beams is the model `rounded`, also where beams overlap, and takes one short line per
+ * segment. A program may show the preview mesh instead of the beams. The preview of a segment is a
+ * prism of four sides. */
 #include "emit/meshparts.h"
 #include "emit/rows.h"
 #include "emit/threemf.h"
@@ -13,9 +14,10 @@ enum { SIDES = 4 };
 
 typedef struct BeamLattice {
     const EmitParams *params;
-    uint32_t *number; /* of each node in the file, by its index; owned */
-    Vec3 *places;     /* of the nodes by number, as single precision; owned */
-    size_t n_places;
+    uint32_t *number; /* per node of the tree: its index in the file; UINT32_MAX: not used yet;
+                       * owned */
+    Vec3 *positions;  /* per node of the file: its position, rounded to single precision; owned */
+    size_t n_positions;
 } BeamLattice;
 
 static Vec3 as_float(Vec3 v)
@@ -23,12 +25,13 @@ static Vec3 as_float(Vec3 v)
     return vec3((double)(float)v.x, (double)(float)v.y, (double)(float)v.z);
 }
 
-/* Numbers the nodes that segments have, in the order in which these come. */
+/* Numbers the nodes in the order in which the segments first use them. */
 static Status number_nodes(BeamLattice *lattice, Err *err)
 {
     const VesselTree *vessels = lattice->params->vessels;
     TRY(mem_calloc(&lattice->number, vessels->n_nodes, sizeof *lattice->number, "nodes", err));
-    TRY(mem_calloc(&lattice->places, vessels->n_nodes, sizeof *lattice->places, "nodes", err));
+    TRY(mem_calloc(&lattice->positions, vessels->n_nodes, sizeof *lattice->positions, "nodes",
+                   err));
     for (size_t node = 0; node < vessels->n_nodes; node++)
         lattice->number[node] = UINT32_MAX;
     for (size_t i = 0; i < vessels->n_segments; i++)
@@ -36,8 +39,8 @@ static Status number_nodes(BeamLattice *lattice, Err *err)
             uint32_t node = vessels->nodes[i][end];
             if (lattice->number[node] != UINT32_MAX)
                 continue;
-            lattice->number[node] = (uint32_t)lattice->n_places;
-            lattice->places[lattice->n_places++] =
+            lattice->number[node] = (uint32_t)lattice->n_positions;
+            lattice->positions[lattice->n_positions++] =
                 as_float(end ? vessels->segments[i].b : vessels->segments[i].a);
         }
     return STATUS_OK;
@@ -48,19 +51,20 @@ static uint32_t node_of(const BeamLattice *lattice, size_t segment, int end)
     return lattice->number[lattice->params->vessels->nodes[segment][end]];
 }
 
-/* Less than the length of the shortest beam by what its reader may lose. */
+/* Returns a lower bound of the length of a beam, mm. The margin of 1 % allows for rounding in
+ * programs that read the file. */
 static double shortest_beam(const BeamLattice *lattice)
 {
     double shortest = INFINITY;
     for (size_t i = 0; i < lattice->params->vessels->n_segments; i++)
-        shortest = fmin(shortest, vec3_distance(lattice->places[node_of(lattice, i, 0)],
-                                                lattice->places[node_of(lattice, i, 1)]));
+        shortest = fmin(shortest, vec3_distance(lattice->positions[node_of(lattice, i, 0)],
+                                                lattice->positions[node_of(lattice, i, 1)]));
     return 0.99 * shortest;
 }
 
 static void put_vertex(Text *out, const void *lattice, size_t i)
 {
-    threemf_put_vertex(((const BeamLattice *)lattice)->places[i], out);
+    threemf_put_vertex(((const BeamLattice *)lattice)->positions[i], out);
 }
 
 static void put_beam(Text *out, const void *context, size_t i)
@@ -73,7 +77,7 @@ static void put_beam(Text *out, const void *context, size_t i)
     text_puts(out, "/>\n");
 }
 
-/* Appends the corners of the prism of segment i. */
+/* Appends the 8 vertices of the prism of segment i: 4 around its start, then 4 around its end. */
 static void put_preview_vertices(Text *out, const void *lattice, size_t i)
 {
     const FieldSegment *segment = &((const BeamLattice *)lattice)->params->vessels->segments[i];
@@ -88,8 +92,8 @@ static void put_preview_vertices(Text *out, const void *lattice, size_t i)
     }
 }
 
-/* Appends a triangle of a prism. Its corners are numbered within the prism: 0 to 3 around its
- * start, 4 to 7 around its end. */
+/* Appends a triangle of a prism. The indices in `corner` are those of put_preview_vertices, 0 to
+ * 7. */
 static void put_triangle(const BeamLattice *lattice, size_t prism, const int corner[3], Text *out)
 {
     size_t first = 2 * SIDES * prism;
@@ -125,7 +129,7 @@ static Status put_model(Text *out, void *context, Err *err)
     add_float(&values, "radius", (float)vessels->segments[0].radius_mm);
     add_list(&values, "preview_vertices", put_preview_vertices, lattice, vessels->n_segments);
     add_list(&values, "preview_triangles", put_preview_triangles, lattice, vessels->n_segments);
-    add_list(&values, "vertices", put_vertex, lattice, lattice->n_places);
+    add_list(&values, "vertices", put_vertex, lattice, lattice->n_positions);
     add_list(&values, "beams", put_beam, lattice, vessels->n_segments);
     return values_expand(&values, params, "3mf/lattice.xml", out, err);
 }
@@ -138,6 +142,6 @@ Status lattice_write(const EmitParams *params, EmitOutput *to, Err *err)
     TRY_GOTO(threemf_put_archive(params, put_model, &lattice, to->file, err));
 done:
     free(lattice.number);
-    free(lattice.places);
+    free(lattice.positions);
     return status;
 }

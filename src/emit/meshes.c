@@ -1,11 +1,12 @@
-/* Triangles for printers and CAD: STL and PLY, a record of binary numbers at a time. */
+/* Writes meshes as binary STL and PLY. */
 #include "emit/meshparts.h"
 #include "emit/record.h"
 #include "emit/rows.h"
 
 #include <stdlib.h>
 
-/* 80 bytes of text that do not begin as the text form does, then triangles of 50 bytes. */
+/* The header of binary STL has 80 bytes of text, which must not begin with "solid" as text STL
+ * does. A triangle takes 50 bytes. */
 Status stl_write(const EmitParams *params, EmitOutput *to, Err *err)
 {
     const VesselMesh *mesh = params->mesh;
@@ -55,8 +56,8 @@ static void put_ply_faces(const EmitParams *params, Text *out)
     }
 }
 
-/* Points with normals and colors, and for each triangle the SWC id of its segment and whether it
- * closes an end. */
+/* Each point has a normal and a color. Each triangle has the SWC id of its segment and a flag for
+ * caps. */
 Status ply_write(const EmitParams *params, EmitOutput *to, Err *err)
 {
     uint32_t *segments = NULL;

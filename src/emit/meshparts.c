@@ -1,5 +1,5 @@
-/* Triangles are listed by a counting sort, so that they keep their order within a Strahler order,
- * and neighbours stay together. */
+/* Triangles are sorted by Strahler order with a counting sort. The sort is stable, so that
+ * neighbouring triangles stay together. */
 #include "emit/meshparts.h"
 
 #include "image/image.h"
@@ -9,7 +9,8 @@
 static size_t order_of(const EmitParams *params, size_t triangle)
 {
     uint32_t segment = params->vessels->segments[mesh_segment(params->mesh, triangle)].segment;
-    return (size_t)params->orders[segment];
+    double order = params->orders[segment];
+    return order > 0 ? (size_t)order : 0;
 }
 
 Status triangles_by_order(const EmitParams *params, IndexLists *out, Err *err)
@@ -44,8 +45,9 @@ void put_color_code(Text *out, const EmitParams *params, uint32_t segment)
     text_printf(out, "%02X%02X%02X", codes[0], codes[1], codes[2]);
 }
 
-/* A GGX lobe of alpha^2 = 2 / (m + 2) is as wide as Blinn's of exponent m [Karis, Real Shading in
- * Unreal Engine 4, 2013], and Blinn's of 4 n as Phong's of n. */
+/* A GGX lobe with alpha^2 = 2 / (m + 2) is as wide as a Blinn-Phong lobe of exponent m [Karis, Real
+ * Shading in Unreal Engine 4, 2013]. A Blinn-Phong lobe of exponent 4 n is as wide as a Phong lobe
+ * of exponent n. The roughness is the square root of alpha. */
 double microfacet_roughness(const Finish *finish)
 {
     return elementary_pow(2 / (4 * (double)finish->phong_size + 2), 0.25);

@@ -1,6 +1,7 @@
-/* Wavefront OBJ with a library of materials: groups by Strahler order, a material for each color.
- * Points are shared by all triangles about them; the flat normals of caps follow those of points,
- * one for each triangle of a cap, in the order in which these are written. */
+/* Writes Wavefront OBJ with a library of materials. Triangles are grouped by Strahler order, and
+ * each color is a material. Triangles share points. The list of normals has one normal per point,
+ * followed by a flat normal for each triangle of a cap, in the order in which the triangles are
+ * written. */
 #include "emit/meshparts.h"
 #include "emit/puttext.h"
 #include "emit/rows.h"
@@ -20,7 +21,8 @@ static void put_normals(const VesselMesh *mesh, const IndexLists *orders, Text *
     }
 }
 
-/* A face, with points and normals counted from 1; *flat is the last flat normal that was used. */
+/* Appends a face. OBJ counts points and normals from 1. *flat is the number of flat normals that
+ * have been used. */
 static void put_face(const VesselMesh *mesh, uint32_t triangle, size_t *flat, Text *out)
 {
     bool cap = mesh_is_cap(mesh, triangle);
@@ -33,7 +35,8 @@ static void put_face(const VesselMesh *mesh, uint32_t triangle, size_t *flat, Te
     text_puts(out, "\n");
 }
 
-/* A new material where the color is not that of the triangle before. */
+/* Appends a change of material if the color of the triangle differs from *last, and updates
+ * *last. */
 static void put_material(const EmitParams *params, uint32_t triangle, uint32_t *last, Text *out)
 {
     uint8_t codes[3];
@@ -63,7 +66,8 @@ static int compare_colors(const void *a, const void *b)
     return memcmp(a, b, 3);
 }
 
-/* One for each color, which stands as sRGB has it, divided by 255. */
+/* Appends a material for each different color. Kd is the sRGB code divided by 255, not decoded to
+ * linear. */
 static Status put_materials(const EmitParams *params, Text *out, Err *err)
 {
     const size_t n = params->vessels->n_segments;
@@ -82,7 +86,8 @@ static Status put_materials(const EmitParams *params, Text *out, Err *err)
     return STATUS_OK;
 }
 
-/* A name must be printable ASCII. A blank, and any other byte, ends it for some readers. */
+/* The name must be printable ASCII without blanks, because some readers take any other byte for the
+ * end of the name. */
 Status obj_check_name(const char *second_file, Err *err)
 {
     if (is_ascii_name(second_file, " "))

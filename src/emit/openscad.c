@@ -1,24 +1,25 @@
-/* A model in OpenSCAD's own manner: a variable for each node and for each radius, and calls of
- * modules that the template defines. The calls name the variables, so that a node that is moved
- * takes its vessels, its joint and its end along.
+/* Writes a parametric model for OpenSCAD: a variable for each node and each radius, and calls of
+ * modules that the template defines. The calls refer to the variables, so that a user who moves a
+ * node also moves its vessels, its joint and its end.
  *
- * A scene of cylinders and balls has no nodes, but its balls lie where cylinders begin and end, to
- * the last bit. The number of cylinders at a ball tells a bifurcation from a bend and an end. */
+ * The primitives of a scene have no nodes. The nodes are recovered from positions: the centre of a
+ * ball is exactly equal, to the last bit, to the ends of the cylinders that meet there. One such
+ * cylinder end means an end of the tree, two mean a bend, and more mean a bifurcation. */
 #include "emit/rows.h"
 #include "emit/values.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* What OpenSCAD 2021.01 takes for each cylinder and ball of 12 sides, the mean of trees of 5 to 100
- * vessels. */
-static const double seconds_a_primitive = 0.3;
+/* Time that OpenSCAD 2021.01 takes per cylinder or ball of 12 sides, s. Measured: the mean over
+ * trees of 5 to 100 vessels. */
+static const double seconds_per_primitive = 0.3;
 
 /* An end of a cylinder. */
 typedef struct CylinderEnd {
     Vec3 at;
     uint32_t cylinder; /* index of a primitive */
-    bool is_far;       /* the end that the cylinder leads to, seen from the root */
+    bool is_far;       /* the distal end, farther from the root */
 } CylinderEnd;
 
 typedef struct Parametric {
@@ -27,7 +28,7 @@ typedef struct Parametric {
     size_t n_ends;
 } Parametric;
 
-static int by_place(const void *a, const void *b)
+static int by_position(const void *a, const void *b)
 {
     const Vec3 *p = &((const CylinderEnd *)a)->at, *q = &((const CylinderEnd *)b)->at;
     for (int axis = 0; axis < 3; axis++) {
@@ -38,10 +39,10 @@ static int by_place(const void *a, const void *b)
     return 0;
 }
 
-static int by_place_and_end(const void *a, const void *b)
+static int by_position_and_end(const void *a, const void *b)
 {
     const CylinderEnd *p = a, *q = b;
-    int order = by_place(a, b);
+    int order = by_position(a, b);
     if (order == 0 && p->is_far != q->is_far)
         order = p->is_far ? -1 : 1;
     return order ? order : p->cylinder < q->cylinder ? -1 : p->cylinder > q->cylinder;
@@ -58,22 +59,23 @@ static Status find_ends(Parametric *made, Err *err)
         made->ends[made->n_ends++] = (CylinderEnd){primitive->a, (uint32_t)i, false};
         made->ends[made->n_ends++] = (CylinderEnd){primitive->b, (uint32_t)i, true};
     }
-    qsort(made->ends, made->n_ends, sizeof *made->ends, by_place_and_end);
+    qsort(made->ends, made->n_ends, sizeof *made->ends, by_position_and_end);
     return STATUS_OK;
 }
 
-/* How many cylinders end at a point, and the first of these ends. */
+/* Returns the number of cylinder ends at a point. Sets *first to the first of them in made->ends;
+ * NULL if there is none. */
 static size_t ends_at(const Parametric *made, Vec3 point, const CylinderEnd **first)
 {
     const CylinderEnd key = {.at = point};
     const CylinderEnd *last = made->ends + made->n_ends;
-    *first = bsearch(&key, made->ends, made->n_ends, sizeof key, by_place);
+    *first = bsearch(&key, made->ends, made->n_ends, sizeof key, by_position);
     if (!*first)
         return 0;
-    while (*first > made->ends && by_place(*first - 1, &key) == 0)
+    while (*first > made->ends && by_position(*first - 1, &key) == 0)
         (*first)--;
     size_t n = 0;
-    while (*first + n < last && by_place(*first + n, &key) == 0)
+    while (*first + n < last && by_position(*first + n, &key) == 0)
         n++;
     return n;
 }
@@ -86,8 +88,9 @@ static uint32_t id_of(const Parametric *made, uint32_t cylinder)
     return geometry->ids[geometry->primitives[cylinder].segment];
 }
 
-/* Appends the variable of the node of an end, the first of its node: the id of the segment that
- * leads there, or, where none does, of the first that leaves. */
+/* Appends the name of the variable of a node. `first` is the first cylinder end at the node. The
+ * name is "p" and the id of the segment that ends there; at a root, where no segment ends, "start"
+ * and the id of the first segment that begins there. */
 static void put_node(Text *out, const Parametric *made, const CylinderEnd *first)
 {
     put_text(out, first->is_far ? "p%u" : "start%u", id_of(made, first->cylinder));
@@ -100,7 +103,7 @@ static void put_node_at(Text *out, const Parametric *made, Vec3 at)
     put_node(out, made, first);
 }
 
-/* Declares the variables of a cylinder: its radius, and the nodes whose name comes from it. */
+/* Declares the variables of a cylinder: its radius, and the nodes whose names contain its id. */
 static void put_variables(Text *out, const void *context, size_t i)
 {
     const Parametric *made = context;
@@ -119,7 +122,7 @@ static void put_variables(Text *out, const void *context, size_t i)
     put_text(out, "r%u = %n;\n", id_of(made, (uint32_t)i), primitive->radius_mm);
 }
 
-/* Appends the ends of a cylinder as a pair of a node and a radius each. */
+/* Appends each end of a cylinder as a pair of a node and a radius. */
 static void put_ends(Text *out, const void *context, size_t i)
 {
     const Parametric *made = context;
@@ -153,12 +156,13 @@ static void put_vessel(Text *out, const Parametric *made, size_t i)
     put_rest(out, made->scene, primitive);
 }
 
-/* Appends the joint at a ball: its radius is the largest of the cylinders there. */
+/* Appends the call that draws a ball. Its radius is the largest radius of the cylinders that meet
+ * there. */
 static void put_joint(Text *out, const Parametric *made, const Primitive *ball)
 {
     const CylinderEnd *end;
     const size_t n = ends_at(made, ball->a, &end);
-    if (n == 0) { /* the ball of a segment without length */
+    if (n == 0) { /* the ball of a segment of length 0 */
         put_text(out, "  bifurcation([%v],%n", ball->a, ball->radius_mm);
         put_rest(out, made->scene, ball);
         return;
@@ -169,7 +173,7 @@ static void put_joint(Text *out, const Parametric *made, const Primitive *ball)
     for (size_t k = 0; k < n; k++)
         put_text(out, k ? ",r%u" : "r%u", id_of(made, end[k].cylinder));
     text_puts(out, n == 1 ? "," : ")");
-    if (n == 1) { /* the direction in which the vessel leaves */
+    if (n == 1) { /* the direction from the vessel to its end */
         const Primitive *cylinder = &made->scene->geometry.primitives[end->cylinder];
         put_node(out, made, end);
         text_puts(out, "-");
@@ -190,10 +194,10 @@ static void put_call(Text *out, const void *context, size_t i)
 
 /* ---- the file -------------------------------------------------------------------------------- */
 
-/* About how long CGAL takes to unite them, with 12 sides. */
+/* Estimates the time in seconds that CGAL takes to unite the primitives, with 12 sides each. */
 static double openscad_seconds(const Scene *scene)
 {
-    return seconds_a_primitive * (double)scene->geometry.n_primitives;
+    return seconds_per_primitive * (double)scene->geometry.n_primitives;
 }
 
 static double largest_radius(const Scene *scene)

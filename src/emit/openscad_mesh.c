@@ -1,12 +1,12 @@
-/* One polyhedron() of a mesh: nothing to unite, so that OpenSCAD takes it as it is. OpenSCAD turns
- * the faces of a solid the other way round: clockwise, seen from outside. */
+/* Writes a mesh as one polyhedron(), which OpenSCAD uses without uniting anything. OpenSCAD expects
+ * the vertices of a face in clockwise order, seen from outside, so the order is reversed. */
 #include "emit/meshparts.h"
 #include "emit/rows.h"
 #include "emit/values.h"
 
-/* What CGAL takes to convert a triangle, when a polyhedron is cut or united [OpenSCAD 2021.01,
- * 7,000 to 40,000 triangles]. */
-static const double seconds_a_triangle = 3e-4;
+/* Time that CGAL takes per triangle to convert a polyhedron that is cut or united, s. Measured with
+ * OpenSCAD 2021.01 and 7,000 to 40,000 triangles. */
+static const double seconds_per_triangle = 3e-4;
 
 static void put_point(Text *out, const void *mesh, size_t i)
 {
@@ -29,7 +29,7 @@ Status openscad_write_mesh(const EmitParams *params, EmitOutput *to, Err *err)
     add_count(&values, "triangles", mesh->n_triangles);
     add_count(&values, "quick", OPENSCAD_QUICK);
     text_printf(add_value(&values, "seconds"), "%.2g",
-                seconds_a_triangle * (double)mesh->n_triangles);
+                seconds_per_triangle * (double)mesh->n_triangles);
     text_printf(add_value(&values, "middle"), "%.4g", (box.low.z + box.high.z) / 2);
     put_text(add_value(&values, "low"), "[%v]", box.low);
     put_text(add_value(&values, "high"), "[%v]", box.high);

@@ -1,8 +1,8 @@
-/* POV-Ray reads a scene (camera, lights) and a geometry, which is one declaration of Tree
- * [docs/POVRAY.md]. They are two files, or one within the other; an exported surface is a geometry
- * alone. Both are made from templates. The long parts, the macros and members of the geometry, are
- * appended when the template comes to them. The elements of the model choose a row of
- * `geometries`. */
+/* A scene for POV-Ray consists of the scene itself (camera, lights) and a geometry, the declaration
+ * of Tree [docs/POVRAY.md]. They are two files, or the geometry is a part of the scene's file. An
+ * exported surface is only a geometry. Both are made from templates. The long parts of the
+ * geometry, its macros and members, are appended when the template reaches them. The elements of
+ * the model select a row of `geometries`. */
 #include "emit/meshparts.h"
 #include "emit/povray_members.h"
 #include "emit/povray_text.h"
@@ -12,14 +12,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* How the geometry of a model is written. The first row with an element of the model counts. */
+/* The functions that write the geometry of a model. The first row whose element the model has is
+ * used. */
 static const struct PovrayRow {
     unsigned element;
-    Status (*find)(PovrayGeometry *geometry, Err *err); /* finds its pieces; NULL: the items */
+    Status (*find)(PovrayGeometry *geometry, Err *err); /* finds the pieces; NULL: the pieces are
+                                                         * the items */
     Status (*put_macros)(Text *out, void *geometry, Err *err);
     Status (*put_object)(Text *out, PovrayGeometry *geometry, Err *err);
-    double pieces; /* measured: number of pieces that POV-Ray reads in about ten seconds, with ids
-                    * for fields; a load of 1 [povray_load] */
+    double pieces; /* number of pieces that POV-Ray reads in about ten seconds (measured; fields
+                    * with ids): a load of 1 [povray_load] */
 } geometries[] = {
     {MODEL_POTENTIAL, find_cells, put_cell_macros, put_cells, 100000},
     {MODEL_BLOB, find_visible_segments, put_blob_macros, put_blob, 32768},
@@ -36,7 +38,7 @@ static const struct PovrayRow *row_of(const Scene *scene)
     return &geometries[row];
 }
 
-/* Finds objects, items and pieces. */
+/* Finds the objects of the geometry, their items, and the pieces that are written. */
 static Status find_geometry(PovrayGeometry *geometry, Err *err)
 {
     const struct PovrayRow *row = row_of(geometry->scene);
@@ -54,8 +56,9 @@ Status povray_check_name(const char *geometry_file, Err *err)
         geometry_file);
 }
 
-/* An identifier made from a file name: capital first, as POV-Ray's own are lower case, which take
- * at most 255 characters. The end of a long name is a hash of the whole (FNV-1a). */
+/* Appends an identifier made from a file name, for an include guard. It begins with a capital,
+ * because POV-Ray's keywords are lower case. POV-Ray's limit is 255 characters, so a long name is
+ * cut and gets a hash of the whole name (FNV-1a) at its end. */
 static void put_guard(Text *text, const char *name)
 {
     enum { LONGEST = 200 };
@@ -90,8 +93,9 @@ static void put_vectors(Text *text, const Vec3 *v, size_t n)
         put_text(text, i ? ",<%v>" : "<%v>", v[i]);
 }
 
-/* Adds the position of the tree. Without an anatomy its root is the middle of its extent. */
-static void add_places(Values *values, const EmitParams *params)
+/* Adds the values for the position of the tree: bounds, roots and path. Without an anatomy, the
+ * root is the centre of the bounds. */
+static void add_tree_position(Values *values, const EmitParams *params)
 {
     const Geometry *geometry = &params->scene->geometry;
     const Vec3 middle = box_center(geometry->bounds);
@@ -107,7 +111,7 @@ static void add_places(Values *values, const EmitParams *params)
     put_vectors(add_value(values, "path"), anatomy->path, anatomy->n_path);
 }
 
-/* A color map has at most 256 entries; a step of one color is two. */
+/* A color map of POV-Ray has at most 256 entries. A class of one color takes two entries. */
 static void put_color_map(Text *text, const ColorScale *scale)
 {
     enum { ENTRIES = COLORRAMP_ENTRIES };
@@ -121,13 +125,13 @@ static void put_color_map(Text *text, const ColorScale *scale)
         else
             colormap_linear(&scale->map, (double)i / (n - 1), rgb);
         for (int side = 0; side < (stepped ? 2 : 1); side++) {
-            float place = (float)((double)(i + side) / (stepped ? n : n - 1));
-            put_text(text, "[%f rgb <%c>]", (double)place, (Rgb){rgb[0], rgb[1], rgb[2]});
+            float position = (float)((double)(i + side) / (stepped ? n : n - 1));
+            put_text(text, "[%f rgb <%c>]", (double)position, (Rgb){rgb[0], rgb[1], rgb[2]});
         }
     }
 }
 
-/* Appends a name for a string of POV-Ray, which may hold printable ASCII. */
+/* Appends the text of a string of POV-Ray, reduced to printable ASCII. */
 static void put_quoted(Text *text, const char *name)
 {
     Text plain = TEXT_INIT;
@@ -170,7 +174,7 @@ static Status put_values(Text *out, void *context, Err *err)
     return values_expand(&values, geometry->params, "povray/values.inc", out, err);
 }
 
-/* Appends a frame as a case of a #switch, of which POV-Ray reads one. */
+/* Appends a frame as a case of a #switch, so that POV-Ray parses only one frame. */
 static void put_case(Text *out, const void *appearance, size_t frame)
 {
     const Appearance shown = appearance_frame(appearance, frame);
@@ -209,7 +213,7 @@ static Status put_geometry(Text *out, void *context, Err *err)
     add_float(&values, "green", scene->appearance.color.g);
     add_float(&values, "blue", scene->appearance.color.b);
     add_finish(&values, &scene->appearance.finish);
-    add_places(&values, params);
+    add_tree_position(&values, params);
     add_part(&values, "values", put_values, geometry);
     add_flag(&values, "colors", scene->appearance.meaning != NULL);
     add_part(&values, "frames", put_frames, geometry);
@@ -221,7 +225,7 @@ static Status put_geometry(Text *out, void *context, Err *err)
 
 /* ---- scene ----------------------------------------------------------------------------------- */
 
-/* The kinds of lights: the value of a template that is set for each, and the macro of each. */
+/* Per kind of light: the name of the template's flag, and the name of the macro. */
 enum { LIGHT_PARALLEL, LIGHT_POINT, LIGHT_AREA, LIGHT_KINDS };
 static const char *const light_names[LIGHT_KINDS][2] = {
     {"parallel", "Light_Parallel"}, {"point", "Light_Point"}, {"area", "Light_Area"}};
@@ -289,8 +293,8 @@ static Status put_vessels(Text *out, void *context, Err *err)
     return values_expand(&values, geometry->params, "povray/include.inc", out, err);
 }
 
-/* Returns the point in the middle of the picture at the depth of the vessels' middle. */
-static Vec3 looked_at(const Scene *scene)
+/* Returns the point on the camera's axis at the depth of the centre of the vessels. */
+static Vec3 look_at_point(const Scene *scene)
 {
     const Camera *camera = &scene->view.camera;
     const Box *box = &scene->geometry.bounds;
@@ -306,19 +310,19 @@ static Status put_camera(Text *out, void *context, Err *err)
     Values values = {.digits = geometry->params->digits};
     add_flag(&values, "perspective", camera->projection == PROJECTION_PERSPECTIVE);
     put_text(add_value(&values, "location"), "<%v>", camera->location);
-    put_text(add_value(&values, "look_at"), "<%v>", looked_at(geometry->scene));
-    values.digits = 0; /* POV-Ray warns of vectors that are not perpendicular to 10 digits */
+    put_text(add_value(&values, "look_at"), "<%v>", look_at_point(geometry->scene));
+    values.digits = 0; /* all digits: POV-Ray warns if vectors are not perpendicular to 10 digits */
     put_text(add_value(&values, "right"), "<%v>", camera->right);
     put_text(add_value(&values, "up"), "<%v>", camera->up);
     put_text(add_value(&values, "direction"), "<%v>", camera->direction);
-    /* at distance 1 of what is looked at */
+    /* relative to the distance of the look-at point, for an orthographic camera */
     const char *over = camera->projection == PROJECTION_PERSPECTIVE ? "" : " / Camera_Distance";
     put_text(add_value(&values, "width"), "%n%s", vec3_length(camera->right), over);
     put_text(add_value(&values, "height"), "%n%s", vec3_length(camera->up), over);
     return values_expand(&values, geometry->params, "povray/camera.inc", out, err);
 }
 
-/* Appends a line of the header that names the effects of `render`, which POV-Ray does not draw. */
+/* Appends a comment that names the effects of `render` that POV-Ray does not draw. */
 static void put_effects(Text *text, const EmitParams *params)
 {
     Text names = TEXT_INIT;
@@ -333,7 +337,7 @@ static void put_effects(Text *text, const EmitParams *params)
     text_release(&names);
 }
 
-/* The plane of the background lies twice as far away as the farthest vessel. */
+/* Appends the plane of a graded background, at twice the depth of the farthest vessel. */
 static Status put_graded(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
@@ -362,7 +366,8 @@ static Status put_fade(Text *out, void *context, Err *err)
     return values_expand(&values, geometry->params, "povray/fade.inc", out, err);
 }
 
-/* Colors that do not stand for values give way to a color that the user declares. */
+/* Appends a switch that replaces the vessels' colors if the user declares a color or a texture. It
+ * is left out if the colors represent values. */
 static Status put_tips(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
@@ -414,7 +419,7 @@ done:
     return status;
 }
 
-/* Returns the number of pieces of the whole: cells, segments of a field, or items. */
+/* Returns the number of pieces of the whole geometry: cells, segments of a blob, or items. */
 static size_t count_pieces(const PovrayGeometry *geometry)
 {
     if (geometry->cells)
@@ -435,7 +440,8 @@ done:
 
 /* ---- a surface ------------------------------------------------------------------------------- */
 
-/* Makes the geometry of an exported surface. It borrows everything except its ids. */
+/* Makes the geometry of an exported surface. The caller frees its ids; everything else is
+ * borrowed. */
 static Status take_surface(const EmitParams *params, Geometry *geometry, Err *err)
 {
     const VesselTree *vessels = params->vessels;
@@ -454,7 +460,7 @@ static Status take_surface(const EmitParams *params, Geometry *geometry, Err *er
     return STATUS_OK;
 }
 
-/* Writes the second file of a scene of triangles, without the first. */
+/* Writes only the geometry of a scene of triangles. */
 Status povray_write_mesh(const EmitParams *params, EmitOutput *to, Err *err)
 {
     Scene scene = {.appearance = *params->appearance};
@@ -478,7 +484,7 @@ Status povray_write_planes(const EmitParams *params, Text *out, Err *err)
 
 /* ---- settings -------------------------------------------------------------------------------- */
 
-/* A name without '[' is no name of a section. */
+/* POV-Ray reads the name "a.ini[b]" as section b of a.ini, so a name must not contain '['. */
 static Status check_settings_name(const char *name, Err *err)
 {
     if (!strchr(name, '['))

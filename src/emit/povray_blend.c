@@ -1,7 +1,7 @@
-/* Where colors blend, POV-Ray finds a point's mean place on the scale, by functions that
- * povray_cells.c and povray_blob.c write, and takes it to a color as colorscale_at does. A blob's
- * own blending of textures is not used: it weights colors by the strengths of single components,
- * and of those that subtract, too. */
+/* Where colors blend, POV-Ray computes the mean position on the scale at a point, by functions that
+ * povray_cells.c and povray_blob.c write, and maps the position to a color as colorscale_at does.
+ * POV-Ray's own blending of the textures of a blob is not used: it weights colors by the strengths
+ * of single components, including components with a negative strength. */
 #include "emit/povray_members.h"
 #include "emit/povray_text.h"
 #include "emit/values.h"
@@ -38,8 +38,8 @@ static void put_bounds(Text *text, const ColorScale *scale)
     text_printf(text, ") / %d", scale->n_bounds + 1);
 }
 
-/* POV-Ray rounds the ends of a color map's steps to single precision, so a class is given the
- * middle of its step. */
+/* A class is mapped to the centre of its step in the color map, because POV-Ray rounds the ends of
+ * steps to single precision. */
 void put_value_map(Text *text, const ColorScale *scale)
 {
     char slack[NUMBER_TEXT_SIZE];

@@ -1,35 +1,38 @@
-/* One call of Vessel_Blob for each segment. Space is halved, along the longest side of a box each
- * time, until few segments reach into a box; each box is a blob of its own, clipped to the box,
- * because POV-Ray loses precision with the number of components along a ray and the way between
- * them [docs/POVRAY.md section 9].
+/* Writes a blob: one call of Vessel_Blob for each segment. POV-Ray's precision decreases with the
+ * number of components along a ray and with the distance between them [docs/POVRAY.md section 9]. A
+ * large tree is therefore divided into cells. Its box is halved recursively along the longest side
+ * until few segments reach into a box. Each cell becomes a separate blob that is clipped to the
+ * cell.
  *
- * Where segments differ in what they are painted with, a pigment finds out which term is largest at
- * a point: POV-Ray's own blending of a blob's textures is by strength and never lets one segment
- * win. Its function is a hierarchy of boxes, written as functions that call each other and look
- * only into boxes that hold the point. */
+ * If segments differ in color or id, a pigment function finds the segment whose term is largest at
+ * a point. POV-Ray's own blending of the textures of a blob is not used, because it mixes the
+ * textures by strength. The pigment function is a bounding box hierarchy: the function of a box
+ * calls the functions of its halves only if the box contains the point. */
 #include "emit/povray_members.h"
 #include "emit/povray_text.h"
 #include "emit/values.h"
 
 #include <stdlib.h>
 
-/* A pigment map holds 256 entries, and so does a color map: two of them in one another count
- * on. */
+/* A map of POV-Ray (color_map, pigment_map, texture_map) has at most 256 entries. A map of GROUP
+ * maps of GROUP entries selects among MAX_PAINTED segments. LEAF is the maximum number of segments
+ * in a leaf of the hierarchy; reason not recorded. */
 enum { GROUP = 256, MAX_PAINTED = GROUP * GROUP, LEAF = 4 };
 
-/* How many segments a cell holds at most, unless halving it would leave most of them in both
- * halves. */
+/* Maximum number of segments of a cell, unless too many of them would reach into both halves
+ * [halve]. */
 enum { CELL = 128 };
 
-/* POV-Ray's time for a ray grows with the square of the segments that it passes: where CROWD
- * overlap, which is looked for about PROBES of a cell's segments, a picture takes minutes. */
+/* POV-Ray's time per ray grows with the square of the number of segments that overlap on the ray.
+ * If more than CROWD segments overlap at a point, a picture takes minutes, and the scene is
+ * refused. The test points are the middles of about PROBES segments of a cell. */
 enum { CROWD = 64, PROBES = 64 };
 
-/* Cells reach into their neighbours, so that no ray slips between them. */
+/* Each cell extends into its neighbours by this much, so that no ray passes between two cells. */
 static const double overlap_mm = 1e-3;
 
-/* Where a segment is felt; `reach` is blob_reach. */
-static Box reach_of(const FieldSegment *segment, double reach)
+/* Returns the bounds of the points where the term of a segment is not 0. `reach` is blob_reach. */
+static Box influence_box(const FieldSegment *segment, double reach)
 {
     double mm = reach * segment->radius_mm;
     return box_with_ball(box_with_ball(box_empty(), segment->a, mm), segment->b, mm);
@@ -39,13 +42,16 @@ static Box reach_of(const FieldSegment *segment, double reach)
 
 typedef struct BlobCells {
     const Scene *scene;
-    const RayVolume *volume; /* cells that it does not meet are left out */
-    Text *text;              /* where the others are written to, or NULL */
-    bool *is_met;            /* where the segments of the others are marked, or NULL */
-    double reach;            /* of all segments, over their radius */
-    uint32_t *lists; /* a stack: the segments of both halves of a cell follow those of the cell */
-    size_t room;
-    size_t written; /* none when all is one blob */
+    const RayVolume *volume; /* cells that no ray of the part can hit are left out; NULL: there is
+                              * no part */
+    Text *text;              /* receives the cells; NULL: they are not written */
+    bool *is_hit;            /* per segment: receives true if a cell that is not left out has the
+                              * segment; NULL: not needed */
+    double reach;            /* blob_reach, in units of a segment's radius */
+    uint32_t *lists; /* a stack of lists of segments: the lists of the two halves of a cell follow
+                      * the list of the cell; owned */
+    size_t capacity;
+    size_t written; /* number of cells that were written; 0 if the object is one blob */
 } BlobCells;
 
 /* A list of segments on the stack of cells. */
@@ -53,8 +59,8 @@ typedef struct CellList {
     size_t first, n;
 } CellList;
 
-/* How many segments of a list are felt at x. */
-static size_t count_felt(const BlobCells *cells, const uint32_t *list, size_t n, Vec3 x)
+/* Returns the number of segments of a list whose term is not 0 at x. */
+static size_t count_overlapping(const BlobCells *cells, const uint32_t *list, size_t n, Vec3 x)
 {
     size_t count = 0;
     for (size_t i = 0; i < n; i++)
@@ -69,18 +75,19 @@ static Status check_crowd(const BlobCells *cells, const uint32_t *list, size_t n
     for (size_t i = 0; i < n; i += n / PROBES) {
         const FieldSegment *segment = &cells->scene->geometry.segments[list[i]];
         Vec3 middle = vec3_scale(vec3_add(segment->a, segment->b), 0.5);
-        size_t felt = count_felt(cells, list, n, middle);
-        if (felt > CROWD)
+        size_t n_overlapping = count_overlapping(cells, list, n, middle);
+        if (n_overlapping > CROWD)
             return err_set(
                 err, STATUS_INFEASIBLE,
                 "%zu segments overlap at (%.6g, %.6g, %.6g), too many for POV-Ray to draw a blob "
                 "in reasonable time; leave out thin ones (`prune_radius`) or choose another model",
-                felt, middle.x, middle.y, middle.z);
+                n_overlapping, middle.x, middle.y, middle.z);
     }
     return STATUS_OK;
 }
 
-/* Writes the blob of the segments of a list, clipped to a box or whole. */
+/* Writes the blob of the segments of a list. With `clip` the blob is a cell that is clipped to the
+ * box. Errors: STATUS_INFEASIBLE if POV-Ray cannot draw it; STATUS_MEMORY. */
 static Status put_cell(BlobCells *cells, CellList from, const Box *clip, Err *err)
 {
     Text *text = cells->text;
@@ -108,14 +115,15 @@ static Status put_cell(BlobCells *cells, CellList from, const Box *clip, Err *er
     return STATUS_OK;
 }
 
-/* The segments of a list that reach into the box, put on the stack at `top`. */
-static CellList take_those_in(const BlobCells *cells, CellList from, size_t top, Box box)
+/* Returns the list of the segments of `from` that reach into the box. The list is stored on the
+ * stack at `top`. */
+static CellList segments_in_box(const BlobCells *cells, CellList from, size_t top, Box box)
 {
     const FieldSegment *segments = cells->scene->geometry.segments;
     const uint32_t *list = cells->lists + from.first;
     CellList taken = {top, 0};
     for (size_t i = 0; i < from.n; i++)
-        if (box_meets(reach_of(&segments[list[i]], cells->reach), box))
+        if (box_meets(influence_box(&segments[list[i]], cells->reach), box))
             cells->lists[top + taken.n++] = list[i];
     return taken;
 }
@@ -124,18 +132,19 @@ static CellList take_those_in(const BlobCells *cells, CellList from, size_t top,
 typedef struct CellHalves {
     Box box[2];
     CellList list[2];
-    bool is_cut; /* whether they are cells */
+    bool is_split; /* the cell is divided into these halves */
 } CellHalves;
 
-/* Halves a box into which the segments of a list reach, with the stack's end at `top`, unless
- * few do or most would reach into both halves. */
+/* Halves a box, and lists the segments of `list` that reach into each half, on the stack from `top`
+ * on. Sets out->is_split to false if the list has at most CELL segments, or if the two new lists
+ * together are more than 1.5 times as long as the list. */
 static Status halve(BlobCells *cells, CellList list, size_t top, Box box, CellHalves *out, Err *err)
 {
     *out = (CellHalves){.box = {box, box}};
     if (list.n <= CELL)
         return STATUS_OK;
-    TRY(mem_reserve(&cells->lists, &cells->room, top + 2 * list.n, sizeof *cells->lists, "cells",
-                    err));
+    TRY(mem_reserve(&cells->lists, &cells->capacity, top + 2 * list.n, sizeof *cells->lists,
+                    "cells", err));
     Box *half = out->box;
     Vec3 middle = box_center(box);
     int axis = box_longest_axis(box);
@@ -145,14 +154,14 @@ static Status halve(BlobCells *cells, CellList list, size_t top, Box box, CellHa
         half[0].high.y = half[1].low.y = middle.y;
     else
         half[0].high.z = half[1].low.z = middle.z;
-    out->list[0] = take_those_in(cells, list, top, half[0]);
-    out->list[1] = take_those_in(cells, list, top + out->list[0].n, half[1]);
-    out->is_cut = 2 * (out->list[0].n + out->list[1].n) <= 3 * list.n;
+    out->list[0] = segments_in_box(cells, list, top, half[0]);
+    out->list[1] = segments_in_box(cells, list, top + out->list[0].n, half[1]);
+    out->is_split = 2 * (out->list[0].n + out->list[1].n) <= 3 * list.n;
     return STATUS_OK;
 }
 
-/* Writes the cells of a box into which the segments of a list reach, with the stack's end at
- * `top`. */
+/* Divides a box recursively into cells and writes them. The segments of `list` reach into the box.
+ * The stack is free from `top` on. `whole` is true for the box of the object. */
 static Status put_cells_of(BlobCells *cells, CellList list, size_t top, Box box, bool whole,
                            Err *err)
 {
@@ -160,9 +169,9 @@ static Status put_cells_of(BlobCells *cells, CellList list, size_t top, Box box,
     if (!whole && !rayvolume_meets(cells->volume, box_padded(box, overlap_mm)))
         return STATUS_OK;
     TRY(halve(cells, list, top, box, &halves, err));
-    for (size_t i = 0; !halves.is_cut && cells->is_met && i < list.n; i++)
-        cells->is_met[cells->lists[list.first + i]] = true;
-    if (!halves.is_cut)
+    for (size_t i = 0; !halves.is_split && cells->is_hit && i < list.n; i++)
+        cells->is_hit[cells->lists[list.first + i]] = true;
+    if (!halves.is_split)
         return cells->text ? put_cell(cells, list, whole ? NULL : &box, err) : STATUS_OK;
     top += halves.list[0].n + halves.list[1].n;
     for (int i = 0; i < 2; i++)
@@ -171,13 +180,14 @@ static Status put_cells_of(BlobCells *cells, CellList list, size_t top, Box box,
     return STATUS_OK;
 }
 
-/* All of the object's segments. */
+/* Returns the list of all segments of the object. */
 static CellList all_of(const PovrayGeometry *geometry)
 {
     return (CellList){0, geometry->objects[geometry->object].n};
 }
 
-/* The segments of the object, and the box that they reach into. */
+/* Initialises *cells with the segments of the object, and computes the box that they reach into.
+ * The caller frees cells->lists, even after an error. */
 static Status cells_begin(const PovrayGeometry *geometry, Text *text, BlobCells *cells, Box *box,
                           Err *err)
 {
@@ -187,17 +197,17 @@ static Status cells_begin(const PovrayGeometry *geometry, Text *text, BlobCells 
                          .volume = geometry->volume,
                          .text = text,
                          .reach = blob_reach(&blob_shape),
-                         .room = items->n};
-    TRY(mem_calloc(&cells->lists, cells->room, sizeof *cells->lists, "cells", err));
+                         .capacity = items->n};
+    TRY(mem_calloc(&cells->lists, cells->capacity, sizeof *cells->lists, "cells", err));
     *box = box_empty();
     for (size_t i = 0; i < items->n; i++) {
         cells->lists[i] = items->index[i];
-        *box = box_union(*box, reach_of(&all->segments[items->index[i]], cells->reach));
+        *box = box_union(*box, influence_box(&all->segments[items->index[i]], cells->reach));
     }
     return STATUS_OK;
 }
 
-/* Finds whether all of the object is one blob, and not many blobs, each clipped to a cell. */
+/* Sets *whole to true if the object is one blob, and to false if it is divided into cells. */
 static Status blob_is_whole(const PovrayGeometry *geometry, bool *whole, Err *err)
 {
     BlobCells cells = {0};
@@ -207,7 +217,7 @@ static Status blob_is_whole(const PovrayGeometry *geometry, bool *whole, Err *er
     Status status;
     TRY_GOTO(cells_begin(geometry, NULL, &cells, &box, err));
     TRY_GOTO(halve(&cells, all, all.n, box, &halves, err));
-    *whole = !halves.is_cut;
+    *whole = !halves.is_split;
 done:
     free(cells.lists);
     return status;
@@ -250,15 +260,15 @@ Status find_visible_segments(PovrayGeometry *geometry, Err *err)
     if (!geometry->volume)
         return STATUS_OK;
     TRY_GOTO(cells_begin(geometry, NULL, &cells, &box, err));
-    TRY_GOTO(mem_calloc(&cells.is_met, all.n, sizeof *cells.is_met, "segments", err));
+    TRY_GOTO(mem_calloc(&cells.is_hit, all.n, sizeof *cells.is_hit, "segments", err));
     TRY_GOTO(put_cells_of(&cells, all_of(geometry), all.n, box, true, err));
     for (size_t i = 0; i < all.n; i++)
-        if (cells.is_met[i])
+        if (cells.is_hit[i])
             index[n++] = (uint32_t)i;
     geometry->is_empty = n == 0;
     geometry->painted = n ? (PovrayItems){index, n} : (PovrayItems){all.index, 1};
 done:
-    free(cells.is_met);
+    free(cells.is_hit);
     free(cells.lists);
     return status;
 }
@@ -267,16 +277,18 @@ done:
 
 typedef struct PaintItem {
     double key;
-    uint32_t segment; /* by its number among those that are painted */
+    uint32_t segment; /* index in Paints.painted */
 } PaintItem;
 
 typedef struct Paints {
     const Scene *scene;
-    PovrayItems painted;  /* numbered anew, in their order */
-    const double *places; /* of sums for colors that blend; NULL: the largest term is found */
-    const Tmpl *node;     /* the function of a box */
-    bool in_matrices;     /* as put_matrices says */
-    double grid_mm;       /* boxes are rounded to */
+    PovrayItems painted;     /* the segments that may be visible; "number" below is an index in this
+                              * list */
+    const double *positions; /* positions on the color scale, for colors that blend; NULL: functions
+                              * that find the largest term */
+    const Tmpl *node;        /* template of the function of a box */
+    bool in_matrices;        /* coefficients are in matrices [put_matrices] */
+    double grid_mm;          /* the bounds of boxes are rounded outwards to multiples of this */
     PaintItem *items;
     Text *text;
     unsigned nodes;
@@ -295,16 +307,16 @@ static int by_key(const void *a, const void *b)
     return x->segment < y->segment ? -1 : x->segment > y->segment;
 }
 
-/* Where a segment's value is on the scale; 0 for none. */
-static double place_of(const Paints *paints, uint32_t number)
+/* Returns the position of a segment's value on the color scale; 0 if it has none. */
+static double scale_position(const Paints *paints, uint32_t number)
 {
-    const double *places = paints->scene->appearance.positions;
-    double place = places ? places[painted_segment(paints, number)->segment] : 0;
-    return isnan(place) ? 0 : place;
+    const double *positions = paints->scene->appearance.positions;
+    double position = positions ? positions[painted_segment(paints, number)->segment] : 0;
+    return isnan(position) ? 0 : position;
 }
 
-/* A column that is the value at the origin. POV-Ray takes no matrix without an inverse, so that it
- * cannot be the value everywhere. */
+/* Returns a column of a matrix that stores a value: the column's value at the origin. The column
+ * cannot be constant, because POV-Ray refuses a matrix without an inverse. */
 static Linear value_and_axis(double value, int axis)
 {
     Linear linear = {{0, 0, 0, value}};
@@ -318,8 +330,9 @@ static int largest_factor(const Linear *linear)
     return fabs(linear->k[2]) > fabs(linear->k[axis]) ? 2 : axis;
 }
 
-/* For each segment v, w and start are the columns of Vs; end is one of Ve, whose others are the
- * segment's number and place at the origin. */
+/* Declares two matrices per segment. The columns of Vs are the linear functions v, w and start. The
+ * columns of Ve are the linear function end, the segment's number, and its position on the color
+ * scale; the last two are the values of their columns at the origin. */
 static Status put_matrices(const Paints *paints, const Tmpl *matrix, Err *err)
 {
     put_matrix_arrays(paints->text, paints->painted.n);
@@ -327,16 +340,16 @@ static Status put_matrices(const Paints *paints, const Tmpl *matrix, Err *err)
         const TermForm form = term_form(painted_segment(paints, i));
         const int axis = largest_factor(&form.end);
         const Linear number = value_and_axis(i, (axis + 1) % 3),
-                     place = value_and_axis(place_of(paints, i), (axis + 2) % 3);
+                     position = value_and_axis(scale_position(paints, i), (axis + 2) % 3);
         const Linear *const start[] = {&form.v, &form.w, &form.start};
-        const Linear *const end[] = {&form.end, &number, &place};
+        const Linear *const end[] = {&form.end, &number, &position};
         TRY(put_matrix(paints->text, matrix, 's', i, start, err));
         TRY(put_matrix(paints->text, matrix, 'e', i, end, err));
     }
     return STATUS_OK;
 }
 
-/* v, w, start, end */
+/* Appends the linear functions v, w, start and end of a segment as four arguments. */
 static void put_forms(Text *text, const Paints *paints, uint32_t number)
 {
     TermForm form = term_form(painted_segment(paints, number));
@@ -355,11 +368,11 @@ static void put_weight(Text *text, const Paints *paints, uint32_t number)
     text_puts(text, "+Fn_Blob_Weight(");
     put_forms(text, paints, number);
     text_printf(text, ")*select(k,%d,1,",
-                !isnan(paints->places[painted_segment(paints, number)->segment]));
+                !isnan(paints->positions[painted_segment(paints, number)->segment]));
     if (paints->in_matrices)
         put_column(text, 'e', number, "0,0,0", 'z');
     else
-        text_number(text, place_of(paints, number));
+        text_number(text, scale_position(paints, number));
     text_puts(text, ")");
 }
 
@@ -375,7 +388,7 @@ static void put_term(Text *text, const Paints *paints, uint32_t number)
     text_puts(text, ")");
 }
 
-/* The middle and the half of an extent along an axis, rounded outwards. */
+/* Formats the centre and half of the extent of a box along an axis, rounded outwards to grid_mm. */
 static void extent_along(const Paints *paints, double low, double high,
                          char middle[NUMBER_TEXT_SIZE], char half[NUMBER_TEXT_SIZE])
 {
@@ -387,8 +400,8 @@ static void extent_along(const Paints *paints, double low, double high,
     number_text_rounded((high - low) / 2, digits, half);
 }
 
-/* Declares the function of a box: of those listed the largest, or the sum, where the box holds the
- * point. */
+/* Declares the function of a box. At points in the box it is the maximum, or the sum, of the terms
+ * in `list`; elsewhere it is 0. */
 static Status put_function(Paints *paints, Box box, const Text *list, Err *err)
 {
     char number[NUMBER_TEXT_SIZE], middle[3][NUMBER_TEXT_SIZE], half[3][NUMBER_TEXT_SIZE];
@@ -411,17 +424,19 @@ static void sort_along(Paints *paints, PaintItem *items, size_t n, int axis)
     qsort(items, n, sizeof *items, by_key);
 }
 
-/* Where items[first .. first + n) are felt. */
+/* Returns the bounds of the points where a term of items[first .. first + n) is not 0. */
 static Box box_of_items(const Paints *paints, size_t first, size_t n)
 {
     const double reach = blob_reach(&blob_shape);
     Box box = box_empty();
     for (size_t i = first; i < first + n; i++)
-        box = box_union(box, reach_of(painted_segment(paints, paints->items[i].segment), reach));
+        box =
+            box_union(box, influence_box(painted_segment(paints, paints->items[i].segment), reach));
     return box;
 }
 
-/* Declares the function of items[first .. first + n), after those of its halves. */
+/* Declares the function of items[first .. first + n), after the functions of the two halves that it
+ * calls. */
 static Status put_node(Paints *paints, size_t first, size_t n, Err *err)
 {
     PaintItem *items = paints->items + first;
@@ -431,43 +446,45 @@ static Status put_node(Paints *paints, size_t first, size_t n, Err *err)
         sort_along(paints, items, n, box_longest_axis(box));
         for (int half = 0; half < 2; half++) {
             TRY(put_node(paints, half ? first + n / 2 : first, half ? n - n / 2 : n / 2, err));
-            text_printf(&list, paints->places ? "+Fw[%u](x,y,z,k)" : ",Fn[%u](x,y,z)",
+            text_printf(&list, paints->positions ? "+Fw[%u](x,y,z,k)" : ",Fn[%u](x,y,z)",
                         paints->nodes - 1);
         }
     }
     for (size_t i = 0; n <= LEAF && i < n; i++)
-        (paints->places ? put_weight : put_term)(&list, paints, items[i].segment);
+        (paints->positions ? put_weight : put_term)(&list, paints, items[i].segment);
     Status status = put_function(paints, box, &list, err);
     text_release(&list);
     return status;
 }
 
-/* How many functions put_node declares. */
+/* Returns the number of functions that put_node declares for n items. */
 static size_t count_nodes(size_t n)
 {
     return n <= LEAF ? 1 : 1 + count_nodes(n / 2) + count_nodes(n - n / 2);
 }
 
-/* The power of 2 that is some 1/2000 of the box: fine enough for boxes of a few segments, and so
- * few places that POV-Ray finds each number at once. */
+/* Returns the grid for the bounds of boxes: a power of 2, 1/2048 to 1/1024 of the longest side of
+ * the box. This is fine enough for boxes of a few segments. It is so coarse that few different
+ * numbers occur, among which POV-Ray finds each number quickly. */
 static double grid_of(Box box)
 {
     Vec3 size = vec3_sub(box.high, box.low);
     return ldexp(1, ilogb(fmax(size.x, fmax(size.y, size.z))) - 10);
 }
 
-/* The functions that find the largest term, and the matrices, or those that sum terms for the mean
- * of `places`. */
-static Status put_hierarchy(Text *out, const PovrayGeometry *geometry, const double *places,
+/* Appends the hierarchy of functions. If `positions` is NULL, the functions find the largest term,
+ * and the matrices are declared before them. Otherwise the functions sum terms for the mean of the
+ * positions on the color scale. */
+static Status put_hierarchy(Text *out, const PovrayGeometry *geometry, const double *positions,
                             Err *err)
 {
-    const char *const names[] = {places ? "povray/blob_weight.inc" : "povray/blob_node.inc",
+    const char *const names[] = {positions ? "povray/blob_weight.inc" : "povray/blob_node.inc",
                                  "povray/matrix.inc"};
     Tmpl templates[2] = {0};
     const size_t n = geometry->painted.n;
     Paints paints = {.scene = geometry->scene,
                      .painted = geometry->painted,
-                     .places = places,
+                     .positions = positions,
                      .node = &templates[0],
                      .in_matrices = n > MAX_INLINE_TERMS,
                      .text = out};
@@ -477,9 +494,9 @@ static Status put_hierarchy(Text *out, const PovrayGeometry *geometry, const dou
     for (size_t i = 0; i < n; i++)
         paints.items[i].segment = (uint32_t)i;
     paints.grid_mm = grid_of(box_of_items(&paints, 0, n));
-    if (paints.in_matrices && !places)
+    if (paints.in_matrices && !positions)
         TRY_GOTO(put_matrices(&paints, &templates[1], err));
-    text_printf(out, "#declare F%c=array[%zu]\n", places ? 'w' : 'n', count_nodes(n));
+    text_printf(out, "#declare F%c=array[%zu]\n", positions ? 'w' : 'n', count_nodes(n));
     TRY_GOTO(put_node(&paints, 0, n, err));
 done:
     free(paints.items);
@@ -498,7 +515,7 @@ static Status put_weights(Text *out, void *context, Err *err)
     return put_hierarchy(out, geometry, geometry->scene->appearance.positions, err);
 }
 
-/* What finds the mean where colors blend. */
+/* Appends the functions that find the mean position on the color scale, if colors blend. */
 static Status put_blend(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
@@ -510,7 +527,7 @@ static Status put_blend(Text *out, void *context, Err *err)
     return values_expand(&values, geometry->params, "povray/blob_blend.inc", out, err);
 }
 
-/* Appends the paint of a segment, in groups of as many as a map of textures holds. */
+/* Appends the paint of a segment. Paints are grouped by GROUP, the maximum size of a map. */
 static void put_paint_of(Text *out, const void *context, size_t i)
 {
     const PovrayGeometry *geometry = context;

@@ -1,11 +1,12 @@
-/* Numbers are printed with the digits that read back exactly, and every expression in the order of
- * `surface`'s cellfunction.c, so that what POV-Ray evaluates is what cell_function returns. A
- * segment has one function for each part of it that a cell feels, so that cells are short to
- * read.
+/* Writes an isosurface as cells. Numbers have enough digits to read back exactly, and every
+ * expression has the order of operations of cellfunction.c in the module surface. POV-Ray therefore
+ * computes the same values as cell_function. The term of a segment is a function that cells call. A
+ * segment has a function for each TermPart that a cell uses, so that the text of cells is short.
  *
- * POV-Ray looks for each name through one 257th of all names. So the functions stand in arrays and,
- * in a large scene, the numbers of a segment in matrices. The products of these with a point are
- * summed in the order of a Linear, so that both ways are the same to the bit. */
+ * POV-Ray finds a name in a hash table of 257 lists, so many names would be slow. The functions are
+ * therefore elements of arrays. In a large scene the coefficients of a segment are in matrices. The
+ * product of a matrix and a point is summed in the order of a Linear, so that both forms give the
+ * same bits. */
 #include "emit/povray_members.h"
 #include "emit/povray_text.h"
 #include "emit/values.h"
@@ -14,25 +15,27 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* The functions of a segment: its term by TermPart, and v^2 + w^2. */
+/* The arrays of functions of segments: the term for each TermPart, and v^2 + w^2. */
 static const char *const function_names[] = {"Fb", "Fs", "Fe", "Fm", "Ft"};
 enum { TUBE = TERM_MIDDLE + 1, N_FUNCTIONS };
 
-/* In a cell of at most so many terms the largest is found by comparing each with those that follow;
- * in a cell of more, by comparing each with the largest, a function of its own. */
-enum { MOST_COMPARED = 4 };
+/* Maximum number of terms of a cell in which the largest term is found by comparing each term with
+ * the terms after it [put_pick]. With more terms, each term is compared with their maximum, which
+ * is a function of its own [put_pick_of_many]. */
+enum { MAX_COMPARED = 4 };
 
-/* The entries of a map of POV-Ray's colors or textures. */
-enum { MOST_PAINTS = 256 };
+/* Maximum number of entries of a color_map or texture_map of POV-Ray. */
+enum { MAX_PAINTS = 256 };
 
-/* Scales are 2^(number - SCALE_ONE). */
+/* The scale of a cell with the scale number k is 2^(k - SCALE_ONE). */
 enum { SCALE_ONE = 64, N_SCALES = 128 };
 
-/* A segment, as its functions are written. */
+/* The coefficients of a segment's functions. */
 typedef struct Term {
     const TermForm *form;
     uint32_t segment;
-    bool in_matrices; /* whose columns are v, w and start, of Vs, or end, of Ve */
+    bool in_matrices; /* the coefficients are columns of matrices: v, w and start of Vs, and end of
+                       * Ve */
 } Term;
 
 static void put_form(Text *text, const Term *term, const Linear *form)
@@ -47,7 +50,7 @@ static void put_form(Text *text, const Term *term, const Linear *form)
         put_linear(text, form);
 }
 
-/* The factor of the axial part. */
+/* Appends the factor of a term that depends on the distance from the segment's ends. */
 static void put_ends(Text *text, const Term *term, TermPart part)
 {
     if (part == TERM_MIDDLE)
@@ -88,7 +91,7 @@ static int scale_number(const Cell *cell)
     return ilogb(cell->scale) + SCALE_ONE;
 }
 
-/* Appends a log form for each scale of a cell. */
+/* Declares the functions Fk and Fl of each scale number that a cell has. */
 static Status put_scales(Text *out, void *context, Err *err)
 {
     static const char *const scale_name = "povray/scale.inc";
@@ -118,7 +121,7 @@ done:
     return status;
 }
 
-/* Sets a bit of used[segment] for each of its functions that a cell calls. */
+/* Sets used[segment] to a bit set of the functions of the segment that cells call. */
 static void find_used(const CellTree *cells, uint8_t *used)
 {
     for (size_t i = 0; i < cells->n_cells; i++) {
@@ -135,7 +138,8 @@ enum { TERM_TEMPLATE, TUBE_TEMPLATE, MATRIX_TEMPLATE, TERM_TEMPLATES };
 static const char *const term_templates[] = {"povray/term.inc", "povray/tube.inc",
                                              "povray/matrix.inc"};
 
-/* The functions of a segment whose bits are set. */
+/* Declares the functions of a segment whose bits are set in `used`, and the matrices that they
+ * need. */
 static Status put_segment(Text *out, const Tmpl *templates, const Term *term, uint8_t used,
                           Err *err)
 {
@@ -162,13 +166,13 @@ static void put_arrays(Text *out, size_t n, bool in_matrices)
         put_matrix_arrays(out, n);
 }
 
-/* Returns true if segments differ in what they are painted with. */
+/* Returns true if segments differ in color or id. */
 static bool is_painted(const PovrayGeometry *geometry)
 {
     return geometry->params->ids || geometry->scene->appearance.colors;
 }
 
-/* The paint of each segment that a cell uses, by the arguments of Term_Paint. */
+/* Appends a call of Term_Paint for each segment that a cell uses. */
 static void put_paints(Text *out, const PovrayGeometry *geometry, const uint8_t *used)
 {
     const Geometry *all = &geometry->scene->geometry;
@@ -185,7 +189,7 @@ static void put_paints(Text *out, const PovrayGeometry *geometry, const uint8_t 
     text_puts(out, "#end\n");
 }
 
-/* A function for each segment and part that a cell uses, and its paint. */
+/* Declares the functions and the paints of all segments that cells use. */
 static Status put_terms(Text *out, void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
@@ -235,7 +239,7 @@ typedef enum CellTextPart {
     CELL_HIGH,
     CELL_FUNCTION,
     CELL_PAINT,
-    CELL_BY_SEGMENT, /* the paint by segment, where colors blend */
+    CELL_BY_SEGMENT, /* the paint if Tree_Blended is off, in a scene whose colors blend */
     CELL_DECLARED,
     CELL_PICK,
     CELL_PAINTS,
@@ -249,7 +253,7 @@ enum { CELL_TEMPLATE, PAINTS_TEMPLATE, BLEND_TEMPLATE, CELL_TEMPLATES };
 static const char *const cell_templates[] = {"povray/cell.inc", "povray/cell_paints.inc",
                                              "povray/cell_blend.inc"};
 
-/* What the texts of a cell are made of. */
+/* The state of writing the cells of an object. */
 typedef struct CellWriter {
     const PovrayGeometry *geometry;
     const CellTree *cells;
@@ -257,7 +261,7 @@ typedef struct CellWriter {
     Text text[CELL_TEXTS];
 } CellWriter;
 
-/* Returns a text of the cell, emptied. */
+/* Clears a text of the cell and returns it. */
 static Text *cell_text(CellWriter *writer, CellTextPart part)
 {
     text_clear(&writer->text[part]);
@@ -274,10 +278,10 @@ static void put_term(Text *text, const char *before, const CellTerm *term, const
     put_text(text, "%s%s[%u](x,y,z)%s", before, function_names[term->part], term->segment, after);
 }
 
-/* Terms of a cell: those at `n` places, or, without any given, the first n. */
+/* A choice of `n` terms of a cell: terms[indices[k]], or, if `indices` is NULL, terms[k]. */
 typedef struct TermChoice {
     const CellTerm *terms;
-    const uint32_t *places;
+    const uint32_t *indices;
     uint32_t n;
 } TermChoice;
 
@@ -289,13 +293,13 @@ static TermChoice all_terms(const CellTree *cells, const Cell *cell)
 static TermChoice terms_of_group(const CellTree *cells, const Cell *cell, uint32_t group)
 {
     TermChoice choice = {.terms = cells->terms + cell->first};
-    choice.places = cell_group(cells, cell, group, &choice.n);
+    choice.indices = cell_group(cells, cell, group, &choice.n);
     return choice;
 }
 
 static const CellTerm *chosen_term(const TermChoice *choice, uint32_t k)
 {
-    return &choice->terms[choice->places ? choice->places[k] : k];
+    return &choice->terms[choice->indices ? choice->indices[k] : k];
 }
 
 static void put_sum(Text *text, TermChoice choice)
@@ -310,7 +314,8 @@ static void close_calls(Text *text, uint32_t n)
         text_puts(text, ")");
 }
 
-/* The sum of the terms, or Fn_Max(S1,Fn_Max(S2,...)): the largest of the sums of groups. */
+/* Appends the potential of a cell: the sum of its terms or, if it has groups, the largest of the
+ * sums of the groups: Fn_Max(S1,Fn_Max(S2,...)). */
 static void put_potential(Text *text, const CellTree *cells, const Cell *cell)
 {
     if (cell->n_groups == 0) {
@@ -338,7 +343,7 @@ static void put_cell_function(Text *text, const CellTree *cells, const Cell *cel
     text_puts(text, ")");
 }
 
-/* Fn_Max(T1,Fn_Max(T2,...)): the largest term. */
+/* Appends the largest term: Fn_Max(T1,Fn_Max(T2,...)). */
 static void put_largest(Text *text, TermChoice choice)
 {
     for (uint32_t k = 0; k + 1 < choice.n; k++)
@@ -347,8 +352,8 @@ static void put_largest(Text *text, TermChoice choice)
     close_calls(text, choice.n - 1);
 }
 
-/* The same of the group whose sum is largest, Fn_Sum: the largest of
- * Fn_Choose(S1-Fn_Sum,largest term of group 1,0), ... */
+/* Appends the largest term of the group whose sum is largest. Fn_Sum is the largest sum. The
+ * expression is the maximum of Fn_Choose(S1-Fn_Sum,largest term of group 1,0), ... */
 static void put_largest_of_groups(Text *text, const CellTree *cells, const Cell *cell)
 {
     for (uint32_t group = 0; group < cell->n_groups; group++) {
@@ -363,15 +368,17 @@ static void put_largest_of_groups(Text *text, const CellTree *cells, const Cell 
     close_calls(text, cell->n_groups - 1);
 }
 
-/* The place of a term on a map of the cell's paints: exact in single precision, as the map has it,
- * where it gives one paint alone. */
-static void put_place(Text *text, const Cell *cell, uint32_t k)
+/* Appends the position of term k in the map of the cell's paints. The position is exact in single
+ * precision, the precision of the map. At an exact position the map gives one paint without
+ * interpolation. */
+static void put_map_position(Text *text, const Cell *cell, uint32_t k)
 {
     text_number(text, ldexp(k, -ilogb(2 * cell->count - 1)));
 }
 
-/* Fn_Choose(T1-Fn_Max(T2,T3),place of 1,Fn_Choose(T2-T3,place of 2,place of 3)): the place of the
- * first term that equals the largest. */
+/* Appends the map position of the first term that equals the largest term:
+ * Fn_Choose(T1-Fn_Max(T2,T3),position 1,Fn_Choose(T2-T3,position 2,position 3)). Fn_Choose(a,b,c)
+ * is b if a >= 0, else c. */
 static void put_pick(Text *text, const CellTree *cells, const Cell *cell)
 {
     TermChoice rest = all_terms(cells, cell);
@@ -382,15 +389,16 @@ static void put_pick(Text *text, const CellTree *cells, const Cell *cell)
         rest.n--;
         put_largest(text, rest);
         text_puts(text, ",");
-        put_place(text, cell, k);
+        put_map_position(text, cell, k);
         text_puts(text, ",");
     }
-    put_place(text, cell, k);
+    put_map_position(text, cell, k);
     close_calls(text, k);
 }
 
-/* The same of many terms: Fn_Choose(T1-Fn_Top,place of 1,...), with the largest as Fn_Top. In a
- * cell of groups other terms may be larger: -abs(T1-Fn_Top), ... */
+/* Appends the same position for many terms. Fn_Top is the largest term:
+ * Fn_Choose(T1-Fn_Top,position 1,...). In a cell with groups, Fn_Top is the largest term of one
+ * group, and terms of other groups may be larger. The comparison is then -abs(T1-Fn_Top). */
 static void put_pick_of_many(Text *text, const CellTree *cells, const Cell *cell)
 {
     const CellTerm *terms = cells->terms + cell->first;
@@ -399,14 +407,14 @@ static void put_pick_of_many(Text *text, const CellTree *cells, const Cell *cell
     for (; k + 1 < cell->count; k++) {
         put_term(text, grouped ? "Fn_Choose(-abs(" : "Fn_Choose(", &terms[k],
                  grouped ? "-Fn_Top(x,y,z))," : "-Fn_Top(x,y,z),");
-        put_place(text, cell, k);
+        put_map_position(text, cell, k);
         text_puts(text, ",");
     }
-    put_place(text, cell, k);
+    put_map_position(text, cell, k);
     close_calls(text, k);
 }
 
-/* Declares Fn_Top. */
+/* Declares Fn_Top and, if the cell has groups, Fn_Sum. */
 static void put_top(Text *text, const CellTree *cells, const Cell *cell)
 {
     if (cell->n_groups > 0) {
@@ -432,13 +440,13 @@ static Status put_cell_paint(CellWriter *writer, const Cell *cell, CellTextPart 
         put_text(text, "#if(Tree_Painted)texture{Whole_Paints[%u]}#end", cell->largest);
         return STATUS_OK;
     }
-    if (cell->count > MOST_PAINTS)
+    if (cell->count > MAX_PAINTS)
         return err_set(err, STATUS_INFEASIBLE,
                        "%u vessels meet near (%g, %g, %g); POV-Ray can color at most %d there "
                        "separately; draw the isosurface in one color, or choose another model",
-                       cell->count, cell->low.x, cell->low.y, cell->low.z, MOST_PAINTS);
+                       cell->count, cell->low.x, cell->low.y, cell->low.z, MAX_PAINTS);
     Text *declared = cell_text(writer, CELL_DECLARED), *pick = cell_text(writer, CELL_PICK);
-    if (cell->n_groups > 0 || cell->count > MOST_COMPARED) {
+    if (cell->n_groups > 0 || cell->count > MAX_COMPARED) {
         put_top(declared, cells, cell);
         put_pick_of_many(pick, cells, cell);
     } else {
@@ -447,7 +455,7 @@ static Status put_cell_paint(CellWriter *writer, const Cell *cell, CellTextPart 
     Text *paints = cell_text(writer, CELL_PAINTS);
     for (uint32_t k = 0; k < cell->count; k++) {
         text_puts(paints, "[");
-        put_place(paints, cell, k);
+        put_map_position(paints, cell, k);
         put_text(paints, " Paints[%u]]", cells->terms[cell->first + k].segment);
     }
     const TmplValue values[] = {{"declared", cell_chars(writer, CELL_DECLARED)},
@@ -459,30 +467,32 @@ static Status put_cell_paint(CellWriter *writer, const Cell *cell, CellTextPart 
 
 /* ---- colors that blend ---------------------------------------------------------------------- */
 
-/* The place on the scale of a term's segment; NAN: it has none. */
-static double place_of(const EmitParams *params, const CellTerm *term)
+/* Returns the position on the color scale of a term's segment; NAN if the segment has no value. */
+static double scale_position(const EmitParams *params, const CellTerm *term)
 {
     const Scene *scene = params->scene;
     return scene->appearance.positions[scene->geometry.segments[term->segment].segment];
 }
 
-/* The sum of the terms whose segments have places, times these if `placed`; "(0)" without any. */
-static void put_known_sum(Text *text, const EmitParams *params, TermChoice choice, bool placed)
+/* Appends the sum of the terms whose segments have a position on the color scale; "(0)" if there
+ * are none. With `weighted`, each term is multiplied by its position. */
+static void put_known_sum(Text *text, const EmitParams *params, TermChoice choice, bool weighted)
 {
     text_puts(text, "(0");
     for (uint32_t k = 0; k < choice.n; k++) {
         const CellTerm *term = chosen_term(&choice, k);
-        double place = place_of(params, term);
-        if (isnan(place))
+        double position = scale_position(params, term);
+        if (isnan(position))
             continue;
         put_term(text, "+", term, "");
-        if (placed)
-            put_text(text, "*(%n)", place);
+        if (weighted)
+            put_text(text, "*(%n)", position);
     }
     text_puts(text, ")");
 }
 
-/* The mean place over the terms, or the known part of their weight. */
+/* Appends the mean position on the color scale, weighted by the terms. With `of_known`, appends
+ * instead the fraction of the sum of the terms whose segments have a position. */
 static void put_ratio(Text *text, const EmitParams *params, TermChoice choice, bool of_known)
 {
     put_known_sum(text, params, choice, !of_known);
@@ -494,8 +504,9 @@ static void put_ratio(Text *text, const EmitParams *params, TermChoice choice, b
     text_puts(text, ",1e-30)");
 }
 
-/* The same of all terms of the cell, or of the group whose sum is largest:
- * Fn_Choose(S1-Fn_Sum,of group 1,Fn_Choose(S2-Fn_Sum,of group 2,...)). */
+/* Appends the ratio of put_ratio for all terms of the cell or, if it has groups, for the group
+ * whose sum is largest: Fn_Choose(S1-Fn_Sum,ratio of group 1,Fn_Choose(S2-Fn_Sum,ratio of group
+ * 2,...)). */
 static void put_cell_ratio(Text *text, const EmitParams *params, const CellTree *cells,
                            const Cell *cell, bool of_known)
 {
@@ -582,7 +593,8 @@ done:
     return status;
 }
 
-/* If no vessel is long enough for its thickness to have a surface, the guard is the only member. */
+/* The call of Cell_Guard is the only member if there are no cells. This occurs if every vessel is
+ * too short, relative to its radius, to have a surface. */
 Status put_cells(Text *out, PovrayGeometry *geometry, Err *err)
 {
     bool alone = geometry->cells[geometry->object].n_cells == 0;
@@ -593,8 +605,8 @@ Status put_cells(Text *out, PovrayGeometry *geometry, Err *err)
 
 /* ---- the cells of each object ---------------------------------------------------------------- */
 
-/* Builds the cells of a tree of a forest, with the indices of the whole, so that all trees call the
- * same functions. */
+/* Builds the cells of one tree of a forest. Segment indices are those of the whole geometry, so
+ * that the cells of all trees call the same functions. */
 static Status part_cells(const PovrayGeometry *geometry, PovrayItems items, CellTree *cells,
                          Err *err)
 {
@@ -610,7 +622,7 @@ static Status part_cells(const PovrayGeometry *geometry, PovrayItems items, Cell
     return status;
 }
 
-/* Takes those of the given cells that rays of the part can hit. */
+/* Selects the cells of params->built that rays of the part can hit. */
 static Status take_cells(PovrayGeometry *geometry, Err *err)
 {
     const CellTree *built = geometry->params->built;

@@ -1,10 +1,12 @@
-/* A box of a medium, its density read from a file, under an orthographic camera whose pixels are
- * voxels. The light of a diameter of the thickest vessel is that of a full code. */
+/* Writes a scene with a box that contains a medium. The density of the medium is read from a file.
+ * The camera is orthographic, and a pixel is as large as a voxel. The emission is such that a ray
+ * through a full diameter of the thickest vessel collects a brightness of 1. */
 #include "emit/emit.h"
 #include "emit/rows.h"
 #include "emit/values.h"
 
-/* Straight from the front; the width and height of the box are those of the picture. */
+/* Appends a camera that looks straight at the front of the box. The picture is as wide and as high
+ * as the box. */
 static Status put_camera(Text *out, void *context, Err *err)
 {
     Values values = {0};

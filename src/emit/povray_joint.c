@@ -1,36 +1,44 @@
-/* POV-Ray has no ruled surface between two circles. It is of degree 4, so a `poly` holds it, but
- * POV-Ray expands a poly about the start of the ray: from a distance of D radii its coefficients
- * lose D^4 of their precision, and small vessels dissolve. An `isosurface` whose function is zero
- * on the surface is evaluated on the spot and keeps full precision; it is found to within 2e-9
+/* A joint is the ruled surface between two circles, which POV-Ray does not have. The surface is
+ * algebraic of degree 4, so a `poly` could represent it. But POV-Ray expands the polynomial at the
+ * start of the ray: from a distance of D radii the coefficients lose a factor of D^4 in precision,
+ * and small vessels dissolve. An `isosurface` whose function is 0 on the surface is evaluated at
+ * points near the surface and keeps full precision. POV-Ray then finds the surface to within 2e-9
  * radii.
  *
- * The function [docs/METHODS.md section 7]. In the frame of the first circle, x along e_1, y along
- * f, z along its axis, unit r_1, a ruling's x and z run straight from (cos p, 0) to a point of the
- * line from a = C_2(pi) to b = C_2(0). So the points of equal l lie in planes that hold the line
- * from (1 - l) (-1, 0) + l a to (1 - l) (1, 0) + l b, on the ellipse with that diameter in the
- * plane and the half axis R = 1 - l + l r_2 / r_1 along y. With s in [-1, 1] the place along the
- * diameter, G = y^2 - R^2 (1 - s^2), where l is the root of a quadratic: x and z lie on the line of
- * l. Where rulings bunch together G has no largest gradient, so that it is multiplied by J, the
- * area that (l, s) has in (x, z). Outside the planes of the circles and of the rulings in y = 0,
- * the distance to these stands in for it. It does not exceed half of max_gradient times the
- * distance from the surface anywhere: POV-Ray needs that without the half to find the first root,
- * and with it to be right when it skips rays near one that missed. */
+ * The function [docs/METHODS.md section 7]. The frame is that of the first circle: x along e_1, y
+ * along f, z along the circle's axis, unit r_1. A ruling connects the points of the two circles at
+ * the same angle p. Projected to (x, z), it is a straight line from (cos p, 0) to a point of the
+ * line from a = C_2(pi) to b = C_2(0). Let l in [0, 1] be the position along a ruling. The points
+ * of equal l lie in a plane parallel to y, on an ellipse. One diameter of the ellipse goes from (1
+ * - l) (-1, 0) + l a to (1 - l) (1, 0) + l b. Its half axis along y is R = 1 - l + l r_2 / r_1. Let
+ * s in [-1, 1] be the position along the diameter. Then G = y^2 - R^2 (1 - s^2) is 0 on the
+ * surface. For given x and z, l is a root of a quadratic equation: (x, z) must be on the diameter
+ * of l.
+ *
+ * Where ellipses bunch together, the gradient of G is unbounded. G is therefore multiplied by J,
+ * the determinant of the derivative of (x, z) with respect to (l, s). Outside the planes of the two
+ * circles and of the rulings in y = 0, the function is the distance from these planes instead. The
+ * function nowhere exceeds half of max_gradient times the distance from the surface. Without the
+ * factor of one half, this bound suffices for POV-Ray to find the first root. The factor is needed
+ * because POV-Ray skips rays near a ray that missed. */
 #include "emit/povray_members.h"
 #include "emit/povray_text.h"
 #include "emit/values.h"
 
-/* POV-Ray holds 1,048,575 functions, of which a joint has three where there are many, so that its
- * six numbers are none in a list that POV-Ray looks through for each of them. */
-enum { MANY = 8000, MOST_EXACT = 349000, SIDES_OF_MANY = 16 };
+/* For each number in a function, POV-Ray searches the list of all such numbers. If a scene has more
+ * than MANY joints, each joint therefore stores its six numbers in two transform functions, which
+ * are not searched. A joint then has three functions. POV-Ray can hold 1,048,575 functions, hence
+ * MAX_EXACT. With more joints, all joints are meshes of SIDES_OF_MANY sides. */
+enum { MANY = 8000, MAX_EXACT = 349000, SIDES_OF_MANY = 16 };
 
-/* The frame that POV-Ray's function is in: the plane of the axes, unit r_1. */
+/* The second circle in the frame of the function: the plane y = 0, unit r_1. */
 typedef struct JointPlane {
-    double ax, az, bx, bz; /* the second circle's ends across */
+    double ax, az, bx, bz; /* the ends a and b of its diameter in the plane */
     double ratio;          /* r_2 / r_1 */
 } JointPlane;
 
-/* How often J G is sampled along l and s for its largest gradient, and what is added for the places
- * between. */
+/* Numbers of intervals in l and s at whose ends the gradient of J G is sampled to find its maximum,
+ * and the factor that allows for larger values between the samples. */
 enum { STEPS_L = 4, STEPS_S = 16 };
 static const double gradient_margin = 1.25;
 
@@ -47,11 +55,12 @@ static JointPlane joint_plane(const JointFrame *frame, Vec3 across, Vec3 axis)
                         .ratio = 1 + frame->radius_change * unit};
 }
 
-/* The length of the gradient of J G at (l, s) of the surface; along y the mean slope from there to
- * the side of the box that holds the joint. */
+/* Returns the length of the gradient of J G at the point (l, s) of the surface. Its component along
+ * y is the mean slope from the surface to the side of the joint's bounding box. */
 static double gradient_at(const JointPlane *plane, double l, double s)
 {
-    /* Half the diameter, and the change of the point (l, s) with l: J is their cross product. */
+    /* (half_x, half_z) is half of the diameter, the derivative of (x, z) with respect to s;
+     * (change_x, change_z) is the derivative with respect to l. J is their cross product. */
     double turn_x = (plane->bx - plane->ax) / 2 - 1, turn_z = (plane->bz - plane->az) / 2;
     double half_x = 1 + l * turn_x, half_z = l * turn_z, half = elementary_hypot(half_x, half_z);
     double change_x = (plane->ax + plane->bx) / 2 + s * turn_x;
@@ -75,7 +84,7 @@ static double largest_gradient(const JointPlane *plane)
     return gradient_margin * largest;
 }
 
-/* How many primitives are joints, of all, and of those that are written. */
+/* Counts the joints among all primitives and among the primitives that are written. */
 static void count_joints(const PovrayGeometry *geometry, size_t *all, size_t *written)
 {
     const Geometry *whole = &geometry->scene->geometry;
@@ -93,7 +102,7 @@ Status put_joint_macros(Text *out, void *context, Err *err)
     Values values = {.digits = geometry->params->digits};
     size_t all, written;
     count_joints(geometry, &all, &written);
-    geometry->report->joint_sides = written > MOST_EXACT ? SIDES_OF_MANY : 0;
+    geometry->report->joint_sides = written > MAX_EXACT ? SIDES_OF_MANY : 0;
     add_count(&values, "sides", (size_t)geometry->report->joint_sides);
     add_flag(&values, "many_joints", all > MANY);
     return values_expand(&values, geometry->params, "povray/joints.inc", out, err);
@@ -104,10 +113,12 @@ void put_joint(Text *text, const EmitParams *params, const Primitive *joint)
     JointFrame frame = primitive_joint(joint);
     Vec3 across = vec3_scale(frame.across, 1 / frame.radius);
     JointPlane plane = joint_plane(&frame, across, joint->axes[0]);
-    /* The distances to the planes are not divided by the lengths of their normals, either. */
+    /* The distances from the planes are multiplied by the lengths of the planes' normals, which are
+     * not unit vectors. This is the largest of these lengths. */
     double sides =
         fmax(elementary_hypot(plane.ax + 1, plane.az), elementary_hypot(plane.bx - 1, plane.bz));
-    /* The function is that of the surface only where rulings do not cross. */
+    /* If rulings cross, the function does not describe the surface, and the joint is drawn as a
+     * mesh. */
     bool folded = !primitive_joint_is_solid(joint);
     double steepest = fmax(fmax(1, 2 * plane.ratio), sides);
     double scale = folded ? 0 : steepest / largest_gradient(&plane);

@@ -1,7 +1,7 @@
-/* A mesh2 for POV-Ray: points and normals, then the indices of both for each triangle. The normals
- * of the points are followed by a flat normal for each triangle of a cap. The faces are listed
- * twice, with and without textures, because a mesh2 with textures cannot be given another texture.
- */
+/* Writes a mesh2 for POV-Ray: points and normals, then the indices of both for each triangle. The
+ * list of normals has one normal per point, followed by a flat normal for each triangle of a cap.
+ * The faces are listed twice, with and without textures, because a mesh2 with textures cannot be
+ * given another texture. */
 #include "emit/povray_members.h"
 #include "emit/povray_text.h"
 #include "emit/values.h"
@@ -80,7 +80,7 @@ static Status put_lists(Text *out, void *context, Err *err)
     const PovrayGeometry *geometry = context;
     const PovrayItems *items = &geometry->objects[geometry->object];
     const VesselMesh *whole = &geometry->scene->geometry.mesh;
-    VesselMesh mesh = *whole; /* of this object; its labels are positions in `items` */
+    VesselMesh mesh = *whole; /* the triangles of this object; its labels are indices in `items` */
     Values values = {.digits = geometry->params->digits};
     bool is_part = items->n < geometry->scene->geometry.n_segments;
     if (is_part)

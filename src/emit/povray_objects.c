@@ -1,11 +1,12 @@
-/* Trees of primitives and of triangles are members of the whole. Trees of a field cannot be: where
- * trees come near each other, the whole is the level set of the sum over all of them. Each tree is
- * therefore declared beside the whole, as a field of its own segments.
+/* The object Tree is the whole geometry. If the trees of a forest consist of primitives or
+ * triangles, Tree is the union of the trees. Trees of a field cannot be members of Tree: where
+ * trees come close to each other, Tree is the level set of the sum over the segments of all trees.
+ * Each tree is therefore declared in addition to Tree, as a field of its own segments.
  *
  * If only a part of the picture is drawn, only items that a ray of the part can hit are written. A
  * field keeps all its segments, because its values are sums over segments elsewhere; its cells are
- * chosen instead (find_cells, find_visible_segments). POV-Ray thus meets the same pieces in the
- * part as in the whole picture. */
+ * chosen instead (find_cells, find_visible_segments). A ray of the part therefore hits the same
+ * pieces as in the whole picture. */
 #include "emit/povray_objects.h"
 
 #include <assert.h>
@@ -16,7 +17,7 @@ static bool is_field(const PovrayGeometry *geometry)
     return model_has(geometry->scene->geometry.model, MODEL_FIELD);
 }
 
-/* Otherwise the items are field segments. */
+/* Returns true if the items are primitives. Otherwise they are field segments. */
 static bool items_are_primitives(const Geometry *all)
 {
     return model_has(all->model, MODEL_PRIMITIVES);
@@ -41,20 +42,20 @@ static Status sort_items(PovrayGeometry *geometry, Err *err)
     return STATUS_OK;
 }
 
-/* Marks the segments of which rays of the part can hit a triangle. */
-static void mark_triangles(const PovrayGeometry *geometry, bool *is_met)
+/* Marks the segments that have a triangle which a ray of the part can hit. */
+static void mark_triangles(const PovrayGeometry *geometry, bool *is_hit)
 {
     const VesselMesh *mesh = &geometry->scene->geometry.mesh;
     for (size_t i = 0; i < mesh->n_triangles; i++) {
         Box box = box_empty();
         for (int k = 0; k < 3; k++)
             box = box_with_ball(box, mesh_point(mesh, mesh->triangles[i][k]), 0);
-        bool *met = &is_met[mesh_segment(mesh, i)];
-        *met = *met || rayvolume_meets(geometry->volume, box);
+        bool *hit = &is_hit[mesh_segment(mesh, i)];
+        *hit = *hit || rayvolume_meets(geometry->volume, box);
     }
 }
 
-static bool meets_primitive(const PovrayGeometry *geometry, size_t item)
+static bool hits_primitive(const PovrayGeometry *geometry, size_t item)
 {
     Box box = box_empty();
     for (size_t end = 0; end < 2; end++) {
@@ -64,21 +65,21 @@ static bool meets_primitive(const PovrayGeometry *geometry, size_t item)
     return rayvolume_meets(geometry->volume, box);
 }
 
-/* Keeps the items that rays of the part can hit. */
+/* Reduces the items to those that a ray of the part can hit. */
 static Status choose_items(PovrayGeometry *geometry, Err *err)
 {
     PovrayItems *all = &geometry->objects[0];
-    bool *is_met, primitives = items_are_primitives(&geometry->scene->geometry);
+    bool *is_hit, primitives = items_are_primitives(&geometry->scene->geometry);
     size_t n = 0;
-    TRY(mem_calloc(&is_met, all->n, sizeof *is_met, "pieces", err));
+    TRY(mem_calloc(&is_hit, all->n, sizeof *is_hit, "pieces", err));
     if (!primitives)
-        mark_triangles(geometry, is_met);
+        mark_triangles(geometry, is_hit);
     for (size_t i = 0; i < all->n; i++)
-        if (primitives ? meets_primitive(geometry, i) : is_met[i])
+        if (primitives ? hits_primitive(geometry, i) : is_hit[i])
             geometry->indices[n++] = (uint32_t)i;
     all->n = n;
     geometry->is_empty = n == 0;
-    free(is_met);
+    free(is_hit);
     return STATUS_OK;
 }
 
@@ -134,7 +135,7 @@ static Status put_nothing_members(Text *out, void *geometry, Err *err)
     return put_template(((const PovrayGeometry *)geometry)->params, "povray/nothing.inc", out, err);
 }
 
-/* Declares an object of which nothing is drawn. */
+/* Declares an invisible object. */
 static Status put_nothing(Text *out, PovrayGeometry *geometry, Err *err)
 {
     Values values = {.digits = geometry->params->digits};

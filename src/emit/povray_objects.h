@@ -6,7 +6,7 @@
 #include "emit/emit.h"
 #include "emit/values.h"
 
-/* A list of primitives, or of field segments, of a geometry, by ascending index. Borrowed. */
+/* A list of primitives, or of field segments, of a geometry: their indices, ascending. Borrowed. */
 typedef struct PovrayItems {
     const uint32_t *index;
     size_t n;

@@ -1,5 +1,5 @@
-/* A union of one macro call for each primitive. POV-Ray warns of a union of one object, so a single
- * primitive is declared as an object. */
+/* Writes a union with one macro call per primitive. A single primitive is not put into a union,
+ * because POV-Ray warns about a union of one object. */
 #include "emit/povray_members.h"
 #include "emit/povray_text.h"
 #include "emit/values.h"

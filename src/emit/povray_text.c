@@ -1,10 +1,10 @@
-/* Numbers are printed with the digits that read back to the same double, or float, and in the form
- * that takes POV-Ray's parser least time: no blanks, no zeros that change nothing. */
+/* Numbers have the fewest digits that read back to the same double or float. Expressions have the
+ * form that POV-Ray parses fastest: no blanks and no terms that are 0. */
 #include "emit/povray_text.h"
 
 #include "emit/puttext.h"
 
-/* A value in few digits, which are for the artist's own textures. */
+/* Appends a value with few digits. Values are used only by textures that a user writes. */
 static void put_value(Text *text, double value)
 {
     if (isfinite(value))

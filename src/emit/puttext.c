@@ -1,5 +1,5 @@
-/* Most lines of a scene are calls of macros with vectors and exact numbers, for which printf has no
- * conversions. */
+/* Formats text like printf. Most lines of a scene are macro calls with vectors and exact numbers,
+ * for which printf has no conversions. */
 #include "emit/puttext.h"
 
 #include "scene/scene.h"

@@ -20,7 +20,7 @@ void put_text(Text *text, const char *format, ...);
 void put_triple(Text *out, const char *before, const float values[3], const char *between,
                 const char *after);
 
-/* Returns true if `name` is printable ASCII without the characters of `without`. */
+/* Returns true if all characters of `name` are printable ASCII and none is in `without`. */
 bool is_ascii_name(const char *name, const char *without);
 
 #endif

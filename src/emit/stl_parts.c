@@ -1,6 +1,6 @@
-/* STL as text, with a named solid for each wall and each end. OpenFOAM's snappyHexMesh makes
- * patches of these solids. Triangles keep their order within a part. Numbers read back to the same
- * floats, so that the solids fit together exactly. */
+/* Writes STL as text, with a named solid for each wall and each end. OpenFOAM's snappyHexMesh makes
+ * a patch of each solid. Within a part, triangles keep the order of the mesh. Numbers read back to
+ * the same floats, so that the solids fit together exactly. */
 #include "emit/meshparts.h"
 #include "emit/puttext.h"
 #include "emit/rows.h"

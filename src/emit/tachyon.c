@@ -1,17 +1,18 @@
-/* Tachyon has no macros: an object is a line that names its texture, and each segment has one. Its
- * cylinders are open, so that two rings without a hole close them; it has no cones, and so no
- * joints.
+/* Writes a scene for Tachyon. Tachyon has no macros: each object is a line that names a texture. If
+ * segments differ in color, each segment has a texture. Cylinders of Tachyon are open, so two rings
+ * without a hole close them. Tachyon has no cones, so joints cannot be written.
  *
- * Its camera numbers pixels from 1 at the lower left corner and takes a ray through that corner of
- * each, and its right is our left: a frustum that is moved by half a pixel and mirrored makes its
- * rays ours. */
+ * Tachyon numbers pixels from 1 at the lower left and traces a ray through the lower left corner of
+ * each pixel. Its pictures are mirrored relative to corcast's. The frustum is therefore shifted by
+ * half a pixel and mirrored, so that Tachyon traces the same rays as corcast. */
 #include "emit/meshparts.h"
 #include "emit/rows.h"
 #include "emit/values.h"
 
 #include <stdio.h>
 
-/* Tachyon reads single precision. Adding 0 turns -0 into 0. */
+/* Appends a vector in single precision, the precision that Tachyon reads. Adding 0 turns -0 into
+ * 0. */
 static void put_numbers(Text *text, Vec3 v)
 {
     put_triple(text, "", (const float[3]){(float)v.x + 0, (float)v.y + 0, (float)v.z + 0}, " ", "");
@@ -30,7 +31,7 @@ static void put_named(Text *text, const char *name, Vec3 v)
 
 /* ---- textures -------------------------------------------------------------------------------- */
 
-/* Returns true if segments have textures of their own. */
+/* Returns true if each segment has a texture of its own. */
 static bool has_textures(const EmitParams *params)
 {
     return params->planes || params->scene->appearance.colors;
@@ -53,7 +54,8 @@ static void put_texture(Text *text, const char *name, const Finish *finish, Rgb 
     text_puts(text, " TEXFUNC 0\n");
 }
 
-/* The id as a color that is cut off to its codes. */
+/* Returns a color whose 8-bit codes are the bytes of an id. The 0.5 allows for truncation by
+ * Tachyon. */
 static Rgb id_color(uint32_t id)
 {
     return (Rgb){((float)(id >> 16 & 255) + 0.5F) / 255, ((float)(id >> 8 & 255) + 0.5F) / 255,
@@ -88,7 +90,8 @@ static void put_radius(Text *text, const char *name, const EmitParams *params,
     put_texture_name(text, params, primitive->segment);
 }
 
-/* The middle of a ring is not in it: its hole is smaller than nothing. */
+/* Closes an end of a cylinder with a ring. The inner radius is -1, because Tachyon leaves out the
+ * centre of a ring even if the inner radius is 0. */
 static void put_cap(Text *text, const EmitParams *params, const Primitive *cylinder, Vec3 at)
 {
     put_named(text, "RING CENTER ", at);
@@ -141,7 +144,8 @@ static Status put_vessels(Text *out, void *context, Err *err)
 
 /* ---- scene ----------------------------------------------------------------------------------- */
 
-/* Left, right, bottom and top of the picture, where the camera starts to count pixels from 1. */
+/* Appends left, right, bottom and top of the frustum, shifted and mirrored as described at the
+ * beginning of this file. */
 static void put_frustum(Text *text, const Camera *camera)
 {
     double width = vec3_length(camera->right), height = vec3_length(camera->up);

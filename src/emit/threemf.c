@@ -1,6 +1,6 @@
-/* 3MF: one object of XML in a ZIP archive [3MF Consortium, Core Specification 1.3; Materials and
- * Properties Extension 1.2, section 3]. All vessels are one mesh, painted triangle by triangle with
- * the color of the segment: parts of one color each would be open where they meet. */
+/* Writes 3MF: a ZIP archive that contains an XML document [3MF Consortium, Core Specification 1.3;
+ * Materials and Properties Extension 1.2, section 3]. All vessels are one mesh, and each triangle
+ * has the color of its segment. Separate meshes for each color would be open where they meet. */
 #include "emit/threemf.h"
 
 #include "emit/meshparts.h"

@@ -1,20 +1,20 @@
-/* Universal Scene Description as text: BasisCurves, linear, one primitive for each Strahler order,
- * and of a forest for each tree and order. Widths are diameters. There are no normals: curves that
- * have some are ribbons. What points have, a segment each, stands in arrays of their own, so that
- * the points of a primitive are walked once for each array. */
+/* Writes Universal Scene Description as text: linear BasisCurves, one primitive per Strahler order,
+ * and per tree and order in a forest. Widths are diameters. The curves have no normals, because
+ * curves with normals are drawn as ribbons. Each attribute of the points is a separate array, so
+ * the points of a primitive are visited once per array. */
 #include "emit/curves.h"
 #include "emit/meshparts.h"
 #include "emit/rows.h"
 #include "emit/values.h"
 
-/* The curves of one primitive. */
+/* The curves [first, end) of one primitive. */
 typedef struct CurveGroup {
     const EmitParams *params;
     const Curves *curves;
     size_t first, end;
 } CurveGroup;
 
-/* Calls `put` for each point, with commas between. */
+/* Calls put(group, curve, point, out) for each point, and separates the results by commas. */
 static Status put_each(const CurveGroup *group,
                        void (*put)(const CurveGroup *, size_t, size_t, Text *), Text *out, Err *err)
 {
@@ -59,7 +59,7 @@ static Status put_widths(Text *out, void *context, Err *err)
     return put_each(context, put_width, out, err);
 }
 
-/* One for all where the look has one. */
+/* Appends a color per point, or a single color if all vessels have the same color. */
 static Status put_colors(Text *out, void *context, Err *err)
 {
     const CurveGroup *group = context;

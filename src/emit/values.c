@@ -1,5 +1,6 @@
-/* Names and texts are in separate arrays because the text of a value may still grow after the next
- * value was added. The pointers to the characters are therefore set last. */
+/* The text of a value may still grow after further values have been added, which moves its
+ * characters. Names and texts are therefore in separate arrays, and the pointers to the characters
+ * are set when the template is expanded. */
 #include "emit/values.h"
 
 #include <assert.h>

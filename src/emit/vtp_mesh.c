@@ -1,19 +1,21 @@
-/* Triangles as VTK's XML PolyData, and layers of prisms as its UnstructuredGrid, in the arrays that
- * SimVascular reads: `ModelFaceID` has the number of each cell's part, from 1 on; `FaceNames`, in
- * the field data, which VTK hands on, has the names in that order. Arrays stand behind the
- * document, as bytes, each with its size before it. */
+/* Writes a mesh as XML PolyData of VTK, and layers of prisms as XML UnstructuredGrid, with the
+ * arrays that SimVascular reads. `ModelFaceID` has the number of each cell's part, counted from 1.
+ * `FaceNames`, in the field data, has the names of the parts in that order; VTK filters pass field
+ * data on. The arrays of numbers follow the XML document as binary data, each preceded by its size
+ * in bytes. */
 #include "emit/meshparts.h"
 #include "emit/prismcells.h"
 #include "emit/record.h"
 #include "emit/rows.h"
 #include "emit/values.h"
 
-/* The arrays behind a document, in the order of the file. */
+/* The binary arrays of a file, in the order of the file. */
 typedef struct ArrayTable {
     const EmitParams *params;
-    const char *const *places; /* the names of their positions in the template */
+    const char *const *offset_names; /* per array: the name of its offset in the template */
     int n;
-    size_t (*length)(const EmitParams *params, int array); /* numbers of 4 bytes */
+    size_t (*length)(const EmitParams *params, int array); /* returns the length of an array in
+                                                            * numbers of 4 bytes */
     void (*put)(const EmitParams *params, int array, Text *out);
 } ArrayTable;
 
@@ -31,7 +33,8 @@ static Status put_arrays(Text *out, void *context, Err *err)
     return text_check(out, err);
 }
 
-/* As the numbers of its letters, and a 0: the only form of text that VTK's XML has. */
+/* Appends a string as the codes of its characters and a 0, the only text format for strings in
+ * VTK's XML. Appends nothing for NULL. */
 static void put_letters(Text *text, const char *chars)
 {
     for (const char *at = chars; at && *at; at++)
@@ -52,14 +55,14 @@ static void add_texts(Values *values, const EmitParams *params)
     put_letters(about, "mm");
 }
 
-/* Appends the document from the template, and the arrays. */
+/* Appends the XML document, made from the template, and the binary arrays. */
 static Status put_document(Values *values, ArrayTable *table, const char *template, Text *out,
                            Err *err)
 {
     size_t offset = 0;
     add_texts(values, table->params);
     for (int array = 0; array < table->n; array++) {
-        add_count(values, table->places[array], offset);
+        add_count(values, table->offset_names[array], offset);
         offset += 8 + 4 * table->length(table->params, array);
     }
     add_part(values, "arrays", put_arrays, table);
@@ -69,8 +72,8 @@ static Status put_document(Values *values, ArrayTable *table, const char *templa
 /* ---- triangles ------------------------------------------------------------------------------- */
 
 enum { FACES, SEGMENTS, POINTS, CORNERS, OFFSETS, SURFACE_ARRAYS };
-static const char *const surface_places[SURFACE_ARRAYS] = {"at_faces", "at_segments", "at_points",
-                                                           "at_corners", "at_offsets"};
+static const char *const surface_offset_names[SURFACE_ARRAYS] = {
+    "at_faces", "at_segments", "at_points", "at_corners", "at_offsets"};
 
 static size_t surface_length(const EmitParams *params, int array)
 {
@@ -106,7 +109,8 @@ static void put_surface_array(const EmitParams *params, int array, Text *out)
 
 Status vtp_write_mesh(const EmitParams *params, EmitOutput *to, Err *err)
 {
-    ArrayTable table = {params, surface_places, SURFACE_ARRAYS, surface_length, put_surface_array};
+    ArrayTable table = {params, surface_offset_names, SURFACE_ARRAYS, surface_length,
+                        put_surface_array};
     Values values = {0};
     add_count(&values, "n_points", params->mesh->n_points);
     add_count(&values, "n_triangles", params->mesh->n_triangles);
@@ -125,7 +129,7 @@ enum {
     CELL_TYPES,
     CELL_ARRAYS
 };
-static const char *const cell_places[CELL_ARRAYS] = {
+static const char *const cell_offset_names[CELL_ARRAYS] = {
     "at_faces", "at_segments", "at_layers", "at_points", "at_corners", "at_offsets", "at_types"};
 
 static size_t cells_length(const EmitParams *params, int array)
@@ -141,8 +145,8 @@ static size_t cells_length(const EmitParams *params, int array)
     return n;
 }
 
-/* Returns the number of the cell's part: 0 for a prism, and the number behind all parts for the
- * inner surface. */
+/* Returns the number of the cell's part: 0 for a prism, and for the inner surface the number after
+ * those of all parts. */
 static size_t face_of(const EmitParams *params, const PrismCell *cell)
 {
     return cell->kind == CELL_PRISM   ? 0
@@ -151,7 +155,8 @@ static size_t face_of(const EmitParams *params, const PrismCell *cell)
 }
 
 /* Appends the numbers of an array for one cell. The normal of a prism's first triangle points away
- * from its second one. `end` is the number of corners up to the end of the cell. */
+ * from its second triangle. `end` is the total number of corners of all cells up to and including
+ * this one. */
 static void put_cell(const EmitParams *params, int array, const PrismCell *cell, size_t end,
                      Record *record)
 {
@@ -192,7 +197,7 @@ static void put_cell_array(const EmitParams *params, int array, Text *out)
 
 Status vtu_write_layers(const EmitParams *params, EmitOutput *to, Err *err)
 {
-    ArrayTable table = {params, cell_places, CELL_ARRAYS, cells_length, put_cell_array};
+    ArrayTable table = {params, cell_offset_names, CELL_ARRAYS, cells_length, put_cell_array};
     Values values = {0};
     add_count(&values, "n_points", params->layers->n_points);
     add_count(&values, "n_cells", prismcell_count(params));

@@ -26,8 +26,8 @@ void localgroups_free(LocalGroups *groups);
  *
  * list     n different indices of segments, borrowed until the next call of localgroups_find.
  * Returns  the number of groups, reduced to the list, that are not empty and not a subset of
- * another one; of equal groups one is counted. The union of their bodies is the union of the bodies
- *          of all reduced groups.
+ *          another one; of equal groups one is counted. The union of their bodies is the union of
+ *          the bodies of all reduced groups.
  * Cost     proportional to the lengths of the groups of the segments. */
 size_t localgroups_find(LocalGroups *groups, const uint32_t *list, size_t n);
 

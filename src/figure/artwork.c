@@ -1,7 +1,7 @@
-/* A page of PDF is drawn by poppler-glib, and an SVG by librsvg. Both draw on a context of cairo,
- * so that lines stay lines and letters stay letters. Both libraries need many
- * others, so a figure loads them only if it has such a panel. They abort the process when memory
- * runs out. All drawing is therefore done in child processes. */
+/* poppler-glib draws a page of a PDF, and librsvg draws an SVG. Both draw on a cairo context, so
+ * that lines and text stay vectors. Both libraries depend on many other libraries, so they are
+ * loaded only for a figure that has such a panel. They abort the process when memory runs out. All
+ * drawing is therefore done in child processes. */
 #include "figure/artwork.h"
 
 #include <cairo-svg.h>
@@ -29,7 +29,7 @@ cairo_status_t artwork_take_bytes(void *bytes, const unsigned char *from, unsign
     return text_chars(bytes) ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_WRITE_ERROR;
 }
 
-/* Copies a picture to a surface of cairo. */
+/* Copies a picture to a cairo surface, which the caller destroys. */
 static Status make_surface(const Picture *picture, cairo_surface_t **out, Err *err)
 {
     if (picture->width > FIGURE_PDF_SIDE || picture->height > FIGURE_PDF_SIDE)
@@ -73,7 +73,7 @@ Status artwork_draw_picture(const Picture *picture, const FigureBox *box, cairo_
 
 /* ---- the libraries --------------------------------------------------------------------------- */
 
-/* GLib's error, and librsvg's rectangle and length, as these libraries declare them. */
+/* Copies of the declarations of GLib's error and of librsvg's rectangle and length. */
 typedef struct GError {
     uint32_t domain;
     int code;
@@ -107,10 +107,11 @@ typedef struct Rsvg {
 
 typedef struct Symbol {
     const char *name;
-    void *where; /* a pointer to a function */
+    void *where; /* the address of a function pointer */
 } Symbol;
 
-/* Loads the functions of a library, which stays loaded: the process is a child that ends soon. */
+/* Loads functions of a library. The library is never unloaded, because the child process ends soon.
+ * `package` is the Debian package that an error names. */
 static Status load(const char *library, const char *package, const Symbol *symbols, size_t n,
                    Err *err)
 {
@@ -153,7 +154,7 @@ static Status refuse(const FigureArtwork *artwork, const char *kind, const GErro
                    error ? error->message : "no reason is stated");
 }
 
-/* Opens the only page of a PDF. */
+/* Opens the page of a PDF that has exactly one page. */
 static Status open_pdf(const FigureArtwork *artwork, Poppler *poppler, void **page, Err *err)
 {
     GError *error = NULL;
@@ -178,7 +179,8 @@ static Status open_svg(const FigureArtwork *artwork, Rsvg *rsvg, void **handle, 
     return *handle ? STATUS_OK : refuse(artwork, "an SVG", error, err);
 }
 
-/* Finds the size of an SVG, or the size of its view box if it states no size. */
+/* Finds the size of an SVG. An SVG without a size has the size of its viewBox, and without a
+ * viewBox 0 x 0. */
 static void measure_svg(const Rsvg *rsvg, void *handle, double size[2])
 {
     int has_width, has_height, has_box;
@@ -192,7 +194,8 @@ static void measure_svg(const Rsvg *rsvg, void *handle, double size[2])
     size[1] = has_box ? box.height : 0;
 }
 
-/* Libraries write warnings about files to standard error, which belongs to the program. */
+/* Discards the warnings that the libraries write to standard error, where only corcast should
+ * write. */
 static void be_silent(void)
 {
     if (!freopen("/dev/null", "w", stderr))
@@ -222,12 +225,13 @@ static Status put_size(const void *context, Text *bytes, Err *err)
     return STATUS_OK;
 }
 
-/* Files beyond this size are a mistake: a page of vectors this large opens nowhere. */
-enum { MOST_BYTES = 100000000 };
+/* Maximum number of bytes of a PDF or SVG. Viewers cannot open larger pages of vectors, so a larger
+ * file is a mistake. */
+enum { MAX_BYTES = 100000000 };
 
 static Status read_vectors(FigureArtwork *artwork, Err *err)
 {
-    const FileForm form = {.name = "a page of vectors", .most_bytes = MOST_BYTES};
+    const FileForm form = {.name = "a page of vectors", .most_bytes = MAX_BYTES};
     Text bytes = TEXT_INIT;
     double size[2];
     Status status;
@@ -244,7 +248,7 @@ done:
     return status;
 }
 
-/* Replaces alpha by paper. */
+/* Composites a picture of 4 channels over a paper color. */
 static void flatten(const Picture *from, FigureColor paper, Picture *to)
 {
     const size_t n = (size_t)from->width * (size_t)from->height;
@@ -285,9 +289,9 @@ Status figureartwork_read(const char *path, FigureColor paper, FigureArtwork *ar
 {
     ImageFacts facts;
     TRY(image_facts(path, &facts, err));
-    if (facts.bytes > MOST_BYTES)
+    if (facts.bytes > MAX_BYTES)
         return err_set(err, STATUS_INPUT, "%s: has %.0f MB; a panel shows files of at most %d MB",
-                       path, (double)facts.bytes * 1e-6, MOST_BYTES / 1000000);
+                       path, (double)facts.bytes * 1e-6, MAX_BYTES / 1000000);
     *artwork = (FigureArtwork){.path = path, .pdf = strcmp(facts.format, "pdf") == 0};
     if (artwork->pdf || strcmp(facts.format, "svg") == 0)
         return read_vectors(artwork, err);
@@ -345,7 +349,7 @@ Status artwork_draw(const FigureArtwork *artwork, const FigureBox *box, cairo_t 
     return artwork_check_cairo(cairo_status(cairo), err);
 }
 
-/* What a child process draws. */
+/* The task of a child process. */
 typedef struct ArtworkWork {
     const FigureArtwork *artwork;
     FigureBox box;
@@ -373,7 +377,7 @@ Status artwork_put_svg(const FigureArtwork *artwork, double width_mm, double hei
     return isolated_run(put_svg, &work, "the picture", svg, err);
 }
 
-/* An IsolatedWork: appends the codes of the pixels. */
+/* An IsolatedWork: appends the pixels as 8-bit RGB. */
 static Status put_pixels(const void *context, Text *bytes, Err *err)
 {
     const ArtworkWork *work = context;

@@ -1,5 +1,5 @@
-/* Draws the pictures of other programs with cairo. Only for code that runs in a child process
- * [base/isolated.h]. Private to the module figure. */
+/* Draws pictures of other programs with cairo. artwork_draw_picture and artwork_draw must be called
+ * in a child process [base/isolated.h]. Private to the module figure. */
 #ifndef CORCAST_FIGURE_ARTWORK_H
 #define CORCAST_FIGURE_ARTWORK_H
 
@@ -7,24 +7,25 @@
 
 #include <cairo.h>
 
-/* Draws a picture over a box of the page, whose unit is the mm.
+/* Draws a picture so that it fills a box of the page. The unit of the cairo context is the mm.
  *
- * filter   what a cairo that makes pixels does when it resamples the picture.
- * Errors   STATUS_USAGE if a side has more than FIGURE_PDF_SIDE pixels; STATUS_IO; STATUS_MEMORY.
- */
+ * filter   the filter for resampling, if the cairo context produces pixels or a viewer resamples.
+ * Errors   STATUS_USAGE if a side has more than FIGURE_PDF_SIDE pixels; STATUS_IO;
+ *          STATUS_MEMORY. */
 MUST_CHECK Status artwork_draw_picture(const Picture *picture, const FigureBox *box,
                                        cairo_filter_t filter, cairo_t *cairo, Err *err);
-/* Draws an artwork over a box of the page. Vectors stay vectors. Errors: STATUS_TOOL if the library
- * that draws it is not installed; STATUS_INPUT if the library cannot read it; the errors of
- * artwork_draw_picture. */
+/* Draws an artwork so that it fills a box of the page. Vectors stay vectors. Errors: STATUS_TOOL if
+ * the library that draws it is not installed; STATUS_INPUT if the library cannot read it; the
+ * errors of artwork_draw_picture. */
 MUST_CHECK Status artwork_draw(const FigureArtwork *artwork, const FigureBox *box, cairo_t *cairo,
                                Err *err);
 
-/* Draws a vector artwork of `width_mm` x `height_mm` as an SVG, without a child process of the
- * caller's. Errors: those of artwork_draw. */
+/* Draws a vector artwork of `width_mm` x `height_mm` and appends it as SVG. Starts the child
+ * process itself. Errors: those of artwork_draw. */
 MUST_CHECK Status artwork_put_svg(const FigureArtwork *artwork, double width_mm, double height_mm,
                                   Text *svg, Err *err);
-/* Draws an artwork as a picture of 3 channels of 8 bits, without a child process of the caller's.
+/* Draws an artwork as a picture of 3 channels of 8 bits. `paper` shows through where the artwork is
+ * transparent. The caller releases *out with picture_release. Starts the child process itself.
  * Errors: those of artwork_draw. */
 MUST_CHECK Status artwork_rasterize(const FigureArtwork *artwork, int width, int height,
                                     FigureColor paper, Picture *out, Err *err);

@@ -1,10 +1,10 @@
-/* Finds texts that cannot be read because something is over or under them. */
+/* Finds texts that overlap other texts, bars or swatches, or the edge of the page. */
 #include "figure/figure.h"
 
-/* Boxes that share less than this are neighbours. */
+/* Two boxes that overlap by less than this in one direction do not collide. */
 static const double slack_mm = 0.1;
 
-/* More collisions than these are counted only. */
+/* Maximum number of collisions that are listed. Further collisions are only counted. */
 enum { LISTED = 3 };
 
 static bool is_on_page(const FigurePage *page, const FigureBox *box)
@@ -13,7 +13,8 @@ static bool is_on_page(const FigurePage *page, const FigureBox *box)
            box->right <= page->width_mm + slack_mm && box->bottom <= page->height_mm + slack_mm;
 }
 
-/* Returns true if the text collides with an item that no earlier call has compared it with. */
+/* Returns true if the text overlaps a solid item, or a text that follows it in the array. Each pair
+ * of texts is thereby compared once. */
 static bool collide(const FigureItem *text, const FigureItem *other)
 {
     const bool is_pair = other->solid || (other->kind == FIGURE_TEXT && other > text);

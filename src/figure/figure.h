@@ -37,11 +37,12 @@ extern const char *const figure_font_files[];
 MUST_CHECK Status figurefonts_load(const char *templates, FigureFonts **out, Err *err);
 void figurefonts_free(FigureFonts *fonts); /* NULL is allowed */
 
-/* Returns the width of a line of text with markup [FigureText], in mm; 0 if memory runs out. */
+/* Returns the width, in mm, of a line of text with markup [FigureText]; 0 if memory runs out. */
 double figure_text_width(const FigureFonts *fonts, const char *text, double size_pt, bool bold);
 
-/* The Unicode characters in texts that Liberation Sans lacks. Each is listed once, in the order of
- * the texts. Only the first FIGURE_LETTERS of each kind are listed, enough for a message. */
+/* The Unicode characters of texts that Liberation Sans lacks. Each character is listed once, in the
+ * order of appearance. Only the first FIGURE_LETTERS characters of each kind are listed, which
+ * suffices for a message. */
 enum { FIGURE_LETTERS = 8 };
 typedef struct FigureLetters {
     uint32_t fallback[FIGURE_LETTERS]; /* drawn in DejaVu Sans */
@@ -80,7 +81,7 @@ typedef enum FigureKind {
     FIGURE_PICTURE,
     FIGURE_SHAPE, /* a polygon, filled */
     FIGURE_LINE,  /* a polyline, stroked */
-    FIGURE_RAMP,  /* a rectangle whose color changes from the left to the right, or upwards */
+    FIGURE_RAMP,  /* a rectangle whose color changes from left to right, or from bottom to top */
     FIGURE_TEXT,
     FIGURE_STROKES, /* a line drawing */
     FIGURE_BARS,    /* a diagram */
@@ -90,10 +91,10 @@ typedef enum FigureKind {
 
 enum { FIGURE_CORNERS = 4, FIGURE_STOPS = 65 };
 
-/* A bar of a diagram: a rectangle, mm. */
+/* A bar of a diagram: a rectangle. Lengths are mm. */
 typedef struct FigureBar {
     double x[2], y[2]; /* ascending */
-    int32_t index;     /* of its color */
+    int32_t index;     /* index of its color */
 } FigureBar;
 
 /* The bars of a diagram. No two overlap. All members are borrowed. */
@@ -101,8 +102,7 @@ typedef struct FigureBars {
     const FigureBar *bars;
     size_t n;
     const float (*color)[3]; /* linear RGB, by FigureBar.index */
-    /* Appends what identifies a bar, and what describes it, to texts for an SVG; `title` takes
-     * escaped text. */
+    /* Appends the id and the title of a bar for an SVG. The callback must escape the title. */
     void (*put_label)(const void *context, size_t bar, Text *id, Text *title);
     const void *context;
 } FigureBars;
@@ -113,7 +113,7 @@ typedef struct FigureArtwork {
     char *bytes;      /* of a PDF or SVG, else NULL; owned */
     size_t size;
     bool pdf;             /* the bytes are a PDF, else an SVG */
-    double width, height; /* > 0, in any unit: they state the proportions */
+    double width, height; /* > 0, in any unit: only their ratio is used */
     Picture picture;      /* pixels, of 3 channels of 8 bits; zeroed for a PDF or SVG; owned */
 } FigureArtwork;
 
@@ -131,16 +131,17 @@ void figureartwork_release(FigureArtwork *artwork);
 
 typedef struct FigureItem {
     FigureKind kind;
-    FigureBox box; /* bounds of what the item covers */
+    FigureBox box; /* bounds of the drawn item */
     FigureColor color;
     int n; /* number of points in `at` */
     bool closed, upwards, bold;
-    bool solid;        /* a bar or swatch: no text is to be over it */
-    FigureAlign align; /* of a text at at[0], which is on its baseline */
+    bool solid;        /* a bar or swatch: a text must not overlap it */
+    FigureAlign align; /* alignment of a text relative to at[0], a point on its baseline */
     FigurePoint at[FIGURE_CORNERS];
     double width_mm;              /* of a line */
     double size_pt;               /* of a text */
-    double outline_mm;            /* of a text: its letters are filled, and outlined this wide */
+    double outline_mm;            /* of a text: width of the outline that is drawn around its filled
+                                   * letters */
     double halo_mm;               /* width of the halo around the item; 0: none */
     FigureColor halo;             /* color of the halo */
     char *text;                   /* owned */
@@ -149,12 +150,13 @@ typedef struct FigureItem {
     const FigureBars *bars;       /* borrowed; their origin is at at[0] */
     const FigureArtwork *artwork; /* borrowed */
     const Picture *picture;       /* borrowed; 8 bits */
-    int column, row;              /* of the picture's first pixel */
+    int column, row;              /* pixel position of the picture's first pixel on the page */
 } FigureItem;
 
 typedef struct FigurePage {
     double width_mm, height_mm, dpi; /* 0 < dpi */
-    bool exact;                      /* an SVG states the size with all digits, else to 0.001 mm */
+    bool exact;                      /* an SVG states the page's size with all digits; false:
+                                      * rounded to 0.001 mm */
     FigureColor background;
     const Inks *inks;         /* borrowed; of 8 bits; converts the colors of a PDF; NULL: sRGB */
     const FigureFonts *fonts; /* borrowed; NULL: the page has no text */
@@ -163,19 +165,19 @@ typedef struct FigurePage {
     bool failed;           /* memory ran out while an item was added */
     FigureLetters missing; /* characters of all texts that Liberation Sans lacks */
     const char *unclosed;  /* the first text with a group that is not closed, borrowed from its
-                              item; NULL: there is none */
+                            * item; NULL: there is none */
 } FigurePage;
 
 /* Makes an empty page with a white background. The fonts are borrowed. */
 void figure_init(FigurePage *page, double width_mm, double height_mm, double dpi,
                  const FigureFonts *fonts);
 void figure_release(FigurePage *page);
-/* Returns a length in pixels of the page, rounded. */
+/* Converts a length to pixels of the page, rounded to the nearest integer. */
 int figure_pixels(const FigurePage *page, double mm);
 
 /* The following functions append an item to the page. If memory runs out, they mark the page as
- * failed, and figure_check reports STATUS_MEMORY. Items that are borrowed must outlive the page.
- * `column` and `row` are the pixel position of the picture's first pixel on the page. */
+ * failed, and figure_check reports STATUS_MEMORY. Borrowed objects must outlive the page. `column`
+ * and `row` are the pixel position of the picture's first pixel on the page. */
 void figure_add_picture(FigurePage *page, const Picture *picture, int column, int row);
 void figure_add_box(FigurePage *page, FigureBox box, FigureColor color);
 /* Append a polygon or polyline of `n` points, at most FIGURE_CORNERS. */
@@ -193,21 +195,21 @@ void figure_add_strokes(FigurePage *page, const Strokes *strokes, FigurePoint at
 void figure_add_bars(FigurePage *page, const FigureBars *bars, FigurePoint at, double width_mm,
                      double height_mm);
 
-/* Appends a picture of another program, borrowed, that fills the box. In a PDF, SVG
- * or EPS a vector picture stays vectors, and a picture of pixels keeps its pixels. */
+/* Appends a picture of another program, borrowed, that fills the box. In a PDF, SVG or EPS, vectors
+ * stay vectors, and pixels are not resampled. */
 void figure_add_artwork(FigurePage *page, const FigureArtwork *artwork, FigureBox box);
 
 /* The markup of texts, as the help of options describes it. */
 #define FIGURE_MARKUP "*r* is italic, _{w} a subscript, ^{-3} a superscript"
 
-/* A line of text. It may have markup, which every text of a page has in the same form:
+/* A line of text, which may contain markup:
  *
- *     *r*            italic. A star that no other star matches, or beside a blank, is a star
+ *     *r*            italic. A star without a matching star, or next to a blank, is drawn as a star
  *     _{w}  ^{-3}    subscript and superscript; groups may be nested. A hyphen at either end of a
- *                    group is drawn as a minus. A group that is not closed ends with the text
+ * group is drawn as a minus. A group that is not closed ends at the end of the text
  *     \*  \_  \^  \}  \\    the character itself
  *
- * Unicode's superscripts and subscripts, such as U+207B, are drawn as groups are. */
+ * Superscript and subscript characters of Unicode, such as U+207B, are drawn like groups. */
 typedef struct FigureText {
     const char *text; /* one line of UTF-8; copied. Control characters become blanks */
     double x, y;      /* position on the baseline */
@@ -237,51 +239,54 @@ void figure_put_collisions(const FigurePage *page, Text *out);
 FigureBox figure_bounds(const FigurePage *page, size_t first);
 /* Moves the items from index `first` on. None may be a picture. */
 void figure_move(FigurePage *page, size_t first, double dx, double dy);
-/* Marks the items from index `first` on that are no text as solid. */
+/* Marks the items from index `first` on as solid, except texts. */
 void figure_mark_solid(FigurePage *page, size_t first);
 
-/* Gives an item a halo, which is drawn below the item: around the letters of a text, or around the
- * box of any other item. */
+/* Gives item `item` a halo of a width and color, which is drawn below the item. The halo of a text
+ * follows its letters; the halo of any other item is a box around the item's box. */
 void figure_set_halo(FigurePage *page, size_t item, double width_mm, FigureColor color);
 
 /* ---- legends --------------------------------------------------------------------------------- */
 
 typedef struct FigureLegend {
     const ColorScale *scale;
-    ScaleOutside outside;   /* numbers of visible values that are outside the range */
+    ScaleOutside outside;   /* counts of the visible values outside the range */
     bool integers;          /* all values are integers, so ticks are integers as well */
-    const double *swatches; /* values that have a swatch each instead of a bar; borrowed */
+    const double *swatches; /* values that each get a swatch, instead of a bar; borrowed */
     int n_swatches;         /* 0: there is a bar */
-    const char *title;      /* UTF-8; a quantity with its unit in parentheses, if it has one */
+    const char *title;      /* UTF-8; the quantity, followed by its unit in parentheses if it has a
+                             * unit */
     bool horizontal;        /* the bar runs from left to right; false: from bottom to top */
-    double length_mm;       /* of the bar */
+    double length_mm;       /* length of the bar */
     double size_pt;
     FigureColor ink;
 } FigureLegend;
 
-/* Appends a color bar with title, ticks at round numbers, pointed ends where values are outside
- * the range, and a swatch for vessels without a value. A logarithmic bar has numbers at its ends
- * and minor ticks. Large and small numbers have a common power of ten. If integers select separate
- * colors, appends one swatch per color instead. The position is arbitrary: use figure_bounds and
- * figure_move. */
+/* Appends a color bar with a title and with ticks at round numbers. The bar has a pointed end where
+ * values are beyond that end of the range, and a swatch if there are vessels without a value. A
+ * logarithmic bar has numbers at its ends and minor ticks. Very large or small numbers share a
+ * power of ten. If integers select the colors, one swatch per color is appended instead of the bar.
+ * The legend is placed near the origin: use figure_bounds and figure_move to position it. */
 void figure_add_legend(FigurePage *page, const FigureLegend *legend);
 
-/* Appends a scale bar of this length, with its label above the middle, at an arbitrary position. */
+/* Appends a scale bar of this length at the origin, with its label centred above it. Use
+ * figure_move to position it. */
 void figure_add_scale_bar(FigurePage *page, double length_mm, const char *label, double size_pt,
                           FigureColor ink);
 
-/* Stores about `wanted` round numbers within the range of a scale, ascending. Returns their number.
- * The scale must not count colors [colorscale_selects_by_integer]. If `integers`, all are integers.
- */
+/* Stores about `wanted` round numbers within the range of a scale, ascending. Returns their count,
+ * at most FIGURE_TICKS. The scale must not be one for which colorscale_selects_by_integer is true.
+ * With `integers`, all numbers on a linear scale are integers. */
 enum { FIGURE_TICKS = 32 };
 int figure_ticks(const ColorScale *scale, int wanted, bool integers, double ticks[FIGURE_TICKS]);
 
 /* ---- files ----------------------------------------------------------------------------------- */
 
-/* The metadata in the file of a page. All strings are borrowed, and have one line each. */
+/* Metadata of the file of a page. Each string is borrowed and has one line. */
 typedef struct FigureNotes {
-    const char *templates;   /* the folder */
-    const char *description; /* title of the page */
+    const char *templates;   /* the folder of templates */
+    const char *description; /* title of the
+                              * page */
     const char *generator;   /* program and version */
     const char *command;     /* the command line that makes the page */
 } FigureNotes;
@@ -298,14 +303,16 @@ enum { FIGURE_PDF_SIDE = 32767 };
 MUST_CHECK Status figure_write_pdf(const FigurePage *page, const FigureNotes *notes, bool eps,
                                    const char *path, Err *err);
 
-/* Draws a band of the page over `rows`, a picture of 3 channels at the page's resolution. A fourth
- * channel, 0 at first, receives the black ink of black items instead of the colors. The band
- * begins at row `first` of the page. Items other than pictures are antialiased. The pixels do not
- * depend on how the page is divided into bands. Errors: STATUS_MEMORY. */
+/* Draws a band of the page over `rows`, a picture of 3 or 4 channels at the page's resolution. The
+ * band begins at row `first` of the page. If there is a fourth channel, which must be 0 at first,
+ * black items are drawn into it as black ink instead of into the colors. Items other than pictures
+ * are antialiased. The pixels do not depend on how the page is divided into bands. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status figure_draw(const FigurePage *page, int first, Picture *rows, Err *err);
 
-/* Draws only bars, over all of `color`, a plane of 3 channels of linear RGB. The color of a pixel
- * is the mean over its area, so that a bar thinner than a pixel becomes proportionally fainter.
+/* Draws bars into `color`, a plane of 3 channels of linear RGB, and overwrites all its pixels. The
+ * color of a pixel is the mean over its area, so that a bar thinner than a pixel appears
+ * proportionally fainter.
  *
  * scale       pixels per mm
  * offset      pixel position of the bars' origin

@@ -1,9 +1,9 @@
-/* A page as PDF or EPS, through cairo: text as text, in subsets of the fonts, and no date but one
- * that is always the same.
+/* Writes a page as PDF or EPS with cairo. Text stays text, and subsets of the fonts are embedded.
+ * The date in the file is constant, so that equal pages give equal bytes.
  *
- * cairo 1.16 ignores some failed allocations and crashes by others, and it keeps the fonts for as
- * long as the process lives. It therefore runs in a process of its own. An allocation that cairo
- * ignored leaves ENOMEM in errno. */
+ * cairo 1.16 ignores some failed allocations and crashes after others, and it never releases the
+ * fonts. It therefore runs in a child process. If cairo ignored a failed allocation, errno is
+ * ENOMEM at the end. */
 #include "figure/artwork.h"
 #include "figure/fonts.h"
 #include "figure/items.h"
@@ -86,8 +86,8 @@ static Status put_ramp(void *context, const FigureItem *item, Err *err)
     return artwork_check_cairo(cairo_status(pdf->cairo), err);
 }
 
-/* The arrays of cairo's call for a run of glyphs. A cluster states which bytes of `text` a glyph
- * stands for, so that viewers can search the text. */
+/* The arrays that cairo_show_text_glyphs needs for a run of glyphs. A cluster states which bytes of
+ * `text` a glyph represents, so that viewers can search the text. */
 typedef struct GlyphRun {
     cairo_glyph_t *glyph;
     cairo_text_cluster_t *cluster;
@@ -109,7 +109,7 @@ static Status fill_run(const FigureItem *item, const Glyph *from, size_t n, Glyp
     return text_check(&run->text, err);
 }
 
-/* Draws letters as paths, so that a halo is no text. */
+/* Draws letters as paths instead of text, because viewers would find the text of a halo twice. */
 static void fill_outlined(cairo_t *cairo, const GlyphRun *run, int n, double width_mm)
 {
     cairo_set_line_width(cairo, width_mm);
@@ -182,7 +182,7 @@ static Status put_strokes(void *context, const FigureItem *item, Err *err)
     return artwork_check_cairo(cairo_status(pdf->cairo), err);
 }
 
-/* Glyphs are neither hinted nor moved. */
+/* Loads the fonts into cairo, without hinting of glyphs or of their positions. */
 static Status set_fonts(PdfPage *pdf, Err *err)
 {
     cairo_font_options_t *options = cairo_font_options_create();
@@ -200,7 +200,7 @@ static Status set_fonts(PdfPage *pdf, Err *err)
     return artwork_check_cairo(failed, err);
 }
 
-/* Viewers are asked not to smooth the picture. */
+/* The filter asks viewers not to smooth the picture. */
 static Status put_picture(void *context, const FigureItem *item, Err *err)
 {
     const PdfPage *pdf = context;
@@ -226,7 +226,7 @@ static Status put_page(PdfPage *pdf, Err *err)
 
 /* ---- files ----------------------------------------------------------------------------------- */
 
-/* cairo would write the current date. */
+/* Sets the metadata. The constant date replaces the current date, which cairo would write. */
 static void set_pdf_notes(cairo_surface_t *pdf, const FigureNotes *notes)
 {
     static const char date[] = "2000-01-01T00:00:00Z";
@@ -245,7 +245,8 @@ static void set_eps_note(cairo_surface_t *eps, const char *key, const char *valu
     cairo_ps_surface_dsc_comment(eps, line);
 }
 
-/* PostScript has no transparency: cairo replaces translucent parts by pixels. */
+/* Sets the header of an EPS. The resolution is that of translucent parts: PostScript has no
+ * transparency, so cairo replaces these parts by pixels. */
 static void set_eps_notes(cairo_surface_t *eps, const FigureNotes *notes, double dpi)
 {
     cairo_ps_surface_set_eps(eps, 1);
@@ -290,7 +291,7 @@ static cairo_surface_t *make_page(const PdfWork *work, Text *bytes)
     return page;
 }
 
-/* Ends the page and the file, and returns the first error of both. */
+/* Ends the page and the file. Returns the first error of the two steps. */
 static cairo_status_t finish(cairo_t *cairo, cairo_surface_t *pdf)
 {
     cairo_show_page(cairo);
@@ -299,7 +300,7 @@ static cairo_status_t finish(cairo_t *cairo, cairo_surface_t *pdf)
     return failed == CAIRO_STATUS_SUCCESS ? cairo_surface_status(pdf) : failed;
 }
 
-/* An IsolatedWork: the process ends when this returns, so that nothing is released. */
+/* An IsolatedWork. The child process ends when this function returns, so nothing is released. */
 static Status put_pdf(const void *context, Text *bytes, Err *err)
 {
     const PdfWork *work = context;

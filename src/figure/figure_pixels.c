@@ -1,8 +1,8 @@
-/* The rasterizer of FreeType fills glyphs, polygons and lines: it converts outlines to spans of
- * exact coverage, which are blended into the rows. The result does not depend on the band that the
- * rows are. Boxes and lines along the pixel grid are rounded to whole pixels, so that they are
- * sharp. A ramp has the color at the centre of each pixel. Each part of a polyline is a polygon of
- * its own. */
+/* FreeType's rasterizer fills glyphs, polygons and lines: it converts outlines to spans of exact
+ * coverage, which are blended into the rows. The result does not depend on how the page is divided
+ * into bands. Boxes, and lines parallel to the pixel grid, are rounded to whole pixels, so that
+ * their edges are sharp. A pixel of a ramp has the color at its centre. Each segment of a polyline
+ * is a separate polygon. */
 #include "figure/artwork.h"
 #include "figure/fonts.h"
 #include "figure/items.h"
@@ -12,8 +12,9 @@
 #include FT_OUTLINE_H
 #include FT_STROKER_H
 
-/* The rows of the page that are drawn. Outlines are in 1/64 pixels, x to the right and y up,
- * relative to (`left`, `top`), because spans have 16-bit coordinates. */
+/* The band of the page that is being drawn. Coordinates of outlines are in 1/64 pixels, x to the
+ * right and y up. They are relative to the pixel (`left`, `top`), because spans have 16-bit
+ * coordinates. */
 typedef struct PixelRows {
     const FigurePage *page;
     Picture *rows;
@@ -27,8 +28,8 @@ static double pixels_of(const PixelRows *target, double mm)
     return mm / MM_PER_INCH * target->page->dpi;
 }
 
-/* Blends an 8-bit color over a pixel that it covers by `alpha` / 255. Black goes to the channel of
- * black ink, if there is one, and any other color takes black ink away. */
+/* Blends an 8-bit color over the fraction `alpha` / 255 of a pixel. If there is a channel of black
+ * ink, black is blended into this channel only, and any other color reduces it. */
 static void blend(Picture *rows, size_t pixel, const uint8_t color[3], unsigned alpha)
 {
     const size_t channels = (size_t)rows->channels;
@@ -70,7 +71,7 @@ static Status fill(PixelRows *target, FT_Outline *outline, Err *err)
     return STATUS_OK;
 }
 
-/* Converts pixels of the page to an outline's units. */
+/* Converts a pixel position on the page to the coordinates of outlines. */
 static FT_Vector vector_of(const PixelRows *target, double x, double y)
 {
     return (FT_Vector){lround(64 * (x - target->left)), lround(64 * (target->top - y))};
@@ -98,7 +99,7 @@ static void set_width(FT_Stroker stroker, double pixels)
                    FT_STROKER_LINEJOIN_ROUND, 0);
 }
 
-/* Makes the outline of what was stroked; release it with FT_Outline_Done. */
+/* Exports the outline of the stroker's paths. Release *outline with FT_Outline_Done. */
 static FT_Error export_outline(const PixelRows *target, FT_Stroker stroker, FT_Outline *outline)
 {
     FT_UInt points, contours;
@@ -113,7 +114,7 @@ static FT_Error export_outline(const PixelRows *target, FT_Stroker stroker, FT_O
     return FT_Err_Ok;
 }
 
-/* Fills a line of `width` pixels along the contours of an outline. */
+/* Draws the contours of an outline as lines of `width` pixels. */
 static Status fill_around(PixelRows *target, FT_Outline *around, double width, Err *err)
 {
     FT_Stroker stroker;
@@ -150,7 +151,7 @@ static Status draw_shape(PixelRows *target, const FigureItem *item, Err *err)
     return fill_polygon(target, corner, item->n, err);
 }
 
-/* Draws a part of a line, with square ends. */
+/* Draws a segment of a line. Each end extends by half the width. */
 static Status draw_stroke(PixelRows *target, FigurePoint from, FigurePoint to, double width,
                           Err *err)
 {
@@ -166,8 +167,8 @@ static Status draw_stroke(PixelRows *target, FigurePoint from, FigurePoint to, d
     return fill_polygon(target, corner, 4, err);
 }
 
-/* Draws a line that is an integer number of pixels wide, at least one. The edges of a line along
- * the pixel grid are those of pixels. */
+/* Draws a line whose width is rounded to an integer number of pixels, at least 1. The edges of a
+ * line parallel to the pixel grid are on edges of pixels. */
 static Status draw_line(PixelRows *target, const FigureItem *item, Err *err)
 {
     const double width = fmax(1, round(pixels_of(target, item->width_mm)));
@@ -196,11 +197,11 @@ static Status draw_ramp(PixelRows *target, const FigureItem *item, Err *err)
     for (int y = 0; y < target->rows->height; y++)
         for (int x = left < 0 ? 0 : left; x < right && x < target->rows->width; x++) {
             int row = target->first + y;
-            double place = item->upwards ? (bottom - row - 0.5) / (bottom - top)
-                                         : (x + 0.5 - left) / (right - left);
+            double position = item->upwards ? (bottom - row - 0.5) / (bottom - top)
+                                            : (x + 0.5 - left) / (right - left);
             if (row < top || row >= bottom)
                 continue;
-            double stop = place * (FIGURE_STOPS - 1);
+            double stop = position * (FIGURE_STOPS - 1);
             int i = (int)fmin(stop, FIGURE_STOPS - 2);
             uint8_t color[3];
             for (int c = 0; c < 3; c++) {
@@ -212,8 +213,8 @@ static Status draw_ramp(PixelRows *target, const FigureItem *item, Err *err)
     return STATUS_OK;
 }
 
-/* The outline belongs to FreeType until the next glyph is loaded. Its points are moved to their
- * positions in place. */
+/* FreeType owns the outline until the next glyph is loaded. The outline's points are converted in
+ * place. */
 static Status draw_glyph(PixelRows *target, const Glyph *glyph, FigurePoint at, double size,
                          double outline_px, Err *err)
 {
@@ -249,9 +250,12 @@ static Status draw_text(PixelRows *target, const FigureItem *item, Err *err)
 
 /* ---- strokes --------------------------------------------------------------------------------- */
 
-enum { STROKE_POINTS = 256 }; /* per outline: an outline has a 16-bit number of points */
+enum {
+    STROKE_POINTS = 256
+}; /* maximum number of stroke points per outline: an outline stores the
+    * number of its points in 16 bits */
 
-/* Makes the outline of a part of a stroke, whose points are mm on its paper. */
+/* Makes the outline of `n` points of a stroke. The points are mm relative to `at`. */
 static FT_Error stroke_outline(PixelRows *target, FT_Stroker stroker, FigurePoint at,
                                const double (*point)[2], size_t n, FT_Outline *outline)
 {
@@ -324,7 +328,7 @@ static Status draw_picture(PixelRows *target, const FigureItem *item, Err *err)
     return STATUS_OK;
 }
 
-/* Snaps the artwork to pixels, and draws them as a picture. */
+/* Rounds the artwork's box to whole pixels, and draws the artwork as a picture. */
 static Status draw_artwork(PixelRows *target, const FigureItem *item, Err *err)
 {
     const FigureBox *box = &item->box;
@@ -352,9 +356,10 @@ static Status draw_bars(PixelRows *target, const FigureItem *item, Err *err)
     return STATUS_OK;
 }
 
-/* Returns true if the item may have a pixel in the rows. Snapping moves it by at most one. Accents
- * and tall letters of DejaVu Sans reach beyond the box of a text, by less than its size. */
-static bool meets(const PixelRows *target, const FigureItem *item)
+/* Returns true if the item may cover a pixel of the rows. The box is enlarged, because rounding
+ * moves an item by up to one pixel, and accents and tall letters of DejaVu Sans extend beyond a
+ * text's box by less than the font size. */
+static bool may_cover(const PixelRows *target, const FigureItem *item)
 {
     const double beyond = 2 + pixels_of(target, item->size_pt * MM_PER_POINT);
     return pixels_of(target, item->box.bottom) + beyond > target->first &&
@@ -369,7 +374,7 @@ static Status draw_item(void *context, const FigureItem *item, Err *err)
         [FIGURE_RAMP] = draw_ramp,       [FIGURE_TEXT] = draw_text,      [FIGURE_BARS] = draw_bars,
         [FIGURE_STROKES] = draw_strokes, [FIGURE_ARTWORK] = draw_artwork};
     PixelRows *target = context;
-    if (!meets(target, item))
+    if (!may_cover(target, item))
         return STATUS_OK;
     target->color = item->color.rgb;
     target->left = (int)floor(pixels_of(target, item->box.left)) - 1;
@@ -387,13 +392,13 @@ Status figure_draw(const FigurePage *page, int first, Picture *rows, Err *err)
 
 /* ---- bars in linear light --------------------------------------------------------------------
  *
- * A pixel is the mean of what it covers. Bars do not overlap. The parts of the pixel that they
- * cover, and the colors of these parts, therefore add up in any order. The rest is background. */
+ * The color of a pixel is the mean over its area. Bars do not overlap, so the covered areas and the
+ * colors weighted by area can be summed in any order. The rest of the pixel is background. */
 
-/* Channels of the plane of sums: the color, and the part of the pixel that is covered. */
+/* Channels of the plane of sums: three of color times area, and the covered area of the pixel. */
 enum { COVERED = 3, SUMS = 4 };
 
-/* Returns the part of pixel `at` that is between two positions. */
+/* Returns the length of the part of pixel `at` between two positions on an axis, 0 to 1. */
 static double covered(int at, double from, double to)
 {
     return fmax(0, fmin(to, at + 1) - fmax(from, at));
@@ -422,7 +427,7 @@ static void add_bar(const double x[2], const double y[2], const float color[3], 
         }
 }
 
-/* Stores the sums as colors. By rounding they may cover a little more than the whole pixel. */
+/* Converts the sums to colors. Because of rounding, the sum of the areas may slightly exceed 1. */
 static void mix(const Plane *sums, const float background[3], Plane *color)
 {
     size_t pixels = (size_t)color->width * (size_t)color->height;

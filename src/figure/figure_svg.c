@@ -1,6 +1,6 @@
-/* There is one template for the page, and one for each kind of item. Text stays text, in a font
- * family whose letters are as wide as those of Arial and Helvetica, which replace it where it is
- * not installed. */
+/* Writes a page as SVG. There is one template for the page and one for each kind of item. Text
+ * stays text. The letters of its font, Liberation Sans, are as wide as those of Arial and
+ * Helvetica, which replace it where it is not installed. */
 #include "figure/artwork.h"
 #include "figure/fonts.h"
 #include "figure/items.h"
@@ -14,11 +14,11 @@
 /* The page that is being written. */
 typedef struct SvgPage {
     const FigurePage *page;
-    const char *templates; /* the folder */
+    const char *templates; /* the folder of templates */
     Text *out;             /* borrowed */
 } SvgPage;
 
-/* Appends mm with up to three decimals. */
+/* Appends a length in mm with up to three decimals. */
 static void put_mm(double mm, Text *text)
 {
     char digits[32];
@@ -57,8 +57,9 @@ typedef struct SvgRun {
     size_t n;
 } SvgRun;
 
-/* Appends the letters of a run: an upright run of the text's own size as plain text, any other as a
- * span. `rise` is the height of the run before it. */
+/* Appends the letters of a run of equal style. A run that is upright, of full size and at the
+ * height of the previous run is plain text; any other run is a `tspan`. `rise` is the height of the
+ * previous run above the baseline and receives that of this run. */
 static Status put_run(const SvgPage *svg, const FigureItem *item, const SvgRun *run, double *rise,
                       Text *out, Err *err)
 {
@@ -161,8 +162,8 @@ done:
     return status;
 }
 
-/* Returns the part of an SVG between its outer tags, and the value of its viewBox. Both are cut out
- * of `svg`, and NULL if there is none. */
+/* Returns the content of an SVG between its outer tags, and sets *view to the value of its viewBox.
+ * Both point into `svg`, which is changed. Returns NULL if a tag or the viewBox is missing. */
 static char *cut_svg(char *svg, char **view)
 {
     char *root = strstr(svg, "<svg"), *end = strstr(svg, "</svg>");
@@ -175,7 +176,8 @@ static char *cut_svg(char *svg, char **view)
     return body + 1;
 }
 
-/* Appends a drawing of cairo's, whose names begin with `prefix` then: an SVG may hold several. */
+/* Appends a drawing that cairo made, with `prefix` before each id and each reference to an id. The
+ * ids of several drawings in one SVG are thereby different. */
 static void put_with_prefix(const char *drawing, const char *prefix, Text *out)
 {
     static const char *const before[] = {"id=\"", "url(#", "href=\"#"};
@@ -202,7 +204,7 @@ static Status put_drawing(const SvgPage *svg, const FigureItem *item, char *draw
     return markup_put(&parts, svg->templates, "figure/artwork.svg", svg->out, err);
 }
 
-/* Pixels become a picture, and vectors a drawing within the page. */
+/* An artwork of pixels becomes a picture; vectors become a nested `svg` element. */
 static Status put_artwork(void *context, const FigureItem *item, Err *err)
 {
     const SvgPage *svg = context;
@@ -244,7 +246,7 @@ static Status put_line(void *context, const FigureItem *item, Err *err)
     return markup_put(&parts, svg->templates, "figure/line.svg", svg->out, err);
 }
 
-/* Strokes of one width, which follow one another, are one path. */
+/* Consecutive strokes of equal width become one path. */
 static Status put_strokes(void *context, const FigureItem *item, Err *err)
 {
     const SvgPage *svg = context;
@@ -270,7 +272,7 @@ static Status put_strokes(void *context, const FigureItem *item, Err *err)
 
 /* ---- bars ------------------------------------------------------------------------------------ */
 
-/* What a bar of the diagram is made of; the texts are used again for every bar. */
+/* The template and the texts of a bar. The texts are reused for every bar. */
 typedef struct SvgBar {
     Tmpl tmpl;
     Text id, title;
@@ -297,7 +299,7 @@ static Status put_bar(const SvgPage *svg, const FigureBars *bars, size_t i, SvgB
     return tmpl_apply(&self->tmpl, values, sizeof values / sizeof *values, svg->out, err);
 }
 
-/* The part of a group that consists of its bars. */
+/* The context of put_each_bar, which writes the bars of a diagram into its group. */
 typedef struct SvgBars {
     const SvgPage *svg;
     const FigureBars *bars;
@@ -328,7 +330,7 @@ static void put_number(double value, Text *text)
     text_puts(text, number_text(value, digits));
 }
 
-/* Bars keep all their digits: vessels may be thinner than 0.001 mm. */
+/* Coordinates of bars have all their digits, because bars may be thinner than 0.001 mm. */
 static Status put_bars(void *context, const FigureItem *item, Err *err)
 {
     SvgPage *svg = context;

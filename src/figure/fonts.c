@@ -1,8 +1,8 @@
-/* FreeType reads the font files. No other font is used: Pango and fontconfig would choose by what
- * is installed. A line is a sequence of glyphs, moved together by the font's table of kerning
- * pairs. Sizes are those of the design, unhinted, so that a line has the same shape at every
- * resolution. That suffices for Latin, Greek and Cyrillic; the fonts have no scripts that need
- * more. */
+/* Loads the fonts with FreeType and lays out lines of text. Only the font files of corcast are
+ * used: Pango and fontconfig would choose among the installed fonts. A line is a sequence of glyphs
+ * with pairwise kerning. Widths are those of the unhinted design, so that a line has the same shape
+ * at every resolution. This simple layout suffices for Latin, Greek and Cyrillic. Letters are
+ * neither joined nor reordered, as Arabic and Hebrew would require. */
 #include "figure/fonts.h"
 
 #include "figure/textmarkup.h"

@@ -20,9 +20,9 @@ typedef enum FontFace {
 /* A character of a line. Lengths are multiples of the font size. */
 typedef struct Glyph {
     FontFace face;
-    unsigned index;  /* of the glyph in its face; 0: a box for a character that no font has */
+    unsigned index;  /* index of the glyph in its face; 0: a box for a character that no font has */
     uint32_t drawn;  /* the character that the glyph shows */
-    uint32_t letter; /* the character that it stands for in the text of a PDF */
+    uint32_t letter; /* the character that it represents in the text of a PDF */
     double x;        /* distance from the beginning of the line */
     double scale;    /* size of the glyph: 1, or less in superscripts and subscripts */
     double rise;     /* height of the glyph's baseline above the line's baseline */
@@ -32,8 +32,8 @@ typedef struct Glyphs {
     Glyph *glyph; /* owned */
     size_t n;
     double width;           /* multiple of the font size */
-    double ascent, descent; /* height above and depth below the baseline, as multiples of the size:
-                             * at least those of capitals and small letters */
+    double ascent, descent; /* height above and depth below the baseline, as multiples of the font
+                             * size; at least FONT_CAPITALS and FONT_DESCENT */
     FigureLetters missing;  /* characters of the text that Liberation Sans lacks */
     bool unclosed;          /* a group of the markup is not closed */
 } Glyphs;
@@ -47,7 +47,8 @@ MUST_CHECK Status fonts_shape(const FigureFonts *fonts, const char *text, bool b
                               Err *err);
 void glyphs_release(Glyphs *glyphs);
 
-/* Returns the number of glyphs, from index `first` on, that have the same face, size and height. */
+/* Returns the number of consecutive glyphs, from index `first` on, that have the same face, scale
+ * and rise as glyph `first`. */
 size_t glyphs_run(const Glyphs *glyphs, size_t first);
 
 FT_Library fonts_library(const FigureFonts *fonts);

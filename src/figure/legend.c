@@ -1,5 +1,6 @@
-/* The bar is laid out in coordinates along and across itself, and turned upwards or to the right at
- * the end, so that both directions share their code. All lengths are multiples of the text size. */
+/* The legend is laid out in coordinates along and across the color bar. The function page_point
+ * converts them to positions on the page, so that vertical and horizontal bars share their code.
+ * Lengths are multiples of the text size. */
 #include "figure/fonts.h"
 #include "figure/items.h"
 
@@ -7,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* The legend that is being built; mm. */
+/* The legend that is being built. Lengths are mm. */
 typedef struct LegendLayout {
     FigurePage *page;
     const FigureLegend *legend;
@@ -17,8 +18,9 @@ typedef struct LegendLayout {
 
 static const double bar_ems = 1.1, tick_ems = 0.25, gap_ems = 0.3, point_ems = 0.9, line_mm = 0.18;
 
-/* Returns a position on the page. A bar that points upwards begins at its lower end. */
-static FigurePoint place(const LegendLayout *layout, double along, double across)
+/* Converts a position along and across the bar to a point of the page. A vertical bar begins at its
+ * lower end. */
+static FigurePoint page_point(const LegendLayout *layout, double along, double across)
 {
     return layout->legend->horizontal ? (FigurePoint){along, across}
                                       : (FigurePoint){across, -along};
@@ -26,7 +28,7 @@ static FigurePoint place(const LegendLayout *layout, double along, double across
 
 static FigureBox box_of(const LegendLayout *layout, double from, double to)
 {
-    FigurePoint a = place(layout, from, 0), b = place(layout, to, bar_ems * layout->em);
+    FigurePoint a = page_point(layout, from, 0), b = page_point(layout, to, bar_ems * layout->em);
     return (FigureBox){fmin(a.x, b.x), fmin(a.y, b.y), fmax(a.x, b.x), fmax(a.y, b.y)};
 }
 
@@ -42,10 +44,10 @@ static void put_text(const LegendLayout *layout, const char *text, double x, dou
     figure_add_text(layout->page, &line);
 }
 
-/* Adds a label beside or below the bar, centred on a position along it. */
+/* Adds a label beside or below the bar, centred on a position along the bar. */
 static void put_label(const LegendLayout *layout, double along, double across, const char *text)
 {
-    FigurePoint at = place(layout, along, across);
+    FigurePoint at = page_point(layout, along, across);
     double capitals = FONT_CAPITALS * layout->em;
     if (layout->legend->horizontal)
         put_text(layout, text, at.x, at.y + capitals, ALIGN_CENTER);
@@ -53,8 +55,9 @@ static void put_label(const LegendLayout *layout, double along, double across, c
         put_text(layout, text, at.x, at.y + capitals / 2, ALIGN_LEFT);
 }
 
-/* Returns the number of decimals with which ascending numbers are off by at most a hundredth of the
- * smallest gap. */
+/* Returns the smallest number of decimals, at most 6, with which rounding changes no number by more
+ * than 1/100 of the smallest gap. The numbers are ascending. For one number, 1/100 of its size
+ * replaces the gap. */
 static int decimals_of(const double *values, int n)
 {
     double gap = n > 1 ? HUGE_VAL : fabs(values[0]) / 100;
@@ -74,7 +77,7 @@ static int decimals_of(const double *values, int n)
 static void put_tick_line(const LegendLayout *layout, double along, double ems)
 {
     double begin = bar_ems * layout->em, end = begin + ems * layout->em;
-    const FigurePoint line[] = {place(layout, along, begin), place(layout, along, end)};
+    const FigurePoint line[] = {page_point(layout, along, begin), page_point(layout, along, end)};
     figure_add_line(layout->page, line, 2, false, line_mm, layout->legend->ink);
 }
 
@@ -84,13 +87,15 @@ static void put_tick(const LegendLayout *layout, double along, const char *label
     put_label(layout, along, (bar_ems + tick_ems + gap_ems) * layout->em, label);
 }
 
-/* Returns the power of ten that numbers up to `most` share; 0 if they are written in full. */
+/* Returns the power of ten that is factored out of numbers with absolute values up to `most`; 0 if
+ * the numbers are written in full. */
 static int common_power(double most)
 {
     return most >= 1e5 || (most > 0 && most < 1e-3) ? (int)floor(elementary_log10(most) + 1e-9) : 0;
 }
 
-/* Adds the power of ten of all numbers above their column, or behind the bar. */
+/* Adds the common power of ten, above the numbers of a vertical bar or to the right of a horizontal
+ * bar. */
 static void put_power(const LegendLayout *layout, int power)
 {
     const double em = layout->em, across = (bar_ems + tick_ems + gap_ems) * em;
@@ -104,7 +109,7 @@ static void put_power(const LegendLayout *layout, int power)
         put_text(layout, factor, across, -layout->length - 0.9 * em, ALIGN_LEFT);
 }
 
-/* Adds ticks at ascending values of a linear scale, all with as many decimals. */
+/* Adds ticks at ascending values of a linear scale. All labels have the same number of decimals. */
 static void put_linear_ticks(const LegendLayout *layout, const double *values, const double *along,
                              int n)
 {
@@ -124,7 +129,8 @@ static void put_linear_ticks(const LegendLayout *layout, const double *values, c
         put_power(layout, power);
 }
 
-/* Writes a number of a logarithmic scale. Powers of ten are written as such if `powers`. */
+/* Writes a number of a logarithmic scale. With `powers`, a power of ten is written as 10 with an
+ * exponent. */
 static const char *log_number(double value, int digits, bool powers, char out[READABLE_SIZE])
 {
     const double power = round(elementary_log10(value));
@@ -133,13 +139,13 @@ static const char *log_number(double value, int digits, bool powers, char out[RE
     return number_readable(value, digits, out);
 }
 
-/* Returns true if powers of ten of a scale are not written in full. */
+/* Returns true if the powers of ten of a logarithmic scale are written with exponents. */
 static bool has_powers(const ColorScale *scale)
 {
     return scale->range[0] < 0.999e-3 || scale->range[1] > 1.001e4;
 }
 
-/* Adds a tick for each bound between classes. */
+/* Adds a labelled tick for each value. */
 static void put_ticks(const LegendLayout *layout, const double *values, const double *along, int n)
 {
     const ColorScale *scale = layout->legend->scale;
@@ -150,8 +156,8 @@ static void put_ticks(const LegendLayout *layout, const double *values, const do
                  log_number(values[i], 4, has_powers(scale), (char[READABLE_SIZE]){0}));
 }
 
-/* Adds short ticks: 2 to 9 times each power of ten, or only the powers, or none, as there is space.
- */
+/* Adds unlabelled short ticks: at 1 to 9 times each power of ten if there is space, else only at
+ * the powers, else none. */
 static void put_minor_ticks(const LegendLayout *layout)
 {
     const ColorScale *scale = layout->legend->scale;
@@ -166,7 +172,8 @@ static void put_minor_ticks(const LegendLayout *layout)
         }
 }
 
-/* Returns half of the length that a number takes along the bar, with the gap to the next. */
+/* Returns half of the length along the bar that a label needs, including the gap to the next
+ * label. */
 static double half_length(const LegendLayout *layout, const char *label)
 {
     const FigureLegend *legend = layout->legend;
@@ -177,8 +184,8 @@ static double half_length(const LegendLayout *layout, const char *label)
            2;
 }
 
-/* Adds numbers at both ends of a logarithmic bar, and at round values where they do not touch
- * other numbers. */
+/* Adds labelled ticks at both ends of a logarithmic bar and at the round values. The label of a
+ * round value is left out if it would touch another label. */
 static void put_log_ticks(const LegendLayout *layout, const double *ticks, int n)
 {
     const ColorScale *scale = layout->legend->scale;
@@ -205,26 +212,27 @@ static void put_log_ticks(const LegendLayout *layout, const double *ticks, int n
 }
 
 /* Adds the pointed end beyond the bar for values outside the range. */
-static void put_point(const LegendLayout *layout, double from, double to, const float linear[3])
+static void put_pointed_end(const LegendLayout *layout, double from, double to,
+                            const float linear[3])
 {
     double width = bar_ems * layout->em;
-    const FigurePoint corner[] = {place(layout, from, 0), place(layout, from, width),
-                                  place(layout, to, width / 2)};
+    const FigurePoint corner[] = {page_point(layout, from, 0), page_point(layout, from, width),
+                                  page_point(layout, to, width / 2)};
     figure_add_shape(layout->page, corner, 3, figure_color(linear));
 }
 
-static void put_points(const LegendLayout *layout)
+static void put_pointed_ends(const LegendLayout *layout)
 {
     const FigureLegend *legend = layout->legend;
     double gap = 0.12 * layout->em, point = point_ems * layout->em;
     float color[3];
     if (legend->outside.below) {
         colorscale_at(legend->scale, -1, color);
-        put_point(layout, -gap, -gap - point, color);
+        put_pointed_end(layout, -gap, -gap - point, color);
     }
     if (legend->outside.above) {
         colorscale_at(legend->scale, 2, color);
-        put_point(layout, layout->length + gap, layout->length + gap + point, color);
+        put_pointed_end(layout, layout->length + gap, layout->length + gap + point, color);
     }
 }
 
@@ -248,10 +256,11 @@ static void put_ramp(const LegendLayout *layout)
         put_log_ticks(layout, ticks, n);
     else
         put_ticks(layout, ticks, along, n);
-    put_points(layout);
+    put_pointed_ends(layout);
 }
 
-/* Returns the value at the lower bound of an inner class. */
+/* Returns the value between class step - 1 and class `step`. Without bounds, step 0 and step
+ * `classes` give the ends of the range. */
 static double bound_of(const ColorScale *scale, int step)
 {
     if (scale->n_bounds)
@@ -260,8 +269,9 @@ static double bound_of(const ColorScale *scale, int step)
     return scale->log ? low * elementary_pow(high / low, part) : low + part * (high - low);
 }
 
-/* Adds classes of equal length, and numbers at the bounds between them as far as there is space; a
- * range also has numbers at its ends. */
+/* Adds classes as boxes of equal length, and numbers at the bounds between them. Bounds are skipped
+ * at equal intervals if there is too little space. A scale with a range also has numbers at its
+ * ends. */
 static void put_classes(const LegendLayout *layout)
 {
     const ColorScale *scale = layout->legend->scale;
@@ -284,7 +294,7 @@ static void put_classes(const LegendLayout *layout)
     }
     put_ticks(layout, values, along, n);
     if (!scale->n_bounds)
-        put_points(layout);
+        put_pointed_ends(layout);
 }
 
 static void put_swatch(const LegendLayout *layout, double from, const float linear[3],
@@ -295,9 +305,9 @@ static void put_swatch(const LegendLayout *layout, double from, const float line
     put_label(layout, from + side / 2, side + gap_ems * layout->em, label);
 }
 
-/* Adds a swatch for each integer of the range, the highest first, or as many as there are colors.
- * Returns the length of the bar. */
-static double put_counts(const LegendLayout *layout)
+/* Adds a swatch for each integer of the range, at most one per color. In a vertical legend the
+ * lowest integer is at the top. Returns the length of all swatches. */
+static double put_integers(const LegendLayout *layout)
 {
     const ColorScale *scale = layout->legend->scale;
     double first = scale->range[0], values = scale->range[1] - first + 1;
@@ -314,7 +324,8 @@ static double put_counts(const LegendLayout *layout)
     return n * pitch;
 }
 
-/* Adds a swatch for each listed value, the highest first. Returns the length of the bar. */
+/* Adds a swatch for each value of legend->swatches. In a vertical legend the first value is at the
+ * bottom. Returns the length of all swatches. */
 static double put_listed(const LegendLayout *layout)
 {
     const FigureLegend *legend = layout->legend;
@@ -346,8 +357,8 @@ static void put_none(const LegendLayout *layout)
     put_swatch(layout, legend->horizontal ? layout->length + beyond : -beyond, color, "no value");
 }
 
-/* Adds the title above everything else: one line, or the unit on a second line if the title is
- * wide. */
+/* Adds the title above the other items of the legend. If the title of a vertical bar is wide, its
+ * unit is put on a second line. */
 static void put_title(const LegendLayout *layout, size_t first)
 {
     const FigureLegend *legend = layout->legend;
@@ -376,7 +387,7 @@ void figure_add_legend(FigurePage *page, const FigureLegend *legend)
     if (legend->n_swatches > 0)
         layout.length = put_listed(&layout);
     else if (colorscale_selects_by_integer(legend->scale))
-        layout.length = put_counts(&layout);
+        layout.length = put_integers(&layout);
     else if (colorscale_steps(legend->scale))
         put_classes(&layout);
     else

@@ -1,6 +1,6 @@
-/* The items are an array in the order in which they are drawn. Each has the box that it covers. A
- * group of items can therefore be built anywhere, measured and moved, and items outside of a band
- * are skipped. */
+/* The items of a page are an array in drawing order. Each item stores its bounding box. A group of
+ * items can therefore be built at any position, measured and moved, and items outside a band are
+ * skipped. */
 #include "figure/fonts.h"
 #include "figure/items.h"
 
@@ -34,7 +34,7 @@ int figure_pixels(const FigurePage *page, double mm)
     return (int)lround(mm / MM_PER_INCH * page->dpi);
 }
 
-/* Appends an item. Returns NULL if memory runs out. */
+/* Appends an item and returns it. If memory runs out, marks the page as failed and returns NULL. */
 static FigureItem *add(FigurePage *page, FigureItem item)
 {
     if (mem_reserve(&page->items, &page->capacity, page->n + 1, sizeof item, "items", NULL) !=
@@ -131,7 +131,8 @@ void figure_add_artwork(FigurePage *page, const FigureArtwork *artwork, FigureBo
     add(page, (FigureItem){.kind = FIGURE_ARTWORK, .box = box, .artwork = artwork});
 }
 
-/* Appends the item of a line with these glyphs. Takes `chars`, also on failure. */
+/* Appends the item of a line of text. `glyphs` is the layout of `chars`. Takes ownership of
+ * `chars`, also on failure. */
 static void add_line_of_text(FigurePage *page, const FigureText *text, char *chars,
                              const Glyphs *glyphs)
 {
@@ -196,7 +197,7 @@ void figure_set_halo(FigurePage *page, size_t item, double width_mm, FigureColor
     page->items[item].halo = color;
 }
 
-/* Returns the halo of an item as an item of its own: the text outlined, or a larger box. */
+/* Returns the halo of an item as a separate item: the text with an outline, or a larger box. */
 static FigureItem halo_of(const FigureItem *item)
 {
     FigureItem halo = *item;

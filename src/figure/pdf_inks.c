@@ -1,7 +1,7 @@
 /* cairo writes a PDF as a list of objects and a table of their offsets, without object streams.
- * Colors are in three places: the operators rg and RG of content streams, the codes of images, and
- * the ends C0 and C1 of the functions of gradients. Each object is copied with its colors replaced,
- * and the table is written again. */
+ * Three constructs contain colors: the operators rg and RG of content streams, the pixels of
+ * images, and the entries C0 and C1 of the functions of gradients. Each object is copied with its
+ * colors converted, and a new table is written. */
 #include "figure/pdf_inks.h"
 
 #include <ctype.h>
@@ -14,7 +14,7 @@
 /* The file that is converted. */
 typedef struct PdfFile {
     const Inks *inks;
-    const char *pdf; /* followed by a zero byte, as all bytes below */
+    const char *pdf; /* terminated by a zero byte, as all strings below */
     size_t length;
     Text out;
 } PdfFile;
@@ -26,7 +26,7 @@ static Status broken(const char *what, Err *err)
 
 /* ---- colors ---------------------------------------------------------------------------------- */
 
-/* Appends the inks of a color, four numbers. */
+/* Appends the inks of a color as four numbers. With `black_alone`, black becomes black ink only. */
 static void put_inks(const PdfFile *file, const double rgb[3], bool black_alone, Text *out)
 {
     uint8_t codes[3], cmyk[4];
@@ -40,7 +40,7 @@ static void put_inks(const PdfFile *file, const double rgb[3], bool black_alone,
             text_printf(out, c ? " %.4g" : "%.4g", cmyk[c] / 255.0);
 }
 
-/* Returns the position behind a string in parentheses, which begins at `at`. */
+/* Returns the position after a string in parentheses that begins at `at`. */
 static const char *skip_string(const char *at)
 {
     int depth = 0;
@@ -51,8 +51,8 @@ static const char *skip_string(const char *at)
     return at;
 }
 
-/* Appends a content stream with its operators rg and RG replaced by k and K. Strings are copied:
- * a text may have the letters of an operator. */
+/* Appends a content stream with its operators rg and RG replaced by k and K. Strings are copied
+ * unchanged, because a text may contain the letters of an operator. */
 static void put_content(const PdfFile *file, const char *content, Text *out)
 {
     const char *copied = content, *number[3] = {0};
@@ -81,7 +81,8 @@ static void put_content(const PdfFile *file, const char *content, Text *out)
     text_puts(out, copied);
 }
 
-/* Appends the dictionary of an object, `length` bytes, with three colors as four. */
+/* Appends the dictionary of an object, `length` bytes, with its RGB colors and color spaces
+ * replaced by CMYK. */
 static void put_dictionary(const PdfFile *file, const char *at, size_t length, Text *out)
 {
     static const char rgb_space[] = "/DeviceRGB", jpeg_filter[] = "/DCTDecode";
@@ -92,7 +93,7 @@ static void put_dictionary(const PdfFile *file, const char *at, size_t length, T
             text_puts(out, "/DeviceCMYK");
             at += sizeof rgb_space - 1;
         } else if (strncmp(at, jpeg_filter, sizeof jpeg_filter - 1) == 0) {
-            text_puts(out, "/FlateDecode"); /* what put_deflated writes */
+            text_puts(out, "/FlateDecode"); /* put_deflated writes this compression */
             at += sizeof jpeg_filter - 1;
         } else if ((strncmp(at, "/C0 [", 5) == 0 || strncmp(at, "/C1 [", 5) == 0) &&
                    sscanf(at + 5, "%lf %lf %lf ]%n", &rgb[0], &rgb[1], &rgb[2], &taken) == 3 &&
@@ -140,7 +141,8 @@ static Status put_deflated(const char *bytes, size_t n, Text *out, Err *err)
     return failed == Z_OK ? text_check(out, err) : mem_out_of("for", "the page", err);
 }
 
-/* Converts the codes of an image, or the operators of a content. */
+/* Appends the converted content of a stream, deflated: the pixels of an image, or the operators of
+ * a content stream. */
 static Status put_colors(const PdfFile *file, bool image, const char *bytes, size_t size,
                          Text *packed, Err *err)
 {
@@ -168,7 +170,7 @@ static bool has(const char *from, const char *to, const char *word)
     return found != NULL;
 }
 
-/* Sets *out to the codes of a JPEG, which have three channels. */
+/* Decodes a JPEG to 8-bit codes of three channels. The caller frees *out. */
 static Status decode_jpeg(const char *from, size_t n, char **out, size_t *size, Err *err)
 {
     Picture picture;
@@ -182,7 +184,7 @@ static Status decode_jpeg(const char *from, size_t n, char **out, size_t *size, 
     return STATUS_OK;
 }
 
-/* Appends a stream with its colors converted, and a dictionary that states its new length. */
+/* Appends a stream with its colors converted, preceded by its dictionary with the new length. */
 static Status put_stream(PdfFile *file, const char *dictionary, const char *stream, const char *end,
                          Err *err)
 {
@@ -211,7 +213,8 @@ done:
 
 /* ---- objects --------------------------------------------------------------------------------- */
 
-/* Appends what follows "N 0 obj\n", up to `end`. Fonts and images of other colors stay. */
+/* Appends the body of an object, which ends at `end`. Fonts, and images that are not RGB, are
+ * copied unchanged. */
 static Status put_object(PdfFile *file, const char *body, const char *end, Err *err)
 {
     const char *stream = memmem(body, (size_t)(end - body), "stream\n", strlen("stream\n"));
@@ -234,7 +237,7 @@ static Status put_object(PdfFile *file, const char *body, const char *end, Err *
     return STATUS_OK;
 }
 
-/* Appends the profile as object `number`, and returns where it begins. */
+/* Appends the output profile as object `number`. Sets *offset to its offset in the new file. */
 static Status put_profile(PdfFile *file, size_t number, size_t *offset, Err *err)
 {
     size_t size;
@@ -283,7 +286,7 @@ static Status put_objects(PdfFile *file, PdfObject *object, size_t n, Err *err)
     return put_profile(file, n, &object[n].to, err);
 }
 
-/* Appends the table of offsets, and the end of the file with the document's catalog. */
+/* Appends the table of offsets and the trailer, which refers to the document's catalog. */
 static void put_table(PdfFile *file, const PdfObject *object, size_t n, const char *trailer)
 {
     const size_t at = file->out.length;

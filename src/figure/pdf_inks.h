@@ -1,19 +1,20 @@
-/* Converts the colors of a PDF that cairo has written to inks. Private to the module figure. */
+/* Converts the colors of a PDF from sRGB to inks. The PDF must have been written by cairo. Private
+ * to the module figure. */
 #ifndef CORCAST_FIGURE_PDF_INKS_H
 #define CORCAST_FIGURE_PDF_INKS_H
 
 #include "figure/figure.h"
 
-/* Replaces a PDF of cairo's by the PDF with the same page in CMYK.
+/* Replaces a PDF by a PDF that has the same page in CMYK.
  *
  * Black of sRGB becomes black ink alone, so that letters and lines have no fringes of other inks.
  * All other colors, gradients and pictures are converted by the profile, which becomes the output
  * intent of the file.
  *
- * inks     of 8 bits.
+ * inks     the output profile, for codes of 8 bits.
  * pdf      receives the result; unchanged after an error.
- * Errors   STATUS_INPUT if the page holds a JPEG that cannot be read; STATUS_IO if the
- *          file is not as cairo 1.16 writes it; STATUS_MEMORY. */
+ * Errors   STATUS_INPUT if the page holds a JPEG that cannot be read; STATUS_IO if the file is not
+ *          as cairo 1.16 writes it; STATUS_MEMORY. */
 MUST_CHECK Status pdf_to_inks(const Inks *inks, Text *pdf, Err *err);
 
 #endif

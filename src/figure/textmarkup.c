@@ -1,6 +1,6 @@
-/* The reader never fails and never looks back: an unclosed group ends with the line, and a star
- * that no other star matches is a star. Characters of Unicode that are superscripts or subscripts
- * are read as groups of one ordinary character, so that 10⁻³ and 10^{-3} look the same. */
+/* Every text is valid markup. A group that is not closed ends at the end of the line, and a star
+ * without a matching star is drawn as a star. Superscript and subscript characters of Unicode are
+ * read as groups of one ordinary character, so that 10⁻³ and 10^{-3} look the same. */
 #include "figure/textmarkup.h"
 
 #include "base/base.h"
@@ -9,15 +9,16 @@
 #include <stddef.h>
 #include <string.h>
 
-/* Size of a superscript or subscript, and its distance from the line, as multiples of the size of
- * the text around it. The top of a raised capital is then slightly above the text's capitals. The
- * script of a script is not drawn below half of the font size, which at 7 pt is hardly readable. */
+/* Size of a superscript or subscript, and its distance from the baseline, as multiples of the size
+ * of the surrounding text. The values put the top of a raised capital slightly above the text's
+ * capitals. A nested script is not smaller than half of the font size, which at 7 pt is hardly
+ * readable. */
 static const double script_scale = 0.7, raised_by = 0.34, lowered_by = -0.16, least_scale = 0.5;
 
 enum { MINUS = 0x2212 };
 
-/* Unicode's superscripts and subscripts: `plain` has the ordinary characters of the letters from
- * `first` on; '-' stands for a minus, ' ' for a letter that is drawn as it is. */
+/* Superscript and subscript characters of Unicode: plain[i] is the ordinary character of the
+ * character first + i. '-' stands for a minus; ' ' marks a character that is drawn as it is. */
 static const struct ScriptLetters {
     uint32_t first;
     bool raised;
@@ -33,14 +34,15 @@ static const struct ScriptLetters {
 
 enum { SCRIPTS = sizeof scripts / sizeof *scripts };
 
-/* Scales and moves a letter as the group of a superscript or subscript does. */
+/* Applies the size and position of a superscript or subscript to those of the surrounding text. */
 static void apply_script(bool raised, double *scale, double *rise)
 {
     *rise += *scale * (raised ? raised_by : lowered_by);
     *scale = fmax(*scale * script_scale, least_scale);
 }
 
-/* Draws a superscript or subscript of Unicode as its ordinary character. */
+/* Replaces a superscript or subscript character of Unicode by its ordinary character in that
+ * style. */
 static void draw_plainly(StyledLetter *letter)
 {
     for (size_t i = 0; i < SCRIPTS; i++) {
@@ -54,8 +56,9 @@ static void draw_plainly(StyledLetter *letter)
     }
 }
 
-/* Returns Unicode's superscript or subscript of a digit or sign; the character itself if there is
- * none. Letters have few, and words made of them are not found by searching. */
+/* Returns the superscript or subscript character of Unicode for a digit or sign; the character
+ * itself if there is none. Letters are not replaced: Unicode has few such letters, and a search
+ * would not find words that contain them. */
 static uint32_t script_of(uint32_t drawn, bool raised)
 {
     const char plain = drawn == MINUS ? '-' : drawn < 0x80 ? (char)drawn : ' ';
@@ -74,8 +77,8 @@ static bool is_blank(char c)
     return c == ' ' || c == '\0';
 }
 
-/* Returns true if a later star ends the italic part that the star at `at` would begin: one after a
- * character that is no blank. */
+/* Returns true if a later star can end the italic part that the star at `at` would begin. Such a
+ * star follows a character that is not a blank. */
 static bool has_closing_star(const char *at)
 {
     for (const char *c = at + 1; *c; c++)
@@ -100,7 +103,7 @@ static bool turns_italic(MarkupReader *reader)
 
 /* ---- groups ---------------------------------------------------------------------------------- */
 
-/* Returns the group that the next character is in. */
+/* Returns the style of the innermost open group. */
 static MarkupGroup current_group(const MarkupReader *reader)
 {
     if (reader->depth == 0)
@@ -118,7 +121,8 @@ static void open_group(MarkupReader *reader, bool raised)
     reader->begins = true;
 }
 
-/* Reads the markup at the start of the rest. Returns false if a character begins there. */
+/* Skips one mark at reader->at, and updates the style. Returns false if there is an ordinary
+ * character. */
 static bool read_mark(MarkupReader *reader)
 {
     const char *at = reader->at;
@@ -138,7 +142,7 @@ static bool read_mark(MarkupReader *reader)
     return true;
 }
 
-/* Reads a character of UTF-8, or a byte that is not part of one as U+FFFD. */
+/* Reads a character of UTF-8. A byte that is not part of a valid character is read as U+FFFD. */
 static uint32_t take_character(MarkupReader *reader)
 {
     static const unsigned char firsts[] = {0, 0x7f, 0x1f, 0x0f, 0x07};

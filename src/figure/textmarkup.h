@@ -9,10 +9,11 @@
 /* A character and the style in which it is drawn. */
 typedef struct StyledLetter {
     uint32_t drawn;  /* the character whose glyph is drawn: '9' for a superscript nine */
-    uint32_t letter; /* the character that stands in the text of a PDF: U+2079 */
+    uint32_t letter; /* the character in the text of a PDF: U+2079 */
     bool italic;
     double scale; /* size of the glyph as a multiple of the font size */
-    double rise;  /* height of its baseline above the line's, as a multiple of the font size */
+    double rise;  /* height of its baseline above the line's baseline, as a multiple of the font
+                   * size */
 } StyledLetter;
 
 /* The style of a group, as in StyledLetter. */
@@ -20,7 +21,7 @@ typedef struct MarkupGroup {
     double scale, rise;
 } MarkupGroup;
 
-/* Groups inside groups. A group nested deeper has the style of the group around it. */
+/* Maximum depth of nested groups. A group nested deeper has the style of the group around it. */
 enum { MARKUP_DEPTH = 8 };
 
 /* The state of reading a line. Initialise with {.at = text}; the text is borrowed. */

@@ -1,6 +1,7 @@
-/* Round numbers are 1, 2 and 5 times powers of ten. A logarithmic scale of two or more powers of
- * ten has these powers, or every second, third, ... of them. One of less has 1, 2 and 5 times the
- * powers. Where that leaves fewer than two ticks, they are equidistant as on a linear scale. */
+/* Round numbers are 1, 2 and 5 times powers of ten. A logarithmic scale over two or more powers of
+ * ten has ticks at the powers, or at every second, third, ... power. A shorter logarithmic scale
+ * has ticks at 1, 2 and 5 times the powers. If fewer than two such ticks are in the range, the
+ * ticks are equidistant, as on a linear scale. */
 #include "figure/figure.h"
 
 #include <math.h>
@@ -16,7 +17,7 @@ static double round_step(double least)
     return 10 * power;
 }
 
-static int even(const double range[2], int wanted, bool integers, double ticks[FIGURE_TICKS])
+static int equidistant(const double range[2], int wanted, bool integers, double ticks[FIGURE_TICKS])
 {
     double step = round_step((range[1] - range[0]) / wanted), slack = 1e-9 * (range[1] - range[0]);
     int n = 0;
@@ -24,11 +25,12 @@ static int even(const double range[2], int wanted, bool integers, double ticks[F
         step = fmax(step, 1);
     for (double k = ceil((range[0] - slack) / step); k * step <= range[1] + slack; k++)
         if (n < FIGURE_TICKS)
-            ticks[n++] = k * step + 0; /* never -0 */
+            ticks[n++] = k * step + 0; /* converts -0 to 0 */
     return n;
 }
 
-/* Stores `digits` ticks per power of ten: 1 in every `apart`-th power, or 1, 2, 5 in each. */
+/* Stores ticks at the first `digits` of 1, 2, 5 times every `apart`-th power of ten. Returns their
+ * count. */
 static int powers(const double range[2], int apart, int digits, double ticks[FIGURE_TICKS])
 {
     static const double digit[] = {1, 2, 5};
@@ -53,9 +55,9 @@ int figure_ticks(const ColorScale *scale, int wanted, bool integers, double tick
         return 1;
     }
     if (!scale->log)
-        return even(range, wanted, integers, ticks);
+        return equidistant(range, wanted, integers, ticks);
     double decades = elementary_log10(range[1] / range[0]);
     int n = decades >= 2 ? powers(range, (int)ceil(decades / wanted), 1, ticks)
                          : powers(range, 1, 3, ticks);
-    return n >= 2 ? n : even(range, wanted, integers, ticks);
+    return n >= 2 ? n : equidistant(range, wanted, integers, ticks);
 }

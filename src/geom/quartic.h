@@ -7,7 +7,7 @@
  *
  * b        Bernstein coefficients of the quartic on the interval.
  * roots    receives the roots. Two roots closer than 2^-32 of the interval's length, where the
- * graph only touches zero, are left out. */
+ *          graph only touches zero, are left out. */
 int quartic_roots(const double b[5], double low, double high, double roots[4]);
 
 #endif

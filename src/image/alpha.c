@@ -1,6 +1,7 @@
-/* Decoders leave alpha as the last channel. This file handles it for all formats. As in PNG and
- * OpenEXR, codes are not multiplied by alpha and floats are. Images are composited over a
- * background in linear light, since light adds up. */
+/* Handles the alpha channel of decoded images, for all formats. Decoders leave alpha as the last
+ * channel. The colors of a Picture are not multiplied by alpha, as in PNG. The colors of a Plane
+ * are multiplied by alpha, as in OpenEXR. Compositing is done in linear light, because only linear
+ * values add as light does. */
 #include "image/formats.h"
 
 static int channels_of(const Image *image)
@@ -57,7 +58,7 @@ static void drop_alpha(Image *image)
     *(image->plane.values ? &image->plane.channels : &picture->channels) = (int)kept;
 }
 
-static void take_opacity(Image *image)
+static void make_mask(Image *image)
 {
     Picture *picture = &image->picture;
     size_t samples = (size_t)picture->channels;
@@ -67,7 +68,7 @@ static void take_opacity(Image *image)
     drop_alpha(image);
 }
 
-/* Makes grey and alpha red, green, blue and alpha. */
+/* Converts a picture from 2 channels (grey, alpha) to 4 channels (red, green, blue, alpha). */
 static Status widen_grey(Picture *picture, Err *err)
 {
     Picture wide;
@@ -97,7 +98,7 @@ Status image_apply_alpha(Image *image, ImageAlpha alpha, const char *name, Err *
     if (opaque == pixels_of(image))
         drop_alpha(image);
     else if (alpha == ALPHA_IS_MASK && image->picture.width > 0)
-        take_opacity(image);
+        make_mask(image);
     else if (alpha != ALPHA_KEPT)
         return refuse(image, opaque, name, err);
     else if (channels_of(image) == 2 && image->picture.width > 0)
@@ -107,20 +108,21 @@ Status image_apply_alpha(Image *image, ImageAlpha alpha, const char *name, Err *
 
 /* ---- backgrounds ----------------------------------------------------------------------------- */
 
-static Status lay_plane(const Plane *plane, const float background[3], Plane *laid, Err *err)
+static Status composite_plane(const Plane *plane, const float background[3], Plane *composited,
+                              Err *err)
 {
     const size_t samples = (size_t)plane->channels;
-    TRY(plane_init(laid, plane->width, plane->height, 3, err));
+    TRY(plane_init(composited, plane->width, plane->height, 3, err));
     for (size_t i = 0; i < (size_t)plane->width * (size_t)plane->height; i++) {
         const float *pixel = plane->values + i * samples;
         for (size_t c = 0; c < 3; c++)
-            laid->values[3 * i + c] =
+            composited->values[3 * i + c] =
                 pixel[samples == 2 ? 0 : c] + (1 - pixel[samples - 1]) * background[c];
     }
     return STATUS_OK;
 }
 
-/* Makes a plane of linear colors, multiplied by alpha. */
+/* Decodes a picture of 4 channels to linear colors and multiplies the colors by alpha. */
 static Status multiply(const Image *image, Plane *plane, Err *err)
 {
     TRY(plane_from_picture(plane, &image->picture, err));
@@ -133,17 +135,17 @@ static Status multiply(const Image *image, Plane *plane, Err *err)
     return STATUS_OK;
 }
 
-static Status lay_picture(Image *image, const float background[3], Err *err)
+static Status composite_picture(Image *image, const float background[3], Err *err)
 {
-    Plane plane, laid = {0};
+    Plane plane, composited = {0};
     Picture made = {0};
     Encoding encoding = image->picture.gamma == 1 ? ENCODING_LINEAR : ENCODING_SRGB;
     TRY(multiply(image, &plane, err));
-    Status status = lay_plane(&plane, background, &laid, err);
+    Status status = composite_plane(&plane, background, &composited, err);
     plane_release(&plane);
     if (status == STATUS_OK)
-        status = picture_from_plane(&made, &laid, encoding, image->picture.bits, err);
-    plane_release(&laid);
+        status = picture_from_plane(&made, &composited, encoding, image->picture.bits, err);
+    plane_release(&composited);
     TRY(status);
     image->transparent = image->picture;
     image->picture = made;
@@ -152,13 +154,13 @@ static Status lay_picture(Image *image, const float background[3], Err *err)
 
 Status image_composite(Image *image, const float background[3], Err *err)
 {
-    Plane laid;
+    Plane composited;
     if (!has_alpha(image))
         return STATUS_OK;
     if (!image->plane.values)
-        return lay_picture(image, background, err);
-    TRY(lay_plane(&image->plane, background, &laid, err));
+        return composite_picture(image, background, err);
+    TRY(composite_plane(&image->plane, background, &composited, err));
     plane_release(&image->plane);
-    image->plane = laid;
+    image->plane = composited;
     return STATUS_OK;
 }

@@ -1,6 +1,6 @@
 /* A color map is a text file with one color per line. The colors are equidistant from 0 to 1.
- * Between them the encoded values are interpolated, as the authors of the maps intended, and then
- * decoded. */
+ * Colors between them are interpolated as sRGB values, as the authors of the maps intended, and
+ * then decoded to linear RGB. */
 #include "image/image.h"
 
 #include <math.h>
@@ -15,7 +15,7 @@ static bool is_separate(const char *line)
            line[length + strspn(line + length, " \t\r")] == '\0';
 }
 
-/* Reads one line: a color, a blank line, a comment, or the kind of the map. */
+/* Reads one line: a color, a blank line, a comment, or the word `separate`. */
 static Status take_line(Colormap *map, size_t *capacity, const char *line, Err *err)
 {
     double c[3];

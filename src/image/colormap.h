@@ -1,6 +1,6 @@
-/* Color maps: lists of colors, read from files, to which numbers are mapped. Included by the public
- * header image.h. A color map knows only fractions from 0 to 1; a color scale [colorscale.h] maps
- * the values of a quantity to these fractions. */
+/* Color maps: lists of colors that are read from files. Included by the public header image.h. A
+ * color map assigns a color to each fraction from 0 to 1. A color scale [colorscale.h] maps the
+ * values of a quantity to these fractions. */
 #ifndef CORCAST_IMAGE_COLORMAP_H
 #define CORCAST_IMAGE_COLORMAP_H
 
@@ -14,8 +14,9 @@ typedef struct Colormap {
 
 /* Reads a color map from a file with one color per line: "red green blue" in sRGB, from 0 to 1. A
  * line that starts with '#' is a comment. A line `separate` before the first color sets
- * map->separate. Release *map with colormap_release. Errors: STATUS_INPUT, with file and line, for
- * any other line and for fewer than 2 colors; STATUS_MEMORY. */
+ * map->separate. *map is set on success only; release it with colormap_release. Errors:
+ * STATUS_INPUT, with file and line, for any other line and for fewer than 2 colors;
+ * STATUS_MEMORY. */
 MUST_CHECK Status colormap_read(Colormap *map, const char *path, Err *err);
 void colormap_release(Colormap *map);
 
@@ -24,7 +25,8 @@ void colormap_release(Colormap *map);
  * middle grey. */
 void colormap_linear(const Colormap *map, double fraction, float rgb[3]);
 
-/* Copies the color, in linear RGB, with the index `number` modulo the number of colors. */
+/* Computes color `number` modulo the number of colors, in linear RGB. Color 0 is the first
+ * color. */
 void colormap_color(const Colormap *map, size_t number, float rgb[3]);
 
 #endif

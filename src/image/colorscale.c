@@ -6,14 +6,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Returns the value or its logarithm; NAN if the scale cannot show it. */
+/* Returns the value, or its natural logarithm if the scale is logarithmic; NAN if the scale cannot
+ * show the value. */
 static double scaled(const ColorScale *scale, double value)
 {
     return scale->log ? (value > 0 ? elementary_log(value) : (double)NAN) : value;
 }
 
-/* Returns true if the value may set the ends of the range. */
-static bool counts(const ColorScale *scale, double value)
+/* Returns true if colorscale_fit and colorscale_percentiles use the value. */
+static bool can_show(const ColorScale *scale, double value)
 {
     return isfinite(scaled(scale, value));
 }
@@ -22,7 +23,7 @@ bool colorscale_fit(ColorScale *scale, const double *values, size_t n)
 {
     double low = INFINITY, high = -INFINITY;
     for (size_t i = 0; i < n; i++) {
-        if (!counts(scale, values[i]))
+        if (!can_show(scale, values[i]))
             continue;
         low = fmin(low, values[i]);
         high = fmax(high, values[i]);
@@ -38,9 +39,9 @@ static double percentile(const double *sorted, size_t n, double percent)
 {
     if (n == 0)
         return (double)NAN;
-    double place = percent / 100 * (double)(n - 1);
-    size_t low = (size_t)place, next = low + 1 < n ? low + 1 : low;
-    return sorted[low] + (sorted[next] - sorted[low]) * (place - (double)low);
+    double position = percent / 100 * (double)(n - 1);
+    size_t low = (size_t)position, next = low + 1 < n ? low + 1 : low;
+    return sorted[low] + (sorted[next] - sorted[low]) * (position - (double)low);
 }
 
 Status colorscale_percentiles(const ColorScale *scale, const double *values, size_t n,
@@ -50,7 +51,7 @@ Status colorscale_percentiles(const ColorScale *scale, const double *values, siz
     size_t count = 0;
     TRY(mem_calloc(&sorted, n, sizeof *sorted, "values", err));
     for (size_t i = 0; i < n; i++)
-        if (counts(scale, values[i]))
+        if (can_show(scale, values[i]))
             sorted[count++] = values[i];
     sort_numbers(sorted, count);
     for (int end = 0; end < 2; end++)
@@ -66,8 +67,9 @@ double colorscale_position(const ColorScale *scale, double value)
     return width > 0 ? above / width : above + 0.5;
 }
 
-/* Large compared with the rounding of a mean of positions, about 1e-15, and too small to be
- * visible. Positions in a range without width have the unit of the value. */
+/* The tolerance is large compared with the rounding error of a mean of positions, about 1e-15, and
+ * too small to be visible. A range of width 0 cannot be normalised: its positions have the unit of
+ * the value, or of its logarithm, and the tolerance is relative to that. */
 double colorscale_tolerance(const ColorScale *scale)
 {
     const double part = 1e-6;
@@ -90,26 +92,27 @@ double colorscale_highest(const ColorScale *scale)
                            : 1 + colorscale_tolerance(scale);
 }
 
-static bool is_below(const ColorScale *scale, double place)
+static bool is_below(const ColorScale *scale, double position)
 {
-    return place < colorscale_lowest(scale);
+    return position < colorscale_lowest(scale);
 }
 
-/* A value on a bound belongs to the class above. */
-static bool is_above(const ColorScale *scale, double place)
+/* With bounds, a position on the highest bound is above, because a bound belongs to the class above
+ * it. Without bounds, the upper end of the range is still in the range. */
+static bool is_above(const ColorScale *scale, double position)
 {
     double highest = colorscale_highest(scale);
-    return scale->n_bounds ? place >= highest : place > highest;
+    return scale->n_bounds ? position >= highest : position > highest;
 }
 
 ScaleOutside colorscale_outside(const ColorScale *scale, const double *values, size_t n)
 {
     ScaleOutside outside = {0};
     for (size_t i = 0; i < n; i++) {
-        double place = colorscale_position(scale, values[i]);
-        outside.none += isnan(place);
-        outside.below += is_below(scale, place);
-        outside.above += is_above(scale, place);
+        double position = colorscale_position(scale, values[i]);
+        outside.none += isnan(position);
+        outside.below += is_below(scale, position);
+        outside.above += is_above(scale, position);
     }
     return outside;
 }
@@ -136,80 +139,84 @@ void colorscale_step_color(const ColorScale *scale, int step, float rgb[3])
         colormap_linear(&scale->map, (double)step / (colorscale_steps(scale) - 1), rgb);
 }
 
-/* Returns the step of a place on a scale that has classes or bounds. */
-static int step_at(const ColorScale *scale, double place)
+/* Returns the index of the class of a position on a scale that has classes or bounds. */
+static int step_at(const ColorScale *scale, double position)
 {
     int step = 0;
     if (!scale->n_bounds) {
-        double part = place + colorscale_tolerance(scale);
+        double part = position + colorscale_tolerance(scale);
         return (int)fmin(fmax(floor(part * scale->classes), 0), scale->classes - 1);
     }
-    while (step < scale->n_bounds && colorscale_bound(scale, step) <= place)
+    while (step < scale->n_bounds && colorscale_bound(scale, step) <= position)
         step++;
     return step;
 }
 
-/* Returns the special color of a position; NULL if it has none. */
-static const ScaleColor *own_color(const ColorScale *scale, double place)
+/* Returns the color `under`, `over` or `none` that applies at a position; NULL if none of them
+ * applies or the scale does not specify it. */
+static const ScaleColor *special_color(const ColorScale *scale, double position)
 {
-    const ScaleColor *own = isnan(place)             ? &scale->none
-                            : is_below(scale, place) ? &scale->under
-                            : is_above(scale, place) ? &scale->over
-                                                     : NULL;
+    const ScaleColor *own = isnan(position)             ? &scale->none
+                            : is_below(scale, position) ? &scale->under
+                            : is_above(scale, position) ? &scale->over
+                                                        : NULL;
     return own && own->given ? own : NULL;
 }
 
-/* Returns true, and stores the color, if the position has a special color or is on a step. */
-static bool take_step(const ColorScale *scale, double place, float rgb[3])
+/* Returns true, and stores the color, if the position has a special color or the scale has
+ * classes. */
+static bool take_step(const ColorScale *scale, double position, float rgb[3])
 {
-    const ScaleColor *own = own_color(scale, place);
+    const ScaleColor *own = special_color(scale, position);
     if (own) {
         memcpy(rgb, own->rgb, sizeof own->rgb);
         return true;
     }
-    if (isnan(place) || (!scale->n_bounds && scale->classes < 2))
+    if (isnan(position) || (!scale->n_bounds && scale->classes < 2))
         return false;
-    colorscale_step_color(scale, step_at(scale, place), rgb);
+    colorscale_step_color(scale, step_at(scale, position), rgb);
     return true;
 }
 
-void colorscale_at(const ColorScale *scale, double place, float rgb[3])
+void colorscale_at(const ColorScale *scale, double position, float rgb[3])
 {
-    if (!take_step(scale, place, rgb))
-        colormap_linear(&scale->map, place, rgb);
+    if (!take_step(scale, position, rgb))
+        colormap_linear(&scale->map, position, rgb);
 }
 
 void colorramp_init(ColorRamp *ramp, const Colormap *map)
 {
     for (int i = 0; i < COLORRAMP_ENTRIES; i++) {
-        double place = i / (COLORRAMP_ENTRIES - 1.0);
-        ramp->position[i] = (float)place;
-        colormap_linear(map, place, ramp->rgb[i]);
+        double position = i / (COLORRAMP_ENTRIES - 1.0);
+        ramp->position[i] = (float)position;
+        colormap_linear(map, position, ramp->rgb[i]);
     }
 }
 
-void colorscale_on_ramp(const ColorScale *scale, const ColorRamp *ramp, double place, float rgb[3])
+void colorscale_on_ramp(const ColorScale *scale, const ColorRamp *ramp, double position,
+                        float rgb[3])
 {
-    if (take_step(scale, place, rgb))
+    if (take_step(scale, position, rgb))
         return;
-    if (isnan(place)) {
-        colormap_linear(&scale->map, place, rgb);
+    if (isnan(position)) {
+        colormap_linear(&scale->map, position, rgb);
         return;
     }
-    place = fmin(fmax(place, 0), 1);
-    int i = (int)(place * (COLORRAMP_ENTRIES - 1));
-    i -= i > 0 && place <= (double)ramp->position[i];
+    position = fmin(fmax(position, 0), 1);
+    int i = (int)(position * (COLORRAMP_ENTRIES - 1));
+    i -= i > 0 && position <= (double)ramp->position[i];
     i = i < COLORRAMP_ENTRIES - 2 ? i : COLORRAMP_ENTRIES - 2;
     double low = (double)ramp->position[i],
-           part = (place - low) / ((double)ramp->position[i + 1] - low);
+           part = (position - low) / ((double)ramp->position[i + 1] - low);
     for (int c = 0; c < 3; c++) {
         double a = (double)ramp->rgb[i][c], b = (double)ramp->rgb[i + 1][c];
         rgb[c] = (float)(a + part * (b - a));
     }
 }
 
-/* Returns the step of a value on a separate map. */
-static size_t number_of(const ColorScale *scale, double value)
+/* Returns the index of the color that the integer below `value` selects on a separate map: 1
+ * selects color 0. Returns 0 if `value` is not finite. */
+static size_t color_of_integer(const ColorScale *scale, double value)
 {
     double n = (double)scale->map.n, number = fmod(floor(value) - 1, n);
     return isfinite(number) ? (size_t)(number < 0 ? number + n : number) : 0;
@@ -217,14 +224,15 @@ static size_t number_of(const ColorScale *scale, double value)
 
 void colorscale_linear(const ColorScale *scale, double value, float rgb[3])
 {
-    double place = colorscale_position(scale, value);
-    if (colorscale_selects_by_integer(scale) && !isnan(place) && !own_color(scale, place))
-        colormap_color(&scale->map, number_of(scale, value), rgb);
+    double position = colorscale_position(scale, value);
+    if (colorscale_selects_by_integer(scale) && !isnan(position) && !special_color(scale, position))
+        colormap_color(&scale->map, color_of_integer(scale, value), rgb);
     else
-        colorscale_at(scale, place, rgb);
+        colorscale_at(scale, position, rgb);
 }
 
-/* Appends a value with three digits, zeros included, or as an integer if it is one. */
+/* Appends a value with three significant digits, including trailing zeros; an integer without
+ * decimals. */
 static void put_short(Text *text, double value)
 {
     const double size = fabs(value);

@@ -3,8 +3,9 @@
  *
  * A scale maps a value in two steps. colorscale_position maps the value to a position: 0 and 1 are
  * the ends of the range. colorscale_at maps the position to a color, in linear RGB. There are three
- * kinds of scales: continuous; with classes, each of one color; and scales whose values are
- * integers that select the colors of a separate map in turn [colorscale_selects_by_integer]. */
+ * kinds of scales. A continuous scale interpolates colors. A scale with classes has one color per
+ * class. On a scale with a separate map and without classes, integers select the colors of the map
+ * [colorscale_selects_by_integer]. */
 #ifndef CORCAST_IMAGE_COLORSCALE_H
 #define CORCAST_IMAGE_COLORSCALE_H
 
@@ -39,14 +40,15 @@ typedef struct ColorScale {
  * for values outside the range. Returns 0.5 at the value of a range without width. Returns NAN for
  * a value that cannot be shown: NAN and, with `log`, values not above 0. */
 double colorscale_position(const ColorScale *scale, double value);
-/* Returns the tolerance of positions: a position this far below a bound of two classes is on the
- * bound, and one this far outside the range is in the range. A mean of positions that are all on a
- * bound may be rounded to either side, so every comparison with a bound allows for it. */
+/* Returns the tolerance of positions. A position at most this far below a bound of two classes
+ * counts as on the bound. A position at most this far outside the range counts as in the range. The
+ * reason is that a mean of positions that are all on a bound may be rounded to either side. */
 double colorscale_tolerance(const ColorScale *scale);
-/* Returns the position where the class above bounds[i] begins, slack included. */
+/* Returns the position where the class above bounds[i] begins: the position of the bound less the
+ * tolerance. */
 double colorscale_bound(const ColorScale *scale, int i);
-/* Return the positions between which values have neither the color `under` nor the color `over`.
- * Both include the slack. */
+/* Return the ends of the interval of positions that have neither the color `under` nor the color
+ * `over`. The interval includes the tolerance. */
 double colorscale_lowest(const ColorScale *scale);
 double colorscale_highest(const ColorScale *scale);
 
@@ -54,9 +56,9 @@ double colorscale_highest(const ColorScale *scale);
  * are finite and, with `log`, above 0. Returns false, and sets nothing, if there are none. */
 bool colorscale_fit(ColorScale *scale, const double *values, size_t n);
 
-/* Computes two percentiles, percent[k] in 0 .. 100, of the values that the scale can show,
- * interpolated between neighbours; NAN if it can show none. Errors: STATUS_MEMORY. Cost:
- * O(n log n). */
+/* Computes two percentiles of the values that the scale can show. out[k] is the percentile
+ * percent[k], 0 to 100, interpolated linearly between the neighbouring values. Both are NAN if the
+ * scale can show none of the values. Errors: STATUS_MEMORY. Cost: O(n log n). */
 MUST_CHECK Status colorscale_percentiles(const ColorScale *scale, const double *values, size_t n,
                                          const double percent[2], double out[2], Err *err);
 
@@ -66,21 +68,21 @@ typedef struct ScaleOutside {
 } ScaleOutside;
 ScaleOutside colorscale_outside(const ColorScale *scale, const double *values, size_t n);
 
-/* Returns the number of separate colors of the scale, which its bounds, its classes or a separate
- * map determine; 0 if the scale is continuous. */
+/* Returns the number of separate colors of the scale: n_bounds + 1, or `classes`, or the number of
+ * colors of a separate map; 0 if the scale is continuous. */
 int colorscale_steps(const ColorScale *scale);
-/* Computes the color, in linear RGB, of separate color `step`, counted from 0. The classes of a
- * continuous map are spread over the whole map, including its ends. */
+/* Computes separate color `step`, counted from 0, in linear RGB. A continuous map is sampled at
+ * equidistant fractions, the first at 0 and the last at 1. */
 void colorscale_step_color(const ColorScale *scale, int step, float rgb[3]);
 
-/* Returns true if integers select the colors of a separate map, from 1 on, modulo the number of
- * colors. */
+/* Returns true if integers select the colors of a separate map: 1 selects the first color, and n +
+ * 1 again the first of n colors. */
 bool colorscale_selects_by_integer(const ColorScale *scale);
 
-/* Computes the color, in linear RGB, at a position. Not for scales of which
- * colorscale_selects_by_integer is true. A position on a bound, or up to colorscale_tolerance below
- * the bound, belongs to the class above. */
-void colorscale_at(const ColorScale *scale, double place, float rgb[3]);
+/* Computes the color, in linear RGB, at a position. The scale must not be one for which
+ * colorscale_selects_by_integer is true. A position on a bound, or at most colorscale_tolerance
+ * below the bound, belongs to the class above the bound. */
+void colorscale_at(const ColorScale *scale, double position, float rgb[3]);
 /* Computes the color, in linear RGB, of a value on any scale. */
 void colorscale_linear(const ColorScale *scale, double value, float rgb[3]);
 
@@ -95,9 +97,10 @@ typedef struct ColorRamp {
 void colorramp_init(ColorRamp *ramp, const Colormap *map);
 /* Computes what colorscale_at computes, but interpolates between the entries of `ramp`, as POV-Ray
  * does. colorramp_init must have filled `ramp` from scale->map. */
-void colorscale_on_ramp(const ColorScale *scale, const ColorRamp *ramp, double place, float rgb[3]);
+void colorscale_on_ramp(const ColorScale *scale, const ColorRamp *ramp, double position,
+                        float rgb[3]);
 
-/* Appends "wss 3.70 to 54.1 Pa". */
+/* Appends the name, the range and the unit, such as "wss 3.70 to 54.1 Pa". */
 void colorscale_put_range(const ColorScale *scale, Text *text);
 
 #endif

@@ -42,8 +42,9 @@ static int code_of_bits(int32_t bits)
     return image_code(value, ENCODING_SRGB, 8);
 }
 
-/* Returns the bits of the smallest float that has a code, by bisection around the decoded value.
- * This works because floats have the order of their bits, and image_code is monotonic. */
+/* Returns the bit pattern of the smallest float that has this code, by bisection around the decoded
+ * value. Bisection works because positive floats have the same order as their bit patterns, and
+ * image_code is monotonic. */
 static int32_t first_of_code(int code)
 {
     int32_t low = bits_of(srgb_decode(((float)code - 0.5f) / 255)) - 256, high = low + 512;
@@ -141,7 +142,7 @@ Status plane_from_picture(Plane *plane, const Picture *picture, Err *err)
     return status;
 }
 
-/* Copies alpha, which has no gamma. */
+/* Copies the alpha channel, which is linear and therefore not encoded. */
 static void copy_alpha(Picture *to, const Picture *from)
 {
     const uint32_t most = (1u << to->bits) - 1, most_before = (1u << from->bits) - 1;
@@ -192,8 +193,9 @@ Status picture_from_ids(Picture *picture, const IdPlane *ids, Err *err)
     return STATUS_OK;
 }
 
-/* The ids take over the memory of the picture, enlarged by a third. The loop runs from the last id
- * to the first, since each id is stored at or after its bytes. */
+/* The ids use the memory of the picture, enlarged by a third, because an id has 4 bytes and a pixel
+ * 3. The loop runs from the last id to the first, so that no id overwrites bytes that are still to
+ * be read. */
 Status ids_take_picture(IdPlane *ids, Picture *picture, Err *err)
 {
     if (picture->channels != 3 || picture->bits != 8)

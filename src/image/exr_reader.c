@@ -1,11 +1,13 @@
-/* OpenEXR through the C library OpenEXRCore: one flat image in scan lines or tiles. The channels
- * are R G B, even if there are others, X Y Z, or a single one, converted to 32-bit floats. A
- * requested layer consists of the channels of the part with its name, or of those channels of any
- * part whose names begin with the layer's name and a dot. Chunks are decoded one by one from memory
- * into a plane of the data window. The image is the part of it in the display window. */
+/* Reads OpenEXR with the C library OpenEXRCore: one flat image in scan lines or tiles.
+ *
+ * The channels that are read are R G B, whether or not there are other channels; else X Y Z if
+ * there are no other channels; else the only channel. All are converted to 32-bit floats. A
+ * requested layer is the part with its name, or the channels whose names begin with the layer's
+ * name and a dot. Chunks are decoded one by one from memory into a plane of the size of the data
+ * window. The image is the content of the display window. */
 #include "image/formats.h"
 
-#define IMATH_HALF_NO_LOOKUP_TABLE /* whose table is in a library of its own */
+#define IMATH_HALF_NO_LOOKUP_TABLE /* the table is in a separate library */
 #include <Imath/half.h>
 #include <OpenEXR/openexr.h>
 #include <stdlib.h>
@@ -17,12 +19,12 @@ typedef struct ExrReader {
     ImageInput input;
     exr_context_t context;
     int part;
-    const char *prefix; /* of the names of channels: "", or the name of the layer */
+    const char *prefix; /* prefix of the channels' names: "", or the name of the layer */
     bool is_tiled;
     exr_attr_box2i_t window, display; /* data window; display window */
     const char *names[MAX_CHANNELS];  /* of the plane's channels; alpha is the last */
     int channels;                     /* number of channels without alpha */
-    bool has_alpha, is_colored;       /* there is an A channel; the others are R G B */
+    bool has_alpha, is_colored;       /* there is an A channel; the other channels are R G B */
     Plane plane;                      /* owned; of the data window; alpha last */
     exr_result_t (*decompress)(
         exr_decode_pipeline_t *decoder); /* the routine that the library chose */
@@ -34,7 +36,8 @@ static bool exr_is(const ImageBytes *file)
     return file->size >= 4 && memcmp(file->bytes, "\x76\x2f\x31\x01", 4) == 0;
 }
 
-/* The message begins with the name of the file, which the sentence states already. */
+/* The library's message begins with the file's name. The part up to the name is skipped, because
+ * our error message states the name, too. */
 static void on_error(exr_const_context_t context, exr_result_t code, const char *message)
 {
     (void)context;
@@ -85,7 +88,8 @@ static const char *find_channel(const exr_attr_chlist_t *list, const char *prefi
     return NULL;
 }
 
-/* Returns the number of channels of the layer without alpha. *last becomes the last of them. */
+/* Returns the number of channels of the layer, without alpha. Sets *last to the name of the last
+ * such channel. */
 static int count_channels(const exr_attr_chlist_t *list, const char *prefix, const char **last)
 {
     int n = 0;
@@ -204,8 +208,9 @@ static Status no_layer(const ExrReader *self, int parts, Err *err)
     return status;
 }
 
-/* Chooses the part with the name of the layer; else the first part that has channels of the layer.
- * In a part with that name, the channels may have the name as a prefix or not. */
+/* Chooses the part that has the name of the layer; else the first part that has channels of the
+ * layer. In a part that has the layer's name, the channels may have that name as a prefix or no
+ * prefix. */
 static Status choose_part(ExrReader *self, int parts, Err *err)
 {
     const char *layer = self->input.file.layer;
@@ -276,9 +281,9 @@ static int plane_channel(const ExrReader *self, const exr_coding_channel_info_t 
     return -1;
 }
 
-/* Copies a decompressed chunk into the plane. In each row of a chunk the channels follow each
- * other, in the order of their names. OpenEXRCore 3.1.5 has a routine for this, but that one mixes
- * up the channels of half RGBA. */
+/* Copies a decompressed chunk into the plane. Each row of a chunk stores one channel after another,
+ * in the order of their names. The routine of OpenEXRCore 3.1.5 is not used, because it confuses
+ * the channels of half RGBA. */
 static exr_result_t unpack(exr_decode_pipeline_t *decoder)
 {
     ExrReader *self = decoder->decoding_user_data;
@@ -337,8 +342,8 @@ static bool decode_chunk(ExrReader *self, exr_decode_pipeline_t *decoder,
         result = exr_decoding_choose_default_routines(self->context, self->part, decoder);
         self->decompress = decoder->decompress_fn;
     }
-    /* A chunk that compression does not shorten is stored uncompressed. OpenEXRCore 3.1.5 handles
-     * this for all compressions except B44 and B44A, where it decodes wrong numbers. */
+    /* A chunk that compression does not shorten is stored uncompressed. OpenEXRCore 3.1.5 detects
+     * this except for B44 and B44A, for which it decodes wrong numbers. */
     decoder->decompress_fn = chunk->packed_size < chunk->unpacked_size ? self->decompress : NULL;
     decoder->unpack_and_convert_fn = unpack;
     decoder->decoding_user_data = self;
@@ -376,16 +381,17 @@ static long long height_of(const exr_attr_box2i_t *window)
     return (long long)window->max.y - window->min.y + 1;
 }
 
-/* Returns an upper bound of the bytes of floats in a file of this size. Blank pictures shrink
- * 1032-fold by ZIP and ZIPS, 1376-fold by PXR24, 410-fold by PIZ, 64-fold by RLE and 11-fold by
- * B44A. Halves become floats of twice their size. */
+/* Returns an upper bound on the number of bytes of 32-bit floats that a file of this size can hold.
+ * ZIP and ZIPS compress a blank picture by a factor of 1032, PXR24 by 1376, PIZ by 410, RLE by 64
+ * and B44A by 11. Half floats double in size when they are converted. */
 static size_t max_bytes(const ExrReader *self)
 {
     enum { RATIO = 10000 };
     return self->input.file.size * RATIO;
 }
 
-/* Refuses planes of more than `most` bytes. */
+/* Allocates a plane of the size of a window. Errors: STATUS_INPUT if it has more than `most`
+ * bytes. */
 static Status make_plane(const ExrReader *self, Plane *plane, const exr_attr_box2i_t *window,
                          size_t most, Err *err)
 {
@@ -396,9 +402,10 @@ static Status make_plane(const ExrReader *self, Plane *plane, const exr_attr_box
     return plane_init(plane, (int)width, (int)height, channels, err);
 }
 
-/* Copies what the display window shows of the plane into *shown, which it need not cover. The rest
- * may take as much memory as 8192 x 8192 pixels. */
-static Status show_window(const ExrReader *self, Plane *shown, Err *err)
+/* Copies the part of the plane that is in the display window to *shown. Pixels of the display
+ * window outside the data window remain 0. A small file may therefore state a large display window,
+ * so the limit on its size is raised by BLANK bytes, those of 8192 x 8192 pixels of 4 channels. */
+static Status copy_display_window(const ExrReader *self, Plane *shown, Err *err)
 {
     enum { BLANK = 1 << 30 };
     const exr_attr_box2i_t *data = &self->window, *display = &self->display;
@@ -428,7 +435,7 @@ static Status decode(void *work, Err *err)
     if (!decode_chunks(self))
         return guard_failure(err);
     if (memcmp(&self->window, &self->display, sizeof self->window) != 0)
-        return show_window(self, shown, err);
+        return copy_display_window(self, shown, err);
     *shown = self->plane;
     self->plane = (Plane){0};
     return STATUS_OK;

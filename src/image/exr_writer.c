@@ -1,5 +1,5 @@
-/* OpenEXR through the C library OpenEXRCore: one flat image in scan lines, compressed by ZIP, 16
- * rows at a time. The chunk offset table is at the start of the file but is written last, so the
+/* Writes OpenEXR with the C library OpenEXRCore: one flat image in scan lines, compressed with ZIP,
+ * 16 rows per chunk. The chunk offset table is at the start of the file but is written last, so the
  * file must be seekable. */
 #include "image/formats.h"
 #include "image/png_fast.h"
@@ -56,7 +56,7 @@ static bool add_channels(ExrWriter *self)
     return result == EXR_ERR_SUCCESS;
 }
 
-/* OpenEXR has attributes of its own for comments and software. */
+/* OpenEXR has standard names for the attributes that hold comments and software. */
 static bool add_notes(ExrWriter *self, const ImageNotes *notes)
 {
     exr_result_t result = EXR_ERR_SUCCESS;

@@ -43,7 +43,8 @@ MUST_CHECK Status image_check_memory(int width, int height, size_t bytes, Err *e
 /* Returns true if chromaticities, x and y of red, green, blue and white, are within 0.002 of those
  * of sRGB. */
 bool image_is_srgb(const double xy[8]);
-/* Returns STATUS_INPUT: the file's colors are of another space, as its part `where` states. */
+/* Sets the error that the file's colors are not sRGB. `where` names the part of the file that
+ * states the color space. Returns STATUS_INPUT. */
 Status image_other_colors(const char *name, const char *where, Err *err);
 /* Stores the description in an ICC profile, without characters that are not printable ASCII; "" if
  * it has none. */
@@ -53,10 +54,10 @@ void image_profile_name(const uint8_t *profile, size_t size, char text[IMAGE_PRO
 MUST_CHECK Status image_check_profile(const char *name, const uint8_t *profile, size_t size,
                                       Err *err);
 
-/* Returns STATUS_INPUT: the picture cannot be read row by row. */
+/* Sets the error that the picture cannot be read row by row. Returns STATUS_INPUT. */
 Status image_no_rows(const char *name, Err *err);
 
-/* Returns the number in four bytes, the most significant first. */
+/* Returns the big-endian number in four bytes. */
 static inline uint32_t image_u32(const uint8_t *at)
 {
     return (uint32_t)at[0] << 24 | (uint32_t)at[1] << 16 | (uint32_t)at[2] << 8 | at[3];
@@ -87,25 +88,26 @@ typedef struct ImageInput {
     ImageBytes file; /* the whole file; no bytes if rows are read */
     FILE *stream;    /* seekable; at the beginning of the file */
     /* Results; the decoder need not release them on failure. */
-    Image image;      /* of `decode`; alpha is the last of 2 or 4 channels */
-    ImageFacts facts; /* of `get_facts` */
-    ImageForm form;   /* of `begin`; its notes are owned by the decoder's state */
+    Image image;      /* result of `decode`; alpha is the last of 2 or 4 channels */
+    ImageFacts facts; /* result of `get_facts` */
+    ImageForm form;   /* result of `begin`; its notes are owned by the decoder's state */
     /* Arguments of `rows`: */
     void *rows; /* receives rows of codes of form.bits bits */
     int n_rows;
 } ImageInput;
 
-/* How a format is read. Functions other than `is` and `release` get the state. */
+/* The functions that read a format. All functions except `is` receive the decoder's state. */
 typedef struct ImageDecoder {
     const char *format; /* for errors */
     size_t state_size;
-    bool (*is)(const ImageBytes *file); /* by the first bytes; there may be no more */
+    bool (*is)(const ImageBytes *file); /* recognises the first bytes; `file` may hold only the
+                                         * first 16 bytes of the file */
     GuardedWork *decode;                /* the whole file */
-    GuardedWork *get_facts;             /* NULL: the format has no facts */
-    /* Rows from a stream; NULL: the format can be read as a whole only. */
-    GuardedWork *begin;          /* Errors: image_no_rows for what `rows` cannot read. */
+    GuardedWork *get_facts;             /* finds the properties; NULL: not supported */
+    /* Read rows from a stream; NULL: the format can only be read as a whole. */
+    GuardedWork *begin;          /* sets `form`; image_no_rows if `rows` cannot read it */
     GuardedWork *rows;           /* the next rows */
-    GuardedWork *end;            /* the rest of the file */
+    GuardedWork *end;            /* reads the rest of the file */
     void (*release)(void *self); /* releases what the state owns; NULL: nothing */
     bool has_layers;
 } ImageDecoder;
@@ -123,9 +125,8 @@ MUST_CHECK Status imageinput_open(const ImageDecoder *decoder, const ImageBytes 
                                   ImageInput **out, Err *err);
 void imageinput_close(ImageInput *input); /* NULL is allowed */
 
-/* Removes or converts the alpha channel of an image as a decoder leaves it, the last of 2 or 4
- * channels. Errors: STATUS_INPUT, naming the file, if the image is transparent and that is
- * refused. */
+/* Removes or converts the alpha channel of a decoded image, the last of 2 or 4 channels. Errors:
+ * STATUS_INPUT, naming the file, if the image is transparent and `alpha` refuses it. */
 MUST_CHECK Status image_apply_alpha(Image *image, ImageAlpha alpha, const char *name, Err *err);
 
 /* ---- writing --------------------------------------------------------------------------------- */
@@ -145,28 +146,28 @@ typedef struct ImageOutput {
     ImageForm form;
     size_t row_bytes;     /* bytes of a row in memory */
     ImageProfile profile; /* if the encoder has profiles */
-    char *description;    /* owned; all notes except software and shard, a line each; if the encoder
-                           * has profiles */
-    int chunk_rows; /* `begin` sets it: `rows` gets this many rows at a time, and fewer only at
-                     * the end of the image; 0: as many as the caller has */
-    uint8_t *chunk; /* owned; NULL if chunk_rows is 0. `rows` may change it */
-    int n_gathered; /* rows in the chunk */
+    char *description;    /* owned; all notes except "Software" and "Shard", one per line; set if
+                           * the encoder has profiles */
+    int chunk_rows;       /* number of rows that `rows` gets at a time, fewer only at the end of the
+                           * image; `begin` sets it; 0: `rows` gets as many rows as the caller passes */
+    uint8_t *chunk;       /* owned; NULL if chunk_rows is 0. `rows` may change it */
+    int n_gathered;       /* rows in the chunk */
     /* Arguments of `rows`: */
-    const void *values; /* codes or floats, as the form states; the chunk unless chunk_rows is 0 */
+    const void *values; /* codes or floats, as the form states: `chunk` unless chunk_rows is 0 */
     int first, n;       /* index in the image of the first row; number of rows */
 } ImageOutput;
 
-/* How a format is written, from the top row down. */
+/* The functions that write a format, from the top row down. */
 typedef struct RowEncoder {
     const char *format; /* for errors */
     size_t state_size;
-    GuardedWork *begin; /* writes what comes before the rows */
+    GuardedWork *begin; /* writes the part of the file before the rows */
     GuardedWork *rows;  /* writes the next rows */
-    GuardedWork *end;   /* writes what comes after the rows; NULL: nothing */
+    GuardedWork *end;   /* writes the part of the file after the rows; NULL: there is none */
     void (*release)(
         void *self);  /* releases what the state owns; runs in the guard; NULL: nothing */
-    int channels;     /* in the file; 0: as the form states */
-    double max_ratio; /* a file is at most this many times smaller than its values; 0: unknown */
+    int channels;     /* channels in the file; 0: as the form states */
+    double max_ratio; /* maximum ratio of the values' size to the file's size; 0: unknown */
     ImageTraits traits;
 } RowEncoder;
 

@@ -1,6 +1,6 @@
-/* The running guard is a variable of the thread, because the allocation functions of libtiff get no
- * pointer of the caller's. The functions that call setjmp and longjmp have no locals that change
- * between the two. */
+/* The running guard is a thread-local variable, because libtiff's allocation functions receive no
+ * pointer to the caller's data. The functions that call setjmp and longjmp have no local variables
+ * that change between the two calls. */
 #include "image/guard.h"
 
 #include <errno.h>

@@ -36,22 +36,24 @@ typedef Status GuardedWork(void *self, Err *err);
  * Therefore STATUS_OK becomes STATUS_MEMORY if errno is ENOMEM at the end.
  *
  * self     must own everything that `work` acquires: the locals of `work` are lost when it is left.
- * Threads  The running guard is a variable of the thread. */
+ * Threads  The running guard is thread-local. */
 MUST_CHECK Status guard_run(Guard *guard, GuardedWork *work, void *self, Err *err);
 
 /* The following functions are for `work` and the callbacks of its library. They act on the running
- * guard of the thread. Without one they do nothing. */
+ * guard of the thread. Except guard_failure, they do nothing if no guard is running. */
 
-/* Leaves the guard. `complaint` replaces an earlier one. */
+/* Leaves the guard by longjmp. `complaint` replaces an earlier complaint; NULL keeps the earlier
+ * one. */
 void guard_leave(const char *complaint);
 /* Leaves the guard because an allocation failed. */
 void guard_leave_without_memory(void);
-/* Stores what a library reported, unless an earlier report is stored. */
+/* Stores a library's message as the complaint, unless an earlier one is stored. */
 void guard_complain(const char *complaint);
-/* Removes the stored report, because it is not an error here. */
+/* Removes the stored complaint. Called where the library's message is not an error. */
 void guard_forget(void);
 
-/* Writes the error message for a failure of the running guard's library to *err.
+/* Writes the error message for a failure of the running guard's library to *err. A guard must be
+ * running.
  *
  * Returns  STATUS_MEMORY if errno is ENOMEM, else STATUS_INPUT for a file that is read and
  *          STATUS_IO for a file that is written. */

@@ -1,5 +1,6 @@
-/* The header of PNM and PFM files: words between blanks. The cursor never passes the end of the
- * file. A truncated header therefore gives an empty word, and that an error. */
+/* Reads the header of PNM and PFM files, which consists of words between blanks. The cursor never
+ * passes the end of the file. At the end of a truncated header the next word is empty, which is an
+ * error. */
 #include "image/formats.h"
 
 #include <ctype.h>

@@ -1,5 +1,5 @@
-/* An image larger than the machine's memory is refused before it is allocated. Linux would
- * otherwise grant the memory and end the program when it is used. */
+/* An image larger than the machine's memory is refused before it is allocated. Otherwise Linux
+ * would grant the memory and kill the program when the memory is used. */
 #include "image/image.h"
 
 #include "image/formats.h"

@@ -111,8 +111,8 @@ typedef enum Encoding { ENCODING_SRGB, ENCODING_LINEAR } Encoding;
 uint16_t image_code(float linear, Encoding encoding, int bits);
 
 /* A table that makes image_code(., ENCODING_SRGB, 8) fast. The floats from 2^-13 to 1 are divided
- * into cells of 1/128 of an octave. In no cell does the code rise twice. The sum of a cell's entry
- * and the position of a float in the cell has the code in its third byte. */
+ * into cells of 1/128 of an octave, in which the code increases at most once. Bits 16 to 23 of the
+ * sum of a cell's entry and the index of a float in the cell are the code. */
 enum {
     SRGB_CELL_BITS = 16,
     SRGB_CELL = 1 << SRGB_CELL_BITS, /* floats in a cell */
@@ -127,7 +127,7 @@ typedef struct SrgbCodes {
 } SrgbCodes;
 
 void srgb_codes_init(SrgbCodes *codes);
-/* Returns the code that image_code gives. */
+/* Returns the same code as image_code(linear, ENCODING_SRGB, 8). */
 static inline uint8_t srgb_code(const SrgbCodes *codes, float linear)
 {
     float value = linear > SRGB_MIN ? linear : SRGB_MIN;
@@ -155,15 +155,17 @@ MUST_CHECK Status picture_to_srgb(Picture *srgb, const Picture *picture, int bit
 MUST_CHECK Status picture_widen(Picture *picture, Err *err);
 /* Makes an 8-bit picture of ids up to IMAGE_MAX_ID: red * 65536 + green * 256 + blue. */
 MUST_CHECK Status picture_from_ids(Picture *picture, const IdPlane *ids, Err *err);
-/* Converts such a picture to ids, which take over its memory, and leaves the picture empty. Errors:
- * STATUS_INPUT unless it has 3 channels of 8 bits; it is unchanged then. */
+/* Converts a picture that picture_from_ids made back to ids. The ids reuse the memory of the
+ * picture, which is zeroed. Errors: STATUS_INPUT unless the picture has 3 channels of 8 bits;
+ * STATUS_MEMORY. The picture is unchanged after an error. */
 MUST_CHECK Status ids_take_picture(IdPlane *ids, Picture *picture, Err *err);
 
 /* ---- writing --------------------------------------------------------------------------------- */
 
-/* Provenance, never a date or a path. It is stored in a PNG as tEXt chunks, or iTXt chunks if it is
- * not ASCII; in a TIFF as Software, PageName for "Shard", and ImageDescription for the other notes,
- * a line each; in a JPEG as comments; in OpenEXR as attributes. PNM and PFM hold none. */
+/* A note on the origin of an image, never a date or a path. A PNG stores a note as a tEXt chunk, or
+ * as an iTXt chunk if the note is not ASCII. A TIFF stores "Software" as Software, "Shard" as
+ * PageName, and the other notes as lines of ImageDescription. A JPEG stores notes as comments,
+ * OpenEXR as attributes. PNM and PFM store no notes. */
 typedef struct ImageNote {
     const char *key;  /* "Software", "Comment", "Colors", "Shard"; at most 79 characters */
     const char *text; /* UTF-8 */
@@ -176,8 +178,9 @@ typedef struct ImageNotes {
                  * density of a JPEG, xDensity of OpenEXR; 0: not written */
 } ImageNotes;
 
-/* How colors change that an output profile cannot reproduce: all colors move, so that none become
- * equal, or only these colors move, each to the nearest reproducible one. */
+/* The treatment of colors that an output profile cannot reproduce. INKS_PERCEPTUAL compresses all
+ * colors, so that different colors stay different. INKS_RELATIVE moves only the colors that cannot
+ * be reproduced, each to the nearest one that can. */
 typedef enum InkIntent { INKS_PERCEPTUAL, INKS_RELATIVE } InkIntent;
 
 /* The conversion from sRGB to the cyan, magenta, yellow and black of an output profile. */
@@ -196,12 +199,12 @@ const void *inks_profile(const Inks *inks, size_t *size);
 
 typedef enum ImageCompression { IMAGE_LZW, IMAGE_DEFLATE, IMAGE_UNCOMPRESSED } ImageCompression;
 
-/* What a format leaves open. Zeros are the defaults. */
+/* Choices that a file format allows. Zeros are the defaults. */
 typedef struct ImagePacking {
-    ImageCompression compression; /* of a TIFF; all are lossless */
-    int threads;                  /* that compress a PNG, whose bytes do not depend on them; 0: all
-                                   * processors */
-    int quality;                  /* of a JPEG, from 1 to 100; 0: 95 */
+    ImageCompression compression; /* compression of a TIFF; all are lossless */
+    int threads;                  /* number of threads that compress a PNG; the bytes do not depend
+                                   * on it; 0: one per processor */
+    int quality;                  /* quality of a JPEG, from 1 to 100; 0: 95 */
     bool half;                    /* OpenEXR: channels have 16 bits, except the exact ones */
     const Inks *inks; /* borrowed; converts the colors of a TIFF or JPEG, whose bits must be those
                        * of the inks; the file carries the output profile. NULL: sRGB */
@@ -216,10 +219,10 @@ typedef struct ImageChannel {
 /* The form of an image that is written or read. */
 typedef struct ImageForm {
     int width, height;
-    int channels;            /* 1, 3 or, in PNG and TIFF, 4: with alpha, by which the colors are not
-                              * multiplied; in OpenEXR with `named` as many as that has */
+    int channels;            /* 1 or 3; in PNG and TIFF also 4: the last is alpha, which does not
+                              * multiply the colors; with `named` the length of `named` */
     int bits;                /* 8 or 16: codes; 32: floats */
-    Encoding encoding;       /* of codes */
+    Encoding encoding;       /* encoding of codes */
     const ImageNotes *notes; /* borrowed; may be NULL when an image is written */
     ImagePacking packing;
     const ImageChannel *named; /* borrowed; NULL: R G B, or Y */
@@ -232,28 +235,29 @@ typedef struct ImageWriter ImageWriter;
 /* Opens a file for an image.
  *
  * Floats go to .exr or to PFM ("PF" 3 channels, "Pf" 1), which is little-endian with its rows from
- * the bottom up. Codes go by extension to .ppm (P6; a grey picture with its channel three times),
- * .pgm (P5, 1 channel), .png, .tif or .tiff (strips; BigTIFF above 4 GB), .jpg or .jpeg (8 bits,
- * lossy, at most 65500 pixels a side). "-" is standard output and a PPM. A PNG carries an sRGB
- * chunk if `encoding` is sRGB and gAMA 1.0 if it is linear, and no tIME. A TIFF or JPEG of colors
- * carries their ICC profile.
+ * the bottom up. Codes go by extension to .ppm (P6; a grey picture is written with three equal
+ * channels), .pgm (P5, 1 channel), .png, .tif or .tiff (strips; BigTIFF above 4 GB), .jpg or .jpeg
+ * (8 bits, lossy, at most 65500 pixels a side). "-" writes a PPM to standard output. A PNG contains
+ * an sRGB chunk if `encoding` is sRGB, or gAMA 1.0 if it is linear, and no tIME. A color TIFF or
+ * JPEG contains an ICC profile.
  *
  * out      is owned. Follow with exactly one of imagewriter_commit and imagewriter_discard, which
  *          free the writer, also on failure.
- * Errors   STATUS_USAGE for another extension, for what the format cannot hold, and for inks and a
- *          picture of other than 3 channels; STATUS_IO, also if the disk is too full for the
- *          smallest possible file; STATUS_MEMORY. */
+ * Errors   STATUS_USAGE for another extension, for channels or bits that the format cannot store,
+ *          and for inks with an unsuitable number of channels; STATUS_IO, also if the disk is too
+ *          full for the smallest possible file; STATUS_MEMORY. */
 MUST_CHECK Status imagewriter_open(ImageWriter **out, const char *path, const ImageForm *form,
                                    Err *err);
-/* Write the next rows, which have the form's width, channels and bits. In parts, PFM, TIFF and
- * OpenEXR need a file, not a pipe. */
+/* Write the next rows, which have the form's width, channels and bits. The output must be seekable
+ * for TIFF and OpenEXR, and for PFM unless all rows are written in one call. */
 MUST_CHECK Status imagewriter_codes(ImageWriter *writer, const Picture *rows, Err *err);
 MUST_CHECK Status imagewriter_floats(ImageWriter *writer, const Plane *rows, Err *err);
 MUST_CHECK Status imagewriter_commit(ImageWriter *writer, Err *err);
 void imagewriter_discard(ImageWriter *writer);
 
-/* Write a whole image, as imagewriter_open states. `notes` may be NULL; `packing` NULL: the
- * defaults. A plane has 1 or 3 channels. */
+/* Write a whole image in the format that imagewriter_open chooses. `notes` may be NULL. A `packing`
+ * of NULL means the defaults. A plane must have 1 or 3 channels. Errors: those of
+ * imagewriter_open. */
 MUST_CHECK Status picture_write(const Picture *picture, const char *path, Encoding encoding,
                                 const ImageNotes *notes, const ImagePacking *packing, Err *err);
 MUST_CHECK Status plane_write(const Plane *plane, const char *path, const ImagePacking *packing,
@@ -261,30 +265,31 @@ MUST_CHECK Status plane_write(const Plane *plane, const char *path, const ImageP
 /* Appends the bytes of the PNG file that picture_write would write to `out`. */
 MUST_CHECK Status picture_to_png(const Picture *picture, Encoding encoding, const ImageNotes *notes,
                                  Text *out, Err *err);
-/* Appends the picture, whose codes are of sRGB, as an image that a page contains:
- * "data:image/png;base64,...". */
+/* Appends the picture, whose codes are sRGB, as a data URI: "data:image/png;base64,...". */
 MUST_CHECK Status picture_put_uri(const Picture *picture, Text *out, Err *err);
 
 /* The properties that files of a format can have. */
 typedef struct ImageTraits {
     bool keeps_dpi;   /* ImageNotes.dpi */
-    bool has_profile; /* an ICC profile, so that colors may be inks */
-    bool keeps_alpha; /* transparent pictures */
-    bool floats;      /* floats, and no codes */
+    bool has_profile; /* stores an ICC profile, so that the colors may be inks */
+    bool keeps_alpha; /* stores an alpha channel */
+    bool floats;      /* stores floats and cannot store codes */
 } ImageTraits;
 
-/* Returns the traits of the format that a file name has by its extension; none for other names. */
+/* Returns the traits of the format that the extension of a file name stands for; all false for an
+ * unknown extension. */
 ImageTraits image_traits(const char *path);
 
 /* ---- reading --------------------------------------------------------------------------------- */
 
-/* A PNG or TIFF that is read a few rows at a time, from the top down, so that a picture of any size
- * takes the memory of its rows. */
+/* A PNG or TIFF that is read a few rows at a time, from the top down, so that only these rows are
+ * in memory. */
 typedef struct ImageReader ImageReader;
 
-/* Opens a file of a form that imagewriter_open writes: a PNG or a TIFF of a single page, 1, 3 or 4
- * channels of 8 or 16 bits, interleaved, upright. Close *out with imagereader_close. Errors:
- * STATUS_INPUT, naming the file, if it is missing, broken or of another form; STATUS_MEMORY. */
+/* Opens a file of a form that imagewriter_open writes: a PNG, or a TIFF of a single page, with 1, 3
+ * or 4 interleaved channels of 8 or 16 bits, upright. *out is set on success only; close it with
+ * imagereader_close. Errors: STATUS_INPUT, naming the file, if it is missing, broken or of another
+ * form; STATUS_MEMORY. */
 MUST_CHECK Status imagereader_open(ImageReader **out, const char *path, Err *err);
 /* Returns the form that the file states, with its notes and resolution; borrowed. The note
  * "Comment" of a TIFF is its ImageDescription. */
@@ -306,54 +311,55 @@ typedef struct Image {
 
 void image_release(Image *image);
 
-/* What happens to an alpha channel that is not opaque throughout. An opaque one is always left
- * out. */
+/* The treatment of an alpha channel. A channel that is opaque in every pixel is always removed. */
 typedef enum ImageAlpha {
     ALPHA_REFUSED, /* STATUS_INPUT */
-    ALPHA_KEPT,    /* it is the last channel: pictures have 4 channels, their colors are not
-                    * multiplied by it; planes have 2 or 4 channels, their colors are */
-    ALPHA_IS_MASK  /* of a picture: codes become 255 where alpha is at least 0.5, and 0 elsewhere */
+    ALPHA_KEPT,    /* alpha is the last channel; pictures get 4 channels and colors not multiplied
+                    * by alpha; planes get 2 or 4 channels and colors multiplied by alpha */
+    ALPHA_IS_MASK  /* codes of a picture become 255 where alpha is at least 0.5, and 0 elsewhere; a
+                    * plane is refused */
 } ImageAlpha;
 
 /* Reads a file, whose format is recognised by its first bytes. "-" is standard input.
  *
  * docs/FORMATS.md, section Pictures, lists the forms of each format that are read. PNM, PNG, JPEG,
  * WebP and TIFF of integers give codes of 8 or 16 bits. PFM, OpenEXR and TIFF of floats give
- * floats, infinities and NaN included. Codes with a largest value other than 255 and 65535 are
- * rescaled, to 8 bits below 255 and to 16 above.
+ * floats, which may be infinite or NaN. If the maximum code of a file is below 255, codes are
+ * rescaled to 8 bits; if it is between 255 and 65535, to 16 bits.
  *
  * layer    of an OpenEXR file: the name of a part, or of a layer ("layer.R", "layer.G", ...) in the
  *          first part that has it. NULL: the channels without a layer of a file with one part
  * Errors   STATUS_INPUT with a sentence that names the file and the property that cannot be read,
- *          such as colors of another space than sRGB (profiles, primaries), animations, several
- *          pages or an unknown layer, or that states what is truncated or corrupt. STATUS_MEMORY.
- */
+ *          such as a color space other than sRGB (profiles, primaries), animations, several pages
+ *          or an unknown layer, or that states what is truncated or corrupt. STATUS_MEMORY. */
 MUST_CHECK Status image_read(Image *image, const char *path, ImageAlpha alpha, const char *layer,
                              Err *err);
 /* Copies a text attribute of an OpenEXR file to `text`, which has room for `size` bytes. Returns
  * false if the file cannot be read, is no OpenEXR, or has no such attribute of less than `size`
  * bytes. */
 bool image_exr_text(const char *path, const char *name, char *text, size_t size);
-/* As image_read. Errors: also STATUS_INPUT if the file holds floats, or if it holds codes. */
+/* Read a file that must hold codes (picture_read) or floats (plane_read), as image_read does.
+ * Errors: also STATUS_INPUT if the file holds the other kind. */
 MUST_CHECK Status picture_read(Picture *picture, const char *path, ImageAlpha alpha, Err *err);
+MUST_CHECK Status plane_read(Plane *plane, const char *path, ImageAlpha alpha, Err *err);
 /* Reads a file in memory as picture_read. `name` is the file's name in errors. Errors: also
  * STATUS_INPUT if the format is unknown. */
 MUST_CHECK Status picture_decode(Picture *picture, const char *name, const void *bytes, size_t size,
                                  Err *err);
-MUST_CHECK Status plane_read(Plane *plane, const char *path, ImageAlpha alpha, Err *err);
 
-/* Composites an image with alpha over a background, red, green and blue from 0 to 1, in linear
- * light. The result has 3 channels; its codes are linear if they were, else of sRGB. A picture with
- * alpha moves to image->transparent. Errors: STATUS_MEMORY; *image is unchanged then. */
+/* Composites an image with alpha over a background in linear light. `background` is linear red,
+ * green and blue, from 0 to 1. The result has 3 channels. Its codes are linear if they were linear,
+ * else sRGB. A picture with alpha moves to image->transparent. Does nothing if the image has no
+ * alpha. Errors: STATUS_MEMORY; *image is then unchanged. */
 MUST_CHECK Status image_composite(Image *image, const float background[3], Err *err);
 
 /* The images that a renderer computes for one view, or that are read from the files of another
  * renderer. Planes that were not requested have NULL values. Release with frame_release. */
 typedef struct Frame {
     Plane color;   /* linear; multiplied by alpha if there is an alpha plane */
-    Plane alpha;   /* part of the pixel that is covered, 0 to 1; of transparent views */
-    Picture codes; /* 8-bit sRGB codes in place of `color`, if they suffice and the renderer chose
-                    * so */
+    Plane alpha;   /* per pixel: the covered fraction, 0 to 1; only of transparent views */
+    Picture codes; /* 8-bit sRGB codes instead of `color`, if the caller allowed them and the
+                    * renderer chose them */
     Plane depth;   /* mm */
     Plane normal;  /* unit, world, towards the viewer */
     IdPlane id;
@@ -375,10 +381,10 @@ typedef struct ImageFacts {
     bool has_alpha;
     const char *colors;               /* "rgb", "grey", "cmyk", "another" */
     const char *compression;          /* "lzw", "deflate", "none", "jpeg", "packbits", "another" */
-    char profile[IMAGE_PROFILE_NAME]; /* its name; "": none */
-    double ink_percent; /* "cmyk": maximum sum of the four inks of a pixel, 0 to 400; of a JPEG,
-                         * whose pixels are rounded, of the mean of a block of 8 x 8 pixels. 0 for
-                         * tiles and for planes of single inks, which are not read */
+    char profile[IMAGE_PROFILE_NAME]; /* name of the ICC profile; "": none */
+    double ink_percent; /* of "cmyk": maximum total of the four inks of a pixel, 0 to 400; of a
+                         * JPEG: maximum of the mean over a block of 8 x 8 pixels, because JPEG
+                         * rounds single pixels; 0 for a TIFF in tiles or with one plane per ink */
 } ImageFacts;
 
 /* Finds the properties of a file. Reads no pixels, except those of CMYK for ink_percent. Errors:

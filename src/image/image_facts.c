@@ -1,5 +1,6 @@
-/* The properties of PNG, TIFF and JPEG files come from the libraries that read them. Pixels
- * are decoded for the total ink of CMYK only. Of other files only the format is found. */
+/* The decoders of PNG, TIFF and JPEG find the properties of a file. They decode pixels only to find
+ * the maximum total ink of a CMYK file. For files of other formats only the format and the size are
+ * found. */
 #include "image/formats.h"
 
 #include <stdlib.h>
@@ -8,8 +9,8 @@
 static const struct {
     const char *begins;
     size_t length;
-    const char *format;          /* of files of which nothing else is known */
-    const ImageDecoder *decoder; /* of the other files */
+    const char *format;          /* format of files without a decoder here */
+    const ImageDecoder *decoder; /* finds the properties; NULL: only the format is found */
 } kinds[] = {{"\x89PNG", 4, NULL, &png_decoder},
              {"\xff\xd8\xff", 3, NULL, &jpeg_decoder},
              {"II*\0", 4, NULL, &tiff_decoder},

@@ -1,6 +1,6 @@
 /* The format of a file is recognised by its first bytes, not by its name. The whole file is read
- * before it is decoded. Decoders then know its size, and can go back in it even if it came from
- * standard input. */
+ * before it is decoded. Decoders then know the size of the file and can seek in it, even if it came
+ * from standard input. */
 #include "image/formats.h"
 
 #include <stdlib.h>
@@ -38,7 +38,7 @@ Status imageinput_open(const ImageDecoder *decoder, const ImageBytes *file, FILE
     input->guard.name = file->name;
     input->decoder = decoder;
     input->file = *file;
-    /* The bytes are only read, whatever the declaration of fmemopen states. */
+    /* fmemopen takes a pointer to non-const bytes, but in mode "rb" it only reads them. */
     input->stream = stream ? stream : fmemopen((void *)(uintptr_t)file->bytes, file->size, "rb");
     if (input->stream) {
         *out = input;
@@ -60,7 +60,7 @@ void imageinput_close(ImageInput *input)
     free(input);
 }
 
-/* Decodes a file in memory, whose layer may be NULL. */
+/* Decodes a file in memory. file->layer may be NULL. */
 static Status decode(const ImageBytes *file, ImageAlpha alpha, Image *image, Err *err)
 {
     const ImageDecoder *decoder = imagedecoder_of(file);

@@ -1,5 +1,5 @@
 /* An ImageReader adds two things to the format's decoder: the file, and the index of the next row.
- * After the last row, the rest of the file is read, too. */
+ * After the last row, the rest of the file is read as well, so that errors there are found. */
 #include "image/formats.h"
 
 #include <assert.h>

@@ -14,7 +14,7 @@ struct ImageWriter {
     ImageOutput *output; /* owned */
     OutFile file;
     char *path;       /* owned; for errors */
-    ImageForm form;   /* of the rows that the caller hands over */
+    ImageForm form;   /* form of the rows that the caller passes */
     int next;         /* index of the next row */
     void *inked_row;  /* owned; NULL unless colors are converted to inks */
     void *colors_row; /* owned; the colors of a row with black ink as its fourth channel */
@@ -79,8 +79,8 @@ static Status begin_output(ImageOutput *output, Err *err)
                               : STATUS_OK;
 }
 
-/* Writes what comes before the rows. On failure *out is unchanged. Else free it with
- * free_output. */
+/* Creates the state of an encoder and writes the part of the file before the rows. *out is set on
+ * success only; free it with free_output. */
 static Status open_output(const RowEncoder *encoder, FILE *stream, const ImageForm *form,
                           ImageOutput **out, Err *err)
 {
@@ -142,7 +142,7 @@ Status imageoutput_check_seekable(const ImageOutput *output, Err *err)
 
 /* ---- files ----------------------------------------------------------------------------------- */
 
-/* NULL when the extension is none of theirs. */
+/* Returns the encoder for the extension of a path; NULL if no encoder has the extension. */
 static const RowEncoder *encoder_of(const char *path)
 {
     static const struct {
@@ -241,7 +241,7 @@ done:
     return status;
 }
 
-/* Releases all but the encoder and the file. */
+/* Frees the writer and its buffers, but not its encoder's state and its file. */
 static void release(ImageWriter *writer)
 {
     free(writer->inked_row);
@@ -274,7 +274,8 @@ static const void *without_black(ImageWriter *writer, const void *row)
     return writer->colors_row;
 }
 
-/* Prints the black ink over the inks of the row: where black is full there is no other ink. */
+/* Adds the separate black channel to the inks of a row. Where black is 100 %, the other inks become
+ * 0. */
 static void print_black(ImageWriter *writer, const void *row)
 {
     const int bits = writer->form.bits;
@@ -289,7 +290,7 @@ static void print_black(ImageWriter *writer, const void *row)
     }
 }
 
-/* Converts the colors to inks, row by row. */
+/* Converts the colors of `n` rows to inks, and writes the rows one by one. */
 static Status write_inked(ImageWriter *writer, const uint8_t *values, int n, Err *err)
 {
     const ImageForm *form = &writer->form;
@@ -372,7 +373,7 @@ static ImageForm form_of(const Picture *picture, Encoding encoding, const ImageN
                        .notes = notes};
 }
 
-/* Completes the file of a whole image. */
+/* Commits the file of a whole image if `status` is STATUS_OK; otherwise discards the file. */
 static Status finish(ImageWriter *writer, Status status, Err *err)
 {
     if (status != STATUS_OK) {
@@ -428,7 +429,7 @@ Status picture_to_png(const Picture *picture, Encoding encoding, const ImageNote
     if (!stream)
         return err_set(err, STATUS_MEMORY, "out of memory: no room for a PNG: %s", strerror(errno));
     status = stream_png(picture, &form, stream, err);
-    /* Closing moves the bytes to a block of their own. A failure shows only as NULL. */
+    /* fclose moves the bytes to a block of their own. If that fails, `bytes` is NULL. */
     bool closed = fclose(stream) == 0 && bytes;
     TRY_GOTO(status);
     if (closed)

@@ -1,7 +1,7 @@
-/* ICC profiles through lcms2: the one of sRGB that files carry, and the conversion from sRGB to the
- * inks of an output profile. lcms writes the time into a profile that it makes. A fixed time
- * replaces it, so that equal pictures are equal files. With the relative intent, the black of the
- * screen becomes the black of the inks (black point compensation), as in layout programs. */
+/* Uses Little CMS (lcms2) to make the sRGB profile that is embedded in files, and to convert sRGB
+ * to the inks of an output profile. Little CMS writes the current time into each profile. A fixed
+ * time replaces it, so that equal pictures give equal files. With the intent INKS_RELATIVE, black
+ * of sRGB becomes the black of the inks (black point compensation), as in layout programs. */
 #include "image/formats.h"
 
 #include <lcms2_plugin.h>
@@ -15,12 +15,12 @@ struct Inks {
     int bits;
     InkIntent intent;
     ImageProfile profile;
-    const char *fault; /* what is wrong with the profile; NULL: nothing */
+    const char *fault; /* the reason why the profile cannot be used; NULL: it can */
 };
 
 /* ---- memory and errors ----------------------------------------------------------------------- */
 
-/* Little CMS crashes where some allocations fail, so a failed one leaves the guard. */
+/* Little CMS crashes if some of its allocations fail, so a failed allocation leaves the guard. */
 static void *on_malloc(cmsContext context, cmsUInt32Number size)
 {
     (void)context;
@@ -120,36 +120,36 @@ Status image_profile(const ImageForm *form, ImageProfile *profile, Err *err)
 
 /* ---- inks ------------------------------------------------------------------------------------ */
 
-static void make_transform(Inks *inks, cmsHPROFILE press)
+static void make_transform(Inks *inks, cmsHPROFILE output_profile)
 {
     static const cmsUInt32Number intents[] = {
         [INKS_PERCEPTUAL] = INTENT_PERCEPTUAL, [INKS_RELATIVE] = INTENT_RELATIVE_COLORIMETRIC};
     bool deep = inks->bits == 16;
     cmsHPROFILE srgb = cmsCreate_sRGBProfileTHR(inks->context);
     inks->transform =
-        cmsCreateTransformTHR(inks->context, srgb, deep ? TYPE_RGB_16 : TYPE_RGB_8, press,
+        cmsCreateTransformTHR(inks->context, srgb, deep ? TYPE_RGB_16 : TYPE_RGB_8, output_profile,
                               deep ? TYPE_CMYK_16 : TYPE_CMYK_8, intents[inks->intent],
                               inks->intent == INKS_RELATIVE ? cmsFLAGS_BLACKPOINTCOMPENSATION : 0);
     cmsCloseProfile(srgb);
 }
 
-/* A GuardedWork. Sets inks->fault to what is wrong with the profile. */
+/* A GuardedWork. Sets inks->fault. */
 static Status open_profile(void *self, Err *err)
 {
     (void)err;
     Inks *inks = self;
     inks->fault = "is not a sound ICC profile";
     inks->context = make_context();
-    cmsHPROFILE press = cmsOpenProfileFromMemTHR(inks->context, inks->profile.bytes,
-                                                 (cmsUInt32Number)inks->profile.size);
-    if (!press)
+    cmsHPROFILE output_profile = cmsOpenProfileFromMemTHR(inks->context, inks->profile.bytes,
+                                                          (cmsUInt32Number)inks->profile.size);
+    if (!output_profile)
         return STATUS_OK;
     inks->fault = "is the profile of other colors than cyan, magenta, yellow and black";
-    if (cmsGetColorSpace(press) == cmsSigCmykData) {
-        make_transform(inks, press);
+    if (cmsGetColorSpace(output_profile) == cmsSigCmykData) {
+        make_transform(inks, output_profile);
         inks->fault = inks->transform ? NULL : "is no profile that colors can be printed by";
     }
-    cmsCloseProfile(press);
+    cmsCloseProfile(output_profile);
     return STATUS_OK;
 }
 
@@ -190,7 +190,8 @@ done:
     return status;
 }
 
-/* A context whose guard was left cannot be used, and what it holds is lost. */
+/* A context of Little CMS whose guard was left is in an undefined state. It is not released, and
+ * its memory leaks. */
 void inks_free(Inks *inks)
 {
     if (!inks)

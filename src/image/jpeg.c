@@ -1,13 +1,13 @@
-/* JPEG through libjpeg.
+/* Reads and writes JPEG with libjpeg.
  *
- * Reading, from the file in memory: grey or colors of 8 bits, decoded by the integer transform,
- * chroma interpolated, as every viewer shows it. A picture that Exif declares turned is refused,
- * since programs disagree about whether to turn it.
+ * Reading: the file is in memory, with 8-bit grey or color. It is decoded with the accurate integer
+ * DCT and interpolated chroma, as common viewers do. A picture whose Exif orientation is not
+ * upright is refused, because programs disagree about whether to rotate it.
  *
- * Writing, row by row: baseline, each pixel with colors of its own (4:4:4), since red vessels on
- * white would bleed. The integer transform gives the same bytes on every machine. JFIF has no CMYK.
- * Its header is written all the same, as it holds the resolution. Inks are stored inverted after an
- * Adobe marker, as every reader expects. */
+ * Writing: baseline JPEG, row by row. Chroma is not subsampled (4:4:4), because red vessels on
+ * white would bleed. The integer DCT gives the same bytes on every machine. JFIF does not define
+ * CMYK. The JFIF header is written nevertheless, because it holds the resolution. Inks are stored
+ * inverted after an Adobe marker, as readers expect. */
 #include "image/formats.h"
 
 #include <jpeglib.h>
@@ -23,7 +23,7 @@ static void on_error(j_common_ptr jpeg)
     guard_leave(text);
 }
 
-/* A warning reports that data are missing or broken. */
+/* A warning (level -1) means that data are missing or corrupt, so it is treated as an error. */
 static void on_message(j_common_ptr jpeg, int level)
 {
     char text[JMSG_LENGTH_MAX];
@@ -86,8 +86,8 @@ static unsigned number_at(const uint8_t *at, int n, bool little)
     return value;
 }
 
-/* Returns the Orientation in the first directory of Exif's TIFF [CIPA DC-008]; 1, upright, if there
- * is none. */
+/* Returns the tag Orientation in the first directory of an Exif marker [CIPA DC-008]; 1 (upright)
+ * if there is none. */
 static unsigned orientation_of(const jpeg_saved_marker_ptr marker)
 {
     enum { NAME = 6, ENTRY = 12, TAG = 0x0112 };
@@ -133,7 +133,8 @@ static Status check_colors(JpegReader *self, Err *err)
 /* Checks the size of the picture and allocates it. */
 static Status make_picture(JpegReader *self, Err *err)
 {
-    /* A block of 64 pixels takes two bits or more, except in runs of blank blocks. */
+    /* A block of 64 pixels takes two bits or more, except in runs of blank blocks. Reason of the
+     * value not recorded. */
     enum { MAX_RATIO = 4000 };
     const ImageBytes *file = &self->input.file;
     const struct jpeg_decompress_struct *jpeg = &self->jpeg;
@@ -165,8 +166,8 @@ static Status decode(void *work, Err *err)
     return self->errors.num_warnings > 0 ? guard_failure(err) : STATUS_OK;
 }
 
-/* Finds the maximum of the total ink of a block of 8 x 8 pixels that is whole. Codes are inverted
- * after an Adobe marker. */
+/* Finds the maximum, over all complete blocks of 8 x 8 pixels, of a block's mean total ink. Codes
+ * are inverted if the file has an Adobe marker. */
 static Status measure_ink(JpegReader *self, Err *err)
 {
     enum { INKS = 4, BLOCK = DCTSIZE, FULL = 255 * BLOCK * BLOCK };
@@ -301,7 +302,7 @@ static Status write_rows(void *work, Err *err)
     const size_t samples = self->output.row_bytes;
     const uint8_t *codes = self->output.values;
     for (int y = 0; y < self->output.n; y++, codes += samples) {
-        /* The row is only read, whatever the declaration of libjpeg states. */
+        /* libjpeg takes a pointer to a non-const row, but only reads the row. */
         JSAMPROW row = self->row ? self->row : (void *)(uintptr_t)codes;
         for (size_t i = 0; self->row && i < samples; i++)
             row[i] = (uint8_t)(255 - codes[i]);

@@ -1,5 +1,5 @@
-/* Versions are those of the loaded libraries; libdeflate and libjpeg state only the version that
- * the program was compiled with. */
+/* The versions are those of the libraries that are loaded at run time. libdeflate and libjpeg
+ * report only the version that the program was compiled with. */
 #include "image/image.h"
 
 #include <OpenEXR/openexr_base.h>
@@ -20,7 +20,8 @@ void image_put_libraries(Text *text)
     const char *tiff = TIFFGetVersion(); /* "LIBTIFF, Version 4.5.0\n..." */
     tiff += strcspn(tiff, "0123456789");
     exr_get_library_version(&major, &minor, &patch, &extra);
-    /* The name and the number in one string would look as if a copy of zlib were in the program. */
+    /* The name and the version of libdeflate are not one string in the program: package checkers
+     * would take that string for a sign of an embedded zlib. */
     text_printf(text, "libpng %s, libdeflate %s, libtiff %.*s, ", png_get_libpng_ver(NULL),
                 LIBDEFLATE_VERSION_STRING, (int)strspn(tiff, "0123456789."), tiff);
     int lcms = cmsGetEncodedCMMversion(); /* 2140 */

@@ -1,5 +1,5 @@
-/* PFM: a three-line header and floats, rows from the bottom up. A negative scale means
- * little-endian. */
+/* Reads and writes PFM: a header of three lines, then rows of floats from the bottom up. A negative
+ * scale in the header means little-endian. */
 #include "image/formats.h"
 
 #include <math.h>
@@ -85,8 +85,8 @@ static Status begin(void *work, Err *err)
     return mem_calloc(&self->row, self->output.row_bytes, 1, "bytes of a row", err);
 }
 
-/* The file begins with the last row. Unless the whole plane is written at once, the file must be
- * seekable. */
+/* The file begins with the last row of the image. The file must therefore be seekable, unless all
+ * rows are written in one call. */
 static Status write_rows(void *work, Err *err)
 {
     PfmWriter *self = work;

@@ -1,5 +1,5 @@
-/* PNG through libpng: whole files that png_fast.c leaves to it, rows, facts, and all parts of a
- * file that is written except its pixels, which png_fast.c compresses. */
+/* Reads and writes PNG with libpng. Whole files of the common form are decoded by png_fast.c
+ * instead. png_fast.c also compresses the pixels of files that are written. */
 #include "image/png_fast.h"
 
 #include <errno.h>
@@ -184,7 +184,7 @@ static Status take_notes(PngReader *self, Err *err)
     return STATUS_OK;
 }
 
-/* libpng refuses a header whose sides are not positive. */
+/* libpng checks that the sides in the header are positive. */
 static Status begin_reading(void *work, Err *err)
 {
     PngReader *self = work;
@@ -298,7 +298,7 @@ static void set_provenance(PngWriter *self, const ImageNotes *notes)
 {
     for (int i = 0; i < notes->count; i++) {
         const ImageNote *note = &notes->notes[i];
-        /* libpng copies both; its struct merely lacks the const. */
+        /* libpng copies both strings; the members of its struct just lack the const. */
         png_text *chunk = &self->chunks[i];
         memcpy(&chunk->key, &note->key, sizeof chunk->key);
         memcpy(&chunk->text, &note->text, sizeof chunk->text);
@@ -336,9 +336,10 @@ static void write_header(PngWriter *self)
     png_write_info(self->png, self->info);
 }
 
-/* Vessels on a plain ground repeat whole stretches of bytes, which filters hide. Without a filter
- * most files are smaller, by up to a quarter, and are written in half the time. Differences are
- * shorter only in pictures so large that shades hardly change from row to row. */
+/* Minimum height, in pixels, of pictures that are written with the filter Up. Pictures of vessels
+ * on a plain background repeat long sequences of bytes, which a filter would break up. Without a
+ * filter most files are up to a quarter smaller and are written in half the time. The filter helps
+ * only in pictures so large that neighbouring rows hardly differ. */
 enum { FILTERED_HEIGHT = 6000 };
 
 static Status begin_writing(void *work, Err *err)
@@ -357,7 +358,7 @@ static Status begin_writing(void *work, Err *err)
     return STATUS_OK;
 }
 
-/* A PngTakeBytes. libpng writes the chunk and its checksum. */
+/* A PngTakeBytes: writes the bytes as an IDAT chunk. libpng adds the checksum. */
 static void write_bytes(void *self, const uint8_t *bytes, size_t n)
 {
     png_write_chunk(((PngWriter *)self)->png, (png_const_bytep) "IDAT", bytes, n);

@@ -1,17 +1,18 @@
-/* The common PNG at the speed of memory: 8 or 16 bits, no palette, not interlaced.
+/* Reads and writes the common form of PNG: 8 or 16 bits, no palette, not interlaced.
  *
- * Reading. The compressed chunks are concatenated and inflated at once by libdeflate, straight into
- * the picture. Undoing the filters then moves each row down over the filter bytes before it, so
- * that no second copy is needed. Everything unusual or wrong is left to libpng, which knows all of
- * PNG and has the words for what is broken.
+ * Reading: the IDAT chunks are concatenated and inflated in one call of libdeflate, directly into
+ * the picture. Undoing the filters moves each row over the filter bytes before it, so that no
+ * second copy of the picture is needed. Unusual or invalid files are left to libpng, which supports
+ * all of PNG and reports errors.
  *
- * Writing. Rows are cut into stripes, which threads filter and deflate independently. A stripe does
- * not refer to data before it, and ends at a whole byte. Stripes one after the other are therefore
- * one zlib stream, as pigz makes it, which every reader accepts. The checksum of the stream is
- * combined from those of the stripes. The number of rows in a stripe depends on the width of the
- * picture alone, so the bytes do not depend on the threads. Only a few stripes are in memory at a
- * time, since the system takes longer to hand out memory than threads to compress it. ISA-L
- * deflates, five times as fast as zlib, and makes files a tenth larger. */
+ * Writing: rows are divided into stripes, which threads filter and deflate independently. A stripe
+ * does not refer to data before it and ends at a whole byte. The concatenated stripes are therefore
+ * one valid zlib stream, as pigz makes it. The checksum of the stream is combined from the
+ * checksums of the stripes. The number of rows in a stripe depends only on the width of the
+ * picture, so the bytes do not depend on the number of threads. Only a few stripes are in memory at
+ * a time, because the system takes longer to provide memory than the threads take to compress it.
+ * The stripes are deflated by ISA-L, which is five times as fast as zlib and makes files about 10 %
+ * larger. */
 #include "image/png_fast.h"
 
 #include <isa-l/igzip_lib.h>
@@ -67,7 +68,8 @@ static bool read_chunks(PlainPng *plain, const ImageBytes *file)
 {
     size_t at = SIGNATURE_SIZE;
     bool is_srgb = false,
-         may_differ = false; /* there is an sRGB chunk; a chunk may state other colors */
+         has_other_space =
+             false; /* there is an sRGB chunk; a chunk may state another color space */
     for (bool first = true;; first = false) {
         if (file->size - at < CHUNK_FRAME)
             return false;
@@ -84,13 +86,14 @@ static bool read_chunks(PlainPng *plain, const ImageBytes *file)
             memcpy(plain->compressed + plain->size, data, length);
             plain->size += length;
         } else if (memcmp(type, "IEND", 4) == 0) {
-            return is_srgb || !may_differ;
+            return is_srgb || !has_other_space;
         } else if (!header && memcmp(type, "PLTE", 4) != 0 &&
                    (!(type[0] & 32) || is_one_of(type, "tRNS acTL cICP iCCP"))) {
-            return false; /* transparent, animated, or a critical chunk of some other kind */
+            return false; /* transparency, animation, a color profile, or an unknown critical
+                           * chunk */
         }
         is_srgb |= is_one_of(type, "sRGB");
-        may_differ |= is_one_of(type, "gAMA cHRM");
+        has_other_space |= is_one_of(type, "gAMA cHRM");
         at += length + CHUNK_FRAME;
     }
 }
@@ -105,9 +108,10 @@ static inline uint8_t paeth(int left, int up, int corner)
     return (uint8_t)(to_left <= to_up && to_left <= to_corner ? left : nearest);
 }
 
-/* Undoes a filter. `in` is at or above `out` in one buffer, or in another buffer. `up` is the row
- * before, all 0 for the first. `pixel` is a constant where this is inlined, so that the samples of
- * a pixel are computed in parallel. */
+/* Undoes a filter. `in` must not be at a lower address than `out` if both are in one buffer. `up`
+ * is the unfiltered row before this one; all 0 for the first row. `pixel` is the number of bytes
+ * per pixel. Callers pass a constant, so that the inlined loop over the samples of a pixel is
+ * vectorised. */
 static inline void unfilter(int filter, const uint8_t *in, const uint8_t *up, uint8_t *out,
                             size_t n, size_t pixel)
 {
@@ -224,16 +228,17 @@ bool png_decode_plain(const ImageBytes *file, Picture *picture)
 
 /* ---- writing: stripes ------------------------------------------------------------------------ */
 
-/* Bytes of the rows of a stripe, with their filter bytes. Larger stripes are hardly compressed
- * better: by 0.5 % with 512 KiB. */
+/* STRIPE_BYTES is the size of a stripe before compression, including filter bytes. Larger stripes
+ * hardly compress better: 512 KiB saves 0.5 %. GATHERED_BYTES limits the size of the stripes of one
+ * call. */
 enum { STRIPE_BYTES = 1 << 18, STRIPES_PER_THREAD = 4, GATHERED_BYTES = 1 << 23 };
 enum { FIRST_BYTES = 16 };
 enum { FILTER_NONE = 0, FILTER_UP = 2 };
-/* Level 1 makes files 1 to 4 % larger in nearly the same time. Level 3 takes twice the time, and
- * its bytes depend on the processor. */
+/* Compression level of ISA-L. Level 1 makes files 1 to 4 % larger in nearly the same time. Level 3
+ * takes twice the time, and its output depends on the processor. */
 enum { LEVEL = 2, LEVEL_BYTES = ISAL_DEF_LVL2_DEFAULT };
 
-/* RFC 1950: a window of 32 KiB, made by a fast algorithm. */
+/* The zlib header [RFC 1950]: a window of 32 KiB, compression level "fast". */
 static const uint8_t zlib_header[] = {0x78, 0x5e};
 /* An empty last block. */
 static const uint8_t deflate_end[] = {3, 0};
@@ -241,7 +246,8 @@ enum { HEADER_SIZE = sizeof zlib_header, END_SIZE = sizeof deflate_end + 4 };
 
 /* A compressed stripe. */
 typedef struct PngStripe {
-    uint8_t *bytes; /* borrowed; there is space for the header before and the end behind them */
+    uint8_t *bytes; /* borrowed; the buffer has space for the zlib header before them and for the
+                     * end of the stream after them */
     size_t n;
     uint32_t adler; /* checksum of the uncompressed bytes */
 } PngStripe;
@@ -283,14 +289,14 @@ static int count_stripes(const PngDeflater *self, int rows)
     return (rows + self->stripe_rows - 1) / self->stripe_rows;
 }
 
-/* Returns the largest size of `n` bytes in the format deflate: 5 bytes are added per 65,535 stored
- * ones, and the flush. */
+/* Returns the maximum size of `n` bytes after deflate. A stored block adds 5 bytes per 65,535
+ * bytes. The 64 bytes allow for the flushes. */
 static size_t deflated_size(size_t n)
 {
     return n + n / 65535 * 5 + 64;
 }
 
-/* Sets the number of rows in a stripe and in a call, neither larger than the image. */
+/* Sets the number of rows per stripe and per call. Neither exceeds the height of the image. */
 static void measure(PngDeflater *self, int height)
 {
     int rows = (int)(STRIPE_BYTES / self->line);
@@ -377,8 +383,9 @@ static int rows_of(const PngDeflater *self, size_t i)
     return smaller(self->stripe_rows, self->n_rows - (int)i * self->stripe_rows);
 }
 
-/* Deflates the next bytes of a stream up to a whole byte. It fails, or leaves some, only if there
- * is too little space for the output, and there is enough. */
+/* Deflates the next `n` bytes of a stream and ends the output at a whole byte. isal_deflate fails,
+ * or leaves input, only if the output buffer is too small, and deflated_size makes it large
+ * enough. */
 static void deflate_next(struct isal_zstream *stream, size_t n, uint16_t flush)
 {
     stream->avail_in = (uint32_t)n;
@@ -387,10 +394,10 @@ static void deflate_next(struct isal_zstream *stream, size_t n, uint16_t flush)
         abort();
 }
 
-/* The first bytes are deflated separately. Where ISA-L 2.30 begins with several hundred bytes, it
- * enters the third into its table of matches by a hash of the stream's address, so that its output
- * depends on addresses. ISA-L then clears only the part of the table that the first bytes need;
- * here the whole table is cleared. */
+/* The first bytes are deflated separately, because of a defect of ISA-L 2.30. If its first call
+ * gets several hundred bytes, it hashes the address of the stream instead of the third byte, so
+ * that the output depends on addresses. With few first bytes, ISA-L clears only a part of its hash
+ * table. The whole table is therefore cleared here. */
 static size_t deflate_rows(const PngDeflater *self, const StripeWorker *worker, size_t n,
                            uint8_t *out)
 {

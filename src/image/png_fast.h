@@ -5,19 +5,20 @@
 
 #include "image/formats.h"
 
-/* Deflate shrinks data at most by this factor. It bounds what the header of a PNG may claim. */
+/* Maximum compression ratio of deflate. With the file's size it bounds the number of pixels that
+ * the header of a valid PNG can state. */
 enum { DEFLATE_MAX_RATIO = 1032 };
 
 /* Decodes a PNG of the common form: 8 or 16 bits, no palette, not interlaced, colors of sRGB. The
- * last of 2 or 4 channels is alpha. Returns false, and leaves *picture as it is, for every other
- * file, broken ones included, and if memory runs out. */
+ * last of 2 or 4 channels is alpha. Returns false, and leaves *picture unchanged, if the file has
+ * another form or is broken, or if memory runs out. */
 bool png_decode_plain(const ImageBytes *file, Picture *picture);
 
 /* Compresses the rows of a PNG on several threads. */
 typedef struct PngDeflater PngDeflater;
 
-/* Converts 16-bit codes between the order of bytes in a file, the high one first, and the order of
- * the machine, in place. */
+/* Converts 16-bit codes in place between big-endian, the order of the file, and the byte order of
+ * the machine. */
 void png_swap_codes(uint16_t *codes, size_t n);
 
 /* Receives the bytes of the zlib stream in order, one stripe of rows at a time. */
@@ -36,7 +37,7 @@ int pngdeflater_rows_at_once(const PngDeflater *self);
  * pngdeflater_rows_at_once, or fewer at the end of the image. The last rows complete the stream.
  *
  * rows     the bytes of the rows in the order of the file: 16-bit codes with the high byte first
- * take     may leave by longjmp; then only pngdeflater_free may follow. */
+ * take     may leave by longjmp. The only call that may then follow is pngdeflater_free. */
 void pngdeflater_rows(PngDeflater *self, const uint8_t *rows, int n_rows, PngTakeBytes *take,
                       void *context);
 void pngdeflater_free(PngDeflater *self); /* NULL is allowed */

@@ -1,7 +1,7 @@
-/* PBM, PGM, PPM and PAM, binary and plain (netpbm's pbm(5), pgm(5), ppm(5) and pam(5)). The size of
- * a binary file must match its header exactly. In a plain file every sample takes at least two
- * characters, in a plain PBM one. That bounds what a header may claim before anything is
- * allocated. */
+/* Reads and writes PBM, PGM, PPM and PAM, binary and plain [netpbm: pbm(5), pgm(5), ppm(5),
+ * pam(5)]. The size of a binary file must match its header exactly. In a plain file every sample
+ * takes at least two characters, in a plain PBM at least one. A header that states more samples is
+ * refused before memory is allocated. */
 #include "image/formats.h"
 
 #include <ctype.h>
@@ -122,7 +122,7 @@ static Status read_binary(HeaderCursor *cursor, const PnmHeader *header, Picture
     return STATUS_OK;
 }
 
-/* Reads the next digit of a plain PBM, which needs no blank before it. */
+/* Reads the next digit of a plain PBM. Digits need not be separated by blanks. */
 static Status read_digit(HeaderCursor *cursor, long long *code, Err *err)
 {
     const ImageBytes *file = &cursor->file;
@@ -198,11 +198,12 @@ const ImageDecoder pnm_decoder = {
 
 typedef struct PnmWriter {
     ImageOutput output;
-    int copies;   /* of each code in the file */
+    int copies;   /* how often the file repeats each code: 3 if a grey picture becomes a PPM, else
+                   * 1 */
     uint8_t *row; /* owned; NULL: the rows in memory have the bytes of the file */
 } PnmWriter;
 
-/* There are no comment lines, since libvips cannot read them. */
+/* The header has no comment lines, because libvips cannot read them. */
 static Status begin(void *work, Err *err)
 {
     PnmWriter *self = work;

@@ -1,6 +1,6 @@
-/* Recognises colors of sRGB. An ICC profile is not applied. It is recognised by its description:
- * every common profile of sRGB has "sRGB" in it. Profiles with the primaries of sRGB and linear
- * codes have "linear" in it, too, and are refused. */
+/* Recognises the color space sRGB. An ICC profile is never applied. A profile counts as sRGB if its
+ * description contains "sRGB", as in every common sRGB profile. Profiles whose description also
+ * contains "linear" are refused: they have the primaries of sRGB but linear codes. */
 #include "image/formats.h"
 
 #include <math.h>
@@ -23,8 +23,8 @@ Status image_other_colors(const char *name, const char *where, Err *err)
 
 enum { TAGS = 128, TAG = 12 };
 
-/* Finds the text of a tag: ASCII in a "desc"; the first translation, of 16-bit characters, in a
- * "mluc". */
+/* Finds the text of a tag: the ASCII text of a "desc", or the first translation of a "mluc", which
+ * has 16-bit characters. [*begin, *end) are offsets in the tag. */
 static void find_text(const uint8_t *tag, size_t size, size_t *begin, size_t *end)
 {
     *begin = *end = 0;

@@ -1,13 +1,14 @@
-/* TIFF through libtiff.
+/* Reads TIFF with libtiff.
  *
- * A whole file is read from memory: a single page in strips or tiles, its
- * samples interleaved or in planes, in any compression. Grey codes and palettes of 1, 2 and 4 bits
- * become 8-bit codes; floats of 16 and 64 bits become 32-bit floats. The Orientation is undone
- * while pixels are copied: the position of a pixel is a linear function of its column and row in
- * the file.
+ * A whole file is read from memory: a single page in strips or tiles, with interleaved samples or
+ * separate planes, in any compression that libtiff supports. Grey codes and palettes of 1, 2 and 4
+ * bits become 8-bit codes. Floats of 16 and 64 bits become 32-bit floats. The tag Orientation is
+ * applied while pixels are copied: the index of a pixel in the image is a linear function of its
+ * column and row in the file.
  *
- * Rows are read from a stream, if they are already those of the image. */
-#define IMATH_HALF_NO_LOOKUP_TABLE /* whose table is in a library of its own */
+ * Row by row, a file is read from a stream, and only if its rows need no conversion
+ * [has_plain_rows]. */
+#define IMATH_HALF_NO_LOOKUP_TABLE /* the table is in a separate library */
 #include "image/tiff_stream.h"
 
 #include <Imath/half.h>
@@ -26,16 +27,16 @@ typedef struct TiffReader {
     int planes;             /* 1: samples are interleaved; else the number of samples */
     int channels;           /* of the image */
     bool floats, min_is_white;
-    const uint16_t *palette[3]; /* borrowed; NULL: none. Red, green, blue of 2^bits codes */
-    int palette_shift;          /* right shift that makes 8-bit codes of the palette's numbers */
-    bool swapped;               /* rows of the file are columns of the image */
-    int64_t origin, across,
-        down; /* index of the pixel of column 0, row 0; steps to the next column and row */
+    const uint16_t *palette[3];   /* borrowed; NULL: none. Red, green, blue of 2^bits codes */
+    int palette_shift;            /* right shift that makes 8-bit codes of the palette's numbers */
+    bool swapped;                 /* rows of the file are columns of the image */
+    int64_t origin, across, down; /* index in the image of the file's column 0, row 0; index steps
+                                   * to the file's next column and row */
     uint32_t part_width, part_height; /* pixels of a tile, or of a row */
     size_t part_bytes;
     void *part; /* owned */
     ImageNotes notes;
-    ImageNote note[MAX_NOTES]; /* texts are libtiff's */
+    ImageNote note[MAX_NOTES]; /* the texts belong to libtiff */
     uint32_t next;             /* index of the next row */
 } TiffReader;
 
@@ -46,8 +47,8 @@ static bool tiff_is(const ImageBytes *file)
             memcmp(file->bytes, "II+\0", 4) == 0 || memcmp(file->bytes, "MM\0+", 4) == 0);
 }
 
-/* Sets the positions of pixels. Orientations from 5 on swap rows and columns. */
-static void set_places(TiffReader *self, int orientation)
+/* Sets origin, across and down. Orientations from 5 on swap rows and columns. */
+static void set_orientation(TiffReader *self, int orientation)
 {
     bool mirrored = orientation == ORIENTATION_TOPRIGHT || orientation == ORIENTATION_BOTRIGHT ||
                     orientation == ORIENTATION_RIGHTBOT || orientation == ORIENTATION_LEFTBOT;
@@ -116,7 +117,8 @@ static Status check_samples(TiffReader *self, uint16_t format, Err *err)
     return refuse(self, what, err);
 }
 
-/* A palette has 16-bit numbers. Some old programs write 8-bit numbers. */
+/* The numbers of a palette have 16 bits. Some old programs write 8-bit numbers instead: they are
+ * assumed if no number is above 255. */
 static Status take_palette(TiffReader *self, Err *err)
 {
     uint16_t *red, *green, *blue;
@@ -176,16 +178,16 @@ static Status check_form(TiffReader *self, Err *err)
     return check_colors_of_samples(self, photometric, err);
 }
 
-/* Returns the bits per sample of the image. */
+/* Returns the number of bits per sample of the decoded image: 8, 16, or 32 for floats. */
 static int image_bits(const TiffReader *self)
 {
     return self->floats ? 32 : self->bits <= 8 ? 8 : 16;
 }
 
-/* Returns an upper bound of the bytes of pixels in a file of this size. Blank pictures shrink
- * 1400-fold by LZW, 1032-fold by deflate and 64-fold by PackBits. Among the other compressions,
- * ZSTD reaches 32768-fold, and WebP and LERC take a few bytes for a blank strip of any size. */
-static size_t most_bytes(const TiffReader *self)
+/* Returns an upper bound on the number of bytes of pixels that a file of this size can hold. LZW
+ * compresses a blank picture by a factor of 1400, deflate by 1032, PackBits by 64 and ZSTD by
+ * 32768. WebP and LERC take a few bytes for a blank strip of any size. */
+static size_t max_bytes(const TiffReader *self)
 {
     enum { COMMON_RATIO = 10000, RATIO = 100000, BLANK_STRIP = 64 << 20 };
     uint16_t compression;
@@ -198,15 +200,15 @@ static size_t most_bytes(const TiffReader *self)
                   : self->input.file.size * RATIO * unpacked + BLANK_STRIP;
 }
 
-/* Checks `width` x `height` pixels of the image, or of a tile. */
+/* Checks that the file is large enough for `width` x `height` pixels of the image, or of a tile. */
 static Status check_claim(const TiffReader *self, uint32_t width, uint32_t height, Err *err)
 {
     size_t pixel = (size_t)self->channels * (size_t)(image_bits(self) / 8);
     return image_check_claim(&self->input.file, width, height, pixel * width * height,
-                             most_bytes(self), err);
+                             max_bytes(self), err);
 }
 
-/* Chooses what is read at a time: a row of a strip, or a tile. */
+/* Sets the size of the part that one call of libtiff reads, a row or a tile, and allocates it. */
 static Status set_parts(TiffReader *self, Err *err)
 {
     self->part_width = self->width;
@@ -226,7 +228,8 @@ static Status set_parts(TiffReader *self, Err *err)
     return mem_calloc(&self->part, self->part_bytes, 1, "bytes of a part of a TIFF", err);
 }
 
-/* Chromaticities that are not stated are those of sRGB. */
+/* Checks that the colors are sRGB. Chromaticities that the file does not state are assumed to be
+ * those of sRGB. */
 static Status check_colors(TiffReader *self, Err *err)
 {
     double xy[8] = {0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290};
@@ -260,7 +263,7 @@ static Status read_header(TiffReader *self, Err *err)
     read_sides(self);
     TRY(check_claim(self, self->width, self->height, err));
     TIFFGetFieldDefaulted(self->tiff.handle, TIFFTAG_ORIENTATION, &orientation);
-    set_places(self, orientation);
+    set_orientation(self, orientation);
     TRY(check_colors(self, err));
     return set_parts(self, err);
 }
@@ -286,7 +289,8 @@ static float float_at(const uint8_t *row, size_t i, int bits)
     return bits == 64 ? (float)value : single;
 }
 
-/* Sets the codes of a pixel: all three of a palette's color, or one of channel `c`. */
+/* Sets codes of a pixel: with a palette all three codes of color `value`, otherwise the code of
+ * channel `c`. */
 static void set_code(const TiffReader *self, unsigned value, size_t pixel, int c, Picture *picture)
 {
     const size_t first = pixel * (size_t)self->channels;
@@ -303,8 +307,8 @@ static void set_code(const TiffReader *self, unsigned value, size_t pixel, int c
                 (uint16_t)(self->bits < 8 ? value * 255 / most : value));
 }
 
-/* Copies `n` pixels of row `y` of the file, from column `x` on. `row` has all their samples, or
- * those of one plane. */
+/* Copies `n` pixels of row `y` of the file, from column `x` on. `row` holds all samples of these
+ * pixels, or only the samples of `plane`. */
 static void take_row(const TiffReader *self, const uint8_t *row, uint32_t x, uint32_t y, uint32_t n,
                      int plane, Image *image)
 {
@@ -337,7 +341,7 @@ static Status read_part(TiffReader *self, uint32_t x, uint32_t y, int plane, Ima
     return STATUS_OK;
 }
 
-/* Divides the codes of a pixel by its alpha, which is the last of them. */
+/* Divides the color codes of a pixel by its alpha, which follows them. */
 static void divide_codes(Picture *picture, size_t first, int colors)
 {
     uint32_t alpha = picture_code(picture, first + (size_t)colors);
@@ -348,8 +352,9 @@ static void divide_codes(Picture *picture, size_t first, int colors)
     }
 }
 
-/* Makes codes independent of alpha, and multiplies floats by alpha. */
-static void settle_colors(const TiffReader *self, Image *image)
+/* Converts colors to the convention of Image: codes that were multiplied by alpha are divided by
+ * it, and floats that were not are multiplied by it. */
+static void convert_alpha(const TiffReader *self, Image *image)
 {
     uint16_t extra, *kinds;
     TIFFGetFieldDefaulted(self->tiff.handle, TIFFTAG_EXTRASAMPLES, &extra, &kinds);
@@ -370,7 +375,7 @@ static Status read_parts(TiffReader *self, Image *image, Err *err)
             for (uint32_t x = 0; x < self->width; x += self->part_width)
                 TRY(read_part(self, x, y, plane, image, err));
     if (self->samples == 2 || self->samples == 4)
-        settle_colors(self, image);
+        convert_alpha(self, image);
     return STATUS_OK;
 }
 
@@ -397,7 +402,8 @@ static Status open_tiff(TiffReader *self, Err *err)
     return tiff_open(&self->tiff, self->input.file.name, "r") ? STATUS_OK : guard_failure(err);
 }
 
-/* A handle whose guard was left cannot be closed, and what it holds is lost. */
+/* A handle whose guard was left is in an undefined state. It is not closed, and its memory
+ * leaks. */
 static void release(void *work)
 {
     TiffReader *self = work;
@@ -452,8 +458,8 @@ static ImageCompression compression_of(TIFF *handle)
                                                       : IMAGE_LZW;
 }
 
-/* Returns true if the rows of the file are those of the image: integers, interleaved, upright, in
- * strips; grey, RGB, or RGB with an alpha that the colors are not multiplied by. */
+/* Returns true if the rows of the file need no conversion: integers of 8 or 16 bits, interleaved,
+ * upright, in strips; grey, RGB, or RGB with an alpha that does not multiply the colors. */
 static bool has_plain_rows(const TiffReader *self)
 {
     TIFF *handle = self->tiff.handle;
@@ -540,7 +546,8 @@ static double resolution(TIFF *handle)
     return (double)per_unit * (unit == RESUNIT_CENTIMETER ? MM_PER_INCH / 10 : 1);
 }
 
-/* Finds the maximum of the total ink of a pixel, if the rows hold interleaved inks. */
+/* Sets facts.ink_percent to the maximum total ink of a pixel. Leaves it 0 unless the rows hold
+ * interleaved inks. */
 static Status measure_ink(TiffReader *self, Err *err)
 {
     enum { INKS = 4 };

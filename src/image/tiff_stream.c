@@ -1,9 +1,9 @@
-/* libtiff 4.5 does not check all its allocations: of the 57 of reading a small file it reads
- * through NULL after 3 that fail, and of the 44 of writing one after 4. It allocates by its own
- * functions _TIFFmalloc, _TIFFcalloc and _TIFFrealloc, and calls them through the linker. The
- * functions of these names here therefore replace them. A failed allocation does not return to
- * libtiff but leaves the guard. A libtiff that is linked so that it calls its own functions never
- * calls these, and behaves as libtiff does.
+/* libtiff 4.5 does not check all its allocations. Reading a small file takes 57 allocations; if one
+ * of 3 of them fails, libtiff dereferences NULL. Writing a small file takes 44 allocations, 4 of
+ * them unchecked. libtiff allocates with its functions _TIFFmalloc, _TIFFcalloc and _TIFFrealloc,
+ * which the dynamic linker resolves. The functions of these names here therefore replace libtiff's.
+ * A failed allocation does not return to libtiff but leaves the guard. If a libtiff was linked so
+ * that it always calls its own functions, these functions are unused.
  *
  * The program exports these functions. The libraries do not, because they would replace libtiff's
  * functions for the whole process that loads them. */
@@ -74,11 +74,12 @@ static toff_t on_size(thandle_t user)
     return (toff_t)size;
 }
 
-/* libtiff then reads from memory, and uses the stream for little more than the header. */
+/* Maps the file for libtiff if it is in memory. libtiff then uses the stream for little more than
+ * the header. */
 static int on_map(thandle_t user, void **bytes, toff_t *size)
 {
     const TiffStream *tiff = user;
-    /* The bytes are only read, whatever the declaration of libtiff states. */
+    /* libtiff takes a pointer to non-const bytes, but only reads them. */
     *bytes = (void *)(uintptr_t)tiff->bytes;
     *size = tiff->size;
     return tiff->bytes != NULL;

@@ -13,8 +13,8 @@ typedef struct TiffStream {
                            * was left */
 } TiffStream;
 
-/* Opens the stream's TIFF in a mode of TIFFOpen. Returns false if that fails. Errors of libtiff
- * become the guard's complaint, and so do warnings when a file is written. */
+/* Opens tiff->stream, or tiff->bytes, with a mode of TIFFOpen. Returns false on failure. The
+ * guard's complaint receives the errors of libtiff, and its warnings when a file is written. */
 bool tiff_open(TiffStream *tiff, const char *name, const char *mode);
 
 #endif

@@ -1,13 +1,15 @@
-/* TIFF through libtiff, strip by strip: little-endian on every machine, compressed with the
- * horizontal predictor, without a date, so that equal pictures are equal files. The default
- * compression is LZW, which every journal accepts and some require, though deflate is smaller.
- * BigTIFF is used where offsets could need more than 32 bits. libtiff returns to the header at the
- * end, so the file must be seekable. */
+/* Writes TIFF with libtiff, strip by strip. Files are little-endian on every machine, compressed
+ * with the horizontal predictor, and have no date, so that equal pictures give equal files. The
+ * default compression is LZW, which every journal accepts and some require, though deflate is
+ * smaller. BigTIFF is used where offsets could need more than 32 bits. libtiff returns to the
+ * header at the end, so the file must be seekable. */
 #include "image/tiff_stream.h"
 
 enum { STRIP_BYTES = 1 << 18 };
-static const double classic_bytes = 4.0e9; /* 4 GB less what may be added */
-static const double worst_growth = 1.5;    /* of LZW, which writes 8 bits as up to 12 */
+static const double classic_bytes = 4.0e9; /* maximum size of pixels in a classic TIFF: 4 GiB less a
+                                            * reserve for the rest of the file */
+static const double worst_growth = 1.5;    /* maximum growth by LZW, which writes 8 bits as up to
+                                            * 12 */
 
 typedef struct TiffWriter {
     ImageOutput output;
@@ -77,8 +79,8 @@ static Status begin(void *work, Err *err)
                : guard_failure(err);
 }
 
-/* Without memory for libdeflate, libtiff takes zlib, which makes other bytes. The guard reports
- * that as a failure. */
+/* If libdeflate cannot allocate memory, libtiff falls back to zlib, whose output has other bytes.
+ * The guard detects this by errno and reports STATUS_MEMORY. */
 static Status write_strip(void *work, Err *err)
 {
     TiffWriter *self = work;
@@ -95,7 +97,7 @@ static Status end(void *work, Err *err)
     return TIFFWriteDirectory(self->tiff.handle) == 1 ? STATUS_OK : guard_failure(err);
 }
 
-/* TIFFCleanup also writes what libtiff still holds. */
+/* TIFFCleanup also writes data that libtiff still buffers. */
 static void release(void *work)
 {
     TiffWriter *self = work;

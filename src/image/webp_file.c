@@ -1,5 +1,5 @@
-/* WebP through libwebp, from the file in memory: a single picture of 8 bits, in colors, perhaps
- * with alpha. VP8 compression is lossy, VP8L is lossless. */
+/* Reads WebP with libwebp from a file in memory: a single 8-bit color picture, with or without
+ * alpha. The compression VP8 is lossy; VP8L is lossless. */
 #include "image/formats.h"
 
 #include <string.h>
@@ -31,7 +31,10 @@ static Status check_features(const ImageBytes *file, const WebPBitstreamFeatures
 {
     size_t size, pixels = (size_t)features->width * (size_t)features->height;
     const uint8_t *profile = find_chunk(file, "ICCP", &size);
-    enum { BLANK = 64 << 20 }; /* a blank picture of any size takes a few bytes */
+    enum {
+        BLANK = 64 << 20
+    }; /* a blank picture takes a few bytes at any size, so that each file
+        * may hold this many bytes */
     if (features->has_animation)
         return err_set(err, STATUS_INPUT, "%s: is an animation; it must be a single picture",
                        file->name);
@@ -41,7 +44,7 @@ static Status check_features(const ImageBytes *file, const WebPBitstreamFeatures
                              file->size * 10000 + BLANK, err);
 }
 
-/* libwebp does not distinguish a failed allocation from a broken file, but leaves ENOMEM. */
+/* libwebp reports a failed allocation like a broken file, but errno is then ENOMEM. */
 static Status decode(void *work, Err *err)
 {
     ImageInput *input = work;

@@ -313,7 +313,7 @@ extern const char parsed_memory[]; /* "the tree" */
  * Errors  STATUS_USAGE, with the option, its value and the accepted values; also if an operand or
  *         an option is missing, unknown or without effect. STATUS_INPUT or STATUS_IO if the recipe
  *         cannot be read. The errors of files_read and files_write. The errors of
- * OptionTable.settle. STATUS_MEMORY. */
+ *         OptionTable.settle. STATUS_MEMORY. */
 MUST_CHECK Status options_parse(Parsed *parsed, int argc, char **argv, Err *err);
 
 /* Sets an option by its name, which has no dashes. A value replaces the value before, except that

@@ -185,13 +185,26 @@ static Status copy_given(const Parsed *parsed, Tree *tree, TreeReading *reading,
     return tree_pruned(parsed->given, 0, tree, err);
 }
 
-static Status refuse_loops(const Command *command, const char *path, Tree *tree, Err *err)
+Status reading_refuse_loops(const Tree *tree, const char *path, const char *what, Err *err)
 {
-    tree_release(tree);
-    return err_set(err, STATUS_INPUT,
-                   "%s: the network has loops, and `corcast %s` needs a tree; --break-loops cuts "
-                   "each loop at its thinnest line",
-                   path, command->name);
+    if (!tree->link)
+        return STATUS_OK;
+    return err_set(
+        err, STATUS_INPUT,
+        "%s: the network has loops, and %s needs a tree; --break-loops cuts each loop at "
+        "its thinnest line",
+        path, what);
+}
+
+/* Refuses a network that a command cannot use, and releases it. */
+static Status check_kind(const Command *command, const char *path, Tree *tree, Err *err)
+{
+    if (!command->trees_only)
+        return STATUS_OK;
+    Status status = reading_refuse_loops(tree, path, command->name, err);
+    if (status != STATUS_OK)
+        tree_release(tree);
+    return status;
 }
 
 Status reading_tree(const Parsed *parsed, const char *path, Tree *tree, TreeReading *reading,
@@ -201,8 +214,8 @@ Status reading_tree(const Parsed *parsed, const char *path, Tree *tree, TreeRead
     Status status = parsed->given && path == parsed->given_name
                         ? copy_given(parsed, tree, &own, err)
                         : read_file(parsed, path, tree, &own, err);
-    if (status == STATUS_OK && parsed->command->trees_only && tree->link)
-        status = refuse_loops(parsed->command, path, tree, err);
+    if (status == STATUS_OK)
+        status = check_kind(parsed->command, path, tree, err);
     if (status == STATUS_OK && reading)
         *reading = own;
     else

@@ -24,4 +24,9 @@ MUST_CHECK Status reading_tree(const Parsed *parsed, const char *path, Tree *tre
 MUST_CHECK Status reading_tree_bytes(const Parsed *parsed, const MemoryFile *file, Tree *tree,
                                      Err *err);
 
+/* Refuses a network with links: "PATH: the network has loops, and WHAT needs a tree; ...". Errors:
+ * STATUS_INPUT. */
+MUST_CHECK Status reading_refuse_loops(const Tree *tree, const char *path, const char *what,
+                                       Err *err);
+
 #endif

@@ -26,8 +26,7 @@ MUST_CHECK Status templates_path(const char *name, char **path, Err *err);
  * `folder` of the templates folder.
  *
  * Errors  STATUS_USAGE, with the names that exist, if a named template cannot be read. A path with
- * a
- *         '/' is not checked. The errors of templates_folder. */
+ *         a '/' is not checked. The errors of templates_folder. */
 MUST_CHECK Status template_file(const char *option, const char *folder, const char *value,
                                 const char *extension, char **path, Err *err);
 

@@ -1,4 +1,5 @@
-/* The planes of a scene that a program has drawn: colors, alpha, depth, normals and ids. */
+/* The planes of a scene that an external renderer has drawn: colors, alpha, depth, normals and
+ * ids. */
 #ifndef CORCAST_ORACLE_PLANES_H
 #define CORCAST_ORACLE_PLANES_H
 
@@ -14,8 +15,8 @@ typedef struct OraclePlanes {
 
 void planes_release(OraclePlanes *planes);
 
-/* Writes a scene as a file for the program that reads the extension of `path`, and beside it the
- * second file if the format has one. Ignores the file names in `params`. Errors: those of
+/* Writes a scene to `path`, in the format of the emitter for `extension`. Also writes the second
+ * file of the format, if it has one. Ignores the file names in `params`. Errors: those of
  * emit_write, fileset_open and fileset_commit. */
 MUST_CHECK Status planes_write_scene(const EmitParams *params, const char *extension,
                                      const char *path, Err *err);

@@ -1,11 +1,13 @@
-/* POV-Ray: runs it on a scene file that corcast has written, and reads the planes that it drew. */
+/* Runs POV-Ray on a scene file that corcast has written, and reads the planes that POV-Ray has
+ * drawn. */
 #ifndef CORCAST_ORACLE_POVRAY_H
 #define CORCAST_ORACLE_POVRAY_H
 
 #include "oracle/planes.h"
 #include "oracle/program.h"
 
-/* What a run of POV-Ray draws. The file PovrayParams.planes reads the value from Corcast_Plane. */
+/* The plane that a run of POV-Ray draws. The run declares the value as Corcast_Plane, which the
+ * file PovrayParams.planes reads. */
 typedef enum PovrayPlane {
     POVRAY_COLOR,
     POVRAY_DEPTH,
@@ -18,18 +20,19 @@ typedef enum PovrayPlane {
 
 enum { POVRAY_MAX_ID = 65535 };
 
-/* The name of a copy of the template povray/planes.inc beside a scene. */
+/* The name of the copy of the template povray/planes.inc in the folder of a scene. */
 #define POVRAY_PLANES_FILE "corcast_planes.inc"
 
 /* One run of POV-Ray. All pointers are borrowed. */
 typedef struct PovrayParams {
     ProgramChoice program;     /* default: "povray" */
     const char *scene;         /* a .pov file */
-    const char *planes;        /* the template povray/planes.inc, or a copy; for all except
+    const char *planes;        /* the template povray/planes.inc, or a copy; not used for
                                 * POVRAY_COLOR and POVRAY_ALPHA */
     const char *output;        /* the .png file that is written */
     int width, height;         /* pixels of the whole picture */
-    PixelRect part;            /* only these pixels are drawn, the others are black; width 0: all */
+    PixelRect part;            /* the pixels that are drawn; the others are black; width 0: all
+                                * pixels are drawn */
     int antialias;             /* of POVRAY_COLOR and POVRAY_ALPHA: 1, or N for +A0.0 +AM1 +RN -J */
     int threads;               /* 0: POV-Ray's own default */
     PovrayPlane plane;         /* POVRAY_ID is 8-bit linear; depth and normals are 16-bit linear */
@@ -40,37 +43,36 @@ typedef struct PovrayParams {
     void *progress_context;
 } PovrayParams;
 
-/* What a run reports about itself. */
+/* Facts about a run. */
 typedef struct PovrayRun {
     char version[64]; /* "3.7.0.10.unofficial" */
-    double seconds;   /* wall-clock time, parsing included */
+    double seconds;   /* wall-clock time, including parsing */
 } PovrayRun;
 
-/* Runs POV-Ray in the scene's folder, without a window. The picture gets its name only if it is a
- * whole PNG of the requested size and depth.
+/* Runs POV-Ray in the scene's folder, without a window. The picture gets its final name only if it
+ * is a complete PNG of the requested size and bit depth.
  *
  * run     may be NULL.
- * Errors  as program_draw; a failure of POV-Ray has its own words in the sentence. */
+ * Errors  those of program_draw. If POV-Ray fails, the message quotes POV-Ray's message. */
 MUST_CHECK Status povray_draw(const PovrayParams *params, PovrayRun *run, Err *err);
 
-/* Formats the command line of such a run, for reports and scripts. File names have no folders. Sets
- * *out (owned). Errors: STATUS_MEMORY. */
+/* Formats the command line of a run, for reports and scripts. File names have no folders. The
+ * caller frees *out. Errors: STATUS_MEMORY. */
 MUST_CHECK Status povray_command(const PovrayParams *params, char **out, Err *err);
 
-/* Decodes the picture of a run into new members of `planes`: the colors; depth in mm along the
- * ray, INFINITY where nothing is visible; unit normals, 0 0 0 where nothing is visible; ids; or
- * alpha.
+/* Decodes the picture of a run into new members of `planes`: the colors; depth in mm along the ray,
+ * INFINITY where nothing is visible; unit normals, 0 0 0 where nothing is visible; ids; or alpha.
  *
- * picture  is emptied if its codes become the colors. Release it in any case.
- * scene    tells the depths that the codes 0 and 65535 stand for.
- * planes   release them with planes_release, also after an error.
- * Errors   STATUS_INPUT if it is not such a picture, STATUS_MEMORY. The sentence has no file
- *          name. */
+ * picture  emptied if its codes become the colors. The caller releases it in every case.
+ * scene    determines the depths that the codes 0 and 65535 represent.
+ * planes   the caller releases them with planes_release even after an error.
+ * Errors   STATUS_INPUT if the picture is not one of this plane; STATUS_MEMORY. The message does
+ *          not name the file. */
 MUST_CHECK Status povray_take_plane(PovrayPlane plane, Picture *picture, const Scene *scene,
                                     OraclePlanes *planes, Err *err);
 
-/* Extracts the alpha of an 8-bit picture as a new grey 8-bit picture. A picture without alpha gives
- * white. Errors: STATUS_MEMORY. */
+/* Makes a grey 8-bit picture of the alpha of an 8-bit picture. It is white if the picture has no
+ * alpha. The caller releases *alpha. Errors: STATUS_MEMORY. */
 MUST_CHECK Status picture_take_alpha(Picture *alpha, const Picture *picture, Err *err);
 
 #endif

@@ -1,5 +1,5 @@
 /* Draws a scene with POV-Ray: writes the scene files, runs POV-Ray once per plane and tile, several
- * runs side by side, and puts the planes together. */
+ * runs at the same time, and assembles the planes. */
 #ifndef CORCAST_ORACLE_POVRAY_TILES_H
 #define CORCAST_ORACLE_POVRAY_TILES_H
 
@@ -7,19 +7,19 @@
 #include "oracle/planes.h"
 #include "oracle/povray.h"
 
-/* What POV-Ray draws, and where. All pointers are borrowed until povraytiles_free. */
+/* The parameters of a drawing. All pointers are borrowed until povraytiles_free. */
 typedef struct PovrayTilesParams {
-    EmitParams emit;    /* the scene, its colors at all moments, and how it is written; without file
-                         * names, `ids`, `built` and `part` */
+    EmitParams emit;    /* the scene with its colors at all moments, and the parameters of its file;
+                         * file names, `ids`, `built` and `part` are ignored */
     const char *folder; /* an existing folder, for scenes and planes */
     double clock;       /* moment of the scene, in [0, 1] */
     int antialias;      /* N x N samples per pixel of the colors */
-    int bits;           /* of the colors: 8 (sRGB) or 16 (linear) */
-    bool alpha;         /* alpha is drawn, too, unless there are several tiles */
+    int bits;           /* bits of the colors: 8 (sRGB) or 16 (linear) */
+    bool alpha;         /* alpha is also drawn, unless there are several tiles */
     int min_tiles;      /* 1 or more */
     int threads;        /* 0: all processors */
     ProgramChoice program;
-    ProgramProgress *progress; /* called by any thread, by one at a time; may be NULL */
+    ProgramProgress *progress; /* called by any thread, but only by one at a time; may be NULL */
     void *progress_context;
 } PovrayTilesParams;
 
@@ -31,8 +31,8 @@ typedef struct PovrayTiles PovrayTiles;
  * the whole scene and `min_tiles` is 1.
  *
  * tiles   set on success; release it with povraytiles_free.
- * Errors  STATUS_INFEASIBLE if POV-Ray cannot hold the smallest tile, STATUS_USAGE if the picture
- *         is too small for `min_tiles`; and as emit_write. */
+ * Errors  STATUS_INFEASIBLE if POV-Ray cannot hold even the smallest tile; STATUS_USAGE if the
+ *         picture is too small for `min_tiles`; the errors of emit_write. */
 MUST_CHECK Status povraytiles_prepare(const PovrayTilesParams *params, PovrayTiles **tiles,
                                       Err *err);
 
@@ -40,7 +40,7 @@ MUST_CHECK Status povraytiles_prepare(const PovrayTilesParams *params, PovrayTil
 size_t povraytiles_count(const PovrayTiles *tiles);
 /* Returns the number of runs of POV-Ray. */
 size_t povraytiles_n_commands(const PovrayTiles *tiles);
-/* Returns the command line of a run, as povray_command formats it; borrowed. */
+/* Returns the command line of run `run`, counted from 0, as povray_command formats it; borrowed. */
 const char *povraytiles_command(const PovrayTiles *tiles, size_t run);
 
 /* Runs POV-Ray until all planes of all tiles are drawn, and reads them.
@@ -48,7 +48,7 @@ const char *povraytiles_command(const PovrayTiles *tiles, size_t run);
  * planes  receives picture, depth, normals and ids, and alpha if it is drawn. Release it with
  *         planes_release, also after an error.
  * run     receives POV-Ray's version, and the seconds of the color plane, summed over tiles.
- * Errors  as povray_draw. A picture that cannot be read is STATUS_TOOL. */
+ * Errors  those of povray_draw; STATUS_TOOL if a picture cannot be read. */
 MUST_CHECK Status povraytiles_draw(PovrayTiles *tiles, OraclePlanes *planes, PovrayRun *run,
                                    Err *err);
 

@@ -1,5 +1,5 @@
-/* Runs an external renderer, such as POV-Ray, on a scene file. The renderer opens no window. It is
- * ended if it makes no progress, and its picture is accepted only if it is complete.
+/* Runs an external renderer, such as POV-Ray, on a scene file. A renderer that makes no progress is
+ * ended, and a picture is accepted only if it is complete.
  *
  * A Program describes the executable, its arguments, and how to decide whether its picture is
  * complete. Use: fill a Program, then program_draw(&program, &output, &seconds, err). Needs Linux
@@ -9,10 +9,10 @@
 
 #include "base/base.h"
 
-/* Which executable to run, and how long to wait for it. All strings are borrowed. */
+/* The executable that is run, and the time limit. All strings are borrowed. */
 typedef struct ProgramChoice {
-    const char *path;  /* executable, searched in PATH if it has no slash; NULL: the function that
-                        * takes the choice has a default, such as "povray" */
+    const char *path;  /* executable, searched in PATH if it has no slash; NULL: the default of the
+                        * function that receives the choice, such as "povray" */
     double patience_s; /* the program is ended after this many seconds without output, and after
                         * five times as many seconds without progress; 0: never */
     const char *patience_name; /* the setting that a user changes to set patience_s, for error
@@ -23,13 +23,12 @@ typedef struct ProgramChoice {
  * takes minutes; a smaller value would end such runs. */
 #define PROGRAM_PATIENCE_S 600
 
-/* Receives the fraction of the picture that is drawn, in [0, 1]. If it returns false, the program
- * is ended, and program_draw fails with STATUS_CANCELLED. */
+/* Receives the fraction of the picture that has been drawn, in [0, 1]. If it returns false, the
+ * program is ended, and program_draw fails with STATUS_CANCELLED. */
 typedef bool ProgramProgress(double fraction, void *context);
 
-/* A private folder with a link to the scene, by the name that arguments of the program use:
- * program_draw opens this folder as file descriptor 3. The name of the scene in it is
- * PROGRAM_SCENE. */
+/* The path by which the program's arguments refer to a private folder with links to the scene and
+ * its header. program_draw opens the folder as file descriptor 3. */
 #define PROGRAM_FOLDER "/proc/self/fd/3/"
 /* The names of the scene and of its header in that folder. */
 #define PROGRAM_SCENE "scene.pov"
@@ -37,10 +36,10 @@ typedef bool ProgramProgress(double fraction, void *context);
 
 /* The files of a run as its command line names them. All strings are borrowed. */
 typedef struct ProgramPaths {
-    const char *scene, *header, *picture; /* header: only if the program has one */
+    const char *scene, *header, *picture; /* header: NULL if the program has none */
 } ProgramPaths;
 
-enum { MAX_ARGUMENTS = 28 }; /* POV-Ray with all options has fewer */
+enum { MAX_ARGUMENTS = 28 }; /* enough for POV-Ray with all options */
 
 /* The words of a command line. The first is the executable. Zeroed: none. */
 typedef struct Arguments {
@@ -54,7 +53,7 @@ MUST_CHECK Status arguments_add(Arguments *arguments, Err *err, const char *form
     PRINTF_LIKE(3, 4);
 void arguments_release(Arguments *arguments);
 
-/* A program, and the picture that it is to draw. All pointers are borrowed. */
+/* A program, and the picture that it draws. All pointers are borrowed. */
 typedef struct Program {
     const char *name;    /* name in messages: "POV-Ray" */
     const char *package; /* the Debian package that contains it */
@@ -68,13 +67,13 @@ typedef struct Program {
      * its files. An error ends program_draw with the same status. */
     Status (*add_arguments)(const void *context, const ProgramPaths *paths, Arguments *arguments,
                             Err *err);
-    /* Decides, after the program has ended, whether the file `picture` is the whole picture.
-     * Errors: STATUS_TOOL, with the reason found in `output`, if it is not. */
+    /* Checks, after the program has ended, that the file `picture` is the complete picture. Errors:
+     * STATUS_TOOL, with the reason found in `output`, if it is not. */
     Status (*judge)(const void *context, const Text *output, int exit_status, const char *picture,
                     Err *err);
-    /* Returns true if the picture is whole and the program has only to exit. The program is then
-     * killed if the file name of its executable is `executable`. Any other executable is a script,
-     * which may have more to do and is waited for. May be NULL. */
+    /* Returns true if the picture is complete, so that the program only has to exit. The program is
+     * then killed, if the file name of its executable is `executable`. Any other executable is
+     * assumed to be a script, which may do further work, and is waited for. May be NULL. */
     bool (*is_done)(const void *context, const Text *output, const char *picture);
     const char *executable; /* "povray"; not read if is_done is NULL */
     const void *context;    /* passed to the three functions */
@@ -83,12 +82,12 @@ typedef struct Program {
 /* Runs the program with the scene's folder as working folder, where it finds files that the scene
  * includes. The picture gets its final name only if `judge` accepts it.
  *
- * output   what the program printed is appended, with line feeds as line ends.
+ * output   receives the program's output, appended, with line feeds as line ends.
  * seconds  receives the wall-clock time of the run, s; unchanged after an error.
  * Errors   STATUS_TOOL if the program is not installed, fails, prints nothing or makes no progress
  *          for too long, or prints more than 1 GB. STATUS_INPUT if the scene is not a regular file.
  *          STATUS_IO if the picture cannot be written. STATUS_CANCELLED if `progress` returns
- * false. STATUS_MEMORY. The errors of add_arguments. */
+ *          false. STATUS_MEMORY. The errors of add_arguments. */
 MUST_CHECK Status program_draw(const Program *program, Text *output, double *seconds, Err *err);
 
 #endif

@@ -1,35 +1,37 @@
-/* Runs commands of the user through the shell. */
+/* Runs shell commands that the user specifies. */
 #ifndef CORCAST_ORACLE_SHELL_H
 #define CORCAST_ORACLE_SHELL_H
 
 #include "base/base.h"
 #include <sys/types.h>
 
-/* A mark of a command, such as "{scene}", and what replaces it. Borrowed. */
+/* A placeholder in a command, such as "{scene}", and the text that replaces it. Both are
+ * borrowed. */
 typedef struct ShellMark {
     const char *mark, *text;
-    bool is_words; /* `text` is several words of the shell; false: one word, which is quoted */
+    bool is_words; /* `text` is shell code and is inserted as it is; false: it is quoted as one
+                    * word */
 } ShellMark;
 
-/* Appends `command` with all marks replaced. If the first mark is missing in `command`, the texts
- * of the first `appended` marks are appended. */
+/* Appends `command` with all placeholders replaced. If `command` does not contain the first
+ * placeholder, also appends the texts of the first `appended` placeholders. */
 void shell_fill(const char *command, const ShellMark *marks, size_t n, size_t appended, Text *out);
 
-/* Runs a command with sh -c and waits for it. The command, and everything that it starts, is ended
- * by a signal that ends this process.
+/* Runs a command with sh -c and waits for it. If a signal ends this process, the command and all
+ * processes that it started are ended as well.
  *
- * heard        true: its output goes to standard error; false: its output is dropped.
- * exit_status  receives its exit status.
+ * heard        true: the output of the command goes to standard error; false: it is discarded.
+ * exit_status  receives the exit status of the command.
  * Errors       STATUS_TOOL if the command cannot be run, or is ended by a signal. */
 MUST_CHECK Status shell_run(const char *command, bool heard, int *exit_status, Err *err);
 
-/* Starts a command with sh -c, as a process group that a signal that ends this process kills. The
- * caller waits for *child and calls file_spare_on_signal.
+/* Starts a command with sh -c as a process group. If a signal ends this process, the process group
+ * is killed. The caller must wait for *child and then call file_spare_on_signal.
  *
- * output  file descriptor that receives its output; -1: its output is dropped.
+ * output  file descriptor that receives the output of the command; -1: the output is discarded.
  * Errors  STATUS_TOOL if no process can be started. */
 MUST_CHECK Status shell_start(const char *command, int output, pid_t *child, Err *err);
-/* Returns the exit status of what waitpid reports; 127 if a signal ended the command. */
+/* Returns the exit status in a status of waitpid; 127 if a signal ended the command. */
 int shell_exit_status(int ended);
 
 #endif

@@ -1,6 +1,6 @@
-/* Tachyon, a renderer that shares no code with corcast or POV-Ray: draws a scene with it and reads
- * the planes. It reads coordinates in single precision, computes in double precision, and writes
- * depth in 65535 steps. */
+/* Draws a scene with Tachyon and reads the planes. Tachyon is a renderer that shares no code with
+ * corcast or POV-Ray. It reads coordinates in single precision, computes in double precision, and
+ * writes depth in 65535 steps. */
 #ifndef CORCAST_ORACLE_TACHYON_H
 #define CORCAST_ORACLE_TACHYON_H
 
@@ -8,15 +8,15 @@
 #include "image/image.h"
 #include "oracle/program.h"
 
-/* What Tachyon draws, and where. All pointers are borrowed. */
+/* The parameters of a drawing. All pointers are borrowed. */
 typedef struct TachyonParams {
-    EmitParams emit;    /* the scene and how it is written; without file names */
+    EmitParams emit;    /* the scene, and the parameters of its file; file names are ignored */
     const char *folder; /* an existing folder, for the scene and the planes */
     int threads;        /* 0: Tachyon's own default */
     ProgramChoice program;
 } TachyonParams;
 
-/* What the runs report about themselves. */
+/* Facts about the two runs. */
 typedef struct TachyonRun {
     char version[16]; /* "0.99"; "unknown" if Tachyon prints none */
     double seconds;   /* wall-clock time of both planes */
@@ -27,8 +27,8 @@ typedef struct TachyonRun {
  *
  * frame   receives id and depth (mm along the ray; INFINITY where nothing is visible). Release it
  *         with frame_release, also after an error.
- * run     may be changed by a call that fails.
- * Errors  as emit_write and program_draw; if Tachyon fails, the message quotes Tachyon's own
+ * run     receives the facts; may also be changed by a call that fails.
+ * Errors  those of emit_write and program_draw. If Tachyon fails, the message quotes Tachyon's
  *         message. */
 MUST_CHECK Status tachyon_draw(const TachyonParams *params, Frame *frame, TachyonRun *run,
                                Err *err);

@@ -3,7 +3,7 @@
     import corcast
     tree = corcast.grow(terminals=1000, seed=4, domain="ball:30")
     tree.positions, tree.radii, tree.parents       # numpy arrays; lengths are millimetres
-    tree.field("wss")                              # one value for each node
+    tree.field("wss")                              # an array with a value per node
     tree.refine(level="topology")
     tree.render(model="isosurface", size=(800, 800), ao=16).save("tree.png")
     tree.export("tree.stl")
@@ -12,15 +12,17 @@
 Keyword arguments are the options of the corcast command of the same name, with `_` for `-`:
 docs/REFERENCE.md lists them, and corcast.schema("grow") returns them with ranges, units and
 defaults. A value is a string as on the command line, a number, True or False, or a sequence of
-numbers; a list of strings is joined by commas, a sequence of sequences gives the option several
-times; None leaves the default.
-Two keyword arguments are not options: `progress`, a function of (step, fraction) that returns False
-to stop, and `message`, a function of (sentence, is_warning). Without `message`, warnings of the
-library become Python warnings.
+numbers. A list of strings is joined by commas. A sequence of sequences sets the option several
+times. None selects the default.
 
-A failure raises corcast.Error with the library's sentence. The module needs the shared library
-libcorcast.so.0 and numpy. It finds the library beside itself, in the installed prefix, in the build
-folder of a source tree, or under the path in the environment variable CORCAST_LIBRARY.
+Two keyword arguments are not options. `progress` is a function of (step, fraction); it returns
+False to stop the operation. `message` is a function of (sentence, is_warning). Without `message`,
+warnings of the library become Python warnings.
+
+A failure raises corcast.Error, whose text is the library's error message. The module needs numpy
+and the shared library libcorcast.so.0. The environment variable CORCAST_LIBRARY may name the path
+of the library. Otherwise the module searches its own folder, the installed prefix and the build
+folder of a source tree.
 """
 
 import collections.abc
@@ -43,7 +45,8 @@ __all__ = ["Error", "Image", "Mesh", "Page", "Report", "Scene", "Tree", "compare
 class Error(Exception):
     """A failure of the library; the text is one sentence.
 
-    exit_status: that of the command line: 1 differs, 2 wrong input or options, 3 the outside world.
+    exit_status: the exit status of the command line: 1 a comparison found a difference, 2 wrong
+    input or options, 3 a failure of memory, a file, another program or a callback.
     kind: "usage", "input", "infeasible", "io", "memory", "tool", "cancelled" or "differs".
     """
 
@@ -79,8 +82,9 @@ class _Triangles(ctypes.Structure):
                 ("segments", POINTER(ctypes.c_uint32))]
 
 
-# The parameters of the functions of corcast.h that return a status, but the last, the error:
-# h handle, H where a handle is stored, s text, i int, z size, p pointer, f function.
+# The parameters of the functions of corcast.h that return a status, without the last parameter,
+# the error: h handle, H pointer that receives a handle, s text, i int, z size, p pointer,
+# f function.
 _FUNCTIONS = {
     "options_new": "sH", "options_set": "hss", "options_callbacks": "hffp",
     "schema": "sH", "tree_read": "shH", "tree_from_nodes": "pH", "tree_copy": "hH",
@@ -96,7 +100,7 @@ _TYPES = {"h": c_void_p, "H": c_void_p, "s": c_char_p, "i": c_int, "z": c_size_t
 
 
 def _library_paths():
-    """The places where the library may be, the most particular first."""
+    """Yields the paths where the library may be, in the order of precedence."""
     here = pathlib.Path(__file__).resolve().parent
     name = "libcorcast.so.0"
     if os.environ.get("CORCAST_LIBRARY"):
@@ -152,7 +156,7 @@ def _call(name, *arguments, accept=(0,)):
 
 
 class _Handle:
-    """Owns a handle of the library, and frees it when the last reference goes."""
+    """Owns a handle of the library, and frees it when this object is destroyed."""
 
     _kind = None  # "tree"
 
@@ -176,7 +180,8 @@ class _ReportHandle(_Handle):
 
 
 class Report(dict):
-    """What an operation found: the JSON of the command line as a dict, members also as attributes.
+    """The result of an operation: the JSON document that the command line writes, as a dict. Its
+    members are also attributes.
     """
 
     def __getattr__(self, name):
@@ -201,7 +206,7 @@ def _is_sequence(value):
 
 
 def _value(name, value):
-    """One value as the command line has it."""
+    """Returns a value as text in the form of the command line."""
     if isinstance(value, (bool, numpy.bool_)):
         return "on" if value else "off"
     if isinstance(value, numbers.Real):
@@ -212,7 +217,7 @@ def _value(name, value):
 
 
 def _values(name, value):
-    """The values of an option that is given once, or several times by a list."""
+    """Returns the texts of an option: one, or several if the option is set several times."""
     if isinstance(value, list) and value and isinstance(value[0], str):
         return [",".join(value)]
     if _is_sequence(value) and len(value) and _is_sequence(value[0]):
@@ -244,13 +249,13 @@ class _Options(_Handle):
                                                    for f in self._callbacks], None)
 
     def _show(self, _user, step, fraction):
-        """Stops the operation when the caller's function does, or raises, or at Ctrl-C."""
+        """Returns 1, to stop the operation, if `progress` returns False or raises, or at Ctrl-C."""
         try:
             if self._progress and step is not None:
                 answer = self._progress(step.decode(), fraction)
                 self._stopped = answer is not None and not answer
                 return int(self._stopped)
-        except BaseException as raised:  # it must not cross the library; `run` raises it again
+        except BaseException as raised:  # must not enter the library; `run` raises it again
             self._raised = raised
             return 1
         return 0
@@ -266,14 +271,14 @@ class _Options(_Handle):
             self._raised = raised
 
     def run(self, name, *arguments, accept=(0,)):
-        """Calls an operation, and raises what a callback raised meanwhile."""
+        """Calls an operation. Raises the exception that a callback raised, if any."""
         try:
             status = _call(name, *arguments, accept=accept)
         except Error as error:
             if self._raised:
                 raise self._raised from None
             if error.kind == "cancelled" and not self._stopped:
-                raise KeyboardInterrupt from None  # ctypes swallowed it before _show began
+                raise KeyboardInterrupt from None  # ctypes ignored Ctrl-C before _show began
             raise
         if self._raised:
             raise self._raised
@@ -281,12 +286,13 @@ class _Options(_Handle):
 
 
 def version():
-    """Returns the version of the library, "0.1.0"."""
+    """Returns the version of the library, such as "0.1.0"."""
     return _library.corcast_version().decode()
 
 
 def schema(command=None):
-    """Describes one command, or a list of all: options with kinds, ranges, units, defaults."""
+    """Returns the description of a command: its options with kinds, ranges, units and defaults.
+    Without `command`, returns a list of the descriptions of all commands."""
     report = _ReportHandle()
     _call("schema", _text(command), byref(report._handle))
     commands = report.content()["commands"]
@@ -303,7 +309,7 @@ def _copy(pointer, shape, dtype):
 
 
 def _integers(name, values):
-    """The values as an array of int32; ValueError if one is not such an integer."""
+    """Returns the values as an array of int32. Raises ValueError if a value does not fit."""
     values = numpy.asarray(values)
     with numpy.errstate(invalid="ignore"):
         integers = numpy.ascontiguousarray(values, numpy.int32)
@@ -313,18 +319,20 @@ def _integers(name, values):
 
 
 class Tree(_Handle):
-    """An arterial tree, or a forest of several.
+    """An arterial tree, or a forest of several trees.
 
-    Node i, unless it is a root, is the distal end of segment i, a straight tube of one radius from
-    the position of its parent. Parents come before their children. Arrays are copies.
+    Each node i, except a root, is the distal end of segment i: a straight tube of one radius from
+    the position of the node's parent to the position of the node. Parents precede their children.
+    The arrays are copies.
     """
 
     _kind = "tree"
 
     @classmethod
     def from_arrays(cls, positions, radii, parents, ids=None):
-        """Makes a tree of arrays: positions (n, 3) and radii (n) in mm, parents (n), -1 at a root,
-        and ids (n), 1 or more; without ids, nodes get 1, 2, and so on."""
+        """Makes a tree from arrays: positions (n, 3) in mm, radii (n) in mm, parents (n), which are
+        node indices or -1 at a root, and ids (n), each 1 or more. Without ids, the nodes get the
+        ids 1, 2, ..."""
         positions = numpy.ascontiguousarray(positions, numpy.float64)
         radii = numpy.ascontiguousarray(radii, numpy.float64)
         parents = _integers("parents", parents)
@@ -345,7 +353,7 @@ class Tree(_Handle):
         return tree
 
     def copy(self):
-        """Returns a copy."""
+        """Returns a copy of the tree."""
         tree = Tree()
         _call("tree_copy", self._handle, byref(tree._handle))
         return tree
@@ -373,58 +381,59 @@ class Tree(_Handle):
 
     @property
     def radii(self):
-        """Radii of the segments in mm; of a root, the radius at the inlet."""
+        """Radii of the segments in mm, an array (n) of float64. At a root: radius of the inlet."""
         nodes = self._nodes()
         return _copy(nodes.radii, (nodes.n,), numpy.float64)
 
     @property
     def parents(self):
-        """Indices of the parents; -1 at a root."""
+        """Node indices of the parents, an array (n) of int32; -1 at a root."""
         nodes = self._nodes()
         return _copy(nodes.parents, (nodes.n,), numpy.int32)
 
     @property
     def ids(self):
-        """Numbers of the nodes in files."""
+        """Ids of the nodes in files, an array (n) of int32."""
         nodes = self._nodes()
         return _copy(nodes.ids, (nodes.n,), numpy.int32)
 
     def _field(self, name, options):
         options = _Options("info", options)
         values, unit = POINTER(c_double)(), c_char_p()
-        with _field_lock:  # the library keeps fields in the tree
+        with _field_lock:  # the library stores the field in the tree
             _call("tree_field", self._handle, name.encode(), options._handle, byref(values),
                   byref(unit))
             return _copy(values, (len(self),), numpy.float64), unit.value.decode()
 
     def field(self, name, **options):
-        """Returns one value for each node: a column of the file, or a computed field such as
-        "flow" (ml/min), "pressure" (mmHg), "wss" (Pa), "strahler"; NaN where there is none.
-        Options are those of `corcast info`: p_perf=100."""
+        """Returns the values of a field, an array (n) of float64: a column of the tree's file, or a
+        computed field such as "flow" (ml/min), "pressure" (mmHg), "wss" (Pa) or "strahler". A node
+        without a value has NaN. The options are those of `corcast info`, such as p_perf=100."""
         return self._field(name, options)[0]
 
     def unit(self, name, **options):
-        """Returns the unit of a field, "" for a pure number."""
+        """Returns the unit of a field; "" for a pure number."""
         return self._field(name, options)[1]
 
     def save(self, path):
-        """Writes the tree to a file; the extension decides the format."""
+        """Writes the tree to a file. The extension selects the format."""
         _call("tree_write", self._handle, _text(path))
 
     def refine(self, level=None, **options):
-        """Optimizes the tree in place; returns the report of `corcast refine`. `level` is the value
-        of its option --refine: "geometry", "topology" or "anneal"."""
+        """Optimizes the tree in place. Returns the report of `corcast refine`. `level` is the value
+        of the option --refine: "geometry", "topology" or "anneal"."""
         if level is not None:
             options["refine"] = level
         return self._report("refine", options)
 
     def certify(self, **options):
-        """Proves how low the target of this topology can get: `bound` of the report is a lower
-        bound, and `gap` is best_geometry / bound - 1 of the best positions that were found."""
+        """Proves a lower bound of the growth target for all trees with this topology. Returns a
+        report: `bound` is the lower bound, `best_geometry` the lowest target that was found for
+        this topology, and `gap` is best_geometry / bound - 1."""
         return self._report("certify", options)
 
     def info(self, **options):
-        """Returns what `corcast info --json` writes: counts, lengths, volume, pressures."""
+        """Returns the report of `corcast info --json`: counts, lengths, volume, pressures."""
         return self._report("info", options)
 
     def _report(self, command, options):
@@ -434,26 +443,27 @@ class Tree(_Handle):
         return Report(report.content())
 
     def scene(self, **options):
-        """Makes the scene that `render` draws; options are those of `corcast render`."""
+        """Returns the Scene that `render` draws. The options are those of `corcast render`."""
         return Scene(self, options)
 
     def render(self, **options):
-        """Draws the tree; options are those of `corcast render`. Returns an Image."""
+        """Draws the tree. Returns an Image. The options are those of `corcast render`."""
         return self.scene(**options).render()
 
     def mesh(self, **options):
-        """Makes the closed surface of the tree; options are those of `corcast export`."""
+        """Returns the closed surface, a Mesh. The options are those of `corcast export`."""
         return Mesh(self, options)
 
     def export(self, path, command="export", **options):
-        """Writes files of other programs; the extension of `path` decides the format. `command` is
-        "export" (meshes, volumes, pages), "scene" (POV-Ray, OpenSCAD), "render", "diagram" or
-        "convert"."""
+        """Runs a command on the tree and writes its files. The extension of `path` selects the
+        format. `command` is "export" (meshes, volumes, pages), "scene" (POV-Ray, OpenSCAD,
+        Tachyon), "render" (pictures), "diagram" or "convert" (trees). The options are those of the
+        command."""
         options = _Options(command, options)
         options.run("export", self._handle, options._handle, _text(path))
 
     def export_bytes(self, name, command="export", **options):
-        """Returns the files that `export` would write, a dict of name and bytes."""
+        """Returns the files that `export` would write: a dict from file name to bytes."""
         files = {}
         options = _Options(command, options)
 
@@ -467,13 +477,14 @@ class Tree(_Handle):
         return {file: bytes(data) for file, data in files.items()}
 
     def page(self, **options):
-        """Makes the page that `corcast export T -o P.html` writes: the tree in three dimensions
-        with its numbers. A notebook shows it."""
+        """Returns the web page that `corcast export T -o P.html` writes: a Page, which shows the
+        tree in three dimensions with its fields. A notebook displays the page."""
         return Page(self.export_bytes("tree.html", **options)["tree.html"])
 
     def verify(self, folder, **options):
-        """Draws the tree with POV-Ray and with corcast, and compares both; `folder` receives the
-        scene, the pictures and the report. `agrees` of the result is the verdict."""
+        """Draws the tree with POV-Ray and with corcast, and compares the pictures. `folder`
+        receives the scene, the pictures and the report. Returns a report, in which `agrees` is
+        true if the renderers agree."""
         options = _Options("verify", options)
         report = _ReportHandle()
         status = options.run("verify", self._handle, options._handle, _text(folder),
@@ -486,12 +497,13 @@ class Tree(_Handle):
         return f"<corcast.Tree of {len(self)} nodes>"
 
     def _repr_png_(self):
-        """A notebook shows the tree as a picture."""
+        """Returns a PNG, so that a notebook displays the tree."""
         return self.export_bytes("tree.png", command="render", size=(480, 480))["tree.png"]
 
 
 def grow(**options):
-    """Grows a tree; options are those of `corcast grow`: grow(terminals=1000, seed=4)."""
+    """Grows a tree and returns it. The options are those of `corcast grow`, as in
+    grow(terminals=1000, seed=4)."""
     options = _Options("grow", options)
     tree = Tree()
     options.run("grow", options._handle, byref(tree._handle), None)
@@ -499,7 +511,8 @@ def grow(**options):
 
 
 def read(path, **options):
-    """Reads a tree from a file; options are those of reading: read(path, input_unit="um")."""
+    """Reads a tree from a file and returns it. The options are the input options of `corcast
+    info`, as in read(path, input_unit="um")."""
     options = _Options("info", options)
     tree = Tree()
     options.run("tree_read", _text(path), options._handle, byref(tree._handle))
@@ -521,10 +534,10 @@ def _type_of(dtype):
 
 
 class Image(_Handle):
-    """A picture, with planes that may lie beside it.
+    """A picture, and optionally planes of the same size: depth, normals and ids.
 
-    Arrays have the shape (height, width) or (height, width, channels). Colors of uint8 and uint16
-    are sRGB, those of float32 are linear.
+    Arrays have the shape (height, width) or (height, width, channels). Colors of the types uint8
+    and uint16 are sRGB codes. Colors of the type float32 are linear.
     """
 
     _kind = "image"
@@ -538,8 +551,8 @@ class Image(_Handle):
 
     @classmethod
     def from_array(cls, pixels):
-        """Makes a picture of an array (height, width), (height, width, 3) or (height, width, 4) of
-        uint8, uint16 or float32."""
+        """Makes a picture from an array of uint8, uint16 or float32. Its shape is (height, width),
+        (height, width, 3) or (height, width, 4)."""
         pixels = numpy.ascontiguousarray(pixels)
         if pixels.ndim not in (2, 3):
             raise ValueError(f"an array of shape {pixels.shape} is no picture")
@@ -556,8 +569,9 @@ class Image(_Handle):
         return [side.value for side in sides]
 
     def plane(self, name, dtype=None):
-        """Returns "color", "depth" (mm), "normal" or "id" as an array, or None when the image does
-        not have the plane. `dtype` of colors is uint8, uint16 or float32."""
+        """Returns the plane "color", "depth" (mm), "normal" or "id" as an array; None if the image
+        does not have the plane. Colors may be requested with the `dtype` uint8 (default), uint16
+        or float32."""
         width, height, channels = self._shape(name)
         if width == 0:
             return None
@@ -573,14 +587,14 @@ class Image(_Handle):
 
     @property
     def pixels(self):
-        """Colors as uint8."""
+        """Colors as an array of uint8."""
         return self.plane("color")
 
     def __array__(self, dtype=None, copy=None):
         return self.pixels if dtype is None else self.pixels.astype(dtype)
 
     def save(self, path, plane="color", dtype=None):
-        """Writes a plane to a file; the extension decides the format."""
+        """Writes a plane to a file. The extension selects the format."""
         extension = os.fspath(path).rsplit(".", 1)[-1].lower()
         kind = {"depth": _F32, "normal": _F32, "id": _U32}.get(plane)
         if kind is None:
@@ -592,7 +606,7 @@ class Image(_Handle):
         return "<corcast.Image of {} x {} pixels>".format(*self.size)
 
     def _repr_png_(self):
-        """A notebook shows the picture."""
+        """Returns a PNG, so that a notebook displays the picture."""
         import tempfile
         with tempfile.TemporaryDirectory() as folder:
             path = pathlib.Path(folder) / "image.png"
@@ -601,7 +615,7 @@ class Image(_Handle):
 
 
 class Scene(_Handle):
-    """The geometry, appearance and view of a tree; Tree.scene makes it."""
+    """The geometry, appearance and view of a tree. Made by Tree.scene."""
 
     _kind = "scene"
 
@@ -609,10 +623,10 @@ class Scene(_Handle):
         super().__init__()
         self._options = _Options("render", options)
         self._options.run("scene_new", tree._handle, self._options._handle, byref(self._handle))
-        self.report = None  # of the last picture: engine, seconds, rays
+        self.report = None  # of the last call of render: engine, seconds, rays
 
     def render(self):
-        """Draws the scene; returns an Image."""
+        """Draws the scene. Returns an Image. Sets self.report."""
         image, report = Image(), _ReportHandle()
         self._options.run("render", self._handle, byref(image._handle), byref(report._handle))
         self.report = Report(report.content())
@@ -626,8 +640,8 @@ def _image(picture):
 
 
 def compare(a, b, **options):
-    """Compares two pictures, B against A: paths, Images or arrays; options are those of `corcast
-    compare`. Returns a report with `agrees` and `cause`."""
+    """Compares picture `b` with the reference `a`. Each is a path, an Image or an array. Returns a
+    report with `agrees` and `cause`. The options are those of `corcast compare`."""
     options = _Options("compare", options)
     a, b, report = _image(a), _image(b), _ReportHandle()
     status = options.run("compare", a._handle, b._handle, options._handle, byref(report._handle),
@@ -638,10 +652,10 @@ def compare(a, b, **options):
 
 
 class Mesh(_Handle):
-    """The surface of a tree as triangles; Tree.mesh makes it.
+    """The surface of a tree as triangles. Made by Tree.mesh.
 
     vertices: (n, 3) of float64, mm. triangles: (m, 3) of uint32, counter-clockwise seen from
-    outside. segments: (m) of uint32, the node index of the segment that a triangle belongs to.
+    outside. segments: (m) of uint32, per triangle the node index of its segment.
     """
 
     _kind = "mesh"
@@ -661,7 +675,7 @@ class Mesh(_Handle):
 
 
 class Page:
-    """A page for browsers in one file; a notebook shows it in a frame."""
+    """A web page in one file. A notebook displays the page in a frame."""
 
     def __init__(self, data):
         self.html = data.decode("utf-8")
@@ -677,7 +691,8 @@ class Page:
 
 
 def figure(recipe, path, **options):
-    """Makes a figure of several panels: `recipe` describes them, `path` is the output (.pdf, .eps, .svg,
-    .png, .tif or .jpg); options are those of `corcast figure`."""
+    """Draws a figure with several panels. `recipe` is the path of the file that describes the
+    panels, `path` the output: .pdf, .eps, .svg, .png, .tif or .jpg. The options are those of
+    `corcast figure`."""
     options = _Options("figure", options)
     options.run("figure", _text(recipe), options._handle, _text(path))

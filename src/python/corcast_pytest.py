@@ -5,14 +5,15 @@
 
 The wheel of corcast registers it. Elsewhere: pytest -p corcast_pytest.
 
-A picture is the path of an image file, or an object with a method save(path) or savefig(path), such
-as a corcast.Image, a picture of Pillow or a figure of matplotlib, or a numpy array. It is stored in
-the folder of the option --pictures, and compared with the reference of the same name in the folder
-of --references; docs/REFERENCES.md describes that folder. The name is that of the test file and the
-test, or the argument `name`. Further arguments are options of `corcast compare`.
+A picture is one of: the path of an image file; a numpy array; or an object with a method
+save(path) or savefig(path), such as a corcast.Image, a picture of Pillow or a figure of matplotlib.
+The picture is stored in the folder of the option --pictures, and compared with the reference of the
+same name in the folder of the option --references [docs/REFERENCES.md]. The default name is made
+from the names of the test file and the test; the argument `name` replaces it. Further keyword
+arguments are options of `corcast compare`.
 
-    pytest --accept-pictures 'new lamp'     makes the pictures of all tests that run references
-    [pytest] picture_references = DIR       the folder of --references in pytest.ini
+    pytest --accept-pictures 'new lamp'     stores the pictures of all tests that run as references
+    [pytest] picture_references = DIR       sets the default of --references in pytest.ini
 
 The plugin runs `corcast compare --serve`. It finds the program in the environment variable CORCAST,
 in the wheel, in the build folder of a source tree, or in PATH.
@@ -39,7 +40,8 @@ def _program():
 
 
 class Pictures:
-    """The folders of a session, its process of `compare --serve`, and the pictures that differ."""
+    """The state of a pytest session: the folders, the process of `corcast compare --serve`, and
+    the names of the pictures that differ."""
 
     def __init__(self, config):
         given = config.getoption
@@ -51,7 +53,7 @@ class Pictures:
         self._process = None
 
     def ask(self, **options):
-        """Asks for a comparison of both folders; returns the answer of --serve."""
+        """Sends a request to compare the two folders. Returns the answer of `compare --serve`."""
         if self._process is None:
             self.references.mkdir(parents=True, exist_ok=True)
             self._process = subprocess.Popen([_program(), "compare", "--serve"], stdin=subprocess.PIPE,
@@ -65,7 +67,7 @@ class Pictures:
         return json.loads(answer)
 
     def store(self, picture, name):
-        """Stores a picture under its name, and returns the name with its extension."""
+        """Stores a picture in the folder of pictures. Returns its name with an extension."""
         is_path = isinstance(picture, (str, os.PathLike))
         if not pathlib.PurePath(name).suffix:
             name += pathlib.Path(picture).suffix if is_path else ".png"
@@ -83,7 +85,8 @@ class Pictures:
         return name
 
     def compare(self, name, options):
-        """Compares one picture, or accepts it. Returns a sentence, or None if the picture agrees."""
+        """Compares a picture with its reference, or makes it the reference if the session accepts
+        pictures. Returns None, or a sentence about the difference or the error."""
         if self.reason:
             answer = self.ask(accept=name, reason=self.reason)
             return answer.get("error")
@@ -101,7 +104,7 @@ class Pictures:
                 f"to accept it: {' '.join(map(shlex.quote, words))} '...'")
 
     def write_page(self):
-        """Writes a page about the pictures that differ, and returns its path."""
+        """Writes an HTML report about the pictures that differ. Returns its path."""
         worker = os.environ.get("PYTEST_XDIST_WORKER", "")
         page = self.drawn / f"report{worker and '-' + worker}.html"
         self.ask(only=",".join(self.failed), html=str(page))
@@ -144,7 +147,7 @@ def pytest_terminal_summary(terminalreporter, config):
 
 @pytest.fixture
 def assert_picture(request):
-    """Compares a picture with its reference; fails the test if they differ."""
+    """Compares a picture with its reference. Fails the test if they differ."""
     pictures = request.config.stash[_key]
     base = re.sub(r"[^A-Za-z0-9_.-]", "_", f"{request.node.path.stem}.{request.node.name}")
     n_unnamed = 0
@@ -153,7 +156,7 @@ def assert_picture(request):
         nonlocal n_unnamed
         if name is None:
             n_unnamed += 1
-            # The suffix is fixed here because names of tests may have a point.
+            # The extension is appended here, because a name with a '.' would count as having one.
             suffix = pathlib.Path(picture).suffix if isinstance(picture, (str, os.PathLike)) else ".png"
             name = base + (f"-{n_unnamed}" if n_unnamed > 1 else "") + suffix
         sentence = pictures.compare(pictures.store(picture, name), options)

@@ -1,4 +1,4 @@
-/* The extension of the output decides what is joined. */
+/* The extension of the output decides whether runs or tiles are joined. */
 #include "study/merge.h"
 
 #include "job/picture/shard_merge.h"

@@ -15,7 +15,7 @@ typedef struct MergeOptions {
 /* Describes the operation. Its options set a MergeOptions. */
 extern const Command command_merge;
 
-/* Joins the files that are named by the operands. A folder stands for the files in the folder.
+/* Joins the files that the operands name. A folder stands for the files in it.
  *
  * Errors  STATUS_INPUT if a tile or run is missing, exists twice, or belongs to another picture or
  *         study; STATUS_USAGE if `output` is one of the inputs; STATUS_IO; STATUS_MEMORY. */

@@ -1,6 +1,7 @@
-/* Runs are independent. Each is grown by one thread, so that all processors are busy for trees of
- * any size. A run is a file, and the tables are made of the files at the end. A study that was cut
- * short, or was grown elsewhere by its commands, therefore ends like one that was not. */
+/* Runs are independent. Each run is grown by one thread, so that all processors are busy for trees
+ * of any size. Each run writes a file, and the tables are made from these files at the end. The
+ * tables are therefore the same if the study was interrupted and resumed, or if its runs were grown
+ * on other machines with `--commands`. */
 #include "study/study.h"
 
 #include "options/output.h"
@@ -27,7 +28,7 @@ static const Option own[] = {
              "info --json` or runs of a study"},
     {.name = "only",
      SETS(WHOLE, StudyOptions, only),
-     FROM_TO(1, STUDY_MOST_RUNS),
+     FROM_TO(1, STUDY_MAX_RUNS),
      .group = GROUP_PARTS,
      .argument = "K",
      .otherwise = "",
@@ -49,12 +50,12 @@ static ConditionSet unmet(const void *set, const Parsed *parsed)
 
 static const OptionTable own_table = {OPTION_ROWS(own), .unmet = unmet};
 
-/* The runs that are grown, and how far they are. */
+/* The runs that are grown, and their progress. */
 typedef struct StudyRuns {
     StudyRunParams params;
     size_t first, n;      /* the runs first .. first + n - 1 */
     char **path;          /* per run: its file; owned */
-    pthread_mutex_t lock; /* of the members below */
+    pthread_mutex_t lock; /* protects the members below */
     size_t done, kept, failed;
     size_t first_failed; /* index of the first run that failed, if failed > 0 */
     Status status;       /* of that run */
@@ -102,8 +103,8 @@ static void grow_one(size_t index, int worker, void *context)
     pthread_mutex_unlock(&runs->lock);
 }
 
-/* Grows the runs that have no file yet. A run that fails does not stop the others. The error is
- * that of the first run that failed. */
+/* Grows the runs that have no valid file yet. A run that fails does not stop the other runs. The
+ * error is that of the failed run with the lowest index. */
 static Status grow_runs(StudyRuns *runs, const Common *common, Err *err)
 {
     int threads = common->threads ? common->threads : threads_available();
@@ -149,7 +150,7 @@ done:
 
 /* ---- the operation --------------------------------------------------------------------------- */
 
-/* Appends a command per run. */
+/* Appends one command line per run. */
 static Status put_commands(const StudyOptions *options, const Parsed *parsed, size_t runs,
                            Text *lines, Err *err)
 {

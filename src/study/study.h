@@ -23,15 +23,16 @@ typedef struct StudyOptions {
 /* Describes the operation. Its options set a StudyOptions. */
 extern const Command command_study;
 
-/* Reads the plan, the first operand, and grows its runs into the folder. A run is not
- * grown again if its file exists and was made from the same inputs. A run that fails does not stop
- * the other runs, but no table is then written.
+/* Reads the plan, the first operand, and grows its runs into the folder. A run is not grown again
+ * if its file exists and was made from the same inputs. A run that fails does not stop the other
+ * runs, but no table is then written.
  *
  * lines   With `commands`, receives the commands. With `table`, receives the table as CSV. Both are
  *         appended. Otherwise unchanged.
  * Errors  STATUS_USAGE if options exclude each other; STATUS_INPUT if the plan is bad; STATUS_IO;
  *         STATUS_MEMORY. STATUS_CANCELLED if the caller stopped the operation; the files of
- * finished runs remain. The error of the first run that failed, as study_grow_run. */
+ *         finished runs remain. If runs fail, the error is that of the failed run with the lowest
+ *         number [study_grow_run]. */
 MUST_CHECK Status study_run(const StudyOptions *options, Parsed *parsed, Text *lines, Err *err);
 
 #endif

@@ -1,6 +1,7 @@
-/* When the plan is read, each value is read by its option and written again. Errors are thus
- * reported with their line before anything grows, and 2.50 equals 2.5. The index of a run is a
- * number whose digits are the indices of its values; the last key is the lowest digit. */
+/* While the plan is read, the option of each key parses the values and formats them again. Errors
+ * are therefore reported with their line before a run starts, and 2.50 is the same value as 2.5.
+ * The index of a run is a number in a mixed radix: each digit is the index of a value, and the last
+ * key is the lowest digit. */
 #include "study/study_plan.h"
 
 #include "options/output.h"
@@ -36,7 +37,7 @@ static const Command growth_command = {
 
 /* ---- values ---------------------------------------------------------------------------------- */
 
-/* Sets *written to the value as the option writes it (owned). */
+/* Sets *written to the value in the form in which the option formats it. The caller frees it. */
 static Status rewrite(const char *name, const char *value, char **written, Err *err)
 {
     Parsed parsed;
@@ -73,7 +74,7 @@ static Status add_value(StudyKey *key, const char *value, Err *err)
     return add_written(key, written, err);
 }
 
-/* Returns true for a range A..B of an option that takes integers. */
+/* Returns true if the value is a range A..B and the option takes integers. */
 static bool is_range(const Option *option, const char *value, long long *from, long long *to)
 {
     const char *dots = strstr(value, "..");
@@ -87,17 +88,17 @@ static bool is_range(const Option *option, const char *value, long long *from, l
            integer_parse(dots + 2, 0, 1000000000000, to);
 }
 
-/* Adds all values of a range. Only its ends are read by the option: if it takes both, it takes all.
- */
+/* Adds all values of a range. The option parses only the two ends, because an option that accepts
+ * both accepts all integers between them. */
 static Status add_range(StudyKey *key, const char *range, long long from, long long to, Err *err)
 {
     if (to < from)
         return err_set(err, STATUS_INPUT,
                        "%s: the range %s is empty: its first value is above its last", key->name,
                        range);
-    if (to - from >= STUDY_MOST_RUNS)
+    if (to - from >= STUDY_MAX_RUNS)
         return err_set(err, STATUS_INPUT, "%s: the range %s has more than %d values", key->name,
-                       range, STUDY_MOST_RUNS);
+                       range, STUDY_MAX_RUNS);
     for (long long i = from; i <= to; i++) {
         char number[24], *written = NULL;
         snprintf(number, sizeof number, "%lld", i);
@@ -115,8 +116,8 @@ static Status add_values(StudyKey *key, const Option *option, const char *value,
                                                : add_value(key, value, err);
 }
 
-/* Returns the comma that ends the first value of a list: one before a blank or the end. NULL: there
- * is none. */
+/* Returns the comma that ends the first value of a list: the first comma before a blank or before
+ * the end of the list; NULL if there is none. */
 static char *end_of_value(char *list)
 {
     char *comma = strchr(list, ',');
@@ -231,9 +232,9 @@ static Status take_line(void *user, const char *section, const char *name, const
     TRY(add_key(plan, name, &key, err));
     TRY(add_list(key, option, value, err));
     TRY(check_different(key, err));
-    if (key->n > STUDY_MOST_RUNS / plan->runs)
+    if (key->n > STUDY_MAX_RUNS / plan->runs)
         return err_set(err, STATUS_INPUT, "%s: the plan has more than %d combinations", name,
-                       STUDY_MOST_RUNS);
+                       STUDY_MAX_RUNS);
     plan->runs *= key->n;
     return STATUS_OK;
 }
@@ -294,7 +295,8 @@ const char *study_plan_value(const StudyPlan *plan, size_t run, size_t k)
 
 Status study_plan_options(const StudyPlan *plan, size_t run, int threads, Parsed *parsed, Err *err)
 {
-    TRY(parsed_init(parsed, &growth_command, err)); /* in its final place: settings point into it */
+    TRY(parsed_init(parsed, &growth_command, err)); /* `parsed` must not move afterwards, because
+                                                     * settings point into it */
     parsed->common.quiet = true;
     parsed->common.threads = threads;
     Status status = STATUS_OK;

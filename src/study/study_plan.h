@@ -15,7 +15,7 @@
 #include "options/options.h"
 
 /* Maximum number of runs of a plan. A larger plan is refused. Reason of the value not recorded. */
-enum { STUDY_MOST_RUNS = 1000000 };
+enum { STUDY_MAX_RUNS = 1000000 };
 
 /* An option and its values, as text in the form that the command line accepts. */
 typedef struct StudyKey {
@@ -43,7 +43,7 @@ typedef struct StudyGrowth {
  *
  * plan    set on success; release it with study_plan_release.
  * Errors  STATUS_INPUT or STATUS_USAGE, with file and line, for an unknown option, a bad value, a
- *         repeated key or value, or more than STUDY_MOST_RUNS combinations; STATUS_IO;
+ *         repeated key or value, or more than STUDY_MAX_RUNS combinations; STATUS_IO;
  *         STATUS_MEMORY. */
 MUST_CHECK Status study_plan_read(const char *path, StudyPlan *plan, Err *err);
 void study_plan_release(StudyPlan *plan);

@@ -1,9 +1,9 @@
-/* A file of a run is valid if it contains the hash of everything that the run is made from: program
- * version, command line, and the bytes of the files that this names. The place of the run in the
- * plan is not part of the hash. So a plan may get more values, or others in front, and what has
- * been grown stays valid.
+/* The file of a run is valid if it contains the hash of all inputs of the run: program version,
+ * command line, and the bytes of the files that the command line names. The index of the run in the
+ * plan is not part of the hash. Values can therefore be added to a plan at any position, and the
+ * files of existing runs stay valid.
  *
- * Nothing in the file depends on time, machine or number of threads. */
+ * The content of the file does not depend on the time, the machine or the number of threads. */
 #include "study/study_run.h"
 
 #include "job/tree/summary_json.h"
@@ -75,7 +75,7 @@ static Status prepare(const StudyRunParams *params, size_t index, StudyRun *run,
 
 /* ---- existing files -------------------------------------------------------------------------- */
 
-/* Hashes a file. If it cannot be read, *text is the hash of nothing. */
+/* Hashes a file. If the file cannot be read, *text is the hash of no bytes. */
 static Status hash_of_tree(const char *path, HashText *text, Err *err)
 {
     Hash hash;
@@ -105,8 +105,8 @@ static json_t *read_report(const char *path)
     return report;
 }
 
-/* Returns the content of the run's file if it is valid. Returns NULL if it is not, if there is no
- * file, or if memory runs out; the file is then made again. */
+/* Returns the content of the run's file. Returns NULL if the file is not valid or missing, or if
+ * memory runs out. The run is then grown again. */
 static json_t *read_right(const StudyRunParams *params, const StudyRun *run)
 {
     HashText tree;
@@ -133,7 +133,7 @@ static Status grow(StudyRun *run, Tree *tree, GrowReport *report, Err *err)
     return refining_apply(refining, &run->parsed, &growing->domain, tree, &refined, err);
 }
 
-/* Returns the values of the run; numbers are JSON numbers. */
+/* Returns an object with the run's values by key. Values that are numbers become JSON numbers. */
 static json_t *values_json(const StudyPlan *plan, size_t index)
 {
     json_t *values = json_object();
@@ -160,7 +160,8 @@ static json_t *measured_json(const Tree *tree, const GrowReport *report, Err *er
                      {"broken", json_count(report->broken)});
 }
 
-/* Writes the tree if trees are kept, and sets *hash to the hash of the file, or to JSON null. */
+/* Writes the tree if params->trees is true. Sets *hash to the hash of the tree's file, or to JSON
+ * null if there is none. */
 static Status keep_tree(const StudyRunParams *params, const StudyRun *run, const Tree *tree,
                         json_t **hash, Err *err)
 {
@@ -175,9 +176,9 @@ static Status keep_tree(const StudyRunParams *params, const StudyRun *run, const
     return STATUS_OK;
 }
 
-/* Grows and measures. Sets *said to the measures, or to the reason why there is no tree, and *hash
- * as keep_tree. */
-static Status grow_and_measure(const StudyRunParams *params, StudyRun *run, json_t **said,
+/* Grows and measures a tree. Sets *result to the measures, or to an object with the reason why the
+ * tree cannot be grown. Sets *hash as keep_tree does. */
+static Status grow_and_measure(const StudyRunParams *params, StudyRun *run, json_t **result,
                                json_t **hash, Err *err)
 {
     Tree tree = {0};
@@ -186,14 +187,14 @@ static Status grow_and_measure(const StudyRunParams *params, StudyRun *run, json
     if (grown == STATUS_INFEASIBLE) {
         options_name_fields(&run->parsed, err);
         *hash = json_null();
-        *said = json_with(json_object(), "error", json_text(err->text));
+        *result = json_with(json_object(), "error", json_text(err->text));
         return STATUS_OK;
     }
     Status status = grown;
     if (grown == STATUS_OK)
         TRY_GOTO(keep_tree(params, run, &tree, hash, err));
     if (grown == STATUS_OK)
-        *said = measured_json(&tree, &report, err);
+        *result = measured_json(&tree, &report, err);
 done:
     tree_release(&tree);
     return status;
@@ -201,21 +202,22 @@ done:
 
 /* ---- the file -------------------------------------------------------------------------------- */
 
-/* Returns the content of the file: place and values, then the members of `said` that are not there
- * yet. Returns NULL if `said` is NULL or memory runs out. Takes ownership of `hash`. */
-static json_t *line_json(const StudyRunParams *params, const StudyRun *run, json_t *said,
+/* Returns the content of the run's file: the run's number and values, then the members of `result`
+ * whose names are not used yet. Returns NULL if `result` is NULL or memory runs out. Takes
+ * ownership of `hash`. */
+static json_t *line_json(const StudyRunParams *params, const StudyRun *run, json_t *result,
                          json_t *hash)
 {
     const StudyPlan *plan = params->plan;
     const char *key;
     json_t *value;
     json_t *line = JSON_WITH(
-        said ? json_object() : NULL, {"run", json_count(run->number)},
+        result ? json_object() : NULL, {"run", json_count(run->number)},
         {"grow", values_json(plan, run->number - 1)}, {"generator", json_text(GENERATOR)},
         {"command", json_text(run->command)},
         {"shard", JSON_OBJECT({"plan", json_text(plan->hash.hex)}, {"runs", json_count(plan->runs)},
                               {"made_from", json_text(run->made_from.hex)}, {"tree", hash})});
-    json_object_foreach(said, key, value)
+    json_object_foreach(result, key, value)
     {
         if (!json_object_get(line, key))
             line = json_with(line, key, json_incref(value));
@@ -235,15 +237,15 @@ static Status write_line(const char *path, json_t *line, Err *err)
 
 static Status find_or_grow(const StudyRunParams *params, StudyRun *run, bool *kept, Err *err)
 {
-    json_t *hash = NULL, *said = read_right(params, run);
-    *kept = said != NULL;
-    if (said)
-        hash = json_incref(json_object_get(json_object_get(said, "shard"), "tree"));
+    json_t *hash = NULL, *result = read_right(params, run);
+    *kept = result != NULL;
+    if (result)
+        hash = json_incref(json_object_get(json_object_get(result, "shard"), "tree"));
     else
-        TRY(grow_and_measure(params, run, &said, &hash, err));
-    json_t *line = line_json(params, run, said, hash);
-    bool same = *kept && json_equal(line, said);
-    json_decref(said);
+        TRY(grow_and_measure(params, run, &result, &hash, err));
+    json_t *line = line_json(params, run, result, hash);
+    bool same = *kept && json_equal(line, result);
+    json_decref(result);
     if (!same)
         return write_line(run->report, line, err);
     json_decref(line);

@@ -1,5 +1,5 @@
-/* CSV is made in two passes over flat copies of the rows. The first pass finds the columns. Objects
- * keep the order of their members, and so do columns. */
+/* CSV is written in two passes over copies of the rows without nested objects. The first pass
+ * collects the columns, in the order of the objects' members. */
 #include "study/study_table.h"
 
 #include "options/files.h"
@@ -139,7 +139,8 @@ Status study_table_check(StudyTable *table, Err *err)
 
 /* ---- writing --------------------------------------------------------------------------------- */
 
-/* Adds the members of an object, except arrays, to `flat`. Returns NULL if memory runs out. */
+/* Adds the members of an object, except arrays, to `flat`. `prefix` is put before their names.
+ * Members of nested objects become "a.b". Returns `flat`, or NULL if memory runs out. */
 static json_t *flatten(json_t *flat, const char *prefix, json_t *object)
 {
     const char *key;
@@ -191,7 +192,7 @@ static json_t *find_columns(const StudyTable *table)
     return columns;
 }
 
-/* Appends a text, in quotes if CSV needs them [RFC 4180]. */
+/* Appends a text, in quotes if it contains a comma, a quote or a line break [RFC 4180]. */
 static void put_text(Text *text, const char *chars)
 {
     if (!strpbrk(chars, ",\"\r\n")) {

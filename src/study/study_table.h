@@ -25,20 +25,20 @@ typedef struct StudyTable {
 
 /* Adds a row for each object in a JSON or JSON Lines file, or in the .json files of a folder.
  *
- * Errors  STATUS_INPUT if a file is missing or is not JSON, or if `path` is a file and contains
- *         anything else than rows of this table. Files of a folder may contain other things.
- * STATUS_MEMORY. */
+ * Errors  STATUS_INPUT if a file is missing or is not JSON, or if `path` is a file that contains
+ *         other data than rows of this table. Files in a folder may contain other data.
+ *         STATUS_MEMORY. */
 MUST_CHECK Status study_table_add(StudyTable *table, const char *path, Err *err);
 void study_table_release(StudyTable *table);
 
-/* Sorts the rows of a table of runs by the number of the run. Errors: STATUS_INPUT if the runs are
- * of several plans, or if a run is missing or exists twice. */
+/* Sorts the rows of a table of runs by the number of the run. Errors: STATUS_INPUT if the runs
+ * belong to different plans, or if a run is missing or exists twice. */
 MUST_CHECK Status study_table_check(StudyTable *table, Err *err);
 
-/* Appends the table as CSV. There is a column for each member of any object, in the order of their
- * first appearance; members of inner objects are called "a.b". Arrays are left out, and so is the
- * member `shard`. An object without the member `run` gets a column `file`, the name of its file
- * without extension. */
+/* Appends the table as CSV. There is a column for each member of any object, in the order of first
+ * appearance. A member `b` of a nested object `a` is named "a.b". Arrays and the member `shard` are
+ * left out. An object without the member `run` gets a column `file`, the name of its file without
+ * extension. */
 void study_table_csv(const StudyTable *table, Text *out);
 /* Writes the table as CSV or, if the extension is jsonl, as one object per line. "-" is standard
  * output. Errors: STATUS_IO, STATUS_MEMORY. */

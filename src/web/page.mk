@@ -5,7 +5,7 @@ SYSROOT := $(or $(WASI_SYSROOT),/usr)
 CLANG := $(or $(WASI_CC),clang)
 # Modules that growing, refining, measuring and triangulating need. What needs an operating system or a library is in
 # src/web/host.c instead.
-MODULES := base geom tree treeio domain grow derive options scene stage mesh print emit field job job/tree web
+MODULES := base geom tree treeio domain grow flownetwork derive options scene stage mesh print emit field job job/tree web
 ABSENT := src/base/file.c src/base/isolated.c src/base/json.c src/base/system.c
 SOURCES := $(filter-out $(ABSENT),$(wildcard $(MODULES:%=src/%/*.c) $(patsubst %,src/%/*/*.c,$(filter-out job job/tree,$(MODULES))))) \
 	$(wildcard src/job/export/*.c) $(addprefix src/job/picture/,picture.c coloring.c placing.c) \

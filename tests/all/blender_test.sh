@@ -2,15 +2,16 @@
 # Files that `export` writes for artists, read and drawn by Blender.
 . "$(dirname "$0")/../lib.sh"
 
-# in_blender ARGUMENT ...: blender.py with these.
+# in_blender ARGUMENT ...: runs blender.py in Blender with the arguments.
 in_blender() {
     command -v blender >/dev/null || skip "blender is not installed"
     run_ok timeout 300 xvfb-run -a blender -b -noaudio --factory-startup --python-exit-code 1 \
         -P "$REPO/tests/all/blender.py" -- "$@"
 }
 
-# looks_as_rendered IOU BEYOND OPTION ...: blender.png shows what `render` draws of t.swc with these options: at least that
-# part of the pixels of both, at most so many beyond our outline, in the same colors.
+# looks_as_rendered IOU BEYOND OPTION ...: blender.png shows the same tree as `render` with the
+# options draws of t.swc. The outlines have an intersection over union of at least IOU, at most
+# BEYOND pixels are outside of corcast's outline, and the colors are the same.
 looks_as_rendered() {
     local iou=$1 beyond=$2
     shift 2
@@ -53,8 +54,9 @@ test_blender_imports_every_format_whole() {
     done < <(grep '^MEASURED' stdout)
 }
 
-# Vessels are three pixels wide; `render` rounds the ends that the mesh cuts off flat. Colors are compared by what of a
-# pixel's light is red, green and blue, whatever the shading; highlights are white.
+# Vessels are three pixels wide. `render` draws round ends where the mesh has flat cuts. Colors are
+# compared by the ratios of red, green and blue, which do not depend on shading except in white
+# highlights.
 test_blender_draws_a_glb_with_the_outline_and_the_colors_that_render_draws() {
     run_ok corcast grow --terminals 23 --domain ball:41 --seed 7 --quiet -o t.swc
     run_ok corcast export t.swc --color-by radius --quiet -o t.glb
@@ -62,7 +64,7 @@ test_blender_draws_a_glb_with_the_outline_and_the_colors_that_render_draws() {
     looks_as_rendered 0.985 0 --model isosurface --potential graph --color-by radius
 }
 
-# A script makes curves: prisms of 16 sides, which meet at angles, and have a radius where they meet.
+# The script makes curves, which Blender draws as prisms of 16 sides.
 test_blender_runs_the_script_and_draws_its_curves_as_render_draws_the_vessels() {
     local triangles volume parts open
     run_ok corcast grow --terminals 23 --domain ball:41 --seed 7 --quiet -o t.swc

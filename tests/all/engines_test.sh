@@ -3,7 +3,8 @@
 # starts and ends, and Snakemake with the Snakefile of docs/examples.
 . "$(dirname "$0")/../lib.sh"
 
-# write_slurm_conf PORT: a cluster of this machine alone, all of whose files are in this folder.
+# write_slurm_conf PORT: configures a cluster of this machine only, with all its files in this
+# folder.
 write_slurm_conf() {
     local host
     host=$(hostname -s)
@@ -36,7 +37,7 @@ PartitionName=all Nodes=$host Default=YES State=UP
 END
 }
 
-# Ends what start_slurm started, by their numbers.
+# Ends the processes that start_slurm started, by their process ids.
 stop_slurm() {
     # shellcheck disable=SC2086
     kill $DAEMONS 2>/dev/null
@@ -44,7 +45,7 @@ stop_slurm() {
     wait $DAEMONS 2>/dev/null
 }
 
-# Starts munge, the controller and the node in this folder, as this test's children.
+# Starts munge, the controller and the node in this folder, as child processes of the test.
 start_slurm() {
     local port=$((20000 + $$ % 20000)) i
     for program in munged slurmctld slurmd sbatch; do
@@ -75,7 +76,7 @@ start_slurm() {
     skip "Slurm cannot run here: $(cat ctld.log d.log slurmctld.log slurmd.log 2>/dev/null | grep -iE 'error|fatal' | tail -2 | tr '\n' ' ')"
 }
 
-# submit PLAN LINES: runs lines of the plan as an array of jobs, and waits.
+# submit PLAN LINES: runs the given lines of the plan as an array of jobs, and waits for them.
 submit() {
     # shellcheck disable=SC2016
     sbatch --quiet --wait --chdir="$PWD" --output=job-%a.log --array="$2" \

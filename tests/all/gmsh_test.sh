@@ -2,7 +2,8 @@
 # Files that `export` writes for solvers, filled with tetrahedra by gmsh.
 . "$(dirname "$0")/../lib.sh"
 
-# Gmsh makes a surface of each solid, in their order, keeps its triangles, and takes the names of t.geo.
+# gmsh makes a surface of each solid, in the order of the file, keeps its triangles, and uses the
+# names in t.geo.
 test_gmsh_fills_the_parts_of_an_stl_with_tetrahedra() {
     command -v gmsh >/dev/null || skip "gmsh is not installed"
     run_ok corcast grow --terminals 9 --domain ball:41 --seed 7 -o t.swc --quiet

@@ -2,7 +2,8 @@
 # Scenes of large trees, which POV-Ray takes long to read. Pictures have 8 x 6 pixels.
 . "$(dirname "$0")/../lib.sh"
 
-# reads MODEL ARGUMENT ...: POV-Ray reads the scene of tree.swc as MODEL, written with these, without a warning.
+# reads MODEL ARGUMENT ...: POV-Ray reads the scene of tree.swc as MODEL, written with the
+# arguments, without a warning.
 reads() {
     run_ok corcast scene tree.swc --quiet --size 8x6 --ini -o s.pov --model "$@"
     povray s.ini ${SWITCH-} >log 2>&1 || fail "expected POV-Ray to read $*: $(tail -3 log | tr '\n' ' ')"
@@ -19,8 +20,9 @@ test_trees_of_10000_segments_are_read_without_a_warning() {
     done
 }
 
-# Slow: POV-Ray reads 4 scenes of 99,999 segments. Joints are meshes: to find the constants of so many exact ones takes
-# POV-Ray minutes, and those of an isosurface half an hour.
+# Joints are meshes here: POV-Ray would take minutes to find the constants of so many exact joints,
+# and half an hour for those of an isosurface.
+# Slow: POV-Ray reads 4 scenes of 99,999 segments.
 test_trees_of_100000_segments_are_read_without_a_warning() {
     local model
     run_ok corcast grow --terminals 50000 --quiet -o tree.swc

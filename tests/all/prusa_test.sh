@@ -2,12 +2,14 @@
 # Files that `export` writes for printers, read by PrusaSlicer.
 . "$(dirname "$0")/../lib.sh"
 
-# prusa_said LABEL: what PrusaSlicer said last, "manifold = yes" say.
+# prusa_said LABEL: prints the value of LABEL in PrusaSlicer's last output, such as "yes" of
+# "manifold = yes".
 prusa_said() {
     sed -n "s/^$1 = *//p" said
 }
 
-# prints NAME TREES: the STL and the 3MF of NAME.swc are solids of so many parts and of the volume in the manifest.
+# prints NAME TREES: PrusaSlicer reads the STL and the 3MF of NAME.swc as TREES solids with the
+# volume in the manifest.
 prints() {
     local name=$1 trees=$2 extension
     for extension in stl 3mf; do
@@ -34,8 +36,8 @@ test_prusaslicer_finds_one_solid_for_each_tree() {
     prints forest 3
 }
 
-# lays_down NAME.EXT BOUND PRINT: sliced without a word about faults, the solid that --print PRINT makes of NAME.swc
-# takes as much filament as its volume, to within BOUND, filled to 100 %.
+# lays_down NAME.EXT BOUND PRINT: PrusaSlicer finds no fault in the solid that --print PRINT makes
+# of NAME.swc. At 100 % infill the volume of the filament equals the solid's volume to within BOUND.
 lays_down() {
     local file=$1 bound=$2 print=$3
     run_ok corcast export "${file%.*}.swc" --print "$print,nozzle=0.4" --quiet -o "$file"

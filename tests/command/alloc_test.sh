@@ -7,7 +7,8 @@
 
 FAILING=${FAILING:-$REPO/build/release/tests/failing.so}
 
-# fail_each STEP one|many COMMAND ...: fails every (4 STEP)-th allocation of a command that leaves one file or many.
+# fail_each STEP one|many COMMAND ...: runs the command once for every (4 STEP)-th allocation and
+# lets that allocation fail. The command writes one file or many.
 fail_each() {
     local step=$1 outputs=$2
     shift 2
@@ -18,7 +19,7 @@ fail_each() {
     grep -q ' [1-9][0-9]* allocations' stdout || fail "expected allocations to be counted: $(cat stdout)"
 }
 
-# A grown tree of five terminals, and pictures of it that differ, with all planes.
+# Makes a tree of five terminals, and two different pictures of it with all planes.
 inputs() {
     run_ok corcast grow --terminals 5 --seed 3 -o tree.swc
     run_ok corcast render --exact tree.swc --size 21x15 --planes depth,normal,id -o a.png
@@ -188,7 +189,8 @@ test_failed_allocations_in_parts() {
     fail_each 3 one merge ../runs -o o.csv
 }
 
-# fail_here COMMAND ...: fails every 7th of 200 allocations of a command that prints the folder it is in.
+# fail_here COMMAND ...: lets every 7th of 200 allocations fail, for a command whose output contains
+# the current folder.
 fail_here() {
     run_ok corcast "$@" --threads 1
     mv stdout undisturbed
@@ -255,7 +257,7 @@ test_failed_allocations_in_compare() {
     fail_each 19 many compare ../a.png ../b.png --html o.html
 }
 
-# A report of one verification without POV-Ray; `report` asks for no more.
+# Makes a folder with the files of a verification that `report` reads, without running POV-Ray.
 stored_report() {
     mkdir stored
     printf '<!-- row: begin -->\n<tr id="case-1">\n<!-- row: end -->\n<!-- case: begin -->\n<!-- case: end -->\n' \
@@ -270,7 +272,7 @@ test_failed_allocations_in_report() {
     fail_each 3 one report ../stored ../stored -o o.html
 }
 
-# A stand-in for POV-Ray that gives what POV-Ray has drawn before.
+# Makes a script that replaces POV-Ray and copies pictures that POV-Ray has drawn before.
 stored_povray() {
     cat >povray.sh <<'STAND_IN'
 #!/bin/sh

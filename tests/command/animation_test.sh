@@ -5,7 +5,8 @@
 
 SMALL="--size 60x50 --quiet"
 
-# A tree of 25 terminals in a ball, and in pulse.csv a wave that runs through it in 8 frames.
+# Makes a tree of 25 terminals in a ball, and pulse.csv, a wave that travels through the tree in 8
+# frames.
 make_pulse() {
     run_ok corcast grow --terminals 25 --seed 3 --domain ball:20 --quiet -o tree.swc
     awk 'BEGIN { printf "id"; for (k = 0; k < 8; k++) printf ",%.3f", k / 8; print "" }
@@ -27,7 +28,7 @@ test_each_frame_is_the_picture_of_its_moment() {
         expect_same still.ppm f0$k.ppm
     done
     expect_differing 100 3000 f01.ppm f03.ppm
-    # the range is that of all frames
+    # the range covers all frames
     range=$(awk -F, 'NR > 1 { for (k = 2; k <= 9; k++) { v = $k + 0
         if (NR == 2 && k == 2 || v < low) low = v; if (NR == 2 && k == 2 || v > high) high = v } }
         END { print low "," high }' pulse.csv)
@@ -78,7 +79,8 @@ test_a_folder_of_svonedsolver_gives_the_pictures_of_columns() {
     refused steps:flow "tree_aorta_flow.dat:1: the segment's name, 'tree_aorta', must end in the id"
 }
 
-# write_vtp COLUMN FILE: the tree with its radius and this column of pulse.csv as arrays of points.
+# write_vtp COLUMN FILE: writes the tree as VTP, with the radius and the column of pulse.csv as
+# point arrays.
 write_vtp() {
     awk -v column="$1" '
         BEGIN { FS = ","; while ((getline <"pulse.csv") > 0) value[$1] = $column; FS = " " }

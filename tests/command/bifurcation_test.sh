@@ -2,7 +2,7 @@
 # The command `bifurcation`, and the figures of the paper, which consist of bifurcations.
 . "$(dirname "$0")/../lib.sh"
 
-# nodes FILE: parent, place and radius, rounded.
+# nodes FILE: prints parent, position and radius of each node, rounded.
 nodes() {
     awk '!/^#/ { printf "%d %.4f %.4f %g %.5f\n", $7, $3, $4, $5, $6 }' "$1"
 }
@@ -16,7 +16,7 @@ test_what_is_said_of_a_bifurcation_is_its_shape() {
     grep -q '^# command: corcast bifurcation --radii' y.swc || fail "expected the command in the file"
 }
 
-# With gamma 3 and lambda 2 forces are squares of radii: of equal daughters, cos A = 2^(2/3) / 2.
+# With gamma 3 and lambda 2, forces are squares of radii. For equal daughters, cos A = 2^(2/3) / 2.
 test_radii_follow_murray_and_angles_the_target_where_nothing_is_said() {
     run_ok corcast bifurcation --radii 3 -o even.swc
     nodes even.swc | awk 'NR == 3 { exit !(($5 - 3 / 2 ^ (1 / 3)) ^ 2 < 1e-9 && ($3 + 7.937) ^ 2 < 1e-6) }' ||

@@ -2,7 +2,7 @@
 # Measured trees: smoothed and resampled centrelines, types, repaired radii, statistics as CSV.
 . "$(dirname "$0")/../lib.sh"
 
-# sums FILE: length, volume and the sum of l / r^4 of a SWC file.
+# sums FILE: prints the total length, the volume and the sum of l / r^4 of a SWC file.
 sums() {
     awk '!/^#/ { x[$1] = $3; y[$1] = $4; z[$1] = $5
         if ($7 > 0) { l = sqrt((x[$1] - x[$7])^2 + (y[$1] - y[$7])^2 + (z[$1] - z[$7])^2)
@@ -24,7 +24,7 @@ test_smoothing_removes_the_steps_of_a_voxel_path() {
     awk 'BEGIN { exact = 12.6 * sqrt(20^2 + (30 / 6.2832)^2); getline before <"before"; getline after <"after"
         exit !(before / exact > 1.06 && after / exact > 0.985 && after / exact < 1.02) }' ||
         fail "length: $(cat before after)"
-    # Both ends stay.
+    # Both ends keep their positions.
     [ "$(sed -n '/^[^#]/{p;q}' smooth.swc | cut -d' ' -f3-5)" = "$(sed -n '/^[^#]/{p;q}' steps.swc | cut -d' ' -f3-5)" ] ||
         fail "the first node moved"
     [ "$(tail -1 smooth.swc | cut -d' ' -f3-5)" = "$(tail -1 steps.swc | cut -d' ' -f3-5)" ] || fail "the last node moved"
@@ -67,7 +67,8 @@ test_gaps_of_radii_are_filled_along_the_branch() {
     run_ok corcast convert t.swc r.swc --repair-radii --quiet
     run_ok corcast info t.swc --repair-radii --radius 9 --json
     expect_json stdout '.reading.repaired_radii == 3 and .reading.given_radii == 0'
-    # Half way between 1 and 0.5; at the end of a branch the nearest; a branch without any takes the thinner neighbour.
+    # A missing radius is interpolated: half way between 1 and 0.5. At the end of a branch it is the
+    # nearest radius. A branch without any radius gets that of the thinner neighbour.
     [ "$(grep -v '^#' r.swc | cut -d' ' -f6 | tr '\n' ' ')" = '1 1 0.75 0.5 0.5 0.5 0.2 ' ] || fail "$(cat r.swc)"
 }
 

@@ -72,7 +72,7 @@ test_a_certificate_with_one_digit_changed_is_refused() {
     expect_sentence 'changed.cert: its SHA-256 is another'
 }
 
-# seal FILE: gives it the SHA-256 of what it has become.
+# seal FILE: replaces the SHA-256 in a changed certificate by that of its present content.
 seal() {
     sed -i '/^# sha256/d' "$1"
     printf '# sha256: %s\n' "$(sha256sum "$1" | cut -c 1-64)" >>"$1"
@@ -123,7 +123,7 @@ test_says_what_has_no_bound() {
     [ ! -e none.cert ] || fail "expected no certificate of a tree without a bound"
 }
 
-# Of one set annealing ends 0.06 % above the best (docs/VALIDATION.md).
+# For one set, annealing ends 0.06 % above the optimum (docs/VALIDATION.md).
 test_annealing_finds_the_best_trees_of_small_point_sets() {
     run_ok "$(dirname "$CHECK_TREE")/optima/optima" "$REPO/tests/optima/sets.txt" 5 5
     expect_stdout '^\| disc \| 5 \| 105 \| 20 \|'

@@ -3,7 +3,7 @@
 # programs plant faults in them.
 . "$(dirname "$0")/../lib.sh"
 
-# taken PRESET FILE [OPTION...]: the preset has nothing against the file.
+# taken PRESET FILE [OPTION...]: the file meets the preset.
 taken() {
     run corcast check-figure "$2" --preset "$1" "${@:3}"
     expect_status 0
@@ -11,7 +11,7 @@ taken() {
     [ "$(wc -l <stdout)" = 1 ] || fail "expected one line, got: $(cat stdout)"
 }
 
-# refused PRESET FILE REGEX [OPTION...]: it has just this against it.
+# refused PRESET FILE REGEX [OPTION...]: the only finding about the file matches REGEX.
 refused() {
     run corcast check-figure "$2" --preset "$1" "${@:4}"
     expect_status 1
@@ -20,7 +20,7 @@ refused() {
     [ ! -s stderr ] || fail "expected no error$(said)"
 }
 
-# refused_twice PRESET FILE REGEX REGEX: it has just these two against it.
+# refused_twice PRESET FILE REGEX REGEX: there are exactly two findings, which match the patterns.
 refused_twice() {
     run corcast check-figure "$2" --preset "$1"
     expect_status 1
@@ -29,7 +29,8 @@ refused_twice() {
     [ "$(wc -l <stdout)" = 2 ] || fail "expected two lines, got: $(cat stdout)"
 }
 
-# A small picture stands for a large one: what counts is what the file says.
+# A small picture can replace a large one, because only the properties that the file states are
+# checked.
 test_each_preset_takes_what_render_draws_by_it() {
     local preset file
     grow_tree 3
@@ -78,7 +79,7 @@ test_figures_and_pages_of_several_parts_go_by_presets() {
     taken springer two.tif
 }
 
-# drawn PIXELS LINES [OPTION...]: a figure whose [figure] has these lines has so many pixels.
+# drawn PIXELS LINES [OPTION...]: a figure whose section [figure] has the lines has the size PIXELS.
 drawn() {
     printf "[figure]\n$2\n[panel a]\ntree = tree.swc\nantialias = 1\n" >given.ini
     run_ok corcast figure given.ini "${@:3}" -o given.png
@@ -119,7 +120,7 @@ test_a_text_size_of_all_panels_wins_over_the_page() {
     expect_sentence "panel.ini:3: unknown key 'preset' in"
 }
 
-# A picture of 300 dpi, 80 x 60 mm, that all take.
+# Makes a picture of 80 x 60 mm at 300 dpi that meets every preset.
 fine() {
     ppmmake rgb:80/20/20 945 709 >fine.ppm
     run_ok corcast convert fine.ppm fine.tif --dpi 300
@@ -166,7 +167,7 @@ test_faults_of_pictures_are_named_one_each() {
     expect_stdout 'profile: "Wide built-in"; the preset accepts sRGB'
 }
 
-# page_with_font FONT FILE: a page whose only font is this dictionary.
+# page_with_font FONT FILE: writes a PDF page whose only font is the dictionary FONT.
 page_with_font() {
     {
         printf '%%PDF-1.4\n1 0 obj<</Type/Catalog/Pages 2 0 R>>endobj\n2 0 obj<</Type/Pages/Kids[3 0 R]/Count 1>>endobj\n'
@@ -203,7 +204,8 @@ test_faults_of_pages_are_named() {
     expect_sentence 'pdfinfo is not installed; it is part of poppler-utils'
 }
 
-# A page of 80 x 60 mm whose upper half has the ink of a PDF's operator, such as "1 1 1 0.4 k".
+# page_of_ink OPERATOR: prints a PDF page of 80 x 60 mm whose upper half has the color of an
+# operator, such as "1 1 1 0.4 k".
 page_of_ink() {
     local drawing="$1 0 85 227 85 re f"
     printf '%%PDF-1.4\n1 0 obj<</Type/Catalog/Pages 2 0 R>>endobj\n2 0 obj<</Type/Pages/Kids[3 0 R]/Count 1>>endobj\n'
@@ -211,7 +213,7 @@ page_of_ink() {
     printf '4 0 obj<</Length %d>>stream\n%s\nendstream endobj\ntrailer<</Root 1 0 R>>\n' ${#drawing} "$drawing"
 }
 
-# The expected sums of the pixels are OpenImageIO's.
+# The expected sums of the pixels were computed by OpenImageIO.
 test_the_total_ink_of_pixels_and_pages_is_checked() {
     local ink
     ppmmake rgb:05/05/14 945 709 >dark.ppm

@@ -5,9 +5,9 @@
 
 MODELS=$(corcast models | cut -f 1)
 
-# Vessels 2, 4, 6, 8 and 10, each alone, of radii 1.37 mm times 1, 2, 4, 8 and 16, and a look that shows
-# nothing but their colors. From the least to the greatest, the radii are at the entries 0, 17, 51, 119 and 255
-# of 256, and by logarithm at 0, 1/4, 1/2, 3/4 and 1.
+# Makes the unconnected vessels 2, 4, 6, 8 and 10 with the radii 1.37 mm times 1, 2, 4, 8 and 16,
+# and a look without shading. On a linear scale from the minimum to the maximum, the radii are at
+# the entries 0, 17, 51, 119 and 255 of 256; on a logarithmic scale at 0, 1/4, 1/2, 3/4 and 1.
 make_vessels() {
     cat >tree.swc <<'SWC'
 1 1 -50 90 0.5 1.37 -1
@@ -37,13 +37,13 @@ INI
 
 VIEW="--size 60x80 --location 0,10,100 --look-at 0,10,0 --height 170"
 
-# numbers FILE: the three bytes of each of the last 60 x 80 pixels.
+# numbers FILE: prints the three bytes of each of the last 60 x 80 pixels.
 numbers() {
     tail -c 14400 "$1" | od -An -v -tu1 -w3
 }
 
-# expect_codes OPTION... -- "ID R G B" ...: in every pixel of a vessel, with no other color in the picture but
-# $background.
+# expect_codes OPTION... -- "ID R G B" ...: every pixel of a vessel has the codes, and every other
+# pixel is $background.
 background="255 255 255"
 expect_codes() {
     local options=() expected
@@ -61,7 +61,7 @@ expect_codes() {
         fail "expected the colors '$(echo $expected)', got '$(echo $(cat seen))', from: $command_line"
 }
 
-# expect_scene OPTION... -- "ID R G B" ...: linear numbers, wherever the scene paints a vessel.
+# expect_scene OPTION... -- "ID R G B" ...: the scene gives each vessel this linear color.
 expect_scene() {
     local options=()
     while [ "$1" != -- ]; do
@@ -118,7 +118,8 @@ test_classes_are_steps_of_one_color_that_use_the_whole_map() {
         "2 68 1 84" "4 68 1 84" "6 33 144 140" "8 253 231 37" "10 253 231 37"
 }
 
-# 5.48 of 2.74 to 10.96 is at 1/3, entry 85, and by logarithm at 1/2; what lies outside has the color of the end.
+# In the range 2.74 to 10.96, 5.48 is at 1/3, entry 85, and on a logarithmic scale at 1/2. Values
+# outside the range have the color of the nearer end.
 test_range_sets_the_ends_of_the_map() {
     make_vessels
     expect_codes --color-by radius --range 2.74,10.96 -- \
@@ -133,7 +134,7 @@ test_a_field_of_one_value_has_the_middle_of_the_map() {
         "2 33 144 140" "4 33 144 140" "6 33 144 140" "8 33 144 140" "10 33 144 140"
 }
 
-# The codes are 255 times the numbers; decoded by hand they are linear.
+# The codes are 255 times the numbers. The linear numbers were decoded by hand.
 test_a_background_is_given_as_it_is_encoded() {
     local background="64 128 191"
     make_vessels
@@ -155,7 +156,8 @@ test_a_picture_of_16_bits_has_the_same_colors_more_finely() {
         fail "expected a pixel of the codes 18524 6566 27666"
 }
 
-# A tree of constant viscosity, shown as by diameter: as the same tree that says so itself.
+# A tree with constant viscosity, drawn with --viscosity-law pries, has the colors of a tree that
+# states this law.
 test_a_field_of_flow_follows_what_options_say_of_the_blood() {
     local law='--viscosity-law pries --hematocrit 0.31 --plasma-viscosity 1.05'
     run_ok corcast grow --terminals 23 --quiet -o constant.swc
@@ -170,7 +172,7 @@ test_a_field_of_flow_follows_what_options_say_of_the_blood() {
     expect_sentence '--hematocrit is for --viscosity-law pries'
 }
 
-# says LINE: all that stands on standard error.
+# says LINE: standard error contains exactly this line.
 says() {
     [ "$(cat stderr)" = "$1" ] || fail "expected the line '$1'$(said)"
 }
@@ -190,7 +192,7 @@ test_the_range_is_said_in_the_log_the_json_the_picture_and_the_scene() {
     [ ! -s stderr ] || fail "expected --quiet to say nothing, got '$(cat stderr)'"
 }
 
-# 2.74 and 10.96 mm are 2740 and 10960 um; the map's ends and the classes move with the unit.
+# 2.74 and 10.96 mm are 2740 and 10960 um. The range and the classes are in the selected unit.
 test_a_unit_goes_for_range_classes_and_what_is_said() {
     make_vessels
     expect_codes --color-by radius --unit um --range 2740,10960 -- \
@@ -201,7 +203,7 @@ test_a_unit_goes_for_range_classes_and_what_is_said() {
     refuses "--unit: the field level is a pure number, not in Pa" --color-by level --unit Pa
 }
 
-# refuses SENTENCE OPTION...
+# refuses SENTENCE OPTION...: `render` refuses the options with the sentence and writes no picture.
 refuses() {
     local sentence=$1
     shift
@@ -222,7 +224,7 @@ test_classes_may_have_bounds() {
     refuses '--range has no effect if --classes gives bounds' --color-by radius --classes 1,2 --range 1,2
 }
 
-# Of 1.37, 2.74, 5.48, 10.96 and 21.92, 25 % are below 2.74, 75 % below 10.96.
+# The quartiles of 1.37, 2.74, 5.48, 10.96 and 21.92 are 2.74 and 10.96.
 test_a_range_may_be_of_percentiles() {
     make_vessels
     expect_codes --color-by radius --range 25%,75% -- \
@@ -300,7 +302,8 @@ test_a_field_without_any_value_is_refused() {
     says 'corcast: load −2.50 to −2.50, of the 5 segments drawn'
 }
 
-# The look flat is the map itself, entry 231 of 255 here; data is it to 8 codes, also as the look of a field.
+# The look flat shows the color of the map, here entry 231 of 255. The look data, also the default
+# look of a field, differs by at most 8 codes.
 test_looks_for_data_show_the_color_of_the_map() {
     local look most
     make_vessels
@@ -314,8 +317,8 @@ test_looks_for_data_show_the_color_of_the_map() {
     done
 }
 
-# Two vessels end to end, of values 1 and 3: by segment there are two colors, blended at most both and what
-# lies between them, and half way both weigh the same.
+# Two vessels with the values 1 and 3 meet end to end. Without blending there are two colors. With
+# blending there are colors between them, and half way both have the same weight.
 test_colors_blend_where_vessels_do() {
     local model
     printf '1 1 -30 10 0 10 -1\n2 3 0 10 0 10 1\n3 3 30 10 0 10 2\n' >tree.swc
@@ -327,7 +330,8 @@ test_colors_blend_where_vessels_do() {
         [ "$(numbers segment.ppm | sort -u | wc -l)" = 3 ] || fail "expected two colors by segment as $model"
         numbers blended.ppm | sort -u >seen
         [ "$(wc -l <seen)" -ge 6 ] || fail "expected colors between the two as $model, got $(wc -l <seen)"
-        # Columns 29 and 30 of 60 lie 1.06 mm to either side of the middle, the entries 128 and 127 of the map.
+        # Columns 29 and 30 of 60 are 1.06 mm to either side of the middle: entries 128 and 127 of
+        # the map.
         numbers blended.ppm | awk 'NR % 60 == 30 || NR % 60 == 31' | sort -u | grep -v 255 >middle
         [ "$(wc -l <middle)" = 2 ] && [ "$(awk '{ sum += $2 } END { print int(sum / 2) }' middle)" -ge 142 ] &&
             [ "$(awk '{ sum += $2 } END { print int(sum / 2) }' middle)" -le 146 ] ||

@@ -2,7 +2,8 @@
 # `compare`: measures of small pictures written by hand, whose correct numbers are known.
 . "$(dirname "$0")/../lib.sh"
 
-# A grey PPM of 5 x 4 with code 100, pixel 7 (counted from 0) replaced by the code given.
+# picture CODE: prints a grey PPM of 5 x 4 pixels of code 100, in which pixel 7 (counted from 0) has
+# the code CODE.
 picture() {
     local i
     printf 'P6\n5 4\n255\n'
@@ -44,7 +45,7 @@ test_a_difference_is_measured_and_gives_exit_status_1() {
     expect_json stdout '(.psnr_db - 20 * (255 / (55 * 55 / 20 | sqrt) | log10) | fabs) < 1e-6'
 }
 
-# One pixel of twenty differs: weights by error do not count most of the nineteen others.
+# One pixel of 20 differs. Weighted by error, most of the other 19 do not count.
 test_flip_is_summed_up_with_and_without_weights() {
     picture 100 >a.ppm
     picture 155 >b.ppm
@@ -127,7 +128,8 @@ test_the_verdict_names_its_tier() {
     expect_stdout '^agree \(tier given\): 1 of 20'
 }
 
-# grey WIDTH HEIGHT LEVEL...: a grey PPM of code 100, its first pixels of the levels given.
+# grey WIDTH HEIGHT LEVEL...: prints a grey PPM of code 100 whose first pixels have the given
+# levels.
 grey() {
     awk -v n=$(($1 * $2)) -v levels="${*:3}" 'BEGIN {
         split(levels, level); for (i = 1; i <= n; i++) { v = i in level ? level[i] : 100; print v, v, v } }' |
@@ -294,7 +296,7 @@ test_help_says_what_the_tiers_are() {
     expect_stdout 'default: 2 in tier A'
 }
 
-# expect_cause SENTENCE: of a.png and b.png, where b.png was made by another program.
+# expect_cause SENTENCE: `compare a.png b.png` names this cause. Another program has made b.png.
 expect_cause() {
     run corcast compare a.png b.png
     expect_status 1
@@ -495,7 +497,7 @@ test_sides_beyond_all_bounds_are_refused() {
     expect_sentence 'announces 3000000000000 bytes of pixels, but 3 follow'
 }
 
-# Two noisy pictures of 61 x 47, and what other programs say of them.
+# Makes two noisy pictures of 61 x 47 pixels, for which other programs have computed the measures.
 noisy_pair() {
     awk 'BEGIN {
         print "P3 61 47 255" > "a.txt"; print "P3 61 47 255" > "b.txt"; v = 12345
@@ -543,7 +545,7 @@ test_pixelmatch_counts_as_the_package_of_that_name_transparent_pictures_too() {
     awk '$3 > 0 { found++ } END { exit found < 50 }' expected || fail "expected pictures that differ"
 }
 
-# Two pictures without color on white: only their alpha, 0 and 255 at the eighth of 20 pixels, differs.
+# The two pictures differ only in alpha: 0 and 255 at the eighth of 20 pixels.
 test_pixelmatch_counts_alpha_in_folders_and_under_masks() {
     mkdir stored drawn
     printf 'P5\n5 4\n255\n%20s' | tr ' ' '\0' >clear.pgm

@@ -3,13 +3,14 @@
 # runs in tests/all.
 . "$(dirname "$0")/../lib.sh"
 
-# A grown forest of 23 terminals.
+# Grows a forest of 23 terminals.
 grown() {
     run_ok corcast grow --terminals 23 --domain ball:41 --inlet 0,41,0 --inlet 0,-41,0 --seed 7 -o t.swc --quiet
 }
 
-# is_as_curves FILE TREE: the script or USDA has each segment of the SWC once, between its ends, with its radius at its end,
-# in an object of its tree and Strahler order; prints the objects. Reads no more of the languages than is written.
+# is_as_curves FILE TREE: the script or USDA contains each segment of the SWC once, with its ends
+# and its radius, in an object of its tree and Strahler order. Prints the objects. The reader
+# understands only the constructs that corcast writes.
 is_as_curves() {
     /usr/bin/python3 - "$@" >objects <<'END' || fail "$(cat objects)"
 import ast, math, re, sys
@@ -60,7 +61,7 @@ test_script_and_usd_have_every_segment_once_in_objects_by_tree_and_order() {
     done
 }
 
-# Segments of an order follow each other in one spline: there are fewer splines than segments.
+# Consecutive segments of an order share a spline, so there are fewer splines than segments.
 test_a_curve_goes_on_as_long_as_its_order_and_its_color() {
     local plain
     run_ok corcast export "$DATA/coronary.swc" -o plain.py --quiet
@@ -92,7 +93,7 @@ test_usd_is_in_millimetres_with_widths_and_without_normals() {
     [ "$(tr -cd '[{(' <t.usda | wc -c)" = "$(tr -cd ']})' <t.usda | wc -c)" ] || fail "expected as many brackets open as closed"
 }
 
-# lib3mf 1.8 knows no colors of beams, and warns of them.
+# lib3mf 1.8 does not support colors of beams and warns about them.
 test_lib3mf_reads_a_beam_for_each_segment_and_the_preview_that_represents_them() {
     ldconfig -p | grep -q lib3MF.so.1 || skip "lib3mf1 is not installed"
     grown
@@ -108,7 +109,7 @@ test_lib3mf_reads_a_beam_for_each_segment_and_the_preview_that_represents_them()
     expect_json read.json '.objects[1] | .minlength as $least | all(.beams[]; .length >= $least and .radii[0] == .radii[1])'
     expect_json read.json "[.objects[1].beams[] | .radii[0] * .radii[0] * .length * 3.141592653589793] | add |
         . / $(jq .volume_mm3 info.json) - 1 | . * . < 1e-12"
-    # A node is one however many vessels meet there, so that each tree hangs together.
+    # Vessels that meet share a node, so each tree is connected.
     expect_json read.json '.objects[1].beams | ([.[].nodes[]] | unique | length) == length + 2'
 }
 
@@ -172,7 +173,7 @@ test_refuses_options_of_triangles_and_a_lattice_elsewhere() {
     expect_only
 }
 
-# Blender's camera from the front sees all of the tree, which is as large as --scale says.
+# Blender's front camera shows the whole tree, whose size follows --scale.
 test_blender_adds_a_camera_that_frames_the_tree() {
     command -v blender >/dev/null || skip "blender is not installed"
     run_ok corcast export "$DATA/bifurcation.swc" -o t.py --quiet
@@ -190,7 +191,8 @@ END
     expect_stdout '^SEEN True True 0.1 tree_camera$'
 }
 
-# A glTF file for the web is told how to become lighter, but not one that is light or was made so.
+# A note suggests --lod for a large glTF file, but not for a small one or one that was written with
+# --lod.
 test_a_heavy_glb_is_told_about_lod() {
     run_ok corcast grow --terminals 150 --domain ball:20 --quiet -o t.swc
     run_ok corcast export t.swc -o t.glb

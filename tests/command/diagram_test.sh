@@ -2,7 +2,7 @@
 # `diagram`: a tree unrolled flat, as SVG and as pixels.
 . "$(dirname "$0")/../lib.sh"
 
-# count N PATTERN FILE: so many lines of it say the pattern.
+# count N PATTERN FILE: exactly N lines of the file match the pattern.
 count() {
     local lines
     lines=$(grep -c "$2" "$3")
@@ -30,7 +30,7 @@ test_a_diagram_of_a_measured_network_takes_what_is_said_of_its_file() {
     count 3 '<rect id="s[0-9]*" ' net.svg
 }
 
-# Chromium draws the SVG, and shares no code with us.
+# Chromium, which shares no code with corcast, draws the SVG.
 test_the_pixels_are_those_of_the_svg() {
     command -v chromium >chromium.path || skip "chromium is not installed"
     grow_tree 25

@@ -2,19 +2,19 @@
 # `export`: closed meshes, proved by corcast and checked by independent programs.
 . "$(dirname "$0")/../lib.sh"
 
-# admesh_says FILE LABEL: the number that admesh prints for it.
+# admesh_says FILE LABEL: prints the number that admesh prints for LABEL.
 admesh_says() {
     admesh "$1" 2>&1 | grep -F "$2" | sed 's/.*: *//; s/ .*//'
 }
 
-# A grown tree of 23 terminals, and its mesh as STL.
+# Grows a tree of 23 terminals, and writes its mesh as STL.
 grown() {
     run_ok corcast grow --terminals 23 --domain ball:41 --seed 7 -o t.swc --quiet
     run_ok corcast export t.swc -o t.stl --quiet
 }
 
-# is_the_stl FILE SCALE: what assimp reads of it, times SCALE, has the triangles and the volume of t.stl, to what single
-# precision gives.
+# is_the_stl FILE SCALE: the mesh that assimp reads, scaled by SCALE, has the number of triangles
+# and, within single precision, the volume of t.stl.
 is_the_stl() {
     command -v assimp >/dev/null || skip "assimp-utils is not installed"
     run_ok timeout 60 assimp export "$1" read.stl -fstlb
@@ -27,7 +27,7 @@ is_the_stl() {
         fail "assimp reads $(admesh_says scaled.stl Volume) mm^3 of $1, not $(admesh_says t.stl Volume)"
 }
 
-# gltf_validator FILE: what Khronos's validator says of it, in ./validated.
+# gltf_validator FILE: writes the report of the Khronos glTF validator to ./validated.
 gltf_validator() {
     npm_module gltf-validator
     NODE_PATH=$NPM_MODULES node -e '
@@ -36,7 +36,7 @@ gltf_validator() {
         "$1" >validated || fail "gltf-validator fails"
 }
 
-# glb_json FILE: its first chunk.
+# glb_json FILE: prints the first chunk of a GLB, the JSON document.
 glb_json() {
     tail -c +21 "$1" | head -c "$(od -An -t u4 -j 12 -N 4 "$1")"
 }
@@ -197,7 +197,7 @@ test_obj_and_its_materials_are_both_written_or_neither() {
     expect_only m.mtl
 }
 
-# But for the box about it, which the scene has wider.
+# The files differ only in the bounding box, which is larger in the scene.
 test_the_inc_that_is_exported_is_that_of_a_scene() {
     local options='--mesh-tolerance 0.1 --color-by flow --quiet'
     run_ok corcast grow --terminals 9 --domain ball:41 --inlet 0,41,0 --inlet 0,-41,0 --seed 7 --quiet -o t.swc
@@ -236,7 +236,7 @@ test_glb_has_a_node_for_each_order_in_metres() {
     expect_json t.json '.materials[0].pbrMetallicRoughness.baseColorFactor == [1, 1, 1, 1]'
 }
 
-# Of one field two colors: the ends of viridis, linear in GLB and encoded in PLY.
+# The two colors are the ends of viridis: linear in GLB, encoded in PLY.
 test_colors_are_linear_in_glb_and_encoded_in_ply() {
     local extension
     /usr/bin/python3 -c 'import numpy' 2>import.log || skip "python3-numpy is not installed"
@@ -300,7 +300,7 @@ test_refuses_a_vessel_that_is_too_short_to_have_a_surface() {
 
 test_counts_no_segment_as_present_whose_wall_has_no_triangle() {
     local model mm
-    # A twig that comes out of its trunk by less than a triangle.
+    # A twig that extends from its trunk by less than the size of a triangle.
     for model in rounded,0.92 isosurface,1.02; do
         mm=${model#*,}
         printf '1 3 0 0 0 1 -1\n2 3 5 0 0 1 1\n3 3 10 0 0 1 2\n4 3 5 %s 0 0.1 2\n' "$mm" >twig.swc
@@ -310,7 +310,7 @@ test_counts_no_segment_as_present_whose_wall_has_no_triangle() {
     done
 }
 
-# moved_by X: the tree of t.swc, X mm along x.
+# moved_by X: writes moved.swc, the tree t.swc moved by X mm along x.
 moved_by() {
     awk -v mm="$1" '!/^#/ { printf "%s %s %.17g %s %s %s %s\n", $1, $2, $3 + mm, $4, $5, $6, $7 }' t.swc >moved.swc
 }
@@ -327,7 +327,8 @@ test_a_tree_too_far_from_the_origin_for_its_radii_is_refused_by_its_distance() {
         expect_sentence 'reaches 10000[0-9.]+ mm from the origin, where neighbouring coordinates in single precision are 0\.062 mm apart'
         expect_sentence 'too coarse for the radius of segment [0-9]+, 0\.[0-9]+ mm; move the tree nearer'
     done
-    # Two vessels that blend along their length: only roundings of their points cross.
+    # Two vessels that blend along their whole length. Their surfaces cross only because of
+    # rounding.
     printf '1 3 256 -252 -4096 .375 -1\n2 3 256 -260 -4096 .375 1\n3 3 256.25 -252 -4096 .1875 2\n4 3 258 -260 -4096 .1875 3\n' >far.swc
     run timeout 20 "$CORCAST" export far.swc --model rounded -o m.stl --quiet
     expect_status 2
@@ -348,7 +349,7 @@ test_part_overlaps_thins_them_and_says_so() {
     expect_json m.stl.json '[.near_pairs[].gap_mm] | min > 0'
 }
 
-# The time depends on the machine, and is only seen to be told.
+# The stated time depends on the machine. The test only checks that it is stated.
 test_says_before_what_the_work_takes() {
     local terminals told
     for terminals in 3 17 60; do

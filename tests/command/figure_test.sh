@@ -2,8 +2,8 @@
 # `figure`: panels, insets and text from recipes; recipes that are printed and run again.
 . "$(dirname "$0")/../lib.sh"
 
-# A figure of everything, small, in folder/all.ini; its tree is grown by the recipe, and read from a
-# file beside it.
+# Writes folder/all.ini, the recipe of a small figure with every kind of content. One tree is grown
+# by the recipe, another is read from a file.
 write_recipe() {
     mkdir -p folder
     run_ok corcast grow --terminals 40 --seed 5 --quiet -o folder/tree.swc
@@ -91,7 +91,7 @@ test_a_printed_recipe_makes_the_same_figure() {
     grep -q '^text-size = 6.5$' again/all.ini || fail "expected what the command line says in the recipe"
 }
 
-# Configurations of fontconfig: none, and one that asks for other smoothing and other fonts.
+# Two configurations of fontconfig are tried: none, and one with other smoothing and other fonts.
 test_a_figure_has_the_same_bytes_whatever_fontconfig_says() {
     local form configuration
     write_recipe
@@ -130,19 +130,19 @@ test_an_inset_shows_the_part_of_its_frame_larger() {
     printf '[inset i]\nof = a\nat = 0.5,0.3\nplace = 0.5,0.5\nmagnify = 4\nwidth = 25.4\n' |
         cat f/plain.ini - >f/large.ini
     run_ok corcast figure f/large.ini --quiet -o large.png
-    # The middle of the inset, 300 pixels wide and high, is that of its part.
+    # The centre of the inset, 300 x 300 pixels, shows the centre of the magnified part.
     run_ok corcast render f/tree.swc --quiet --size 1200x1200 --background white -o whole.png
     pngtopnm whole.png | pnmcut -left 590 -top 350 -width 20 -height 20 >expected.ppm
     pngtopnm large.png | pnmcut -left 140 -top 140 -width 20 -height 20 >inset.ppm
     expect_differing 0 60 expected.ppm inset.ppm
 }
 
-# corner PICTURE: the color of the upper left pixel, as three numbers.
+# corner PICTURE: prints the color of the upper left pixel as three numbers.
 corner() {
     pngtopnm "$1" | pnmcut -left 0 -top 0 -width 1 -height 1 | pnmtoplainpnm | tail -1 | xargs
 }
 
-# The default look's paper would be a box on a white page.
+# With the background of the default look, the panel would be a visible box on a white page.
 test_a_panel_that_names_no_look_has_the_color_of_the_page() {
     printf '[figure]\nsize = 40x40\nletters = none\n[panel a]\ntree = %s/bifurcation.swc\n' "$DATA" >plain.ini
     run_ok corcast figure plain.ini --quiet -o white.png
@@ -156,7 +156,8 @@ test_a_panel_that_names_no_look_has_the_color_of_the_page() {
     [ "$(corner render.png)" != "255 255 255" ] || fail 'expected the paper of cast not to be white'
 }
 
-# The words are in the text of the page, with Unicode's superscripts, whatever is drawn for them.
+# The text of the page contains the words with superscript characters of Unicode, however they are
+# drawn.
 test_markup_and_missing_letters_in_every_output() {
     run_ok corcast grow --terminals 3 --quiet -o t.swc
     printf '[panel a]\ntree = t.swc\nantialias = 1\ntitle = %s\n[figure]\ndpi = 60\n' \
@@ -184,7 +185,8 @@ test_markup_and_missing_letters_in_every_output() {
     grep -q 'corcast: no font has 日' stderr || fail "expected a warning of render, got $(cat stderr)"
 }
 
-# The first text is on a vessel, the second is not, the third is beside the panel, whose vessel goes on there.
+# The first text is on a vessel, the second is not. The third is outside the panel, where a vessel
+# would continue.
 test_a_text_on_a_vessel_has_a_halo() {
     printf '1 1 0 0 0 2 -1\n2 1 40 0 0 2 1\n' >line.swc
     cat >halo.ini <<'END'
@@ -238,7 +240,7 @@ END
     [ ! -s stderr ] || fail "expected no warning, got $(cat stderr)"
 }
 
-# The panel is covered by vessels but for one corner, which is its inset's.
+# Vessels cover the panel except one corner, where the inset is.
 test_a_scale_bar_avoids_insets() {
     printf '1 1 0 0 0 2 -1\n2 1 40 40 0 2 1\n' >up.swc
     cat >inset.ini <<'END'
@@ -290,7 +292,8 @@ test_controls_of_bidirectional_text_are_blanks() {
     pdfinfo title.pdf | grep -q 'figure t gnp.ini' || fail "expected a blank in the PDF's title: $(pdfinfo title.pdf)"
 }
 
-# refused LINES PATTERN: a recipe of these lines is refused so.
+# refused LINES PATTERN: a recipe with the lines is refused with a sentence that matches the
+# pattern.
 refused() {
     printf "$1" >r.ini
     run corcast figure r.ini --quiet -o x.pdf
@@ -317,8 +320,8 @@ test_mistakes_are_named_with_file_and_line() {
     refused '[panel a]\nmodel = joined\n' 'r\.ini: \[panel a\] has no tree'
 }
 
-# Trees of a recipe's commands are files that nobody knows: neither warnings nor errors name them. fig2 has one whose
-# radii look like um.
+# The files of trees that a recipe's commands make are internal. Neither warnings nor errors name
+# them. A tree of fig2 has radii that look like um.
 test_the_trees_of_a_recipe_are_not_named_by_their_files() {
     run_ok corcast figure fig2 --dpi 30 -o fig2.png
     ! grep -q 'unit\|/' stderr || fail "expected no word on a unit or a file, got $(cat stderr)"
@@ -335,7 +338,7 @@ test_one_line_is_said_when_a_figure_is_refused() {
     expect_sentence 'scale-bar: 7000 mm is longer'
 }
 
-# Numbers of any size are refused in a sentence of ordinary length.
+# A number that is out of range is refused in a short sentence, whatever its size.
 test_numbers_beyond_all_bounds_are_refused_in_a_short_sentence() {
     run_ok corcast grow --terminals 4 --quiet -o t.swc
     short() {
@@ -372,7 +375,8 @@ test_names_that_there_are_none_of() {
     expect_sentence "help.ini:1: 'help' is not an option of render that a recipe may give"
 }
 
-# All that a recipe may name: trees, values, maps, looks, domains, recipes of commands.
+# All kinds of files that a recipe may name: trees, values, maps, looks, domains, recipes of
+# commands.
 test_paths_start_at_the_folder_of_the_recipe() {
     mkdir f f/sub
     run_ok corcast grow --terminals 12 --quiet -o f/sub/t.swc
@@ -409,7 +413,7 @@ END
     grep -q '^color-by = sub/v.csv:v$' stdout || fail "expected the recipe's own path, got $(cat stdout)"
 }
 
-# One whose inset shows nothing is drawn without a word: the page shows where it lies.
+# An inset that shows no vessel causes no warning, because the page shows its position.
 test_a_panel_that_shows_no_vessel_is_drawn_with_a_warning() {
     run_ok corcast grow --terminals 12 --quiet -o t.swc
     printf '[panel far]\ntree = t.swc\nlook-at = 1000,0,0\nheight = 1\n[inset i]\nof = far\nat = 0.5,0.5\n' >far.ini

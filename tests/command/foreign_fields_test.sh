@@ -14,14 +14,14 @@ fields() {
     /usr/bin/python3 "$REPO/tests/oracle/foreign_fields.py" "$@"
 }
 
-# reads FORMAT FILE...
+# reads FORMAT FILE...: the independent reader of FORMAT finds the right fields in the files.
 reads() {
     fields "$@" >said 2>&1 || fail "$1: $(tail -1 said)"
 }
 
 COLORED=(--input-unit mm --quiet --color-by load.csv:load --classes 2 --no-data '#1AE64C')
 
-# exported FILE OPTION...
+# exported FILE OPTION...: exports tree.csv with the options to FILE.
 exported() {
     local file=$1
     shift
@@ -98,7 +98,7 @@ test_every_field_of_an_openscad_model() {
     reads csg x.csg x.scad
 }
 
-# Its ground, lights and texts have no other reader in the tests that would notice one part in a hundred.
+# No other test would detect an error of 1 % in the ground, the lights or the texts.
 test_every_field_of_a_tachyon_scene() {
     fields tree .
     cat >own.ini <<'INI'

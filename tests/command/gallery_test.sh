@@ -2,7 +2,7 @@
 # The pictures of README and docs/GALLERY.md, and the commands beside them.
 . "$(dirname "$0")/../lib.sh"
 
-# pictures: of the gallery, the command of each and its file.
+# pictures: prints, per picture of the gallery, its command and its file.
 pictures() {
     awk '/^    corcast (diagram|figure|render) / { command = substr($0, 5) }
          /^!\[/ { file = $0; gsub(/.*\(|\).*/, "", file); print command "|" file }' "$REPO/docs/GALLERY.md"
@@ -25,7 +25,7 @@ test_the_gallery_shows_sixteen_large_pictures_each_by_the_command_beside_it() {
     [ "$(find "$REPO/docs/images/gallery" -type f | wc -l)" = 16 ] || fail "expected no other picture"
 }
 
-# As they stand, but small.
+# The commands run unchanged, except that the pictures are small.
 test_the_commands_of_the_gallery_run() {
     local command
     ln -s "$REPO/tests" tests

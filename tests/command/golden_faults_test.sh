@@ -15,7 +15,7 @@ copy_golden() {
     export GOLDEN=$PWD/golden CASES=$PWD/cases
 }
 
-# finds TEST SENTENCE: that test of the case fails, and says so.
+# finds TEST SENTENCE: the golden test TEST fails with the sentence.
 finds() {
     run "$REPO/tests/golden_test.sh" "$1"
     [ "$status" -ne 0 ] || fail "expected the golden test $1 to fail"
@@ -27,7 +27,7 @@ edit_record() {
     mv edited "golden/$1/$CASE/case.json"
 }
 
-# One pixel off by one level, with the hash of the new picture.
+# edit_picture KIND: changes one pixel of the stored picture by one level, and records the new hash.
 edit_picture() {
     pngtopnm "golden/$1/$CASE/picture.png" >old.ppm
     { head -c -1 old.ppm && printf '\376'; } | pnmtopng >"golden/$1/$CASE/picture.png" 2>pnmtopng.error

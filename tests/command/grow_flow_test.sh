@@ -4,7 +4,7 @@
 # count territories again.
 . "$(dirname "$0")/../lib.sh"
 
-# stated KEY: its value in what check_tree printed.
+# stated KEY: prints the value of KEY in the output of check_tree.
 stated() {
     sed -n "s/^$1 //p" stdout
 }
@@ -50,7 +50,8 @@ test_flow_by_territory_gives_an_exact_tree() {
     done
 }
 
-# Territories of a disc of radius 50 from the file alone, by counting the points of another lattice.
+# Recomputes the territories in a disc of radius 50 mm from the file alone, by counting the points
+# of a different lattice.
 recount() {
     awk '/^# flow_share:/ { share[$3] = $4; shares += $4; next }
          /^#/ { next }

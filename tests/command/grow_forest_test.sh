@@ -5,7 +5,7 @@
 
 two=(--inlet 0,50 --inlet 30,-40)
 
-# terminals_of FILE: the terminals of each tree, in the order of the roots.
+# terminals_of FILE: prints the number of terminals of each tree, in the order of the roots.
 terminals_of() {
     awk '!/^#/ { if ($7 == -1) trees++; tree[$1] = trees; children[$7]++ }
          END {

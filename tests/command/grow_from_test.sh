@@ -3,8 +3,8 @@
 # radii and pressures of the result again. The kept part is compared with the original file.
 . "$(dirname "$0")/../lib.sh"
 
-# expect_kept OLD NEW: every node of OLD is in NEW with its type and place, its nearest ancestor from OLD is
-# its old parent, and all nodes between the two lie on the straight line.
+# expect_kept OLD NEW: every node of OLD is in NEW with its type and position. Its nearest ancestor
+# that is also in OLD is its old parent. All nodes between the two are on the straight line.
 expect_kept() {
     awk '/^#/ { next }
          FNR == NR { old[$1] = $2 " " $3 " " $4 " " $5; parent[$1] = $7; n++; next }
@@ -32,7 +32,8 @@ stated() {
     sed -n "s/^$1 //p" stdout
 }
 
-# A measured vessel of many pieces, bent, with one side branch; ids and types of its own.
+# Writes measured.swc: a bent vessel of many segments with one side branch, and with ids and types
+# unlike those of grown trees.
 write_measured() {
     cat >measured.swc <<'END'
 # measured by hand
@@ -77,7 +78,7 @@ test_a_tree_far_from_the_domain_is_refused_with_both_places() {
     expect_only measured.swc away.swc
 }
 
-# One tip of the tree is in a small part of the domain, from which no vessel leads into the large one.
+# One tip of the tree is in a small part of the domain that is not connected to the large part.
 test_a_domain_that_holds_a_part_of_the_tree_is_said_to_when_there_is_no_room() {
     write_measured
     printf '50 0\n95 0\n95 45\n50 45\n\n5.99 1.99\n6.01 1.99\n6.01 2.01\n5.99 2.01\n' >apart.txt
@@ -99,7 +100,7 @@ test_it_is_said_how_the_radii_of_the_tree_changed() {
         (.radius_change.median - $(sed -n 5p changes) | fabs) < 1e-4"
 }
 
-# An inlet from which a thin vessel leaves first, then a thick one.
+# The first vessel of the inlet is thin, the second is thick.
 test_the_root_has_the_radius_of_the_thickest_vessel_that_leaves_it() {
     printf '%s\n' '# domain: rect:40,40' '1 3 0 15 0 0.2 -1' '2 3 -3 10 0 0.2 1' '3 3 2 8 0 1.9 1' '4 3 -4 -6 0 0.7 3' \
         '5 3 6 -7 0 0.9 3' '6 3 9 -12 0 0.6 5' '7 3 3 -15 0 0.6 5' >forked.swc
@@ -114,7 +115,7 @@ test_the_root_has_the_radius_of_the_thickest_vessel_that_leaves_it() {
     expect_json stdout ".root_radius_mm == $thickest"
 }
 
-# A fork as measured trees have them: both daughters begin with a point where it is.
+# A bifurcation as in measured trees: both daughters begin with a point at its position.
 test_given_vessels_that_touch_each_other_are_no_fault_of_growth() {
     printf '%s\n' '1 3 0 20 0 1.4 -1' '2 3 0 8 0 1.3 1' '3 3 0 8 0 1.1 2' '4 3 0 8 0 1.1 2' '5 3 -9 -3 0 1.1 3' '6 3 8 -4 0 1.1 4' >forked.swc
     run_ok corcast grow --from forked.swc --domain disc:22 --terminals 30 --q-perf 20 --keep-radii -o grown.swc --json grown.json --quiet
@@ -241,7 +242,8 @@ terminals() {
     awk '/^#/ { next } { place[$1] = $3 " " $4 " " $5; inner[$7] = 1 } END { for (i in place) if (!(i in inner)) print place[i] }' "$1" | sort
 }
 
-# A terminal lies where its point was tossed, so the same points again would be the same terminals.
+# A terminal is at its random point. If growth repeated the same points, the new terminals would
+# coincide with the old ones.
 test_the_points_are_not_those_that_the_same_seed_tosses_for_a_new_tree() {
     run_ok corcast grow --terminals 2 --seed 23 -o small.swc
     run_ok corcast grow --terminals 25 --seed 4 -o new.swc
@@ -250,7 +252,7 @@ test_the_points_are_not_those_that_the_same_seed_tosses_for_a_new_tree() {
     [ "$(comm -12 <(terminals new.swc) <(terminals grown.swc) | wc -l)" -eq 0 ] || fail "expected no terminal in both"
 }
 
-# expect_radii_kept OLD NEW: every node of OLD but roots has its very radius in NEW.
+# expect_radii_kept OLD NEW: every node of OLD, except roots, has exactly the same radius in NEW.
 expect_radii_kept() {
     awk '/^#/ { next } FNR == NR { if ($7 != -1) radius[$1] = $6; next }
          $1 in radius && radius[$1] != $6 { print "node " $1 ": " radius[$1] " became " $6; exit }' "$1" "$2" >radii.out

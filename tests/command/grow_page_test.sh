@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# The page that grows trees: its size, its contents, and in headless Chromium its bytes; see tests/page/grow.js.
+# The page that grows trees: its size, its contents and, in headless Chromium, the bytes of its
+# trees [tests/page/grow.js].
 . "$(dirname "$0")/../lib.sh"
 
 PAGE=$REPO/build/grow/corcast.html
@@ -8,7 +9,7 @@ need_page() {
     [ -e "$PAGE" ] || skip "the page that grows trees is not built: run \`make page\`"
 }
 
-# Options of `grow`, each NAME=VALUE, of trees whose bytes the page must have.
+# Prints options of `grow`, as NAME=VALUE, one tree per line. The page must grow the same bytes.
 trees() {
     cat <<'END'
 terminals=300 domain=ball:30 seed=5 gamma=2.7 lambda=1.5
@@ -29,7 +30,8 @@ terminals=40 refine=anneal refine-moves=4000 gamma=2.7
 END
 }
 
-# Grows each tree with the program, and prints what tests/page/grow.js expects of it.
+# expectation OPTION...: grows a tree with corcast, and prints the JSON that tests/page/grow.js
+# compares the page with.
 expectation() {
     local option arguments=() address=
     for option; do
@@ -41,7 +43,7 @@ expectation() {
         --arg command "corcast grow$(printf ' %s' "${arguments[@]}") -o tree.swc" '$ARGS.named'
 }
 
-# expectations N: writes what is expected of the first N trees to expected.json.
+# expectations N: writes the expectations for the first N trees to expected.json.
 expectations() {
     local tree
     while read -r tree; do

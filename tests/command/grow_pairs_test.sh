@@ -5,8 +5,9 @@
 
 two=(--domain ball:30 --inlet 0,30,0 --inlet 2,-29,0 --q-perf 100 --pair 1.25)
 
-# pairs_of FILE: of each pair both ids, their roots and the distance of their ends; then how many terminals
-# have no mate, and the least distance of the walls of both trees, by points along both axes.
+# pairs_of FILE: prints, per pair, both ids, their roots and the distance of their ends; then the
+# number of unpaired terminals, and the minimum distance between the walls of the two trees, sampled
+# at points along the axes.
 pairs_of() {
     awk '/^# terminal_pair:/ { a[++pairs] = $3; b[pairs] = $4; mates[$3]++; mates[$4]++; next } /^#/ { next }
          { id[++n] = $1; x[$1] = $3; y[$1] = $4; z[$1] = $5; r[$1] = $6; p[$1] = $7; has[$7] = 1; root[$1] = $7 == -1 ? $1 : root[$7] }

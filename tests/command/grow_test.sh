@@ -3,7 +3,7 @@
 # which a program that shares no code with corcast checks.
 . "$(dirname "$0")/../lib.sh"
 
-# A checker that finds nothing is worth nothing.
+# The checker must detect faults; otherwise its approval would mean nothing.
 test_the_checker_finds_what_is_wrong() {
     run_ok corcast grow --terminals 50 --seed 3 -o tree.swc
     awk '!/^#/ && $1 == 20 { $6 *= 1.00000000001 } { print }' tree.swc >radius.swc
@@ -28,7 +28,7 @@ test_the_checker_finds_what_is_wrong() {
     run "$CHECK_TREE" crossing.swc
     expect_status 1
     expect_sentence "segments (4 and 6|6 and 4) cross"
-    # Radii four times as wide carry 256 times the flow: all laws hold, but there is no room.
+    # Radii that are 4 times as large carry 256 times the flow. All laws hold, but vessels overlap.
     sed 's/^# q_perf_ml_min: 500$/# q_perf_ml_min: 128000/' tree.swc |
         awk -v CONVFMT=%.17g '!/^#/ { $6 *= 4 } { print }' >wide.swc
     run_ok "$CHECK_TREE" wide.swc
@@ -133,7 +133,7 @@ test_the_exponent_may_follow_the_radius() {
     expect_sentence '--flow-split murray: the exponent of tree.swc varies with radius; give one number with --flow-exponent'
 }
 
-# Where all exponents are one, the tree is that of this one.
+# If all exponents are equal, the tree is that of the single exponent.
 test_exponents_that_are_all_the_same_are_one_exponent() {
     run_ok corcast grow --terminals 80 --gamma 2.7 -o one.swc
     run_ok corcast grow --terminals 80 --gamma 0.1:2.7,1:2.7 -o all.swc
@@ -331,7 +331,8 @@ test_a_folder_is_not_an_output() {
     expect_only folder.swc
 }
 
-# write_cube FILE HALF: the surface of a cube; without its top with a third argument.
+# write_cube FILE HALF [OPEN]: writes the surface of a cube with half side HALF as OBJ; with a third
+# argument, without its top.
 write_cube() {
     awk -v r="$2" 'BEGIN { for (i = 0; i < 8; i++) print "v", (i % 2 ? r : -r), (int(i / 2) % 2 ? r : -r), (i >= 4 ? r : -r) }' >"$1"
     printf 'f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 1 5 7 3\nf 2 4 8 6\n' >>"$1"
@@ -351,7 +352,7 @@ test_trees_grow_on_surfaces() {
     expect_sentence 'open.obj: the mesh is open: 4 edges have a triangle on one side only; close its holes'
 }
 
-# Relaxed as they grow: lower than without, and every rule kept.
+# Trees that are relaxed during growth have a lower target and obey every rule.
 test_relaxed_trees_have_a_lower_target_and_keep_the_rules() {
     local options
     for options in '--viscosity-law pries' '--domain ball:50' '--domain shell:40,40,60,12' '--inlet 0,50 --inlet 0,-50'; do
@@ -373,7 +374,7 @@ test_relaxed_trees_have_a_lower_target_and_keep_the_rules() {
     ! cmp -s earlier.swc relaxed.swc || fail 'expected --relax 200 to end before 237 terminals'
 }
 
-# A machine of 400 MB, as a library tells it that is loaded before the C library.
+# A preloaded library makes the machine appear to have 400 MB of memory.
 test_refuses_at_once_what_needs_more_memory_than_the_machine_has() {
     printf '%s\n' '#include <unistd.h>' \
         'long sysconf(int n) { return n == _SC_PAGESIZE ? 4096 : n == _SC_PHYS_PAGES ? 97656 : 2; }' >small.c

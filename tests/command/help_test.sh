@@ -3,7 +3,7 @@
 # three shells.
 . "$(dirname "$0")/../lib.sh"
 
-# options_of COMMAND: the options that its help names.
+# options_of COMMAND: prints the options that the command's help lists.
 options_of() {
     corcast "$1" --help | grep -oE '^  (-o, )?--[a-z-]+' | grep -oE -- '--[a-z-]+$'
 }
@@ -32,7 +32,8 @@ test_every_command_and_option_is_in_the_reference() {
     done
 }
 
-# What the JSON of commands has to be: members and their types, and names that other members refer to.
+# check_schema FILE: the JSON of commands has the right members and types, and names that members
+# refer to exist.
 check_schema() {
     python3 - "$1" <<'END'
 import json, sys
@@ -119,7 +120,7 @@ test_a_page_shows_backslashes_quotes_and_dashes_as_they_are() {
     corcast help report --as man | mandoc -Tascii | col -b | grep -q '`make power`' || fail "expected backquotes as they are"
 }
 
-# completes WORD...: what bash offers for the last word, in the file offered.
+# completes WORD...: writes bash's completions of the last word to the file `offered`.
 completes() {
     bash -c 'PATH=$1:$PATH; shift; . ./completion; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _corcast; printf "%s\n" "${COMPREPLY[@]}"' \
         bash "$(dirname "$CORCAST")" "$@" >offered 2>errors
@@ -180,7 +181,7 @@ test_zsh_completes_options_and_values() {
     command -v zsh >/dev/null || skip "zsh is not installed"
     corcast help --as zsh >_corcast
     run_ok zsh -n _corcast
-    # What zsh's own functions of completion are told, a word a line.
+    # The driver prints the arguments that zsh's completion functions receive, one per line.
     cat >driver <<'END'
 compdef() { }
 _describe() { print -rl -- "${(@P)2}" }

@@ -16,7 +16,8 @@ test_a_line_drawing_is_vectors_of_black_alone() {
     pdfinfo lines.pdf | grep -q '^Page size: *170\.' || fail "expected a page of 60 mm"
 }
 
-# Of a tree as MODEL: ink lies on what a flat picture of the same view shows, and on all of its outline.
+# drawing_lies_on_picture MODEL: ink is only where a flat picture of the same view shows vessels,
+# and covers their whole outline.
 drawing_lies_on_picture() {
     local view='--size 60mm --dpi 200 --projection perspective --turn 20,10 --quiet' beside ink edges bare
     run_ok corcast render tree.swc --model "$1" --ink 0.3 $view -o lines.pdf
@@ -24,7 +25,8 @@ drawing_lies_on_picture() {
     pdftoppm -r 200 lines.pdf lines
     ppmtopgm flat.ppm | pamthreshold -simple -threshold 0.9 | pamtopnm >vessels.pbm
     ppmtopgm lines-1.ppm | pamthreshold -simple -threshold 0.5 | pamtopnm >ink.pbm
-    # Dark in both is 0 in the sum; ink beside vessels would be 0 in `ink` alone.
+    # A pixel that is dark in both pictures is 0 in the difference. Ink outside of vessels is dark
+    # only in `ink`.
     beside=$(pnmarith -subtract vessels.pbm ink.pbm | pamsumm -sum -brief)
     ink=$(pnminvert ink.pbm | pamsumm -sum -brief)
     [ "$ink" -gt 2000 ] || fail "expected lines, got $ink dark pixels"
@@ -45,8 +47,9 @@ test_a_drawing_lies_on_the_picture_of_the_same_view() {
     done
 }
 
-# Vessels behind a thick one: their lines end where its wall hides them, known to a hundredth of a line [METHODS 3.4].
-# Each begins elsewhere, so that the steps along it fall elsewhere.
+# Lines of vessels behind a thick vessel end where its wall hides them, exact to 1/100 of the line
+# width [METHODS 3.4]. Each vessel begins at another position, so that the steps along its lines
+# differ.
 test_lines_end_where_a_vessel_in_front_begins() {
     { printf '1 1 0 -14 5 3 -1\n2 3 0 14 5 3 1\n'
       for k in 1 2 3 4 5 6 7; do
@@ -71,7 +74,8 @@ assert max(near) <= 0.01 * 0.5 + 0.002, f"a line ends {max(near)} mm from the wa
 END
 }
 
-# A panel in lines beside a picture, with an inset in lines: one picture, and lines in the panel's and the inset's paper.
+# A panel of lines, with an inset of lines, beside a panel with a picture. The page has one picture,
+# and lines in the panel and in the inset.
 test_a_figure_has_panels_in_lines() {
     printf '%s\n' '[figure]' 'size = 90mmx45mm' 'columns = 2' '[panels]' 'grow = --terminals 20 --domain ball:20 --seed 4' \
         '[panel a]' 'ink = 0.15' 'model = cylinders' '[panel b]' 'model = rounded' \

@@ -3,13 +3,14 @@
 # everything else.
 . "$(dirname "$0")/../lib.sh"
 
-# as_crlf|as_cr|with_mark FILE OUT: the same text, written as others write it.
+# as_crlf|as_cr|with_mark FILE OUT: copies a text with CRLF line ends, with CR line ends, or with a
+# byte order mark.
 as_crlf() { sed 's/$/\r/' "$1" >"$2"; }
 as_cr() { tr '\n' '\r' <"$1" >"$2"; }
 with_mark() { { printf '\xef\xbb\xbf'; cat "$1"; } >"$2"; }
 
-# expect_same_however_written NAME.EXT OUTPUT COMMAND ...: the command, which reads NAME.EXT, writes the
-# same OUTPUT whatever line ends the file has, and with a byte order mark.
+# expect_same_however_written NAME.EXT OUTPUT COMMAND ...: the command reads NAME.EXT. It writes the
+# same OUTPUT for every kind of line end, and with a byte order mark.
 expect_same_however_written() {
     local file=$1 output=$2 way
     shift 2
@@ -23,7 +24,8 @@ expect_same_however_written() {
     done
 }
 
-# expect_zero_byte_refused NAME:LINE COMMAND ...
+# expect_zero_byte_refused NAME:LINE COMMAND ...: the command refuses a zero byte and names file and
+# line.
 expect_zero_byte_refused() {
     local where=$1
     shift
@@ -47,12 +49,14 @@ test_line_ends_and_byte_order_marks_change_nothing() {
     expect_same_however_written body.obj t.swc corcast grow --terminals 5 --domain mesh:body.obj -o t.swc
 }
 
-# A tree in micrometres that is read as millimetres, of which a note is printed when a command succeeds.
+# Writes a tree in micrometres without a stated unit. A command that succeeds prints a note about
+# the assumed unit.
 micrometre_tree() {
     printf '%s\n' '1 5 0 0 0 2385 -1' '2 5 1250 -17500 0 2385 1' '3 5 -9750 -31125 0 1655 2' '4 5 8500 -29875 0 2062 2' >t.swc
 }
 
-# Each command that reads a tree, with an option that is refused after the tree was read, or an output that fails.
+# Every command that reads a tree is run with an option that is refused only after the tree was
+# read, or with an output that fails.
 test_a_command_that_fails_after_it_read_a_tree_prints_one_line() {
     local command commands=0
     micrometre_tree
@@ -171,7 +175,7 @@ test_pixelmatch_in_a_tolerance_is_from_0_to_1() {
     run_ok corcast compare p.ppm p.ppm --tolerance t.ini
 }
 
-# 10 GB and 30 GB that no disk holds.
+# Sparse files of 10 GB and 30 GB, which occupy no disk space.
 test_files_that_cannot_be_of_their_kind_are_refused_before_they_are_read() {
     local name
     truncate -s 30G t.swc
@@ -226,7 +230,7 @@ test_a_name_that_templates_lack_is_answered_with_those_there_are() {
     expect_sentence "--look: 'nosuch' is unknown; available: atlas, cast, clinical, .*, wax or xray"
 }
 
-# A letter, black on nothing, and the same in white on black.
+# A black letter on a transparent background, and the same letter in white on black.
 test_the_mask_of_a_transparent_png_is_what_is_opaque() {
     printf 'P1\n9 9\n1 1 1 1 1 1 1 1 1\n1 1 1 1 1 1 1 1 1\n0 0 0 1 1 1 0 0 0\n0 0 0 1 1 1 0 0 0\n' >letter.pbm
     printf '0 0 0 1 1 1 0 0 0\n0 0 0 1 1 1 0 0 0\n0 0 0 1 1 1 0 0 0\n1 1 1 1 1 1 1 1 1\n1 1 1 1 1 1 1 1 1\n' >>letter.pbm
@@ -277,7 +281,7 @@ test_a_picture_that_cannot_be_written_says_why() {
 
 test_a_mask_that_claims_more_voxels_than_its_file_has_is_refused_at_once() {
     gunzip -c "$DATA/oblique.nii.gz" >mask.nii
-    # dim[1..3], 16-bit numbers at 42: 1600 each; its voxels would have 4 GB
+    # dim[1..3], 16-bit numbers at offset 42, are 1600, so the voxels would take 4 GB.
     printf '\100\006\100\006\100\006' | dd of=mask.nii bs=1 seek=42 conv=notrunc status=none
     (
         ulimit -v 1000000
@@ -288,7 +292,7 @@ test_a_mask_that_claims_more_voxels_than_its_file_has_is_refused_at_once() {
 }
 
 test_a_mask_takes_bits_of_memory_for_its_voxels() {
-    # 27 million voxels, all of them tissue, in a file of 0.1 MB; dim[1..3] at 42: 300 each.
+    # 27 million voxels, all of them tissue, in a file of 0.1 MB. dim[1..3], at offset 42, are 300.
     {
         gunzip -c "$DATA/oblique.nii.gz" | head -c 42
         printf '\054\001\054\001\054\001'

@@ -3,7 +3,8 @@
 # unchanged.
 . "$(dirname "$0")/../lib.sh"
 
-# stop_after SECONDS SIGNAL COMMAND ...: starts the command, signals it, leaves its status in $status.
+# stop_after SECONDS SIGNAL COMMAND ...: starts the command, sends it the signal after SECONDS, and
+# sets $status.
 stop_after() {
     local seconds=$1 signal=$2
     shift 2
@@ -41,7 +42,8 @@ test_a_stopped_render_leaves_nothing() {
     done
 }
 
-# A script that stands for POV-Ray: what it runs writes half a picture, says where it runs, and takes its time.
+# Makes a script that replaces POV-Ray: it writes half a picture, starts a process that runs for a
+# minute, and writes the process id to the file `running`.
 slow_povray() {
     cat >povray.sh <<'END'
 #!/bin/sh

@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
-# What journals ask of a figure: its size, and files other than PDF.
+# Requirements of journals on a figure: its size, and formats other than PDF.
 . "$(dirname "$0")/../lib.sh"
 
-# expect_paper FILE WIDTH HEIGHT: the page has this size in mm, to half a millimetre.
+# expect_paper FILE WIDTH HEIGHT: the page has this size in mm, to within 0.5 mm.
 expect_paper() {
     pdfinfo "$1" | awk -v w="$2" -v h="$3" '/^Page size/ { x = $3 * 25.4 / 72 - w; y = $5 * 25.4 / 72 - h
         exit !(x * x < 0.25 && y * y < 0.25) }' || fail "expected $2 x $3 mm, got: $(pdfinfo "$1" | grep size)"
 }
 
-# A size that is given anywhere is the size of the page, whatever preset and column say.
+# A size that is specified anywhere takes precedence over preset and column.
 test_a_preset_never_overrides_a_size() {
     local size preset column option options
     run_ok corcast grow --terminals 3 --quiet -o t.swc
@@ -44,7 +44,8 @@ test_a_preset_never_overrides_a_size() {
     done
 }
 
-# The EPS of a page is the PDF of the page: ghostscript draws both, and reads the text of both.
+# The EPS and the PDF of a page show the same picture and contain the same text, as ghostscript
+# reads them.
 test_an_eps_shows_what_the_pdf_shows() {
     local page
     run_ok corcast grow --terminals 20 --quiet -o t.swc
@@ -64,7 +65,7 @@ test_an_eps_shows_what_the_pdf_shows() {
         for form in eps pdf; do
             gs -q -dSAFER -dEPSCrop -dBATCH -dNOPAUSE -sDEVICE=ppmraw -r100 -dTextAlphaBits=4 -dGraphicsAlphaBits=4 \
                 -sOutputFile=whole.ppm $page.$form || fail "ghostscript cannot read $page.$form"
-            # An EPS has whole points, from its lower left corner.
+            # The size of an EPS is rounded to points, from its lower left corner.
             pamflip -tb whole.ppm | pamcut -width 150 -height 120 >$form.ppm
         done
         pnmpsnr -machine eps.ppm pdf.ppm | awk '{ exit !($1 == "nomatch" || $1 > 16) }' ||
@@ -75,8 +76,8 @@ test_an_eps_shows_what_the_pdf_shows() {
     run_ok corcast render t.swc --quiet --preset springer --dpi 20 -o s.eps
     run_ok corcast check-figure s.eps --preset springer
 }
-# One tree in a high panel and in a flat one with a legend: the trees are equally wide, and neither
-# lies under the legend.
+# One tree is drawn in a high panel and in a flat panel with a legend. The two trees are equally
+# wide, and the legend covers neither.
 test_panels_of_one_scale_show_a_tree_in_one_size() {
     run_ok corcast grow --terminals 30 --seed 3 --quiet -o t.swc
     printf '[figure]\nsize = 120mmx60mm\ndpi = 100\ncolumns = 2\nletters = none\n[panels]\ntree = t.swc\n' >f.ini
@@ -96,7 +97,8 @@ test_panels_of_one_scale_show_a_tree_in_one_size() {
     expect_sentence '\[panel b\]: height has no effect beside same-scale'
 }
 
-# A graph as another program writes it: a gradient, a marker that is used twice, translucent disks.
+# Writes graph.svg, as another program might: with a gradient, a marker that is used twice, and
+# translucent disks.
 write_graph() {
     cat >graph.svg <<'END'
 <?xml version="1.0"?>
@@ -116,7 +118,7 @@ END
     pngtopnm -mix -background white graph.png | pnmtojpeg -quality 95 >graph.jpg
 }
 
-# expect_alike A B: two PNG pictures of one size look alike, letters and edges aside.
+# expect_alike A B: two PNG pictures of equal size are similar, apart from letters and edges.
 expect_alike() {
     pngtopnm "$1" | pamscale -reduce 3 >a.ppm 2>/dev/null
     pngtopnm "$2" | pamscale -reduce 3 >b.ppm 2>/dev/null
@@ -171,7 +173,8 @@ test_two_drawings_in_one_svg_have_names_of_their_own() {
     expect_alike f.png g.png
 }
 
-# refuse_image IMAGE PATTERN: one sentence, and no file.
+# refuse_image IMAGE PATTERN: a panel with this image is refused with one sentence, and no file is
+# written.
 refuse_image() {
     printf '[panel a]\nimage = %s\n%s' "$1" "${3-}" >f.ini
     run corcast figure f.ini -o f.pdf
@@ -221,14 +224,15 @@ test_leaders_lie_on_paper_and_can_be_left_out() {
     done
 }
 
-# expect_inks PLANE LEAST GREATEST: the codes of the lower left corner, which holds a scale bar alone.
+# expect_inks PLANE MIN MAX: the codes of the lower left corner, which contains only a scale bar,
+# range from MIN to MAX.
 expect_inks() {
     pamcut -left 0 -top 196 -width 60 -height 40 "$1" | pnmnoraw | tail -n +4 | tr -s ' ' '\n' | grep . | sort -n >codes
     [ "$(head -1 codes) $(tail -1 codes)" = "$2 $3" ] ||
         fail "expected codes from $2 to $3 in $1, got $(head -1 codes) to $(tail -1 codes)"
 }
 
-# Ghostscript separates the PDF into inks; paper has the code 255.
+# Ghostscript separates the PDF into inks. Code 255 is no ink.
 test_black_type_is_black_ink_alone() {
     local ink
     run_ok corcast grow --terminals 30 --seed 3 --quiet -o t.swc
@@ -258,7 +262,7 @@ test_black_type_is_black_ink_alone() {
     expect_sentence 'is for .tif, .jpg and .pdf'
 }
 
-# page_of_jpeg FILE.jpg WIDTH HEIGHT: a PDF page that this JPEG fills.
+# page_of_jpeg FILE.jpg WIDTH HEIGHT: prints a PDF page that the JPEG fills.
 page_of_jpeg() {
     printf '%%PDF-1.4\n1 0 obj<</Type/Catalog/Pages 2 0 R>>endobj\n2 0 obj<</Type/Pages/Kids[3 0 R]/Count 1>>endobj\n'
     printf '3 0 obj<</Type/Page/Parent 2 0 R/MediaBox[0 0 64 48]/Contents 4 0 R/Resources<</XObject<</I 5 0 R>>>>>>endobj\n'

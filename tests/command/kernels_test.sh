@@ -2,7 +2,7 @@
 # All kernels that this processor supports draw the same picture, within their bounds.
 . "$(dirname "$0")/../lib.sh"
 
-# find_usable: $usable are the kernels that this processor can run, the portable ones first.
+# find_usable: sets $usable to the kernels that this processor can run, the portable ones first.
 find_usable() {
     local kernels
     usable=portable
@@ -17,13 +17,14 @@ find_usable() {
     done
 }
 
-# draw KERNELS NAME OPTION...: all planes of a picture.
+# draw KERNELS NAME OPTION...: draws all planes of a picture with the kernels.
 draw() {
     run_ok corcast render --antialias 1 --quiet tree.swc --size 160x120 --planes color,depth,normal,id --kernels "$1" \
         -o "$2.png" "${@:3}"
 }
 
-# expect_drawn_alike OPTION...: every kernel draws the portable one's picture, to single precision.
+# expect_drawn_alike OPTION...: all kernels draw the same picture as the portable kernels, to single
+# precision.
 expect_drawn_alike() {
     local kernels
     find_usable
@@ -62,7 +63,7 @@ test_rasterised_spheres_and_cylinders_antialiased() {
     expect_drawn_alike --method raster --model rounded --shadows on --antialias 3 --look print
 }
 
-# What is compared above is not one set of kernels by three names: their last digits differ.
+# The kernels compared above are really different: the last digits of their results differ.
 test_kernels_are_what_was_asked_for() {
     find_usable
     [ "$usable" != portable ] || skip "this processor runs the portable kernels alone"

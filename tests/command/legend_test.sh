@@ -7,7 +7,7 @@ grow() {
     run_ok corcast grow --terminals 60 --seed 7 --quiet -o tree.swc
 }
 
-# All that may be drawn about a picture.
+# All options that draw something around or over a picture.
 readonly ALL="--quiet --size 61mmx47mm --color-by wss --range 5%,90% --legend --scale-bar 23 --letter c"
 
 test_a_page_has_searchable_text_embedded_fonts_and_the_picture_at_its_resolution() {
@@ -55,8 +55,8 @@ test_the_picture_in_a_page_has_the_pixels_of_the_picture_alone() {
     cmp <(pngtopnm alone.png) <(pngtopnm inside-000.png) || fail "expected the same pixels"
 }
 
-# The three kinds of file show the same page: drawn by others at the picture's resolution, few pixels
-# of PDF and SVG are far from the PNG's.
+# The three formats show the same page. Other programs draw the PDF and the SVG at the resolution of
+# the PNG, and few pixels differ much from the PNG.
 test_pdf_svg_and_png_show_the_same_page() {
     grow
     for form in png pdf svg; do
@@ -111,7 +111,7 @@ test_the_legend_leaves_the_tree_alone() {
     done
 }
 
-# With a field and no look, and trees of many values and of one.
+# With a field and the default look, for trees with many values and with one value.
 test_nine_tenths_of_a_vessel_have_the_color_of_the_legend() {
     local model turn
     run_ok corcast grow --terminals 150 --domain ball:30 --seed 4 --quiet -o tree.swc
@@ -132,7 +132,7 @@ test_nine_tenths_of_a_vessel_have_the_color_of_the_legend() {
     done
 }
 
-# shows OPTION... -- LINE...: the texts of the page, from the top.
+# shows OPTION... -- LINE...: the texts of the page, from top to bottom, are the lines.
 shows() {
     local options=()
     while [ "$1" != -- ]; do
@@ -172,14 +172,15 @@ test_a_scale_bar_is_as_long_as_it_says() {
     grow
     run_ok corcast render tree.swc --quiet --size 600x500 --height 100 --scale-bar 25mm --background white -o bar.png
     pngtopnm bar.png >bar.ppm
-    # 25 mm of 120 mm in 600 pixels are 125: the longest run of black in the lowest rows.
+    # A bar of 25 mm in a picture of 120 mm and 600 pixels has 125 pixels: the longest run of black
+    # in the lowest rows.
     longest=$(pnmcut -left 0 -top 450 -width 300 -height 50 bar.ppm | pnmtoplainpnm | tail -n +4 | tr -s ' \n' '\n\n' |
         awk 'NF { v[n++] = $1 } END { for (i = 0; i + 2 < n; i += 3) { if (i % 900 == 0) run = 0
             run = v[i] == 0 ? run + 1 : 0; if (run > most) most = run } print most }')
     [ "$longest" = 125 ] || fail "expected a bar of 125 pixels, got $longest"
 }
 
-# corner_of SVG: the corner of a page of 60 x 60 mm that its text "5 mm" is in.
+# corner_of SVG: prints the corner of a page of 60 x 60 mm that contains the text "5 mm".
 corner_of() {
     sed -n '/aria-hidden/d; s/^<text x="\([0-9.]*\)" y="\([0-9.]*\)".*>5 mm<.*/\1 \2/p' "$1" |
         awk '{ print ($2 > 30 ? "bottom" : "top") "-" ($1 > 30 ? "right" : "left") }'
@@ -202,7 +203,7 @@ test_a_scale_bar_is_in_the_emptiest_corner_or_where_it_is_told() {
     ! grep -q aria-hidden down.svg || fail "expected no halo where there is no vessel"
 }
 
-# The vessel fills the picture, so that white is the halo's alone: around bar and text, in all outputs.
+# The vessel fills the picture, so only the halo of bar and text is white, in all formats.
 test_what_lies_on_vessels_has_a_halo() {
     local white
     printf '1 1 0 0 0 90 -1\n2 1 40 40 0 90 1\n' >wide.swc
@@ -216,7 +217,7 @@ test_what_lies_on_vessels_has_a_halo() {
     for picture in page-1 svg png; do
         white=$(pnmtoplainpnm $picture.ppm | tail -n +4 | tr -s ' \n' '\n\n' |
             awk 'NF { n++; low = n % 3 == 1 || $1 < low ? $1 : low; if (n % 3 == 0 && low > 250) w++ } END { print w + 0 }')
-        # The bar's frame has 54 x 2 x 2 pixels, the letters a little less.
+        # The frame of the bar has 54 x 2 x 2 pixels; that of the letters has slightly fewer.
         [ "$white" -gt 200 ] && [ "$white" -lt 900 ] || fail "$picture: $white white pixels"
     done
     pdftotext wide.pdf wide.txt

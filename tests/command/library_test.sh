@@ -105,7 +105,8 @@ test_two_threads_use_two_handles() {
     run_ok "$API/threads"
 }
 
-# Each K-th allocation of a session fails; with ALLOC=all, each.
+# expect_failing K ARGUMENT...: runs the session once for every K-th allocation and lets that
+# allocation fail; with ALLOC=all, for every allocation.
 expect_failing() {
     FAILING_STEP=$([ "${ALLOC:-}" = all ] && echo 1 || echo "$1") run env LD_PRELOAD="$FAILING" "$API/session" "${@:2}"
     expect_status 0

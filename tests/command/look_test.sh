@@ -2,7 +2,7 @@
 # Looks: their listed descriptions, and the parts of looks that only corcast draws.
 . "$(dirname "$0")/../lib.sh"
 
-# A thick vessel behind a thin one, and one beside both.
+# Writes tree.swc with a thick vessel and a thin vessel in front of it.
 make_crossing() {
     printf '1 1 0 -20 0 3.1 -1\n2 3 0 20 0 3.1 1\n3 1 -20 0 12 1.17 -1\n4 3 20 0 12 1.17 3\n' >tree.swc
 }
@@ -26,7 +26,8 @@ test_a_scene_says_what_of_the_look_it_is_without() {
     ! grep -q 'Not in this scene' plain.pov || fail "expected nothing to be missing from a scene that has all"
 }
 
-# No option and the options that the look proposes are the same picture; each option overrules the look.
+# Without options the picture is the same as with the options that the look proposes. Each option
+# overrides the look.
 test_a_look_proposes_options_and_the_command_line_overrules_it() {
     local draw="corcast render tree.swc --quiet --size 60x60 --view iso --antialias 1"
     make_crossing
@@ -59,8 +60,8 @@ test_a_command_line_that_overrules_the_look_is_told_in_the_picture() {
     ! grep -aq -- '--shadows' plain.png || fail "expected no option that was not given"
 }
 
-# The corners are the corners' color, up to half a code of noise; the center is the background's. A background that is
-# given has one color.
+# The corners have the color for corners, up to half a code of dithering noise. The centre has the
+# background's color. A background that an option specifies has one color.
 test_a_background_is_graded_towards_its_corners() {
     make_crossing
     printf '[background]\ncolor = 0.8 0.8 0.8\ncorners = 0.1 0.2 0.4\n' >graded.ini
@@ -79,7 +80,8 @@ test_a_background_is_graded_towards_its_corners() {
     expect_same whole.ppm bands.ppm
 }
 
-# The colors are those of the field radius from the tips' color to the vessels', but no field is told or wanted.
+# The colors run with the radius from the tips' color to the vessels' color. No field is reported or
+# required.
 test_colors_run_with_the_radius_from_the_color_of_the_tips() {
     run_ok corcast grow --terminals 30 --seed 2 --quiet -o tree.swc
     printf '[vessel]\ncolor = 0 0 0\ntips = 1 1 1\n' >tips.ini
@@ -97,7 +99,8 @@ test_colors_run_with_the_radius_from_the_color_of_the_tips() {
     run_ok corcast verify tree.swc --quiet --size 120x90 --look ./tips.ini -o report
 }
 
-# What POV-Ray does not draw is left out, and said; what was asked for by an option is refused.
+# Effects of a look that POV-Ray does not draw are left out with a note. Effects that an option
+# requests are refused.
 test_povray_does_without_the_occlusion_of_a_look() {
     make_crossing
     run_ok corcast scene tree.swc --input-unit mm --smooth off --look atlas -o tree.pov
@@ -115,7 +118,7 @@ test_povray_does_without_the_occlusion_of_a_look() {
     expect_sentence '--look xray: POV-Ray cannot draw an x-ray'
 }
 
-# The sheet shows between the two, which it does not without a halo.
+# With a halo the background is visible between the two vessels, without a halo it is not.
 test_halos_part_vessels_whatever_the_model() {
     local model
     make_crossing
@@ -128,7 +131,8 @@ test_halos_part_vessels_whatever_the_model() {
     done
 }
 
-# No color of a field, no picture of POV-Ray; a tube of radius 3.1 is 6.2 mm thick, whose light is exp(-2).
+# An x-ray refuses colors of a field and POV-Ray. A tube of radius 3.1 mm is 6.2 mm thick, and its
+# transmitted light is exp(-2).
 test_an_xray_shows_lengths_alone() {
     make_crossing
     sed -i '/^[34] /d' tree.swc

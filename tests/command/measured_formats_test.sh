@@ -2,8 +2,8 @@
 # Every tree and network of ../shared/data, with the counts in the README of that folder.
 . "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
 
-# expect_values FILE COLUMN FILTER: awk's filter is true of n, low and high of a column's values; the file has
-# been made a CSV, without loops.
+# expect_values FILE COLUMN FILTER [OPTION...]: converts the file to CSV. The awk expression FILTER
+# is true for n, low and high: the count, the minimum and the maximum of the column's values.
 expect_values() {
     run_ok corcast convert --quiet "${@:4}" "$SHARED/$1" values.csv
     awk -F, -v column="$2" '/^#/ { next }
@@ -16,7 +16,7 @@ test_the_arteries_of_a_brain() {
     expect_tree brain_pvs/arteries_smooth.vtk '.reading.network.points == 12709 and .bifurcations == 145 and
         .reading.degrees[1] == 147 and .roots == 1 and .reading.components == 1 and
         .reading.network.loops == 0 and (.reading.assumed | any(test("^stated inlets that are not roots: 2 ")))' --input-unit m
-    # README: 0.49 to 1.40 mm of two digits; 2 is an inlet, 1 an end.
+    # The README states 0.49 to 1.40 mm with two digits. Value 2 is an inlet, 1 an end.
     expect_values brain_pvs/arteries_smooth.vtk radius_mm 'n == 12709 && low >= 0.485 && high < 1.405' --input-unit m
     expect_values brain_pvs/arteries_smooth.vtk root 'n >= 147 && high == 2' --input-unit m
 }
@@ -41,7 +41,7 @@ test_a_retina_and_three_tumours() {
 }
 
 test_decks_of_the_aorta_and_of_a_coronary_tree() {
-    # Segments share no nodes: joints alone say which meet. One joint has three outlets.
+    # Segments share no nodes: only joints state which segments meet. One joint has three outlets.
     expect_tree simvascular_oned/14_AortoFem_Pulse_RCR.in '.segments == 124 and .terminals == 9 and
         .reading.components == 1 and .reading.degrees[4] == 1 and .reading.unit == "cm"'
     expect_tree simvascular_oned/Left_coronary_inlet_pressure_wave_outlet_coronary.in '.segments == 86 and
@@ -54,7 +54,8 @@ test_trees_of_vascusynth() {
         .bifurcations == 199 and .roots == 1'
 }
 
-# The six arteries are joined in one tree of 3,514 rows: 2 to 7 are their types, 0 a path between them.
+# The six arteries are joined in one tree of 3,514 rows. Their types are 2 to 7; type 0 is a path
+# between them.
 test_the_six_trees_of_a_brain_in_one_swc() {
     expect_tree brava/BG0002records.swc '.segments == 3513 and .roots == 1'
     expect_values brava/BG0002records.swc type 'n == 3514 && low == 0 && high == 7'
@@ -65,7 +66,8 @@ test_the_six_trees_of_a_brain_in_one_swc() {
 test_networks_of_a_tumour_and_of_a_brain_have_diameters() {
     expect_tree secomb/Tumor1998.network.dat '.reading.network.lines == 104 and .reading.network.points == 92 and
         .reading.network.loops == 14 and .reading.unit == "um"' --break-loops
-    # README: 17 boundary nodes; radii are half of the diameters, the largest of which is 33.2 um.
+    # The README states 17 boundary nodes. Radii are half of the diameters, and the largest diameter
+    # is 33.2 um.
     expect_values secomb/Tumor1998.network.dat 'boundary type' 'n == 17' --break-loops
     expect_values secomb/Tumor1998.network.dat radius_mm 'high == 0.0166' --break-loops
     expect_tree secomb/Brain.network.dat '.reading.network.lines == 50 and .reading.network.points == 49 and
@@ -83,7 +85,7 @@ test_trees_that_peers_have_grown() {
         --input-unit cm --columns x0=1,y0=2,z0=3,x1=4,y1=5,z1=6,radius=22
 }
 
-# What is in the folder and in none of the tests above is forgotten there.
+# A file of the folder that none of the tests above names has been forgotten.
 test_no_tree_of_the_folder_is_forgotten() {
     [ -d "$SHARED" ] || skip "$SHARED is not here"
     local path forgotten=

@@ -153,9 +153,54 @@ info a.csv --json --bound
 info a.csv --morphometry kassab-lad
 convert a.csv out.csv --fields strahler
 convert a.csv out.csv --fields diameter-strahler
+convert a.csv out.swc
 render a.csv -o out.png --prune-radius 0.2
+render a.csv -o out.png --color-by strahler
+export a.csv -o out.nii --labels strahler
 END
     expect_only ring.csv a.csv
+}
+
+test_a_ring_without_outlets_has_no_territories_of_terminals() {
+    printf '%s\n' x0,y0,z0,x1,y1,z1,radius 0,0,0,9,0,0,0.5 9,0,0,9,9,0,0.5 9,9,0,0,0,0,0.5 >ring.csv
+    run_ok corcast info ring.csv --json
+    expect_json stdout '.loops == 1 and .terminals == 0 and .reading.degrees[2] == 3 and .max_level == 1'
+    run corcast coverage ring.csv --domain hull:1 --territories out.nii --quiet
+    expect_status 2
+    expect_sentence '--territories: no vessel ends at a terminal, .* use --territory segment or tree'
+    run_ok corcast coverage ring.csv --domain hull:1 --territories out.nii --territory tree --quiet
+}
+
+# A flow that is stated for the last node of a closing line leaves where the line ends.
+test_flows_of_nodes_with_links_leave_at_their_places() {
+    ring
+    run_ok corcast convert --quiet ring.csv a.csv
+    printf 'id,flow\n6,2\n7,1\n' >flows.csv
+    run_ok corcast convert a.csv b.csv --flow-split flows.csv --p-perf 90 --viscosity 3 --fields flow --quiet
+    # All of 3 ml/min enters by segment 2, and 2 ml/min leave by segment 6.
+    [ "$(body b.csv | awk -F, '$1 == 2 || $1 == 6 { printf "%.9g ", $NF }')" = "3 2 " ] || fail "found $(body b.csv)"
+}
+
+test_what_draws_and_exports_takes_loops() {
+    local model file
+    ring
+    run_ok corcast convert --quiet ring.csv a.csv
+    corcast models | cut -f 1 >models
+    while read -r model; do
+        run_ok corcast render a.csv --model "$model" --size 40x30 -o out.ppm
+    done <models
+    run_ok corcast render a.csv --color-by flow --q-perf 1 --p-perf 90 --viscosity 3.5 --size 40x30 -o out.ppm
+    run_ok corcast render a.csv --growth 3 --size 40x30 -o out%d.ppm
+    run_ok corcast coverage a.csv --domain hull:1 --territories out.nii.gz
+    for file in out.ply out.3mf out.html out.nii out.py out.usda; do
+        run_ok corcast export a.csv -o "$file" --quiet
+        expect_file "$file"
+    done
+    run_ok corcast export a.csv --parts -o out.vtp --quiet
+    run_ok corcast info out.centreline.vtp --json
+    expect_json stdout '.loops == 2 and .segments == 7'
+    run_ok corcast scene a.csv -o out.pov
+    run_ok corcast info a.csv --stats
 }
 
 run_tests "$@"

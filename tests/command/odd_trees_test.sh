@@ -4,7 +4,7 @@
 # POV-Ray's.
 . "$(dirname "$0")/../lib.sh"
 
-# rows ROW ...: a tree of these SWC rows in tree.swc.
+# rows ROW ...: writes tree.swc with the SWC rows.
 rows() {
     printf '%s\n' "$@" >tree.swc
 }
@@ -18,8 +18,8 @@ each_way() {
     done
 }
 
-# draws OPTION ...: a picture, numbers in all planes, and the same from both methods within two levels, on
-# all but 3 pixels.
+# draws OPTION ...: both methods draw a picture whose planes contain no NaN. The two pictures differ
+# by at most two levels, except in 3 pixels.
 draws() {
     local method
     for method in trace raster; do
@@ -40,7 +40,7 @@ levels() {
     pnmtoplainpnm "$1" | tail -n +4 | tr -s ' ' '\n' | grep -v '^$'
 }
 
-# refuses PATTERN OPTION ...
+# refuses PATTERN OPTION ...: `render` refuses the tree with a sentence that matches the pattern.
 refuses() {
     local sentence=$1
     shift
@@ -50,7 +50,8 @@ refuses() {
     [ ! -e picture.ppm ] || fail "expected no picture"
 }
 
-# star N: a root vessel and N daughters that leave its end, as crowded as seeds of a dandelion.
+# star N: writes a tree with a root vessel and N daughters at its end, spread evenly over all
+# directions.
 star() {
     awk -v n="$1" 'BEGIN {
         print "1 3 0 9.3 0 1.2 -1\n2 3 0 0 0 1.2 1"
@@ -61,7 +62,7 @@ star() {
     }' >tree.swc
 }
 
-# within SECONDS COMMAND ...: runs it with so much processor time.
+# within SECONDS COMMAND ...: runs the command with a limit on processor time.
 within() {
     run bash -c 'ulimit -t "$0"; exec "$@"' "$@"
 }
@@ -140,7 +141,7 @@ test_two_hundred_segments_at_one_place() {
     expect_sentence '[0-9]+ segments overlap at \('
 }
 
-# scaled POWER: a tree of the size 2^POWER times 9 mm.
+# scaled POWER: writes a tree of size 2^POWER times 9 mm.
 scaled() {
     awk -v k="$(awk "BEGIN { printf \"%.20g\", 2 ^ $1 }")" 'BEGIN {
         n = split("0 0 0 1 -1;0 -6 0 1 1;3 -9 2 0.8 2;-3 -9 -1 0.7 2", rows, ";")
@@ -151,13 +152,14 @@ scaled() {
     }' >tree.swc
 }
 
-# vessel_pixels OPTION ...: how many pixels of a picture without light show the tree.
+# vessel_pixels OPTION ...: prints the number of pixels of an unlit picture that show the tree.
 vessel_pixels() {
     run_ok corcast render tree.swc --input-unit mm --look flat --size 48x48 --antialias 1 "$@" -o p.ppm
     tail -c 6912 p.ppm | od -An -v -tu1 -w3 | grep -vc '255 255 255'
 }
 
-# Lengths below which POV-Ray sees nothing do not grow less with the tree. The framed camera keeps clear of them.
+# POV-Ray ignores hits nearer than fixed lengths, which do not scale with the tree. The default
+# camera keeps far enough away.
 test_a_tree_of_a_millionth_of_a_millimetre_is_drawn_like_a_large_one() {
     local model power large
     for model in cylinders joined rounded isosurface blob mesh; do
@@ -187,7 +189,8 @@ test_what_the_limits_of_povray_hide_of_a_tiny_tree_is_named() {
     grep -q 'parts of the tree nearer to the camera than 0.0001 mm are not drawn' stderr || fail "expected the camera's limit$(said)"
 }
 
-# wall_rows MODEL ...: how many of 300 rows, 0.01 mm each, across the middle of the vessel show a wall.
+# wall_rows MODEL ...: prints the number of rows that show a wall, of 300 rows of 0.01 mm across the
+# middle of the vessel.
 wall_rows() {
     run_ok corcast render tree.swc --input-unit mm --model "$@" --exact --antialias 1 --size 2x300 --location 5,0,50 \
         --look-at 5,0,0 --up 0,1,0 --height 3 --planes id -o p.ppm
@@ -195,8 +198,9 @@ wall_rows() {
         grep -vc '^0[[:space:]]0[[:space:]]0$'
 }
 
-# Segments between the same two points: sisters, sisters whose first node is there twice, one that leads back, each in
-# both orders. Every model draws the thickest of them and says that it leaves the other out.
+# Segments between the same two points: two sisters, two sisters with a duplicated first node, and a
+# segment that leads back; each pair in both orders. Every model draws the thicker segment and warns
+# that it leaves the other out.
 test_of_segments_between_the_same_two_points_the_thickest_is_drawn_in_every_model() {
     local model radii tree rows
     for radii in '1 1.4' '1.4 1'; do

@@ -4,7 +4,7 @@
 # Each test takes seconds, because CGAL does.
 . "$(dirname "$0")/../lib.sh"
 
-# A bifurcation in space.
+# Writes fork.swc, a bifurcation that is not planar, and its scene fork.scad.
 fork() {
     cat >fork.swc <<'END'
 1 1 0 14.2 0.5 2.385 -1
@@ -15,13 +15,13 @@ END
     run_ok corcast scene fork.swc -o fork.scad
 }
 
-# A vessel on its own.
+# Writes vessel.swc, a single vessel, and its scene vessel.scad.
 vessel() {
     printf '1 1 0 14.2 0.5 2.385 -1\n2 1 1.7 3.1 -0.8 2.385 1\n' >vessel.swc
     run_ok corcast scene vessel.swc "$@" -o vessel.scad
 }
 
-# scad OUTPUT INPUT NAME=VALUE...: runs OpenSCAD.
+# scad OUTPUT INPUT NAME=VALUE...: runs OpenSCAD with the variables set.
 scad() {
     local output=$1 input=$2 set=()
     command -v openscad >/dev/null || skip "openscad is not installed"
@@ -34,7 +34,7 @@ scad() {
     [ ! -s stderr ] || fail "expected no word of OpenSCAD$(said)"
 }
 
-# volume FILE.stl: its volume, once admesh has found nothing to mend.
+# volume FILE.stl: prints the volume. admesh must find one closed part without faults.
 volume() {
     command -v admesh >/dev/null || skip "admesh is not installed"
     admesh "$1" >admesh.txt || fail "admesh failed"
@@ -43,12 +43,12 @@ volume() {
     sed -n 's/.*Volume *: *\([0-9.]*\)$/\1/p' admesh.txt
 }
 
-# euler FILE.stl: vertices - edges + facets.
+# euler FILE.stl: prints the Euler characteristic: vertices - edges + facets.
 euler() {
     awk '$1 == "vertex" { if (!seen[$2, $3, $4]++) v++; n++ } END { print v - n / 3 / 2 }' "$1"
 }
 
-# within SHARE A B
+# within SHARE A B: A equals B to within the fraction SHARE.
 within() {
     awk -v share="$1" -v a="$2" -v b="$3" 'BEGIN { exit !(a > 0 && (a - b) ^ 2 <= (share * b) ^ 2) }' ||
         fail "expected $2 to be $3 to within a share of $1"
@@ -62,8 +62,8 @@ test_a_vessel_is_the_prism_that_it_says() {
         "$(awk 'BEGIN { print 4 * sin(atan2(1, 1)) * 2.385 ^ 2 * sqrt(1.7 ^ 2 + 11.1 ^ 2 + 1.3 ^ 2) }')"
 }
 
-# What n sides lose of the volume falls with n^2, so that two of them say what none would lose. The mesh of the same model
-# is a third.
+# The volume that n sides lose is proportional to 1 / n^2, so two values of n give the exact volume
+# by extrapolation. The mesh of the same model is a third value.
 test_the_volume_of_a_bifurcation_is_the_integral_over_its_vessels() {
     /usr/bin/python3 -c 'import numpy' 2>import.log || skip "python3-numpy is not installed"
     fork
@@ -94,8 +94,9 @@ END
     within 0.005 "$(volume rounded.stl)" "$(cat integral)"
 }
 
-# Through CGAL, which cuts it far behind the tree. The field is that of docs/METHODS.md, sections 2 and 2.7, integrated
-# on a grid: vessels run on beyond free ends and are cut off flat there.
+# The solid passes through CGAL, which cuts it far behind the tree. The expected volume integrates
+# the field of docs/METHODS.md, sections 2 and 2.7, on a grid. Vessels continue beyond free ends and
+# are cut flat there.
 test_the_volume_of_a_closed_surface_is_the_integral_of_the_potential() {
     /usr/bin/python3 -c 'import scipy' 2>import.log || skip "python3-scipy is not installed"
     fork
@@ -132,7 +133,8 @@ END
     within 0.005 "$(volume surface.stl)" "$(cat integral)"
 }
 
-# 20 pixels a mm. Sixteen sides cut off up to 3.9 % of a radius, 1.9 pixels, and either may miss an edge by one.
+# 20 pixels per mm. 16 sides cut off up to 3.9 % of a radius, 1.9 pixels, and each program may miss
+# an edge by one pixel.
 test_the_outline_is_the_silhouette_that_render_draws() {
     /usr/bin/python3 -c 'import skimage' 2>import.log || skip "python3-skimage is not installed"
     fork
@@ -180,7 +182,8 @@ test_the_customizer_chooses_parts_radii_and_vessels() {
     grep -q 'cube(' block.csg || fail "expected a block"
 }
 
-# As it is, and through CGAL, which refuses what is not closed or turned inside out.
+# The polyhedron is written directly, and through CGAL, which refuses solids that are open or inside
+# out.
 test_a_polyhedron_is_the_mesh_that_export_writes() {
     cp "$DATA/bifurcation.swc" .
     run_ok corcast scene bifurcation.swc --scad polyhedron -o surface.scad --quiet
@@ -203,7 +206,7 @@ test_each_place_is_called_what_it_is() {
     [ "$(grep -c '^  end(' fork.scad)" = 3 ] || fail "expected three ends"
 }
 
-# A node is written once: its vessel, joint and open end move with it, and nothing stays behind.
+# A node is written once, so its vessel, joint and open end move with it.
 test_a_moved_tip_takes_all_of_it_along() {
     fork
     sed 's/^4 1 .*/4 1 13.1 -2.2 4.9 1.2 2/' fork.swc >other.swc
@@ -214,7 +217,7 @@ test_a_moved_tip_takes_all_of_it_along() {
     for part in tree wall block; do
         scad moved.stl moved.scad "part=\"$part\""
         scad other.stl other.scad "part=\"$part\""
-        # OpenSCAD writes coordinates of six digits.
+        # OpenSCAD writes coordinates with six digits.
         within 1e-6 "$(volume moved.stl)" "$(volume other.stl)"
     done
 }
@@ -292,7 +295,7 @@ test_a_model_of_many_vessels_is_one_closed_surface_unless_modules_are_asked_for(
     done
 }
 
-# The mesh is the one of the model of that name.
+# The mesh is that of the model `mesh`.
 test_the_model_mesh_is_one_closed_surface() {
     cp "$DATA/bifurcation.swc" .
     run_ok corcast scene bifurcation.swc --quiet --model mesh --mesh-tolerance 0.1 -o mesh.scad

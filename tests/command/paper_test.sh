@@ -2,7 +2,7 @@
 # Pictures for paper: sizes in lengths, resolution, the formats that journals accept.
 . "$(dirname "$0")/../lib.sh"
 
-# expect_says FILE WORD...: oiiotool says each of FILE.
+# expect_says FILE WORD...: the output of oiiotool about FILE contains each word.
 expect_says() {
     local file=$1 word
     oiiotool --info -v "$file" >said 2>&1 || fail "expected oiiotool to read $file: $(head -1 said)"
@@ -85,7 +85,7 @@ test_bad_sizes_are_refused_in_a_sentence() {
     expect_only tree.swc
 }
 
-# icc_of FILE: the name of the profile in it.
+# icc_of FILE: prints the name of the ICC profile in FILE.
 icc_of() {
     oiiotool --info -v "$1" | sed -n 's/.*ICCProfile:profile_description: "\(.*\)"/\1/p'
 }
@@ -121,7 +121,8 @@ test_a_jpeg_is_near_the_picture_and_keeps_its_resolution() {
     expect_same p.jpg again.jpg
 }
 
-# expect_inks TIFF X REGEX: cyan, magenta, yellow and black of pixel X of the first row.
+# expect_inks TIFF X REGEX: cyan, magenta, yellow and black of pixel X of the first row match the
+# pattern.
 expect_inks() {
     oiiotool --iconfig oiio:RawColor 1 "$1" --cut "1x1+$2+0" --printstats | grep -qE "Avg: $3 " ||
         fail "expected inks $3 at $2: $(oiiotool --iconfig oiio:RawColor 1 "$1" --cut "1x1+$2+0" --printstats)"
@@ -191,7 +192,7 @@ END
     expect_only tree.swc cut.icc
 }
 
-# By OpenImageIO, which reads OpenEXR through another library than corcast writes it by.
+# OpenImageIO reads OpenEXR with another library than corcast uses to write it.
 test_an_exr_holds_the_planes_exactly() {
     local of plane channels names
     grow_tree 9

@@ -9,7 +9,7 @@ make_tree() {
     run_ok corcast grow --terminals 60 --seed 7 --domain ball:30 --quiet -o tree.swc
 }
 
-# draw_parts N OPTION ...: the picture whole and merged of N tiles.
+# draw_parts N OPTION ...: draws the picture as a whole, and merged from N tiles.
 draw_parts() {
     count=$1
     shift
@@ -84,7 +84,7 @@ test_refuses_tiles_that_are_not() {
     expect_only tree.swc
 }
 
-# merge_refuses SENTENCE FILE ...: merging the files fails so and writes nothing.
+# merge_refuses SENTENCE FILE ...: `merge` refuses the files with the sentence and writes nothing.
 merge_refuses() {
     sentence=$1
     shift
@@ -123,7 +123,7 @@ test_merge_names_the_tile_that_is_missing_broken_or_another() {
     expect_sentence 'p.tile-2.png. would be written over|are one file'
 }
 
-# retell FROM TO IN OUT: a PNG whose note of its part has TO where it had FROM.
+# retell FROM TO IN OUT: copies a PNG and replaces FROM by TO in the note about its tile.
 retell() {
     python3 - "$@" <<'END'
 import struct
@@ -183,8 +183,8 @@ test_resume_draws_what_is_not_there_or_not_right() {
     expect_same whole.png merged.png
 }
 
-# drawn_anew CHANGE OPTION...: a picture of two that is there is kept, until a shell's command has changed one of the
-# files that it is made from.
+# drawn_anew CHANGE OPTION...: an existing picture of an animation is kept with --resume, until the
+# shell command CHANGE has changed one of its input files.
 drawn_anew() {
     local change=$1
     shift

@@ -5,7 +5,8 @@
 
 PYTHON=/usr/bin/python3 # Debian's, which has tifffile and Pillow
 
-# expect_formats LEAST FORMATS [ARGUMENT ...]: tests/oracle/picture_formats.py tries at least so many files and names none.
+# expect_formats MIN FORMATS [ARGUMENT ...]: tests/oracle/picture_formats.py tries at least MIN
+# files and reports no difference.
 expect_formats() {
     "$PYTHON" -c 'import tifffile, PIL' 2>import.log || skip "python3-skimage is not installed"
     command -v oiiotool >/dev/null || skip "openimageio-tools is not installed"

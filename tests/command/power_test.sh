@@ -2,7 +2,7 @@
 # `power`: which faults planted in a renderer's picture a tolerance misses.
 . "$(dirname "$0")/../lib.sh"
 
-# A picture of 96 x 64 pixels: a disc with a gradient in it, and a highlight.
+# Draws a picture of 96 x 64 pixels: a disc with a gradient and a highlight.
 draw_picture() {
     awk 'BEGIN {
         print "P3 96 64 255"
@@ -15,7 +15,7 @@ draw_picture() {
     }' >drawn.ppm
 }
 
-# missed RULE FAULT: the sizes of a fault that a rule misses.
+# missed RULE FAULT: prints the sizes of the fault that the rule does not detect.
 missed() {
     jq -c --arg rule "$1" --arg fault "$2" '[.faults[] | select(.fault == $fault and (.found[$rule] | not)) | .size]' power.json
 }
@@ -115,7 +115,8 @@ test_what_cannot_be_asked_is_refused() {
     expect_only
 }
 
-# repeats N: drawn with N seeds: a tenth of the pixels are off by one to four levels.
+# repeats N: draws the picture with N seeds of noise. A tenth of the pixels differ by one to four
+# levels.
 repeats() {
     draw_picture
     for seed in $(seq "$1"); do
@@ -135,7 +136,8 @@ test_the_tightest_tolerance_that_repeats_agree_with_is_chosen() {
     for i in 2 3 4 5 6; do
         run_ok corcast compare r1.ppm r$i.ppm --tolerance c.ini
     done
-    # One level lower, and one of the repeats at least is rejected: the tolerance is as tight as they allow.
+    # With a tolerance that is one level lower, at least one repeat is rejected: the tolerance is as
+    # tight as possible.
     awk -F ' = ' '$1 == "color_levels" { print "color_levels = " $2 - 1; next } { print }' c.ini >tighter.ini
     for i in 2 3 4 5 6; do corcast compare r1.ppm r$i.ppm --tolerance tighter.ini >stdout || echo $i; done >rejected
     [ -s rejected ] || fail "expected a repeat to be rejected by $(cat tighter.ini)"

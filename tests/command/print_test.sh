@@ -2,12 +2,13 @@
 # `export --print`: solids for printers, proved by corcast and checked by independent programs.
 . "$(dirname "$0")/../lib.sh"
 
-# grown TERMINALS: a grown tree, t.swc.
+# grown TERMINALS: grows a tree, t.swc.
 grown() {
     run_ok corcast grow --terminals "$1" --domain ball:41 --seed 7 -o t.swc --quiet
 }
 
-# expect_solid FILE PARTS: admesh repairs nothing, and finds so many parts and the volume in the manifest.
+# expect_solid FILE PARTS: admesh repairs nothing, and finds PARTS parts and the volume in the
+# manifest.
 expect_solid() {
     admesh "$1" >said 2>&1 || fail "admesh fails: $(tail -1 said)"
     for fault in 'Total disconnected facets' 'Degenerate facets' 'Edges fixed' 'Backwards edges' 'Facets reversed' \
@@ -30,13 +31,13 @@ test_a_wall_is_one_closed_solid_with_a_hole_for_each_end() {
     expect_json t.stl.json '.genus == 23 and .print.openings == 24'
 }
 
-# volume FILE: of the solid, mm^3, in its manifest.
+# volume FILE: prints the volume of the solid in its manifest, mm^3.
 volume() {
     jq .volume_mm3 "$1.json"
 }
 
-# The wall of a lone vessel is a tube of known volume; of a tree it is what its two sides enclose, each of which
-# `export` makes of a tree of such radii.
+# The wall of a single vessel is a tube of known volume. The wall of a tree is the space between two
+# surfaces, each of which `export` makes of a tree with adjusted radii.
 test_a_wall_has_the_volume_between_its_sides() {
     printf '%s\n' '1 3 0.4 0 0 1.3 -1' '2 3 9.7 3.1 -5.3 1.3 1' >t.swc
     run_ok corcast export t.swc --print wall=0.617 --mesh-tolerance 0.005 -o t.stl --quiet
@@ -80,7 +81,8 @@ test_scales_the_whole_model() {
         'BEGIN { exit !((b / a / 2.5 ^ 3 - 1) ^ 2 < 1e-5 ^ 2) }' || fail "another volume than 2.5^3 as much"
 }
 
-# refuses: each line of standard input, KEYS|PATTERN, is what --print refuses with that sentence, writing nothing.
+# refuses: reads lines KEYS|PATTERN from standard input. --print refuses the keys with a sentence
+# that matches the pattern, and writes nothing.
 refuses() {
     local print said
     while IFS='|' read -r print said; do
@@ -101,7 +103,7 @@ END
     run_ok corcast export "$DATA/bifurcation.swc" --print bed=33x23x6 -o m.stl --quiet
 }
 
-# The print is 21.306 x 32.330 x 4.763 mm; it may be turned about z, and not otherwise.
+# The print measures 21.306 x 32.330 x 4.763 mm. It may be rotated about z only.
 test_a_print_fits_its_bed_to_a_hundredth_either_way_round() {
     local bed
     run_ok corcast export "$DATA/bifurcation.swc" --print bed=99x99x99 --mesh-tolerance 0.02 -o m.stl --quiet
@@ -159,8 +161,8 @@ test_ports_lead_vessels_out_of_a_block() {
     expect_json t.stl.json '.print.openings + (.print.closed_ends | length) == 41'
 }
 
-# Of an upright vessel, whose port meets the upper face at a right angle: a circle of 4.3 mm there, and one of 0.45 mm
-# less at the bottom of the fitting, 7.5 mm below.
+# The port of an upright vessel meets the upper face at a right angle. Its circle has 4.3 mm there,
+# and 0.45 mm less at the bottom of the fitting, 7.5 mm below.
 test_a_luer_port_has_the_size_of_the_fitting() {
     printf '%s\n' '1 3 0 0 0 0.83 -1' '2 3 0 0 -17.3 0.83 1' >t.swc
     run_ok corcast export t.swc --print block=box,ports=inlet:luer -o t.obj --quiet
@@ -192,18 +194,19 @@ test_a_base_holds_vessels_by_pins() {
     expect_json m.stl.json '.print.openings == 3 and .genus == 2 + .print.pins - 1 and .segments == 3'
 }
 
-# Two ends hang down, at different heights; a third points up, and the trunk goes down to its fork.
+# Two ends point down, at different heights. A third end points up, and the trunk leads down to its
+# bifurcation.
 test_pins_leave_the_places_that_nothing_leads_down_from_and_no_others() {
     printf '%s\n' '1 3 0 0 20 1 -1' '2 3 0 0 10 1 1' '3 3 10 0 5 .8 2' '4 3 -10 0 8 .8 2' '5 3 0 12 15 .8 2' >t.swc
     run_ok corcast export t.swc --print base --mesh-tolerance 0.1 -o m.stl --quiet
     expect_json m.stl.json '.print.pins == 2 and .print.hanging == 0'
-    # The same from below: the trunk alone stands.
+    # The same tree upside down: only the trunk needs a pin.
     awk '{ print $1, $2, $3, $4, -$5, $6, $7 }' t.swc >u.swc
     run_ok corcast export u.swc --print base --mesh-tolerance 0.1 -o m.stl --quiet
     expect_json m.stl.json '.print.pins == 2 and .print.hanging == 0'
 }
 
-# Flat, so that a pin leaves every node, and many are near others.
+# The tree is flat, so every node needs a pin, and many nodes are close to others.
 test_a_flat_tree_stands_on_the_pins_that_have_room() {
     run_ok corcast grow --terminals 60 --seed 3 -o t.swc --quiet
     run_ok corcast export t.swc --print base,wall=0.2r --mesh-tolerance 0.1 -o t.stl --quiet
@@ -238,7 +241,8 @@ test_every_key_is_in_the_help_and_on_the_page() {
     [ "$key" = bed ] || fail "expected the keys in the sentence: $(cat stderr)"
 }
 
-# The pictures of the page, smaller. Slow: OpenSCAD cuts the block.
+# The commands of the page, with smaller pictures.
+# Slow: OpenSCAD cuts the block.
 test_the_commands_of_the_page_run() {
     local line
     command -v xvfb-run >/dev/null && command -v openscad >/dev/null || skip "xvfb-run or openscad is not installed"

@@ -8,7 +8,7 @@ without_fma() {
     GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4,-AVX512F corcast "$@"
 }
 
-# expect_alike OPTION...: grow writes one tree with fused multiply-add and without.
+# expect_alike OPTION...: `grow` writes the same tree with fused multiply-add and without.
 expect_alike() {
     run_ok corcast grow --quiet --terminals 120 --seed 3 "$@" -o with.swc
     run_ok without_fma grow --quiet --terminals 120 --seed 3 "$@" -o without.swc
@@ -39,7 +39,8 @@ test_viscosity_of_pries_annealing_and_pairs_grow_the_same_bytes() {
     expect_alike --domain ball:30 --pair 1 --inlet 0,0,30 --inlet 0,0,-30 --clearance 0.05
 }
 
-# expect_file_alike FILE COMMAND OPTION...: the command writes the same bytes into FILE, times in JSON left out.
+# expect_file_alike FILE COMMAND OPTION...: the command writes the same bytes into FILE with fused
+# multiply-add and without, except times in JSON.
 expect_file_alike() {
     local file=$1
     shift

@@ -2,12 +2,13 @@
 # Provenance: the command line stored in a tree, a scene or a picture makes the same file again.
 . "$(dirname "$0")/../lib.sh"
 
-# command_of FILE: the last command line in a file.
+# command_of FILE: prints the last command line in a file.
 command_of() {
     grep -aoE 'corcast [a-z]+ .* -o [[:print:]]+\.(swc|pov|png)' "$1" | tail -1
 }
 
-# again FILE COMMAND_LINE: pasted into a shell in another folder, beside the inputs, it makes the same bytes.
+# again FILE COMMAND_LINE: the command line makes the same bytes if it is pasted into a shell in
+# another folder that contains the inputs.
 again() {
     local file=$1 line=$2
     rm -rf pasted
@@ -18,7 +19,8 @@ again() {
     cmp -s "$file" "$made" || fail "expected the same bytes from: $line ($(cmp "$file" "$made" 2>&1))"
 }
 
-# grows OPTION...: a tree with these options; its header makes it again.
+# grows OPTION...: grows a tree with the options; the command line in its header makes the same
+# tree.
 grows() {
     run_ok corcast grow --quiet --threads 2 "$@" -o it.swc
     again it.swc "$(command_of it.swc)"
@@ -66,7 +68,7 @@ test_a_tree_says_all_commands_that_made_it() {
 
 test_runs_that_differ_have_headers_that_differ() {
     local option
-    # Words are options.
+    # $line is not quoted, because it contains several options.
     # shellcheck disable=SC2086
     while read -r option; do
         run_ok corcast grow --quiet --terminals 9 $option -o it.swc

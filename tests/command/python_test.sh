@@ -12,7 +12,7 @@ need_numpy() {
     "$PYTHON" -c 'import numpy' 2>/dev/null || skip "numpy is not installed for $PYTHON"
 }
 
-# test_python NAME...: the classes of tests/python/corcast_test.py.
+# for_class NAME: runs the tests of a class of tests/python/corcast_test.py.
 for_class() {
     need_numpy
     python "$REPO/tests/python/corcast_test.py" "$1"

@@ -42,14 +42,15 @@ test_a_bad_value_is_refused_with_file_and_line() {
     expect_sentence 'tree\.ini:2.*terminals.*-3'
 }
 
-# drawn_alike OPTION...: render draws the picture that it drew before.
+# drawn_alike OPTION...: `render` with the options draws the same picture as the previous call.
 drawn_alike() {
     run_ok corcast render tree.swc --size 40x30 --quiet "$@" -o now.ppm
     [ -e before.ppm ] || cp now.ppm before.ppm
     expect_same before.ppm now.ppm
 }
 
-# What a look, --exact or a preset implies yields to what is given, on the command line or in a recipe, in any order.
+# Options on the command line or in a recipe take precedence over those that a look, --exact or a
+# preset implies, in any order.
 test_what_is_implied_yields_to_what_is_given() {
     run_ok corcast grow --terminals 4 --quiet -o tree.swc
     printf 'look = dark\nbackground = white\n' >first.ini

@@ -106,7 +106,7 @@ test_a_tree_that_cannot_be_refined_is_refused() {
     expect_sentence "refine.*fastest"
 }
 
-# Roots, and the terminals below each: "1 31.5 -20.25 0", sorted.
+# terminals_by_tree FILE: prints the positions of the roots and, per root, of its terminals, sorted.
 terminals_by_tree() {
     awk '/^#/ { next } { parent[$1] = $7; at[$1] = $3 " " $4 " " $5; is_parent[$7] = 1; id[++n] = $1 }
          END { for (k = 1; k <= n; k++) {
@@ -130,7 +130,7 @@ test_forests_are_refined_each_tree_with_its_terminals() {
     run_ok corcast grow --terminals 60 --inlet 0,50 --inlet 3,-40.5 --refine geometry -o grown.swc
 }
 
-# Where a fork is next to an end T has a minimum, and a lower one farther up.
+# T has a local minimum where a bifurcation is next to an end, and a lower one farther upstream.
 test_forks_leave_ends_that_they_were_caught_at() {
     cat >caught.swc <<'END'
 # gamma: 3

@@ -4,12 +4,12 @@
 
 MODELS=$(corcast models | cut -f 1)
 
-# colors FILE.ppm: how many different pixels there are.
+# colors FILE.ppm: prints the number of different colors.
 colors() {
     pnmtoplainpnm "$1" 2>/dev/null | tail -n +4 | tr -s ' \n' '\n' | grep -v '^$' | paste - - - | sort -u | wc -l
 }
 
-# pixels FILE: of a PPM or PNG, decoded by netpbm, comments left out.
+# pixels FILE: prints the pixels of a PPM, PNG or TIFF, decoded by netpbm, without comments.
 pixels() {
     case $1 in
     *.png) pngtopnm "$1" ;;
@@ -83,7 +83,7 @@ test_the_planes_stand_beside_the_picture() {
     pnmfile picture.id.ppm | grep -q 'PPM raw, 50 by 30  maxval 255' || fail "expected a P6 of ids"
 }
 
-# Every id seen is a segment's, and most of a small tree is seen.
+# Every id in the plane belongs to a segment, and most segments of a small tree are visible.
 test_the_id_plane_holds_ids_of_segments() {
     local model
     grow_tree 12
@@ -130,7 +130,7 @@ test_depth_and_normal_of_one_tube_are_what_geometry_says() {
     done
 }
 
-# pfm_value FILE PIXEL CHANNELS: the floats of pixel number PIXEL, in file order.
+# pfm_value FILE PIXEL CHANNELS: prints the floats of a pixel, counted in file order.
 pfm_value() {
     local size
     size=$(stat -c %s "$1")
@@ -273,7 +273,7 @@ test_ambient_occlusion_darkens_every_model_alike_for_any_number_of_threads() {
     done
 }
 
-# brightness FILE.ppm: the sum of all levels.
+# brightness FILE.ppm: prints the sum of all codes.
 brightness() {
     pnmtoplainpnm "$1" | tail -n +4 | awk '{ for (i = 1; i <= NF; i++) sum += $i } END { print sum }'
 }
@@ -298,7 +298,8 @@ test_smooth_vessels_are_curves_whose_distance_is_said() {
     expect_same_pixels one.png five.png
 }
 
-# What --model joined says of trees where joints cannot be; odd_trees_test.sh draws them in every way.
+# The notes of --model joined about nodes without a joint. odd_trees_test.sh draws such trees with
+# every model.
 test_places_of_odd_trees_that_have_no_joints_are_counted() {
     run_ok corcast render --exact "$DATA/star.swc" --model joined --size 100x100 --json report.json -o picture.png
     expect_json report.json '.places_short + .places_sharp == 1'
@@ -319,7 +320,7 @@ test_a_picture_beyond_the_disk_is_refused_and_the_old_one_stays() {
     expect_only before picture.ppm tree.swc
 }
 
-# However well it is compressed, of a disk of 1 MB.
+# The disk has 1 MB. The picture cannot fit even with the best compression.
 test_a_compressed_picture_beyond_the_disk_is_refused_before_it_is_drawn() {
     local extension
     grow_tree 3
@@ -333,7 +334,7 @@ test_a_compressed_picture_beyond_the_disk_is_refused_before_it_is_drawn() {
     done
 }
 
-# Where pixels share light a band is not cut to fewer rows than --memory holds.
+# If pixels share light, a band cannot have fewer rows than a block, even if --memory is too small.
 test_a_band_beyond_memory_is_refused() {
     grow_tree 3
     run corcast render tree.swc --size 1000000x1000000 --ao 4 --memory 1e9 -o picture.png
@@ -363,7 +364,7 @@ test_bands_give_the_bytes_of_the_whole() {
     done
 }
 
-# Whole, its floats alone would take 192 MB.
+# The floats of the whole picture would take 192 MB.
 test_a_large_picture_needs_the_memory_of_a_band() {
     grow_tree 60
     (ulimit -v 150000 && "$CORCAST" render --exact tree.swc --size 4000x4000 --memory 20 --quiet \
@@ -412,7 +413,7 @@ test_a_truncated_picture_is_refused() {
     [ ! -e out.png ] && [ ! -e out.ppm ] || fail "expected no output"
 }
 
-# rows ROW ...: a tree of these SWC rows in tree.swc.
+# rows ROW ...: writes tree.swc with the SWC rows.
 rows() {
     printf '%s\n' "$@" >tree.swc
 }
@@ -429,7 +430,7 @@ test_adaptive_antialiasing_needs_antialiasing() {
     expect_differing 320 345 edges.ppm none.ppm
 }
 
-# The floor: what single precision costs these pictures is at most a pixel or two of 160,000.
+# The floor: because of single precision, at most one or two of 160,000 pixels differ.
 test_tiles_agree_with_rays_to_tier_b_and_to_the_measured_floor() {
     local model projection tree method
     for tree in disc200 disc200-lambda0 ball60; do
@@ -449,7 +450,8 @@ test_tiles_agree_with_rays_to_tier_b_and_to_the_measured_floor() {
     done
 }
 
-# shows FILE.pfm: the first and last column and row, of 60 x 50, in which a depth plane shows anything.
+# shows FILE.pfm: prints the first and last column and row with a finite depth, in a plane of 60 x
+# 50 pixels.
 shows() {
     tail -c 12000 "$1" | od -A n -t f4 -w240 -v | awk '{ for (i = 1; i <= NF; i++) if ($i != "inf") {
         if (!some++ || i < low) low = i; if (i > high) high = i; if (!first) first = NR; last = NR } }
@@ -632,7 +634,8 @@ test_a_least_width_needs_a_picture_that_can_have_it() {
     expect_sentence 'min-width.*from 0 to 64'
 }
 
-# A picture without NaN in its planes, or one sentence and status 2; never a crash or a hang.
+# survives OPTION...: `render` draws planes without NaN, or exits with status 2 and one sentence. It
+# neither crashes nor hangs.
 survives() {
     run timeout 60 "$CORCAST" render --exact tree.swc --size 40x40 --planes depth,normal -o picture.ppm "$@"
     if [ "$status" -eq 2 ]; then

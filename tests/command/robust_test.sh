@@ -78,7 +78,8 @@ test_a_file_does_not_take_the_place_of_a_closed_stream() {
 
 # ---- a POV-Ray that misbehaves ------------------------------------------------------------------
 
-# stand_in BODY: a scene.pov, and what draws it: a script in which $picture is the file asked for.
+# stand_in BODY: writes scene.pov, and a script that replaces POV-Ray. In BODY, $picture is the
+# requested file.
 stand_in() {
     echo '// Size: 20x10' >scene.pov
     printf '#!/bin/bash\nfor i; do case $i in +O*) picture=${i#+O} ;; esac; done\n%s\n' "$1" >povray.sh
@@ -86,12 +87,12 @@ stand_in() {
     export CORCAST_POVRAY=$PWD/povray.sh
 }
 
-# A PNG as POV-Ray writes it, 20 x 10, in ./good.png.
+# Writes ./good.png, a PNG of 20 x 10 pixels like those of POV-Ray.
 good_picture() {
     printf 'P6 20 10 255\n%600s' '' | pnmtopng -force >good.png 2>/dev/null
 }
 
-# is_gone PROCESS: ended, and seen to the end by whoever inherited it.
+# is_gone PROCESS: the process has ended and has been reaped by its parent.
 is_gone() {
     ! kill -0 "$1" 2>/dev/null
 }
@@ -159,7 +160,7 @@ test_a_child_that_povray_leaves_behind_is_not_waited_for() {
     expect_same good.png picture.png
 }
 
-# 30 MB without an opening bracket, which took half a minute.
+# 30 MB of output without an opening bracket, for which an earlier version took half a minute.
 test_a_flood_of_words_takes_linear_time() {
     local seconds=$SECONDS
     good_picture
@@ -170,7 +171,8 @@ test_a_flood_of_words_takes_linear_time() {
     [ $((SECONDS - seconds)) -lt 10 ] || fail "expected 30 MB to be read in a moment"
 }
 
-# What is left where the picture should be, and what of it makes verify fail as the outside world does.
+# The faulty files that POV-Ray may leave instead of a picture, and the errors of verify with exit
+# status 3.
 test_a_broken_picture_is_povrays_failure() {
     local body
     good_picture
@@ -253,7 +255,7 @@ test_a_failed_verification_leaves_no_verdict_of_an_earlier_one() {
 
 # ---- files over each other ----------------------------------------------------------------------
 
-# refuses PATTERN ARGUMENTS ...: bad usage, said in one line, and every file as it was.
+# refuses PATTERN ARGUMENTS ...: corcast exits with status 2 and one sentence, and changes no file.
 refuses() {
     local pattern=$1
     shift
@@ -382,7 +384,7 @@ END
     expect_only tree.swc tree.pov
 }
 
-# What a recipe says are defaults for many runs.
+# Values in a recipe are defaults for many runs, so a value without effect in one run is accepted.
 test_a_recipe_may_say_what_has_no_effect_in_this_run() {
     cp "$DATA/bifurcation.swc" tree.swc
     printf '[grow]\nhematocrit = 0.3\nrefine-moves = 9\n[render]\nrange = 1,2\ncolormap = magma\nhits = povray\nsize = 20x10\n' >all.ini

@@ -4,7 +4,7 @@
 
 MODELS=$(corcast models | cut -f 1)
 
-# stand_in BODY: makes ./povray.sh and has corcast call it instead of POV-Ray.
+# stand_in BODY: makes ./povray.sh, which corcast then calls instead of POV-Ray.
 stand_in() {
     printf '#!/bin/sh\n%s\n' "$1" >povray.sh
     chmod +x povray.sh

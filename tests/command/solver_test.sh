@@ -2,12 +2,13 @@
 # `export` for solvers: named parts and their accompanying files, read by VTK and filled by TetGen.
 . "$(dirname "$0")/../lib.sh"
 
-# A grown tree of 23 terminals.
+# Grows a tree of 23 terminals.
 grown() {
     run_ok corcast grow --terminals 23 --domain ball:41 --seed 7 -o t.swc --quiet
 }
 
-# volumes_of_tetrahedra NAME: of NAME.1.node and NAME.1.ele, of each region that TetGen numbers, rising.
+# volumes_of_tetrahedra NAME: prints the volume of each region that TetGen numbers in NAME.1.node
+# and NAME.1.ele, in ascending order.
 volumes_of_tetrahedra() {
     awk 'FNR == 1 || /^#/ { next }
         FILENAME ~ /node$/ { for (k = 0; k < 3; k++) x[$1, k] = $(k + 2); next }
@@ -22,7 +23,7 @@ volumes_of_tetrahedra() {
         sort -g
 }
 
-# The areas of ends are those of regular polygons within circles.
+# The area of an end is that of a regular polygon inscribed in its circle.
 test_vtk_reads_the_parts_with_the_names_areas_and_normals_of_the_table() {
     /usr/bin/python3 -c 'import vtk' 2>import.log || skip "python3-vtk9 is not installed"
     grown
@@ -86,7 +87,7 @@ test_stl_has_a_named_solid_for_each_part_and_the_same_triangles() {
     expect_same solids <(echo wall && sed '1d; s/,.*//' t.ends.csv)
     expect_same solids <(sed -n 's/^endsolid //p' t.stl)
     [ "$(head -2 solids | tail -1) $(wc -l <solids)" = "inlet 25" ] || fail "expected an inlet and 23 outlets: $(cat solids)"
-    # admesh reads one solid.
+    # admesh can read only one solid per file.
     grep -v solid t.stl | sed '1i solid all' | sed '$a endsolid all' >all.stl
     run_ok admesh all.stl
     mv stdout said
@@ -101,12 +102,12 @@ test_tetgen_fills_the_surface_as_it_is() {
     run_ok timeout 60 tetgen -pYQ t.stl
     awk -v a="$(jq .volume_mm3 t.stl.json)" -v b="$(volumes_of_tetrahedra t)" 'BEGIN { exit !(a > 100 && (a / b - 1) ^ 2 < 1e-5 ^ 2) }' ||
         fail "TetGen fills $(volumes_of_tetrahedra t) mm^3 of $(jq .volume_mm3 t.stl.json)"
-    # -Y: no point is added on the surface.
+    # With -Y, TetGen adds no points on the surface.
     [ "$(awk '!/^#/ && NR > 1 { n++ } END { print n }' t.1.face)" = "$(jq .triangles t.stl.json)" ] ||
         fail "TetGen's surface has other triangles"
 }
 
-# The wall shares the lumen's triangles, so that the tetrahedra of both fit together.
+# The wall and the lumen share triangles, so that their tetrahedra fit together.
 test_a_wall_is_a_second_surface_and_tetgen_fills_wall_and_lumen() {
     command -v tetgen >/dev/null || skip "tetgen is not installed"
     run_ok corcast grow --terminals 7 --domain ball:41 --seed 7 -o t.swc --quiet
@@ -116,7 +117,7 @@ test_a_wall_is_a_second_surface_and_tetgen_fills_wall_and_lumen() {
     sed 1d plain.ends.csv | sed 's/^\([^,]*\),[0-9]*,/\1,/' >discs
     expect_same discs <(sed '1d; /_ring/d' t.ends.csv | sed 's/^\([^,]*\),[0-9]*,/\1,/')
     [ "$(grep -c _ring, t.ends.csv)" = 8 ] || fail "expected a ring at each end"
-    # Of a ring the area lacks what polygons lack of circles.
+    # The area of a ring differs from the exact value because polygons replace its circles.
     awk -F , '/_ring,/ { c = 3.141592653589793 * (($10 + 0.285) ^ 2 - $10 ^ 2); if ($11 < 0.95 * c || $11 >= c || $12 != "") exit 1 }' \
         t.ends.csv || fail "expected rings of 0.285 mm: $(grep _ring t.ends.csv)"
     run_ok timeout 60 tetgen -pYAQ t.stl
@@ -152,7 +153,7 @@ test_refuses_parts_of_a_body_without_flat_ends() {
     expect_only
 }
 
-# Other vessels are in the way of the trunk's end.
+# Other vessels are too close to the trunk's end for a flat cut.
 test_an_end_that_cannot_be_cut_off_flat_is_lengthened_until_it_can() {
     printf '%s\n' '1 3 0 0 0 1 -1' '2 3 0 1.9 0 1 1' '3 3 5.3 0.9 0 0.9 2' '4 3 -5 0.4 0 0.8 2' >short.swc
     run_ok corcast export short.swc -o plain.stl --quiet
@@ -167,8 +168,8 @@ test_an_end_that_cannot_be_cut_off_flat_is_lengthened_until_it_can() {
         fail "expected the root alone to be at another place"
 }
 
-# A triangle is as long as asked along its tube, and as wide as a side of its rim; the longest edges, 3 mm and more from
-# the bifurcation, are those of discs.
+# Triangles have the requested length along a tube, and the width of a side of its rim. At 3 mm and
+# more from the bifurcation, the longest edges are those of the end discs.
 test_tubes_have_triangles_as_short_as_asked() {
     printf '%s\n' '1 3 0 0 0 1.2 -1' '2 3 0.3 21 -0.7 1.2 1' '3 3 -9.1 32.2 1.1 0.87 2' '4 3 7.4 33.9 0.6 0.71 2' >t.swc
     run_ok corcast export t.swc --parts --mesh-tolerance 0.05 -o long.stl --quiet
@@ -199,7 +200,7 @@ test_the_centreline_beside_it_is_the_tree() {
     expect_same <(grep -v '^#' t.swc) <(grep -v '^#' again.swc)
     run_ok corcast export "$REPO/tests/golden/strangers.swc" --part-overlaps -o thin.vtp --quiet
     run_ok corcast convert thin.centreline.vtp thin.swc --quiet
-    # The ends of the mesh are as thick as the centreline.
+    # The ends of the mesh have the radii of the centreline.
     awk -F '[ ,]' 'NR == FNR { if (!/^#/) radius[$1] = $6; next } FNR > 1 && (d = radius[$3] - $10) * d > 1e-24 { exit 1 }' \
         thin.swc thin.ends.csv || fail "expected the radii of the mesh"
 }
@@ -218,7 +219,7 @@ test_refuses_parts_where_a_format_has_no_names_of_parts() {
     expect_only
 }
 
-# gmsh itself is asked by tests/all/gmsh_test.sh.
+# tests/all/gmsh_test.sh runs gmsh itself.
 test_the_geometry_for_gmsh_names_every_surface_and_volume() {
     local n
     grown
@@ -242,7 +243,16 @@ test_extensions_lengthen_ends_along_their_axes() {
     run_ok corcast grow --terminals 7 --domain disc:12 --seed 2 -o t.swc --quiet
     run_ok corcast export t.swc --mesh-tolerance 0.2 -o a.vtp --quiet
     printf 'id,radii\n6,2\n13,0\n' >some.csv
-    run_ok corcast export t.swc --mesh-tolerance 0.2 --extend 3 --extend-inlet 5 --extend-outlet some.csv -o b.vtp --quiet
+    run_ok corcast export t.swc --mesh-tolerance 0.2 --extend 3 --extend-inlet 5 --extend-outlet some.csv -o b.vtp
+    mv stderr entrances
+    run_ok corcast convert t.swc t.csv --fields reynolds --quiet
+    # The entrance length is 0.06 times the Reynolds number times the diameter, and is printed beside the extension.
+    awk -F, 'NR == FNR { for (k = 1; k <= NF; k++) if ($k ~ /reynolds/) c = k; re[$1] = $c; next }
+        FNR > 1 { if (($15 / (0.12 * re[$3] * $10) - 1)^2 > 1e-16) exit 1; if ($1 == "inlet") print $15, re[$3], $13 }' \
+        <(grep -v '^#' t.csv) b.ends.csv >entrance || fail "entrance lengths: $(cat t.csv b.ends.csv)"
+    read -r long re here <entrance
+    grep -qF "$(printf 'needs up to %.4g mm to develop at the inlets (segment 2, Reynolds number %.4g); the extension there has %.4g mm' \
+        "$long" "$re" "$here")" entrances || fail "$(cat entrances)"
     paste -d, <(sed 1d a.ends.csv) <(sed 1d b.ends.csv) | awk -F, '{
         radii = $3 == 13 ? 0 : $3 == 6 ? 2 : $1 == "inlet" ? 5 : 3
         if ($1 != $13 || $10 != $22 || $12 != $24) exit 1
@@ -250,6 +260,11 @@ test_extensions_lengthen_ends_along_their_axes() {
         if (($25 - radii * $10)^2 > 1e-16 || (radii > 0) != ($26 > 0)) exit 1
         volume += radii * $10 * $11
     } END { print volume; exit NR != 8 }' >volume || fail "ends: $(cat a.ends.csv b.ends.csv)"
+    run_ok corcast convert t.swc t.csv --fields pressure,length --quiet
+    awk -F, '/^#|^id/ { next }
+        FILENAME == "t.csv" { parent[$1] = $2; mmhg[$1] = $2 < 0 ? 100 : $8; mm[$1] = $9; next }
+        FNR > 1 { n++; if (((mmhg[parent[$3]] - mmhg[$3]) / mm[$3] * $13 - $14)^2 > 1e-16) exit 1 }
+        END { exit n != 8 }' t.csv b.ends.csv || fail "expected the pressure gradients of the segments: $(cat b.ends.csv)"
     jq -s --argjson more "$(cat volume)" '(.[1].volume_mm3 - .[0].volume_mm3) / $more | . > 0.99 and . < 1.01' \
         a.vtp.json b.vtp.json | grep -qx true || fail "the volumes differ by other than that of the extensions"
     run corcast export t.swc --extend 60 -o c.vtp

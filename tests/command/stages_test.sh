@@ -5,7 +5,7 @@
 
 write_stages() {
     cat >stages.ini <<'END'
-# a trunk in the plane's ball, then the ball
+# the trunk, then the tissue
 [trunk]
 domain = ball:30
 terminals = 40
@@ -21,7 +21,8 @@ p-term = 60
 END
 }
 
-# expect_within OLD NEW: every node of OLD is in NEW with its place and, but for roots, its radius.
+# expect_within OLD NEW: every node of OLD is in NEW with its position and, except for roots, its
+# radius.
 expect_within() {
     awk '/^#/ { next } FNR == NR { at[$1] = $3 " " $4 " " $5 " " ($7 == -1 ? "" : $6); next }
          { seen[$1] = $3 " " $4 " " $5 " " ($7 == -1 ? "" : $6) }
@@ -83,7 +84,7 @@ test_growth_ends_at_a_radius() {
         m = s / n; exit !(m > 0.22 && m < 0.237 && n > 50 && n < 1000) }' || fail "expected terminals of 0.235 mm in the mean"
 }
 
-# The ends of the trunk keep their radii, and do not count.
+# The ends of the trunk keep their radii and are not counted as terminals.
 test_growth_on_a_trunk_that_keeps_its_radii_ends_at_a_radius() {
     run_ok corcast grow --terminals 200 -o trunk.swc
     run_ok corcast grow --from trunk.swc --keep-radii --q-perf 90 --terminals 5000 --min-radius 0.0565 -o tree.swc
@@ -92,7 +93,8 @@ test_growth_on_a_trunk_that_keeps_its_radii_ends_at_a_radius() {
         m = s / n; exit !(m > 0.0525 && m < 0.0568 && n > 200 && n < 2000) }' trunk.swc tree.swc || fail "expected new terminals of 0.0565 mm in the mean"
 }
 
-# The least distance of the walls of two trees, by points on both axes.
+# least_apart FILE: prints the minimum distance between the walls of two trees, sampled at points on
+# the axes.
 least_apart() {
     awk '/^#/ { next } { x[$1] = $3; y[$1] = $4; r[$1] = $6; p[$1] = $7; tree[$1] = $7 == -1 ? $1 : tree[$7]; id[++n] = $1 }
          END { least = 1e9
@@ -119,7 +121,8 @@ test_trees_keep_the_clearance_that_was_asked_for() {
     expect_sentence 'no straight vessel leads from --inlet 4.5,49,0 into the domain, clear of those of the other inlets'
 }
 
-# A picture of 100 x 100 pixels whose left half asks for five times as much blood as its right half.
+# Writes demand.pgm, 100 x 100 pixels: the demand of the left half is five times that of the right
+# half.
 write_demand() {
     awk 'BEGIN { print "P2 100 100 255"; for (y = 0; y < 100; y++) { for (x = 0; x < 100; x++) printf "%d ", x < 50 ? 255 : 51; print "" } }' >demand.pgm
 }
@@ -172,7 +175,8 @@ test_the_coronary_artery_says_when_there_is_no_heart() {
     grep -q 'coronary: SKIPPED, nothing was grown: there is no heart' stderr || fail "expected that to be said"
 }
 
-# The stages of the coronary artery, of a few terminals, on a box in the heart's place.
+# The stages of the example of the coronary artery, with few terminals, in a box instead of the
+# heart.
 test_the_coronary_artery_grows_in_its_stages() {
     cp "$REPO"/docs/coronary/{trunk.swc,stages.ini} .
     awk '/^#/ { next } { $6 = 32; print }' trunk.swc >territory.swc

@@ -108,7 +108,8 @@ test_flow_shares_and_viscosity_law_reach_the_pressures() {
 4 3 4 -1 0 .02 2
 END
     run_ok corcast info tree.swc --json
-    # Both worked out from Poiseuille's law; of METHODS.md, section 1.4, the viscosity of the first.
+    # Both were computed by hand from Poiseuille's law, with the viscosity of METHODS.md, section
+    # 1.4.
     expect_json stdout '.terminal_pressure_mmHg | (.min - 37.5921283 | fabs) < 1e-6 and (.max - 63.6321965 | fabs) < 1e-6'
     run_ok corcast info tree.swc --json --viscosity 3.6
     expect_json stdout '.terminal_pressure_mmHg | (.min - 22.1269296 | fabs) < 1e-6 and (.max - 55.8915634 | fabs) < 1e-6'

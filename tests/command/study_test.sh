@@ -6,7 +6,7 @@ make_plan() {
     printf '[grow]\nterminals = 40 ; of each\nseed = 1..3, 7\ngamma = 2.385, 3\n' >plan.ini
 }
 
-# run_of K: the file of run K, without its extension.
+# run_of K: prints the file of run K without its extension.
 run_of() {
     local found
     found=$(grep -l "^{\"run\":$1," runs/*.json)
@@ -69,7 +69,8 @@ test_what_is_there_and_right_is_kept() {
     [ ! -e all.csv ] || fail "expected no table"
 }
 
-# grown_anew CHANGE LINE...: a study of one run is kept, until a shell's command has changed a file of its plan.
+# grown_anew CHANGE LINE...: the only run of a study is kept, until the shell command CHANGE has
+# changed a file that the plan names.
 grown_anew() {
     local change=$1
     shift
@@ -95,7 +96,8 @@ test_a_run_is_grown_anew_when_a_file_has_changed() {
     grown_anew 'corcast grow --terminals 5 --seed 4 -o tree.swc' 'domain = hull:tree.swc,30'
 }
 
-# More values, and one in front: what has been grown stays, and only its place is another.
+# The plan gets more values, one of them at the front. Finished runs are kept, and only their
+# numbers change.
 test_a_plan_may_grow() {
     make_plan
     run_ok corcast study plan.ini -o runs --quiet
@@ -117,7 +119,7 @@ test_a_tree_that_finds_no_room_is_a_row_that_says_so() {
     grep -qx 'corcast: 2 runs: 0 grown, 2 found from before' stderr || fail "expected both to be kept, got: $(cat stderr)"
 }
 
-# refuses PLAN SENTENCE: a study of the plan fails so, and writes nothing.
+# refuses PLAN SENTENCE: `study` refuses the plan with the sentence and writes nothing.
 refuses() {
     # shellcheck disable=SC2059
     printf "$1" >plan.ini

@@ -2,7 +2,8 @@
 # `compare --reference`: a folder of pictures against a folder of references, as a test suite.
 . "$(dirname "$0")/../lib.sh"
 
-# picture LEVEL: a grey PPM of 5 x 4, pixel 7 (counted from 0) of the level given.
+# picture LEVEL: prints a grey PPM of 5 x 4 pixels, in which pixel 7 (counted from 0) has the given
+# level.
 picture() {
     printf 'P6\n5 4\n255\n'
     printf 'ddd%.0s' 1 2 3 4 5 6 7
@@ -10,7 +11,7 @@ picture() {
     printf 'ddd%.0s' 1 2 3 4 5 6 7 8 9 10 11 12
 }
 
-# Six cases, one of each state but `broken`, two that are the same.
+# Makes six cases: two equal pictures, and one case of each other state except `broken`.
 folders() {
     mkdir -p stored/views drawn/views
     picture 100 | tee stored/a.ppm drawn/a.ppm >stored/views/same.ppm
@@ -167,7 +168,7 @@ test_folders_without_pictures_and_options_of_pairs_are_refused() {
     expect_sentence 'nowhere.*: cannot be read as a folder'
 }
 
-# several NAME: three accepted pictures of one case, drawn by three machines.
+# Makes one case with three accepted references, as from three machines.
 several() {
     mkdir stored drawn
     picture 100 >stored/a.ppm
@@ -281,7 +282,7 @@ test_one_page_shows_all_cases_that_fail_and_how_to_accept_them() {
     ! grep -q 'near.ppm' page.html || fail 'expected no case that agrees'
 }
 
-# answers LINE...: id and exit status of the answers of --serve.
+# answers LINE...: prints id and exit status of the answers of `compare --serve` to the lines.
 answers() {
     printf '%s\n' "$@" | corcast compare --serve >stdout || fail "expected --serve to go on: $?"
     jq -c '[.id, .exit_status, has("result")]' stdout | tr '\n' ' '

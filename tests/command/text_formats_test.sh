@@ -7,13 +7,14 @@ test_decks_of_svonedsolver_have_their_segments_and_outlets() {
     expect_tree simvascular_oned/Left_coronary_inlet_pressure_wave_outlet_coronary.in '.segments == 86 and .terminals == 6'
 }
 
-# tests/data/coronary.swc was made of this deck by hand, with numbers of five digits.
+# tests/data/coronary.swc was made from this input file by hand, with numbers of five digits.
 test_a_deck_is_the_tree_that_was_made_of_it_by_hand() {
     local deck=$SHARED/simvascular_oned/Left_coronary_inlet_pressure_wave_outlet_coronary.in
     [ -r "$deck" ] || skip "$deck is not here"
     run_ok corcast convert --quiet "$deck" deck.swc
     run_ok corcast convert --quiet "$DATA/coronary.swc" hand.swc
-    # Each segment of the one, by both ends and its radius, is once in the other; their order differs.
+    # Both files contain the same segments, identified by both ends and the radius, in a different
+    # order.
     awk '/^#/ { next } !seen[FILENAME]++ { file++ } { x[file, $1] = $3; y[file, $1] = $4; z[file, $1] = $5 }
          $7 > 0 { n[file]++; id[file, n[file]] = $1; up[file, n[file]] = $7; r[file, n[file]] = $6 }
          function apart(a, b) { return (x[1, a] - x[2, b]) ^ 2 + (y[1, a] - y[2, b]) ^ 2 + (z[1, a] - z[2, b]) ^ 2 > 1e-5 }
@@ -58,7 +59,7 @@ test_networks_of_secomb_have_loops() {
     expect_tree secomb/Brain.network.dat '.segments == 50 and .loops == 3 and .components == 2'
 }
 
-# 31 columns without titles: both ends of a vessel in the first six, its radius in the 22nd.
+# 31 columns without titles: the first six are both ends of a vessel, the 22nd is its radius.
 test_a_table_without_titles_is_read_by_the_numbers_of_its_columns() {
     local table=$SHARED/peers/svv_500.csv
     [ -r "$table" ] || skip "$table is not here"
@@ -86,7 +87,7 @@ test_columns_of_any_name_come_back_from_a_csv_of_segments() {
     expect_same tree.csv back.csv
 }
 
-# The rows stand in another order, and the ids are not those that nodes would be given.
+# The rows are in another order, and the ids are not those that corcast would assign.
 test_values_find_the_segments_of_a_csv_of_segments_by_its_ids() {
     printf '%s\n' id,parent,x0_mm,y0_mm,z0_mm,x1_mm,y1_mm,z1_mm,radius_mm,length_mm \
         30,12,0,4,0,4,0,0,0.25,5.65 12,7,0,9,0,0,4,0,1,5 13,12,0,4,0,-4,0,0,0.5,5.65 >tree.segments.csv
@@ -97,8 +98,9 @@ test_values_find_the_segments_of_a_csv_of_segments_by_its_ids() {
     expect_status 0
 }
 
-# MetaIO of ITK 5.2 wrote both, of three tubes: a trunk, one that names the trunk's second point, and one that
-# names none and ends beside its last point; ElementSpacing is 0.5 0.5 0.25.
+# MetaIO of ITK 5.2 wrote both files. They contain three tubes: a trunk, a tube whose parent point
+# is the trunk's second point, and a tube without a parent that ends next to the trunk's last point.
+# ElementSpacing is 0.5 0.5 0.25.
 test_tubes_that_metaio_wrote_are_the_same_in_text_and_packed() {
     local file
     for file in tubes tubes-packed; do
@@ -125,7 +127,8 @@ test_a_table_of_lines_that_is_empty_is_named() {
     expect_sentence 'lines.csv: the edge table has no rows$'
 }
 
-# Cut off at seven places, each file is refused in one sentence with its name, or is a smaller tree.
+# Each file is truncated at seven positions. It is then refused in one sentence with its name, or
+# read as a smaller tree.
 test_files_of_all_formats_that_are_cut_off_are_refused_in_a_sentence() {
     local extension size k whole
     grow_tree 9
@@ -150,7 +153,7 @@ test_files_of_all_formats_that_are_cut_off_are_refused_in_a_sentence() {
     done
 }
 
-# zlib makes up to 1032 bytes of one, and a byte that is a number takes nine to read.
+# zlib expands a byte to at most 1032 bytes, and each byte that is a number takes 9 bytes in memory.
 test_a_small_spatial_graph_that_unpacks_to_gigabytes_is_refused_at_once() {
     local vertices=300000000 packed=2400000
     {
@@ -202,7 +205,8 @@ test_ids_that_start_at_0_are_told_of() {
     expect_stdout 'ids start at 0 in the file; 1 was added to each'
 }
 
-# In svOneDSolver's units and by hand: 60 ml/min through a radius of 2 mm are 1000 mm3/s at 79.6 mm/s.
+# In the units of svOneDSolver, computed by hand: 60 ml/min through a radius of 2 mm are 1000 mm3/s
+# at 79.6 mm/s.
 test_derived_fields_become_columns_of_what_is_written() {
     printf '%s\n' '# q_perf_ml_min: 60' '# viscosity_cP: 3.5' '1 3 0 9 0 2 -1' '2 3 0 4 0 2 1' >tree.swc
     run_ok corcast convert tree.swc tree.segments.csv --fields velocity,wss

@@ -3,12 +3,13 @@
 # are compared with pictures drawn on that color.
 . "$(dirname "$0")/../lib.sh"
 
-# rgba FILE.png: a line a pixel.
+# rgba FILE.png: prints red, green, blue and alpha, one line per pixel.
 rgba() {
     pngtopam -alphapam "$1" | sed '1,/^ENDHDR/d' | od -A n -v -t u1 -w4
 }
 
-# over R G B: the pixels on standard input over a color, in linear light, as sRGB.
+# over R G B: composites the pixels on standard input over a color in linear light, and prints sRGB
+# codes.
 over() {
     awk -v ground="$*" '
         function linear(c) { c /= 255; return c < 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ^ 2.4 }
@@ -45,7 +46,8 @@ END
     done
 }
 
-# A pixel has ten samples: alpha is a tenth of 255, a half of a code rounded up as POV-Ray rounds it.
+# A pixel has ten samples, so alpha is a multiple of 25.5. Half codes are rounded up, as POV-Ray
+# does.
 test_alpha_of_ten_samples_is_rounded_as_povray_rounds_it() {
     run_ok corcast render "$DATA/coronary.swc" --quiet --look "$REPO/tests/golden/red.ini" --size 120x120 --background none --antialias 3 -o none.png
     rgba none.png | awk '{ print $4 }' | sort -nu | xargs >alphas
@@ -139,7 +141,8 @@ test_compare_lays_what_is_transparent_on_a_background() {
     expect_sentence 'background is for two pictures'
 }
 
-# half_transparent ALPHA: a PNG of 40 x 30 white pixels, half of them transparent, the first of the alpha given.
+# half_transparent ALPHA: prints a PNG of 40 x 30 white pixels, half of them transparent. The first
+# three have the given alpha.
 half_transparent() {
     awk -v first="$1" 'BEGIN { print "P2 40 30 255"; for (i = 0; i < 1200; i++) print i < 3 ? first : i % 2 ? 255 : 0 }' >alpha.pgm
     pnmtopng -alpha=alpha.pgm <(awk 'BEGIN { print "P3 40 30 255"; for (i = 0; i < 3600; i++) print 255 }') 2>error

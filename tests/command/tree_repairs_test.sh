@@ -2,7 +2,8 @@
 # Files that are almost trees: what the program reports about them, and what options repair.
 . "$(dirname "${BASH_SOURCE[0]}")/../lib.sh"
 
-# vtk_lines POINTS LINES MORE: a legacy VTK file of these points, lines as "2 0 1" each, and arrays.
+# vtk_lines POINTS LINES MORE: prints a legacy VTK file with the points, the lines, each like "2 0
+# 1", and the arrays MORE.
 vtk_lines() {
     local points lines
     points=$(wc -l <<<"$1")
@@ -30,7 +31,7 @@ test_lines_that_differ_in_a_column_alone_are_vessels_of_their_own() {
     expect_json stdout '.reading.network.loops == 0 and .reading.network.repeated_lines == 1'
 }
 
-# Each polyline runs from the root to one outlet, and has a number of its own.
+# Each polyline leads from the root to one outlet, and has its own number.
 test_polylines_may_overlap_whatever_their_numbers_are() {
     printf '# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 4 double\n0 0 0\n0 0 10\n0 5 20\n0 -5 20\nLINES 2 8\n3 0 1 2\n3 0 1 3\nCELL_DATA 2\nSCALARS path int\nLOOKUP_TABLE default\n1 2\nPOINT_DATA 4\nSCALARS radius double\nLOOKUP_TABLE default\n2 2 1 1\n' >paths.vtk
     run_ok corcast info --json paths.vtk
@@ -55,8 +56,9 @@ test_trees_that_stand_apart_are_not_reported() {
     [ ! -s stderr ] || fail "expected no report: $(cat stderr)"
 }
 
-# reported GAP LENGTH RADIUS OTHER: whether an end is reported that misses the middle of another tree by GAP mm. The last
-# line before that end is LENGTH mm long and has a radius of RADIUS mm; the other tree's radius is OTHER mm.
+# reported GAP LENGTH RADIUS OTHER: succeeds if an end that misses another tree's axis by GAP mm is
+# reported. The last line before the end is LENGTH mm long and has the radius RADIUS mm; the other
+# tree has the radius OTHER mm.
 reported() {
     vtk_lines "$(awk -v gap="$1" -v length_mm="$2" 'BEGIN {
         printf "0 0 0\n0 0 %.9g\n0 0 10\n0 %.9g 10\n-5 %.9g 10\n5 %.9g 10\n9 %.9g 10\n", 10 - length_mm, gap, gap, gap, gap
@@ -67,7 +69,8 @@ reported() {
     grep -q 'miss another tree' stderr
 }
 
-# reported_below GAP LENGTH RADIUS OTHER: an end is reported that misses by GAP and a digit 9, and none by 3 % more.
+# reported_below GAP LENGTH RADIUS OTHER: a gap of GAP with a digit 9 appended is reported, and a
+# gap that is 3 % larger is not.
 reported_below() {
     local gap=$1
     shift
@@ -101,7 +104,7 @@ test_bad_radii_are_repaired_when_asked() {
     expect_json stdout '.min_radius_mm == 1 and .reading.repaired_radii == 1'
 }
 
-# A file of the program's own has a radius at each node.
+# Files that corcast writes have a radius at each node.
 test_a_missing_radius_of_the_programs_own_files_is_refused_or_repaired() {
     grow_tree 4
     run_ok corcast convert --quiet tree.swc own.graphml
@@ -249,7 +252,8 @@ test_the_unit_of_the_programs_own_trees_is_known() {
     [ ! -s stderr ] || fail "expected no report: $(cat stderr)"
 }
 
-# A file of a few kilobytes that claims, honestly, three million points and as many numbers.
+# A compressed file of a few kilobytes that really contains three million points and as many
+# numbers.
 test_a_small_file_does_not_unpack_to_a_large_tree() {
     python3 - <<'PY'
 import struct, zlib

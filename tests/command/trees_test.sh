@@ -7,7 +7,8 @@ swc() {
     cat >bad.swc
 }
 
-# expect_refused PATTERN: every command that reads a tree refuses bad.swc with this sentence.
+# expect_refused PATTERN: info, render and convert refuse bad.swc; the sentence of info matches the
+# pattern.
 expect_refused() {
     run corcast info bad.swc
     expect_status 2

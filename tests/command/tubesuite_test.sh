@@ -17,7 +17,8 @@ test_our_exact_pictures_are_certified() {
     grep -q '72 of 72 scenes of the tube suite are certified' card/index.html || fail "the page states no result"
 }
 
-# A renderer of two scenes: one is right, one has radii that are 1 % too large, the others fail.
+# A renderer that draws two scenes, one correctly and one with radii that are 1 % too large, and
+# fails for all others.
 test_a_fault_is_graded_and_what_is_not_drawn_is_counted() {
     cat >draw <<END
 #!/bin/sh

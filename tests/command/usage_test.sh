@@ -178,7 +178,8 @@ test_lists_hold_what_options_take() {
     expect_same expected listed
 }
 
-# means SENTENCE ARGUMENT...: the arguments are refused with a name that may have been meant, or none.
+# means SENTENCE ARGUMENT...: the arguments are refused with a sentence that ends like this: with a
+# suggested name, or without.
 means() {
     local sentence=$1
     shift
@@ -245,7 +246,8 @@ test_a_switch_without_a_value_is_on() {
     expect_differing 20 50 on.ppm off.ppm
 }
 
-# expect_same_by_former_name COMMAND OPTION FORMER VALUE OUTPUT ARGUMENT...
+# expect_same_by_former_name COMMAND OPTION FORMER VALUE OUTPUT ARGUMENT...: the former name of an
+# option has the same effect as its present name, without a message.
 expect_same_by_former_name() {
     local command=$1 name=$2 former=$3 value=$4 output=$5
     shift 5

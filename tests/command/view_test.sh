@@ -19,7 +19,7 @@ open_display() {
     export DISPLAY
 }
 
-# open_view OPTION ...: a display, and on it a view of tree.swc; waits for its window.
+# open_view OPTION ...: opens a display and a view of tree.swc on it, and waits for the window.
 open_view() {
     open_display
     "$CORCAST" view tree.swc "$@" >view.out 2>view.err &
@@ -34,7 +34,7 @@ find_window() {
     [ -n "$window" ]
 }
 
-# press KEY [LINES]: waits until the view has said so many lines in all.
+# press KEY [LINES]: presses a key, and waits until the view has printed LINES lines in total.
 press() {
     xdotool key "$1"
     [ -z "${2:-}" ] || wait_for 20 said_lines "$2" || fail "expected $2 lines after key $1, got $(cat view.out view.err)"
@@ -44,7 +44,8 @@ said_lines() {
     [ "$(wc -l <view.out)" -ge "$1" ]
 }
 
-# last_options: those printed last, without the picture's name.
+# last_options: prints the options of the command that the view printed last, without the picture's
+# name.
 last_options() {
     tail -1 view.out | sed 's/^corcast render tree.swc //; s/ -o P\.png$//'
 }
@@ -56,7 +57,8 @@ window_levels() {
         pamdepth 255 | levels
 }
 
-# window_shows PICTURE.ppm: within 2 levels, on all but 2 % of its values.
+# window_shows PICTURE.ppm: the window shows the picture to within 2 levels, except for 2 % of the
+# values.
 window_shows() {
     window_levels >window.levels
     levels <"$1" >drawn.levels
@@ -68,9 +70,10 @@ levels() {
     pnmtoplainpnm | tail -n +4 | tr -s ' ' '\n' | grep -v '^$'
 }
 
-# shows_what_render_draws: with the options printed last.
+# shows_what_render_draws: the window shows the picture that `render` draws with the options that
+# the view printed last.
 shows_what_render_draws() {
-    # The options are words.
+    # The options are not quoted, because they are several words.
     # shellcheck disable=SC2046
     run_ok corcast render tree.swc $(last_options) -o drawn.ppm
     wait_for 30 window_shows drawn.ppm ||
@@ -155,7 +158,7 @@ test_keys_switch_model_color_projection_and_shadows() {
     close_view
 }
 
-# code_pixels R G B: the number of pixels of the window that have these codes, each within 8.
+# code_pixels R G B: prints the number of pixels of the window with these codes, each to within 8.
 code_pixels() {
     window_levels | awk -v r="$1" -v g="$2" -v b="$3" 'function near(x) { return $1 >= x - 8 && $1 <= x + 8 }
         NR % 3 == 1 { is = near(r) } NR % 3 == 2 { is = is && near(g) } NR % 3 == 0 { n += is && near(b) } END { print n + 0 }'
@@ -227,7 +230,7 @@ test_a_view_is_written_as_a_recipe() {
     run_ok corcast scene tree.swc --recipe mine.ini -o scene.pov
 }
 
-# As the printed command stands: in a shell, options, blanks and quotes of the tree's path included.
+# The printed command is run unchanged in a shell. The tree's path contains blanks and quotes.
 test_the_printed_command_draws_what_is_shown_whatever_the_options() {
     mkdir "a b's"
     grep -v '^#' "$DATA/bifurcation.swc" >"a b's/tree.swc"
@@ -251,7 +254,7 @@ test_the_printed_command_draws_what_is_shown_whatever_the_options() {
     expect_same recipe.ppm asked.ppm
 }
 
-# One view for each line of options; the command that it prints is pasted.
+# One view per line of options. The command that the view prints is run.
 test_each_option_is_printed_so_that_it_draws_the_same() {
     local options n=0
     grow_tree 14

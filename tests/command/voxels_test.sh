@@ -3,8 +3,8 @@
 # read the volumes.
 . "$(dirname "$0")/../lib.sh"
 
-# python: runs standard input with numpy, nibabel and `volume(name)`: a volume as an array of x, y, z, and the list of
-# its voxels' sides, mm.
+# python: runs the program on standard input with numpy, nibabel and the function volume(name),
+# which returns a volume as an array indexed by x, y, z, and the sides of a voxel in mm.
 python() {
     /usr/bin/python3 -c 'import nibabel, numpy' 2>python.error || skip "python3-nibabel is not installed"
     {
@@ -19,7 +19,7 @@ END
     /usr/bin/python3 script.py >said 2>&1 || fail "python: $(tail -3 said | tr '\n' ' ')"
 }
 
-# grown: a tree of 23 terminals.
+# grown: grows a tree of 23 terminals.
 grown() {
     run_ok corcast grow --terminals 23 --domain ball:41 --seed 7 -o t.swc --quiet
 }
@@ -57,7 +57,7 @@ for form, code in (image.get_sform(True), image.get_qform(True)):
     assert code == 1 and numpy.allclose(form[:3, :3], 0.4 * numpy.eye(3)), form
     assert numpy.allclose(form[:3, 3], said["first_voxel_mm"]), form
 assert abs(image.get_fdata().sum() * 0.4 ** 3 / said["volume_mm3"] - 1) < 1e-6
-# What is filled is where the tree is: the fullest voxels lie on its axes.
+# Voxels are filled where the tree is: the voxels with the largest fractions are on its axes.
 points = numpy.array([[float(x) for x in line.split()[2:5]] for line in open("t.swc") if line[0] != "#"])
 at = numpy.rint((points - said["first_voxel_mm"]) / 0.4).astype(int)
 assert (voxels[tuple(at.T)] > 0.4).mean() > 0.9
@@ -106,7 +106,7 @@ test_vessels_thinner_than_a_voxel_do_not_break_up() {
     python <<'END'
 v, c = volume("v.nii.gz")[0], volume("c.nii.gz")[0]
 assert c.max() == 1 and (v[c > 0] > 0).all()
-# One piece, through faces of voxels.
+# The filled voxels are one connected component, with connection through faces.
 left, todo = set(map(tuple, numpy.argwhere(c > 0))), []
 assert len(left) > 300
 todo.append(left.pop())
@@ -139,8 +139,9 @@ END
     [ ! -e x.nii.gz ] || fail "expected no volume"
 }
 
-# chain N: a thick vessel that fills the most of all voxels of a row; N thin ones in it, each of two voxels, of which it
-# gets the second; and one in the last voxel alone, for which all N have to move on to their first.
+# chain N: writes a thick vessel that has the largest fraction of every voxel in a row, and N thin
+# vessels in it. Each thin vessel touches two voxels and first gets the second one. One more thin
+# vessel touches only the last voxel, so all N vessels must move to their first voxel.
 chain() {
     {
         printf '1 3 -30 0 0 0.4 -1\n2 3 300 0 0 0.4 1\n'
@@ -180,7 +181,7 @@ assert set(numpy.unique(trees)) == {0, 1}
 END
 }
 
-# The daughters are stout, so that voxels about the fork lie wholly in both of them.
+# The daughters are thick, so that voxels at the bifurcation are entirely inside both.
 test_of_equal_shares_the_lowest_id_labels_the_voxel() {
     printf '7 3 0 0 0 2 -1\n5 3 12 8 0 2 7\n4 3 12 -8 0 2 7\n' >a.swc
     printf '7 3 0 0 0 2 -1\n4 3 12 8 0 2 7\n5 3 12 -8 0 2 7\n' >b.swc
@@ -199,10 +200,10 @@ END
 
 test_labels_do_not_depend_on_the_order_of_rows() {
     local file
-    # All of one radius, so that balls and voxels about the fork have several equal owners.
+    # All radii are equal, so that several segments have equal shares of voxels at the bifurcation.
     printf '1 3 0 0 0 0.9 -1\n2 3 10 0 0 0.9 1\n3 3 17 6 0 0.9 2\n4 3 17 -6 0 0.9 2\n5 3 20 0 0 0.9 2\n' >a.swc
     printf '1 3 0 0 0 0.9 -1\n2 3 10 0 0 0.9 1\n5 3 20 0 0 0.9 2\n4 3 17 -6 0 0.9 2\n3 3 17 6 0 0.9 2\n' >b.swc
-    # The ids do not rise from the root on.
+    # The ids do not ascend from the root.
     printf '5 3 17 0 0 0.9 -1\n2 3 10 0 0 0.9 5\n3 3 17 6 0 0.9 2\n1 3 0 0 0 0.9 2\n' >c.swc
     printf '5 3 17 0 0 0.9 -1\n2 3 10 0 0 0.9 5\n1 3 0 0 0 0.9 2\n3 3 17 6 0 0.9 2\n' >d.swc
     for file in a b c d; do run_ok corcast export $file.swc -o $file.nii --spacing 0.5 --labels segment --quiet; done

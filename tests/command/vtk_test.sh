@@ -4,7 +4,8 @@
 
 PYTHON=/usr/bin/python3 # Debian's, which has VTK
 
-# expect_network FILE FILTER [OPTION...]: what info says of the file's network as JSON.
+# expect_network FILE FILTER [OPTION...]: the jq filter is true for the output of `info --json` for
+# the file.
 expect_network() {
     local file=$1 filter=$2
     shift 2
@@ -107,7 +108,8 @@ END
         (.bbox_mm[0][0] + .root_radius_mm | fabs) < 1e-12'
 }
 
-# a_strange_forest: a root alone, types, shares, a step without length, columns, remarks.
+# a_strange_forest: writes a forest with a root without segments, types, flow shares, a segment of
+# length 0, columns and comments.
 a_strange_forest() {
     cat >tree.csv <<'END'
 # gamma: 2.75
@@ -141,7 +143,8 @@ test_nothing_is_lost_on_the_way_through_vtk_and_back() {
     expect_same grown.swc back.swc
 }
 
-# expect_seen FILE FILTER: what VTK's own reader finds in the file, beside what info says of it.
+# expect_seen FILE FILTER: the jq filter is true for {seen, info}: the content that VTK's own reader
+# finds, and the output of `info --json`.
 expect_seen() {
     "$PYTHON" "$REPO/tests/oracle/read_vtk.py" "$1" >seen.json || fail "VTK does not read $1"
     corcast info --json "$1" >info.json || fail "info does not read $1"
@@ -213,7 +216,8 @@ test_a_file_that_is_cut_off_or_is_something_else_is_refused() {
     corcast info - <whole.vtk >from_pipe 2>stderr || fail "info - failed$(said)"
 }
 
-# write_zeros TYPE POINTS BLOCKS: bomb.vtp, whose array of radii becomes so many blocks of 32 MB of zeros.
+# write_zeros TYPE POINTS BLOCKS: writes bomb.vtp, whose array of radii expands to BLOCKS blocks of
+# 32 MB of zeros.
 write_zeros() {
     "$PYTHON" - "$@" >bomb.vtp <<'END'
 import base64, struct, sys, zlib

@@ -9,7 +9,8 @@ need_viewer() {
     [ -e "$REPO/build/viewer/viewer.js" ] || skip "the viewer is not built, for want of npm, esbuild or three.js"
 }
 
-# A table of nodes with a field of three moments, and an unkind name.
+# series: prints a table of nodes with a field at three moments, and a column whose name contains
+# HTML.
 series() {
     printf 'id,x,y,z,radius,parent,p_0.1,p_0.25,p_0.7,a</script><b>\n'
     printf '1,0,0,0,1.5,-1,0,0,0,1\n2,0,-9.5,0,1.5,1,1.25,7,3,2\n3,4,-14,0,0.75,2,2,1,8.5,3\n4,-4,-14,1,0.7,2,3,2,9,4\n'
@@ -111,7 +112,8 @@ test_without_the_viewer_a_page_is_refused_and_what_is_missing_named() {
     [ ! -e page.html ] || fail "expected no page"
 }
 
-# The page's own scale: round numbers, places, and colors of values, linear and logarithmic.
+# The color scale of the page: round numbers, positions and colors of values, linear and
+# logarithmic.
 test_the_scale_of_a_page_has_the_right_numbers() {
     command -v node >node.path || skip "nodejs is not installed"
     cp "$REPO/templates/viewer/colors.js" colors.mjs
@@ -166,7 +168,7 @@ END
     run_ok node scale.mjs
 }
 
-# On the dark background #131417.
+# The background of the dark page is #131417.
 test_each_color_of_each_map_is_visible_on_a_dark_page() {
     command -v node >node.path || skip "nodejs is not installed"
     cp "$REPO/templates/viewer/colors.js" colors.mjs

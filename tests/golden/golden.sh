@@ -1,5 +1,5 @@
-# Code shared by golden_test.sh and golden-update: how a case is drawn and hashed. Source
-# tests/lib.sh first.
+# Functions of golden_test.sh and golden-update that draw and hash a case. Source tests/lib.sh
+# first.
 GOLDEN=${GOLDEN:-$REPO/golden}
 CASES=${CASES:-$REPO/tests/golden/cases}
 
@@ -7,7 +7,7 @@ golden_cases() {
     sed 's/#.*//' "$CASES" | awk 'NF { print $1 }'
 }
 
-# case_kinds NAME: the pictures that the case has.
+# case_kinds NAME: prints the kinds of the case's stored pictures: oracle, snapshot.
 case_kinds() {
     awk -v name="$1" '$1 == name { print $2 == "both" ? "oracle snapshot" : "snapshot" }' "$CASES"
 }
@@ -24,28 +24,30 @@ case_options() {
     awk -v name="$1" '$1 == name { $1 = $2 = $3 = ""; sub(/^ */, ""); print }' "$CASES"
 }
 
-# How corcast draws is nothing to the scene.
+# Prints the case's options for `scene`, which has no option --method.
 scene_options() {
     case_options "$1" | sed -E 's/ *--method [a-z]+//'
 }
 
-# How corcast draws a case: as POV-Ray does, or by the method that it names.
+# Prints options of `render`: --exact, so that corcast draws as POV-Ray does, unless the case names
+# a method.
 native_options() {
     case_options "$1" | grep -q -- '--method' && echo --antialias 1 || echo --exact
 }
 
-# The command that draws a case's snapshot, as its record says it.
+# Prints the command that draws a case's snapshot, as the record stores it.
 snapshot_command() {
     echo "corcast render $(case_tree "$1") $(native_options "$1") $(case_options "$1") -o picture.png"
 }
 
-# The files of a case are named from the repository's folder. The options are words: no quotes around them.
+# File names of a case are relative to the repository. The options are not quoted, because they are
+# several words.
 # shellcheck disable=SC2046
 draw_native() {
     (cd "$REPO" && corcast render --quiet "$(case_tree "$1")" $(native_options "$1") $(case_options "$1") ${3-} -o "$OLDPWD/$2")
 }
 
-# Of an implicit surface what POV-Ray's root finder sees of it, which is not quite where it is.
+# Draws isosurfaces with --hits=povray: POV-Ray's root finder does not find the surface exactly.
 draw_like_povray() {
     local hits=
     case_options "$1" | grep -q 'isosurface' && hits="--hits=povray"

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Scenes as an artist uses them: with POV-Ray alone, and values set on its command line and by
-# #declare.
+# Scenes as an artist uses them: with POV-Ray only, and with values that are set on its command line
+# and by #declare.
 . "$(dirname "$0")/../lib.sh"
 
 MODELS=$(corcast models | cut -f 1)
 
-# draw SCENE ARGUMENT...: a small picture, SCENE.png, and POV-Ray's words in SCENE.log.
+# draw SCENE ARGUMENT...: POV-Ray draws a small picture, SCENE.png. Its output goes to SCENE.log.
 draw() {
     local scene=$1
     shift
@@ -17,12 +17,12 @@ expect_no_warning() {
     ! grep -q 'Warning:' "$1".log || fail "expected no warning: $(grep -m 1 'Warning:' "$1".log)"
 }
 
-# values PICTURE X Y [-alpha]: red, green and blue of a pixel, or its alpha, 0 to 255.
+# values PICTURE X Y [-alpha]: prints red, green and blue of a pixel, or its alpha, 0 to 255.
 values() {
     pngtopnm ${4:-} "$1" | pamcut -left "$2" -top "$3" -width 1 -height 1 | pnmtoplainpnm | tail -1 | xargs
 }
 
-# scene_of_a_vessel MODEL OUTPUT: its wall fills the picture.
+# scene_of_a_vessel MODEL OUTPUT: writes a scene in which the wall of a vessel fills the picture.
 scene_of_a_vessel() {
     run_ok corcast scene "$DATA/bifurcation.swc" --quiet --model "$1" --size 60x45 \
         --location 0.625,-8.75,30 --look-at 0.625,-8.75,0 --height 2 -o "$2"
@@ -39,8 +39,8 @@ test_no_model_makes_povray_warn() {
     grep -q Blob_Cell blob.inc || fail "expected a blob of many cells"
 }
 
-# A colored and pruned forest in the shadows of every look, and the planes that `verify` asks for. Models take turns: looks
-# and models are separate files of a scene.
+# Draws a colored and pruned forest with shadows in every look, and the planes that `verify` needs.
+# Each look is drawn with one model only, because looks and models are separate files of a scene.
 test_no_look_and_no_plane_makes_povray_warn() {
     local model look n=0 models header
     read -ra models <<<"$MODELS"
@@ -57,7 +57,7 @@ test_no_look_and_no_plane_makes_povray_warn() {
     done
 }
 
-# The vessel in the middle is blue, of whatever model, without a change of the files.
+# The vessel in the middle becomes blue with every model, without a change to the files.
 test_colors_are_set_by_numbers_on_the_command_line() {
     local model
     for model in $MODELS; do
@@ -72,7 +72,7 @@ test_colors_are_set_by_numbers_on_the_command_line() {
     [ "$(values back.png 0 0)" = "0 255 0" ] || fail "expected a green background, got $(values back.png 0 0)"
 }
 
-# What stands behind is seen through the vessel, and POV-Ray has nothing to say against it.
+# Objects behind the vessel are visible through it, and POV-Ray prints no warning.
 test_glass_is_declared_before_the_geometry() {
     local model
     for model in $MODELS; do
@@ -87,15 +87,16 @@ test_glass_is_declared_before_the_geometry() {
     done
 }
 
-# own_scene MODEL GEOMETRY OBJECT: MODEL.pov, which looks at the middle of a vessel, before a red background.
+# own_scene MODEL GEOMETRY OBJECT: writes MODEL.pov, whose camera looks at the middle of a vessel in
+# front of a red background.
 own_scene() {
     { printf '#version 3.7;\nglobal_settings { assumed_gamma 1 }\nbackground { rgb <1, 0, 0> }\n'
       printf 'camera { orthographic location <0.625, -8.75, 30> right 2.5*x up 2*y direction -z }\n'
       printf 'light_source { <0, 0, 100>, rgb 1 }\n#include "%s.inc"\n%s\n' "$2" "$3"; } >"$1".pov
 }
 
-# A scene of one's own, with any texture and interior: the same words do the same in every model, in one
-# that was written with colors too.
+# A user's own scene with any texture and interior. The same declarations have the same effect with
+# every model, also if the geometry was written with colors.
 test_the_tree_takes_any_texture_and_interior() {
     local model glass='texture { pigment { rgbt 1 } finish { diffuse 0 } } interior { ior 1.4 fade_distance 1 fade_power 1001 fade_color <0, 0, 1> }'
     for model in $MODELS; do
@@ -115,7 +116,7 @@ test_the_tree_takes_any_texture_and_interior() {
     [ "$(values own.png 30 22)" = "0 255 0" ] || fail "expected a green tree, got $(values own.png 30 22)"
 }
 
-# The hooks T_Vessel and I_Vessel, before the scene as it was written.
+# T_Vessel and I_Vessel are declared before the unchanged scene.
 test_a_texture_and_an_interior_declared_before_the_scene_are_taken() {
     local model
     for model in $MODELS; do
@@ -129,7 +130,7 @@ test_a_texture_and_an_interior_declared_before_the_scene_are_taken() {
     done
 }
 
-# Segment 2 has order 2, radius 2.385 mm and the length 17.545 mm.
+# Segment 2 has order 2, a radius of 2.385 mm and a length of 17.545 mm.
 test_each_segment_can_have_a_texture_by_what_it_is() {
     local model
     for model in $MODELS; do
@@ -144,7 +145,8 @@ test_each_segment_can_have_a_texture_by_what_it_is() {
     done
 }
 
-# In glass of balls and cylinders in one another, POV-Ray loses count of what is inside; a merge has one wall.
+# With glass, POV-Ray miscounts the interiors of overlapping balls and cylinders. A merge has only
+# the outer wall.
 test_a_merge_has_no_walls_inside() {
     local model
     for model in cylinders joined rounded; do
@@ -159,8 +161,9 @@ test_a_merge_has_no_walls_inside() {
     done
 }
 
-# The root of the bifurcation is at the origin, its main branch ends where the wider daughter does.
-# draw_part NAME SCENE WIDTHxHEIGHT LEFT TOP ARGUMENT...: a part of the picture of 60x45, as NAME.ppm.
+# The root of the bifurcation is at the origin. Its main branch ends at the end of the wider
+# daughter. draw_part NAME SCENE WIDTHxHEIGHT LEFT TOP ARGUMENT...: draws a part of the picture of
+# 60 x 45 pixels as NAME.ppm.
 draw_part() {
     local name=$1 scene=$2 size=$3 left=$4 top=$5
     shift 5
@@ -201,13 +204,15 @@ sphere { Tree_Center, 0.1 pigment { gradient x color_map { Value_Color_Map } } }
     grep -q '^0.000 0.000 0.000; 8.500 -29.875 0.000; length mm 1.000; 3$' own.log || fail "got $(grep ';' own.log)"
 }
 
-# declared NAME: the vector that ball.pov declares unless NAME is declared before, as X,Y,Z.
+# declared NAME: prints, as X,Y,Z, the vector that ball.pov declares unless NAME was declared
+# before.
 declared() {
     sed -n "s/^#ifndef ($1) .*<\(.*\)>; #end.*/\1/p" ball.pov
 }
 
-# own_camera DECLARATIONS RENDER_OPTION...: POV-Ray draws ball.pov after the declarations as render draws it with the
-# options. Lights of render turn with the camera, so the look has none.
+# own_camera DECLARATIONS RENDER_OPTION...: POV-Ray draws ball.pov with the declarations as `render`
+# draws the tree with the options. The look has no lights, because lights of `render` turn with the
+# camera.
 own_camera() {
     local declarations=$1
     shift
@@ -232,7 +237,7 @@ test_a_camera_of_ones_own_draws_the_view_that_was_asked_for() {
             --projection perspective --location 40,130,190 --look-at="$at" --up 0,1,0 --angle 33
         own_camera '#declare Camera_Look_At = <-117,60,-83>; #declare Camera_Up = <0.3,1,0.5>; #declare Camera_Angle = 25; #declare Camera_Perspective = 1;' \
             --projection perspective --location="$from" --look-at=-117,60,-83 --up 0.3,1,0.5 --angle 25
-        # As much of the middle of the picture is seen without an angle, whatever the projection.
+        # Without an angle, both projections show the same extent at the middle of the picture.
         angle=$(echo "$width $at $from $written" | tr ',' ' ' | awk '{
             d = sqrt(($2 - $5)^2 + ($3 - $6)^2 + ($4 - $7)^2)
             print 360 / atan2(0, -1) * atan2($8 == "perspective" ? $1 / 2 : $1 / 2 / d, 1) }')
@@ -248,7 +253,7 @@ test_a_camera_of_ones_own_draws_the_view_that_was_asked_for() {
         fail "expected the angle to be refused, got: $(tail -c 300 own.log | tr '\n' ' ')"
 }
 
-# A value that lies on a bound has the place of the class above, as in render.
+# A value on a bound has the position of the class above the bound, as in `render`.
 test_the_place_of_a_value_is_the_middle_of_its_class() {
     local options expected
     while IFS=: read -r options expected; do
@@ -267,7 +272,8 @@ test_the_place_of_a_value_is_the_middle_of_its_class() {
 CASES
 }
 
-# What a clock drives draws without a warning in every model, and is not the picture without it.
+# Scenes that depend on the clock are drawn without a warning with every model, and the clock
+# changes the picture.
 test_the_clock_turns_and_grows_the_tree() {
     local model
     for model in $MODELS; do
@@ -295,7 +301,8 @@ test_the_examples_draw_the_tree_of_any_model() {
     done
 }
 
-# Two bifurcations 40 mm apart, of which the second is moved beside the first and painted otherwise, and a root alone.
+# Two bifurcations 40 mm apart, and a root without segments. The second bifurcation is moved next to
+# the first and gets another color.
 test_the_trees_of_a_forest_are_objects_of_their_own() {
     local model
     { cat "$DATA/bifurcation.swc"; echo "90 1 0 0 9 2 -1"
@@ -316,7 +323,8 @@ object { Tree_3 translate <-41.5, 0, 0> Shown(<0, 0, 1>) }"
     done
 }
 
-# A vessel alone, one that is too short to have an implicit surface, and one that is not drawn at all.
+# A single vessel, a vessel that is too short to have an implicit surface, and a vessel that is not
+# drawn.
 test_the_smallest_trees_make_povray_warn_of_nothing() {
     local model
     printf '1 1 0 0 0 1.25 -1\n2 1 0 0 9.5 1.25 1\n' >one.swc
@@ -331,7 +339,7 @@ test_the_smallest_trees_make_povray_warn_of_nothing() {
     done
 }
 
-# Of any name that an INI file can have; what stands in its comments is drawn as well.
+# The INI file may have any name. The commands in its comments are run as well.
 test_povray_draws_the_settings_of_a_scene_as_they_are() {
     local name command
     for name in tree "-o'neil & sons;#=\$(x) %s"; do
@@ -350,7 +358,8 @@ test_povray_draws_the_settings_of_a_scene_as_they_are() {
     expect_differing 10 432 tree1.png tree2.png
 }
 
-# Area lights, radiosity, subsurface, glass and focal blur: without any of them the picture is another one.
+# Area lights, radiosity, subsurface scattering, glass and focal blur: switching off any of them
+# changes the picture.
 test_the_studio_has_each_of_its_five() {
     local part
     run_ok corcast scene "$DATA/coronary.swc" --quiet --model blob -o tree.pov
@@ -367,7 +376,8 @@ test_the_studio_has_each_of_its_five() {
     expect_differing 20 768 studio.png Skin.png
 }
 
-# The hero scene by its one command, small: a red trunk in the middle, before a sweep of a darker, even gray.
+# The hero scene, small, by its one command: a red trunk in the middle in front of a uniform, darker
+# gray.
 test_the_hero_scene_is_drawn_by_one_command() {
     local r g b
     run_ok env TERMINALS=40 CORCAST="$CORCAST" "$REPO/docs/examples/hero" hero 32 Declare=Hero_Quality=0

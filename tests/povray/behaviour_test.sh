@@ -7,12 +7,12 @@ command -v "${CORCAST_POVRAY:-povray}" >/dev/null || {
     exit 3
 }
 
-# A camera over W x H mm, a pixel a mm, that looks down z from 10 mm.
+# An orthographic camera over W x H mm at one pixel per mm. It looks along -z from z = 10 mm.
 camera='camera { orthographic location <0, 0, 10> right W * x up H * y direction -z }'
 
-# draw WxH [SWITCH ...]: has POV-Ray draw the scene on standard input, linear in 16 bits by default; the codes
-# of its pixels' red, row by row, in $codes. In the scene, W and H are those of the picture, and Glow(V) is a
-# texture of the color V in any light.
+# draw WxH [SWITCH ...]: POV-Ray draws the scene on standard input, by default linear with 16 bits.
+# Sets $codes to the red codes of the pixels, row by row. In the scene, W and H are the sides of the
+# picture, and Glow(V) is a texture with the color V in any light.
 draw() {
     local size=$1
     shift
@@ -26,7 +26,7 @@ draw() {
     codes=$(pngtopnm -plain scene.png 2>/dev/null | tail -n +4 | tr -s ' ' '\n' | grep . | awk 'NR % 3 == 1' | tr '\n' ' ')
 }
 
-# expect_codes CODE ...: of the last picture.
+# expect_codes CODE ...: the codes of the last picture are these.
 expect_codes() {
     [ "$codes" = "$* " ] || fail "expected the codes $*, got $codes"
 }
@@ -41,7 +41,7 @@ END
     expect_codes 12288 20480 28672 36863 28672 36863 45055 53247
 }
 
-# Just below and just above the places where codes change.
+# Values just below and just above those at which the code changes.
 test_codes_are_rounded_to_nearest_in_either_encoding() {
     local gamma
     for gamma in srgb 1.0; do
@@ -61,13 +61,14 @@ test_codes_are_rounded_to_nearest_in_either_encoding() {
 
 test_samples_lie_at_the_centre_and_on_a_grid_and_are_averaged_before_they_are_encoded() {
     local slab='#macro Slab(I, C, V) box { <I + C, -1, 0>, <I + 0.499, 1, 1> Glow(V) } #end'
-    # At -1/4 and 1/4, two rows, and the centre: of 5 samples 5, 3, 2 and 0; and 3 of twice 0.75.
+    # Samples at -1/4 and 1/4 in two rows, and at the centre. 5, 3, 2 and 0 of the 5 samples hit;
+    # and 3 samples of twice 0.75.
     draw 5x1 +A0.0 +AM1 +R2 -J <<END
 $camera $slab
 Slab(-2, -0.251, 1) Slab(-1, -0.249, 1) Slab(0, 0.249, 1) Slab(1, 0.251, 1) Slab(2, -0.249, 1.5)
 END
     expect_codes 65535 39321 26214 0 58982
-    # At -1/3, 0 and 1/3: of 10 samples 10, 7, 3 and 0.
+    # Samples at -1/3, 0 and 1/3. 10, 7, 3 and 0 of the 10 samples hit.
     draw 4x1 +A0.0 +AM1 +R3 -J <<END
 $camera $slab
 Slab(-1.5, -0.334, 1) Slab(-0.5, -0.332, 1) Slab(0.5, 0.332, 1) Slab(1.5, 0.334, 1)
@@ -75,7 +76,8 @@ END
     expect_codes 65535 45875 19661 0
 }
 
-# The cosine to the light is 0.8, that of the mirrored ray too, and that of the halved angle 0.9487.
+# The cosine of the angle to the light is 0.8, also for the mirrored ray; that of the half angle is
+# 0.9487.
 test_shading_is_the_sum_that_is_written_down() {
     draw 2x1 <<END
 $camera
@@ -100,7 +102,7 @@ END
     done
 }
 
-# A light of 10^-10 over the horizon, mirrored straight into the eye.
+# A light with a cosine of 10^-10 above the horizon, reflected directly towards the camera.
 test_a_light_counts_from_a_least_cosine_on() {
     local part
     for part in 0.9 1.1; do
@@ -114,7 +116,8 @@ END
     done
 }
 
-# A wall half way to the light hides two of four columns, and two of five, of which those at the rim weigh half.
+# A wall half way to the light hides two of four columns of light points, and two of five. Of five
+# columns, the outer ones have half the weight.
 test_points_of_a_soft_light_reach_its_edges_and_weigh_alike_where_they_are_a_power_of_two() {
     local n
     for n in 4 5; do
@@ -148,8 +151,8 @@ END
     expect_codes 32768 32768 0 0 32768 0
 }
 
-# Either strip is 0.005 mm over one pixel and 0.0005 over the other: where it hid the light just before, it
-# counts from nearer on.
+# Each strip is 0.005 mm above one pixel and 0.0005 mm above the other. The minimum distance is
+# smaller for the object that blocked the light at the previous pixel.
 test_the_object_that_was_last_in_the_way_of_the_light_counts_from_nearer_on() {
     draw 4x1 +WT1 <<END
 $camera
@@ -213,7 +216,7 @@ test_a_cylinder_without_length_is_a_fatal_error() {
     grep -q 'Degenerate cylinder' stderr || fail "expected the reason$(said)"
 }
 
-# Each is met at its far side alone, 0.0098 and 0.0102 mm from the eye.
+# Rays hit only the far side of each sphere, 0.0098 and 0.0102 mm from the camera.
 test_a_root_of_a_blob_nearer_than_a_hundredth_is_ignored() {
     draw 2x1 <<END
 $camera
@@ -223,7 +226,7 @@ END
     expect_codes 0 65535
 }
 
-# 1 - d^2 / R^2, squared, is 1 / 4 at R sqrt(1/2); and two halves of one strength are the whole.
+# (1 - d^2 / R^2)^2 is 1/4 at d = R sqrt(1/2). Two components of half the strength equal one.
 test_a_component_of_a_blob_falls_off_as_a_quartic() {
     draw 4x1 <<END
 camera { orthographic location <0, 0, 10> right 0.04 * x up 0.01 * y direction -z }
@@ -233,7 +236,8 @@ END
     expect_codes 65535 65535 0 0
 }
 
-# f is the height over z = 0; the hit is the right end of an interval between accuracy / 2 and accuracy.
+# f is the height above z = 0. The hit is the far end of an interval whose length is between
+# accuracy / 2 and accuracy.
 test_an_isosurface_is_hit_behind_its_root_by_less_than_its_accuracy() {
     draw 64x1 <<END
 $camera
@@ -247,7 +251,8 @@ END
         END { exit far || most < 0.2 * 65535 || NR != 64 }' || fail "expected hits up to 0.05 behind, got $codes"
 }
 
-# looked_into X Y CODE: that of a ray down z at (X, Y), of a box of an isosurface whose sides are at 20 and 20.5.
+# looked_into X Y CODE: a ray along -z at (X, Y) into the box of an isosurface, whose sides are at
+# 20 and 20.5, gives the code.
 looked_into() {
     draw 1x1 <<END
 camera { orthographic location <$1, $2, 10> right x up y direction -z }
@@ -257,7 +262,7 @@ END
     expect_codes "$3"
 }
 
-# In single precision 20.4999999 is 20.5, and 20.499998 is 20.499998.
+# In single precision, 20.4999999 is rounded to 20.5, but 20.499998 is not.
 test_an_isosurface_is_not_seen_by_a_ray_whose_rounded_start_is_in_a_side_of_its_box_in_x() {
     looked_into 20.4999999 20.25 0
     looked_into 20.499998 20.25 65535
@@ -318,7 +323,8 @@ test_povray_speaks_on_standard_error_and_exits_with_1_for_a_bad_scene() {
     expect_status 1
 }
 
-# A density file of 3 x 2 x 2 voxels: codes 10 to 120 of 255, x fastest; its light on 4 mm along z, 2 mm a voxel.
+# A density file of 3 x 2 x 2 voxels with codes 10 to 120 of 255, x varying fastest. Its light is
+# collected over 4 mm along z, 2 mm per voxel.
 test_media_sum_up_density_files_by_method_2_and_more_by_method_3() {
     local method
     printf '\0\3\0\2\0\2\12\24\36\50\62\74\106\120\132\144\156\170' >d.df3

@@ -4,7 +4,7 @@
 # roots, ids with gaps, a missing value.
 . "$(dirname "$0")/../lib.sh"
 
-# draw SCENE ARGUMENT...: SCENE.png, and POV-Ray's words in SCENE.log.
+# draw SCENE ARGUMENT...: POV-Ray draws SCENE.png without a warning. Its output goes to SCENE.log.
 draw() {
     local scene=$1
     shift
@@ -19,7 +19,7 @@ tree() {
 
 COLORED=(--input-unit mm --quiet --color-by load.csv:load)
 
-# Coordinates of a tree far from the origin are about a point that the head names.
+# Coordinates of a tree far from the origin are relative to a point that the header states.
 test_the_anatomy_is_that_of_the_tree() {
     tree
     run_ok corcast scene tree.csv "${COLORED[@]}" --classes 2 -o s.pov
@@ -62,7 +62,7 @@ check_text("Value_Said", told["said"], "load 1.50 to 9.75", "2 classes", "1 with
 END
 }
 
-# What a macro of the user's is told of each segment, in every model.
+# The arguments that a user's macro receives for each segment, with every model.
 test_each_segment_is_what_the_macro_is_told() {
     local model
     tree
@@ -86,14 +86,15 @@ POV
     done
 }
 
-# levels A B: the greatest difference of a channel of two PNG pictures.
+# levels A B: prints the largest difference between codes of two PNG pictures.
 levels() {
     cmp -l <(pngtopnm "$1") <(pngtopnm "$2") | awk '
         function code(octal) { return int(octal / 100) * 64 + int(octal / 10) % 10 * 8 + octal % 10 }
         { d = code($2) - code($3); if (d < 0) d = -d; if (d > most) most = d } END { print most + 0 }'
 }
 
-# The colors that the scene gives its segments are those of its map at the places of their values, to a code.
+# The colors of the segments in the scene equal the colors of the map at the positions of their
+# values, to one code.
 test_the_color_map_has_the_colors_of_the_segments() {
     local options most
     tree
@@ -127,7 +128,7 @@ POV
 OPTIONS
 }
 
-# 2 and 4 samples a side give other pixels than 3.
+# 2 and 4 samples per side of a pixel give other pixels than 3.
 test_the_settings_have_the_size_and_the_antialiasing() {
     local samples
     tree

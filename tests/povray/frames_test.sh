@@ -5,7 +5,7 @@
 
 SIZE="--size 40x36"
 
-# A tree of 20 terminals and a pulse of 24 frames.
+# Makes a tree of 20 terminals and a pulse of 24 frames.
 make_pulse() {
     run_ok corcast grow --terminals 20 --seed 5 --domain ball:20 --quiet -o tree.swc
     awk -f "$REPO/docs/examples/pulse.awk" tree.swc >pulse.csv
@@ -42,7 +42,8 @@ test_a_frame_is_verified_in_every_model() {
     expect_sentence '--moment 25: pulse has 24 frames'
 }
 
-# POV-Ray keeps its clock in single precision, 2/3 as 0.66666669, which may round a code the other way.
+# POV-Ray stores its clock in single precision, 2/3 as 0.66666669, so a code may be rounded
+# differently.
 test_a_turn_is_that_of_the_scene() {
     make_pulse
     view="$SIZE --location 3,20,80 --look-at 0,0,0 --projection perspective"

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# golden-update, the only writer of golden/, on a folder of its own.
+# golden-update, the only program that writes golden/, on a separate folder.
 . "$(dirname "$0")/../lib.sh"
 
 update() {
     GOLDEN=$PWD/golden SHOWN=$PWD/shown run "$REPO/tests/golden-update" "$@"
 }
 
-# A POV-Ray that draws another highlight.
+# Replaces POV-Ray by a script that draws another highlight.
 other_povray() {
     printf '#!/bin/sh\nexec povray "$@" Declare=Vessel_Phong=0.5\n' >povray.sh
     chmod +x povray.sh

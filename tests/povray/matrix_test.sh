@@ -4,7 +4,7 @@
 # them, so that an error of corcast's own comparison is found.
 . "$(dirname "$0")/../lib.sh"
 
-# Slow: each of the models draws each of the trees, with POV-Ray, too.
+# Slow: every model draws every tree, also with POV-Ray.
 test_the_small_matrix_agrees_and_makes_one_report() {
     local case
     POWER='' run_ok "$REPO/tests/verify-all" small "$PWD/matrix"

@@ -2,7 +2,7 @@
 # `export T -o M.inc`: POV-Ray draws the mesh at the same pixels where `render` draws its surface.
 . "$(dirname "$0")/../lib.sh"
 
-# mesh_scene FILE OBJECT: a scene of mesh.inc, 100 mm high, seen from the front, in FILE.
+# mesh_scene FILE OBJECT: writes a scene that shows mesh.inc from the front, 100 mm high.
 mesh_scene() {
     cat >"$1" <<END
 #version 3.7;
@@ -14,7 +14,7 @@ $2
 END
 }
 
-# draw SCENE PICTURE OPTION ...: by POV-Ray, without a warning.
+# draw SCENE PICTURE OPTION ...: POV-Ray draws the scene without a warning.
 draw() {
     local scene=$1 picture=$2
     shift 2
@@ -22,8 +22,8 @@ draw() {
     ! grep -qi 'warning:' stderr || fail "expected no warning of POV-Ray: $(grep -i -A 2 'warning:' stderr)"
 }
 
-# Of 12,000 pixels those on the edges of vessels 3 pixels wide may be one's or the other's, and `render` rounds the ends
-# that the mesh cuts off flat.
+# The vessels cover 12,000 pixels and are 3 pixels wide. Pixels on their edges may differ, and
+# `render` draws round ends where the mesh has flat cuts.
 test_mesh2_has_the_silhouette_and_the_normals_of_the_surface() {
     /usr/bin/python3 -c 'import skimage' 2>import.log || skip "python3-skimage is not installed"
     run_ok corcast grow --terminals 23 --domain ball:41 --seed 7 -o t.swc --quiet

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# File and folder names that POV-Ray cannot take on its command line, with the real POV-Ray.
+# File and folder names that POV-Ray does not accept on its command line, with the real POV-Ray.
 . "$(dirname "$0")/../lib.sh"
 
 ODD=$'José\'s "日本"; a&b\n$(x)-\xff'
@@ -15,7 +15,8 @@ test_a_folder_of_any_name_is_verified() {
     [ -z "$(find . -name '.*' ! -name .)" ] || fail "expected nothing hidden to be left"
 }
 
-# A tree whose name is a program in POV-Ray's language, as verify's description once had it.
+# The name of the tree is a program in POV-Ray's language. An earlier version wrote it into the
+# description of the scene.
 test_the_name_of_a_tree_is_no_program() {
     local name=$'x\n#fopen F "pwned.txt" write #write (F,"hi") #fclose F #if (0) .swc'
     cp "$DATA/bifurcation.swc" "$name"

@@ -2,7 +2,7 @@
 # The report page, opened in headless Chromium; see tests/page/page.js.
 . "$(dirname "$0")/../lib.sh"
 
-# Two cases: one agrees, one has another highlight on POV-Ray's side.
+# Makes a report of two cases: one agrees, in the other POV-Ray draws another highlight.
 two_cases() {
     run_ok corcast grow --terminals 20 --seed 5 -o tree.swc
     run_ok corcast verify tree.swc --size 120x90 -o good
@@ -16,7 +16,7 @@ two_cases() {
     expect_stdout '^differ: 2 cases; page.html'
 }
 
-# pixel PICTURE.png X Y: its color as a JSON array.
+# pixel PICTURE.png X Y: prints the color of a pixel as a JSON array.
 pixel() {
     pngtopnm "$1" | pamcut "$2" "$3" 1 1 | tail -c 3 | od -An -tu1 | awk '{ printf "[%d, %d, %d]", $1, $2, $3 }'
 }

@@ -44,7 +44,7 @@ test_every_plane_can_be_asked_for() {
     pnmfile depth.ppm | grep -q 'maxval 65535' || fail "expected 16 bits of depth"
 }
 
-# pixels PICTURE: the codes of a pixel a line.
+# pixels PICTURE: prints the codes of the pixels, one pixel per line.
 pixels() {
     pngtopnm "$1" 2>/dev/null | pnmtoplainpnm | tail -n +4 | tr -s ' \n' '\n\n' | sed '/^$/d' | paste -d ' ' - - -
 }
@@ -91,13 +91,14 @@ test_file_names_with_blanks_are_fine() {
     expect_file 'a folder/my picture.png'
 }
 
-# codes FILE.png: of the middle pixel of 3 x 3.
+# codes FILE.png: prints the codes of the middle pixel of 3 x 3.
 codes() {
     pngtopnm "$1" | tail -c 15 | od -An -tu1 -N3 | tr -s ' '
 }
 
-# Seen and lit head on, ambient light 1/4, diffuse 1/2, phong 1/4 of exponent 3, and a second light at 60 degrees:
-# red is 0.3 (1/4 + 0.8 / 2 + 0.4 / 4) + (0.8 + 0.4 / 8) / 4 = 0.4375, or 177 of 255 in sRGB.
+# The surface faces the camera and the first light. Ambient is 1/4, diffuse 1/2, and phong 1/4 with
+# exponent 3. A second light is at 60 degrees. Red is 0.3 (1/4 + 0.8 / 2 + 0.4 / 4) + (0.8 + 0.4 /
+# 8) / 4 = 0.4375, or 177 of 255 in sRGB.
 test_a_vessel_lit_head_on_has_the_color_that_a_calculator_says() {
     local model view="--size 3x3 --location 1.5,0,40 --look-at 1.5,0,0 --height 0.1"
     printf '1 3 -30 0 0 2.385 -1\n2 3 30 0 0 2.385 1\n' >tree.swc
@@ -129,7 +130,8 @@ INI
     done
 }
 
-# At antialiasing 3 many alphas are halves of a code: 0.3 x 255 = 76.5, which POV-Ray rounds up.
+# With antialiasing 3, many values of alpha are half codes, such as 0.3 x 255 = 76.5. POV-Ray rounds
+# them up.
 test_a_transparent_picture_is_povrays() {
     local antialias
     cp "$DATA/bifurcation.swc" tree.swc

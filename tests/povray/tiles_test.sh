@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# `verify` in tiles: POV-Ray draws each tile from a scene of only the pieces that the tile's rays
-# can meet. The pixels must equal those of the whole scene.
+# `verify` in tiles: POV-Ray draws each tile from a scene with only the pieces that rays of the tile
+# can hit. The pixels must equal those of the whole scene.
 . "$(dirname "$0")/../lib.sh"
 
 command -v "${CORCAST_POVRAY:-povray}" >/dev/null || {
@@ -8,7 +8,8 @@ command -v "${CORCAST_POVRAY:-povray}" >/dev/null || {
     exit 3
 }
 
-# as_one TILES OPTIONS ...: tree.swc in tiles has the codes of POV-Ray, plane by plane, and the verdict of one scene.
+# as_one TILES OPTIONS ...: tree.swc drawn in tiles has the same POV-Ray planes and the same verdict
+# as drawn in one scene.
 as_one() {
     local tiles=$1 plane
     shift
@@ -25,7 +26,7 @@ as_one() {
     done
 }
 
-# Slow: each of the models is drawn with shadows and without, by 32 runs of POV-Ray.
+# Slow: every model is drawn with shadows and without, by 32 runs of POV-Ray.
 test_tiles_have_the_pixels_of_the_whole_in_every_model() {
     local model
     run_ok corcast grow --terminals 60 --seed 5 --gamma 2.7 -o tree.swc
@@ -41,7 +42,7 @@ test_tiles_of_a_ball_in_perspective_over_a_ground_have_the_pixels_of_the_whole()
     [ "$(wc -c <tiled/scene.tile-1.inc)" -lt "$(wc -c <one/scene.inc)" ] || fail "expected fewer joints in a tile"
 }
 
-# A blob of 128 segments or more is cut into cells, which tiles share.
+# A blob of more than 128 segments is divided into cells, which tiles share.
 test_tiles_of_a_blob_in_many_cells_have_the_pixels_of_the_whole() {
     run_ok corcast grow --terminals 150 --seed 6 --domain ball:28.794 -o tree.swc
     as_one 5 --model blob --color-by pressure --shadows on --antialias 2 --size 48x64
@@ -60,7 +61,7 @@ test_a_verification_leaves_the_scenes_of_its_tiles_and_no_others() {
     [ -z "$(find report -name '*tile*')" ] || fail "expected no tiles, got $(ls report)"
 }
 
-# 33,599 segments of a blob are more than POV-Ray reads in good time with their ids.
+# POV-Ray does not read 33,599 segments of a blob with ids in acceptable time.
 test_a_scene_that_is_too_much_for_povray_is_drawn_in_tiles_or_refused() {
     run_ok corcast grow --terminals 16800 --seed 5 --quiet -o tree.swc
     run_ok corcast verify tree.swc --model blob --size 48x40 -o report

@@ -9,7 +9,8 @@ command -v "${CORCAST_POVRAY:-povray}" >/dev/null || {
     exit 3
 }
 
-# differing A.png B.png: how many pixels differ by more than $3 levels (0) in some channel.
+# differing A.png B.png [LEVELS]: prints the number of pixels that differ by more than LEVELS levels
+# (default 0) in a channel.
 differing() {
     cmp -l <(pngtopnm "$1") <(pngtopnm "$2") |
         awk -v limit="${3:-0}" '
@@ -26,7 +27,8 @@ tree_3d() {
     run_ok corcast grow --terminals "${1:-60}" --seed 6 --domain ball:28.794 --relax 0 -o tree.swc
 }
 
-# agrees MODEL OPTIONS ...: verify passes on tree.swc, and the pictures are as close as promised.
+# agrees MODEL OPTIONS ...: `verify` passes for tree.swc, and the pictures are as close as the
+# documents state.
 agrees() {
     local model=$1 pixels
     shift
@@ -38,8 +40,9 @@ agrees() {
         expect_json report/report.json '.surface.verdict == "agree" and .surface.common_pixels > 100'
 }
 
-# Outlines, cuts and equally near surfaces of these lie exactly at pixel centres of a picture whose frame is theirs.
-# Sums of hundreds of quartics round differently in the two programs: one pixel in 19,200 by one level.
+# The default camera frames these trees so that outlines, cuts and surfaces at equal depth are
+# exactly at pixel centres. Sums of hundreds of quartics are rounded differently in the two
+# programs: one pixel in 19,200 differs by one level.
 test_smooth_vessels_agree_in_every_model() {
     local model pixels
     tree_3d 12
@@ -87,7 +90,7 @@ test_alpha_of_a_transparent_picture_is_judged() {
         expect_json report/report.json '.alpha.verdict == "agree" and .alpha.max_abs == 0'
     done
     expect_file report/povray.alpha.png
-    # A POV-Ray that is 2 % too transparent, and right in all else.
+    # Replaces POV-Ray by a script whose pictures are 2 % too transparent and otherwise correct.
     cat >povray.sh <<'END'
 #!/bin/bash
 for i; do
@@ -122,8 +125,8 @@ test_joints_seen_close_up_agree() {
     agrees joined --projection perspective --location 12,25,9 --look-at 1,16,2 --angle 30 --shadows on
 }
 
-# The panels of templates/figures/fig3.ini, but for ambient occlusion, which POV-Ray has not; `make figures` holds them
-# large and smoothed.
+# The panels of templates/figures/fig3.ini without ambient occlusion, which POV-Ray lacks. `make
+# figures` draws them large and antialiased.
 test_bifurcations_of_three_angles_agree_in_three_models() {
     local angles model
     for angles in 20,30 35,50 60,70; do
@@ -135,7 +138,8 @@ test_bifurcations_of_three_angles_agree_in_three_models() {
     done
 }
 
-# Two vessels at both ends of a short segment, so near that the potential of the paper merges them.
+# Two vessels at the two ends of a short segment, so close that the potential of the paper merges
+# them.
 test_the_potential_of_the_graph_agrees() {
     printf '%s\n' '1 3 -9 1.1 0 1 -1' '2 3 0 1.1 0 1 1' '3 3 9 1.1 0 1 2' '4 3 0 -1.1 0 0.6 2' '5 3 9 -1.1 0 1 4' \
         '6 3 -9 -1.1 0 1 4' >tree.swc
@@ -144,7 +148,8 @@ test_the_potential_of_the_graph_agrees() {
     agrees isosurface --potential graph --view iso --projection perspective
 }
 
-# In shadows pixels on their own horizon may be left to POV-Ray's shadow cache.
+# With shadows, pixels where the surface is parallel to the light may depend on POV-Ray's shadow
+# cache.
 test_meshes_agree() {
     tree_3d 12
     agrees mesh --color-by radius --view iso --antialias 2
@@ -177,8 +182,9 @@ test_colors_that_blend_agree_to_the_last_of_16_bits() {
     done
 }
 
-# A grown tree's Strahler orders lie exactly on the bounds of these classes: each vessel has one color in both pictures.
-# The look is flat, so a picture has the background, the classes, and what --over and --under add.
+# The Strahler orders of a grown tree are exactly on the bounds of these classes. Each vessel has
+# the same color in both pictures. The look is flat, so a picture contains only the background, the
+# colors of the classes, and those of --over and --under.
 test_values_on_the_bounds_of_classes_have_one_color_in_both_pictures() {
     local model classes
     tree_3d 30
@@ -207,7 +213,7 @@ test_joints_whose_numbers_move_a_point_agree() {
     [ "$(grep -c '^Vessel_Joint(' check/scene.inc)" -gt 8000 ] || fail "expected more joints"
 }
 
-# More segments than fit into one of the cells that the scene is cut into, and some shorter than their radius.
+# More segments than fit into one cell of the scene, and some shorter than their radius.
 test_blobs_in_many_cells_agree() {
     run_ok corcast grow --terminals 300 --seed 3 --lambda 0 -o tree.swc
     agrees blob --view iso --shadows on
@@ -255,7 +261,7 @@ test_a_tree_drawn_by_hand_agrees_in_every_model() {
     done
 }
 
-# Faces of cells lie at x = 0 and y = 0.
+# Faces of cells are at x = 0 and y = 0.
 test_isosurface_agrees_at_any_magnification() {
     local height
     cp "$DATA/bifurcation.swc" tree.swc
@@ -288,7 +294,7 @@ test_a_tree_far_from_the_origin_agrees() {
     done
 }
 
-# Their inner sides are lit as their outer ones are.
+# The inner sides of walls are lit like their outer sides.
 test_walls_seen_from_inside_agree() {
     local model
     printf '%s\n' '1 3 0 0 0 1 -1' '2 3 5 0 0 1 1' '3 3 8 3 0 .5 2' '4 3 8 -3 0 .5 2' >tree.swc
@@ -374,7 +380,7 @@ test_many_lights_of_both_kinds_agree() {
     agrees isosurface --look ./lights.ini --shadows on --projection perspective
 }
 
-# ground WHERE: a look with a ground plane there.
+# ground LINES: writes a look with a ground plane that the lines describe.
 ground() {
     point_lights
     printf '[ground]\n%s\ncolor = 0.8 0.75 0.9\ndiffuse = 0.7\n' "$1" >>lights.ini
@@ -404,7 +410,7 @@ test_a_sheet_behind_the_tree_agrees() {
     agrees isosurface --look ./lights.ini --shadows on --antialias 2
 }
 
-# The ground hides the tree from below, and from the lights above it nothing.
+# Seen from below, the ground hides the tree. It blocks no light from above.
 test_a_ground_seen_from_below_agrees() {
     tree_3d
     ground 'axis = 0 1 0'
@@ -433,7 +439,7 @@ soft_lights() {
     printf 'size = 0.8\nsamples = 4\n' >>lights.ini
 }
 
-# What POV-Ray's shadow cache leaves to the order of rays is counted, and no more.
+# Only differences that POV-Ray's shadow cache explains are counted as settled.
 test_soft_shadows_agree_but_for_the_shadow_cache() {
     tree_3d
     soft_lights
@@ -449,8 +455,8 @@ test_soft_shadows_agree_but_for_the_shadow_cache() {
     expect_differing 1100 1400 soft.ppm hard.ppm
 }
 
-# povray_sees COMMAND: a POV-Ray before which COMMAND changes $scene, and $geometry, before the first of those that
-# run side by side.
+# povray_sees COMMAND: replaces POV-Ray by a script that runs COMMAND before the first POV-Ray run.
+# COMMAND may change the files $scene and $geometry.
 povray_sees() {
     cat >povray.sh <<END
 #!/bin/sh
@@ -471,7 +477,7 @@ END
     export CORCAST_POVRAY=$PWD/povray.sh
 }
 
-# A light of fewer points, and one of another size.
+# A light with fewer points, and a light of another size.
 test_faults_in_soft_shadows_are_found_out() {
     local edit
     tree_3d
@@ -485,7 +491,7 @@ test_faults_in_soft_shadows_are_found_out() {
     done
 }
 
-# A chain of segments seen end-on: POV-Ray misses a root that rays along the wall graze.
+# A chain of segments seen end-on. POV-Ray misses roots of rays that graze the wall.
 END_ON='--model blob --location 0.2,-0.2,300 --look-at 0.2,-0.2,0 --up 0,1,0 --height 3.2 --size 160x120'
 
 test_where_povray_misses_a_root_of_a_blob_the_field_says_so() {
@@ -507,7 +513,8 @@ test_where_povray_misses_a_root_of_an_antialiased_blob_the_field_says_so() {
     expect_json report/report.json '.settled.unexplained_pixels == 0 and (.settled.pixels | length) > 1'
 }
 
-# povray_then COMMAND: a POV-Ray after which COMMAND changes $picture, of the plane $plane.
+# povray_then COMMAND: replaces POV-Ray by a script that runs COMMAND after POV-Ray. COMMAND may
+# change $picture, the picture of the plane $plane.
 povray_then() {
     cat >povray.sh <<END
 #!/bin/sh
@@ -524,7 +531,8 @@ END
     export CORCAST_POVRAY=$PWD/povray.sh
 }
 
-# One pixel of POV-Ray's colors darker, then one brighter: no root and no shadow explains it.
+# One pixel of POV-Ray's colors becomes darker, then brighter. Neither a root nor a shadow explains
+# this.
 test_a_pixel_of_a_blob_that_nothing_explains_is_a_difference() {
     local level
     for level in 3 200; do
@@ -540,7 +548,8 @@ test_a_pixel_of_a_blob_that_nothing_explains_is_a_difference() {
     done
 }
 
-# What stands behind the one left out is a later root of the field; but rays need not graze to see it.
+# The surface behind a missing segment is a later root of the field, but the rays that hit it do not
+# graze.
 test_a_missing_segment_of_a_blob_is_found_out() {
     tree_3d 30
     povray_sees "awk '/^ *Vessel_Blob\(/ && ++n == 30 { next } { print }' \"\$geometry.whole\" >\"\$geometry\""
@@ -549,7 +558,8 @@ test_a_missing_segment_of_a_blob_is_found_out() {
     expect_json report/report.json '.verdict == "differ" and .settled.unexplained_pixels > 3'
 }
 
-# The guaranteed picture against the one that finds the surface as POV-Ray does.
+# Compares the picture with guaranteed roots with the picture that finds the surface as POV-Ray
+# does.
 test_soft_shadows_fall_on_isosurfaces() {
     local hits
     tree_3d
@@ -566,7 +576,7 @@ test_soft_shadows_fall_on_isosurfaces() {
     [ "$(differing exact.png hard.png 3)" -gt 40 ] || fail "expected soft shadows to differ from hard ones"
 }
 
-# A POV-Ray that waits until there are three.
+# Replaces POV-Ray by a script that waits until three copies of it run.
 test_the_planes_are_drawn_side_by_side() {
     cat >povray.sh <<END
 #!/bin/sh
@@ -587,7 +597,7 @@ END
     expect_sentence 'exit status 1\): rror: alone'
 }
 
-# planes_asked_for REPORT: the planes of the scene, in the order of the commands, in one line.
+# planes_asked_for REPORT: prints the planes of the commands in the report, in one line.
 planes_asked_for() {
     jq -r '.commands[]' "$1" | sed -n 's/.*Corcast_Plane=\([0-9]\).*/\1/p' | tr '\n' ' '
 }
@@ -634,7 +644,8 @@ test_the_report_page_needs_nothing_else() {
     ! grep -qF "$PWD" report/report.html report/report.json || fail "expected no path of this machine"
 }
 
-# A POV-Ray that draws something else must be found out: wrap the real one and change the scene.
+# povray_with ARGUMENT...: replaces POV-Ray by a script that passes further arguments to it, so that
+# it draws another picture.
 povray_with() {
     printf '#!/bin/sh\nexec povray "$@" %s\n' "$*" >povray.sh
     chmod +x povray.sh
@@ -653,7 +664,7 @@ test_another_finish_is_found_out() {
     done
 }
 
-# Where the surface is proven to be, its colors are POV-Ray's but for the accuracy of its steps.
+# At the exact surface, the colors equal POV-Ray's up to the accuracy of POV-Ray's root finder.
 test_a_hundredth_more_diffuse_light_is_found_in_the_exact_isosurface() {
     local change
     tree_3d 30
@@ -707,7 +718,7 @@ test_verify_writes_what_formats_says() {
     expect_same said written
 }
 
-# All looks that POV-Ray can draw, and of the others what it can.
+# All looks. Effects of a look that POV-Ray cannot draw are left out.
 test_every_look_agrees_but_for_what_is_said_to_be_left_out() {
     local look
     cp "$DATA/bifurcation.swc" tree.swc
@@ -721,7 +732,7 @@ test_every_look_agrees_but_for_what_is_said_to_be_left_out() {
     done
 }
 
-# The fade is part of the surfaces' texture, whatever writes that, and of the picture that is compared.
+# The fade is part of the texture of every model, and of the picture that is compared.
 test_fading_agrees_in_every_model() {
     local model
     run_ok corcast grow --quiet --terminals 8 --domain ball:20 -o tree.swc

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# Density files: the light of a POV-Ray medium equals the path length through vessels.
+# Density files: the light of a medium in POV-Ray is proportional to the path length through
+# vessels.
 . "$(dirname "$0")/../lib.sh"
 
-# Each pixel of the picture looks along a row of voxels: its light is the sum of their densities, as this reads them.
-# Each pixel is held against that, and the whole against the volume in the manifest.
+# The ray of each pixel passes through a row of voxels. The light of the pixel must equal the sum of
+# their densities, and the sum over all pixels the volume in the manifest.
 test_the_light_of_a_medium_is_the_way_through_vessels() {
     run_ok corcast grow --terminals 12 --domain ball:30 --seed 5 -o t.swc --quiet
     run_ok corcast export t.swc -o t.df3 --spacing 0.9,0.8,1.1 --depth 16 --quiet
@@ -37,7 +38,7 @@ assert worst < 0.07 * 0.002, f"a pixel is off by {worst / 0.07} mm"
 assert abs(light / way - 1) < 1e-4, light / way
 assert abs(way / 0.07 * 0.9 * 0.8 / said["union_mm3"] - 1) < 1e-3
 END
-    # From the other side the glow is the mirror picture; in perspective it is another one.
+    # From the other side the picture is mirrored; in perspective it differs.
     sed -i 's|^#include|#declare Camera_Location = <0, 0, -200>;\n#declare Camera_Look_At = <0, 0, 0>;\n#include|' glow.pov
     { cat t.pov; echo '#debug concat("\n:", vstr(3, Camera_Right, " ", 0, 6), "; ", vstr(3, Camera_Direction, " ", 0, 3), "\n")'; } >debug.pov
     sed -i 's|t.pov|debug.pov|' glow.pov

@@ -3,8 +3,8 @@
 # command that cannot run here ends in a comment that begins with "needs".
 . "$(dirname "$0")/../lib.sh"
 
-# commands DOCUMENT: its code lines that run programs, in their order, the name of an INI block in front of it as
-# `file NAME`, its lines as `line TEXT`.
+# commands DOCUMENT: prints the code lines that run programs, in order, as `run COMMAND`. An INI
+# block is printed as `file NAME`, followed by its lines as `line TEXT`.
 commands() {
     awk '/^$/ { next }
          !/^    / { inside = 0; next }
@@ -14,7 +14,8 @@ commands() {
          inside { print "line " text }' "$REPO/$1"
 }
 
-# small COMMAND: with pictures of at most 64 x 48 pixels, unless a preset sets their size.
+# small COMMAND: prints the command with pictures of at most 64 x 48 pixels, unless a preset sets
+# their size.
 small() {
     local small
     small=$(echo "$1" | sed -E 's/ #.*//; s/--size [0-9]+x[0-9]+/--size 64x48/; s/\+W[0-9]+ \+H[0-9]+/+W64 +H48/')
@@ -25,7 +26,7 @@ small() {
     echo "$small"
 }
 
-# make_target COMMAND: only that there is such a target; what each does is tested where it is made.
+# make_target COMMAND: the Makefile has the targets of the command. The targets are not run here.
 make_target() {
     local word
     for word in $(echo "$1" | sed 's/#.*//; s/&&.*//; s/^make//'); do

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Tachyon, an independent renderer, as witness of scenes that POV-Ray and corcast draw.
+# Tachyon, an independent renderer, draws the scenes that POV-Ray and corcast draw.
 . "$(dirname "$0")/../lib.sh"
 
 needs_tachyon() {
@@ -24,7 +24,7 @@ test_three_programs_see_the_same_vessels_equally_far_away() {
     grep -q 'testcase.*name="POV-Ray and Tachyon"' v/junit.xml || fail "expected the witness in JUnit"
 }
 
-# other NAME SCRIPT: a program that draws another scene than it is asked for.
+# other NAME SCRIPT: makes an executable script that draws another scene than requested.
 other() {
     printf '#!/bin/sh\n%s\n' "$2" >"$1"
     chmod +x "$1"
@@ -58,7 +58,8 @@ test_without_a_witness_that_draws_there_is_no_verdict() {
     expect_sentence '--model joined: a scene for Tachyon 0.99 holds cylinders, rounded and mesh'
 }
 
-# A finish without highlights and brilliance is in both; Tachyon leaves out light below 1/512.
+# Both programs support a finish without highlights and brilliance. Tachyon ignores light below
+# 1/512.
 test_tachyon_draws_a_scene_in_the_colors_that_render_gives_it() {
     local shadows
     needs_tachyon
@@ -78,7 +79,8 @@ test_tachyon_draws_a_scene_in_the_colors_that_render_gives_it() {
     expect_sentence '--ini is for scenes of POV-Ray \(.pov\)'
 }
 
-# The shadows on a ground that is tilted to the picture tell where it lies: 1 % farther off, they are elsewhere.
+# The ground is tilted relative to the picture, so the positions of shadows depend on its distance:
+# at 1 % more they differ.
 test_tachyon_draws_the_ground_where_render_does() {
     local part
     needs_tachyon

@@ -3,7 +3,8 @@
 # [relations.py].
 . "$(dirname "$0")/../lib.sh"
 
-# holds RELATION...: the relations hold for pairs drawn from the seed 1; PAIRS and SEED set others.
+# holds RELATION...: the relations hold for PAIRS (default 3) random pairs of the seed SEED (default
+# 1).
 holds() {
     /usr/bin/python3 -c 'import numpy' 2>import.log || skip "python3-numpy is not installed"
     run /usr/bin/python3 "$REPO/tests/relations/relations.py" "$CORCAST" "$@" --pairs "${PAIRS:-3}" --seed "${SEED:-1}"

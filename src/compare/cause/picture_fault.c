@@ -40,11 +40,6 @@ static double code_of(double linear)
     return (double)srgb_encode((float)clamp(linear, 0, 1));
 }
 
-static double brightened(double code, double percent)
-{
-    return code_of(light(code) * (1 + percent / 100));
-}
-
 static bool in_part(const Planting *p, int x, int y)
 {
     return x >= p->left && x < p->left + p->side && y >= p->top && y < p->top + p->side;
@@ -90,7 +85,7 @@ static double blurred(const Planting *p, int x, int y, int c)
 
 static double brighter(const Planting *p, int x, int y, int c)
 {
-    return brightened(at(p->from, x, y, c), p->size);
+    return code_of(light(at(p->from, x, y, c)) * (1 + p->size / 100));
 }
 
 static double redder(const Planting *p, int x, int y, int c)

@@ -83,7 +83,7 @@ typedef enum PixelCount {
 
 /* Sets the measures that are counts, and those of edges. `labelled` is false if the labels are
  * unknown. */
-void counts_take(const size_t counts[PIXEL_COUNTS], bool labelled, CompareResult *result);
+void counts_take(const uint64_t counts[PIXEL_COUNTS], bool labelled, CompareResult *result);
 
 /* Adds to the result the largest 8-connected region of missing, or of extra, pixels, and the sum of
  * both; the result has their counts. `coverage`, one Coverage per pixel, is cleared. Errors:

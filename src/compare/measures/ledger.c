@@ -2,6 +2,7 @@
  * in both pictures adds to the sum of squares alone. */
 #include "compare/measures/ledger.h"
 
+#include "compare/pixels.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -79,12 +80,12 @@ static void add_edges(SegmentSums *segments, const SegmentIndex *index, const ui
 {
     for (int x = 0; x < width; x++) {
         if (row[x] != below[x]) {
-            segments[index->of_id[row[x]]].edges[side]++;
-            segments[index->of_id[below[x]]].edges[side]++;
+            segments[index->of_id[row[x]]].total.edges[side]++;
+            segments[index->of_id[below[x]]].total.edges[side]++;
         }
         if (x > 0 && row[x] != row[x - 1]) {
-            segments[index->of_id[row[x]]].edges[side]++;
-            segments[index->of_id[row[x - 1]]].edges[side]++;
+            segments[index->of_id[row[x]]].total.edges[side]++;
+            segments[index->of_id[row[x - 1]]].total.edges[side]++;
         }
     }
 }
@@ -94,7 +95,7 @@ static void add_squares(SegmentSums *segment, const uint16_t *a, size_t n)
     uint64_t squares = 0;
     for (size_t i = 0; i < n; i++)
         squares += (uint32_t)a[i] * (uint32_t)a[i];
-    segment->squares += squares;
+    segment->total.squares += squares;
 }
 
 /* The pixels that show one segment in both pictures. */
@@ -105,11 +106,11 @@ static void add_common(SegmentSums *segment, const uint16_t *a, const uint16_t *
         int largest = 0;
         for (int c = 0; c < channels; c++) {
             int difference = b[c] - a[c];
-            segment->signed_codes[c] += difference;
-            segment->products += (int64_t)a[c] * difference;
+            segment->total.signed_codes[c] += difference;
+            segment->total.products += (int64_t)a[c] * difference;
             largest = abs(difference) > largest ? abs(difference) : largest;
         }
-        segment->differing += largest > 0;
+        segment->total.differing += largest > 0;
         segment->max_code = largest > segment->max_code ? largest : segment->max_code;
     }
 }
@@ -126,16 +127,16 @@ void segment_sums_add_row(SegmentSums *segments, const SegmentIndex *index,
         size_t start = (size_t)x * (size_t)channels, n = (size_t)(end - x) * (size_t)channels;
         SegmentSums *of_a = &segments[index->of_id[in_a[x]]],
                     *of_b = &segments[index->of_id[in_b[x]]];
-        of_a->area[0] += (uint64_t)(end - x);
-        of_b->area[1] += (uint64_t)(end - x);
+        of_a->total.area[0] += (uint64_t)(end - x);
+        of_b->total.area[1] += (uint64_t)(end - x);
         widen(of_a, x, end - 1, window->y);
         if (of_a != of_b) {
             widen(of_b, x, end - 1, window->y);
-            of_a->differing += (uint64_t)(end - x);
-            of_b->differing += (uint64_t)(end - x);
+            of_a->total.differing += (uint64_t)(end - x);
+            of_b->total.differing += (uint64_t)(end - x);
             continue;
         }
-        of_a->common += (uint64_t)(end - x);
+        of_a->total.common += (uint64_t)(end - x);
         add_squares(of_a, a + start, n);
         if (a != b)
             add_common(of_a, a + start, b + start, end - x, channels);
@@ -147,16 +148,7 @@ void segment_sums_add_row(SegmentSums *segments, const SegmentIndex *index,
 void segment_sums_add(SegmentSums *to, const SegmentSums *from, size_t n)
 {
     for (size_t i = 0; i < n; i++) {
-        for (int side = 0; side < 2; side++) {
-            to[i].area[side] += from[i].area[side];
-            to[i].edges[side] += from[i].edges[side];
-        }
-        for (int c = 0; c < 3; c++)
-            to[i].signed_codes[c] += from[i].signed_codes[c];
-        to[i].common += from[i].common;
-        to[i].differing += from[i].differing;
-        to[i].squares += from[i].squares;
-        to[i].products += from[i].products;
+        add_integers(&to[i].total, &from[i].total, sizeof to[i].total);
         to[i].max_code = from[i].max_code > to[i].max_code ? from[i].max_code : to[i].max_code;
         if (from[i].right >= from[i].left) {
             widen(&to[i], from[i].left, from[i].right, from[i].top);
@@ -170,12 +162,12 @@ void segment_sums_add(SegmentSums *to, const SegmentSums *from, size_t n)
 static LedgerEntry make_entry(uint32_t id, const SegmentSums *segment, int channels,
                               double code_levels)
 {
-    uint64_t edges = segment->area[0] ? segment->edges[0] : segment->edges[1];
+    uint64_t edges = segment->total.area[0] ? segment->total.edges[0] : segment->total.edges[1];
     LedgerEntry entry = {.id = id,
-                         .area_a = segment->area[0],
-                         .area_b = segment->area[1],
-                         .common = segment->common,
-                         .differing = segment->differing,
+                         .area_a = segment->total.area[0],
+                         .area_b = segment->total.area[1],
+                         .common = segment->total.common,
+                         .differing = segment->total.differing,
                          .outline_px = PX_PER_EDGE * (double)edges,
                          .gain = (double)NAN,
                          .max_levels = segment->max_code * code_levels,
@@ -183,11 +175,11 @@ static LedgerEntry make_entry(uint32_t id, const SegmentSums *segment, int chann
                          .top = segment->top,
                          .right = segment->right,
                          .bottom = segment->bottom};
-    for (int c = 0; c < channels && segment->common; c++)
+    for (int c = 0; c < channels && segment->total.common; c++)
         entry.signed_levels[c] =
-            (double)segment->signed_codes[c] * code_levels / (double)segment->common;
-    if (segment->squares)
-        entry.gain = 1 + (double)segment->products / (double)segment->squares;
+            (double)segment->total.signed_codes[c] * code_levels / (double)segment->total.common;
+    if (segment->total.squares)
+        entry.gain = 1 + (double)segment->total.products / (double)segment->total.squares;
     if (edges)
         entry.moved_px = ((double)entry.area_b - (double)entry.area_a) / entry.outline_px;
     return entry;

@@ -6,13 +6,19 @@
 
 #include "compare/measures/labels.h"
 
-/* Sums of one segment. Index 0 is A, index 1 is B. */
-typedef struct SegmentSums {
+/* Sums over the pixels of a segment: integers of 64 bits alone, so that they are added as an array.
+ * Index 0 is A, index 1 is B. */
+typedef struct SegmentTotals {
     uint64_t area[2], edges[2]; /* pixels; sides of pixels that border on something else */
     uint64_t common, differing;
     int64_t signed_codes[3]; /* B - A over common pixels */
     uint64_t squares;        /* of a, all channels */
     int64_t products;        /* a (b - a), all channels */
+} SegmentTotals;
+
+/* What is known about one segment. */
+typedef struct SegmentSums {
+    SegmentTotals total;
     int max_code;
     int left, top, right, bottom; /* right < left: empty */
 } SegmentSums;

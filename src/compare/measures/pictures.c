@@ -13,25 +13,28 @@ static void take_color(const PixelSums *sums, double code_levels, int channels,
                        CompareResult *result)
 {
     double *values = result->values, pixels = values[MEASURE_PIXELS], bias_levels = 0;
-    double samples = pixels * channels, rmse = sqrt((double)sums->squares / samples) * code_levels;
+    double samples = pixels * channels,
+           rmse = sqrt((double)sums->total.squares / samples) * code_levels;
     for (int c = 0; c < channels; c++) {
-        double bias = (double)sums->signed_codes[c] / pixels * code_levels;
+        double bias = (double)sums->total.signed_codes[c] / pixels * code_levels;
         if (fabs(bias) > fabs(bias_levels))
             bias_levels = bias;
     }
-    double brighter = (double)sums->brighter, darker = (double)sums->darker;
+    double brighter = (double)sums->total.brighter, darker = (double)sums->total.darker;
     values[MEASURE_MAX_CODE] = sums->max;
     values[MEASURE_MAX_ABS] = sums->max * code_levels;
     values[MEASURE_UNSETTLED_MAX_ABS] = sums->unsettled_max * code_levels;
-    values[MEASURE_MEAN_ABS] = (double)sums->abs / samples * code_levels;
+    values[MEASURE_MEAN_ABS] = (double)sums->total.abs / samples * code_levels;
     values[MEASURE_RMSE] = rmse;
     values[MEASURE_PSNR_DB] = rmse > 0 ? 20 * elementary_log10(255 / rmse) : (double)INFINITY;
     values[MEASURE_BIAS_LEVELS] = bias_levels;
-    values[MEASURE_SIGN_SIGMA] =
-        sums->counts[COUNT_DIFFERING] ? (brighter - darker) / sqrt(fmax(brighter + darker, 1)) : 0;
+    values[MEASURE_SIGN_SIGMA] = sums->total.counts[COUNT_DIFFERING]
+                                     ? (brighter - darker) / sqrt(fmax(brighter + darker, 1))
+                                     : 0;
     if (sums->max > 0)
         result->places[PLACE_WORST] = sums->worst;
-    memcpy(result->classes, sums->classes, sizeof result->classes);
+    for (int i = 0; i < PIXEL_CLASSES; i++)
+        result->classes[i] = sums->total.classes[i];
 }
 
 static Status check_views(const Rendering *a, const Rendering *b, Err *err)
@@ -55,13 +58,13 @@ static Status take_counts(const Counting *counting, CompareResult *result, Ledge
     double *values = result->values;
     bool labelled = counting->labels->source != LABELS_UNKNOWN;
     take_color(sums, code_levels, channels, result);
-    counts_take(sums->counts, labelled, result);
+    counts_take(sums->total.counts, labelled, result);
     if (!labelled)
         return STATUS_OK;
     double moved = values[MEASURE_EXTRA_PIXELS] - values[MEASURE_MISSING_PIXELS];
     values[MEASURE_INTERIOR_MAX_ABS] = sums->interior_max * code_levels;
     values[MEASURE_SILHOUETTE_PX] =
-        sums->silhouette ? moved / (PX_PER_EDGE * (double)sums->silhouette) : 0;
+        sums->total.silhouette ? moved / (PX_PER_EDGE * (double)sums->total.silhouette) : 0;
     if (counting->common_only)
         values[MEASURE_JUDGED_PIXELS] = values[MEASURE_COMMON_PIXELS];
     TRY(region_take(counting->coverage, counting->labels, result, err));

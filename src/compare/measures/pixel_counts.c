@@ -44,30 +44,13 @@ static PixelClass class_of_shading(const Counting *counting, const PixelRow *row
     return difference > 1 ? PIXEL_SHADING : difference == 1 ? PIXEL_ROUNDING : PIXEL_IDENTICAL;
 }
 
-/* The largest difference over the channels of a pixel, in codes; adds to the sums. */
-static int pixel_difference(const uint16_t *a, const uint16_t *b, int channels, PixelSums *sums)
-{
-    int largest = 0, sum = 0;
-    for (int c = 0; c < channels; c++) {
-        int difference = b[c] - a[c], size = abs(difference);
-        sums->signed_codes[c] += difference;
-        sums->abs += (uint64_t)size;
-        sums->squares += (uint64_t)size * (uint64_t)size;
-        largest = size > largest ? size : largest;
-        sum += difference;
-    }
-    sums->brighter += sum > 0;
-    sums->darker += sum < 0;
-    return largest;
-}
-
-static void count_pixel(const Counting *counting, const PixelRow *row, int x, PixelSums *sums)
+/* Counts a pixel whose largest difference over the channels is `difference` codes. */
+static void count_pixel(const Counting *counting, const PixelRow *row, int x, int difference,
+                        PixelSums *sums)
 {
     const LabelWindow *window = row->window;
-    int channels = counting->a->picture->channels;
     uint32_t in_a = window->rows[0][1][x], in_b = window->rows[1][1][x];
     bool band = window->band[x];
-    int difference = pixel_difference(row->a + x * channels, row->b + x * channels, channels, sums);
     bool common = in_a && in_b, beyond = difference > counting->beyond;
     size_t pixel = (size_t)row->y * (size_t)counting->labels->width + (size_t)x;
     bool settled = counting->settled && counting->settled[pixel];
@@ -75,31 +58,27 @@ static void count_pixel(const Counting *counting, const PixelRow *row, int x, Pi
                              : in_a != in_b
                                  ? labels_class(in_a, in_b, band)
                                  : class_of_shading(counting, row, x, common, difference);
-    sums->classes[pixel_class]++;
+    sums->total.classes[pixel_class]++;
     if (counting->classes)
         counting->classes[pixel] = (uint8_t)pixel_class;
-    sums->counts[COUNT_COMMON] += common;
+    sums->total.counts[COUNT_COMMON] += common;
     if (!in_a != !in_b && !settled) {
         counting->coverage[pixel] = in_a ? COVERED_MISSING : COVERED_EXTRA;
-        sums->counts[COUNT_MISSING] += in_a != 0;
-        sums->counts[COUNT_EXTRA] += in_b != 0;
+        sums->total.counts[COUNT_MISSING] += in_a != 0;
+        sums->total.counts[COUNT_EXTRA] += in_b != 0;
     }
-    sums->counts[COUNT_BAND] += band;
-    sums->counts[COUNT_BAND_DIFFERS] += band && in_a != in_b;
-    sums->counts[COUNT_DIFFERING] += difference > 0;
-    sums->counts[COUNT_SETTLED] += settled;
+    sums->total.counts[COUNT_BAND] += band;
+    sums->total.counts[COUNT_BAND_DIFFERS] += band && in_a != in_b;
+    sums->total.counts[COUNT_DIFFERING] += difference > 0;
+    sums->total.counts[COUNT_SETTLED] += settled;
     beyond = beyond && !settled;
-    sums->counts[COUNT_BEYOND] += beyond && (common || !counting->common_only);
-    sums->counts[COUNT_BAND_BEYOND] += beyond && band;
-    sums->counts[COUNT_INTERIOR_BEYOND] += beyond && !band;
+    sums->total.counts[COUNT_BEYOND] += beyond && (common || !counting->common_only);
+    sums->total.counts[COUNT_BAND_BEYOND] += beyond && band;
+    sums->total.counts[COUNT_INTERIOR_BEYOND] += beyond && !band;
     if (!band && !settled && difference > sums->interior_max)
         sums->interior_max = difference;
     if (!settled && difference > sums->unsettled_max)
         sums->unsettled_max = difference;
-    if (difference > sums->max) {
-        sums->max = difference;
-        sums->worst = (PixelPlace){.x = x, .y = row->y};
-    }
 }
 
 /* Pixels [from, to) of a row that are equal in color and label, and whose geometry nobody asked
@@ -112,9 +91,9 @@ static void count_equal(const LabelWindow *window, int from, int to, PixelSums *
         common += label[x] != 0;
         band += window->band[x];
     }
-    sums->counts[COUNT_COMMON] += common;
-    sums->counts[COUNT_BAND] += band;
-    sums->classes[PIXEL_IDENTICAL] += (size_t)(to - from);
+    sums->total.counts[COUNT_COMMON] += common;
+    sums->total.counts[COUNT_BAND] += band;
+    sums->total.classes[PIXEL_IDENTICAL] += (size_t)(to - from);
 }
 
 /* The largest difference over the channels and the sum of all, of each pixel of a block. */
@@ -142,45 +121,52 @@ static inline void take_differences(const uint16_t *a, const uint16_t *b, int n,
         out->largest[x] = largest;
         out->sum[x] = sum;
     }
-    sums->squares += squares;
-    sums->abs += total;
+    sums->total.squares += squares;
+    sums->total.abs += total;
     for (int c = 0; c < channels; c++)
-        sums->signed_codes[c] += signed_codes[c];
+        sums->total.signed_codes[c] += signed_codes[c];
 }
 
-static void note_worst(const Differences *differences, int from, int n, int y, PixelSums *sums)
+/* Finds the differences of the pixels [from, to) of a row, and adds to the sums of colors. */
+static void count_differences(const PixelRow *row, int from, int to, int channels, Differences *out,
+                              PixelSums *sums)
 {
+    const uint16_t *a = row->a + from * channels, *b = row->b + from * channels;
+    const int n = to - from;
+    unsigned brighter = 0, darker = 0;
+    if (channels == 3)
+        take_differences(a, b, n, 3, out, sums);
+    else
+        take_differences(a, b, n, 1, out, sums);
+    for (int x = 0; x < n; x++) {
+        brighter += out->sum[x] > 0;
+        darker += out->sum[x] < 0;
+    }
+    sums->total.brighter += brighter;
+    sums->total.darker += darker;
     for (int x = 0; x < n; x++)
-        if (differences->largest[x] > sums->max) {
-            sums->max = differences->largest[x];
-            sums->worst = (PixelPlace){.x = from + x, .y = y};
+        if (out->largest[x] > sums->max) {
+            sums->max = out->largest[x];
+            sums->worst = (PixelPlace){.x = from + x, .y = row->y};
         }
 }
 
 /* Pixels [from, to) of a row whose labels agree, of which nobody asks more than their colors: as
  * count_pixel counts them. */
 static void count_colors(const Counting *counting, const PixelRow *row, int from, int to,
-                         PixelSums *sums)
+                         const Differences *differences, PixelSums *sums)
 {
     const uint32_t *label = row->window->rows[0][1] + from;
     const uint8_t *band = row->window->band + from;
-    const int n = to - from, channels = counting->a->picture->channels;
-    const uint16_t *a = row->a + from * channels, *b = row->b + from * channels;
-    Differences differences;
-    unsigned rounding = 0, shading = 0, common = 0, in_band = 0, brighter = 0, darker = 0;
+    const int n = to - from;
+    unsigned rounding = 0, shading = 0, common = 0, in_band = 0;
     unsigned beyond = 0, band_beyond = 0, interior_beyond = 0;
     int interior_max = sums->interior_max, unsettled_max = sums->unsettled_max;
-    if (channels == 3)
-        take_differences(a, b, n, 3, &differences, sums);
-    else
-        take_differences(a, b, n, 1, &differences, sums);
     for (int x = 0; x < n; x++) {
-        int difference = differences.largest[x], off_band = band[x] ? 0 : difference;
+        int difference = differences->largest[x], off_band = band[x] ? 0 : difference;
         unsigned is_beyond = difference > counting->beyond, is_common = label[x] != 0;
         rounding += difference == 1;
         shading += difference > 1;
-        brighter += differences.sum[x] > 0;
-        darker += differences.sum[x] < 0;
         common += is_common;
         in_band += band[x];
         beyond += is_beyond & (is_common | !counting->common_only);
@@ -189,20 +175,17 @@ static void count_colors(const Counting *counting, const PixelRow *row, int from
         interior_max = off_band > interior_max ? off_band : interior_max;
         unsettled_max = difference > unsettled_max ? difference : unsettled_max;
     }
-    sums->classes[PIXEL_ROUNDING] += rounding;
-    sums->classes[PIXEL_SHADING] += shading;
-    sums->classes[PIXEL_IDENTICAL] += (unsigned)n - rounding - shading;
-    sums->counts[COUNT_DIFFERING] += rounding + shading;
-    sums->brighter += brighter;
-    sums->darker += darker;
-    sums->counts[COUNT_COMMON] += common;
-    sums->counts[COUNT_BAND] += in_band;
-    sums->counts[COUNT_BEYOND] += beyond;
-    sums->counts[COUNT_BAND_BEYOND] += band_beyond;
-    sums->counts[COUNT_INTERIOR_BEYOND] += interior_beyond;
+    sums->total.classes[PIXEL_ROUNDING] += rounding;
+    sums->total.classes[PIXEL_SHADING] += shading;
+    sums->total.classes[PIXEL_IDENTICAL] += (unsigned)n - rounding - shading;
+    sums->total.counts[COUNT_DIFFERING] += rounding + shading;
+    sums->total.counts[COUNT_COMMON] += common;
+    sums->total.counts[COUNT_BAND] += in_band;
+    sums->total.counts[COUNT_BEYOND] += beyond;
+    sums->total.counts[COUNT_BAND_BEYOND] += band_beyond;
+    sums->total.counts[COUNT_INTERIOR_BEYOND] += interior_beyond;
     sums->interior_max = interior_max;
     sums->unsettled_max = unsettled_max;
-    note_worst(&differences, from, n, row->y, sums);
 }
 
 static bool labels_equal(const PixelRow *row, int from, int to)
@@ -227,13 +210,17 @@ static void count_blocks(const Counting *counting, const PixelRow *row, PixelSum
     for (int from = 0, to; from < width; from = to) {
         to = from + BLOCK < width ? from + BLOCK : width;
         bool plain = !geometry && labels_equal(row, from, to);
-        if (plain && codes_equal(row, from, to, channels))
+        if (plain && codes_equal(row, from, to, channels)) {
             count_equal(row->window, from, to, sums);
-        else if (plain && colors)
-            count_colors(counting, row, from, to, sums);
+            continue;
+        }
+        Differences differences;
+        count_differences(row, from, to, channels, &differences, sums);
+        if (plain && colors)
+            count_colors(counting, row, from, to, &differences, sums);
         else
             for (int x = from; x < to; x++)
-                count_pixel(counting, row, x, sums);
+                count_pixel(counting, row, x, differences.largest[x - from], sums);
     }
 }
 
@@ -251,7 +238,7 @@ static void count_silhouette(const uint32_t *row, const uint32_t *below, int wid
         edges += (row[x] != 0) != (below[x] != 0);
     for (int x = 0; x + 1 < width; x++)
         edges += (row[x] != 0) != (row[x + 1] != 0);
-    sums->silhouette += edges;
+    sums->total.silhouette += edges;
 }
 
 /* What the straight line through the colors seen in both needs. */
@@ -263,13 +250,13 @@ static void add_regression(const PixelRow *row, int width, int channels, PixelSu
             continue;
         for (int i = x * channels; i < (x + 1) * channels; i++) {
             int64_t a = row->a[i], d = row->b[i] - a;
-            sums->line.a += (uint64_t)a;
-            sums->line.aa += (uint64_t)(a * a);
-            sums->line.d += d;
-            sums->line.ad += a * d;
-            sums->line.dd += (uint64_t)(d * d);
+            sums->total.line.a += (uint64_t)a;
+            sums->total.line.aa += (uint64_t)(a * a);
+            sums->total.line.d += d;
+            sums->total.line.ad += a * d;
+            sums->total.line.dd += (uint64_t)(d * d);
         }
-        sums->line.n += (uint64_t)channels;
+        sums->total.line.n += (uint64_t)channels;
     }
 }
 
@@ -319,23 +306,7 @@ WIDE static void count_band_wide(size_t index, int worker, void *context)
 
 static void add_sums(PixelSums *to, const PixelSums *from)
 {
-    to->abs += from->abs;
-    to->squares += from->squares;
-    for (int c = 0; c < 3; c++)
-        to->signed_codes[c] += from->signed_codes[c];
-    for (int i = 0; i < PIXEL_CLASSES; i++)
-        to->classes[i] += from->classes[i];
-    for (int i = 0; i < PIXEL_COUNTS; i++)
-        to->counts[i] += from->counts[i];
-    to->brighter += from->brighter;
-    to->darker += from->darker;
-    to->silhouette += from->silhouette;
-    to->line.n += from->line.n;
-    to->line.a += from->line.a;
-    to->line.aa += from->line.aa;
-    to->line.d += from->line.d;
-    to->line.ad += from->line.ad;
-    to->line.dd += from->line.dd;
+    add_integers(&to->total, &from->total, sizeof to->total);
     to->interior_max = larger_int(to->interior_max, from->interior_max);
     to->unsettled_max = larger_int(to->unsettled_max, from->unsettled_max);
     if (from->max > to->max) {

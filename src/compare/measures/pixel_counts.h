@@ -11,17 +11,22 @@ typedef struct LineSums {
     int64_t d, ad;
 } LineSums;
 
-/* Sums over the pixels of a band of rows. */
-typedef struct PixelSums {
+/* Sums over pixels: integers of 64 bits alone, so that they are added as an array. */
+typedef struct PixelTotals {
     uint64_t abs, squares; /* codes, codes^2 */
     int64_t signed_codes[3];
-    size_t counts[PIXEL_COUNTS];
-    size_t brighter, darker; /* pixels, by the sum of their channels */
-    size_t classes[PIXEL_CLASSES];
-    int max, interior_max, unsettled_max; /* codes; unsettled_max leaves settled pixels out */
-    PixelPlace worst;
+    uint64_t counts[PIXEL_COUNTS];
+    uint64_t brighter, darker; /* pixels, by the sum of their channels */
+    uint64_t classes[PIXEL_CLASSES];
     uint64_t silhouette; /* sides of A's pixels that part something from nothing */
     LineSums line;
+} PixelTotals;
+
+/* What is known about the pixels of a band of rows. */
+typedef struct PixelSums {
+    PixelTotals total;
+    int max, interior_max, unsettled_max; /* codes; unsettled_max leaves settled pixels out */
+    PixelPlace worst;
 } PixelSums;
 
 /* What is counted, and where to. */

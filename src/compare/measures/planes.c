@@ -95,7 +95,7 @@ static void measure_parts(const Plane *a, const Plane *b, const Labels *labels, 
 }
 
 static void count_label(const LabelWindow *window, int x, uint8_t *coverage,
-                        size_t counts[PIXEL_COUNTS], CompareResult *result)
+                        uint64_t counts[PIXEL_COUNTS], CompareResult *result)
 {
     size_t pixel = (size_t)window->y * (size_t)window->labels->width + (size_t)x;
     uint32_t a = window->rows[0][1][x], b = window->rows[1][1][x];
@@ -125,7 +125,7 @@ static void count_label(const LabelWindow *window, int x, uint8_t *coverage,
 static Status measure_labels(const Labels *labels, CompareResult *result, Err *err)
 {
     uint8_t *scratch = NULL, *coverage = NULL;
-    size_t counts[PIXEL_COUNTS] = {0};
+    uint64_t counts[PIXEL_COUNTS] = {0};
     LabelWindow window;
     Status status = STATUS_OK;
     TRY_GOTO(mem_calloc(&scratch, label_window_size(labels->width), 1, "rows of labels", err));

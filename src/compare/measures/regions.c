@@ -72,7 +72,7 @@ done:
     return status;
 }
 
-void counts_take(const size_t counts[PIXEL_COUNTS], bool labelled, CompareResult *result)
+void counts_take(const uint64_t counts[PIXEL_COUNTS], bool labelled, CompareResult *result)
 {
     static const MeasureId ids[PIXEL_COUNTS] = {[COUNT_DIFFERING] = MEASURE_DIFFERING_PIXELS,
                                                 [COUNT_BEYOND] = MEASURE_BEYOND_PIXELS,

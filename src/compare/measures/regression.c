@@ -34,7 +34,7 @@ typedef struct Runs {
 
 static LineError error_of_samples(const PixelSums *sums, const Line *line)
 {
-    double rest = (double)sums->line.dd - line->n * line->mean_d * line->mean_d -
+    double rest = (double)sums->total.line.dd - line->n * line->mean_d * line->mean_d -
                   line->slope * line->slope * line->squares_a;
     double variance = fmax(0, rest) / line->n;
     return (LineError){variance / line->squares_a,
@@ -108,8 +108,8 @@ static Status raise_by_runs(const Counting *counting, const Line *line, LineErro
 {
     const Runs runs = {.a = counting->a, .b = counting->b, .line = line};
     LineError sums[DIRECTIONS] = {{0}};
-    TRY(rows_sum(counting->labels->height, add_row_of_runs, &runs, &sums[0].slope,
-                 sizeof sums / sizeof(double), err));
+    TRY(rows_sum(counting->labels->height, add_row_of_runs, &runs, &sums[0].slope, 2 * DIRECTIONS,
+                 err));
     for (int i = 0; i < DIRECTIONS; i++) {
         error->slope = fmax(error->slope, sums[i].slope);
         error->offset = fmax(error->offset, sums[i].offset);
@@ -127,17 +127,18 @@ Status regression_take(const Counting *counting, double code_levels, CompareResu
                        Err *err)
 {
     const PixelSums *sums = counting->sums;
-    double n = (double)sums->line.n, a = (double)sums->line.a, d = (double)sums->line.d;
-    double variance = n * (double)sums->line.aa - a * a;
+    double n = (double)sums->total.line.n, a = (double)sums->total.line.a,
+           d = (double)sums->total.line.d;
+    double variance = n * (double)sums->total.line.aa - a * a;
     if (!(variance > 0))
         return STATUS_OK;
     const Line line = {.n = n,
                        .mean_a = a / n,
                        .mean_d = d / n,
-                       .slope = (n * (double)sums->line.ad - a * d) / variance,
+                       .slope = (n * (double)sums->total.line.ad - a * d) / variance,
                        .squares_a = variance / n};
     LineError error = error_of_samples(sums, &line);
-    if (sums->line.dd > 0)
+    if (sums->total.line.dd > 0)
         TRY(raise_by_runs(counting, &line, &error, err));
     double *values = result->values;
     values[MEASURE_GAIN] = 1 + line.slope;

@@ -141,35 +141,28 @@ done:
 
 static Status add_case(SuitePage *page, const SuiteCase *entry, Err *err)
 {
-    char *paths[2] = {NULL, NULL}, *mask = NULL, *name = NULL;
+    SuiteFiles files = {0};
     SuitePair pair = {0};
-    Tolerance tolerance;
-    Status status = STATUS_OK;
+    Status status;
+    const bool is_single = entry->state == SUITE_NEW || entry->state == SUITE_MISSING;
     if (entry->state <= SUITE_WITHIN)
         return STATUS_OK;
-    TRY_GOTO(file_join(page->folders->reference, entry->name, &paths[0], err));
-    TRY_GOTO(file_join(page->folders->pictures, entry->name, &paths[1], err));
-    if (entry->state == SUITE_NEW || entry->state == SUITE_MISSING) {
-        status = add_single(page, entry, paths[entry->is_picture], err);
+    if (!is_single && (entry->state != SUITE_CHANGED || !entry->is_pair))
+        return add_listed(page, entry, err);
+    TRY_GOTO(suite_files_find(page->folders, entry, &files, err));
+    if (is_single) {
+        status = add_single(page, entry, entry->is_picture ? files.picture : files.reference, err);
         if (status == STATUS_INPUT) /* the only picture cannot be read */
             status = add_listed(page, entry, err);
         goto done;
     }
-    if (entry->state != SUITE_CHANGED || !entry->is_pair) {
-        status = add_listed(page, entry, err);
-        goto done;
-    }
-    const char *const pair_paths[2] = {paths[0], paths[1]};
-    TRY_GOTO(file_with_suffix(paths[0], MASK_SUFFIX, &mask, err));
-    TRY_GOTO(suite_tolerance(page->folders, paths[0], &tolerance, &name, err));
-    TRY_GOTO(suite_pair_read(&pair, pair_paths, mask, page->folders->background, err));
-    status = add_pair(page, entry, &pair, &tolerance, err);
+    const char *const paths[2] = {files.reference, files.picture};
+    TRY_GOTO(suite_files_tolerance(page->folders, &files, err));
+    TRY_GOTO(suite_pair_read(&pair, paths, files.mask, page->folders->background, err));
+    status = add_pair(page, entry, &pair, &files.tolerance, err);
 done:
     suite_pair_release(&pair);
-    free(paths[0]);
-    free(paths[1]);
-    free(mask);
-    free(name);
+    suite_files_release(&files);
     return status;
 }
 

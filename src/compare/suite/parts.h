@@ -46,13 +46,21 @@ void suite_pair_release(SuitePair *pair);
  * compare_pictures. */
 MUST_CHECK Status suite_pair_compare(const SuitePair *pair, const Tolerance *tolerance,
                                      CompareResult *result, Err *err);
-/* Finds the tolerance of a case. `path` is the path of its reference. If there is a tolerance file
- * beside the reference, its limits replace those of folders->case_tolerance. Otherwise the result
- * is folders->tolerance.
- *
- * name     NULL before; receives the name of a tolerance that was read, which the caller frees.
- * Errors   the errors of tolerance_read: STATUS_INPUT, STATUS_IO, STATUS_MEMORY. */
-MUST_CHECK Status suite_tolerance(const SuiteFolders *folders, const char *path,
-                                  Tolerance *tolerance, char **name, Err *err);
+/* The files of a case. Zero before suite_files_find. */
+typedef struct SuiteFiles {
+    char *reference, *picture, *mask; /* paths; owned */
+    Tolerance tolerance;              /* set by suite_files_tolerance */
+    char *tolerance_name;             /* borrowed by `tolerance`; owned */
+} SuiteFiles;
+
+/* Names the files of a case. Release *files with suite_files_release even after an error. Errors:
+ * STATUS_MEMORY. */
+MUST_CHECK Status suite_files_find(const SuiteFolders *folders, const SuiteCase *entry,
+                                   SuiteFiles *files, Err *err);
+/* Finds the tolerance of a case. If there is a tolerance file beside the reference, its limits
+ * replace those of folders->case_tolerance. Otherwise the result is folders->tolerance. Errors:
+ * those of tolerance_read: STATUS_INPUT, STATUS_IO, STATUS_MEMORY. */
+MUST_CHECK Status suite_files_tolerance(const SuiteFolders *folders, SuiteFiles *files, Err *err);
+void suite_files_release(SuiteFiles *files);
 
 #endif

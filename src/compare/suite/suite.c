@@ -141,21 +141,36 @@ Status suite_pair_compare(const SuitePair *pair, const Tolerance *tolerance, Com
 
 /* ---- one case -------------------------------------------------------------------------------- */
 
-Status suite_tolerance(const SuiteFolders *folders, const char *path, Tolerance *tolerance,
-                       char **name, Err *err)
+Status suite_files_tolerance(const SuiteFolders *folders, SuiteFiles *files, Err *err)
 {
     char *limits = NULL;
-    *tolerance = *folders->tolerance;
-    TRY(file_with_suffix(path, TOLERANCE_SUFFIX, &limits, err));
+    files->tolerance = *folders->tolerance;
+    TRY(file_with_suffix(files->reference, TOLERANCE_SUFFIX, &limits, err));
     Status status = STATUS_OK;
     if (access(limits, F_OK) == 0) {
-        *tolerance = *folders->case_tolerance;
+        files->tolerance = *folders->case_tolerance;
         TRY_GOTO(file_check_regular(limits, err));
-        status = tolerance_read(tolerance, name, limits, err);
+        status = tolerance_read(&files->tolerance, &files->tolerance_name, limits, err);
     }
 done:
     free(limits);
     return status;
+}
+
+Status suite_files_find(const SuiteFolders *folders, const SuiteCase *entry, SuiteFiles *files,
+                        Err *err)
+{
+    TRY(file_join(folders->reference, entry->name, &files->reference, err));
+    TRY(file_join(folders->pictures, entry->name, &files->picture, err));
+    return file_with_suffix(files->reference, MASK_SUFFIX, &files->mask, err);
+}
+
+void suite_files_release(SuiteFiles *files)
+{
+    free(files->reference);
+    free(files->picture);
+    free(files->mask);
+    free(files->tolerance_name);
 }
 
 /* Sets the state of a case from its picture and one of its references. */
@@ -210,14 +225,7 @@ static bool find_expired(const References *references, SuiteCase *entry)
     return false;
 }
 
-/* What a case is judged by. All members are borrowed. */
-typedef struct CaseFiles {
-    const char *reference, *picture, *mask; /* paths */
-    const References *references;
-    const Tolerance *tolerance;
-} CaseFiles;
-
-static Status judge_reference(SuiteCase *entry, const CaseFiles *files, const char *name,
+static Status judge_reference(SuiteCase *entry, const SuiteFiles *files, const char *name,
                               const float background[3], Err *err)
 {
     char *path;
@@ -225,17 +233,16 @@ static Status judge_reference(SuiteCase *entry, const CaseFiles *files, const ch
                          (int)(file_name(files->reference) - files->reference), files->reference,
                          name));
     const char *const paths[2] = {path, files->picture};
-    Status status = judge_pair(entry, paths, files->mask, background, files->tolerance, err);
+    Status status = judge_pair(entry, paths, files->mask, background, &files->tolerance, err);
     free(path);
     return status;
 }
 
 /* Compares the picture with each reference until one agrees. If none does, the state is that of the
  * first reference. */
-static Status judge_references(SuiteCase *entry, const CaseFiles *files, const float background[3],
-                               Err *err)
+static Status judge_references(SuiteCase *entry, const SuiteFiles *files,
+                               const References *references, const float background[3], Err *err)
 {
-    const References *references = files->references;
     const SuiteCase blank = *entry;
     for (size_t i = 0; i < references->n; i++) {
         const char *name = references->items[i].name;
@@ -256,25 +263,18 @@ static Status judge_references(SuiteCase *entry, const CaseFiles *files, const f
 
 static Status judge(SuiteCase *entry, const SuiteFolders *folders, Err *err)
 {
-    char *paths[2] = {NULL, NULL}, *mask = NULL, *name = NULL;
+    SuiteFiles files = {0};
     References references = {0};
-    Tolerance tolerance;
-    Status status = STATUS_OK;
-    TRY_GOTO(file_join(folders->reference, entry->name, &paths[0], err));
-    TRY_GOTO(file_join(folders->pictures, entry->name, &paths[1], err));
-    TRY_GOTO(file_with_suffix(paths[0], MASK_SUFFIX, &mask, err));
-    TRY_GOTO(references_read(&references, paths[0], err));
+    Status status;
+    TRY_GOTO(suite_files_find(folders, entry, &files, err));
+    TRY_GOTO(references_read(&references, files.reference, err));
     if (find_expired(&references, entry))
         goto done;
-    TRY_GOTO(suite_tolerance(folders, paths[0], &tolerance, &name, err));
-    const CaseFiles files = {paths[0], paths[1], mask, &references, &tolerance};
-    status = judge_references(entry, &files, folders->background, err);
+    TRY_GOTO(suite_files_tolerance(folders, &files, err));
+    status = judge_references(entry, &files, &references, folders->background, err);
 done:
     references_release(&references);
-    free(paths[0]);
-    free(paths[1]);
-    free(mask);
-    free(name);
+    suite_files_release(&files);
     return status;
 }
 

@@ -13,6 +13,10 @@ enum { MOST_DAUGHTERS = 64 };
 enum { DRAWS = 64 };
 /* An element has this many times the length that its segments need at least. */
 static const double spare_length = 1.02;
+/* The first segment of an element is this many times as long as the sum of its radius and that of
+ * its parent: leave_thin for a thin daughter, leave_thin + leave_wide for one as wide as its parent
+ * [angles in fill_place.c]. */
+static const double leave_thin = 1.1, leave_wide = 0.4;
 
 void filling_release(Filling *filling)
 {
@@ -182,12 +186,16 @@ static Status draw_daughters(Filling *filling, int32_t parent, Err *err)
 
 /* ---- lengths --------------------------------------------------------------------------------- */
 
-/* Length that the first segment of an element needs, mm: a drawn one has to leave its parent. */
+/* Length that the first segment of an element needs, mm. A drawn one has to leave its parent, which
+ * takes more than the sum of the radii because the angle between them is not a right one, and is
+ * smaller for wide daughters. */
 static double least_first(const Filling *filling, const FillElement *element)
 {
     double radius = element->radius_mm;
-    return element->grown ? 2 * radius
-                          : radius + fmax(radius, filling->element[element->parent].radius_mm);
+    if (element->grown)
+        return 2 * radius;
+    double parent = filling->element[element->parent].widest_mm;
+    return (radius + parent) * (leave_thin + leave_wide * fmin(1, radius / parent));
 }
 
 static double least_length(const Filling *filling, const FillElement *element)
@@ -198,28 +206,29 @@ static double least_length(const Filling *filling, const FillElement *element)
 
 static void draw_sizes(Filling *filling, FillElement *element)
 {
-    double length = random_length(filling, element->order);
-    if (element->grown)
-        element->length_mm = element->is_open ? fmax(0, length - element->grown_mm) : 0;
-    else
-        element->length_mm = length;
+    double length = random_length(filling, element->order) - element->grown_mm;
+    element->length_mm = length;
     if (!element->grown)
-        element->radius_mm = random_diameter(filling, element->order) / 2;
+        element->radius_mm = element->widest_mm = random_diameter(filling, element->order) / 2;
+    else if (!element->is_open || length < 2 * element->radius_mm)
+        element->length_mm = 0;
 }
 
 /* Exchanges the length of an element for a sufficient one of a random other element, to which its
- * own length is sufficient. */
+ * own length is sufficient. Otherwise makes it sufficient. */
 static void exchange_length(Filling *filling, FillElement *element, const int32_t *drawn, size_t n)
 {
-    double needed = least_length(filling, element);
+    double needed = spare_length * least_length(filling, element);
     for (int i = 0; i < DRAWS && element->length_mm < needed; i++) {
         FillElement *other = &filling->element[drawn[random_below(&filling->random, n)]];
-        if (other->length_mm < needed || element->length_mm < least_length(filling, other))
+        if (other->length_mm < needed ||
+            element->length_mm < spare_length * least_length(filling, other))
             continue;
         double length = other->length_mm;
         other->length_mm = element->length_mm;
         element->length_mm = length;
     }
+    element->length_mm = fmax(element->length_mm, needed);
 }
 
 static Status draw_order(Filling *filling, int order, Err *err)
@@ -252,14 +261,12 @@ Status filling_draw(Filling *filling, Err *err)
 
 void filling_cut(Filling *filling, const FillElement *element, double *length)
 {
-    double first = least_first(filling, element), width = 2 * element->radius_mm;
-    double least = first + width * (element->segments - 1), sum = 0;
-    double scale = fmin(1, element->length_mm / least);
+    double free = element->length_mm - least_length(filling, element), sum = 0;
     for (int i = 0; i < element->segments; i++) {
         length[i] = -elementary_log(1 - random_uniform(&filling->random));
         sum += length[i];
     }
     for (int i = 0; i < element->segments; i++)
-        length[i] = scale * (i == 0 ? first : width) +
-                    fmax(0, element->length_mm - least) * length[i] / sum;
+        length[i] = free * length[i] / sum +
+                    (i == 0 ? least_first(filling, element) : 2 * element->radius_mm);
 }

@@ -26,6 +26,7 @@ typedef struct FillElement {
     bool is_open;     /* grown, and its last segment is a terminal */
     uint16_t present[PUBLISHED_DAUGHTERS]; /* grown daughters by the number of orders below */
     double radius_mm;                      /* of a grown element: the radius at its distal end */
+    double widest_mm;                      /* its largest radius */
     double grown_mm;                       /* length that was grown; 0 for a drawn element */
     double length_mm;                      /* length that the filling adds */
 } FillElement;
@@ -58,8 +59,9 @@ MUST_CHECK Status filling_add(Filling *filling, FillElement element, Err *err);
  * daughters.
  *
  * The diameter is normally distributed within the bounds of the order. The length has a lognormal
- * distribution. An open grown element is extended to the length that was drawn for it. A drawn
- * element that is too short for its segments exchanges its length with another one of its order.
+ * distribution. An open grown element is extended to the length that was drawn for it, unless the
+ * extension were shorter than wide. A drawn element that is too short for its segments exchanges
+ * its length with another one of its order; if none is found, it gets the length that it needs.
  *
  * Errors   as filling_add. */
 MUST_CHECK Status filling_draw(Filling *filling, Err *err);

@@ -14,14 +14,14 @@ enum { DIRECTIONS = 12, RINGS = 3, MOST_BENDS = 5 };
 /* Attempts to find a place on a grown element with room for a daughter. */
 enum { ATTEMPTS = 32 };
 /* A gap beyond this share of the segment's length, and this many radii, counts as no larger. */
-static const double enough_gap = 0.75, enough_radii = 2;
+static const double enough_gap = 0.4, enough_radii = 2;
 /* Number of grid cells per segment. Vessels are crowded, so that most cells are empty. */
 static const double cells_per_segment = 4;
 /* Number of nodes that bends may add, relative to all nodes. */
 static const double spare_nodes = 0.25;
 /* A daughter leaves at the first angle if it is as wide as its parent, at the second if it is thin.
  * The angle varies by `spread`, and is larger on wider cones. */
-static const double wide_angle = 30, thin_angle = 75, spread = 12;
+static const double wide_angle = 40, thin_angle = 75, spread = 12;
 static const double wider[RINGS][2] = {{-1, 1}, {90, 115}, {140, 165}};
 /* Angles of a segment that continues a segment of the same element. */
 static const double onward[RINGS][2] = {{8, 22}, {45, 75}, {110, 150}};
@@ -77,6 +77,13 @@ Status places_enter(Places *places, int32_t i, Err *err)
                     err);
 }
 
+static FillNear ball_of(const Places *places, int32_t i)
+{
+    return (FillNear){.center = vec3_scale(vec3_add(proximal(places, i), places->node[i].at), 0.5),
+                      .radius = length_of(places, i) / 2 + places->node[i].radius,
+                      .segment = i};
+}
+
 Status places_search(Places *places, Vec3 a, Vec3 b, double reach, Err *err)
 {
     GridItem item = grid_item(&places->grid, (Capsule){a, b, reach}, 0);
@@ -91,7 +98,7 @@ Status places_search(Places *places, Vec3 a, Vec3 b, double reach, Err *err)
         places->stamp[other] = places->searches;
         TRY(mem_reserve(&places->near, &places->near_capacity, places->n_near + 1,
                         sizeof *places->near, "segments", err));
-        places->near[places->n_near++] = other;
+        places->near[places->n_near++] = ball_of(places, other);
     }
     return STATUS_OK;
 }
@@ -111,22 +118,37 @@ typedef struct Candidate {
     double gap; /* mm, between the walls of the segment and of others */
 } Candidate;
 
-/* A segment that begins at the same node must be far from the new segment's end only. */
+static double distance2_to(Vec3 point, Vec3 a, Vec3 b)
+{
+    return vec3_distance2_along(vec3_sub(point, a), vec3_sub(b, a));
+}
+
+/* Of segments that share a node, only the other ends must be far from the other segment. */
 static double gap_beside(const Places *places, const FillCourse *course, Vec3 end, int32_t other)
 {
     const FillNode *node = &places->node[other];
     Vec3 start = places->node[course->start].at, a = proximal(places, other);
-    bool is_joined = other == course->start || node->parent == course->start;
-    double apart2 = is_joined ? vec3_distance2_along(vec3_sub(end, a), vec3_sub(node->at, a))
-                              : segment_distance2(start, end, a, node->at);
+    double apart2;
+    if (other == course->start)
+        apart2 = distance2_to(end, a, node->at);
+    else if (node->parent == course->start)
+        apart2 = fmin(distance2_to(end, a, node->at), distance2_to(node->at, start, end));
+    else
+        apart2 = segment_distance2(start, end, a, node->at);
     return sqrt(apart2) - node->radius - course->radius;
 }
 
 static double gap_of(const Places *places, const FillCourse *course, Vec3 end, double enough)
 {
-    double gap = enough;
-    for (size_t k = 0; k < places->n_near; k++)
-        gap = fmin(gap, gap_beside(places, course, end, places->near[k]));
+    Vec3 middle = vec3_scale(vec3_add(places->node[course->start].at, end), 0.5);
+    double gap = enough, half = course->length / 2 + course->radius;
+    for (size_t k = 0; k < places->n_near; k++) {
+        const FillNear *near = &places->near[k];
+        Vec3 apart = vec3_sub(near->center, middle);
+        double sum = fmax(0, half + near->radius + gap);
+        if (vec3_dot(apart, apart) < sum * sum)
+            gap = fmin(gap, gap_beside(places, course, end, near->segment));
+    }
     return gap;
 }
 
@@ -274,9 +296,17 @@ static Status place_drawn(Places *places, int32_t e, Err *err)
     return STATUS_OK;
 }
 
-/* Splits a grown element at `from_end` mm from its distal end, unless the point is outside the
- * domain or nearer than `margin` radii to a node. *node receives the new node, or NO_NODE. */
-static void try_split(Places *places, int32_t last, double from_end, double margin, int32_t *node)
+/* A place where a grown segment may be split. */
+typedef struct FillSplit {
+    int32_t segment; /* NO_NODE: none */
+    Vec3 at;
+    double room; /* mm; below 0 if it is in another vessel, or nearer to a node than a width */
+} FillSplit;
+
+/* Replaces *best by the place `from_end` mm from the distal end of a grown element, if that has
+ * more room and is in the domain. */
+static Status look_at_place(Places *places, int32_t last, double from_end, FillSplit *best,
+                            Err *err)
 {
     int32_t i = last;
     double length = length_of(places, i);
@@ -285,38 +315,48 @@ static void try_split(Places *places, int32_t last, double from_end, double marg
         from_end -= length;
         i = places->node[i].parent;
     }
-    FillNode split = places->node[i];
-    double room = margin * split.radius;
-    *node = NO_NODE;
-    split.at = vec3_add_scaled(split.at, vec3_sub(proximal(places, i), split.at),
-                               fmin(from_end / length, 1));
-    split.origin = NO_NODE;
-    if (from_end < room || length - from_end < room || !(length > 0) ||
-        !domain_inside(places->domain, split.at, 0))
-        return;
-    *node = (int32_t)places->n;
-    places->node[places->n++] = split;
-    places->node[i].parent = *node;
+    const FillNode *node = &places->node[i];
+    if (!(length > 0) || from_end > length)
+        return STATUS_OK;
+    Vec3 at = vec3_add_scaled(node->at, vec3_sub(proximal(places, i), node->at), from_end / length);
+    double room = fmin(from_end, length - from_end) - 2 * node->radius;
+    TRY(places_search(places, at, at, node->radius, err));
+    for (size_t k = 0; k < places->n_near; k++) {
+        int32_t j = places->near[k].segment;
+        double apart = sqrt(distance2_to(at, proximal(places, j), places->node[j].at));
+        room = j == i ? room : fmin(room, apart - places->node[j].radius);
+    }
+    if ((best->segment == NO_NODE || room > best->room) && domain_inside(places->domain, at, 0))
+        *best = (FillSplit){i, at, room};
+    return STATUS_OK;
 }
 
-/* Starts a daughter at a place on a grown element, from its beginning. */
-static void start_daughter(Places *places, int32_t e, int32_t daughter)
+/* Starts a daughter at a random place on a grown element: the first that has room, or the one with
+ * the most room. */
+static Status start_daughter(Places *places, int32_t e, int32_t daughter, Err *err)
 {
     const FillElement *element = &places->filling->element[e];
-    int32_t node = NO_NODE;
-    for (int i = 0; i < ATTEMPTS && node == NO_NODE; i++) {
+    FillSplit best = {.segment = NO_NODE};
+    for (int i = 0; i < ATTEMPTS && (best.segment == NO_NODE || best.room < 0); i++) {
         double at = random_uniform(&places->filling->random) * element->grown_mm;
-        try_split(places, places->end[e], at, fmax(0, 2 - 0.1 * i), &node);
+        TRY(look_at_place(places, places->end[e], at, &best, err));
     }
-    places->start[daughter] = node;
+    if (best.segment == NO_NODE)
+        return STATUS_OK;
+    FillNode split = places->node[best.segment];
+    split.at = best.at;
+    split.origin = NO_NODE;
+    places->node[best.segment].parent = places->start[daughter] = (int32_t)places->n;
+    places->node[places->n++] = split;
+    TRY(places_enter(places, places->start[daughter], err));
+    return places_enter(places, best.segment, err);
 }
 
 /* Starts the daughters of a grown element. Those on the length that is still to be placed stay in
  * the list of daughters, as element->segments. */
-static void split_grown(Places *places, int32_t e)
+static Status split_grown(Places *places, int32_t e, Err *err)
 {
-    FillElement *element = &places->filling->element[e];
-    FillElement *all = places->filling->element;
+    FillElement *all = places->filling->element, *element = &all[e];
     int32_t along = 0, *link = &element->daughter;
     double total = element->grown_mm + element->length_mm;
     for (int32_t d = element->daughter; d != NO_ELEMENT; d = all[d].sister)
@@ -324,15 +364,16 @@ static void split_grown(Places *places, int32_t e)
     along -= element->is_open && element->order > places->filling->rules.to ? 2 : 0;
     element->segments = 1;
     for (; along > 0; along--) {
-        int32_t d = *link;
-        if (random_uniform(&places->filling->random) * total < element->grown_mm) {
-            start_daughter(places, e, d);
-            *link = all[d].sister;
+        bool is_full = element->length_mm < 2 * element->radius_mm * (element->segments + 1);
+        if (is_full || random_uniform(&places->filling->random) * total < element->grown_mm) {
+            TRY(start_daughter(places, e, *link, err));
+            *link = all[*link].sister;
         } else {
             element->segments++;
-            link = &all[d].sister;
+            link = &all[*link].sister;
         }
     }
+    return STATUS_OK;
 }
 
 static Status place_grown(Places *places, int32_t e, Err *err)
@@ -367,10 +408,10 @@ Status places_fill(Places *places, const GrowParams *params, Err *err)
     const Filling *filling = places->filling;
     size_t done = 0;
     TRY(make_grid(places, err));
-    for (size_t e = 0; e < filling->n && filling->element[e].grown; e++)
-        split_grown(places, (int32_t)e);
     for (size_t i = 0; i < places->n; i++)
         TRY(places_enter(places, (int32_t)i, err));
+    for (size_t e = 0; e < filling->n && filling->element[e].grown; e++)
+        TRY(split_grown(places, (int32_t)e, err));
     for (int order = (int)filling->rules.table->n; order >= filling->rules.to; order--)
         for (int32_t e = filling->first[order]; e != NO_ELEMENT; e = filling->element[e].peer) {
             TRY(filling->element[e].grown ? place_grown(places, e, err)

@@ -16,6 +16,13 @@ typedef struct FillNode {
     bool grown;     /* the segment is a part of a grown segment */
 } FillNode;
 
+/* A segment that a search found, and a ball that holds it, mm. */
+typedef struct FillNear {
+    Vec3 center;
+    double radius;
+    int32_t segment;
+} FillNear;
+
 /* The nodes of the filled tree. Begin with {.domain = ..., .filling = ...}; release with
  * places_release. */
 typedef struct Places {
@@ -28,7 +35,7 @@ typedef struct Places {
     int32_t *start;  /* per element: the node at which it branches off; NO_NODE: left out; owned */
     uint32_t *stamp; /* per node: the last search that found its segment; owned */
     uint32_t searches;
-    int32_t *near; /* segments that the last search found; owned */
+    FillNear *near; /* segments that the last search found; owned */
     size_t n_near, near_capacity;
     size_t left_out; /* number of elements without a position */
 } Places;
@@ -51,8 +58,8 @@ MUST_CHECK Status places_repair(Places *places, size_t *broken, Err *err);
 /* Enters segment i into the grid, or moves it there. Errors: STATUS_MEMORY. */
 MUST_CHECK Status places_enter(Places *places, int32_t i, Err *err);
 
-/* Sets near[0 .. n_near - 1] to the segments whose walls may be within `reach` mm of the line from
- * `a` to `b`, each once. Errors: STATUS_MEMORY. */
+/* Sets near[0] to near[n_near - 1] to the segments whose walls may be within `reach` mm of the line
+ * from `a` to `b`, each once. Errors: STATUS_MEMORY. */
 MUST_CHECK Status places_search(Places *places, Vec3 a, Vec3 b, double reach, Err *err);
 
 #endif

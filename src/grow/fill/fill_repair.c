@@ -28,14 +28,14 @@ static bool are_joined(const FillNode *node, int32_t i, int32_t j)
 static Status fault_of(Places *places, int32_t i, int32_t below, double *fault, Err *err)
 {
     const FillNode *node = places->node, *own = &node[i];
-    Vec3 a = node[own->parent].at, b = own->at;
     *fault = 0;
     if (own->grown)
         return STATUS_OK;
+    Vec3 a = node[own->parent].at, b = own->at;
     *fault = fmax(0, 2 * own->radius - vec3_distance(a, b));
     TRY(places_search(places, a, b, (1 + spare) * own->radius, err));
     for (size_t k = 0; k < places->n_near; k++) {
-        int32_t j = places->near[k];
+        int32_t j = places->near[k].segment;
         if ((!node[j].grown && j >= below) || are_joined(node, i, j))
             continue;
         double apart2 = segment_distance2(a, b, node[node[j].parent].at, node[j].at);

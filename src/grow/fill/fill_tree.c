@@ -93,8 +93,10 @@ static Status add_grown(const Tree *tree, Filling *filling, int32_t *of_node, Er
             TRY_GOTO(begin_element(filling, order[i], of_node[parent], err));
             of_node[i] = (int32_t)filling->n - 1;
         }
-        filling->element[of_node[i]].radius_mm = tree->radius_mm[i];
-        filling->element[of_node[i]].grown_mm += tree_segment_length(tree, i);
+        FillElement *element = &filling->element[of_node[i]];
+        element->radius_mm = tree->radius_mm[i];
+        element->widest_mm = fmax(element->widest_mm, tree->radius_mm[i]);
+        element->grown_mm += tree_segment_length(tree, i);
     }
 done:
     free(order);

@@ -177,6 +177,10 @@ static Status label_territories(Measuring *made, Err *err)
     size_t n = by_outlet ? made->n_outlets : made->n_tubes;
     const uint32_t *node = by_outlet ? made->outlet_node : made->tube_node;
     Field number = {0};
+    if (n == 0)
+        return err_set(err, STATUS_INPUT,
+                       "--territories: no vessel ends at a terminal, so that none supplies tissue; "
+                       "use --territory segment or tree");
     TRY(mem_calloc(&made->labels, n, sizeof *made->labels, "labels", err));
     if (made->options->kind == TERRITORY_TREE)
         TRY(derive_rule(tree, &(TreeMeta){0}, "tree", &number, err));
@@ -443,29 +447,21 @@ static Status put_territories(const Measuring *made, Text *text, Err *err)
     return status;
 }
 
-/* Returns an array of objects that pair a number `at` with its value. */
-static json_t *json_pairs(const char *at, const char *value, double (*pair)[2], size_t n)
-{
-    json_t *array = json_array();
-    for (size_t i = 0; i < n; i++) {
-        array = json_with_item(
-            array, JSON_OBJECT({at, json_number(pair[i][0])}, {value, json_number(pair[i][1])}));
-    }
-    return array;
-}
-
 static json_t *json_of(const CoverageResult *result, const char *command)
 {
     const CoverageReport *report = &result->report;
     const CoverageLaw *law = &result->law;
-    double quantiles[COVERAGE_QUANTILES][2], beyond[MAX_LIST][2];
+    json_t *quantiles = json_array(), *beyond = json_array();
     for (int i = 0; i < COVERAGE_QUANTILES; i++) {
-        quantiles[i][0] = coverage_quantiles[i];
-        quantiles[i][1] = coverage_quantile(report, coverage_quantiles[i]);
+        const double part = coverage_quantiles[i], distance = coverage_quantile(report, part);
+        quantiles = json_with_item(quantiles, JSON_OBJECT({"part", json_number(part)},
+                                                          {"distance_mm", json_number(distance)}));
     }
     for (size_t i = 0; i < result->beyond.n; i++) {
-        beyond[i][0] = result->beyond.at[i];
-        beyond[i][1] = (double)report->beyond[i] / (double)report->tissue_voxels;
+        const double share = (double)report->beyond[i] / (double)report->tissue_voxels;
+        beyond =
+            json_with_item(beyond, JSON_OBJECT({"distance_mm", json_number(result->beyond.at[i])},
+                                               {"share", json_number(share)}));
     }
     const Vec3 at = report->largest_at;
     return JSON_OBJECT(
@@ -477,8 +473,7 @@ static json_t *json_of(const CoverageResult *result, const char *command)
         {result->dimension == 2 ? "vessels_mm2" : "vessels_mm3",
          json_number(report->vessel_volume)},
         {"terminals", json_count(result->terminals)}, {"mean_mm", json_number(report->mean_mm)},
-        {"quantiles", json_pairs("part", "distance_mm", quantiles, COVERAGE_QUANTILES)},
-        {"beyond", json_pairs("distance_mm", "share", beyond, result->beyond.n)},
+        {"quantiles", quantiles}, {"beyond", beyond},
         {"largest_mm", json_number(report->largest_mm)},
         {"largest_error_mm", json_number(report->largest_error_mm)},
         {"largest_at_mm", json_numbers((const double[]){at.x, at.y, at.z}, 3)},
@@ -501,20 +496,18 @@ static Status put_files(const void *job, const char *command, FileSlot files[], 
 
 /* ---- the operation --------------------------------------------------------------------------- */
 
-static Status copy_path(const char *path, char **out, Err *err)
-{
-    return path ? mem_strdup(out, path, err) : STATUS_OK;
-}
-
 /* Names the files. The table of the territories is beside their volume. */
 static Status name_files(const CoverageOptions *options, const VolumeFormat *format, FileSet *files,
                          Err *err)
 {
     FileSlot *at = files->at;
-    TRY(copy_path(options->output, &at[FILE_DISTANCES].path, err));
-    TRY(copy_path(options->territories, &at[FILE_TERRITORIES].path, err));
-    TRY(copy_path(options->summary, &at[FILE_SUMMARY].path, err));
-    TRY(copy_path(options->json, &at[FILE_JSON].path, err));
+    const char *const paths[] = {[FILE_DISTANCES] = options->output,
+                                 [FILE_TERRITORIES] = options->territories,
+                                 [FILE_SUMMARY] = options->summary,
+                                 [FILE_JSON] = options->json};
+    for (size_t i = 0; i < sizeof paths / sizeof *paths; i++)
+        if (paths[i])
+            TRY(mem_strdup(&at[i].path, paths[i], err));
     if (!options->territories)
         return STATUS_OK;
     const size_t stem = strlen(options->territories) - strlen(format->suffix);

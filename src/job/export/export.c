@@ -9,7 +9,8 @@
 #include "options/talk.h"
 #include <string.h>
 
-/* A .glb of more triangles, about 3 MB, is large for a web page. */
+/* Maximum number of triangles of a .glb, about 3 MB, that is not too large for a web page. Above
+ * it, a note suggests --lod. */
 enum { MANY_TRIANGLES = 100000 };
 
 #define OF_SURFACE WHEN(NO_VOLUME) | WHEN(NO_PAGE)
@@ -132,7 +133,8 @@ static void set_defaults(void *options)
     coloring_set_defaults(&own_options->meshing.coloring);
 }
 
-/* Finds the emitter for the extension of the output, or the emitter that an option selects. */
+/* Finds the emitter that --parts or --lattice selects, or else the default emitter for the
+ * extension of the output. */
 static Status find_emitter(const ExportOptions *options, const Emitter **emitter, Err *err)
 {
     const Emitter *asked = NULL;
@@ -154,7 +156,8 @@ static Status find_emitter(const ExportOptions *options, const Emitter **emitter
     return STATUS_OK;
 }
 
-/* Reads --wall and --print. Returns STATUS_USAGE if one of them cannot have its effect. */
+/* Reads --wall and --print into options->settings. Errors: STATUS_USAGE if they exclude each other,
+ * or if the format or the model cannot have a wall or a print. */
 static Status read_print(ExportOptions *options, const Emitter *emitter, Err *err)
 {
     PrintSettings *print = &options->settings;
@@ -186,8 +189,8 @@ static Status read_print(ExportOptions *options, const Emitter *emitter, Err *er
     return STATUS_OK;
 }
 
-/* Finds the format of the mesh or the lines, and checks the options against it. Without an output,
- * a mesh in memory has what a PLY file holds. */
+/* Finds the emitter of the mesh or the lines, and checks the options against it. Without an output,
+ * the mesh is made as for a PLY file. */
 static Status plan_mesh(ExportOptions *options, const Emitter **emitter, Err *err)
 {
     if (options->output)
@@ -202,12 +205,15 @@ static Status plan_mesh(ExportOptions *options, const Emitter **emitter, Err *er
 }
 
 /* Reads the tree, and divides its segments into smooth curves if --smooth is on. `properties` are
- * those of the model that is exported. */
+ * the bits of ModelProperty of the exported model. */
 static Status read_tree(const ExportOptions *options, unsigned properties, Parsed *parsed,
                         PictureTree *of, Err *err)
 {
     TRY(picture_read_tree(&options->meshing.coloring, options->prune_radius_mm, parsed, of, err));
+    const TreeMeta said = blood_said(&options->meshing.coloring.blood);
     Status status = extension_apply(&options->extension, parsed, &of->tree, err);
+    if (status == STATUS_OK)
+        status = extension_say(&of->tree, &said, parsed->common.talk, err);
     if (status == STATUS_OK && options->smooth)
         status = picture_smooth_tree(of, model_with(properties), err);
     if (status != STATUS_OK)
@@ -295,7 +301,8 @@ Status export_run(void *options, Parsed *parsed, Err *err)
     return export_write(options, parsed, NULL, err);
 }
 
-/* Finds the emitter for the output; NULL for a volume, a page, or a file that is refused later. */
+/* Returns the emitter for the output; NULL for a volume or a page, and for an output that is
+ * refused later. */
 static const Emitter *emitter_of(const ExportOptions *options)
 {
     const Emitter *emitter;
@@ -306,7 +313,8 @@ static const Emitter *emitter_of(const ExportOptions *options)
     return found ? emitter : NULL;
 }
 
-/* Flow parts a mesh with named ends, and a page holds fields of the blood. */
+/* A mesh with named ends states the flow through each end, so options about flow have an effect. A
+ * page contains fields of the blood, so options about blood have an effect. */
 static Status settle(void *set, const Parsed *parsed, Err *err)
 {
     (void)parsed;

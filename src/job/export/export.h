@@ -11,9 +11,10 @@ typedef struct ExportOptions {
     const char *output; /* its extension selects the format */
     double prune_radius_mm;
     bool smooth;            /* as in PictureOptions */
-    bool parts, lattice;    /* select another format of the extension */
+    bool parts, lattice;    /* select a format that is not the default of the extension: named
+                             * parts; beams */
     const char *print;      /* the text of --print; NULL: none */
-    PrintSettings settings; /* made of `print` or wall_mm */
+    PrintSettings settings; /* set from `print` or wall_mm when the operation starts */
     double wall_mm;         /* 0: none */
     MeshingOptions meshing;
     VolumeOptions volume;
@@ -23,10 +24,10 @@ typedef struct ExportOptions {
 /* Describes the operation. Its options set an ExportOptions. */
 extern const Command command_export;
 
-/* Makes the surface of a tree in memory, in the form that the format of options->output needs. If
- * there is no output, the result has no named parts, and has colors.
+/* Makes the surface of a tree in memory, with the properties that the format of options->output
+ * stores. Without an output, the result has colors and no named parts.
  *
- * options  `print` or `wall_mm` sets further members.
+ * options  options->settings and other members are set from `print` or `wall_mm`.
  * mesh     borrows from `options` and `parsed`; release it with meshing_release.
  * Errors   STATUS_USAGE if an option has no effect on the format, or if the output has no known
  *          extension; those of picture_read_tree and meshing_make. */
@@ -35,13 +36,13 @@ MUST_CHECK Status mesh_make(ExportOptions *options, Parsed *parsed, MeshResult *
 /* Exports a tree to options->output and to the files beside it.
  *
  * options  as for mesh_make.
- * taker    receives the files instead of the file system; NULL: they are written.
+ * taker    receives the files; NULL: the files are written to the file system.
  * Errors   those of mesh_make, meshing_write, volumes_write and webpage_write. If the operation
  *          fails, all files are as before. */
 MUST_CHECK Status export_write(ExportOptions *options, Parsed *parsed, const FileTaker *taker,
                                Err *err);
 
-/* Exports a tree to files: export_write for an ExportOptions, without a taker. */
+/* Exports a tree to files: calls export_write without a taker. `options` is an ExportOptions. */
 MUST_CHECK Status export_run(void *options, Parsed *parsed, Err *err);
 
 #endif

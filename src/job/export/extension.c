@@ -1,7 +1,8 @@
-/* Ends are circles at right angles to straight segments, so an extension is a longer segment: it
- * needs no transition to a circle, and the mesh has no kink. */
+/* A vessel end is a circle at a right angle to a straight segment. An extension therefore only
+ * makes the segment longer: no transition to a circle is needed, and the mesh has no kink. */
 #include "job/export/extension.h"
 
+#include "options/talk.h"
 #include "treeio/treeio.h"
 #include <stdlib.h>
 #include <string.h>
@@ -46,7 +47,7 @@ const OptionTable extension_table = OPTION_TABLE(rows);
 
 /* ---- lengths --------------------------------------------------------------------------------- */
 
-/* Reads the lengths of outlets from a file; outlets without a row keep theirs. */
+/* Reads the lengths of outlets, in radii, from a file. Outlets without a row keep their length. */
 static Status read_lengths(const char *path, Parsed *parsed, const Tree *tree,
                            const int32_t *children, double *radii, Err *err)
 {
@@ -74,7 +75,7 @@ done:
     return status;
 }
 
-/* Sets the length of the extension of each end, in radii; 0 at other nodes. */
+/* Sets radii[node] to the length of the extension at each end, in radii; 0 at all other nodes. */
 static Status choose_lengths(const ExtensionOptions *options, Parsed *parsed, const Tree *tree,
                              const int32_t *children, double *radii, Err *err)
 {
@@ -93,18 +94,19 @@ static Status choose_lengths(const ExtensionOptions *options, Parsed *parsed, co
                : STATUS_OK;
 }
 
-/* ---- where they meet others ------------------------------------------------------------------ */
+/* ---- collisions ------------------------------------------------------------------------------ */
 
-/* An extension, or a segment. */
+/* An extension or a segment, as a cylinder with round ends. */
 typedef struct Capsule {
     Vec3 from, along;
     double radius;
-    size_t segment; /* index of the segment, or of the one that it extends */
-    size_t node;    /* of an extension: the end's node */
+    size_t segment; /* index of the segment, or of the segment that the extension lengthens */
+    size_t node;    /* of an extension: the node of the end */
 } Capsule;
 
-/* Returns the gap between two capsules, the first only as far as the fraction `part`. The distance
- * of a point on one axis from the other axis is a convex function of its position. */
+/* Returns the gap between two capsules, in mm; below 0 if they overlap. Of capsule `a` only the
+ * fraction `part` of its length is used. The minimum is found by ternary search, because the
+ * distance from the axis of `b` is a convex function of the position on the axis of `a`. */
 static double gap(const Capsule *a, double part, const Capsule *b)
 {
     double low = 0, high = part;
@@ -120,10 +122,10 @@ static double gap(const Capsule *a, double part, const Capsule *b)
     return sqrt(vec3_distance2_along(at, b->along)) - a->radius - b->radius;
 }
 
-/* Returns true if the extension, as far as the fraction `part`, meets another vessel. A vessel that
- * overlaps the end itself, such as its sister at a bifurcation, counts only if the extension leads
- * deeper into it. */
-static bool meets(const Capsule *extension, double part, const Capsule *other)
+/* Returns true if the first fraction `part` of the extension overlaps another vessel. A vessel that
+ * already overlaps the end, such as the sister segment at a bifurcation, counts only if the
+ * extension overlaps it more deeply. */
+static bool overlaps(const Capsule *extension, double part, const Capsule *other)
 {
     double there = gap(extension, part, other);
     return there < 0 && there < gap(extension, 0, other) - 1e-9 * extension->radius;
@@ -135,14 +137,15 @@ static Box capsule_box(const Capsule *capsule)
     return box_with_ball(box, vec3_add(capsule->from, capsule->along), capsule->radius);
 }
 
-/* Returns an error that names both vessels and the longest extension that fits. */
+/* Sets the error that names both vessels and the longest extension without an overlap. Returns
+ * STATUS_INPUT. */
 static Status refuse(const Tree *tree, const Capsule *capsule, const Capsule *other, double radii,
                      Err *err)
 {
     bool is_inlet = !tree_is_segment(tree, capsule->node);
     double low = 0, high = 1;
     for (int i = 0; i < 40; i++)
-        *(meets(capsule, (low + high) / 2, other) ? &high : &low) = (low + high) / 2;
+        *(overlaps(capsule, (low + high) / 2, other) ? &high : &low) = (low + high) / 2;
     return err_set(err, STATUS_INPUT,
                    "`extend`: the extension of %s %d by %g radii meets segment %d or its "
                    "extension; the longest that fits is %.1f radii",
@@ -150,7 +153,7 @@ static Status refuse(const Tree *tree, const Capsule *capsule, const Capsule *ot
                    tree->id[other->segment], floor(low * radii * 10) / 10);
 }
 
-/* Checks that no extension meets a segment or another extension. The first n - n_extensions
+/* Checks that no extension overlaps a segment or another extension. The first n - n_extensions
  * capsules are segments. */
 static Status check_gaps(const Tree *tree, const Capsule *capsule, size_t n, size_t n_extensions,
                          const double *radii, Err *err)
@@ -166,7 +169,7 @@ static Status check_gaps(const Tree *tree, const Capsule *capsule, size_t n, siz
     for (size_t i = n - n_extensions; i < n; i++)
         for (BoxWalk walk = boxwalk_box(&boxtree, boxes[i]); boxwalk_next(&walk, &other);)
             if (capsule[other].segment != capsule[i].segment &&
-                meets(&capsule[i], 1, &capsule[other]))
+                overlaps(&capsule[i], 1, &capsule[other]))
                 TRY_GOTO(refuse(tree, &capsule[i], &capsule[other], radii[capsule[i].node], err));
 done:
     boxtree_release(&boxtree);
@@ -174,8 +177,8 @@ done:
     return status;
 }
 
-/* Lists the segments and then the extensions. Returns the number of both; *n_extensions receives
- * that of the extensions. */
+/* Lists the segments, then the extensions. Returns the number of capsules. Sets *n_extensions to
+ * the number of extensions. */
 static size_t list_capsules(const Tree *tree, const int32_t *only_child, const double *radii,
                             Capsule *capsule, size_t *n_extensions)
 {
@@ -202,7 +205,7 @@ static size_t list_capsules(const Tree *tree, const int32_t *only_child, const d
     return n;
 }
 
-/* Moves the ends, and adds the column. */
+/* Moves the ends of the tree, and adds the column with the lengths in mm. */
 static Status lengthen(Tree *tree, const Capsule *extension, size_t n, Err *err)
 {
     double *column;
@@ -214,6 +217,53 @@ static Status lengthen(Tree *tree, const Capsule *extension, size_t n, Err *err)
         *end = vec3_add(*end, extension[i].along);
         column[extension[i].node] = vec3_length(extension[i].along);
     }
+    return STATUS_OK;
+}
+
+/* ---- the flow in them ------------------------------------------------------------------------ */
+
+Status extension_field(const Tree *tree, const TreeMeta *said, const char *name, Field *field,
+                       Err *err)
+{
+    *field = (Field){0};
+    Status status = derive_rule(tree, said, name, field, err);
+    return status == STATUS_INPUT ? STATUS_OK : status;
+}
+
+double extension_entrance(const Tree *tree, const Field *reynolds, size_t segment)
+{
+    return 0.06 * reynolds->value[segment] * 2 * tree->radius_mm[segment];
+}
+
+static void say_entrance(const Tree *tree, const Field *reynolds, bool of_inlets, const Talk *talk)
+{
+    const double *length = tree_column(tree, extension_column)->value;
+    double most = 0;
+    size_t at = 0;
+    for (size_t i = 0; i < tree->n; i++) {
+        if (!tree_is_segment(tree, i) || !(length[of_inlets ? (size_t)tree->parent[i] : i] > 0) ||
+            !(extension_entrance(tree, reynolds, i) > most))
+            continue;
+        most = extension_entrance(tree, reynolds, i);
+        at = i;
+    }
+    if (most > 0)
+        talk_note(talk,
+                  "laminar flow needs up to %.4g mm to develop at the %s (segment %d, Reynolds "
+                  "number %.4g); the extension there has %.4g mm",
+                  most, of_inlets ? "inlets" : "outlets", tree->id[at], reynolds->value[at],
+                  length[of_inlets ? (size_t)tree->parent[at] : at]);
+}
+
+Status extension_say(const Tree *tree, const TreeMeta *said, const Talk *talk, Err *err)
+{
+    Field reynolds;
+    if (!tree_column(tree, extension_column))
+        return STATUS_OK;
+    TRY(extension_field(tree, said, "reynolds", &reynolds, err));
+    for (int of_inlets = 1; of_inlets >= 0 && reynolds.value; of_inlets--)
+        say_entrance(tree, &reynolds, of_inlets, talk);
+    field_release(&reynolds);
     return STATUS_OK;
 }
 

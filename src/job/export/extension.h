@@ -1,31 +1,45 @@
-/* Flow extensions: longer vessel ends, which keep the boundary of a flow solver away from the
- * bifurcations. */
+/* Flow extensions: vessel ends that are lengthened, so that the boundaries of a flow simulation are
+ * farther from the bifurcations. */
 #ifndef CORCAST_JOB_EXPORT_EXTENSION_H
 #define CORCAST_JOB_EXPORT_EXTENSION_H
 
+#include "derive/derive.h"
 #include "options/options.h"
 #include "tree/tree.h"
 
 /* Lengths are in radii of the end's segment. Zeroed: no extensions. */
 typedef struct ExtensionOptions {
     double all, inlet;
-    bool has_inlet;     /* `inlet` was given; else `all` applies to inlets */
+    bool has_inlet;     /* `inlet` is specified; else `all` applies to inlets */
     const char *outlet; /* a number, or a CSV file with the columns id and radii; NULL: `all` */
 } ExtensionOptions;
 
 extern const OptionTable extension_table; /* sets an ExtensionOptions */
 
-/* The name of the column with the length of the extension, mm: at a root for its inlet, at a
- * terminal for its outlet. */
+/* Name of the column with the lengths of the extensions, in mm. The value at a root is that of the
+ * inlet, the value at a terminal that of the outlet. */
 extern const char extension_column[];
 
-/* Lengthens the ends of the tree along their axes, and adds the column. Inlets are roots that one
- * segment leaves; outlets are terminals. Does nothing if no extension is asked for.
+/* Lengthens the ends of the tree along their axes, and adds the column extension_column. Inlets are
+ * roots with one segment; outlets are terminals. Does nothing if no extension is specified.
  *
- * Errors   STATUS_USAGE for a length that is not in [0, 100]; STATUS_INPUT, naming ids, for a row
- * of the file that is no outlet, and for an extension that meets another vessel; as files_read and
- * tree_read_values; STATUS_MEMORY. */
+ * Errors   STATUS_USAGE for a length outside [0, 100]; STATUS_INPUT, naming ids, if a row of the
+ *          file is not about an outlet, or if an extension overlaps another vessel; the errors of
+ *          files_read and tree_read_values; STATUS_MEMORY. */
 MUST_CHECK Status extension_apply(const ExtensionOptions *options, Parsed *parsed, Tree *tree,
                                   Err *err);
+
+/* Computes a field of the blood. *field is empty if the flow or the viscosity is unknown. Errors:
+ * as derive_rule. */
+MUST_CHECK Status extension_field(const Tree *tree, const TreeMeta *said, const char *name,
+                                  Field *field, Err *err);
+/* Returns the length of a straight vessel with a segment's radius after which laminar flow is
+ * developed, mm: 0.06 times the Reynolds number times the diameter. */
+double extension_entrance(const Tree *tree, const Field *reynolds, size_t segment);
+
+/* Reports the largest entrance length of the inlets and of the outlets, beside the length of the
+ * extension there. Does nothing if no end was lengthened or the flow is unknown. Errors: as
+ * extension_field. */
+MUST_CHECK Status extension_say(const Tree *tree, const TreeMeta *said, const Talk *talk, Err *err);
 
 #endif

@@ -1,5 +1,5 @@
-/* The facts about a mesh, in notes for its user and in its manifest. Other programs read the keys
- * of the manifest, so that they stay when names in the code change. */
+/* Writes the facts about a mesh as notes for the user and as a manifest. Other programs read the
+ * keys of the manifest, so the keys must not change when names in the code change. */
 #include "job/export/meshing.h"
 #include "options/output.h"
 #include <math.h>
@@ -66,8 +66,8 @@ static json_t *with_wall(json_t *object, const MeshResult *made)
                      {"outer_mm3", json_number(made->printed.outer_mm3)});
 }
 
-/* Returns the minimum of the vessels' diameters, the walls' thicknesses and the gaps between
- * vessels, in mm. */
+/* Returns the size of the smallest feature, in mm: the minimum of the vessel diameters, wall
+ * thicknesses and gaps between vessels. */
 static double smallest_of(const MeshResult *made)
 {
     double least = made->changes.thinnest_mm;
@@ -108,17 +108,14 @@ static json_t *print_json(const MeshResult *made)
 
 static json_t *layers_json(const PrismLayers *layers)
 {
-    const JsonMember members[] = {
-        {"layers", json_count(layers->n_layers)},
-        {"prisms", json_count(layers->n_prisms)},
-        {"inverted", json_count(0)}, /* else there is no file */
-        {"points_thinner", json_count(layers->n_thinner)},
-        {"mean_thickness", json_number(layers->mean_part)},
-        {"least_thickness", json_number(layers->least_part)},
-        {"volume_mm3", json_number(layers->volume_mm3)},
-        {"core_volume_mm3", json_number(layers->core_volume_mm3)},
-    };
-    return json_with_members(json_object(), members, sizeof members / sizeof *members);
+    /* A file with inverted prisms is not written. */
+    return JSON_OBJECT({"layers", json_count(layers->n_layers)},
+                       {"prisms", json_count(layers->n_prisms)}, {"inverted", json_count(0)},
+                       {"points_thinner", json_count(layers->n_thinner)},
+                       {"mean_thickness", json_number(layers->mean_part)},
+                       {"least_thickness", json_number(layers->least_part)},
+                       {"volume_mm3", json_number(layers->volume_mm3)},
+                       {"core_volume_mm3", json_number(layers->core_volume_mm3)});
 }
 
 static json_t *pair_list(const VesselTree *vessels, const MeshReport *report)

@@ -1,5 +1,5 @@
-/* The surface is proved before anything is written: the manifest describes the same triangles that
- * go into the file, and a mesh that is not sound is not written. */
+/* The mesh is validated before any file is written. The manifest therefore describes exactly the
+ * triangles in the file, and an invalid mesh is never written. */
 #include "job/export/meshing.h"
 
 #include "derive/derive.h"
@@ -27,16 +27,7 @@ static Status take_vessels(MeshResult *made, VesselBody body, const Talk *talk, 
     return STATUS_OK;
 }
 
-/* Finds the Strahler order of each segment; 0 in a network with links. */
-static Status find_orders(const Tree *tree, Field *orders, Err *err)
-{
-    if (!tree->link)
-        return derive_rule(tree, &(TreeMeta){0}, "strahler", orders, err);
-    *orders = (Field){.name = "strahler", .unit = "", .n = tree->n};
-    return mem_calloc(&orders->value, tree->n, sizeof *orders->value, "orders", err);
-}
-
-/* Finds the colors of the segments, and the orders by which the file groups them. */
+/* Finds the colors of the segments, and the Strahler orders by which the file groups them. */
 static Status color_vessels(const MeshingOptions *options, const Talk *talk, MeshResult *made,
                             Err *err)
 {
@@ -46,12 +37,12 @@ static Status color_vessels(const MeshingOptions *options, const Talk *talk, Mes
     TRY(coloring_appearance(&options->coloring, &tree, &look, &made->appearance, err));
     coloring_say(&made->appearance, talk);
     TRY(stage_anatomy(tree.drawn, picture_pieces(&made->of), vec3(0, 0, 0), &made->anatomy, err));
-    return find_orders(tree.drawn, &made->orders, err);
+    return derive_rule(tree.drawn, &(TreeMeta){0}, "strahler", &made->orders, err);
 }
 
 /* ---- triangles ------------------------------------------------------------------------------- */
 
-/* A surface that is being triangulated. */
+/* The job of triangulating a surface. */
 typedef struct Triangulation {
     MeshResult *made;
     MeshParams params;

@@ -1,5 +1,5 @@
-/* Each key is a row of a table. The row also names the values that the key takes, for the error
- * that refuses another value. */
+/* Each key is a row of a table. The row describes the accepted values of the key, for error
+ * messages. */
 #include "job/export/print_settings.h"
 
 #include <stdlib.h>
@@ -9,7 +9,7 @@ typedef struct PrintKey PrintKey;
 struct PrintKey {
     const char *name;
     const char *takes; /* "a length in mm" */
-    size_t where;      /* offset in PrintSettings of the number that read_length and read_bed set */
+    size_t where;      /* offset in PrintSettings of the number, or numbers, that the key sets */
     bool (*read)(const PrintKey *key, const char *value, PrintSettings *out);
 };
 
@@ -18,7 +18,7 @@ static void *member(const PrintKey *key, PrintSettings *settings)
     return (char *)settings + key->where;
 }
 
-/* Reads a length in mm: a number above 0, of at most a kilometre. */
+/* Reads a length in mm: above 0, at most 1 km. */
 static bool is_length(const char *text, double *out)
 {
     double value;
@@ -51,7 +51,7 @@ static bool read_wall(const PrintKey *key, const char *value, PrintSettings *out
     return length < sizeof number && is_length(number, &out->params.wall_ratio);
 }
 
-/* Reads `n` lengths, "AxBxC". */
+/* Reads `n` lengths that are separated by 'x', such as "AxBxC". */
 static bool read_lengths(const char *value, int n, double *out)
 {
     for (int i = 0; i < n; i++) {
@@ -68,7 +68,7 @@ static bool read_bed(const PrintKey *key, const char *value, PrintSettings *out)
     return read_lengths(value, 3, member(key, out));
 }
 
-/* Reads "box", "cylinder:30x45". */
+/* Reads the value of `block`, such as "box" or "cylinder:30x45". */
 static bool read_block(const PrintKey *key, const char *value, PrintSettings *out)
 {
     (void)key;
@@ -81,7 +81,7 @@ static bool read_block(const PrintKey *key, const char *value, PrintSettings *ou
             read_lengths(&value[length + 1], block->is_round ? 2 : 3, block->size_mm));
 }
 
-/* Reads "", "inlet", "luer", "inlet:0.1". */
+/* Reads the value of `ports`, such as "", "inlet", "luer" or "inlet:0.1". */
 static bool read_ports(const PrintKey *key, const char *value, PrintSettings *out)
 {
     (void)key;
@@ -156,7 +156,7 @@ static Status refuse_key(const char *item, size_t length, Err *err)
     return status;
 }
 
-/* Reads one "KEY=VALUE", or "KEY". */
+/* Reads one item, "KEY=VALUE" or "KEY". */
 static Status read_item(const char *item, PrintSettings *out, Err *err)
 {
     size_t length = strcspn(item, "=");
@@ -170,7 +170,8 @@ static Status read_item(const char *item, PrintSettings *out, Err *err)
     return STATUS_OK;
 }
 
-/* The defaults of margin, ports and base. The margin of Luer ports has room for the fittings. */
+/* Defaults of the margin, the taper of ports, and the thickness of the base. The margin for Luer
+ * ports leaves space for the fittings. Reasons of the values not recorded. */
 static const double plain_margin_mm = 3, luer_margin_mm = 15, plain_taper = 0.06, plain_base_mm = 2;
 
 static Status settle_block(PrintParams *params, Err *err)

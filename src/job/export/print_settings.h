@@ -1,4 +1,4 @@
-/* The settings of a printer, which `export --print` takes as one text. */
+/* The settings for 3D printing, which `export --print` accepts as one text. */
 #ifndef CORCAST_JOB_EXPORT_PRINT_SETTINGS_H
 #define CORCAST_JOB_EXPORT_PRINT_SETTINGS_H
 
@@ -9,12 +9,12 @@ typedef struct PrintSettings {
     double min_diameter_mm; /* minimum diameter of vessels, after scaling; 0: no minimum */
     bool prunes;            /* true: thinner vessels are removed; false: they are thickened */
     double nozzle_mm;       /* 0: unknown */
-    double bed_mm[3];       /* sides of the space that the printer has; 0: unknown */
+    double bed_mm[3];       /* sides of the printer's build volume; 0: unknown */
     PrintParams params;
 } PrintSettings;
 
-/* Reads "KEY=VALUE,KEY,...", in any order, into *out. Errors: STATUS_USAGE with the name `print`,
- * the key and the values that it takes; STATUS_MEMORY. */
+/* Reads "KEY=VALUE,KEY,...", in any order, into *out. Errors: STATUS_USAGE, naming the option, the
+ * key and the accepted values; STATUS_MEMORY. */
 MUST_CHECK Status printing_parse(const char *text, PrintSettings *out, Err *err);
 
 #endif

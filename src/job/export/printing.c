@@ -1,5 +1,5 @@
-/* Lengths are compared with those of the printer after scaling, because the nozzle does not scale.
- */
+/* Lengths of the tree are scaled before they are compared with the nozzle and the bed, which do not
+ * scale. */
 #include "job/export/printing.h"
 
 #include <math.h>

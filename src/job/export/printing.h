@@ -1,13 +1,14 @@
-/* Makes the vessels of `export --print` fit for a printer. */
+/* Scales and thickens the vessels for `export --print`, and checks that the printer can print
+ * them. */
 #ifndef CORCAST_JOB_EXPORT_PRINTING_H
 #define CORCAST_JOB_EXPORT_PRINTING_H
 
 #include "job/export/print_settings.h"
 
-/* What was done to vessels before their surface is made. */
+/* The changes to the vessels before their surface is made. Lengths are after scaling. */
 typedef struct PrintChanges {
     size_t thickened;   /* segments that were thinner than min_diameter_mm */
-    size_t below_two;   /* segments that are still thinner than two widths of the nozzle */
+    size_t below_two;   /* segments that are still thinner than two nozzle widths */
     double trunk_mm;    /* diameter of the widest segment, scaled */
     double thinnest_mm; /* diameter of the thinnest segment, scaled and thickened */
 } PrintChanges;
@@ -17,14 +18,15 @@ typedef struct PrintChanges {
 MUST_CHECK Status printing_prepare(const PrintSettings *settings, VesselTree *vessels,
                                    PrintChanges *changes, Err *err);
 
-/* Checks that a mesh fits the bed, as it is or rotated by 90 degrees. Errors: STATUS_INPUT with the
- * sizes of both. */
+/* Checks that a mesh fits the bed, as it is or rotated by 90 degrees about the vertical axis.
+ * Accepts every mesh if the bed is unknown. Errors: STATUS_INPUT with the sizes of the mesh and the
+ * bed. */
 MUST_CHECK Status printing_check_bed(const PrintSettings *settings, const VesselMesh *mesh,
                                      Err *err);
 
-/* Computes the thickness of the wall around the thinnest vessel, mm. */
+/* Returns the thickness of the wall around the thinnest vessel, in mm. */
 double printing_thinnest_wall(const PrintSettings *settings, const PrintChanges *changes);
-/* Computes the sides of the mesh's box, mm. */
+/* Computes the sides of the bounding box of a mesh, in mm. */
 void printing_size(const VesselMesh *mesh, double size[3]);
 
 #endif

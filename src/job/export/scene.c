@@ -1,6 +1,6 @@
-/* The extension of the output selects the format. Models for OpenSCAD have two forms: modules,
- * which OpenSCAD takes half a second each to unite, and one closed surface. If no option decides
- * between them, the number of vessels does. */
+/* The extension of the output selects the format. A model for OpenSCAD has one of two forms: calls
+ * of modules, which OpenSCAD must unite at about half a second per vessel, or one closed surface.
+ * If no option selects the form, the number of vessels does. */
 #include "job/export/scene.h"
 
 #include "job/export/meshing.h"
@@ -64,8 +64,9 @@ static Status check(const SceneOptions *options, const Emitter *emitter, Err *er
     return emit_check_model(emitter, model, err);
 }
 
-/* Returns the form of a model for OpenSCAD, or SCAD_AUTO if the options do not decide. */
-static ScadForm asked_form(const SceneOptions *options, const Parsed *parsed)
+/* Returns the form of a model for OpenSCAD that the options select; SCAD_AUTO if they select
+ * none. */
+static ScadForm selected_form(const SceneOptions *options, const Parsed *parsed)
 {
     if (options->scad != SCAD_AUTO)
         return options->scad;
@@ -76,8 +77,9 @@ static ScadForm asked_form(const SceneOptions *options, const Parsed *parsed)
     return of_vessels ? SCAD_PARAMETRIC : SCAD_AUTO;
 }
 
-/* Finds the emitter of a form. SCAD_AUTO, and other files, have the emitter of scenes. Standard
- * output, and a scene in memory, have POV-Ray's. */
+/* Finds the emitter for an output. The form matters only for .scad: SCAD_POLYHEDRON selects the
+ * emitter of meshes. All other outputs have an emitter of scenes; standard output and a scene in
+ * memory have the emitter for POV-Ray. */
 static Status find_emitter(const char *output, ScadForm form, const Emitter **emitter, Err *err)
 {
     const char *name = output && strcmp(output, "-") ? output : "scene.pov";
@@ -85,7 +87,7 @@ static Status find_emitter(const char *output, ScadForm form, const Emitter **em
     return scene_files_find(name, scad && form == SCAD_POLYHEDRON, emitter, err);
 }
 
-/* Selects the form by the number of vessels, and reports the selection of a surface. */
+/* Selects the form by the number of vessels. Sends a note if it selects a surface. */
 static ScadForm form_by_size(const Tree *tree, const char *output, const Talk *talk)
 {
     size_t n = 0;
@@ -122,13 +124,14 @@ static Status make_surface(const PictureOptions *picture, const Common *common, 
     return meshing_make(made->emitter, &meshing, &made->source.of, common, &made->mesh, err);
 }
 
-/* Selects the emitter for a tree whose number of vessels is known, and notes its files. */
+/* Selects the final emitter, now that the number of vessels is known, and records the output
+ * files. */
 static Status settle_format(const SceneOptions *options, Parsed *parsed, SceneResult *made,
                             Err *err)
 {
-    bool is_open =
-        strcmp(made->emitter->extension, "scad") == 0 && asked_form(options, parsed) == SCAD_AUTO;
-    if (is_open)
+    bool form_is_open = strcmp(made->emitter->extension, "scad") == 0 &&
+                        selected_form(options, parsed) == SCAD_AUTO;
+    if (form_is_open)
         TRY(find_emitter(options->output,
                          form_by_size(&made->source.of.tree, options->output, parsed->common.talk),
                          &made->emitter, err));
@@ -144,7 +147,7 @@ Status scene_make(const SceneOptions *options, Parsed *parsed, const FileTaker *
     const PictureOptions *picture = &options->picture;
     SceneResult made = {.files.taker = taker};
     Status status;
-    TRY_GOTO(find_emitter(options->output, asked_form(options, parsed), &made.emitter, err));
+    TRY_GOTO(find_emitter(options->output, selected_form(options, parsed), &made.emitter, err));
     TRY_GOTO(check(options, made.emitter, err));
     TRY_GOTO(picture_read_source(picture, parsed, &made.source, err));
     TRY_GOTO(settle_format(options, parsed, &made, err));
@@ -168,7 +171,7 @@ void sceneresult_release(SceneResult *scene)
 
 /* ---- its files ------------------------------------------------------------------------------- */
 
-/* A scene that is written. All pointers are borrowed. */
+/* The job of writing a scene. All pointers are borrowed. */
 typedef struct SceneWriting {
     const SceneOptions *options;
     const SceneResult *made;
@@ -193,7 +196,8 @@ static Status put_scene(const void *job, const char *command, FileSlot files[], 
                            err);
 }
 
-/* Reports what the user should know about the file. */
+/* Sends notes about the limits of the file: ids that do not fit, joints that became meshes, and the
+ * time that OpenSCAD takes. */
 static void say_limits(const SceneResult *made, const EmitReport *report, const Talk *talk)
 {
     Err misfit;
@@ -233,11 +237,12 @@ Status scene_run(void *options, Parsed *parsed, Err *err)
     return status;
 }
 
-/* Finds the emitter for the output; NULL if there is none, which is refused later. */
+/* Returns the emitter for the output; NULL if there is none. Such an output is refused later. */
 static const Emitter *emitter_of(const SceneOptions *options, const Parsed *parsed)
 {
     const Emitter *emitter;
-    return find_emitter(options->output, asked_form(options, parsed), &emitter, NULL) == STATUS_OK
+    return find_emitter(options->output, selected_form(options, parsed), &emitter, NULL) ==
+                   STATUS_OK
                ? emitter
                : NULL;
 }

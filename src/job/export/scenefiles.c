@@ -1,5 +1,5 @@
-/* The files beside the first one take its name with another extension. Which there are follows from
- * the emitter; a table has their names. */
+/* The additional files have the name of the first file with another extension. The emitter
+ * determines which files there are; a table has their roles and extensions. */
 #include "job/export/scenefiles.h"
 
 #include "job/export/volumes.h"
@@ -31,13 +31,15 @@ Status scene_files_find(const char *output, bool of_meshes, const Emitter **emit
     return status;
 }
 
-/* The files beside the first one, by SceneFile. */
+/* The additional files, by SceneFile. */
 static const struct {
     const char *role;
-    const char *suffix; /* after the path's stem, or its extension; NULL: the emitter's */
+    const char *suffix; /* replaces the extension of the path, or follows it if keeps_extension;
+                         * NULL: the extension that the emitter specifies */
     bool keeps_extension;
     bool of_mesh, of_parts;
-    const char *of_extension; /* only beside a mesh of this extension; NULL: of any */
+    const char *of_extension; /* the file is written only for meshes with this extension; NULL: for
+                               * any mesh */
 } beside[SCENE_FILES] = {
     [SCENE_SETTINGS] = {"the settings", .suffix = NULL},
     [MESH_MANIFEST] = {"the manifest", ".json", .keeps_extension = true, .of_mesh = true},
@@ -49,7 +51,7 @@ static const struct {
                    .of_parts = true, .of_extension = "msh"},
 };
 
-/* Returns true if the emitter writes this file beside its first one. */
+/* Returns true if the emitter writes this additional file. */
 static bool is_beside(const Emitter *emitter, bool settings, SceneFile file)
 {
     const char *extension = beside[file].of_extension;
@@ -90,7 +92,8 @@ Status scene_files_name(const Emitter *emitter, const char *path, bool settings,
     return second && emitter->check_name ? emitter->check_name(file_name(second), err) : STATUS_OK;
 }
 
-/* Appends what is drawn, of which tree, and what its colors mean. */
+/* Appends a description: the drawn geometry, the name of the tree, and the meaning of the
+ * colors. */
 static void put_description(const Emitter *emitter, const EmitParams *params, const char *tree_path,
                             Text *out)
 {

@@ -1,5 +1,6 @@
-/* The ends come from the mesh, and the flow through them from the tree. Radii and positions come
- * from the vessels, which may have been made thinner, and longer at their ends. */
+/* The ends are those of the mesh, and the flow through them is that of the tree. Radii and
+ * positions are those of the vessels, which may have been thinned, or lengthened at their ends,
+ * since the tree was read. */
 #include "job/export/solver_files.h"
 
 #include "derive/derive.h"
@@ -8,7 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Computes the fraction of all blood that passes each segment. *parts is owned. */
+/* Computes, per segment, the fraction of the total flow of all roots that passes it. The caller
+ * frees *parts. */
 static Status find_flow_parts(const Tree *tree, double **parts, Err *err)
 {
     double total = 0;
@@ -32,19 +34,11 @@ static void put_vector(Vec3 v, Text *out)
     }
 }
 
-/* Computes the wall shear stress of each segment, Pa. *wss is empty if the flow or the viscosity is
- * unknown. */
-static Status find_wss(const Tree *tree, const TreeMeta *said, Field *wss, Err *err)
-{
-    *wss = (Field){0};
-    Status status = derive_rule(tree, said, "wss", wss, err);
-    return status == STATUS_INPUT ? STATUS_OK : status;
-}
-
-/* Appends the length of an end's extension, and the pressure drop of steady flow along it, mmHg: 2
- * wss L / r. */
+/* Appends the length of an end's extension, in mm; the pressure drop of steady Poiseuille flow along
+ * it, 2 wss L / r, in mmHg; and the entrance length of laminar flow, in mm. What is unknown is left
+ * empty. */
 static void put_extension(const MeshEnd *end, size_t node, const Tree *tree, const Field *wss,
-                          Text *out)
+                          const Field *reynolds, Text *out)
 {
     size_t at = end->is_inlet ? (size_t)tree->parent[node] : node;
     double length = tree_column(tree, extension_column)->value[at];
@@ -52,7 +46,10 @@ static void put_extension(const MeshEnd *end, size_t node, const Tree *tree, con
     text_number(out, length);
     text_puts(out, ",");
     if (wss->value && isfinite(wss->value[node]))
-        text_number(out, 2 * wss->value[node] * length / tree->radius_mm[node]);
+        text_number(out, mmhg_from_pa(2 * wss->value[node] * length / tree->radius_mm[node]));
+    text_puts(out, ",");
+    if (reynolds->value && isfinite(reynolds->value[node]))
+        text_number(out, extension_entrance(tree, reynolds, node));
 }
 
 Status solver_ends(const MeshEnds *ends, const Tree *tree, const VesselTree *vessels,
@@ -60,16 +57,14 @@ Status solver_ends(const MeshEnds *ends, const Tree *tree, const VesselTree *ves
 {
     const bool is_extended = tree_column(tree, extension_column);
     double *parts = NULL;
-    Field wss;
-    TRY(find_wss(tree, said, &wss, err));
-    Status status = find_flow_parts(tree, &parts, err);
-    if (status != STATUS_OK) {
-        field_release(&wss);
-        return status;
-    }
+    Field wss = {0}, reynolds = {0};
+    Status status;
+    TRY_GOTO(extension_field(tree, said, "wss", &wss, err));
+    TRY_GOTO(extension_field(tree, said, "reynolds", &reynolds, err));
+    TRY_GOTO(find_flow_parts(tree, &parts, err));
     text_puts(out, "name,face,id,x_mm,y_mm,z_mm,normal_x,normal_y,normal_z,radius_mm,area_mm2,"
                    "flow_part");
-    text_puts(out, is_extended ? ",extension_mm,extension_drop_mmhg\n" : "\n");
+    text_puts(out, is_extended ? ",extension_mm,extension_drop_mmhg,entrance_mm\n" : "\n");
     for (size_t i = 0; i < ends->n; i++) {
         const MeshEnd *end = &ends->ends[i];
         text_printf(out, "%s,%zu,%u,", end->name, ends->n_walls + i + 1,
@@ -83,17 +78,20 @@ Status solver_ends(const MeshEnds *ends, const Tree *tree, const VesselTree *ves
         if (!end->is_ring)
             text_number(out, parts[vessels->segments[end->segment].segment]);
         if (is_extended && !end->is_ring)
-            put_extension(end, vessels->segments[end->segment].segment, tree, &wss, out);
+            put_extension(end, vessels->segments[end->segment].segment, tree, &wss, &reynolds, out);
         else if (is_extended)
-            text_puts(out, ",,");
+            text_puts(out, ",,,");
         text_puts(out, "\n");
     }
+    status = text_check(out, err);
+done:
     field_release(&wss);
+    field_release(&reynolds);
     free(parts);
-    return text_check(out, err);
+    return status;
 }
 
-/* Copies the arrays of a tree that solver_centerline changes. */
+/* Copies the arrays that solver_centerline changes. */
 static Status copy_arrays(const Tree *tree, Tree *copy, Err *err)
 {
     const size_t n = tree->n;
@@ -135,7 +133,7 @@ done:
     return status;
 }
 
-/* Returns true if the part bounds the blood in the lumen. */
+/* Returns true if the part is on the boundary of the lumen. */
 static bool bounds_blood(const MeshEnds *ends, size_t part)
 {
     if (part < ends->n_walls)
@@ -143,13 +141,14 @@ static bool bounds_blood(const MeshEnds *ends, size_t part)
     return !ends->ends[part - ends->n_walls].is_ring;
 }
 
-/* Returns true if the part bounds the wall around the lumen. */
+/* Returns true if the part is on the boundary of the vessel wall. */
 static bool bounds_wall(const MeshEnds *ends, size_t part)
 {
     return part < ends->n_walls || ends->ends[part - ends->n_walls].is_ring;
 }
 
-/* Appends a volume. gmsh numbers the surfaces from 1, in the order of the file. */
+/* Appends a volume that is enclosed by the parts for which `bounds` returns true. gmsh numbers the
+ * surfaces from 1, in the order of the file. */
 static void put_volume(const MeshEnds *ends, bool (*bounds)(const MeshEnds *, size_t),
                        const char *name, int number, Text *out)
 {

@@ -1,10 +1,11 @@
-/* The sizes that a format, the memory or the disk cannot hold are refused before the work begins.
- */
+/* Volumes that are too large for the format, the memory or the disk are refused before the work
+ * begins. */
 #include "job/export/volumes.h"
 
 #include "derive/derive.h"
 #include "emit/emit.h"
 #include "options/output.h"
+#include "options/reading.h"
 #include "options/talk.h"
 #include "options/templates.h"
 #include "stage/stage.h"
@@ -14,13 +15,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* By SampleType. */
+/* The values of --depth, by SampleType. */
 static const char *const depths[] = {"8", "16", "float", NULL};
 
 typedef enum LabelKind { LABEL_NONE, LABEL_SEGMENT, LABEL_STRAHLER, LABEL_TREE } LabelKind;
 static const char *const label_kinds[] = {"none", "segment", "strahler", "tree", NULL};
 
-/* Number of voxels along the longest side, without --spacing. */
+/* Default number of voxels along the longest side. Reason of the value not recorded. */
 enum { USUAL_VOXELS = 256 };
 
 static const Option volume_options[] = {
@@ -63,7 +64,7 @@ void volumes_extensions(Text *out)
 
 /* ---- files ----------------------------------------------------------------------------------- */
 
-/* Positions in FileSet. The first three are volumes. */
+/* The output files: indices in FileSet.at. The first three are volumes. */
 typedef enum VolumeFile {
     FILE_VALUES,
     FILE_LABELS,
@@ -74,7 +75,8 @@ typedef enum VolumeFile {
     VOLUMES = FILE_TREE
 } VolumeFile;
 
-/* Names a file `output` with `suffix` in place of the format's own, or after it. */
+/* Sets the path of a file to `output` with its end `replaced` replaced by `suffix`. If `replaced`
+ * is "", the suffix is appended. */
 static Status name_beside(const char *output, const char *replaced, const char *suffix,
                           const char *role, FileSlot *file, Err *err)
 {
@@ -107,12 +109,13 @@ Status volumes_name(const VolumeOptions *options, const VolumeFormat *format, co
 
 /* ---- the work -------------------------------------------------------------------------------- */
 
-/* Volumes that are being made. */
+/* The job of making the volumes. */
 typedef struct Volumes {
     const VolumeOptions *options;
     const PictureTree *of;
     Geometry geometry;
-    size_t within;    /* segments that lie between both ends of thicker ones */
+    size_t within;    /* number of segments that share both nodes with a thicker segment and have no
+                       * voxels */
     uint32_t *labels; /* per segment index; owned */
     uint32_t most_label;
     VoxelParams params;
@@ -145,6 +148,8 @@ static Status label_segments(Volumes *made, Err *err)
     Field field = {0};
     if (kind == LABEL_NONE)
         return STATUS_OK;
+    if (kind == LABEL_STRAHLER)
+        TRY(reading_refuse_loops(tree, made->of->path, "--labels strahler", err));
     TRY(mem_calloc(&made->labels, tree->n, sizeof *made->labels, "labels", err));
     if (kind != LABEL_SEGMENT)
         TRY(derive_rule(tree, &(TreeMeta){0}, label_kinds[kind], &field, err));
@@ -174,7 +179,7 @@ static Status make_grid(Volumes *made, Err *err)
     return voxelgrid_make(&made->geometry, step, &made->params.grid, err);
 }
 
-/* Sets what the volumes hold, and checks that their formats can hold it. */
+/* Sets the sample type of each volume, and checks that the formats can store the volumes. */
 static Status choose_formats(Volumes *made, const VolumeFormat *format, const FileSet *files,
                              Err *err)
 {
@@ -224,7 +229,8 @@ static Status fill_streams(void *job, Progress *progress, Err *err)
     return voxels_write(&made->geometry, &made->params, &made->report, err);
 }
 
-/* Reports the result. Vessels that are thin for the samples weigh more than they should. */
+/* Sends notes about the result. Rounding voxel values to few bits changes the total volume, mainly
+ * where vessels are thin, so a difference above 0.1 % is a warning. */
 static void say_result(const Volumes *made, const Talk *talk)
 {
     const VoxelReport *report = &made->report;
@@ -268,7 +274,7 @@ static json_t *manifest(const Volumes *made, const char *command)
                        {"union_mm3", json_number(report->union_mm3)});
 }
 
-/* Returns the box of the volume for a scene. */
+/* Returns the volume's box, as the scene of a density file needs it. */
 static DensityBox density_box(const Volumes *made)
 {
     const VoxelGrid *grid = &made->params.grid;
@@ -283,7 +289,7 @@ static DensityBox density_box(const Volumes *made)
     return density;
 }
 
-/* Appends a scene in which the volume glows. */
+/* Appends the POV-Ray scene that draws the volume as a glowing medium. */
 static Status put_scene(const Volumes *made, const char *command, FileSlot files[], Err *err)
 {
     const DensityBox density = density_box(made);
@@ -305,7 +311,7 @@ done:
     return status;
 }
 
-/* The volumes have been written while they were filled. */
+/* Appends all files except the volumes, which were written while they were filled. */
 static Status put_beside(const void *job, const char *command, FileSlot files[], Err *err)
 {
     const Volumes *made = job;

@@ -1,4 +1,4 @@
-/* Writes the vessels of a tree as voxel volumes, and declares the options for volumes. */
+/* Writes the vessels of a tree as voxel volumes. Declares the options for volumes. */
 #ifndef CORCAST_JOB_EXPORT_VOLUMES_H
 #define CORCAST_JOB_EXPORT_VOLUMES_H
 
@@ -22,19 +22,19 @@ void volumes_extensions(Text *out);
  * for density files, a scene. The names of the additional files are derived from `output`.
  *
  * output   path of the volume.
- * files    zeroed before, except for its taker (FileTaker); the caller releases it with
+ * files    zeroed by the caller, except for its taker (FileTaker); the caller releases it with
  *          fileset_release even after an error.
  * Errors   STATUS_MEMORY. */
 MUST_CHECK Status volumes_name(const VolumeOptions *options, const VolumeFormat *format,
                                const char *output, FileSet *files, Err *err);
 
-/* Writes the volumes and the additional files. Prints the expected cost before, and the number of
- * filled voxels and their volume after.
+/* Writes the volumes and the additional files. Before that, sends a note with the expected cost;
+ * afterwards, a note with the number of filled voxels and their volume.
  *
- * files    volumes_name has set the paths.
- * Errors   STATUS_USAGE if --spacing is not one or three numbers above 0, or if the centreline's
- * file has no extension of a volume; the errors of stage_geometry, voxelgrid_make, volume_check,
- * work_make, voxels_write and work_write. */
+ * files    volumes_name must have set the paths.
+ * Errors   STATUS_USAGE if --spacing is not one or three numbers above 0, or if the extension of
+ *          the centreline's file is not that of a volume; the errors of stage_geometry,
+ *          voxelgrid_make, volume_check, work_make, voxels_write and work_write. */
 MUST_CHECK Status volumes_write(const VolumeOptions *options, const VolumeFormat *format,
                                 const PictureTree *of, FileSet *files, const Parsed *parsed,
                                 Err *err);

@@ -1,6 +1,7 @@
-/* The viewer is built separately from the program [templates/viewer/bundle], because its build
- * needs npm. It is beside the templates if it is installed, else in the build folder. A page holds
- * all fields of the tree, so that its reader needs no other page. */
+/* The JavaScript viewer is built separately from the program [templates/viewer/bundle], because its
+ * build needs npm. After installation the viewer is in the folder of templates, otherwise in the
+ * build folder. A page contains all fields of the tree, so that its reader can switch between
+ * them. */
 #include "job/export/webpage.h"
 
 #include "derive/derive.h"
@@ -14,7 +15,7 @@
 #include <unistd.h>
 
 typedef struct Webpage {
-    const PictureTree *of; /* this and the next two are borrowed */
+    const PictureTree *of; /* borrowed, as are `coloring` and look_name */
     const Coloring *coloring;
     const char *look_name;
     bool is_look_chosen;
@@ -23,7 +24,7 @@ typedef struct Webpage {
     Appearance appearance;
     FieldSeries *fields;
     size_t n_fields, capacity;
-    char **names; /* of series of columns, which fields borrow; owned */
+    char **names; /* names of series of columns, borrowed by fields; owned */
     size_t n_names, names_capacity;
     PageMap *maps;
     size_t n_maps, maps_capacity;
@@ -67,8 +68,8 @@ static Status add_field(Webpage *page, const TreeMeta *said, const char *name, E
     return STATUS_OK;
 }
 
-/* Adds the field that the page opens with. It replaces other fields of its name, because its values
- * may come from a file, and may be in a unit that the user selected. */
+/* Adds the field that the page shows first. Derived fields of the same name are then left out,
+ * because the values of this field may come from a file or be in a unit that the user selected. */
 static Status add_shown(Webpage *page, Err *err)
 {
     Appearance *shown = &page->appearance;
@@ -94,8 +95,9 @@ static size_t count_roots(const Tree *tree)
     return n;
 }
 
-/* Adds the fields that can be derived. Leaves out the field "tree" of a single tree, which has one
- * value. `lacking` receives the names of the fields whose inputs are missing. */
+/* Adds the fields that can be derived. Leaves out the field "tree" if there is only one tree,
+ * because all its values are equal. `lacking` receives the names of the fields whose inputs are
+ * missing. */
 static Status add_derived(Webpage *page, const TreeMeta *said, Text *lacking, Err *err)
 {
     const bool is_alone = count_roots(&page->of->tree) == 1;
@@ -158,8 +160,8 @@ static Status add_fields(const Coloring *coloring, const Talk *talk, Webpage *pa
     TRY_GOTO(text_check(&lacking, err));
     if (*text_chars(&lacking))
         talk_note(talk,
-                  "%s are left out: they need values that neither the tree nor an option gives",
-                  text_chars(&lacking));
+                  "%s are left out: they need %svalues that neither the tree nor an option gives",
+                  text_chars(&lacking), page->of->tree.link ? "a tree without loops, or " : "");
 done:
     text_release(&lacking);
     if (status == STATUS_INPUT)
@@ -219,14 +221,14 @@ static int thicker_first(const void *a, const void *b)
     return (*x < *y) - (*x > *y);
 }
 
-/* Finds the radius below which segments must be removed so that a page can hold the rest. */
+/* Finds the pruning radius that leaves about WEBPAGE_MAX_SEGMENTS segments. */
 static Status radius_to_prune(const Tree *tree, double *radius_mm, Err *err)
 {
     double *radii;
     TRY(mem_calloc(&radii, tree->n, sizeof *radii, "radii", err));
     memcpy(radii, tree->radius_mm, tree->n * sizeof *radii);
     qsort(radii, tree->n, sizeof *radii, thicker_first);
-    double last = radii[WEBPAGE_MOST_SEGMENTS - 1], next = radii[WEBPAGE_MOST_SEGMENTS];
+    double last = radii[WEBPAGE_MAX_SEGMENTS - 1], next = radii[WEBPAGE_MAX_SEGMENTS];
     *radius_mm = (last + next) / 2;
     free(radii);
     return STATUS_OK;
@@ -238,17 +240,18 @@ static Status check_count(const PictureTree *of, Err *err)
     const size_t n = of->tree.n - count_roots(&of->tree);
     double radius_mm;
     char size[BYTES_TEXT_SIZE];
-    if (n <= WEBPAGE_MOST_SEGMENTS)
+    if (n <= WEBPAGE_MAX_SEGMENTS)
         return STATUS_OK;
     TRY(radius_to_prune(&of->tree, &radius_mm, err));
     return err_set(err, STATUS_INFEASIBLE,
                    "%s: %zu segments make a page of %s, and a browser can rotate at most %d; "
                    "--prune-radius %.3g leaves about that many",
-                   of->path, n, bytes_text((double)n * bytes_each, size), WEBPAGE_MOST_SEGMENTS,
+                   of->path, n, bytes_text((double)n * bytes_each, size), WEBPAGE_MAX_SEGMENTS,
                    radius_mm);
 }
 
-/* Refuses a page whose field values, as floats in base64, are too large. */
+/* Checks the size of all field values, as floats in base64. Errors: STATUS_INFEASIBLE if it is
+ * above WEBPAGE_MAX_BYTES. */
 static Status check_bytes(const Webpage *page, Err *err)
 {
     double bytes = 0;
@@ -258,15 +261,15 @@ static Status check_bytes(const Webpage *page, Err *err)
         bytes += (double)page->fields[i].field.n * sizeof(float) * 4 / 3;
         moments += page->fields[i].frames;
     }
-    if (bytes <= WEBPAGE_MOST_BYTES)
+    if (bytes <= WEBPAGE_MAX_BYTES)
         return STATUS_OK;
     return err_set(err, STATUS_INFEASIBLE,
                    "%s: the fields (%zu, counting each moment) make a page of %s, and a browser "
                    "opens at most %d MB; remove columns or moments from the file",
-                   page->of->path, moments, bytes_text(bytes, size), WEBPAGE_MOST_BYTES / 1000000);
+                   page->of->path, moments, bytes_text(bytes, size), WEBPAGE_MAX_BYTES / 1000000);
 }
 
-/* Finds the viewer's file. *path is owned. */
+/* Finds the file of the viewer. The caller frees *path. */
 static Status find_viewer(const char *templates, char **path, Err *err)
 {
     static const char *const places[] = {"page/viewer.js", "../build/viewer/viewer.js"};
@@ -309,7 +312,7 @@ static Status put_page(const void *job, const char *command, FileSlot files[], E
     return page_put(&params, &files[0].text, err);
 }
 
-/* Refuses a page that is too large, and collects what it contains. */
+/* Collects the content of the page. Errors: STATUS_INFEASIBLE if the page would be too large. */
 static Status collect(Webpage *page, const Talk *talk, Err *err)
 {
     const Coloring *coloring = page->coloring;

@@ -7,16 +7,16 @@
 #include "job/work.h"
 #include "options/options.h"
 
-/* Maximum number of segments in a page (a file of about 17 MB), and maximum size of all field
- * values in bytes. */
-enum { WEBPAGE_MOST_SEGMENTS = 200000, WEBPAGE_MOST_BYTES = 100000000 };
+/* Maximum number of segments in a page, a file of about 17 MB, and maximum size of all field values
+ * in bytes. Browsers rotate or open larger pages too slowly. */
+enum { WEBPAGE_MAX_SEGMENTS = 200000, WEBPAGE_MAX_BYTES = 100000000 };
 
 /* Writes a page about a tree, with all fields that can be derived, all columns of its file and all
- * color maps. The page opens with the colors that `coloring` selects. Prints which fields are
- * left out because their inputs are missing.
+ * color maps. The page opens with the colors that `coloring` selects. Sends a note that lists the
+ * fields that are left out because their inputs are missing.
  *
  * look     name in templates/looks, or path.
- * files    its first file has the path of the page.
+ * files    the first file receives the page; its path must be set.
  * Errors   STATUS_INFEASIBLE if there are too many segments, or too many field values; STATUS_TOOL
  *          if the viewer was not built; the errors of coloring_read_look, coloring_appearance,
  *          derive_series, page_put and work_write. */

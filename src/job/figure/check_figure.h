@@ -1,5 +1,5 @@
-/* The job `check-figure`: compares the file of a figure with the requirements of a publisher, which
- * a preset states: size, resolution, format, colors, fonts. */
+/* The operation `check-figure`: compares the file of a figure with the requirements of a publisher
+ * on size, resolution, format, colors and fonts. A preset states the requirements. */
 #ifndef CORCAST_JOB_FIGURE_CHECK_FIGURE_H
 #define CORCAST_JOB_FIGURE_CHECK_FIGURE_H
 
@@ -11,7 +11,7 @@ typedef struct CheckFigureOptions {
     ContentKind kind;
     double ink_percent; /* maximum sum of the four inks; used if has_ink is set */
     bool has_ink;
-    bool json; /* read by the caller only: the findings are printed as JSON */
+    bool json; /* the caller prints the findings as JSON; not used here */
 } CheckFigureOptions;
 
 /* Zero it before use; release it with figurefindings_release. */
@@ -21,8 +21,8 @@ typedef struct FigureFindings {
     int n_refused;
 } FigureFindings;
 
-/* Checks the file `path` against the preset. A file of any format that the program writes can be
- * checked; a PDF needs the programs of poppler-utils.
+/* Checks the file `path` against the preset. All formats that corcast writes can be checked. A PDF
+ * needs the programs of the package poppler-utils.
  *
  * findings  the caller releases it even after an error.
  * Errors    STATUS_USAGE if there is no such preset; STATUS_INPUT if the file or the preset is

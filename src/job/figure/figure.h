@@ -1,4 +1,4 @@
-/* The job `figure`: draws a page of panels that a recipe describes.
+/* The operation `figure`: draws a page of panels that a recipe describes.
  *
  * A recipe [figure_plan.h] has a section per panel, inset and text. figure_make places the panels
  * in a grid of cells, draws each as `render` does, and fills a Sheet, the page; figure_write writes
@@ -24,25 +24,25 @@ typedef struct FigureOptions {
     Vec3 background; /* sRGB in [0, 1] */
 } FigureOptions;
 
-/* The place of a panel on the page, in pixels from the page's upper left corner. */
+/* The position and size of a panel, in pixels from the page's upper left corner. */
 typedef struct Place {
     int left, top, width, height;
     double title_mm; /* height of the line above the panel */
-    char *path;      /* of the panel's tree or image; NULL: the recipe makes the tree; owned */
+    char *path;      /* path of the panel's tree or image; NULL: the recipe makes the tree; owned */
 } Place;
 
-/* A figure on its page. Zero it before use; release it with figure_done. */
+/* A figure: its panels and its page. Zero it before use; release it with figure_done. */
 typedef struct Figure {
     const FigureOptions *options; /* borrowed, as is `parsed` */
     Parsed *parsed;
-    char *folder; /* of the recipe, with its final '/', or ""; owned */
+    char *folder; /* folder of the recipe: ends with '/', or ""; owned */
     FigurePlan plan;
     MadeTrees trees;
     Press press; /* of a page in pixels */
-    Sheet sheet; /* the page, and what it states about itself */
+    Sheet sheet; /* the page and its metadata */
     Text recipe; /* with --dump-recipe: the complete recipe */
-    /* Per section, but zero for those of another kind; owned. The insets are in the order of their
-     * panels. */
+    /* Per section: zeroed if the section is of another kind; owned. The insets are in the order of
+     * their panels. */
     Place *places;
     Panel *panels;
     PanelInset *insets;
@@ -83,14 +83,15 @@ static inline bool figure_has_tree(const Figure *figure, size_t i)
  * STATUS_USAGE, naming the panel, if there is no room for it on the page, or if it spans more
  * columns than there are; STATUS_MEMORY. */
 MUST_CHECK Status figure_place_panels(Figure *figure, Err *err);
-/* Returns the place of a panel in mm. */
+/* Returns the box of a panel on the page, in mm. */
 FigureBox figure_panel_box(const Figure *figure, size_t i);
 
 /* Stores the insets of panel `of` in figure->insets from `first` on, and their count in *n. Errors:
- * STATUS_USAGE, naming the inset, if its panel or a place is missing. */
+ * STATUS_USAGE, naming the inset, if its panel, its `at` or its `place` is missing. */
 MUST_CHECK Status figure_plan_insets(Figure *figure, size_t of, size_t first, size_t *n, Err *err);
-/* Appends the insets of a panel that is drawn to the page: picture, frames, lines between the
- * frames, scale bar. Errors: STATUS_USAGE if an inset does not lie on the page; STATUS_MEMORY. */
+/* Appends the insets of a panel to the page: picture, frames, lines between the frames, scale bar.
+ * The panel must have been drawn. Errors: STATUS_USAGE if an inset is not inside the page;
+ * STATUS_MEMORY. */
 MUST_CHECK Status figure_put_insets(Figure *figure, size_t of, Err *err);
 
 #endif

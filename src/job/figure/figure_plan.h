@@ -18,17 +18,16 @@ typedef struct PanelOptions {
     double aspect;            /* width / height of the panel; 0: the aspect of its cell */
 } PanelOptions;
 
-/* The options of an inset: a magnified part of a panel. A member `has_X` is true if X is
- * specified. */
+/* The options of an inset: a magnified part of a panel. A member `has_X` is true if X is specified.
+ * Positions are relative to the panel. */
 typedef struct InsetOptions {
     const char *of; /* name of the panel */
-    Vec3 at, place; /* middle of the magnified part, and middle of the inset: from the panel's upper
-                     * left corner, x as a fraction of the panel's width, y as a fraction of its
-                     * height; z is ignored */
+    Vec3 at, place; /* centre of the magnified part, and centre of the inset: x and y as fractions
+                     * of the panel's width and height, from its upper left corner; z is ignored */
     double magnify; /* magnification relative to the panel */
     double width_mm, height_mm; /* size of the inset on the page; height 0: equal to the width */
-    double scale_bar_mm;        /* length in the tree that the inset's scale bar stands for */
-    Corner scale_bar_at;        /* corner of the inset that the scale bar is in */
+    double scale_bar_mm;        /* length of the scale bar in the tree */
+    Corner scale_bar_at;        /* corner of the inset for the scale bar */
     bool has_at, has_place, has_scale_bar;
     bool leaders; /* two lines lead from the magnified part to the inset */
 } InsetOptions;
@@ -39,7 +38,7 @@ typedef struct TextOptions {
     Vec3 at; /* a point on the baseline: mm from the page's upper left corner, right and down */
     double text_pt; /* font size, if has_text_pt; else the figure's font size applies */
     bool bold, has_at, has_text_pt;
-    FigureAlign align; /* whether the text begins, ends or has its middle at `at` */
+    FigureAlign align; /* the text begins, ends or is centred at `at` */
     Vec3 color;        /* sRGB in [0, 1] */
 } TextOptions;
 
@@ -56,7 +55,7 @@ typedef struct Section {
                              * FigurePlan.text; NULL without a maker */
     char tree_name[40];     /* names the tree in messages: "the tree of grow"; not used without a
                              * maker */
-    bool made;              /* `maker` is from the panel's own section, not from [panels] */
+    bool made;              /* `maker` is specified in the panel's own section, not in [panels] */
 } Section;
 
 typedef struct FigurePlan {

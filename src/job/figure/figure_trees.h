@@ -1,5 +1,5 @@
-/* The trees of a figure that its recipe does not read from a file: a key such as `grow =
- * --terminals 20` names the command that makes the tree. */
+/* Makes the trees of a figure that are not read from a file. A key of the recipe such as `grow =
+ * --terminals 20` specifies the command that makes the tree. */
 #ifndef CORCAST_JOB_FIGURE_FIGURE_TREES_H
 #define CORCAST_JOB_FIGURE_FIGURE_TREES_H
 
@@ -7,16 +7,16 @@
 
 /* Zero it before use; release it with madetrees_release. */
 typedef struct MadeTrees {
-    MadeTree *made; /* per section: its tree, if it is the first with this maker and these
-                     * arguments; owned */
+    MadeTree *made; /* per section: its tree, if it is the first section with this maker and these
+                     * arguments; else zeroed; owned */
     size_t n;
 } MadeTrees;
 
-/* Makes the trees, each once for all panels that show it. Of the messages of the commands only
- * warnings are passed on.
+/* Makes the trees. A tree that several panels show is made once. Passes on the warnings of the
+ * commands, but not their other messages.
  *
  * figure  the options of the figure: number of threads, and the receiver of messages.
- * folder  where paths among the arguments start [figure_paths.h].
+ * folder  folder that relative paths among the arguments refer to [figure_paths.h].
  * trees   the caller releases it even after an error.
  * Errors  naming the panel: STATUS_USAGE for a quote that is not closed, for an option that names
  *         an output, and for wrong options; the errors of the commands. */

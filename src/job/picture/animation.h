@@ -78,8 +78,8 @@ static inline bool animation_moves(const Animation *animation, const PictureOpti
  *
  * shown   borrows from the whole scene and from *grown.
  * grown   if animation_moves, receives the geometry and for growth the colors of this picture;
- * zeroed before; release it with scene_release. Otherwise it stays unchanged. Errors  as
- * picture_geometry; STATUS_MEMORY. */
+ *         zeroed before; release it with scene_release. Otherwise it stays unchanged.
+ * Errors  as picture_geometry; STATUS_MEMORY. */
 MUST_CHECK Status animation_scene(const Animation *animation, const AnimationSubject *subject,
                                   int number, Scene *shown, Scene *grown, Err *err);
 

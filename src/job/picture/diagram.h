@@ -36,8 +36,8 @@ typedef struct MadeDiagram {
  * made      must not be moved or copied, because it points to itself. The caller releases it with
  *           madediagram_release even after an error.
  * Errors    STATUS_USAGE for an output of unknown format, and for bits that the format cannot
- * store; STATUS_MEMORY; the errors of coloring_read_look, picture_read_tree, coloring_appearance,
- * diagram_lay_out, press_open, diagram_draw and figure_check. */
+ *           store; STATUS_MEMORY; the errors of coloring_read_look, picture_read_tree,
+ *           coloring_appearance, diagram_lay_out, press_open, diagram_draw and figure_check. */
 MUST_CHECK Status diagram_make(void *options, Parsed *parsed, MadeDiagram *made, Err *err);
 void madediagram_release(MadeDiagram *made);
 

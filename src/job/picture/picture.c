@@ -487,11 +487,7 @@ static bool has_segments(const Tree *tree)
 static Status prune(double radius_mm, bool keep_whole, PictureTree *of, Err *err)
 {
     Tree rest;
-    if (of->tree.link)
-        return err_set(err, STATUS_INPUT,
-                       "%s: the network has loops, and --prune-radius needs a tree; --break-loops "
-                       "cuts each loop at its thinnest line",
-                       of->path);
+    TRY(reading_refuse_loops(&of->tree, of->path, "--prune-radius", err));
     TRY(tree_pruned(&of->tree, radius_mm, &rest, err));
     of->pruned = of->tree.n - rest.n;
     if (of->pruned > 0 && !has_segments(&rest)) {

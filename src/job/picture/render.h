@@ -80,8 +80,8 @@ typedef struct Rendering {
 /* Checks the options, reads look and tree, and makes the scene.
  *
  * fonts   fonts of the page on which the caller puts the picture. The caller then draws legend,
- * scale bar and letter, and lines (--ink) are allowed without an output. NULL: legend, scale bar
- *         and letter are drawn over the picture.
+ *         scale bar and letter, and lines (--ink) are allowed without an output. NULL: legend,
+ *         scale bar and letter are drawn over the picture.
  * out     set on success; release it with rendering_close. On failure there is nothing to close.
  * Errors  as render_make. */
 MUST_CHECK Status rendering_open(RenderOptions *options, Parsed *parsed, const FigureFonts *fonts,

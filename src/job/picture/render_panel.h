@@ -54,7 +54,7 @@ MUST_CHECK Status panel_scale(Parsed *parsed, const FigureFonts *fonts, double *
  *          animation.
  * panel    the caller releases it with panel_release even after an error.
  * Errors   STATUS_USAGE for insets in a perspective picture, and for a legend in a line drawing;
- * the errors of render_make. */
+ *          the errors of render_make. */
 MUST_CHECK Status panel_draw(Parsed *parsed, Panel *panel, Err *err);
 /* Releases the results of the panel and of its insets. */
 void panel_release(Panel *panel);

@@ -1,4 +1,4 @@
-/* Options on the blood in a tree. They take precedence over the tree's metadata. */
+/* Options about the blood in a tree. They take precedence over the tree's metadata. */
 #ifndef CORCAST_JOB_TREE_BLOOD_H
 #define CORCAST_JOB_TREE_BLOOD_H
 
@@ -7,22 +7,24 @@
 
 /* Zeroed: nothing is specified. */
 typedef struct BloodOptions {
-    TreeMeta said; /* the values given by options; owns nothing; read it with blood_said */
-    const char *terminal_flow; /* "equal", "murray" or a CSV file of flows; NULL: the tree's */
-    ViscosityLaw law;          /* if said.known has it */
+    TreeMeta said; /* the values that options specify; owns nothing; read it with blood_said */
+    const char *terminal_flow; /* "equal", "murray" or the path of a CSV file of flows; NULL: the
+                                * flow stored in the tree */
+    ViscosityLaw law;          /* specified if said.known contains its key */
 } BloodOptions;
 
 extern const OptionTable blood_table; /* sets a BloodOptions */
 
-/* Returns all specified values, as derive_field takes them. They own nothing. */
+/* Returns all specified values, including the viscosity law, in the form that derive_field expects.
+ * The result owns nothing. */
 TreeMeta blood_said(const BloodOptions *blood);
 
-/* Returns the conditions of options about blood that do not hold for a viscosity law. */
+/* Returns the conditions of options about blood that are not met under a viscosity law. */
 ConditionSet blood_unmet(ViscosityLaw law);
-/* Checks the options for the tree that is the first operand, and divides the flow among the tree's
- * terminals as terminal_flow says. Errors: STATUS_USAGE for options of another viscosity law than
- * the tree's, and for a terminal_flow that is no rule and no file; as tree_set_flow_by_radius and
- * tree_read_flows. */
+/* Checks the options against the tree, the first operand, and divides the flow among the tree's
+ * terminals by the rule or file of terminal_flow. Errors: STATUS_USAGE for options that do not
+ * apply to the tree's viscosity law, and for a terminal_flow that is neither a rule nor a file; the
+ * errors of tree_set_flow_by_radius and tree_read_flows. */
 MUST_CHECK Status blood_settle(const BloodOptions *blood, const Parsed *parsed, Tree *tree,
                                Err *err);
 

@@ -1,5 +1,5 @@
-/* The operation `certify`: proves a lower bound of a tree's target. Divides the distance between
- * target and bound into parts.
+/* The operation `certify`: proves a lower bound for the objective (the "target") of a tree, and
+ * explains the gap between the target and the bound by parts.
  *
  * Use: certify_make(parsed->options, parsed, &found, err), then certified_json(&found), then
  * certified_release(&found), the last even after an error. */
@@ -11,40 +11,42 @@
 
 extern const Command command_certify;
 
-/* The parts of the distance between target and bound, in the target's unit. */
+/* The parts of the gap between target and bound, in the target's unit. */
 enum { PART_SEARCH, PART_RULES, PART_RADII, PART_UNPROVED, PARTS };
 
-/* Per part: its key in JSON, and its meaning as a text for users. */
+/* Per part: its key in JSON, and a sentence for users that explains it. */
 extern const struct PartRow {
     const char *key, *meaning;
 } part_rows[PARTS];
 
 typedef struct Certified {
-    Bound bound;      /* owned */
-    Text certificate; /* the proof; owned; empty if the option certificate was not given */
-    double refined;   /* target of the tree with its geometry refined; NAN without --explain-gap */
-    double part[PARTS]; /* per part; NAN: not separated from the next part */
+    Bound bound;        /* owned */
+    Text certificate;   /* the proof; owned; empty if the option certificate was not given */
+    double refined;     /* target of the tree after its geometry was refined; NAN without
+                         * --explain-gap */
+    double part[PARTS]; /* per part: its size; NAN: included in the next part */
     double seconds;     /* wall clock time of the bound */
 } Certified;
 
-/* Bounds the target of the tree that is the first operand.
+/* Computes a lower bound for the target of the tree that is the first operand.
  *
  * options  parsed->options.
  * found    the caller releases it with certified_release even after an error.
- * Errors   STATUS_INPUT if the exponent of the target is not known or out of range, and if
- *          viscosity follows the radius; as reading_tree, blood_settle, bound_tree and, with
- *          --explain-gap, refine_tree and tree_domain. */
+ * Errors   STATUS_INPUT if the exponent of the target is unknown or out of range, or if the
+ *          viscosity depends on the radius; the errors of reading_tree, blood_settle and bound_tree
+ *          and, with --explain-gap, of refine_tree and tree_domain. */
 MUST_CHECK Status certify_make(void *options, Parsed *parsed, Certified *found, Err *err);
 void certified_release(Certified *found);
 
-/* Returns what was found as JSON. New reference, or NULL if memory runs out. */
+/* Returns the result as a JSON object: a new reference, or NULL if memory runs out. */
 json_t *certified_json(const Certified *found);
 
-/* Bounds the target of a tree for the reports of other operations.
+/* Computes a lower bound for the target of a tree, for the reports of other operations.
  *
  * said    values that the user specified; they take precedence over those of the tree.
- * out     receives an object of `target`, `bound` and `above`, the distance over the bound; null
- *         if viscosity follows the radius, or if the exponent is not known or out of range.
+ * out     receives a new JSON object with `target`, `bound` and `above`, the relative gap: (target
+ *         - bound) / bound. It is JSON null if the viscosity depends on the radius, or if the
+ *         exponent is unknown or out of range.
  * Errors  as bound_tree. */
 MUST_CHECK Status bound_json(const Tree *tree, const TreeMeta *said, json_t **out, Err *err);
 

@@ -116,8 +116,8 @@ static Status add_all(Tree *tree, const TreeMeta *said, const Talk *talk, Err *e
     TRY_GOTO(text_check(&lacking, err));
     if (*text_chars(&lacking))
         talk_note(talk,
-                  "%s are left out: they need values that neither the tree nor an option gives",
-                  text_chars(&lacking));
+                  "%s are left out: they need %svalues that neither the tree nor an option gives",
+                  text_chars(&lacking), tree->link ? "a tree without loops, or " : "");
 done:
     text_release(&lacking);
     return status;

@@ -1,20 +1,21 @@
-/* The parameters of growth: from options, from the header of a tree that growth continues, and from
- * the files that options name. */
+/* Collects the parameters of growth from options, from the header of a tree that is to be
+ * continued, and from the files that options name. */
 #ifndef CORCAST_JOB_TREE_GROWING_H
 #define CORCAST_JOB_TREE_GROWING_H
 
 #include "grow/grow.h"
 #include "options/options.h"
 
-/* The options are texts until growing_prepare reads what they name. */
+/* The parameters of a growth. growing_prepare reads the files that the text members name. */
 typedef struct Growing {
     GrowParams params; /* its pointers borrow from the other members */
     const char *domain_spec, *from_path, *demand_spec; /* NULL: not given; borrowed */
-    const char *fill;       /* name of the published table to fill the tree by; NULL: grow */
+    const char *fill;       /* name of the published table by which the tree is filled; NULL: the
+                             * tree is grown */
     int fill_from, fill_to; /* as FillRules */
     VectorList inlet;
     NumberList inlet_share;
-    bool given[META_KEYS]; /* by key of the metadata: an option gave it */
+    bool given[META_KEYS]; /* per key of the metadata: an option specified its value */
     Domain domain;         /* owned; zeroed before growing_prepare */
     Tree from;             /* the tree that growth continues; owned; zeroed: none */
     Demand *demand;        /* owned; NULL: none */
@@ -24,27 +25,27 @@ typedef struct Growing {
 void growing_set_defaults(Growing *growing);
 extern const OptionTable growing_table; /* sets a Growing */
 
-/* Reads the tree, the domain and the map of demand that the options name, and completes the
- * parameters. A parameter that no option gives comes from the header of the tree to continue, if
- * the header has it. Notes the domain's and the map's files in parsed->files.
+/* Reads the tree, the domain and the demand map that the options name, and completes the
+ * parameters. A parameter that no option specifies is taken from the header of the tree to
+ * continue, if the header has it. Records the files of the domain and of the map in parsed->files.
  *
  * growing  the caller releases it with growing_release even after an error.
  * Errors   STATUS_USAGE for options without effect, and if the tree to continue has no domain or no
- *          rule for the flow of new terminals; as reading_tree, tree_domain_parse, demand_read and
- *          files_read. */
+ *          rule for the flow of new terminals; the errors of reading_tree, tree_domain_parse,
+ *          demand_read and files_read. */
 MUST_CHECK Status growing_prepare(Growing *growing, Parsed *parsed, Err *err);
 
-/* Replaces the map of demand by the one that demand_spec names; NULL: by none. Errors: as
- * demand_read. */
+/* Replaces the demand map by the map that demand_spec names; with NULL, removes it. Errors: those
+ * of demand_read. */
 MUST_CHECK Status growing_read_demand(Growing *growing, Err *err);
 
-/* Grows a tree, or fills the tree of --from if `fill` is set, with progress. Warns why growth
- * stopped early, if --partial allows that. Errors: as grow_tree; as fill_tree and morphometry_read.
- */
+/* Grows a tree, or fills the tree of --from if `fill` is set, and shows progress. If growth stopped
+ * early, as --partial allows, warns and states the reason. Errors: those of grow_tree, fill_tree
+ * and morphometry_read. */
 MUST_CHECK Status growing_run(Growing *growing, const Parsed *parsed, Tree *tree,
                               GrowReport *report, Err *err);
 
-/* Releases domain, tree and map. The options stay. */
+/* Releases the domain, the tree and the demand map. Keeps the options. */
 void growing_release(Growing *growing);
 
 #endif

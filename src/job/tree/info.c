@@ -72,11 +72,9 @@ static Status measure(const InfoOptions *options, InfoReport *report, Err *err)
 {
     const Tree *tree = &report->tree;
     const TreeMeta said = blood_said(&options->blood);
-    if ((options->morphometry || options->bound) && tree->link)
-        return err_set(err, STATUS_INPUT,
-                       "%s: the network has loops, and --%s needs a tree; --break-loops cuts each "
-                       "loop at its thinnest line",
-                       report->name, options->bound ? "bound" : "morphometry");
+    if (options->morphometry || options->bound)
+        TRY(reading_refuse_loops(tree, report->name, options->bound ? "--bound" : "--morphometry",
+                                 err));
     TRY(derive_summary(tree, &said, &report->summary, err));
     if (options->bound)
         TRY(bound_json(tree, &said, &report->bound, err));

@@ -19,7 +19,7 @@ typedef struct InfoReport {
     Morphometry table;                    /* the published table; set if has_morphometry */
     MorphometryComparison comparison[MORPHOMETRY_ORDERS]; /* set if has_morphometry */
     MorphometryOrders orders; /* the comparison whose numbers are reported one by one */
-    json_t *bound;            /* bound_json [certify.h]; owned; NULL: not asked for */
+    json_t *bound;            /* the result of bound_json [certify.h]; owned; NULL: not requested */
 } InfoReport;
 
 /* Measures the tree that is the first operand.
@@ -31,8 +31,8 @@ typedef struct InfoReport {
 MUST_CHECK Status info_make(void *options, Parsed *parsed, InfoReport *report, Err *err);
 void inforeport_release(InfoReport *report);
 
-/* Returns the report as JSON; the unit of a number is the end of its key, such as _mm3. New
- * reference, or NULL if memory runs out. */
+/* Returns the report as a JSON object: a new reference, or NULL if memory runs out. The key of a
+ * number ends with its unit, such as _mm3. */
 json_t *inforeport_json(const InfoReport *report);
 
 #endif

@@ -11,7 +11,7 @@ extern const Command command_grow, command_refine, command_bifurcation;
 /* Zero it before use; release it with madetree_release. */
 typedef struct MadeTree {
     Tree tree;      /* its metadata names the command that made it */
-    json_t *report; /* what was done; owned; NULL if the option json was not given */
+    json_t *report; /* report about the operation; owned; NULL without --json */
 } MadeTree;
 
 void madetree_release(MadeTree *made);
@@ -21,16 +21,17 @@ void madetree_release(MadeTree *made);
  * options  the struct parsed->options, after options_finish.
  * made     the caller releases it even after an error.
  * Errors   STATUS_USAGE for options that exclude each other or have no effect; STATUS_INPUT for a
- *          tree or a domain that cannot be used; STATUS_INFEASIBLE if there is no such tree;
+ *          tree or a domain that cannot be used; STATUS_INFEASIBLE if no tree meets the options;
  *          STATUS_IO, STATUS_MEMORY. */
 typedef Status MakeTree(void *options, Parsed *parsed, MadeTree *made, Err *err);
 MUST_CHECK MakeTree grow_make, refine_make, bifurcation_make; /* three such functions */
 
-/* Stores `report`, whose reference it takes over, in *made, which has none yet. Errors:
+/* Stores `report` in *made, which must not have a report yet. Takes over the reference. Errors:
  * STATUS_MEMORY if `report` is NULL. */
 MUST_CHECK Status madetree_report(MadeTree *made, json_t *report, Err *err);
 
-/* An operation that makes a tree. A tree is the first operand of `refine`; the others need none. */
+/* An operation that makes a tree. The first operand of `refine` is a tree; `grow` and `bifurcation`
+ * need no operand. */
 typedef struct TreeMaker {
     const Command *command;
     MakeTree *make;

@@ -20,20 +20,22 @@ extern const OptionTable refining_table; /* sets a Refining */
 MUST_CHECK Status refining_check_growing(const Refining *refining, const Growing *growing,
                                          Err *err);
 
-/* Refines the tree if a level is given, and notes what was gained. In any case adds the command
- * line to the tree's metadata. Also adds the number of moves if the tree was refined: a refinement
- * that a clock or the user ended depends on more than the command line.
+/* Refines the tree if a level is specified, and sends a note with the improvement. Always adds the
+ * command line to the tree's metadata. If the tree was refined, also adds the number of moves,
+ * because a time limit or the user may end a refinement, so that the command line does not
+ * determine the result.
  *
  * Shows progress. Once Talk.enough [options/talk.h] returns true, the result is the best tree so
  * far.
  *
- * domain  NULL: the tree may be anywhere.
- * report  zeroed if no level is given.
- * Errors  as refine_tree. */
+ * domain  the domain that the tree must stay in; NULL: there is none.
+ * report  receives the report; zeroed if no level is specified.
+ * Errors  those of refine_tree. */
 MUST_CHECK Status refining_apply(const Refining *refining, const Parsed *parsed,
                                  const Domain *domain, Tree *tree, RefineReport *report, Err *err);
 
-/* Warns that `broken` segments break the rules of length and clearance. 0: says nothing. */
+/* Warns that `broken` segments violate the rules of minimum length and clearance. Does nothing if
+ * `broken` is 0. */
 void refining_warn_broken(const Talk *talk, size_t broken);
 
 #endif

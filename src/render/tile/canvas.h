@@ -89,7 +89,7 @@ void canvas_trace_ground(const Canvas *canvas, TracedTile *traced, TileHits *hit
  * frame stores codes.
  *
  * shadowed  shadowed[light][sample] is 1 if the sample is in the shadow of the light; NULL: no
- * sample is in shadow.
+ *           sample is in shadow.
  *
  * Returns the colors, in the memory of the worker; they are valid until its next call. */
 float (*canvas_shade(const Canvas *canvas, int worker, const TracedTile *traced,
