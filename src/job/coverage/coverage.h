@@ -26,10 +26,6 @@ typedef struct CoverageResult {
     CoverageLaw law;
 } CoverageResult;
 
-/* The quantiles that are reported, as fractions. */
-enum { COVERAGE_QUANTILES = 7 };
-extern const double coverage_quantiles[COVERAGE_QUANTILES];
-
 /* Reads the tree, which is the first operand, and the domain. Measures the distances, and writes
  * the files that the options name.
  *
