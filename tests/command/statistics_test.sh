@@ -118,6 +118,14 @@ END
     expect_sentence 'viscosity-law.*constant, pries'
 }
 
+test_statistics_are_written_as_csv_alone() {
+    grow_tree 5
+    run corcast info tree.swc --stats -o s.json
+    expect_status 2
+    expect_sentence "'s.json' is not a file that ends in .csv"
+    expect_only tree.swc
+}
+
 test_color_by_diameter_defined_order() {
     grow_tree 30
     run_ok corcast render --exact tree.swc --color-by diameter-strahler --size 40x30 -o picture.ppm
