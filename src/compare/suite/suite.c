@@ -229,9 +229,7 @@ static Status judge_reference(SuiteCase *entry, const SuiteFiles *files, const c
                               const float background[3], Err *err)
 {
     char *path;
-    TRY(file_format_name(&path, err, "%.*s%s",
-                         (int)(file_name(files->reference) - files->reference), files->reference,
-                         name));
+    TRY(file_beside(files->reference, name, &path, err));
     const char *const paths[2] = {path, files->picture};
     Status status = judge_pair(entry, paths, files->mask, background, &files->tolerance, err);
     free(path);
