@@ -515,6 +515,8 @@ static Status solve(Pulsing *made, Err *err)
                           .tissue = options->tissue ? &made->tissue : NULL,
                           .threads = parsed->common.threads};
     TRY(read_wall(options, &params.wall, err));
+    if (options->wall_time_s > 0 && strcmp(options->wall, "rigid") == 0)
+        return err_set(err, STATUS_USAGE, "--wall-time has no effect on --wall rigid");
     TRY(read_drive(made, err));
     TRY(read_tissue(made, err));
     params.harmonics = count_harmonics(made);
