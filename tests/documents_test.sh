@@ -252,8 +252,8 @@ test_the_numbers_for_povray_are_those_of_the_source() {
 for each light with n . L >= 1e-10 @ shade.h @ #define MIN_LIT_COSINE 1e-10
 is within 2.85 · 10⁻⁴ of erf @ cellfunction.c @ return form == ERF_FAST ? 2.85e-4
 no wall by more than three times that @ cellfunction.c @ return (3 * erf_form_error(form) + 2e-5) * radius_mm;
-POV-Ray holds at most 1,048,575 functions @ povray_joint.c @ POV-Ray holds 1,048,575 functions, of which a joint has three
-more than 349,000 joints @ povray_joint.c @ MOST_EXACT = 349000,
+POV-Ray holds at most 1,048,575 functions @ povray_joint.c @ POV-Ray can hold 1,048,575 functions
+more than 349,000 joints @ povray_joint.c @ MAX_EXACT = 349000,
 In a scene of more than 8,000 joints @ povray_joint.c @ MANY = 8000,
 scenes of more than 3,000 segments the twelve @ povray_text.h @ MAX_INLINE_TERMS = 3000
 - `f(x) <= M d(x) / 2`, because after a miss POV-Ray skips @ povray_joint.c @ 2 * steepest, folded

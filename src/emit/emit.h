@@ -35,12 +35,12 @@ typedef struct EmitParams {
     const VesselTree *vessels;    /* for emitters of curves; and for emitters of meshes, where the
                                    * labels of the mesh are indices of its segments */
     const Appearance *appearance; /* for emitters with has_colors */
-    const double *orders;      /* for emitters with has_colors: Strahler order per segment index;
-                                * NAN: none */
-    const MeshEnds *ends;      /* for emitters with has_parts */
-    const PrismLayers *layers; /* for emitters with has_layers */
-    const char *templates;     /* the folder of templates, with a folder for each language */
-    const char *file;          /* name of the file, without folders, for comments in the file */
+    const double *orders;         /* for emitters with has_colors: Strahler order per segment index;
+                                   * NAN: none */
+    const MeshEnds *ends;         /* for emitters with has_parts */
+    const PrismLayers *layers;    /* for emitters with has_layers */
+    const char *templates;        /* the folder of templates, with a folder for each language */
+    const char *file;             /* name of the file, without folders, for comments in the file */
     const char *second_file; /* name of the second file, without folders; NULL: one file has all */
     const char *description; /* description of the scene's content; line ends become blanks */
     const char *settings;    /* name of the settings file; NULL: none is written */

@@ -1,26 +1,27 @@
-/* A triangle of the wall leads to a cell of the surface, a prism per layer and a cell of the inner
- * surface; a triangle of a flat end leads to a cell of the surface and a quadrangle per layer. */
+/* Each triangle of the mesh has a slot for a cell of the surface, a slot per layer, and a slot for
+ * a cell of the inner surface. For a triangle of the wall, the slots of the layers hold prisms. For
+ * a triangle of a flat end, they hold quadrangles, and the last slot is empty. */
 #include "emit/prismcells.h"
 
-static size_t places_per_triangle(const EmitParams *params)
+static size_t slots_per_triangle(const EmitParams *params)
 {
     return params->layers->n_layers + 2;
 }
 
-size_t prismcell_places(const EmitParams *params)
+size_t prismcell_slots(const EmitParams *params)
 {
-    return params->mesh->n_triangles * places_per_triangle(params);
+    return params->mesh->n_triangles * slots_per_triangle(params);
 }
 
 size_t prismcell_count(const EmitParams *params)
 {
     const size_t empty =
         params->mesh->n_triangles - params->layers->n_prisms / params->layers->n_layers;
-    return prismcell_places(params) - empty;
+    return prismcell_slots(params) - empty;
 }
 
-/* Sets the corners of the quadrangle between two surfaces, at the edge of a flat end's triangle
- * that is on the rim: the edge opposite the middle of the end. */
+/* Sets the corners of the quadrangle of a layer at a flat end. The quadrangle is at the edge of the
+ * end's triangle that is on the rim: the edge opposite the centre of the end. */
 static void set_ring(const PrismLayers *layers, const uint32_t triangle[3], PrismCell *cell)
 {
     int middle = 0;
@@ -34,14 +35,13 @@ static void set_ring(const PrismLayers *layers, const uint32_t triangle[3], Pris
     cell->corners[3] = prismlayers_point(layers, next, cell->layer);
 }
 
-bool prismcell_at(const EmitParams *params, size_t place, PrismCell *cell)
+bool prismcell_at(const EmitParams *params, size_t slot, PrismCell *cell)
 {
     const PrismLayers *layers = params->layers;
-    const size_t own = place % places_per_triangle(params);
+    const size_t own = slot % slots_per_triangle(params);
     const bool is_layer = own >= 1 && own <= layers->n_layers;
-    *cell = (PrismCell){.triangle = place / places_per_triangle(params),
-                        .layer = is_layer ? own : 0,
-                        .n_corners = 3};
+    *cell = (PrismCell){
+        .triangle = slot / slots_per_triangle(params), .layer = is_layer ? own : 0, .n_corners = 3};
     const bool is_cap = mesh_is_cap(params->mesh, cell->triangle);
     const uint32_t *triangle = params->mesh->triangles[cell->triangle];
     if (is_cap && is_layer) {

@@ -1,5 +1,5 @@
-/* The cells of a file with prism layers, in one order for all formats. Private to the module emit.
- */
+/* Enumerates the cells of a file with prism layers, in the same order for all formats. Each cell
+ * has a slot, and some slots are empty. Private to the module emit. */
 #ifndef CORCAST_EMIT_PRISMCELLS_H
 #define CORCAST_EMIT_PRISMCELLS_H
 
@@ -7,9 +7,9 @@
 
 typedef enum PrismCellKind {
     CELL_SURFACE, /* a triangle of the wall, or of a flat end inside the layers */
-    CELL_PRISM,   /* its outer corners, then its inner ones */
+    CELL_PRISM,   /* three outer corners, then three inner corners */
     CELL_RING,    /* a quadrangle of a flat end, at the side of a prism */
-    CELL_INNER    /* a triangle between the layers and the core */
+    CELL_INNER    /* a triangle of the surface between the layers and the core */
 } PrismCellKind;
 
 /* Faces are counterclockwise when viewed from outside the vessels. */
@@ -17,15 +17,15 @@ typedef struct PrismCell {
     PrismCellKind kind;
     int n_corners;
     uint32_t corners[6]; /* indices in PrismLayers.points */
-    size_t triangle;     /* the triangle of the mesh that the cell comes from */
-    size_t layer;        /* of a prism or a quadrangle: from 1, at the wall; else 0 */
+    size_t triangle;     /* index of the triangle of the mesh that the cell belongs to */
+    size_t layer;        /* layer of a prism or quadrangle, counted from 1 at the wall; else 0 */
 } PrismCell;
 
-/* Returns the number of places for cells; some places are empty. */
-size_t prismcell_places(const EmitParams *params);
+/* Returns the number of slots, including empty slots. */
+size_t prismcell_slots(const EmitParams *params);
 /* Returns the number of cells. */
 size_t prismcell_count(const EmitParams *params);
-/* Finds the cell at a place. Returns false if the place is empty. */
-bool prismcell_at(const EmitParams *params, size_t place, PrismCell *cell);
+/* Finds the cell in a slot. Returns false if the slot is empty. */
+bool prismcell_at(const EmitParams *params, size_t slot, PrismCell *cell);
 
 #endif

@@ -140,7 +140,7 @@ static size_t cells_length(const EmitParams *params, int array)
         return prismcell_count(params);
     PrismCell cell;
     size_t n = 0;
-    for (size_t i = 0; i < prismcell_places(params); i++)
+    for (size_t i = 0; i < prismcell_slots(params); i++)
         n += prismcell_at(params, i, &cell) ? (size_t)cell.n_corners : 0;
     return n;
 }
@@ -187,7 +187,7 @@ static void put_cell_array(const EmitParams *params, int array, Text *out)
         }
         return;
     }
-    for (size_t i = 0, end = 0; i < prismcell_places(params); i++)
+    for (size_t i = 0, end = 0; i < prismcell_slots(params); i++)
         if (prismcell_at(params, i, &cell)) {
             end += (size_t)cell.n_corners;
             put_cell(params, array, &cell, end, &record);

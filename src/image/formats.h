@@ -102,11 +102,11 @@ typedef struct ImageDecoder {
     size_t state_size;
     bool (*is)(const ImageBytes *file); /* recognises the first bytes; `file` may hold only the
                                          * first 16 bytes of the file */
-    GuardedWork *decode;                /* the whole file */
+    GuardedWork *decode;                /* decodes the whole file */
     GuardedWork *get_facts;             /* finds the properties; NULL: not supported */
     /* Read rows from a stream; NULL: the format can only be read as a whole. */
     GuardedWork *begin;          /* sets `form`; image_no_rows if `rows` cannot read it */
-    GuardedWork *rows;           /* the next rows */
+    GuardedWork *rows;           /* reads the next rows */
     GuardedWork *end;            /* reads the rest of the file */
     void (*release)(void *self); /* releases what the state owns; NULL: nothing */
     bool has_layers;
@@ -118,9 +118,9 @@ extern const ImageDecoder png_decoder, pnm_decoder, pfm_decoder, exr_decoder, ti
 /* Returns the decoder of a file by its first bytes; NULL if the format is unknown. */
 const ImageDecoder *imagedecoder_of(const ImageBytes *file);
 
-/* Makes the state of a decoder for a file in memory, or, if `stream` is not NULL, for the rows of a
- * stream, which is borrowed. *out is owned: close it with imageinput_close. Errors:
- * STATUS_MEMORY. */
+/* Makes the state of a decoder: for a file in memory if `stream` is NULL, else for reading rows
+ * from the stream, which is borrowed. *out is set on success only; close it with imageinput_close.
+ * Errors: STATUS_MEMORY. */
 MUST_CHECK Status imageinput_open(const ImageDecoder *decoder, const ImageBytes *file, FILE *stream,
                                   ImageInput **out, Err *err);
 void imageinput_close(ImageInput *input); /* NULL is allowed */

@@ -1,7 +1,7 @@
-/* Each point of the wall moves inwards along one straight line, so that a prism is bounded by the
- * positions of six points. The direction is the one that all triangles at the point face most: a
- * prism with three such directions is sound if it is thin enough. So the only remedy that is needed
- * is to make bad layers thinner, in rounds, until none is bad.
+/* Each point of the wall moves inwards along one straight line. Its direction makes the largest
+ * angle to the normals of the point's triangles as small as possible. If that angle is below 90
+ * degrees at the three corners of a triangle, the triangle's prism is sound if it is thin enough.
+ * So the only remedy that is needed is to make bad layers thinner, in rounds, until none is bad.
  *
  * That no two prisms overlap need not be tested pair by pair. The layers map (wall) x [0, 1] into
  * space. If all Jacobians are positive, a place in space is covered as often as the outer surface
@@ -32,7 +32,7 @@ typedef struct Sweep {
     double part[LAYERS_MAX + 1]; /* per surface: its depth, in parts of the last one's depth */
     IndexLists fans;             /* per point: the triangles of the wall at it */
     Vec3 *normals;               /* per triangle: unit, outwards */
-    /* Per point of the mesh; what is said of points of the wall is unset at other points. */
+    /* The next four are per point of the mesh. Points that are not on the wall have no values. */
     Vec3 *inwards;    /* unit */
     double *asked;    /* the thickness asked for, mm */
     double *depth;    /* thickness, mm */
@@ -198,10 +198,10 @@ static void place_points(Sweep *sweep)
         }
 }
 
-/* Returns true if the Jacobian of the prism between two surfaces is positive everywhere. It is a
- * mean of its values at the three edges from surface to surface, weighted by the position along the
- * triangle; along such an edge it is a quadratic Bernstein polynomial with the coefficients
- * at_outer, between and at_inner. */
+/* Returns true if the Jacobian of the prism between two surfaces is positive everywhere, by more
+ * than the rounding of this function. It is a mean of its values at the three edges from surface to
+ * surface, weighted by the position along the triangle; along such an edge it is a quadratic
+ * Bernstein polynomial with the coefficients at_outer, between and at_inner. */
 static bool is_sound(const Sweep *sweep, size_t triangle, size_t outer, size_t inner)
 {
     const PrismLayers *layers = &sweep->layers;
@@ -220,7 +220,8 @@ static bool is_sound(const Sweep *sweep, size_t triangle, size_t outer, size_t i
     for (int k = 0; k < 3; k++) {
         double at_outer = vec3_dot(rise[k], vec3_cross(a1, a2));
         double at_inner = vec3_dot(rise[k], vec3_cross(b1, b2));
-        if (!(at_outer > 0 && at_inner >= LEAST_FACE * at_outer &&
+        double noise = 1e-14 * vec3_length(rise[k]) * vec3_length(a1) * vec3_length(a2);
+        if (!(at_outer > noise && at_inner >= LEAST_FACE * at_outer &&
               vec3_dot(rise[k], twice_between) >= 0))
             return false;
     }

@@ -60,6 +60,8 @@ test_planted_faults_are_found() {
     expect_refused faulty.png 10
     run_ok corcast render "$DATA/trifurcation.swc" --size 96x96 --exact --antialias 2 --shadows on --ao 0 -o faulty.png
     expect_refused faulty.png 10
+    run corcast compare faulty.png answer.exr
+    expect_sentence 'answer.exr is an answer; give it as A, before the picture'
     run corcast compare answer.exr faulty.png -o distances.png
     expect_status 1
     expect_stdout '^not certified: [0-9]+ of 9216 pixels outside'

@@ -67,8 +67,8 @@ test_trees_sampled_from_a_table_agree_with_it() {
         run_ok corcast info tree.swc --morphometry "$name" --json
         expect_json stdout ".morphometry | .compared == $compared and .passed >= $compared - 3 and .counts.found.passed < $compared - 3"
     done <<'END'
-kassab-lad 3 1 56
-kassab-lad 3 2 56
+kassab-lad 4 1 49
+kassab-lad 4 2 49
 kassab-lcx 4 1 42
 kassab-rca 4 1 48
 END
@@ -116,6 +116,14 @@ END
     run corcast info tree.swc --viscosity-law casson
     expect_status 2
     expect_sentence 'viscosity-law.*constant, pries'
+}
+
+test_statistics_are_written_as_csv_alone() {
+    grow_tree 5
+    run corcast info tree.swc --stats -o s.json
+    expect_status 2
+    expect_sentence "'s.json' is not a file that ends in .csv"
+    expect_only tree.swc
 }
 
 test_color_by_diameter_defined_order() {

@@ -29,10 +29,10 @@ void suite_release(Suite *suite)
         free(suite->cases[i].name);
         free(suite->cases[i].agreed);
     }
-    for (size_t i = 0; i < suite->n_companions; i++)
-        free(suite->companions[i].name);
+    for (size_t i = 0; i < suite->companions.n; i++)
+        free(suite->companions.items[i].name);
     free(suite->cases);
-    free(suite->companions);
+    ARRAY_RELEASE(&suite->companions);
     *suite = (Suite){0};
 }
 
@@ -229,9 +229,7 @@ static Status judge_reference(SuiteCase *entry, const SuiteFiles *files, const c
                               const float background[3], Err *err)
 {
     char *path;
-    TRY(file_format_name(&path, err, "%.*s%s",
-                         (int)(file_name(files->reference) - files->reference), files->reference,
-                         name));
+    TRY(file_beside(files->reference, name, &path, err));
     const char *const paths[2] = {path, files->picture};
     Status status = judge_pair(entry, paths, files->mask, background, &files->tolerance, err);
     free(path);
@@ -354,8 +352,9 @@ void suite_text(const Suite *suite, Text *out)
             text_printf(out, "%-7s %s: %s\n", suite_state_name(entry->state), entry->name,
                         entry->sentence);
     }
-    for (size_t i = 0; i < suite->n_companions; i++)
-        text_printf(out, "unused  %s: %s\n", suite->companions[i].name, suite->companions[i].why);
+    for (size_t i = 0; i < suite->companions.n; i++)
+        text_printf(out, "unused  %s: %s\n", suite->companions.items[i].name,
+                    suite->companions.items[i].why);
     text_printf(out, "%s: %zu case%s: ", suite->agrees ? "agree" : "differ", suite->n,
                 suite->n == 1 ? "" : "s");
     for (SuiteState state = 0; state < SUITE_STATES; state++)
@@ -363,9 +362,9 @@ void suite_text(const Suite *suite, Text *out)
             text_printf(out, "%s%zu %s", comma, suite->count[state], suite_state_name(state));
             comma = ", ";
         }
-    if (suite->n_companions)
-        text_printf(out, "; %zu unused file%s", suite->n_companions,
-                    suite->n_companions == 1 ? "" : "s");
+    if (suite->companions.n)
+        text_printf(out, "; %zu unused file%s", suite->companions.n,
+                    suite->companions.n == 1 ? "" : "s");
     if (suite->others)
         text_printf(out, "; %zu other file%s", suite->others, suite->others == 1 ? "" : "s");
     text_puts(out, "\n");
@@ -390,7 +389,7 @@ json_t *suite_json(const Suite *suite)
         json_with(json_object(), "verdict", json_text(suite->agrees ? "agree" : "differ"));
     for (SuiteState state = 0; state < SUITE_STATES; state++)
         json = json_with(json, suite_state_name(state), json_count(suite->count[state]));
-    for (size_t i = 0; i < suite->n_companions; i++)
-        unused = json_with_item(unused, json_text(suite->companions[i].name));
+    for (size_t i = 0; i < suite->companions.n; i++)
+        unused = json_with_item(unused, json_text(suite->companions.items[i].name));
     return json_with(json_with(json, "cases", cases), "unused", unused);
 }

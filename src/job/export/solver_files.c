@@ -34,9 +34,9 @@ static void put_vector(Vec3 v, Text *out)
     }
 }
 
-/* Appends the length of an end's extension, in mm; the pressure drop of steady Poiseuille flow along
- * it, 2 wss L / r, in mmHg; and the entrance length of laminar flow, in mm. What is unknown is left
- * empty. */
+/* Appends the length of an end's extension, in mm; the pressure drop of steady Poiseuille flow
+ * along it, 2 wss L / r, in mmHg; and the entrance length of laminar flow, in mm. What is unknown
+ * is left empty. */
 static void put_extension(const MeshEnd *end, size_t node, const Tree *tree, const Field *wss,
                           const Field *reynolds, Text *out)
 {
@@ -186,9 +186,9 @@ void solver_gmsh(const MeshEnds *ends, const char *file, Text *out)
         put_volume(ends, bounds_wall, "wall", 2, out);
 }
 
-/* Appends a volume: the core of one tree. gmsh_write [emit/gmsh.c] numbers the surfaces: the
- * triangles of part k are k + 1, and the inner surfaces come behind those of all triangles and
- * quadrangles. */
+/* Appends a volume: the core of one tree. The numbers of the surfaces are those of gmsh_write
+ * [emit/gmsh.c]: part k has the number k + 1, and the inner surfaces follow those of all triangles
+ * and quadrangles. */
 static void put_core(const MeshEnds *ends, const PrismLayers *layers, size_t tree, Text *out)
 {
     const size_t number = tree + 2; /* volume 1 has the prisms */

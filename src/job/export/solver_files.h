@@ -25,9 +25,9 @@ MUST_CHECK Status solver_centerline(const Tree *tree, const SmoothTree *smooth,
  * part, and makes volumes of the surfaces: "blood" and, of a hollow wall, "wall". If memory runs
  * out, `out` records it. */
 void solver_gmsh(const MeshEnds *ends, const char *file, Text *out);
-/* Appends a geometry for gmsh. It reads the layers of prisms in the file `file`, and makes a volume
- * of the core of each tree, which gmsh fills with tetrahedra. The volumes have the name "core". The
- * text fails if memory runs out. */
+/* Appends a geometry for gmsh. The geometry reads the layers of prisms from the file `file`, and
+ * makes a volume of the core of each tree, which gmsh fills with tetrahedra. The volumes have the
+ * name "core". If memory runs out, `out` records it. */
 void solver_core(const MeshEnds *ends, const PrismLayers *layers, const char *file, Text *out);
 
 #endif
