@@ -362,11 +362,8 @@ double file_bytes(const char *path)
     return stat(path, &about) == 0 ? (double)about.st_size : 0;
 }
 
-/* folder/.corcast.XXXXXX of the folder that `path` is in: no longer than any name may be. */
-static Status temporary_name(const char *path, char **name, Err *err)
-{
-    return file_format_name(name, err, "%.*s.corcast.XXXXXX", (int)(file_name(path) - path), path);
-}
+/* The name of a temporary file or folder: no longer than any name may be. */
+static const char temporary_name[] = ".corcast.XXXXXX";
 
 /* Frees `name` on failure. */
 static Status keep_temporary(char *name, bool made, const char *path, Err *err)
@@ -385,7 +382,7 @@ static Status keep_temporary(char *name, bool made, const char *path, Err *err)
 static Status temporary_file(const char *path, char **temporary, Err *err)
 {
     char *name = NULL;
-    TRY(temporary_name(path, &name, err));
+    TRY(file_beside(path, temporary_name, &name, err));
     int handle = mkstemp(name);
     if (handle >= 0)
         close(handle);
@@ -407,7 +404,7 @@ static Status temporary_file(const char *path, char **temporary, Err *err)
 Status file_temporary_folder(const char *path, char **folder, Err *err)
 {
     char *name = NULL;
-    TRY(temporary_name(path, &name, err));
+    TRY(file_beside(path, temporary_name, &name, err));
     TRY(keep_temporary(name, mkdtemp(name) != NULL, path, err));
     *folder = name;
     return STATUS_OK;
@@ -469,8 +466,8 @@ Status file_resolve(const char *path, char **out, Err *err)
         }
         target[length] = '\0';
         char *next = NULL;
-        int folder = target[0] == '/' ? 0 : (int)(file_name(at) - at);
-        Status status = file_format_name(&next, err, "%.*s%s", folder, at, target);
+        Status status =
+            target[0] == '/' ? mem_strdup(&next, target, err) : file_beside(at, target, &next, err);
         free(at);
         TRY(status);
         at = next;

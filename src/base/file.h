@@ -139,6 +139,9 @@ MUST_CHECK Status file_with_suffix(const char *path, const char *suffix, char **
 MUST_CHECK Status file_format_name(char **out, Err *err, const char *format, ...) PRINTF_LIKE(3, 4);
 /* Joins a folder and a name: "folder/name". The caller frees *out. */
 MUST_CHECK Status file_join(const char *folder, const char *name, char **out, Err *err);
+/* Sets *out to the path of `name` in the folder that `path` is in; with "", to that folder with its
+ * slash, or "" if `path` names none. */
+MUST_CHECK Status file_beside(const char *path, const char *name, char **out, Err *err);
 /* Returns the last component of `path`; borrowed from `path`. */
 const char *file_name(const char *path);
 /* Returns the size of a file in bytes; 0 if there is no such file. */

@@ -33,6 +33,11 @@ Status file_with_suffix(const char *path, const char *suffix, char **out, Err *e
     return file_format_name(out, err, "%.*s%s", (int)stem, path, suffix);
 }
 
+Status file_beside(const char *path, const char *name, char **out, Err *err)
+{
+    return file_format_name(out, err, "%.*s%s", (int)(file_name(path) - path), path, name);
+}
+
 Status file_join(const char *folder, const char *name, char **out, Err *err)
 {
     size_t length = strlen(folder);

@@ -51,18 +51,6 @@ Status arguments_add(Arguments *arguments, Err *err, const char *format, ...)
     return status;
 }
 
-/* Sets *out to the folder of `path` (owned). */
-static Status folder_of(const char *path, char **out, Err *err)
-{
-    TRY(mem_strdup(out, path, err));
-    size_t length = (size_t)(file_name(path) - path);
-    if (length == 0)
-        strcpy(*out, "."); /* `path` has at least one character */
-    else
-        (*out)[length] = '\0';
-    return STATUS_OK;
-}
-
 /* ---- the private folder ---------------------------------------------------------------------- */
 
 /* The private folder and the paths in it. All strings are owned. The files are removed by
@@ -355,7 +343,7 @@ Status program_draw(const Program *program, Text *printed, double *seconds, Err 
     TRY_GOTO(find_input(program->scene, &scene, err));
     if (program->header)
         TRY_GOTO(find_input(program->header, &header, err));
-    TRY_GOTO(folder_of(scene, &folder, err));
+    TRY_GOTO(file_beside(scene, "", &folder, err));
     TRY_GOTO(find_output(program, &output, err));
     TRY_GOTO(open_workplace(&place, scene, header, output, err));
     TRY_GOTO(program->add_arguments(program->context, &paths, &arguments, err));

@@ -272,8 +272,8 @@ static Status count_loops(Building *building, size_t *loops, size_t *components,
 }
 
 /* Merges points at one position. Exception: if merging closes loops in a file whose lines name
- * their points, and if the names alone give the same number of components without loops, points
- * stay apart. A vessel may end at a position where another vessel passes. */
+ * their points, and if the names alone give the same number of components, points stay apart. A
+ * vessel may end at a position where another vessel passes. */
 static Status connect(Building *building, Err *err)
 {
     Graph *graph = building->graph;
@@ -288,8 +288,7 @@ static Status connect(Building *building, Err *err)
         return STATUS_OK;
     TRY(connect_points(building, false, err));
     TRY(count_loops(building, &named_loops, &named_components, err));
-    return named_loops == 0 && named_components == components ? STATUS_OK
-                                                              : connect_points(building, true, err);
+    return named_components == components ? STATUS_OK : connect_points(building, true, err);
 }
 
 static Status refuse_loops(const Building *building, const GraphLink *link, size_t loops, Err *err)

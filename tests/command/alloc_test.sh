@@ -51,6 +51,7 @@ test_failed_allocations_in_grow() {
     fail_each 3 one grow --from ../tree.swc --keep-radii --q-perf 1 --terminals 9 --domain hull:25 -o o.swc
     printf '[a]\nterminals = 5\n[b]\nterminals = 9\nclearance = 0.1\n' >../stages.ini
     fail_each 3 one grow --stages ../stages.ini -o o.swc
+    fail_each 9 one grow --from ../tree.swc --fill kassab-lad --fill-to 5 --domain ball:70 -o o.swc
     fail_each 3 one grow --terminals 4 --domain mask:"$DATA/oblique.nii.gz" -o o.swc
     THREADS=2 fail_each 5 one grow --terminals 40 -o o.swc
 }

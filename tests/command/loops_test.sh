@@ -57,6 +57,17 @@ test_solids_for_printers_have_the_loops_of_their_surfaces() {
     expect_topology m.stl 1 2
 }
 
+# The nodes 5 and 6 close loops between the points 3 and 4, from either end. The tree of node 7 ends at point 3.
+test_the_thicker_of_parallel_vessels_is_drawn_and_links_join_trees() {
+    printf '%s\n' id,parent,x_mm,y_mm,z_mm,radius_mm,type,same_as 1,-1,0,0,0,0.5,3, 2,1,4,0,0,0.5,3, 3,2,8,4,0,0.4,3, \
+        4,2,8,-4,0,0.4,3, 5,3,8,-4,0,0.3,3,4 6,4,8,4,0,0.25,3,3 7,-1,0,9,0,0.4,3, 8,7,8,4,0,0.4,3,3 >n.csv
+    run_ok corcast export n.csv --mesh-tolerance 0.1 -o m.stl
+    expect_topology m.stl 1 1
+    run_ok corcast scene n.csv --model rounded -o n.pov --quiet
+    [ "$(grep -o '^Vessel_Cylinder.*' n.inc | cut -d, -f 8 | sort | tr '\n' ' ')" = '2 3 4 5 8 ' ] ||
+        fail "expected all segments except 6: $(grep Vessel_Cylinder n.inc)"
+}
+
 test_a_loop_whose_hole_closes_is_refused_by_its_segments() {
     ring 3 3.1 0 2
     run corcast export ring.vtk -o m.stl --quiet

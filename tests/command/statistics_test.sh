@@ -67,8 +67,8 @@ test_trees_sampled_from_a_table_agree_with_it() {
         run_ok corcast info tree.swc --morphometry "$name" --json
         expect_json stdout ".morphometry | .compared == $compared and .passed >= $compared - 3 and .counts.found.passed < $compared - 3"
     done <<'END'
-kassab-lad 3 1 56
-kassab-lad 3 2 56
+kassab-lad 4 1 49
+kassab-lad 4 2 49
 kassab-lcx 4 1 42
 kassab-rca 4 1 48
 END

@@ -3,7 +3,6 @@
 
 stl_topology.py FILE   prints "COMPONENTS GENUS TRIANGLES", or fails if an edge does not have two triangles, one in each
                        direction. Genus is the sum over all components, from Euler's formula.
-stl_topology.py --loops FILE   prints "COMPONENTS LOOPS SEGMENTS" of a graph: lines of two names, one per segment
 """
 import struct
 import sys
@@ -20,7 +19,7 @@ def components(pairs):
     parent = {}
     for a, b in pairs:
         parent[find(parent, a)] = find(parent, b)
-    return len({find(parent, i) for i in list(parent)}), len(parent)
+    return len({find(parent, i) for i in list(parent)})
 
 
 def triangles_of(path):
@@ -45,17 +44,10 @@ def measure_stl(path):
     lone = sum((b, a) not in edges for a, b in edges)
     if lone:
         sys.exit(f"{lone} edges have one triangle")
-    parts, _ = components(edges)
+    parts = components(edges)
     euler = len(points) - len(edges) // 2 + n
     return parts, parts - euler // 2, n
 
 
-def measure_graph(path):
-    with open(path) as file:
-        pairs = [tuple(line.split()) for line in file]
-    parts, nodes = components(pairs)
-    return parts, len(pairs) - nodes + parts, len(pairs)
-
-
 if __name__ == "__main__":
-    print(*(measure_graph(sys.argv[2]) if sys.argv[1] == "--loops" else measure_stl(sys.argv[1])))
+    print(*measure_stl(sys.argv[1]))

@@ -232,6 +232,10 @@ static void compare_with_five(const Tree *tree, MorphometryComparison comparison
     must(morphometry_read(&table, table_path, &err), &err);
     assert_string_equal(table.source, "Nobody (1999)");
     assert_int_equal(table.n, 5);
+    assert_true(morphometry_bound_mm(&table, 0) == 0);
+    assert_close(morphometry_bound_mm(&table, 1), (1.1 + 1.82) / 2);
+    assert_close(morphometry_bound_mm(&table, 4), 12.05); /* of two single elements */
+    assert_true(isinf(morphometry_bound_mm(&table, 5)));
     must(morphometry_compare(tree, &statistics, &table, comparison, &err), &err);
     morphometry_release(&table);
     statistics_release(&statistics);

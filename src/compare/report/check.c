@@ -97,7 +97,7 @@ static Check check_surface(const SurfaceCheck *surface)
     return check;
 }
 
-static Check check_settled(const Settled *settled)
+Check check_settled(const Settled *settled)
 {
     Check check = {.title = "settled",
                    .agrees = settled->agrees,

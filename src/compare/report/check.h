@@ -39,6 +39,8 @@ enum { CHECKS_MAX = PLANE_KINDS + 4 + WITNESS_PAIRS };
 /* Returns the check of one plane: its rules, and its measures that are not NAN. The check borrows
  * from `plane`. */
 Check check_plane(const CompareResult *plane);
+/* Returns the check of the settled pixels: a rule for each cause. */
+Check check_settled(const Settled *settled);
 /* Makes all checks of a report, in the order in which they are shown. They borrow from `report`.
  * Returns their number. */
 int report_checks(const ReportCase *report, Check checks[CHECKS_MAX]);

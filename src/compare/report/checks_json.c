@@ -1,4 +1,5 @@
 /* Further checks of a scene in JSON. */
+#include "compare/report/check.h"
 #include "compare/report/page.h"
 
 json_t *surface_check_json(const SurfaceCheck *check)
@@ -32,21 +33,13 @@ static json_t *pixels_json(const Settled *settled)
 
 json_t *settled_json(const Settled *settled)
 {
-    json_t *rules = json_array();
-    for (SettledCause cause = settled->from; cause <= settled->to; cause++) {
-        size_t allowed = settled_allowed(settled, cause);
-        rules = json_with_item(rules, json_pack("{s:s, s:s, s:I, s:I, s:b}", "name",
-                                                settled_cause_sentence(cause), "unit", "pixels",
-                                                "measured", (json_int_t)settled->count[cause],
-                                                "allowed", (json_int_t)allowed, "met",
-                                                settled->count[cause] <= allowed));
-    }
+    const Check check = check_settled(settled);
     return json_pack("{s:s, s:s?, s:I, s:I, s:o, s:o}", "verdict",
                      settled->agrees ? "agree" : "differ", "reason",
                      settled->reason[0] ? settled->reason : NULL, "asked_pixels",
                      (json_int_t)settled->asked, "unexplained_pixels",
-                     (json_int_t)(settled->count[SETTLED_NOT] + settled->unasked), "rules", rules,
-                     "pixels", pixels_json(settled));
+                     (json_int_t)(settled->count[SETTLED_NOT] + settled->unasked), "rules",
+                     rules_json(check.rules, check.n_rules), "pixels", pixels_json(settled));
 }
 
 json_t *witness_json(const Witness *witness)

@@ -9,6 +9,7 @@ void report_junit(const ReportCase *report, Text *out);
 
 /* Return parts of a report as JSON, a new reference each; NULL if memory runs out. The worst
  * segments are the same as in compare_json. */
+json_t *rules_json(const Rule *rules, int n);
 json_t *worst_segments_json(const CompareResult *result);
 json_t *settled_json(const Settled *settled);
 json_t *surface_check_json(const SurfaceCheck *check);

@@ -26,17 +26,15 @@ static json_t *worst_json(const CompareResult *result)
                      (json_int_t)place->id_a, "id_b", (json_int_t)place->id_b);
 }
 
-static json_t *rules_json(const CompareResult *result)
+json_t *rules_json(const Rule *rules, int n)
 {
-    json_t *rules = json_array();
-    for (int i = 0; i < result->n_rules; i++) {
-        const Rule *rule = &result->rules[i];
-        rules = json_with_item(rules,
-                               json_pack("{s:s, s:s, s:o, s:o, s:b}", "name", rule->name, "unit",
-                                         rule->unit, "measured", number(rule->measured), "allowed",
-                                         number(rule->allowed), "met", (int)rule->met));
-    }
-    return rules;
+    json_t *json = json_array();
+    for (const Rule *rule = rules; rule < rules + n; rule++)
+        json = json_with_item(json,
+                              json_pack("{s:s, s:s, s:o, s:o, s:b}", "name", rule->name, "unit",
+                                        rule->unit, "measured", number(rule->measured), "allowed",
+                                        number(rule->allowed), "met", (int)rule->met));
+    return json;
 }
 
 static json_t *classes_json(const CompareResult *result)
@@ -73,7 +71,7 @@ static json_t *value_json(const CompareResult *result, const Measure *measure)
     case PART_WORST:
         return worst_json(result);
     case PART_RULES:
-        return rules_json(result);
+        return rules_json(result->rules, result->n_rules);
     case PART_CLASSES:
         return classes_json(result);
     case PART_SEGMENTS:

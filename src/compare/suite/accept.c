@@ -64,12 +64,6 @@ static Status remove_file(const char *path, Err *err)
                : err_set(err, STATUS_IO, "%s: cannot be removed: %s", path, strerror(errno));
 }
 
-/* Replaces the last component of `path`. */
-static Status beside(const char *path, const char *name, char **out, Err *err)
-{
-    return file_format_name(out, err, "%.*s%s", (int)(file_name(path) - path), path, name);
-}
-
 /* ---- one case -------------------------------------------------------------------------------- */
 
 /* Removes the further references of a case that are expired, and their entries in its list. */
@@ -84,8 +78,8 @@ static Status remove_expired(const SuiteFolders *folders, const SuiteCase *entry
         const char *expired = references.items[i].name;
         if (!reference_is_expired(&references.items[i]))
             continue;
-        TRY_GOTO(beside(case_path, expired, &path, err));
-        TRY_GOTO(beside(entry->name, expired, &name, err));
+        TRY_GOTO(file_beside(case_path, expired, &path, err));
+        TRY_GOTO(file_beside(entry->name, expired, &name, err));
         TRY_GOTO(remove_file(path, err));
         TRY_GOTO(references_store(case_path, expired, NULL, err));
         TRY_GOTO(log_acceptance(folders->reference, name, "removed", reason, err));

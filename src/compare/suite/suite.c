@@ -5,7 +5,6 @@
 
 #include "compare/cause/cause.h"
 #include "compare/measures/planes.h"
-#include "compare/pixels.h"
 #include "compare/rules/tolerance.h"
 #include "compare/suite/references.h"
 
@@ -92,7 +91,8 @@ static Status apply_mask(SuitePair *pair, const Picture *mask, Err *err)
 {
     const Picture *a = &pair->images[0].picture;
     Picture *b = &pair->images[1].picture;
-    if (mask->width != a->width || mask->height != a->height || !pictures_alike(a, b))
+    if (mask->width != a->width || mask->height != a->height || a->width != b->width ||
+        a->height != b->height || a->bits != b->bits || a->channels != b->channels)
         return err_set(err, STATUS_INPUT,
                        "the mask, the reference and the picture differ in size or bits per pixel");
     size_t n = (size_t)a->width * (size_t)a->height, channels = (size_t)a->channels;
@@ -229,9 +229,7 @@ static Status judge_reference(SuiteCase *entry, const SuiteFiles *files, const c
                               const float background[3], Err *err)
 {
     char *path;
-    TRY(file_format_name(&path, err, "%.*s%s",
-                         (int)(file_name(files->reference) - files->reference), files->reference,
-                         name));
+    TRY(file_beside(files->reference, name, &path, err));
     const char *const paths[2] = {path, files->picture};
     Status status = judge_pair(entry, paths, files->mask, background, &files->tolerance, err);
     free(path);

@@ -490,13 +490,6 @@ static Status find_recipe(const char *name, char **path, Err *err)
     return template_find("figure", "figures", name, ".ini", path, err);
 }
 
-static Status find_folder(const char *recipe, char **folder, Err *err)
-{
-    TRY(mem_strdup(folder, recipe, err));
-    (*folder)[file_name(recipe) - recipe] = '\0';
-    return STATUS_OK;
-}
-
 /* The complete recipe. Its paths are those of the recipe that was read. */
 static Status put_recipe(Figure *figure, Err *err)
 {
@@ -550,7 +543,7 @@ static Status make_figure(Figure *figure, const char *recipe, Err *err)
     TRY(prepare_panels(figure, err));
     if (figure->parsed->common.dump)
         TRY(put_recipe(figure, err));
-    TRY(find_folder(recipe, &figure->folder, err));
+    TRY(file_beside(recipe, "", &figure->folder, err));
     TRY(open_press(figure, err));
     TRY(madetrees_make(&figure->plan, &figure->parsed->common, figure->folder, &figure->trees,
                        err));

@@ -29,10 +29,10 @@ static const Option rows[] = {
      .group = GROUP_BLOOD,
      .argument = "B.csv|file|terminals",
      .otherwise = "from the file, else terminals",
-     .help = "boundary conditions: a CSV file with the columns id and pressure (mmHg) or flow "
-             "(ml/min, above 0 where blood enters), or both, and hematocrit; file (those of a "
-             "Secomb network); terminals (--p-perf at the roots, shares of --q-perf at the "
-             "terminals)"},
+     .help = "boundary conditions: a CSV file with the columns id, pressure (mmHg), flow (ml/min, "
+             "above 0 where blood enters) and hematocrit, where each row has a pressure or a flow; "
+             "file (those of a Secomb network); terminals (--p-perf at the roots, shares of "
+             "--q-perf at the terminals)"},
     {.name = "ends",
      SETS(CHOICE, FlowingOptions, ends),
      .choices = ends_names,

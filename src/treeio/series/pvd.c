@@ -38,14 +38,7 @@ static Status beside(const char *index, const char *file, char **out, Err *err)
 {
     if (*file == '/')
         return mem_strdup(out, file, err);
-    Text path = TEXT_INIT;
-    text_append(&path, index, (size_t)(file_name(index) - index));
-    if (strcmp(file, "-") == 0)
-        text_puts(&path, "./");
-    text_puts(&path, file);
-    Status status = text_take(&path, out, err);
-    text_release(&path);
-    return status;
+    return file_beside(index, strcmp(file, "-") == 0 ? "./-" : file, out, err);
 }
 
 static Status begin_element(void *context, Xml *xml, const XmlElement *element, Err *err)

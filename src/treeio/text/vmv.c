@@ -245,23 +245,32 @@ static void put_um(double mm, Text *text)
     text_number(text, length_from_mm(mm, LENGTH_UM));
 }
 
+/* A node with a link has no vertex of its own, so its number is that of a vertex in the middle of
+ * its segment. Vertices alone have radii: the middle has that of the segment, and keeps the segment
+ * from repeating a parallel one. */
 static void put_vertex(const Tree *tree, size_t i, Text *text)
 {
+    Vec3 at = tree->position[i];
+    if (tree_is_link(tree, i))
+        at = vec3_scale(vec3_add(tree->position[tree->parent[i]], at), 0.5);
     text_printf(text, "%zu", i + 1);
-    put_um(tree->position[i].x, text);
-    put_um(tree->position[i].y, text);
-    put_um(tree->position[i].z, text);
+    put_um(at.x, text);
+    put_um(at.y, text);
+    put_um(at.z, text);
     put_um(tree->radius_mm[i], text);
     text_puts(text, "\n");
 }
 
-/* Nodes with links share the vertices of the nodes that they are. */
 static void put_strands(const Tree *tree, const Branches *branches, Text *text)
 {
     for (size_t k = 0, at = 0; k < branches->n; k++) {
         text_printf(text, "%zu %d", k + 1, tree->parent[branches->node[at]] + 1);
-        for (; at < branches->end[k]; at++)
-            text_printf(text, " %zu", tree_place(tree, (size_t)branches->node[at]) + 1);
+        for (; at < branches->end[k]; at++) {
+            size_t i = (size_t)branches->node[at];
+            text_printf(text, " %zu", i + 1);
+            if (tree_is_link(tree, i))
+                text_printf(text, " %d", tree->link[i] + 1);
+        }
         text_puts(text, "\n");
     }
 }
@@ -274,10 +283,9 @@ Status vmv_write(const Tree *tree, Text *text, Err *err)
     text_printf(text,
                 "$PARAM_BEGIN\nNUM_VERTS %zu\nNUM_STRANDS %zu\nNUM_ATTRIB_PER_VERT 4\n"
                 "$PARAM_END\n\n$VERT_LIST_BEGIN\n",
-                tree->n - tree_link_count(tree), branches.n);
+                tree->n, branches.n);
     for (size_t i = 0; i < tree->n; i++)
-        if (!tree_is_link(tree, i))
-            put_vertex(tree, i, text);
+        put_vertex(tree, i, text);
     text_puts(text, "$VERT_LIST_END\n\n$STRANDS_LIST_BEGIN\n");
     put_strands(tree, &branches, text);
     text_puts(text, "$STRANDS_LIST_END\n");
