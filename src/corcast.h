@@ -123,9 +123,9 @@ typedef struct corcast_options corcast_options;
 
 /* Makes the options of a command, all with their defaults.
  *
- * command  "grow", "refine", "certify", "info", "convert", "render", "scene", "export",
- *          "compare", "verify", "figure", "bifurcation" or "diagram": the operations of this header
- *          say which they take.
+ * command  "grow", "refine", "certify", "info", "pulse", "coverage", "convert", "render", "scene",
+ *          "export", "answer", "compare", "verify", "figure", "bifurcation" or "diagram": the
+ *          operations of this header say which they take.
  * Errors   CORCAST_WRONG for an unknown command.
  * Stability: stable. */
 CORCAST_API int corcast_options_new(const char *command, corcast_options **out,
@@ -149,8 +149,10 @@ CORCAST_API int corcast_options_set(corcast_options *options, const char *name, 
 /* Finds the value of an option, the default if it was not set.
  *
  * value    receives the text as corcast_options_set accepts it, one line per value of an option
- *          that was given several times; NULL for an option without a value. It belongs to the
- *          options and is valid until they are used again or freed.
+ *          that was given several times. NULL for an option without a value, and for an option
+ *          that was not set and whose default is described in words: the member "otherwise" of
+ *          corcast_schema. It belongs to the options and is valid until they are used again or
+ *          freed.
  * Errors   CORCAST_WRONG for an unknown name.
  * Stability: stable. */
 CORCAST_API int corcast_options_get(corcast_options *options, const char *name, const char **value,
@@ -229,7 +231,9 @@ CORCAST_API int corcast_schema(const char *command, corcast_report **out, corcas
 
 /* An arterial tree, or a forest of several. Each node i, except a root, is the distal end of
  * segment i: the straight tube from its parent's position to its own, with one radius. Parents come
- * before their children. */
+ * before their children. In a network with loops, a line that closes a loop ends at a node of its
+ * own, at the position of the node where the loop closes (docs/NETWORKS.md); arrays do not state it.
+ */
 typedef struct corcast_tree corcast_tree;
 
 /* The nodes of a tree as arrays with an entry per node; positions has three. */
@@ -358,6 +362,28 @@ CORCAST_API int corcast_certify(const corcast_tree *tree, const corcast_options 
  * Stability: stable. */
 CORCAST_API int corcast_info(const corcast_tree *tree, const corcast_options *options,
                              corcast_report **report, corcast_error *error);
+
+/* Computes pulse waves over a cycle of the heart, in place. The tree gets a column for each of the
+ * "fields" at each of the "frames", such as "wss_0.0333" with the time in seconds:
+ * corcast_tree_field returns it, and the options "color-by" = "wss" and "moment" draw it. Arrays
+ * borrowed from the tree become invalid.
+ *
+ * options  NULL, or options of "pulse"; those of animations have no effect.
+ * report   NULL, or receives what `pulse --json` writes: period, wave speeds, impedances, ...
+ * Errors   CORCAST_WRONG also for a tree without known flow and pressures, and for a malformed
+ *          waveform.
+ * Stability: provisional. */
+CORCAST_API int corcast_pulse(corcast_tree *tree, const corcast_options *options,
+                              corcast_report **report, corcast_error *error);
+
+/* Measures how far the tissue is from the nearest vessel.
+ *
+ * options  NULL, or options of "coverage". "territories", "summary" and "json" write files.
+ * report   receives what `coverage --json` writes: mean, quantiles, shares, the largest void, ...
+ * Errors   CORCAST_WRONG also if neither the options nor the tree state a domain.
+ * Stability: provisional. */
+CORCAST_API int corcast_coverage(const corcast_tree *tree, const corcast_options *options,
+                                 corcast_report **report, corcast_error *error);
 
 /* ---- pictures -------------------------------------------------------------------------------- */
 
@@ -518,6 +544,17 @@ CORCAST_API int corcast_export(const corcast_tree *tree, const corcast_options *
 CORCAST_API int corcast_export_bytes(const corcast_tree *tree, const corcast_options *options,
                                      const char *name, corcast_sink *sink, void *user,
                                      corcast_error *error);
+
+/* Computes an answer: for each pixel of a picture, two bounds that are proven to contain its color.
+ *
+ * options  NULL, or options of "answer".
+ * path     the answer, an OpenEXR file, is written to it. `corcast compare` grades pictures by it.
+ * report   NULL, or receives the counts "pixels", "undecided" and "rays"; "cpu_s"; and "scene", a
+ *          hash.
+ * Errors   CORCAST_WRONG also for a scene without an answer, such as one with ambient occlusion.
+ * Stability: provisional. */
+CORCAST_API int corcast_answer(const corcast_tree *tree, const corcast_options *options,
+                               const char *path, corcast_report **report, corcast_error *error);
 
 /* Draws a tree with POV-Ray and with the native renderer, and compares the pictures and planes.
  * POV-Ray must be installed.

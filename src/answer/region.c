@@ -92,7 +92,7 @@ static PolygonMoments moments_of(const LeafPolygon *p)
     return m.area < 0 ? (PolygonMoments){-m.area, -m.x, -m.y} : m;
 }
 
-double polygon_area(const LeafPolygon *p)
+static double area_of(const LeafPolygon *p)
 {
     return moments_of(p).area;
 }
@@ -225,7 +225,7 @@ static double cut_at(Region *r, const LeafPolygon *p, Form edge, LeafPolygon *in
     *inside = polygon_cut(p, edge, error);
     *outside = polygon_cut(p, (Form){-edge.c, -edge.x, -edge.y, 0}, error);
     r->cuts++;
-    const double strip = polygon_area(p) - polygon_area(inside) - polygon_area(outside);
+    const double strip = area_of(p) - area_of(inside) - area_of(outside);
     return (strip > 0 ? strip : 0) + area_error;
 }
 
@@ -251,7 +251,7 @@ static void add_lit(Region *r, const ShadowCuts *cuts, ShadowPiece *piece)
     first = first < piece->n ? first : 0;
     const int edge = __builtin_ctz(piece->items[first].pending);
     if (r->cuts >= MAX_CUTS || piece->depth >= MAX_DEPTH) {
-        add_interval(r, polygon_area(&piece->polygon), &cuts->range);
+        add_interval(r, area_of(&piece->polygon), &cuts->range);
         return;
     }
     ShadowPiece inside = *piece, outside = *piece;
@@ -359,7 +359,7 @@ static void add_light(Region *r, HitLight *hit, size_t light, int point, const L
         }
     }
     if (!few || ground == -1 || piece.n > MAX_BLOCKERS) {
-        add_interval(r, polygon_area(polygon), &cuts.range);
+        add_interval(r, area_of(polygon), &cuts.range);
         return;
     }
     for (int i = 0; i < piece.n; i++) {
@@ -509,7 +509,7 @@ static void add_piece(Region *r, Piece *piece)
         add_hit(r, piece->hits[0].hit, &piece->polygon);
     } else if (r->cuts >= MAX_CUTS || piece->depth >= MAX_DEPTH) {
         const ColorInterval range = range_of_piece(r, piece);
-        add_interval(r, polygon_area(&piece->polygon), &range);
+        add_interval(r, area_of(&piece->polygon), &range);
     } else if (next < piece->n) {
         const PieceHit hit = piece->hits[next];
         const int bit = __builtin_ctz(hit.pending);
@@ -531,7 +531,7 @@ RegionSum region_integrate(AnswerWorkspace *work, const Beam *beam, const FaceLi
     Piece whole = {.polygon = *polygon, .n = found.n};
     if (found.overflows) {
         const ColorInterval any = interval_of_scene(work->plan);
-        add_interval(&region, polygon_area(polygon), &any);
+        add_interval(&region, area_of(polygon), &any);
         return region.sum;
     }
     for (size_t i = 0; i < found.n; i++) {

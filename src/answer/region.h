@@ -23,8 +23,6 @@ typedef struct LeafPolygon {
  * is empty if it would have fewer than 3 corners, or more than POLYGON_MAX - 2. The callers count
  * an area that is lost so among the undecided. */
 LeafPolygon polygon_cut(const LeafPolygon *polygon, Form f, double from);
-/* Returns the area, >= 0, in units of ex and ey. */
-double polygon_area(const LeafPolygon *polygon);
 
 /* The integral of the color over a region. Areas are in units of ex and ey, so the area of the
  * whole rectangle is 4. */

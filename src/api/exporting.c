@@ -2,6 +2,7 @@
 #include "api/reports.h"
 #include "api/request.h"
 
+#include "job/coverage/coverage.h"
 #include "job/export/export.h"
 #include "job/export/scene.h"
 #include "job/figure/figure.h"
@@ -9,6 +10,7 @@
 #include "job/picture/convert.h"
 #include "job/picture/diagram.h"
 #include "job/picture/render.h"
+#include "job/pulse/pulsing.h"
 #include <dirent.h>
 #include <errno.h>
 #include <stdlib.h>
@@ -18,17 +20,38 @@
 
 typedef Status RunJob(void *options, Parsed *parsed, Err *err);
 
+static Status export_pulse(void *options, Parsed *parsed, Err *err)
+{
+    Pulsing made = {0};
+    Status status = STATUS_OK;
+    TRY_GOTO(pulsing_make(options, parsed, &made, err));
+    if (pulsing_draws(made.options->output))
+        TRY_GOTO(err_set(err, STATUS_USAGE,
+                         "the tree of corcast_pulse has the moments; draw it with \"beat\""));
+    status = pulsing_write(&made, err);
+done:
+    pulsing_release(&made);
+    return status;
+}
+
+static Status export_coverage(void *options, Parsed *parsed, Err *err)
+{
+    CoverageResult found = {0};
+    Status status = coverage_make(options, parsed, &found, err);
+    coverageresult_release(&found);
+    return status;
+}
+
 /* The operations that write files, by command. */
 static const struct {
     const Command *command;
     RunJob *run;
-} exporters[] = {{&command_export, export_run},
-                 {&command_scene, scene_run},
-                 {&command_render, render_run},
-                 {&command_convert, convert_run},
-                 {&command_diagram, diagram_run}};
+} exporters[] = {{&command_export, export_run},       {&command_scene, scene_run},
+                 {&command_render, render_run},       {&command_convert, convert_run},
+                 {&command_diagram, diagram_run},     {&command_pulse, export_pulse},
+                 {&command_coverage, export_coverage}};
 
-static const char of_export[] = "export scene render convert diagram";
+static const char of_export[] = "export scene render convert diagram pulse coverage";
 
 static RunJob *find_exporter(const Command *command)
 {

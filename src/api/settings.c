@@ -215,7 +215,11 @@ static Status get_option(corcast_options *options, const char *name, const char 
         return STATUS_OK;
     }
     TRY(find_option(options, name, &option, err));
-    TRY(options_get(options->parsed, name, &options->shown, err));
+    bool is_set = !option->otherwise; /* else the default is words, as "from the tree" */
+    for (size_t i = 0; i < options->texts.n && !is_set; i++)
+        is_set = strcmp(options->texts.items[i].name, option->name) == 0;
+    if (is_set)
+        TRY(options_get(options->parsed, name, &options->shown, err));
     *value = options->shown.length ? text_chars(&options->shown) : NULL;
     return STATUS_OK;
 }

@@ -26,6 +26,12 @@ CompareResult result_start(PlaneKind kind, int width, int height, const IdPlane 
     return result;
 }
 
+bool pictures_alike(const Picture *a, const Picture *b)
+{
+    return a->width == b->width && a->height == b->height && a->channels == b->channels &&
+           a->bits == b->bits;
+}
+
 PixelPlace place_of(size_t pixel, int width)
 {
     return (PixelPlace){.x = (int)(pixel % (size_t)width), .y = (int)(pixel / (size_t)width)};

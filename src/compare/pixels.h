@@ -13,6 +13,9 @@ CompareResult result_start(PlaneKind kind, int width, int height, const IdPlane 
 /* Errors: STATUS_INPUT unless both sides are equal. */
 MUST_CHECK Status check_sizes(int width_a, int height_a, int width_b, int height_b, Err *err);
 
+/* Returns true if both pictures have the same size, channels and bits. */
+bool pictures_alike(const Picture *a, const Picture *b);
+
 /* Returns the place of a pixel, counted row by row; without ids. */
 PixelPlace place_of(size_t pixel, int width);
 

@@ -108,6 +108,11 @@ double sites_nearest(const Sites *sites, Vec3 point, double enough_mm)
 
 /* ---- lists ----------------------------------------------------------------------------------- */
 
+/* A list on the stack: the entries first to first + n - 1. */
+typedef struct SiteRange {
+    size_t first, n;
+} SiteRange;
+
 static Status push(SiteLists *lists, uint32_t site, double distance, Err *err)
 {
     TRY(ARRAY_PUSH(&lists->site, "vessels", err, site));
@@ -119,11 +124,12 @@ static double slack_of(Vec3 centre, double half_diagonal)
     return rounding * half_diagonal + 1e-15 * (fabs(centre.x) + fabs(centre.y) + fabs(centre.z));
 }
 
-Status sitelists_gather(SiteLists *lists, const Sites *sites, const SiteBall *ball, SiteRange *out,
-                        Err *err)
+/* Pushes all sites that may be the nearest of some point at most `reach` away from `centre`, which
+ * is `nearest_mm` away from its own. */
+static Status gather_sites(SiteLists *lists, const Sites *sites, Vec3 centre, double reach,
+                           double nearest_mm, SiteRange *out, Err *err)
 {
-    const Vec3 centre = ball->centre;
-    double most = ball->nearest_mm + 2 * ball->radius_mm + slack_of(centre, ball->radius_mm);
+    double most = nearest_mm + 2 * reach + slack_of(centre, reach);
     uint32_t stack[BOXTREE_DEPTH + 2] = {0};
     *out = (SiteRange){lists->site.n, 0};
     for (int top = 1; top > 0;) {
@@ -144,7 +150,8 @@ Status sitelists_gather(SiteLists *lists, const Sites *sites, const SiteBall *ba
     return STATUS_OK;
 }
 
-Nearest sitelists_measure(SiteLists *lists, const Sites *sites, SiteRange list, Vec3 point)
+/* Returns the site of a list that is nearest to a point, and stores the distance of each. */
+static Nearest measure_list(SiteLists *lists, const Sites *sites, SiteRange list, Vec3 point)
 {
     Nearest nearest = {INFINITY, UINT32_MAX};
     const uint32_t *site = lists->site.items + list.first;
@@ -157,7 +164,9 @@ Nearest sitelists_measure(SiteLists *lists, const Sites *sites, SiteRange list, 
     return nearest;
 }
 
-Status sitelists_narrow(SiteLists *lists, SiteRange list, double most_mm, SiteRange *out, Err *err)
+/* Pushes the sites of a list whose stored distance is at most `most_mm`. */
+static Status narrow_list(SiteLists *lists, SiteRange list, double most_mm, SiteRange *out,
+                          Err *err)
 {
     TRY(ARRAY_RESERVE(&lists->site, list.n, "vessels", err));
     TRY(ARRAY_RESERVE(&lists->distance, list.n, "distances", err));
@@ -167,6 +176,12 @@ Status sitelists_narrow(SiteLists *lists, SiteRange list, double most_mm, SiteRa
             lists->site.items[out->first + out->n++] = lists->site.items[i];
     lists->site.n = lists->distance.n = out->first + out->n;
     return STATUS_OK;
+}
+
+/* Pops all lists above `list`, which becomes the top of the stack. */
+static void pop_to(SiteLists *lists, SiteRange list)
+{
+    lists->site.n = lists->distance.n = list.first + list.n;
 }
 
 /* ---- blocks ---------------------------------------------------------------------------------- */
@@ -179,7 +194,8 @@ Vec3 block_centre(const VoxelGrid *grid, const VoxelBlock *block)
                 grid->first.z + grid->step.z * 0.5 * (double)(low[2] + high[2] - 1));
 }
 
-double block_reach(const VoxelGrid *grid, const VoxelBlock *block)
+/* Returns the largest distance of a voxel centre of a block from its block_centre, mm. */
+static double block_reach(const VoxelGrid *grid, const VoxelBlock *block)
 {
     const int64_t *low = block->low, *high = block->high;
     return 0.5 * vec3_length(vec3(grid->step.x * (double)(high[0] - low[0] - 1),
@@ -234,19 +250,19 @@ static Status fill(const SiteFilling *filling, const VoxelBlock *block, SiteRang
     const int64_t *low = block->low;
     Vec3 centre = block_centre(filling->grid, block);
     double reach = block_reach(filling->grid, block);
-    Nearest nearest = sitelists_measure(filling->lists, filling->sites, list, centre);
+    Nearest nearest = measure_list(filling->lists, filling->sites, list, centre);
     if (reach == 0) {
         filling->nearest[place_of(filling->block, low[0], low[1], low[2])] = nearest;
         return STATUS_OK;
     }
     SiteRange shorter;
     double most = nearest.distance_mm + 2 * reach + slack_of(centre, reach);
-    TRY(sitelists_narrow(filling->lists, list, most, &shorter, err));
+    TRY(narrow_list(filling->lists, list, most, &shorter, err));
     for (int which = 0; which < 8; which++) {
         VoxelBlock part = part_of(block, which);
         if (!is_empty(&part) && is_wanted(filling, &part))
             TRY(fill(filling, &part, shorter, err));
-        sitelists_pop(filling->lists, shorter);
+        pop_to(filling->lists, shorter);
     }
     return STATUS_OK;
 }
@@ -256,12 +272,12 @@ static Status fill(const SiteFilling *filling, const VoxelBlock *block, SiteRang
 static Status gather(const SiteFilling *filling, const VoxelBlock *block, double nearest_mm,
                      Err *err)
 {
-    const SiteBall ball = {block_centre(filling->grid, block), block_reach(filling->grid, block),
-                           nearest_mm};
+    const double reach = block_reach(filling->grid, block);
     SiteRange list;
-    if (ball.radius_mm <= wide * fabs(nearest_mm) || ball.radius_mm == 0) {
-        sitelists_pop(filling->lists, (SiteRange){0});
-        TRY(sitelists_gather(filling->lists, filling->sites, &ball, &list, err));
+    if (reach <= wide * fabs(nearest_mm) || reach == 0) {
+        pop_to(filling->lists, (SiteRange){0});
+        TRY(gather_sites(filling->lists, filling->sites, block_centre(filling->grid, block), reach,
+                         nearest_mm, &list, err));
         return fill(filling, block, list, err);
     }
     for (int which = 0; which < 8; which++) {

@@ -50,41 +50,11 @@ typedef struct SiteLists {
 
 void sitelists_release(SiteLists *lists);
 
-/* A list on the stack: the entries first to first + n - 1. */
-typedef struct SiteRange {
-    size_t first, n;
-} SiteRange;
-
 /* The nearest site of a point; on a tie, the one with the lowest index. */
 typedef struct Nearest {
     double distance_mm;
     uint32_t site;
 } Nearest;
-
-/* A ball of points whose nearest sites are searched. */
-typedef struct SiteBall {
-    Vec3 centre;
-    double radius_mm;
-    double nearest_mm; /* distance of the centre from the nearest site */
-} SiteBall;
-
-/* Pushes a list of all sites that may be the nearest site of some point in a ball. Errors:
- * STATUS_MEMORY. */
-MUST_CHECK Status sitelists_gather(SiteLists *lists, const Sites *sites, const SiteBall *ball,
-                                   SiteRange *out, Err *err);
-/* Returns the site of `list` that is nearest to a point. Stores the distance of each site of the
- * list in lists->distance. `list` must not be empty. */
-Nearest sitelists_measure(SiteLists *lists, const Sites *sites, SiteRange list, Vec3 point);
-/* Pushes a list of those sites of `list` whose stored distance is at most `most_mm`. The new list
- * has no distances until it is measured. The caller pops it with sitelists_pop(lists, list).
- * Errors: STATUS_MEMORY. */
-MUST_CHECK Status sitelists_narrow(SiteLists *lists, SiteRange list, double most_mm, SiteRange *out,
-                                   Err *err);
-/* Pops all lists above `list`, which becomes the top of the stack. */
-static inline void sitelists_pop(SiteLists *lists, SiteRange list)
-{
-    lists->site.n = lists->distance.n = list.first + list.n;
-}
 
 /* Voxels [low, high) along each axis of a grid. */
 typedef struct VoxelBlock {
@@ -108,7 +78,5 @@ MUST_CHECK Status sites_fill(const SiteFilling *filling, double nearest_mm, Err 
 
 /* Returns the middle of the voxel centres of a block. */
 Vec3 block_centre(const VoxelGrid *grid, const VoxelBlock *block);
-/* Returns the largest distance of a voxel centre of a block from its block_centre, mm. */
-double block_reach(const VoxelGrid *grid, const VoxelBlock *block);
 
 #endif

@@ -74,7 +74,7 @@ typedef struct NetworkBlood {
     const double *radius_mm, *length_mm; /* per segment */
     const double *inflow_hematocrit;     /* per node: of the blood that enters there, in [0,
                                           * MAX_HEMATOCRIT]; NAN: `hematocrit` */
-    double hematocrit;                   /* at the start in all segments, in [0, MAX_HEMATOCRIT] */
+    double hematocrit;                   /* of all segments at the start, in [0, MAX_HEMATOCRIT] */
     double plasma_pa_s;                  /* viscosity of the plasma, above 0 */
     double cell_fl;                      /* mean corpuscular volume, above 0 */
 } NetworkBlood;
@@ -82,7 +82,7 @@ typedef struct NetworkBlood {
 /* Returns the resistance of segment i at this hematocrit, Pa s/mm^3, by viscosity_pries_pa_s. */
 double flownetwork_resistance(const NetworkBlood *blood, size_t i, double hematocrit);
 
-/* The cells. */
+/* The red cells in the network. */
 typedef struct NetworkCells {
     double *hematocrit;    /* per segment: of the blood that flows out of it; owned */
     size_t rounds, capped; /* rounds of the iteration; segments at MAX_HEMATOCRIT */
@@ -101,8 +101,8 @@ enum { NETWORK_MAX_ROUNDS = 100 };
  * Claassen & Gaehtgens, Microvasc. Res. 38 (1989) 81; constants of Pries & Secomb 2008]. From one
  * hematocrit in all segments, each round computes viscosity, flow, and the hematocrit in the order
  * of falling pressure. The iteration ends when no flow changes by 1e-3 nl/min or 1e-6 of the
- * largest flow, and no hematocrit by 1e-3; or after NETWORK_MAX_ROUNDS, which cells->converged
- * tells. Several steady states can exist; this start selects one.
+ * largest flow, and no hematocrit by 1e-3. After NETWORK_MAX_ROUNDS it ends without convergence,
+ * and cells->converged is false. Several steady states can exist; this start selects one.
  *
  * network  its resistances are not read.
  * flow     release with networkflow_release.

@@ -66,7 +66,7 @@ typedef struct SceneTile {
 } SceneTile;
 
 typedef struct SceneTiles {
-    SceneTile *tile; /* owned; from the top and the left */
+    SceneTile *items; /* owned; from the top and the left */
     size_t n, capacity;
     bool cut; /* scenes contain only what the rays of their tile can hit */
 } SceneTiles;
@@ -74,10 +74,10 @@ typedef struct SceneTiles {
 static void tiles_release(SceneTiles *tiles)
 {
     for (size_t i = 0; i < tiles->n; i++) {
-        free(tiles->tile[i].scene);
-        free(tiles->tile[i].ids);
+        free(tiles->items[i].scene);
+        free(tiles->items[i].ids);
     }
-    free(tiles->tile);
+    free(tiles->items);
 }
 
 /* What scenes are written from. */
@@ -131,7 +131,7 @@ static SceneTile *heaviest(const SceneTiles *tiles)
 {
     SceneTile *found = NULL;
     for (size_t i = 0; i < tiles->n; i++) {
-        SceneTile *tile = &tiles->tile[i];
+        SceneTile *tile = &tiles->items[i];
         int pixels = tile->rect.width * tile->rect.height;
         if (can_be_halved(tile) &&
             (!found || tile->load > found->load ||
@@ -144,9 +144,8 @@ static SceneTile *heaviest(const SceneTiles *tiles)
 /* Replaces a tile by its halves. */
 static Status halve(const SceneSource *source, SceneTiles *tiles, size_t place, Err *err)
 {
-    TRY(mem_reserve(&tiles->tile, &tiles->capacity, tiles->n + 1, sizeof *tiles->tile, "tiles",
-                    err));
-    SceneTile *first = &tiles->tile[place], *second = first + 1;
+    TRY(ARRAY_RESERVE(tiles, 1, "tiles", err));
+    SceneTile *first = &tiles->items[place], *second = first + 1;
     memmove(second, first, (tiles->n - place) * sizeof *first);
     tiles->n++;
     if (first->rect.width > first->rect.height) {
@@ -165,7 +164,7 @@ static Status halve(const SceneSource *source, SceneTiles *tiles, size_t place, 
 static Status check_tiles(const PovrayTilesParams *params, const SceneTiles *tiles, Err *err)
 {
     for (size_t i = 0; i < tiles->n; i++) {
-        const SceneTile *tile = &tiles->tile[i];
+        const SceneTile *tile = &tiles->items[i];
         if (tile->load > 1)
             return err_set(
                 err, STATUS_INFEASIBLE,
@@ -188,9 +187,9 @@ static Status find_tiles(const SceneSource *source, SceneTiles *tiles, Err *err)
 {
     const size_t min_tiles = (size_t)source->params->min_tiles;
     const Camera *camera = &source->params->emit.scene->view.camera;
-    TRY(mem_reserve(&tiles->tile, &tiles->capacity, 1, sizeof *tiles->tile, "tiles", err));
-    SceneTile *whole = &tiles->tile[tiles->n++];
-    *whole = (SceneTile){.rect = {0, 0, camera->width, camera->height}};
+    TRY(ARRAY_PUSH(tiles, "tiles", err,
+                   (SceneTile){.rect = {0, 0, camera->width, camera->height}}));
+    SceneTile *whole = &tiles->items[0];
     TRY(weigh(source, NULL, &whole->load, err));
     tiles->cut = whole->load > 1 || min_tiles > 1;
     if (tiles->cut)
@@ -199,7 +198,7 @@ static Status find_tiles(const SceneSource *source, SceneTiles *tiles, Err *err)
         SceneTile *next = heaviest(tiles);
         if (!next || (next->load <= 1 && tiles->n >= min_tiles))
             return check_tiles(source->params, tiles, err);
-        TRY(halve(source, tiles, (size_t)(next - tiles->tile), err));
+        TRY(halve(source, tiles, (size_t)(next - tiles->items), err));
     }
 }
 
@@ -227,7 +226,7 @@ static Status tile_path(const PovrayTilesParams *params, const SceneTiles *tiles
 static Status write_scene(const SceneSource *source, const SceneTiles *tiles, size_t index,
                           bool ids, Err *err)
 {
-    SceneTile *tile = &tiles->tile[index];
+    SceneTile *tile = &tiles->items[index];
     char **path = ids ? &tile->ids : &tile->scene;
     TRY(tile_path(source->params, tiles, index, ids ? "ids.pov" : "scene.pov", path, err));
     const EmitParams params = emit_params(source, ids, tiles->cut ? &tile->rect : NULL);
@@ -310,7 +309,7 @@ static int runs_at_once(const PovrayTiles *all)
     if (threads > 0 && threads < most)
         most = threads;
     for (size_t i = 0; i < all->tiles.n; i++)
-        load = fmax(load, all->tiles.tile[i].load);
+        load = fmax(load, all->tiles.items[i].load);
     return load * most <= max_load_at_once ? most : (int)fmax(1, max_load_at_once / load);
 }
 
@@ -319,7 +318,7 @@ static Status prepare_run(PovrayTiles *all, size_t index, Err *err)
     const PovrayTilesParams *params = &all->params;
     const Camera *camera = &params->emit.scene->view.camera;
     const size_t tile_index = index / all->planes.n;
-    const SceneTile *tile = &all->tiles.tile[tile_index];
+    const SceneTile *tile = &all->tiles.items[tile_index];
     const PovrayPlane plane = all->planes.plane[index % all->planes.n];
     bool ids = tile->ids && (plane == POVRAY_ID || plane == POVRAY_DEPTH_ID);
     PlaneRun *run = &all->run[index];
@@ -410,7 +409,7 @@ static Status join_plane(const PovrayTiles *all, size_t place, const char *path,
     Status status = STATUS_OK;
     for (size_t i = 0; i < all->tiles.n; i++)
         TRY_GOTO(
-            add_tile(all->run[i * each + place].output, &all->tiles.tile[i].rect, joined, err));
+            add_tile(all->run[i * each + place].output, &all->tiles.items[i].rect, joined, err));
     status = picture_write(joined, path, srgb ? ENCODING_SRGB : ENCODING_LINEAR, NULL, NULL, err);
 done:
     for (size_t i = 0; i < all->tiles.n; i++)

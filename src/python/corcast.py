@@ -89,7 +89,8 @@ _FUNCTIONS = {
     "options_new": "sH", "options_set": "hss", "options_callbacks": "hffp",
     "schema": "sH", "tree_read": "shH", "tree_from_nodes": "pH", "tree_copy": "hH",
     "tree_nodes": "hp", "tree_field": "hshpp", "tree_write": "hs", "grow": "hHH",
-    "refine": "hhH", "certify": "hhH", "info": "hhH", "scene_new": "hhH", "render": "hHH",
+    "refine": "hhH", "certify": "hhH", "info": "hhH", "pulse": "hhH",
+    "coverage": "hhH", "answer": "hhsH", "scene_new": "hhH", "render": "hHH",
     "image_read": "sH", "image_from_pixels": "pH", "image_shape": "hippp",
     "image_pixels": "hiipz", "image_write": "hiis", "compare": "hhhH", "mesh_new": "hhH",
     "mesh_triangles": "hp", "export": "hhs", "export_bytes": "hhsfp", "verify": "hhsH",
@@ -436,6 +437,25 @@ class Tree(_Handle):
         """Returns the report of `corcast info --json`: counts, lengths, volume, pressures."""
         return self._report("info", options)
 
+    def pulse(self, **options):
+        """Computes pulse waves over a cycle, in place: the tree gets a column for each moment, such
+        as "wss_0.0333", which `render(color_by="wss", moment=2)` draws. Returns the report of
+        `corcast pulse`. Options: fields="wss,dilation", frames=24."""
+        return self._report("pulse", options)
+
+    def coverage(self, **options):
+        """Measures how far tissue is from the nearest vessel; returns the report of
+        `corcast coverage`: `mean_mm`, `quantiles`, `beyond`, `largest_mm`."""
+        return self._report("coverage", options)
+
+    def answer(self, path, **options):
+        """Writes two proven bounds of each pixel's color to the OpenEXR file `path`, by which
+        `corcast compare` grades pictures. Returns the numbers of pixels and undecided pixels."""
+        options = _Options("answer", options)
+        report = _ReportHandle()
+        options.run("answer", self._handle, options._handle, _text(path), byref(report._handle))
+        return Report(report.content())
+
     def _report(self, command, options):
         options = _Options(command, options)
         report = _ReportHandle()
@@ -457,8 +477,8 @@ class Tree(_Handle):
     def export(self, path, command="export", **options):
         """Runs a command on the tree and writes its files. The extension of `path` selects the
         format. `command` is "export" (meshes, volumes, pages), "scene" (POV-Ray, OpenSCAD,
-        Tachyon), "render" (pictures), "diagram" or "convert" (trees). The options are those of the
-        command."""
+        Tachyon), "render" (pictures), "diagram", "convert" (trees), "pulse" (values over time,
+        decks) or "coverage" (volumes of distances). The options are those of the command."""
         options = _Options(command, options)
         options.run("export", self._handle, options._handle, _text(path))
 

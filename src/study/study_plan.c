@@ -10,7 +10,7 @@
 
 static const Option rows[] = {
     {.name = "output",
-     SETS(OUTPUT, StudyGrowth, output),
+     SETS(OUTPUT, GrowOptions, output),
      .argument = "T.swc",
      .help = "tree file to write"},
 };
@@ -19,7 +19,7 @@ static const OptionTable own_table = OPTION_TABLE(rows);
 
 static void set_defaults(void *options)
 {
-    StudyGrowth *growth = options;
+    GrowOptions *growth = options;
     growing_set_defaults(&growth->growing);
     growth->output = "T.swc";
 }
@@ -28,11 +28,11 @@ static const Command growth_command = {
     .name = "grow",
     .reads_tree = true,
     .trees_only = true,
-    .size = sizeof(StudyGrowth),
+    .size = sizeof(GrowOptions),
     .set_defaults = set_defaults,
     .tables = {{&own_table, 0},
-               {&growing_table, offsetof(StudyGrowth, growing)},
-               {&refining_table, offsetof(StudyGrowth, refining)}},
+               {&growing_table, offsetof(GrowOptions, growing)},
+               {&refining_table, offsetof(GrowOptions, refining)}},
 };
 
 /* ---- values ---------------------------------------------------------------------------------- */

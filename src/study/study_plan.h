@@ -10,8 +10,7 @@
 #define CORCAST_STUDY_STUDY_PLAN_H
 
 #include "base/base.h"
-#include "job/tree/growing.h"
-#include "job/tree/refining.h"
+#include "job/tree/makers.h"
 #include "options/options.h"
 
 /* Maximum number of runs of a plan. A larger plan is refused. Reason of the value not recorded. */
@@ -31,13 +30,6 @@ typedef struct StudyPlan {
     HashText hash; /* hash of program version, keys and values */
 } StudyPlan;
 
-/* What the options of a run set. */
-typedef struct StudyGrowth {
-    const char *output; /* "T.swc", for the command line that the tree's file records */
-    Growing growing;
-    Refining refining;
-} StudyGrowth;
-
 /* Reads a plan, an INI file with the section [grow]: `seed = 1..20` or `gamma = 2.5, 3`. Values are
  * separated by a comma and a blank, so that a value may contain commas. A..B are integers.
  *
@@ -52,7 +44,7 @@ void study_plan_release(StudyPlan *plan);
 const char *study_plan_value(const StudyPlan *plan, size_t run, size_t k);
 
 /* Makes the options of a run, as the command line `corcast grow` would make them. parsed->options
- * is a StudyGrowth.
+ * is a GrowOptions, whose output is "T.swc" in the command line that the tree's file records.
  *
  * run      0 <= run < plan->runs.
  * threads  as --threads.

@@ -17,7 +17,7 @@ enum { NAME_DIGITS = 16 };
 /* A run before it has grown. */
 typedef struct StudyRun {
     Parsed parsed;
-    StudyGrowth *growth; /* parsed.options */
+    GrowOptions *growth; /* parsed.options */
     size_t number;       /* counted from 1 */
     HashText made_from;
     char *command;       /* owned */

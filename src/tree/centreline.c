@@ -89,8 +89,8 @@ typedef struct BranchResampling {
     int32_t pieces;
 } BranchResampling;
 
-/* Returns the number of new segments of a branch of `n` segments. A branch that ends with a link may
- * begin where it ends, or lie beside another branch, and keeps up to 3 segments. */
+/* Returns the number of new segments of a branch of `n` segments. A branch that ends with a link
+ * may begin where it ends, or lie beside another branch, and keeps up to 3 segments. */
 static int32_t count_pieces(const Tree *tree, const int32_t *segment, size_t n, double length,
                             double step)
 {
@@ -218,8 +218,8 @@ static void fill(const Tree *tree, const Branches *branches, double step, int32_
         const int32_t *segment = branches->node + at;
         size_t count = branches->end[k] - at;
         double length = branch_length(tree, segment, count);
-        const BranchResampling branch = {tree,  out,    segment,
-                                         count, length, count_pieces(tree, segment, count, length, step)};
+        const BranchResampling branch = {
+            tree, out, segment, count, length, count_pieces(tree, segment, count, length, step)};
         for (int32_t piece = 0; piece < branch.pieces; piece++)
             out->parent[n + (size_t)piece] =
                 piece ? (int32_t)n + piece - 1 : place[tree->parent[segment[0]]];

@@ -36,7 +36,8 @@ MUST_CHECK Status tree_smooth(Tree *tree, SmoothMoves *moves, Err *err);
 
 /* Makes a copy of the tree in which each branch has segments of equal length, measured along the
  * old centreline. The number of new segments of a branch is its length / `step_mm`, rounded, and at
- * least 1; at least 3, or the old number if it is lower, of a branch that ends with a link. `step_mm` is above 0. The new nodes lie on the old segments.
+ * least 1; at least 3, or the old number if it is lower, of a branch that ends with a link.
+ * `step_mm` is above 0. The new nodes lie on the old segments.
  *
  * A new segment has the same Poiseuille resistance as the old segments that it replaces: its r^-4
  * is the mean of their r^-4 over the length. It has the column values and the type of the old

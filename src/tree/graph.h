@@ -38,8 +38,6 @@ typedef struct GraphPoint {
     int32_t type;      /* SWC type code; a point without one gets TREE_VESSEL_TYPE */
     double flow_share; /* as Tree.flow_share; 0: the file states none */
     int64_t id;        /* id of the node; 0: the point's number + 1 */
-    bool is_link;      /* the point is the distal end of a line with a link_id. Its description
-                        * counts only if it is joined to no other point */
     size_t record;     /* line or number of the record in the file, for errors */
 } GraphPoint;
 
@@ -50,8 +48,6 @@ typedef struct GraphLine {
     bool is_directed; /* blood flows from a to b */
     bool is_part;     /* the line is part of a polyline of several lines; a column of lines has the
                        * same value for all lines of a polyline */
-    int64_t link_id;  /* id of the node with a link at point b, in a file that states that the line
-                       * closes a loop; 0: none */
     size_t record;    /* line or number of the record in the file, for errors */
 } GraphLine;
 
@@ -77,8 +73,7 @@ typedef struct Graph {
                           * different points: they stay apart if merging them closes a loop */
     bool is_tree;        /* The file was written from a tree: each line is directed and leads from
                           * parent to child, and each point has its own id, except points that are
-                          * joined. Nothing is merged or removed. Lines close loops only if they
-                          * have a link_id */
+                          * joined. Nothing is merged or removed, and there are no loops */
     /* Filled by the functions below. All arrays are owned. */
     GraphPoint *point;
     size_t n_points, points_capacity;
@@ -140,15 +135,6 @@ MUST_CHECK Status graph_value(Graph *graph, size_t column, size_t at, double val
  *          STATUS_INFEASIBLE if there are more than TREE_MAX_ID nodes. STATUS_MEMORY.
  * Cost     O(n log n) for n points and lines. */
 MUST_CHECK Status graph_build(Graph *graph, TreeBuilder *builder, Err *err);
-
-/* Replaces a network with links by the tree that graph_build makes of it with
- * ReadOptions.break_loops. Ids, values and metadata are kept, except that a segment whose direction
- * changes gives its values to its new distal node, and a cut link leaves no node.
- *
- * tree     is changed on success only.
- * reading  receives the counts and places of the cuts.
- * Errors   STATUS_MEMORY. */
-MUST_CHECK Status tree_break_loops(Tree *tree, TreeReading *reading, Err *err);
 
 /* Counts the nodes of a tree that have the position of an earlier node and are not its links. If
  * the tree is written as a network and read again, graph_build merges each of them with the earlier

@@ -25,7 +25,6 @@ typedef struct GraphLink {
     uint32_t a, b;
     uint32_t line;    /* index in Graph.line */
     double thickness; /* mm */
-    bool is_stated;   /* the file states that the line gets a node with a link */
 } GraphLink;
 
 typedef struct Building {
@@ -86,8 +85,7 @@ static Status link_lines(Building *building, Err *err)
                                        line->a > line->b ? line->a : line->b, graph->n_points),
                                err);
         GraphLink link = {building->representative[line->a], building->representative[line->b],
-                          (uint32_t)i, thickness_of(graph, line),
-                          line->link_id > 0 && !building->options->break_loops};
+                          (uint32_t)i, thickness_of(graph, line)};
         if (link.a == link.b)
             building->reading->network.without_length++;
         else
@@ -112,7 +110,7 @@ static int thickest_first(const void *a, const void *b)
 /* Describes a link by numbers that are equal for two links exactly if one repeats the other: both
  * points, the radii, and the values of the line and of its two ends in all columns. Polylines of
  * several lines may overlap, such as polylines that each lead from the root to one outlet; for
- * their lines, only points and radii count. `out` has space for 5 numbers and 2 per column. Returns
+ * their lines, only points and radii count. `out` has space for 4 numbers and 2 per column. Returns
  * the count of numbers. */
 static size_t describe_link(const Building *building, const GraphLink *link, double *out)
 {
@@ -125,7 +123,6 @@ static size_t describe_link(const Building *building, const GraphLink *link, dou
     out[n++] = turned ? link->a : link->b;
     for (size_t side = 0; side < 2; side++)
         out[n++] = isnan(line->radius) ? graph->point[ends[side]].radius : line->radius;
-    out[n++] = (double)line->link_id;
     for (size_t k = 0; k < graph->n_columns && !line->is_part; k++) {
         const GraphColumn *column = &graph->column[k];
         const bool of_lines = column->of == GRAPH_LINES;
@@ -175,7 +172,7 @@ static Status take_link(const Building *building, LinkTable *table, size_t kept,
 
 static Status begin_links(const Building *building, LinkTable *table, Err *err)
 {
-    const size_t most = 5 + 2 * building->graph->n_columns;
+    const size_t most = 4 + 2 * building->graph->n_columns;
     TRY(keymap_begin(&table->last, building->n_links, "slots for lines", err));
     TRY(mem_calloc(&table->next, building->n_links, sizeof *table->next, "lines", err));
     TRY(mem_calloc(&table->one, most, sizeof *table->one, "values of a line", err));
@@ -223,8 +220,8 @@ static Status note_cut(Building *building, const GraphLink *link, Err *err)
     return STATUS_OK;
 }
 
-/* Finds a spanning forest: takes the links in their order, and moves each link that closes a loop,
- * or of which the file states it, to the end. *kept receives the count of links before the first
+/* Finds a spanning forest: takes the links in their order, and moves each link that closes a loop
+ * to the end. *kept receives the count of links before the first
  * moved one. */
 static void span(Building *building, size_t *kept)
 {
@@ -233,7 +230,7 @@ static void span(Building *building, size_t *kept)
     sets_begin(component, building->graph->n_points);
     *kept = 0;
     for (size_t i = 0; i < building->n_links; i++) {
-        if (link[i].is_stated || !sets_join(component, link[i].a, link[i].b))
+        if (!sets_join(component, link[i].a, link[i].b))
             continue;
         GraphLink taken = link[i];
         link[i] = link[*kept];
@@ -274,27 +271,17 @@ static Status count_loops(Building *building, size_t *loops, size_t *components,
     return STATUS_OK;
 }
 
-static bool has_stated_links(const Graph *graph)
-{
-    size_t i = 0;
-    while (i < graph->n_lines && graph->line[i].link_id == 0)
-        i++;
-    return i < graph->n_lines;
-}
-
 /* Merges points at one position. Exception: if merging closes loops in a file whose lines name
- * their points, points stay apart if the names alone give the same number of components without
- * loops, or if the file states which lines close loops. A vessel may end at a position where
- * another vessel passes. */
+ * their points, and if the names alone give the same number of components without loops, points
+ * stay apart. A vessel may end at a position where another vessel passes. */
 static Status connect(Building *building, Err *err)
 {
     Graph *graph = building->graph;
     size_t loops, components, named_loops, named_components;
     TRY(mem_calloc(&building->component, graph->n_points, sizeof *building->component, "components",
                    err));
-    const bool by_name = graph->is_tree || has_stated_links(graph);
-    TRY(connect_points(building, !by_name, err));
-    if (!graph->is_named || by_name)
+    TRY(connect_points(building, !graph->is_tree, err));
+    if (!graph->is_named || graph->is_tree)
         return STATUS_OK;
     TRY(count_loops(building, &loops, &components, err));
     if (loops == 0)
@@ -340,9 +327,8 @@ static Status treat_loops(Building *building, Err *err)
         return STATUS_OK;
     if (building->options->break_loops)
         return cut_loops(building, &kept, err);
-    for (size_t i = kept; i < building->n_links && building->graph->is_tree; i++)
-        if (!building->link[i].is_stated)
-            return refuse_loops(building, &building->link[i], building->n_links - kept, err);
+    if (building->graph->is_tree)
+        return refuse_loops(building, &building->link[kept], building->n_links - kept, err);
     building->reading->network.links = building->n_links - kept;
     qsort(building->link, building->n_links, sizeof *building->link, order_lines);
     return mem_calloc(&building->closing, building->n_links - kept, sizeof *building->closing,
@@ -401,8 +387,7 @@ static LinkCandidate judge(const Building *building, uint32_t point)
     bool leads_away = true;
     for (uint32_t k = 0; k < building->degree[point]; k++) {
         const GraphLink *link = link_at(building, point, k);
-        leads_away = leads_away &&
-                     (link->is_stated || (graph->line[link->line].is_directed && link->a == point));
+        leads_away = leads_away && graph->line[link->line].is_directed && link->a == point;
         made.thickness = fmax(made.thickness, link->thickness);
     }
     made.rank = graph->point[point].is_inlet   ? RANK_INLET
@@ -516,15 +501,6 @@ static void direct_from(Building *building, uint32_t root, uint32_t *queue, bool
     }
 }
 
-static void use_stated(Building *building)
-{
-    for (size_t i = 0; i < building->n_links; i++)
-        if (building->link[i].is_stated) {
-            building->used[i] = true;
-            building->closing[building->n_closing++] = (uint32_t)i;
-        }
-}
-
 static Status direct_links(Building *building, Err *err)
 {
     size_t n = building->graph->n_points;
@@ -540,7 +516,6 @@ static Status direct_links(Building *building, Err *err)
     TRY_GOTO(mem_calloc(&building->used, building->n_links, sizeof *building->used, "lines", err));
     TRY_GOTO(mem_calloc(&building->parent, n, sizeof *building->parent, "parents", err));
     TRY_GOTO(mem_calloc(&building->above, n, sizeof *building->above, "parents", err));
-    use_stated(building);
     for (size_t i = 0; i < building->reading->n_roots; i++)
         direct_from(building, (uint32_t)building->reading->root[i].id - 1, queue, reached);
 done:
@@ -552,44 +527,32 @@ done:
 
 /* ---- nodes ---- */
 
-/* Returns the id that the file gives to node `i`: a kept point or, from the number of points on,
- * the node with a link of a closing line. 0: none. */
-static int32_t stated_id(const Building *building, size_t i)
-{
-    const Graph *graph = building->graph;
-    if (i < graph->n_points)
-        return (int32_t)graph->point[i].id;
-    return (int32_t)graph->line[building->link[building->closing[i - graph->n_points]].line]
-        .link_id;
-}
-
-/* Chooses the ids of all nodes, the nodes with links after those of points. The ids of points are
- * those of the file if all kept points have one, else the points' numbers + 1. Nodes with links
- * have the ids of the file or the next ids. If these exceed TREE_MAX_ID, all ids are 1, 2, ... in
- * order. The caller frees *id. */
+/* Chooses the ids of all nodes: of the kept points, and from the number of points on, of the nodes
+ * with links. The ids of points are those of the file if all kept points have one, else the points'
+ * numbers + 1. Nodes with links have the next ids. If these exceed TREE_MAX_ID, all ids are 1, 2,
+ * ... in order. The caller frees *id. */
 static Status number_nodes(const Building *building, int32_t **id, Err *err)
 {
-    const size_t points = building->graph->n_points, most = points + building->n_closing;
+    const Graph *graph = building->graph;
+    const size_t points = graph->n_points, most = points + building->n_closing;
     int32_t *made = NULL;
     bool given = true;
     size_t last = 0, n = building->n_closing;
     for (size_t i = 0; i < points; i++)
         if (is_node(building, i)) {
-            given = given && stated_id(building, i) != 0;
+            given = given && graph->point[i].id != 0;
             n++;
         }
     if (n > TREE_MAX_ID)
         return err_set(err, STATUS_INFEASIBLE, "%s: a tree of %zu nodes is too large: at most %d",
-                       building->graph->name, n, TREE_MAX_ID);
+                       graph->name, n, TREE_MAX_ID);
     TRY(mem_calloc(&made, most, sizeof *made, "ids", err));
     for (size_t i = 0; i < most; i++)
         if (i >= points || is_node(building, i)) {
-            made[i] = given ? stated_id(building, i) : i < points ? (int32_t)i + 1 : 0;
-            last = (size_t)made[i] > last ? (size_t)made[i] : last;
+            size_t next = i >= points ? last + 1 : given ? (size_t)graph->point[i].id : i + 1;
+            made[i] = (int32_t)next;
+            last = next > last ? next : last;
         }
-    for (size_t i = points; i < most; i++)
-        if (made[i] == 0)
-            made[i] = (int32_t)++last;
     n = 0;
     for (size_t i = 0; i < most && last > TREE_MAX_ID; i++)
         made[i] = made[i] ? (int32_t)++n : 0;
@@ -882,19 +845,6 @@ static void describe(const Graph *graph, const ReadOptions *options, TreeReading
         !reading->voxels && !graph->unit_is_stated && looks_like_voxels(graph);
 }
 
-/* Completes the description of a kept point by that of a point that is merged with it. */
-static void describe_merged(GraphPoint *kept, const GraphPoint *point)
-{
-    if (kept->is_link && !point->is_link) {
-        double radius = kept->radius;
-        bool is_inlet = kept->is_inlet;
-        *kept = *point;
-        kept->radius = radius;
-        kept->is_inlet |= is_inlet;
-    }
-    kept->is_inlet |= point->is_inlet;
-}
-
 static Status build(Building *building, TreeBuilder *builder, Err *err)
 {
     Graph *graph = building->graph;
@@ -905,7 +855,7 @@ static Status build(Building *building, TreeBuilder *builder, Err *err)
     graph_scale(graph);
     TRY(connect(building, err));
     for (size_t i = 0; i < graph->n_points; i++)
-        describe_merged(&graph->point[building->representative[i]], &graph->point[i]);
+        graph->point[building->representative[i]].is_inlet |= graph->point[i].is_inlet;
     if (building->n_links == 0 && !graph->is_tree)
         return err_set(err, STATUS_INPUT,
                        "%s: each line has both ends at the same position; a tree needs a line that "
@@ -929,71 +879,5 @@ Status graph_build(Graph *graph, TreeBuilder *builder, Err *err)
     Status status = build(&building, builder, err);
     release(&building);
     reading_release(&own);
-    return status;
-}
-
-/* ---- trees with links ---- */
-
-/* Adds a tree to an empty graph: each node as a point, each segment as a line. */
-static Status put_tree(const Tree *tree, Graph *graph, Err *err)
-{
-    size_t column;
-    for (size_t i = 0; i < tree->n; i++) {
-        const GraphPoint point = {.position = tree->position[i],
-                                  .radius = (double)NAN,
-                                  .is_inlet = !tree_is_segment(tree, i),
-                                  .has_type = true,
-                                  .type = tree->type[i],
-                                  .flow_share = tree->flow_share ? tree->flow_share[i] : 0,
-                                  .id = tree->id[i],
-                                  .is_link = tree_is_link(tree, i),
-                                  .record = i};
-        TRY(graph_point(graph, &point, err));
-        if (tree_is_link(tree, i))
-            TRY(graph_join(graph, i, (size_t)tree->link[i], err));
-        if (!tree_is_segment(tree, i))
-            continue;
-        TRY(graph_line(graph,
-                       &(GraphLine){.a = (size_t)tree->parent[i],
-                                    .b = i,
-                                    .radius = tree->radius_mm[i],
-                                    .is_directed = true,
-                                    .record = i},
-                       err));
-    }
-    for (size_t k = 0; k < tree->n_columns; k++) {
-        size_t line = 0;
-        TRY(graph_column(graph, GRAPH_LINES, tree->column[k].name, tree->column[k].unit, &column,
-                         err));
-        for (size_t i = 0; i < tree->n; i++)
-            if (tree_is_segment(tree, i))
-                TRY(graph_value(graph, column, line++, tree->column[k].value[i], err));
-    }
-    return STATUS_OK;
-}
-
-Status tree_break_loops(Tree *tree, TreeReading *reading, Err *err)
-{
-    const ReadOptions options = {.break_loops = true};
-    TreeReading found = {0};
-    TreeBuilder builder = {.name = "the network"};
-    Graph graph = {.name = "the network", .options = &options, .reading = &found, .is_tree = true};
-    Tree made = {0};
-    Status status;
-    TRY_GOTO(put_tree(tree, &graph, err));
-    TRY_GOTO(meta_copy(&graph.meta, &tree->meta, err));
-    TRY_GOTO(graph_build(&graph, &builder, err));
-    TRY_GOTO(builder_build(&builder, &made, err));
-    tree_release(tree);
-    *tree = made;
-    free(reading->network.cut);
-    reading->network.loops = found.network.loops;
-    reading->network.cut = found.network.cut;
-    reading->network.n_cuts = found.network.n_cuts;
-    found.network.cut = NULL;
-done:
-    graph_release(&graph);
-    builder_release(&builder);
-    reading_release(&found);
     return status;
 }

@@ -352,30 +352,17 @@ static void drop_empty_links(Tree *tree)
     tree->link = NULL;
 }
 
-/* Copies the links whose two nodes are kept. Of several links to a dropped node, the first kept
- * node becomes the node that the other links name. */
+/* Copies the links whose two nodes are kept. */
 static Status prune_links(const Tree *tree, const int32_t *place, Tree *out, Err *err)
 {
-    int32_t *now = NULL; /* per node that links name: the node that they name in `out` */
-    Status status = STATUS_OK;
     if (!tree->link)
         return STATUS_OK;
-    TRY_GOTO(tree_add_links(out, err));
-    TRY_GOTO(mem_alloc(&now, tree->n, sizeof *now, "links", err));
-    memcpy(now, place, tree->n * sizeof *now);
-    for (size_t i = 0; i < tree->n; i++) {
-        if (!tree_is_link(tree, i) || place[i] == DROPPED)
-            continue;
-        int32_t *to = &now[tree->link[i]];
-        if (*to == DROPPED)
-            *to = place[i];
-        else
-            out->link[place[i]] = *to;
-    }
+    TRY(tree_add_links(out, err));
+    for (size_t i = 0; i < tree->n; i++)
+        if (tree_is_link(tree, i) && place[i] != DROPPED && place[tree->link[i]] != DROPPED)
+            out->link[place[i]] = place[tree->link[i]];
     drop_empty_links(out);
-done:
-    free(now);
-    return status;
+    return STATUS_OK;
 }
 
 /* Makes a new tree of the nodes that have an index in `place`. */

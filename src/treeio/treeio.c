@@ -637,19 +637,43 @@ done:
     return status;
 }
 
+/* Cuts the loops of a tree that has links, which formats of trees state: reads it as a table of
+ * nodes, whose reader makes a network of it. */
+static Status break_loops(Tree *tree, TreeReading *reading, Err *err)
+{
+    static const char name[] = "network.csv";
+    const ReadOptions options = {.break_loops = true};
+    TreeReading found = {0};
+    Text text = TEXT_INIT;
+    Tree made = {0};
+    Status status;
+    TRY_GOTO(tree_write_text(tree, name, &text, err));
+    const MemoryFile file = {.name = name, .bytes = text_chars(&text), .size = text.length};
+    TRY_GOTO(tree_read_bytes(&made, &file, &options, &found, err));
+    tree_release(tree);
+    *tree = made;
+    reading->is_network = true;
+    reading->network = found.network;
+    found.network = (NetworkReading){0};
+done:
+    reading_release(&found);
+    text_release(&text);
+    return status;
+}
+
 static Status read_source(const TreeSource *source, Tree *tree, const ReadOptions *options,
                           TreeReading *reading, Err *err)
 {
     Tree made = {0};
     Status status = STATUS_OK;
     TRY_GOTO(build_tree(source, &made, options, reading, err));
-    if (options->break_loops && made.link)
-        TRY_GOTO(tree_break_loops(&made, reading, err));
     status = reading_fill_radii(reading, options, &made, err);
     if (status == STATUS_INPUT)
         err_prefix(err, "%s: ", source->name);
     TRY_GOTO(status);
     TRY_GOTO(tree_check(&made, err));
+    if (options->break_loops && made.link)
+        TRY_GOTO(break_loops(&made, reading, err));
     TRY_GOTO(reading_measure(reading, &made, err));
     reading->unit_is_stated = reading->unit_is_stated || is_own(&made.meta);
     *tree = made;

@@ -48,6 +48,9 @@ static void null_arguments(const corcast_tree *tree)
     EXPECT(2, "options is NULL", corcast_grow(NULL, &out, NULL, error));
     EXPECT(2, "tree is NULL", corcast_refine(NULL, NULL, NULL, error));
     EXPECT(2, "report is NULL", corcast_info(tree, NULL, NULL, error));
+    EXPECT(2, "tree is NULL", corcast_pulse(NULL, NULL, NULL, error));
+    EXPECT(2, "report is NULL", corcast_coverage(tree, NULL, NULL, error));
+    EXPECT(2, "path is NULL", corcast_answer(tree, NULL, NULL, NULL, error));
     EXPECT(2, "path is NULL", corcast_tree_read(NULL, NULL, &out, error));
     EXPECT(2, "out is NULL", corcast_tree_read("a.swc", NULL, NULL, error));
     EXPECT(2, "bytes is NULL", corcast_tree_read_bytes(NULL, 1, "a.swc", NULL, &out, error));
@@ -104,6 +107,15 @@ static void wrong_options(void)
     OK(corcast_options_get(options, "gamma", &value, error));
     if (!value || strcmp(value, "3") != 0)
         failures++, printf("gamma is %s after it was unset\n", value ? value : "NULL");
+    corcast_options_free(options);
+    options = options_of("info"); /* whose viscosity is that of the tree */
+    OK(corcast_options_get(options, "viscosity", &value, error));
+    if (value)
+        failures++, printf("viscosity is %s though it was not set\n", value);
+    OK(corcast_options_set(options, "viscosity", "3.5", error));
+    OK(corcast_options_get(options, "viscosity", &value, error));
+    if (!value || strcmp(value, "3.5") != 0)
+        failures++, printf("viscosity is %s after it was set\n", value ? value : "NULL");
     corcast_options_free(options);
     EXPECT(2, "is not a command", corcast_options_new("gro", &options, error));
 }

@@ -7,7 +7,8 @@
  *   session bytes COMMAND IN OUT NAME=VALUE...     as export, through a sink into OUT's folder
  *   session render IN OUT.ppm NAME=VALUE...        writes the pixels of a picture in memory
  *   session compare A B NAME=VALUE...              prints the report
- *   session info IN NAME=VALUE...                  prints the report
+ *   session info IN NAME=VALUE...                  prints the report; also coverage
+ *   session pulse OUT IN NAME=VALUE...             writes the tree, prints the report; also answer
  *   session convert IN OUT                         reads the bytes of IN in memory
  *
  * Ends with the status of the library, and its error message on standard error. */
@@ -168,21 +169,67 @@ static int compare(char **arguments)
     return status;
 }
 
-static int info(char **arguments)
+typedef int Measure(const corcast_tree *tree, const corcast_options *options,
+                    corcast_report **report, corcast_error *error);
+
+static int measure(const char *command, Measure *run, char **arguments)
 {
     int status;
     corcast_tree *tree = NULL;
     corcast_report *report = NULL;
-    corcast_options *options = options_of("info", arguments + 1, &status);
+    corcast_options *options = options_of(command, arguments + 1, &status);
     if (!status)
         status = corcast_tree_read(arguments[0], NULL, &tree, error);
     if (!status)
-        status = corcast_info(tree, options, &report, error);
+        status = run(tree, options, &report, error);
     fputs(corcast_report_json(report), stdout);
     corcast_report_free(report);
     corcast_tree_free(tree);
     corcast_options_free(options);
     return status;
+}
+
+static int info(char **arguments)
+{
+    return measure("info", corcast_info, arguments);
+}
+
+static int coverage(char **arguments)
+{
+    return measure("coverage", corcast_coverage, arguments);
+}
+
+static const char *output;
+
+static int pulse_and_write(const corcast_tree *tree, const corcast_options *options,
+                           corcast_report **report, corcast_error *failure)
+{
+    corcast_tree *copy = NULL;
+    int status = corcast_tree_copy(tree, &copy, failure);
+    if (!status)
+        status = corcast_pulse(copy, options, report, failure);
+    if (!status)
+        status = corcast_tree_write(copy, output, failure);
+    corcast_tree_free(copy);
+    return status;
+}
+
+static int pulse(char **arguments)
+{
+    output = arguments[0];
+    return measure("pulse", pulse_and_write, arguments + 1);
+}
+
+static int answer_to_output(const corcast_tree *tree, const corcast_options *options,
+                            corcast_report **report, corcast_error *failure)
+{
+    return corcast_answer(tree, options, output, report, failure);
+}
+
+static int answer(char **arguments)
+{
+    output = arguments[0];
+    return measure("answer", answer_to_output, arguments + 1);
 }
 
 static int convert(char **arguments)
@@ -205,9 +252,10 @@ int main(int argc, char **argv)
     static const struct {
         const char *name;
         int (*run)(char **arguments);
-    } operations[] = {{"grow", grow},          {"refine", refine},  {"export", export_tree},
-                      {"bytes", export_bytes}, {"render", render},  {"compare", compare},
-                      {"info", info},          {"convert", convert}};
+    } operations[] = {{"grow", grow},          {"refine", refine},   {"export", export_tree},
+                      {"bytes", export_bytes}, {"render", render},   {"compare", compare},
+                      {"info", info},          {"convert", convert}, {"coverage", coverage},
+                      {"pulse", pulse},        {"answer", answer}};
     int status = 2;
     error = corcast_error_new();
     for (size_t i = 0; argc > 1 && i < sizeof operations / sizeof *operations; i++)

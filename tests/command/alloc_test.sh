@@ -34,6 +34,14 @@ test_failed_allocations_in_coverage_and_centrelines() {
     fail_each 5 one info ../tree.swc --stats -o s.csv
 }
 
+test_failed_allocations_in_flow() {
+    printf '%s\n' bridge 1 1 1 1 1 '7 segments' head '1 5 1 2 12' '2 5 2 3 9' '3 5 2 4 7' '4 5 3 4 8' '5 5 3 5 9' '6 5 4 5 8' \
+        '7 5 5 6 12' '6 nodes' head '1 0 0 0' '2 100 0 0' '3 200 50.5 0' '4 200 -50 0' '5 300 0 0' '6 400 0 0' \
+        '1 boundary nodes' head '1 0 40 0.4' >n.dat
+    fail_each 5 many flow ../n.dat --viscosity-law pries --hematocrit 0.4 --plasma-viscosity 1 --separation --ends estimate \
+        --starts 2 -o o.vtp --summary s.csv
+}
+
 test_failed_allocations_in_grow() {
     inputs
     fail_each 1 many grow --terminals 9 -o o.swc --json o.json

@@ -97,7 +97,7 @@ test_bad_boundary_conditions_are_refused() {
     refuse_table 'id,flow\n99,3\n' 'b.csv:2: .*99'
     refuse_table 'id,pressure\n21,40\n22,10\n23,10\n' 'node 24 is an end without a boundary condition'
     refuse_table 'id,pressure,flow\n21,40,1\n' 'node 21 has a pressure and a flow'
-    refuse_table 'id,pressure [mm]\n21,40\n' 'the column pressure is in mm; its unit must be one of mmHg'
+    refuse_table 'id,pressure [mm]\n21,40\n' 'the column pressure is in mm, which is no unit like mmHg'
     refuse_table 'id,pressure,hematocrit\n21,40,1.5\n' 'node 21 has the hematocrit 1.5; it must be from 0 to 0.95'
     refuse_table 'id,speed\n21,40\n' 'must have the columns id and pressure or flow'
     sed 's/^21 0 /21 1 /' n.dat >type.dat

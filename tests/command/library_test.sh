@@ -82,6 +82,33 @@ test_facts_and_conversions_are_those_of_the_command_line() {
     expect_same tree.swc same.swc
 }
 
+test_pulses_coverage_and_answers_are_those_of_the_command_line() {
+    local kept='del(.command)'
+    run_ok corcast grow --terminals 12 --domain ball:20 --seed 3 --quiet -o tree.swc
+    run_ok corcast pulse tree.swc --fields wss,dilation --frames 3 --json -o program.vtp
+    mv stdout program.json
+    run_ok session pulse library.vtp tree.swc fields=wss,dilation frames=3
+    expect_same program.json stdout
+    expect_same <(strings -n 8 program.vtp | grep -v corcast) <(strings -n 8 library.vtp | grep -v corcast)
+    run_ok corcast convert library.vtp again.csv --quiet
+    grep -q '"wss_0.333333 \[Pa\]"' again.csv || fail "columns: $(head -20 again.csv)"
+    run_ok session export pulse tree.swc deck.json outlet-time=1.5
+    run_ok corcast pulse tree.swc --outlet-time 1.5 -o same.json
+    expect_same deck.json same.json
+    run session export pulse tree.swc beat.pov
+    expect_status 2
+    run_ok corcast coverage tree.swc --spacing 2 --json program.json
+    run_ok session coverage tree.swc spacing=2
+    expect_same <(jq "$kept" program.json) <(jq "$kept" stdout)
+    run_ok session export coverage tree.swc library.nii spacing=2
+    run_ok corcast coverage tree.swc --spacing 2 -o program.nii
+    expect_same program.nii library.nii
+    run_ok corcast answer tree.swc --size 40x30 -o program.exr
+    run_ok session answer library.exr tree.swc size=40x30
+    expect_same program.exr library.exr
+    jq -e '.pixels == 1200 and .undecided < 100 and (.scene | length) == 64' stdout >/dev/null || fail "report: $(cat stdout)"
+}
+
 test_wrong_use_is_an_error_with_a_sentence() {
     run_ok "$API/misuse"
 }

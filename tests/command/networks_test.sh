@@ -161,6 +161,26 @@ END
     expect_only ring.csv a.csv
 }
 
+test_a_ring_without_outlets_has_no_territories_of_terminals() {
+    printf '%s\n' x0,y0,z0,x1,y1,z1,radius 0,0,0,9,0,0,0.5 9,0,0,9,9,0,0.5 9,9,0,0,0,0,0.5 >ring.csv
+    run_ok corcast info ring.csv --json
+    expect_json stdout '.loops == 1 and .terminals == 0 and .reading.degrees[2] == 3 and .max_level == 1'
+    run corcast coverage ring.csv --domain hull:1 --territories out.nii --quiet
+    expect_status 2
+    expect_sentence '--territories: no vessel ends at a terminal, .* use --territory segment or tree'
+    run_ok corcast coverage ring.csv --domain hull:1 --territories out.nii --territory tree --quiet
+}
+
+# A flow that is stated for the last node of a closing line leaves where the line ends.
+test_flows_of_nodes_with_links_leave_at_their_places() {
+    ring
+    run_ok corcast convert --quiet ring.csv a.csv
+    printf 'id,flow\n6,2\n7,1\n' >flows.csv
+    run_ok corcast convert a.csv b.csv --flow-split flows.csv --p-perf 90 --viscosity 3 --fields flow --quiet
+    # All of 3 ml/min enters by segment 2, and 2 ml/min leave by segment 6.
+    [ "$(body b.csv | awk -F, '$1 == 2 || $1 == 6 { printf "%.9g ", $NF }')" = "3 2 " ] || fail "found $(body b.csv)"
+}
+
 test_what_draws_and_exports_takes_loops() {
     local model file
     ring

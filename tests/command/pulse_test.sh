@@ -177,7 +177,9 @@ test_bad_inputs_are_refused() {
     refuses 'and --tissue-pressure' --outlet-time 2 --tissue-pressure ventricular-pressure
     refuses 'aorta-flow is a flow; a pressure' --tissue-pressure aorta-flow
     refuses 'not a file that ends in .csv' --summary s.json
-    refuses 'is not pressure, flow' --fields speed
+    refuses 'is not pressure, flow' --fields speed -o v.csv
+    refuses '\-\-frames is for an output of moments' --frames 12
+    refuses '\-\-fields is for an output of moments' --fields wss -o d.json
     refuses 'must end in' -o v.gif
     refuses 'cannot store' -o v.swc
     refuses 'cannot hold structured' --outlets structured -o d.json

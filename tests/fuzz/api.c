@@ -31,9 +31,9 @@ static unsigned next(Play *play)
 /* A handle that may be NULL, live or freed. */
 #define ANY(list) (play->list[next(play) % SLOTS])
 
-static const char *const commands[] = {"grow",    "refine", "info",    "render",
-                                       "scene",   "export", "compare", "certify",
-                                       "convert", "figure", "verify",  "?"};
+static const char *const commands[] = {"grow",   "refine",  "info",     "render",  "scene",
+                                       "export", "compare", "certify",  "convert", "figure",
+                                       "verify", "pulse",   "coverage", "?"};
 
 /* Names and values that lead somewhere; others are made of the bytes. */
 static const char *const names[] = {
@@ -191,7 +191,7 @@ static int play_one(Play *play)
     corcast_image **image = &ANY(images);
     corcast_options *options = ANY(options);
     corcast_error *error = play->error;
-    switch (what % 24) {
+    switch (what % 26) {
     case 0:
         return new_options(play);
     case 1:
@@ -242,6 +242,10 @@ static int play_one(Play *play)
     case 21:
         corcast_options_free(options);
         return 0;
+    case 23:
+        return corcast_pulse(*tree, options, REPORT, error);
+    case 24:
+        return corcast_coverage(*tree, options, REPORT, error);
     case 22:
         corcast_image_free(*image);
         return 0;

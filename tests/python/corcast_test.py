@@ -89,6 +89,29 @@ class Trees(unittest.TestCase):
         self.assertEqual(tree.info().terminals, 60)
 
 
+    def test_pulses_and_coverage_are_those_of_the_command_line(self):
+        tree = corcast.grow(terminals=12, seed=3, domain="ball:20")
+        tree.save("w.swc")
+        report = tree.pulse(fields="wss,dilation", frames=4, q_perf=60)
+        self.assertEqual(report, json.loads(run("pulse", "w.swc", "--q-perf", "60", "--json")))
+        run("pulse", "w.swc", "--fields", "wss", "--frames", "4", "--q-perf", "60", "-o", "w.vtp")
+        again = corcast.read("w.vtp")
+        wss = tree.field("wss_0.25")
+        self.assertTrue(numpy.array_equal(wss, again.field("wss_0.25"), equal_nan=True))
+        self.assertGreater(numpy.nanmin(wss), 0)
+        self.assertEqual(tree.unit("wss_0.25"), "Pa")
+        tree.render(size=(40, 40), color_by="wss", moment=2, beat=5)
+        covered = tree.coverage(spacing=2)
+        run("coverage", "w.swc", "--spacing", "2", "--json", "c.json")
+        self.assertEqual(covered.mean_mm, json.loads(pathlib.Path("c.json").read_text())["mean_mm"])
+
+    def test_an_answer_grades_a_picture(self):
+        tree = corcast.grow(terminals=12, seed=3)
+        self.assertLess(tree.answer("t.answer.exr", size=(60, 40)).undecided, 240)
+        tree.render(size=(60, 40), exact=True, antialias=1).save("t.png")
+        run("compare", "t.answer.exr", "t.png")
+
+
 class Pictures(unittest.TestCase):
     @classmethod
     def setUpClass(cls):

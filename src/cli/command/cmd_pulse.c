@@ -85,7 +85,7 @@ Status run_pulse(void *options, Parsed *parsed, Err *err)
         TRY_GOTO(draw(&made, err));
     if (made.options->json)
         status = json_write(pulsing_json(&made), "-", err);
-    else
+    else if (!parsed->common.quiet || !made.options->output)
         print(&made);
 done:
     pulsing_release(&made);

@@ -208,9 +208,10 @@ static Shift search_shifts(const Picture *b, const ShiftSample *samples, int n)
     return best;
 }
 
-/* What differs most without a shift comes first: it tells soonest that a shift is wrong. A few
- * samples are asked before all, since most pictures are not moved. */
-Shift cause_best_shift(const Picture *a, const Picture *b, const Samples *samples)
+/* Returns the shift that leaves the smallest mean difference of the samples; none if it removes
+ * less than 30 % of the difference. What differs most without a shift comes first: it tells soonest
+ * that a shift is wrong. A few samples are asked before all, since most pictures are not moved. */
+static Shift best_shift(const Picture *a, const Picture *b, const Samples *samples)
 {
     enum { FEW = 64 };
     ShiftSample taken[CAUSE_SAMPLES], few[FEW];
@@ -276,11 +277,14 @@ static bool has_shifted_saturation(const Picture *a, const Picture *b, const Shi
     return cause_is_same_saturation(aa / (level * level), ab / (level * level));
 }
 
-/* A part of the picture that was not moved contradicts a shift, however little the part shows:
+/* Tests whether B is A moved by the best shift: it must leave at most 2 % of the differences where
+ * both pictures are. Returns true, and writes no sentence, if a part of the picture did not move.
+ *
+ * A part of the picture that was not moved contradicts a shift, however little the part shows:
  * there the pictures are equal without the shift, and the shift makes them differ. So at most half
  * of the differences that are left may be made by the shift. */
-bool cause_shift(const Picture *a, const Picture *b, const Samples *samples, const Shift *shift,
-                 Sentence *out)
+static bool find_shift(const Picture *a, const Picture *b, const Samples *samples,
+                       const Shift *shift, Sentence *out)
 {
     static const Shift none = {0};
     double before = 0;
@@ -327,8 +331,8 @@ Status compare_cause(const Picture *a, const Picture *b, CompareResult *result, 
     find_turn(a, b, &samples, &out);
     if (!*out.text)
         TRY(cause_background(a, b, &samples, &out, err));
-    const Shift shift = *out.text ? (Shift){0} : cause_best_shift(a, b, &samples);
-    const bool partly_moved = !*out.text && cause_shift(a, b, &samples, &shift, &out);
+    const Shift shift = *out.text ? (Shift){0} : best_shift(a, b, &samples);
+    const bool partly_moved = !*out.text && find_shift(a, b, &samples, &shift, &out);
     if (!*out.text && result->values[MEASURE_MAX_CODE] <= 1)
         snprintf(out.text, out.size,
                  "only rounding differs: no 8- or 16-bit value is off by more than 1");

@@ -17,18 +17,12 @@ typedef struct Beyond {
     size_t pixels[LEVELS];
 } Beyond;
 
-typedef struct PlantedFault {
-    const PictureFault *fault;
-    double size;
-    bool exists;
-} PlantedFault;
-
 typedef struct Choosing {
     const Picture *pictures;
-    size_t n;              /* repeats */
-    Beyond *repeats;       /* owned; n of them */
-    Beyond *faults;        /* owned */
-    PlantedFault *planted; /* owned; same order as `faults` */
+    size_t n;           /* repeats */
+    Beyond *repeats;    /* owned; n of them */
+    Beyond *faults;     /* owned */
+    PowerCase *planted; /* owned; same order as `faults`; without `found` */
     size_t n_faults;
 } Choosing;
 
@@ -62,7 +56,7 @@ static Status count_fault(size_t i, int worker, void *context, Err *err)
 {
     (void)worker;
     const Choosing *self = context;
-    PlantedFault *one = &self->planted[i];
+    PowerCase *one = &self->planted[i];
     const Picture *drawn = &self->pictures[1];
     Picture planted;
     Beyond change;
@@ -72,17 +66,6 @@ static Status count_fault(size_t i, int worker, void *context, Err *err)
     count_beyond(&self->pictures[0], &planted, &self->faults[i]);
     picture_release(&planted);
     return STATUS_OK;
-}
-
-static void list_faults(Choosing *self)
-{
-    for (size_t i = 0; i < n_picture_faults; i++) {
-        const PictureFault *fault = &picture_faults[i];
-        int k = 0;
-        do
-            self->planted[self->n_faults++] = (PlantedFault){fault, fault->sizes[k], false};
-        while (fault->unit && ++k < FAULT_SIZES && fault->sizes[k] > 0);
-    }
 }
 
 /* ---- rules ----------------------------------------------------------------------------------- */
@@ -177,9 +160,7 @@ static Status check(const Picture *pictures, size_t n_pictures, double rate, Err
 {
     const Picture *first = &pictures[0];
     for (size_t i = 1; i < n_pictures; i++) {
-        const Picture *other = &pictures[i];
-        if (other->width != first->width || other->height != first->height ||
-            other->channels != first->channels || other->bits != first->bits)
+        if (!pictures_alike(first, &pictures[i]))
             return err_set(err, STATUS_INPUT,
                            "picture %zu has another size, depth or number of channels than the "
                            "reference",
@@ -197,14 +178,12 @@ Status choose_tolerance(const Picture *pictures, size_t n_pictures, double rate,
                         Choice *choice, Err *err)
 {
     Choosing self = {.pictures = pictures, .n = n_pictures - 1};
-    const size_t most = n_picture_faults * FAULT_SIZES;
     const double pixels = (double)pictures[0].width * pictures[0].height;
     Status status = STATUS_OK;
     TRY(check(pictures, n_pictures, rate, err));
     TRY_GOTO(mem_calloc(&self.repeats, self.n, sizeof *self.repeats, "counts", err));
-    TRY_GOTO(mem_calloc(&self.faults, most, sizeof *self.faults, "counts", err));
-    TRY_GOTO(mem_calloc(&self.planted, most, sizeof *self.planted, "faults", err));
-    list_faults(&self);
+    TRY_GOTO(powercases_list(&self.planted, &self.n_faults, err));
+    TRY_GOTO(mem_calloc(&self.faults, self.n_faults, sizeof *self.faults, "counts", err));
     threads_for(self.n, threads, count_repeat, &self);
     TRY_GOTO(threads_try(self.n_faults, threads, count_fault, &self, err));
     Choice made = {.n = self.n, .rank = rank_of(self.n, rate)};

@@ -60,12 +60,6 @@ typedef struct Shift {
                  * over the channels of the absolute difference of codes */
 } Shift;
 
-/* Finds the translation of at most 48 pixels along each axis that leaves the smallest mean
- * difference of the samples. At least three of four samples must stay within the picture.
- *
- * Returns the best translation. Returns dx = dy = 0, and the mean difference without a translation,
- * if a subset of the samples shows that no translation removes 30 % of the difference. */
-Shift cause_best_shift(const Picture *a, const Picture *b, const Samples *samples);
 /* Returns true if both pictures have the same saturation: the distances of their colors from grey
  * agree within 3 %. Also returns true if A has too little color to decide.
  *
@@ -73,20 +67,9 @@ Shift cause_best_shift(const Picture *a, const Picture *b, const Samples *sample
  * ab   sum of the products of these deviations in A and in B. */
 bool cause_is_same_saturation(double aa, double ab);
 
-/* Tests whether B is A translated by whole pixels.
- *
- * Writes the sentence if the translation leaves at most 2 % of the differences in the area that
- * both pictures cover, and the saturation did not change.
- *
- * shift     from cause_best_shift.
- * Returns   true if the translation fits, but a part of the picture did not move; no sentence is
- *           written then. Returns false in all other cases, whether or not a sentence is written.
- * Cost      O(1), or O(pixels) if the samples fit. */
-bool cause_shift(const Picture *a, const Picture *b, const Samples *samples, const Shift *shift,
-                 Sentence *out);
 /* Tests whether B is A translated by fractions of a pixel, blurred or sharpened.
  *
- * start    the nearest translation by whole pixels, from cause_best_shift.
+ * start    the translation by whole pixels that leaves the smallest difference.
  * Errors   STATUS_MEMORY.
  * Cost     O(1). */
 MUST_CHECK Status cause_warp(const Picture *a, const Picture *b, const Samples *samples,

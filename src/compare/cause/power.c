@@ -4,13 +4,26 @@
 
 #include "compare/measures/perception.h"
 #include "compare/measures/planes.h"
+#include "compare/pixels.h"
 #include "compare/rules/tolerance.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-const PublishedRule published_rules[PUBLISHED_RULES] = {
+/* A rule that a project publishes for its own tests. The rule counts either the pixels that
+ * pixelmatch marks, or the pixels whose difference exceeds `levels`. */
+typedef struct PublishedRule {
+    const char *name;   /* name of the project: "Blender" */
+    const char *says;   /* the rule in words */
+    double pixelmatch;  /* threshold of pixelmatch, which may mark no pixel; NAN: the members below
+                         * define the rule */
+    double levels, ppm; /* at most `ppm` parts per million of the pixels may differ by more than
+                         * `levels` (of 255) */
+    double most_levels; /* no pixel may differ by more than this; INFINITY: no limit */
+} PublishedRule;
+
+static const PublishedRule published_rules[PUBLISHED_RULES] = {
     {.name = "pixelmatch",
      .says = "no pixel by pixelmatch 7.2.0 at 0.1, its own",
      .pixelmatch = 0.1},
@@ -96,15 +109,18 @@ done:
     return status;
 }
 
-static void list_cases(Power *power)
+Status powercases_list(PowerCase **cases, size_t *n, Err *err)
 {
+    *n = 0;
+    TRY(mem_calloc(cases, n_picture_faults * FAULT_SIZES, sizeof **cases, "faults", err));
     for (size_t i = 0; i < n_picture_faults; i++) {
         const PictureFault *fault = &picture_faults[i];
         int k = 0;
         do
-            power->cases[power->n++] = (PowerCase){.fault = fault, .size = fault->sizes[k]};
+            (*cases)[(*n)++] = (PowerCase){.fault = fault, .size = fault->sizes[k]};
         while (fault->unit && ++k < FAULT_SIZES && fault->sizes[k] > 0);
     }
+    return STATUS_OK;
 }
 
 static void count(Power *power)
@@ -125,15 +141,13 @@ Status power_measure(const PowerInput *input, int threads, Power *power, Err *er
                   .bits = drawn->bits};
     Work work = {input, &made};
     Status status = STATUS_OK;
-    if (reference->width != drawn->width || reference->height != drawn->height ||
-        reference->channels != drawn->channels || reference->bits != drawn->bits)
+    if (!pictures_alike(reference, drawn))
         return err_set(err, STATUS_INPUT,
                        "the two drawings differ in format: %d x %d pixels of %d x %d bits, and %d "
                        "x %d pixels of %d x %d bits",
                        reference->width, reference->height, reference->channels, reference->bits,
                        drawn->width, drawn->height, drawn->channels, drawn->bits);
-    TRY(mem_calloc(&made.cases, n_picture_faults * FAULT_SIZES, sizeof *made.cases, "faults", err));
-    list_cases(&made);
+    TRY(powercases_list(&made.cases, &made.n, err));
     made.repeats = same_codes(reference, drawn);
     TRY_GOTO(ask_all(input, drawn, made.alarm, err));
     TRY_GOTO(threads_try(made.n, threads, measure_case, &work, err));

@@ -9,20 +9,8 @@
 #include "compare/cause/picture_fault.h"
 #include <jansson.h>
 
-/* A rule that a project publishes for its own tests. The rule counts either the pixels that
- * pixelmatch marks, or the pixels whose difference exceeds `levels`. */
-typedef struct PublishedRule {
-    const char *name;   /* name of the project: "Blender" */
-    const char *says;   /* the rule in words */
-    double pixelmatch;  /* threshold of pixelmatch, which may mark no pixel; NAN: the members below
-                         * define the rule */
-    double levels, ppm; /* at most `ppm` parts per million of the pixels may differ by more than
-                         * `levels` (of 255) */
-    double most_levels; /* no pixel may differ by more than this; INFINITY: no limit */
-} PublishedRule;
-
+/* The rules that other projects publish for their own tests, and the one that is measured. */
 enum { PUBLISHED_RULES = 5, POWER_RULES = 1 + PUBLISHED_RULES };
-extern const PublishedRule published_rules[PUBLISHED_RULES];
 
 /* The rule whose power is measured. */
 typedef struct PowerRule {
@@ -43,6 +31,10 @@ typedef struct PowerCase {
     bool found[POWER_RULES]; /* per rule: the rule detects the fault. The measured rule is first,
                               * then the published rules follow in their order */
 } PowerCase;
+
+/* Lists every fault in every size, ordered by fault, then by rising size. The caller frees *cases.
+ * Errors: STATUS_MEMORY. */
+MUST_CHECK Status powercases_list(PowerCase **cases, size_t *n, Err *err);
 
 /* The result of power_measure. Arrays of POWER_RULES are per rule, in the order of
  * PowerCase.found. */

@@ -106,7 +106,8 @@ static void fill_foreground(const Labels *labels, int side, int y, uint32_t *res
         FILL_FOREGROUND(codes16, 1)
 }
 
-const uint32_t *labels_row(const Labels *labels, int side, int y, uint32_t *scratch)
+/* Returns row y of a side: borrowed from its ids, or in `scratch`. */
+static const uint32_t *labels_row(const Labels *labels, int side, int y, uint32_t *scratch)
 {
     size_t width = (size_t)labels->width, start = (size_t)y * width;
     switch (labels->source) {

@@ -38,9 +38,6 @@ Labels labels_from_background(const Picture *a, const Picture *b);
  * STATUS_MEMORY. */
 MUST_CHECK Status labels_init_seen(Labels *labels, int width, int height, Err *err);
 void labels_release(Labels *labels);
-
-/* Returns row y of a side: borrowed from its ids, or in `scratch`, which holds `width` labels. */
-const uint32_t *labels_row(const Labels *labels, int side, int y, uint32_t *scratch);
 /* Three rows of both sides, which move down the images. The band are the pixels at edges: they
  * touch (8-neighbours), in either image, a pixel with another label. */
 typedef struct LabelWindow {

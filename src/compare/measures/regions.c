@@ -9,17 +9,13 @@
 typedef struct Fill {
     int width, height;
     uint8_t *coverage; /* borrowed */
-    size_t *stack;     /* owned */
-    size_t capacity, depth;
+    ARRAY(size_t) stack;
 } Fill;
 
 static Status push(Fill *fill, size_t pixel, Err *err)
 {
-    TRY(mem_reserve(&fill->stack, &fill->capacity, fill->depth + 1, sizeof *fill->stack,
-                    "pixels of a region", err));
     fill->coverage[pixel] = COVERED_ALIKE;
-    fill->stack[fill->depth++] = pixel;
-    return STATUS_OK;
+    return ARRAY_PUSH(&fill->stack, "pixels of a region", err, pixel);
 }
 
 /* Pushes the neighbours of a pixel that are covered in this way. */
@@ -42,8 +38,8 @@ static Status region_size(Fill *fill, size_t start, size_t *size, Err *err)
     uint8_t coverage = fill->coverage[start];
     *size = 0;
     TRY(push(fill, start, err));
-    while (fill->depth > 0) {
-        size_t pixel = fill->stack[--fill->depth];
+    while (fill->stack.n > 0) {
+        size_t pixel = fill->stack.items[--fill->stack.n];
         ++*size;
         TRY(push_neighbours(fill, pixel, coverage, err));
     }
@@ -68,7 +64,7 @@ Status region_take(uint8_t *coverage, const Labels *labels, CompareResult *resul
     }
     values[MEASURE_LARGEST_REGION] = (double)largest;
 done:
-    free(fill.stack);
+    ARRAY_RELEASE(&fill.stack);
     return status;
 }
 

@@ -3,7 +3,6 @@
  * with its rules as properties. */
 #include "compare/report/check.h"
 #include "compare/report/page.h"
-#include "compare/report/rounded.h"
 #include "compare/rules/judge.h"
 #include "compare/suite/suite.h"
 

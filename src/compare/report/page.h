@@ -14,6 +14,9 @@ json_t *settled_json(const Settled *settled);
 json_t *surface_check_json(const SurfaceCheck *check);
 json_t *witness_json(const Witness *witness);
 
+/* Appends a number with three significant digits, integers with all digits, and its unit. After the
+ * number 1 the unit loses its last "s". */
+void text_rounded(Text *out, double value, const char *unit);
 /* Appends the rows of the page's table of rules, and its tables of measures. */
 MUST_CHECK Status report_tables(const ReportCase *report, const char *templates, Text *rules,
                                 Text *measures, Err *err);

@@ -1,7 +1,6 @@
 /* One page from the pages of several cases: each holds its row of the table and its section between
  * marks, and report.json its verdict, so that nothing is drawn or measured again. */
 #include "compare/report/page.h"
-#include "compare/report/rounded.h"
 #include "tmpl/tmpl.h"
 
 #include <stdlib.h>

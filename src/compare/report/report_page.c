@@ -5,7 +5,6 @@
 #include "compare/report/check.h"
 #include "compare/report/page.h"
 #include "compare/report/pictures.h"
-#include "compare/report/rounded.h"
 #include "tmpl/tmpl.h"
 
 #include <ctype.h>

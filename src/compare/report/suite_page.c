@@ -196,9 +196,9 @@ Status suite_write_page(const Suite *suite, const SuiteFolders *folders, const c
     Status status = STATUS_OK;
     for (size_t i = 0; i < suite->n; i++)
         TRY_GOTO(add_case(&page, &suite->cases[i], err));
-    for (size_t i = 0; i < suite->n_companions; i++)
-        TRY_GOTO(add_other(&page, suite->companions[i].name, "unused", suite->companions[i].why, "",
-                           err));
+    for (size_t i = 0; i < suite->companions.n; i++)
+        TRY_GOTO(add_other(&page, suite->companions.items[i].name, "unused",
+                           suite->companions.items[i].why, "", err));
     status = write_page(&page, suite, path, err);
 done:
     text_release(&page.rows);

@@ -57,13 +57,8 @@ bool suite_selects(const char *pattern, const char *name)
 
 static Status add_companion(Suite *suite, const char *name, Err *err)
 {
-    TRY(mem_reserve(&suite->companions, &suite->companion_capacity, suite->n_companions + 1,
-                    sizeof *suite->companions, "files", err));
-    Companion *added = &suite->companions[suite->n_companions];
-    *added = (Companion){0};
-    TRY(mem_strdup(&added->name, name, err));
-    suite->n_companions++;
-    return STATUS_OK;
+    TRY(ARRAY_PUSH(&suite->companions, "files", err, (Companion){0}));
+    return mem_strdup(&suite->companions.items[suite->companions.n - 1].name, name, err);
 }
 
 static Status add_case(Suite *suite, const char *name, bool is_reference, Err *err)
@@ -218,8 +213,8 @@ static bool is_needed(const SuiteCase *entry, const char *name)
 void suite_find_unused(Suite *suite, const char *only)
 {
     size_t kept = 0;
-    for (size_t i = 0; i < suite->n_companions; i++) {
-        Companion file = suite->companions[i];
+    for (size_t i = 0; i < suite->companions.n; i++) {
+        Companion file = suite->companions.items[i];
         bool belongs = false, needed = false;
         for (size_t k = 0; k < suite->n && !needed; k++) {
             const SuiteCase *entry = &suite->cases[k];
@@ -231,7 +226,7 @@ void suite_find_unused(Suite *suite, const char *only)
         if (needed || (only && !belongs))
             free(file.name);
         else
-            suite->companions[kept++] = file;
+            suite->companions.items[kept++] = file;
     }
-    suite->n_companions = kept;
+    suite->companions.n = kept;
 }

@@ -18,10 +18,7 @@ void references_release(References *references)
 
 static Status add_reference(References *references, const char *name, Err *err)
 {
-    TRY(mem_reserve(&references->items, &references->capacity, references->n + 1,
-                    sizeof *references->items, "references", err));
-    references->items[references->n++] = (Reference){.name = name};
-    return STATUS_OK;
+    return ARRAY_PUSH(references, "references", err, (Reference){.name = name});
 }
 
 /* ---- dates ----------------------------------------------------------------------------------- */

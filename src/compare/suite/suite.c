@@ -5,6 +5,7 @@
 
 #include "compare/cause/cause.h"
 #include "compare/measures/planes.h"
+#include "compare/pixels.h"
 #include "compare/rules/tolerance.h"
 #include "compare/suite/references.h"
 
@@ -29,10 +30,10 @@ void suite_release(Suite *suite)
         free(suite->cases[i].name);
         free(suite->cases[i].agreed);
     }
-    for (size_t i = 0; i < suite->n_companions; i++)
-        free(suite->companions[i].name);
+    for (size_t i = 0; i < suite->companions.n; i++)
+        free(suite->companions.items[i].name);
     free(suite->cases);
-    free(suite->companions);
+    ARRAY_RELEASE(&suite->companions);
     *suite = (Suite){0};
 }
 
@@ -91,8 +92,7 @@ static Status apply_mask(SuitePair *pair, const Picture *mask, Err *err)
 {
     const Picture *a = &pair->images[0].picture;
     Picture *b = &pair->images[1].picture;
-    if (mask->width != a->width || mask->height != a->height || a->width != b->width ||
-        a->height != b->height || a->bits != b->bits || a->channels != b->channels)
+    if (mask->width != a->width || mask->height != a->height || !pictures_alike(a, b))
         return err_set(err, STATUS_INPUT,
                        "the mask, the reference and the picture differ in size or bits per pixel");
     size_t n = (size_t)a->width * (size_t)a->height, channels = (size_t)a->channels;
@@ -354,8 +354,9 @@ void suite_text(const Suite *suite, Text *out)
             text_printf(out, "%-7s %s: %s\n", suite_state_name(entry->state), entry->name,
                         entry->sentence);
     }
-    for (size_t i = 0; i < suite->n_companions; i++)
-        text_printf(out, "unused  %s: %s\n", suite->companions[i].name, suite->companions[i].why);
+    for (size_t i = 0; i < suite->companions.n; i++)
+        text_printf(out, "unused  %s: %s\n", suite->companions.items[i].name,
+                    suite->companions.items[i].why);
     text_printf(out, "%s: %zu case%s: ", suite->agrees ? "agree" : "differ", suite->n,
                 suite->n == 1 ? "" : "s");
     for (SuiteState state = 0; state < SUITE_STATES; state++)
@@ -363,9 +364,9 @@ void suite_text(const Suite *suite, Text *out)
             text_printf(out, "%s%zu %s", comma, suite->count[state], suite_state_name(state));
             comma = ", ";
         }
-    if (suite->n_companions)
-        text_printf(out, "; %zu unused file%s", suite->n_companions,
-                    suite->n_companions == 1 ? "" : "s");
+    if (suite->companions.n)
+        text_printf(out, "; %zu unused file%s", suite->companions.n,
+                    suite->companions.n == 1 ? "" : "s");
     if (suite->others)
         text_printf(out, "; %zu other file%s", suite->others, suite->others == 1 ? "" : "s");
     text_puts(out, "\n");
@@ -390,7 +391,7 @@ json_t *suite_json(const Suite *suite)
         json_with(json_object(), "verdict", json_text(suite->agrees ? "agree" : "differ"));
     for (SuiteState state = 0; state < SUITE_STATES; state++)
         json = json_with(json, suite_state_name(state), json_count(suite->count[state]));
-    for (size_t i = 0; i < suite->n_companions; i++)
-        unused = json_with_item(unused, json_text(suite->companions[i].name));
+    for (size_t i = 0; i < suite->companions.n; i++)
+        unused = json_with_item(unused, json_text(suite->companions.items[i].name));
     return json_with(json_with(json, "cases", cases), "unused", unused);
 }

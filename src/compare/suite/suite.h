@@ -44,9 +44,8 @@ typedef struct Companion {
 typedef struct Suite {
     SuiteCase *cases; /* sorted by name; owned */
     size_t n, capacity;
-    size_t count[SUITE_STATES]; /* number of cases in each state */
-    Companion *companions;      /* unused files; owned */
-    size_t n_companions, companion_capacity;
+    size_t count[SUITE_STATES];  /* number of cases in each state */
+    ARRAY(Companion) companions; /* unused files; owned */
     size_t others; /* number of files that are neither pictures nor belong to a case, without
                     * accepted.tsv */
     bool agrees;   /* no case fails */

@@ -198,10 +198,10 @@ static double least_first(const Filling *filling, const FillElement *element)
     return (radius + parent) * (leave_thin + leave_wide * fmin(1, radius / parent));
 }
 
+/* Length that the segments of an element need, mm. */
 static double least_length(const Filling *filling, const FillElement *element)
 {
-    return spare_length *
-           (least_first(filling, element) + 2 * element->radius_mm * (element->segments - 1));
+    return least_first(filling, element) + 2 * element->radius_mm * (element->segments - 1);
 }
 
 static void draw_sizes(Filling *filling, FillElement *element)

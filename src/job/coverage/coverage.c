@@ -10,7 +10,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-const double coverage_quantiles[COVERAGE_QUANTILES] = {0.05, 0.25, 0.5, 0.75, 0.9, 0.95, 0.99};
+/* The quantiles that are reported, as fractions. */
+enum { COVERAGE_QUANTILES = 7 };
+static const double reported_quantiles[COVERAGE_QUANTILES] = {0.05, 0.25, 0.5, 0.75,
+                                                              0.9,  0.95, 0.99};
 
 typedef enum TerritoryKind { TERRITORY_TERMINAL, TERRITORY_SEGMENT, TERRITORY_TREE } TerritoryKind;
 static const char *const territory_kinds[] = {"terminal", "segment", "tree", NULL};
@@ -177,6 +180,10 @@ static Status label_territories(Measuring *made, Err *err)
     size_t n = by_outlet ? made->n_outlets : made->n_tubes;
     const uint32_t *node = by_outlet ? made->outlet_node : made->tube_node;
     Field number = {0};
+    if (n == 0)
+        return err_set(err, STATUS_INPUT,
+                       "--territories: no vessel ends at a terminal, so that none supplies tissue; "
+                       "use --territory segment or tree");
     TRY(mem_calloc(&made->labels, n, sizeof *made->labels, "labels", err));
     if (made->options->kind == TERRITORY_TREE)
         TRY(derive_rule(tree, &(TreeMeta){0}, "tree", &number, err));
@@ -369,8 +376,8 @@ static void put_summary(const CoverageResult *result, Text *text)
     put_row(text, "terminals", none, (double)result->terminals, "");
     put_row(text, "mean", none, report->mean_mm, "mm");
     for (int i = 0; i < COVERAGE_QUANTILES; i++)
-        put_row(text, "quantile", coverage_quantiles[i],
-                coverage_quantile(report, coverage_quantiles[i]), "mm");
+        put_row(text, "quantile", reported_quantiles[i],
+                coverage_quantile(report, reported_quantiles[i]), "mm");
     for (size_t i = 0; i < result->beyond.n; i++)
         put_row(text, "share_beyond", result->beyond.at[i], (double)report->beyond[i] / tissue, "");
     put_row(text, "largest", none, report->largest_mm, "mm");
@@ -443,13 +450,13 @@ static Status put_territories(const Measuring *made, Text *text, Err *err)
     return status;
 }
 
-static json_t *json_of(const CoverageResult *result, const char *command)
+json_t *coverage_json(const CoverageResult *result, const char *command)
 {
     const CoverageReport *report = &result->report;
     const CoverageLaw *law = &result->law;
     json_t *quantiles = json_array(), *beyond = json_array();
     for (int i = 0; i < COVERAGE_QUANTILES; i++) {
-        const double part = coverage_quantiles[i], distance = coverage_quantile(report, part);
+        const double part = reported_quantiles[i], distance = coverage_quantile(report, part);
         quantiles = json_with_item(quantiles, JSON_OBJECT({"part", json_number(part)},
                                                           {"distance_mm", json_number(distance)}));
     }
@@ -486,7 +493,7 @@ static Status put_files(const void *job, const char *command, FileSlot files[], 
     if (files[FILE_TABLE].path)
         TRY(put_territories(made, &files[FILE_TABLE].text, err));
     if (files[FILE_JSON].path)
-        work_put_json(&files[FILE_JSON], json_of(made->result, command));
+        work_put_json(&files[FILE_JSON], coverage_json(made->result, command));
     return STATUS_OK;
 }
 

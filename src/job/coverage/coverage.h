@@ -26,10 +26,6 @@ typedef struct CoverageResult {
     CoverageLaw law;
 } CoverageResult;
 
-/* The quantiles that are reported, as fractions. */
-enum { COVERAGE_QUANTILES = 7 };
-extern const double coverage_quantiles[COVERAGE_QUANTILES];
-
 /* Reads the tree, which is the first operand, and the domain. Measures the distances, and writes
  * the files that the options name.
  *
@@ -41,6 +37,9 @@ extern const double coverage_quantiles[COVERAGE_QUANTILES];
  *          errors of reading_tree, tree_domain_parse, volume_check, work_make, coverage_measure
  *          and work_write. */
 MUST_CHECK Status coverage_make(void *options, Parsed *parsed, CoverageResult *result, Err *err);
+/* Returns the result as JSON: a new reference; NULL if memory runs out. `command` is the command
+ * line for provenance. */
+json_t *coverage_json(const CoverageResult *result, const char *command);
 void coverageresult_release(CoverageResult *result);
 
 #endif

@@ -159,34 +159,28 @@ static Status set_condition(Flowing *made, size_t i, double mmhg, double ml_min,
     return STATUS_OK;
 }
 
-/* Finds the values of a column, and the factor to a unit, which is that of columns without one. */
-static Status take_column(const Tree *values, const char *name, const char *unit,
-                          const double **value, double *factor, Err *err)
-{
-    const TreeColumn *column = tree_column(values, name);
-    *value = column ? column->value : NULL;
-    *factor = column && *column->unit && *unit ? unit_ratio(column->unit, unit) : 1;
-    return *factor > 0
-               ? STATUS_OK
-               : err_set(err, STATUS_INPUT, "the column %s is in %s; its unit must be one of %s",
-                         name, column->unit, unit);
-}
-
+/* Takes the columns of a table. A column without a unit has the usual one. */
 static Status take_table(Flowing *made, const Tree *values, bool *is_known, Err *err)
 {
-    static const char *const names[] = {"pressure", "flow", "hematocrit"}, *const units[] = {
-                                                                               "mmHg", "ml/min",
-                                                                               ""};
-    const double *value[3];
+    static const struct {
+        const char *name, *unit;
+    } usual[3] = {{"pressure", "mmHg"}, {"flow", "ml/min"}, {"hematocrit", ""}};
+    const TreeColumn *column[3];
     double factor[3], at[3];
-    for (int k = 0; k < 3; k++)
-        TRY(take_column(values, names[k], units[k], &value[k], &factor[k], err));
-    if (!value[0] && !value[1])
+    for (int k = 0; k < 3; k++) {
+        column[k] = tree_column(values, usual[k].name);
+        bool has_unit = column[k] && *column[k]->unit && *usual[k].unit;
+        factor[k] = has_unit ? unit_ratio(column[k]->unit, usual[k].unit) : 1;
+        if (factor[k] == 0)
+            return err_set(err, STATUS_INPUT, "the column %s is in %s, which is no unit like %s",
+                           usual[k].name, column[k]->unit, usual[k].unit);
+    }
+    if (!column[0] && !column[1])
         return err_set(err, STATUS_INPUT,
                        "the table must have the columns id and pressure or flow");
     for (size_t i = 0; i < made->tree.n; i++) {
         for (int k = 0; k < 3; k++)
-            at[k] = value[k] ? value[k][i] * factor[k] : (double)NAN;
+            at[k] = column[k] ? column[k]->value[i] * factor[k] : (double)NAN;
         TRY(set_condition(made, i, at[0], at[1], at[2], is_known, err));
     }
     return STATUS_OK;
@@ -219,11 +213,10 @@ static Status take_file(Flowing *made, bool *is_known, Err *err)
             continue;
         bool is_flow = type[i] == TYPE_FLOW;
         if (!is_flow && type[i] != TYPE_PRESSURE)
-            return err_set(err, STATUS_INPUT,
-                           "%s: node %d has the boundary type %g; it must be %d (pressure) or %d "
-                           "(flow)",
-                           made->parsed->operands[0], tree->id[i], type[i], TYPE_PRESSURE,
-                           TYPE_FLOW);
+            return err_set(
+                err, STATUS_INPUT,
+                "node %d has the boundary type %g; it must be %d (pressure) or %d (flow)",
+                tree->id[i], type[i], TYPE_PRESSURE, TYPE_FLOW);
         TRY(set_condition(made, i, is_flow ? (double)NAN : value[i],
                           is_flow ? value[i] * 1e-6 : (double)NAN,
                           hematocrit ? hematocrit->value[i] : (double)NAN, is_known, err));
@@ -425,6 +418,11 @@ static void report_flow(Flowing *made, size_t loops)
             pressure[1] = fmax(pressure[1], mmhg_from_pa(flow->pressure[i]));
         }
     }
+    if (pressure[0] < 0 && flow->floating == 0)
+        talk_warn(made->parsed->common.talk,
+                  "the lowest pressure is %.4g mmHg: the flow is too large for these radii, or the "
+                  "pressure at the inlets too low",
+                  pressure[0]);
     add_row(made, "segments", "segments", segments, "");
     add_row(made, "loops", "independent loops", (double)loops, "");
     add_row(made, "components", "connected components", (double)flow->components, "");
@@ -501,7 +499,9 @@ static Status compute(Flowing *made, const TreeMeta *said, Err *err)
     if (status == STATUS_OK)
         status = solve(made, err);
     if (status == STATUS_INPUT && closed > 0)
-        err_prefix(err, "%zu segments are too narrow for flow (`repair_radii`, `radius`); ",
+        err_prefix(err,
+                   "%zu segments carry no flow, because their radius is 0 or, by Pries's law, "
+                   "their diameter at most 1.1 um; ",
                    closed);
     TRY(status);
     TRY(add_fields(made, err));

@@ -218,11 +218,26 @@ PulsingOutput pulsing_output(const char *path)
     return strcmp(path, "-") != 0 && tree_format_known(path) ? PULSING_TREE : PULSING_UNKNOWN;
 }
 
-static Status check_output(const PulsingOptions *options, Err *err)
+/* Refuses options about moments that neither a file nor the caller receives. */
+static Status check_moments(const PulsingOptions *options, const Parsed *parsed, Err *err)
+{
+    static const char *const of_moments[] = {"fields", "frames"};
+    const bool has_moments =
+        options->output ? pulsing_output(options->output) != PULSING_DECK : parsed->in_memory;
+    for (int i = 0; i < 2 && !has_moments; i++)
+        if (options_typed(parsed, of_moments[i]))
+            return err_set(err, STATUS_USAGE,
+                           "--%s is for an output of moments: a .csv, a tree, a scene or images",
+                           of_moments[i]);
+    return STATUS_OK;
+}
+
+static Status check_output(const PulsingOptions *options, const Parsed *parsed, Err *err)
 {
     const TreeColumn column = {.name = (char[]){"wss_0.1"}, .unit = (char[]){"Pa"}};
     const char *path = options->output;
-    if (!path && !options->summary && !options->impedance && !options->json)
+    TRY(check_moments(options, parsed, err));
+    if (!path && !options->summary && !options->impedance && !options->json && !parsed->in_memory)
         return err_set(err, STATUS_USAGE, "-o, --summary, --impedance or --json is missing");
     if (!path)
         return STATUS_OK;
@@ -258,7 +273,7 @@ static Status read_fields(Pulsing *made, Err *err)
 {
     char *copy, *rest = NULL;
     bool chosen[PULSE_FIELDS] = {false};
-    PulseField field;
+    PulseField field = PULSE_FIELDS;
     TRY(mem_strdup(&copy, made->options->fields, err));
     Status status = STATUS_OK;
     for (char *name = strtok_r(copy, ",", &rest); name; name = strtok_r(NULL, ",", &rest)) {
@@ -518,7 +533,7 @@ static Status solve(Pulsing *made, Err *err)
 Status pulsing_make(void *options, Parsed *parsed, Pulsing *made, Err *err)
 {
     *made = (Pulsing){.options = options, .parsed = parsed};
-    TRY(check_output(made->options, err));
+    TRY(check_output(made->options, parsed, err));
     TRY(read_fields(made, err));
     TRY(solve(made, err));
     summarize(made);

@@ -70,10 +70,10 @@ typedef enum PulsingOutput {
 } PulsingOutput;
 /* Returns the kind that the extension of the path stands for. */
 PulsingOutput pulsing_output(const char *path);
-/* Returns true if the path is that of a film or a scene. */
+/* Returns true if the path is that of a film or a scene; false for NULL. */
 static inline bool pulsing_draws(const char *path)
 {
-    return pulsing_output(path) == PULSING_FILM || pulsing_output(path) == PULSING_SCENE;
+    return path && (pulsing_output(path) == PULSING_FILM || pulsing_output(path) == PULSING_SCENE);
 }
 
 /* Reads the tree, which is the first operand, solves it, and warns where the linear model is not
@@ -88,8 +88,8 @@ MUST_CHECK Status pulsing_make(void *options, Parsed *parsed, Pulsing *made, Err
 void pulsing_release(Pulsing *made);
 
 /* Adds a column to made->tree for each field and moment, such as "wss_0.0333", with the time in
- * seconds. If the output is a film or a scene, adds only the first field and the dilation. Requires
- * options->output. Errors: STATUS_MEMORY. */
+ * seconds. If the output is a film or a scene, adds only the first field and the dilation. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status pulsing_add_columns(Pulsing *made, Err *err);
 
 /* Writes the files that the options name. Does not write films and scenes: the caller draws them

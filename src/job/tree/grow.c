@@ -9,13 +9,6 @@
 #include "options/output.h"
 #include <stdio.h>
 
-typedef struct GrowOptions {
-    const char *output, *json, *stages;
-    bool bound;
-    Growing growing;
-    Refining refining;
-} GrowOptions;
-
 static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, GrowOptions, output),

@@ -3,10 +3,20 @@
 #define CORCAST_JOB_TREE_MAKERS_H
 
 #include "base/base.h"
+#include "job/tree/growing.h"
+#include "job/tree/refining.h"
 #include "options/options.h"
 #include "tree/tree.h"
 
 extern const Command command_grow, command_refine, command_bifurcation;
+
+/* What the options of `grow` set. */
+typedef struct GrowOptions {
+    const char *output, *json, *stages; /* files; NULL: not given */
+    bool bound;                         /* the report has a lower bound of the target */
+    Growing growing;
+    Refining refining;
+} GrowOptions;
 
 /* Zero it before use; release it with madetree_release. */
 typedef struct MadeTree {

@@ -180,6 +180,14 @@ static Status make(AnswerOptions *options, Parsed *parsed, Answer *answer, Text 
     return status;
 }
 
+json_t *answer_json(const AnswerReport *report)
+{
+    return JSON_OBJECT({"pixels", json_count(report->pixels)},
+                       {"undecided", json_count(report->undecided)},
+                       {"rays", json_count(report->beams)}, {"cpu_s", json_number(report->cpu_s)},
+                       {"scene", json_text(report->scene.hex)});
+}
+
 Status answer_run(AnswerOptions *options, Parsed *parsed, AnswerReport *report, Err *err)
 {
     const double start_s = clock_cpu_seconds();

@@ -36,5 +36,7 @@ typedef struct AnswerReport {
  *         STATUS_MEMORY. */
 MUST_CHECK Status answer_run(AnswerOptions *options, Parsed *parsed, AnswerReport *report,
                              Err *err);
+/* Returns the report as JSON: a new reference; NULL if memory runs out. */
+json_t *answer_json(const AnswerReport *report);
 
 #endif

@@ -216,6 +216,20 @@ static Status keep_missed(void *context, const PowerCase *missed, const Picture 
 
 /* ---- the operation --------------------------------------------------------------------------- */
 
+/* Measures the power of a rule with two drawings of one scene. */
+static Status measure(const PowerOptions *options, const PowerRule *rule, const Picture drawings[2],
+                      int threads, Power *power, Err *err)
+{
+    const PowerInput input = {.reference = &drawings[0],
+                              .drawn = &drawings[1],
+                              .rule = rule,
+                              .keep = options->folder ? keep_missed : NULL,
+                              .keep_context = (void *)(uintptr_t)options->folder};
+    if (options->folder)
+        TRY(file_make_folder(options->folder, err));
+    return power_measure(&input, threads, power, err);
+}
+
 /* Chooses a tolerance from the operands, writes it, and measures its power. */
 static Status choose(const PowerOptions *options, const Parsed *parsed, PowerReport *report,
                      Err *err)
@@ -233,14 +247,7 @@ static Status choose(const PowerOptions *options, const Parsed *parsed, PowerRep
     TRY_GOTO(file_write_text(options->choose, &ini, err));
     Tolerance tolerance = choice_tolerance(&report->choice);
     const PowerRule rule = {.name = "chosen", .differs = tolerance_differs, .context = &tolerance};
-    const PowerInput input = {.reference = &pictures[0],
-                              .drawn = &pictures[1],
-                              .rule = &rule,
-                              .keep = options->folder ? keep_missed : NULL,
-                              .keep_context = (void *)(uintptr_t)options->folder};
-    if (options->folder)
-        TRY_GOTO(file_make_folder(options->folder, err));
-    status = power_measure(&input, parsed->common.threads, &report->power, err);
+    status = measure(options, &rule, pictures, parsed->common.threads, &report->power, err);
 done:
     for (size_t i = 0; i < n; i++)
         picture_release(&pictures[i]);
@@ -249,8 +256,9 @@ done:
     return status;
 }
 
-static Status measure(const PowerOptions *options, const PowerFiles *place, const Parsed *parsed,
-                      Power *power, Err *err)
+/* Has a scene drawn twice, and measures the power of the rule that the options state. */
+static Status measure_drawn(const PowerOptions *options, const PowerFiles *place,
+                            const Parsed *parsed, Power *power, Err *err)
 {
     Picture drawings[2] = {{0}, {0}};
     Tolerance tolerance;
@@ -263,17 +271,10 @@ static Status measure(const PowerOptions *options, const PowerFiles *place, cons
         TRY_GOTO(fill_verdict(options, place, &verdict, err));
     for (int i = 0; i < 2; i++)
         TRY_GOTO(draw(options, place, !parsed->common.quiet, &drawings[i], err));
-    if (options->folder)
-        TRY_GOTO(file_make_folder(options->folder, err));
     const PowerRule rule = {.name = "yours",
                             .differs = asks ? command_differs : tolerance_differs,
                             .context = asks ? (void *)&verdict : (void *)&tolerance};
-    const PowerInput input = {.reference = &drawings[0],
-                              .drawn = &drawings[1],
-                              .rule = &rule,
-                              .keep = options->folder ? keep_missed : NULL,
-                              .keep_context = (void *)(uintptr_t)options->folder};
-    status = power_measure(&input, asks ? 1 : parsed->common.threads, power, err);
+    status = measure(options, &rule, drawings, asks ? 1 : parsed->common.threads, power, err);
 done:
     picture_release(&drawings[0]);
     picture_release(&drawings[1]);
@@ -313,7 +314,7 @@ Status power_run(const PowerOptions *options, Parsed *parsed, PowerReport *repor
     if (options->choose)
         return choose(options, parsed, report, err);
     TRY_GOTO(open_place(&place, options->extension, err));
-    status = measure(options, &place, parsed, &report->power, err);
+    status = measure_drawn(options, &place, parsed, &report->power, err);
 done:
     close_place(&place);
     return status;

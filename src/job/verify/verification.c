@@ -31,19 +31,16 @@ void verification_release(Verification *v)
     picture_release(&v->shown[1]);
     settled_release(&v->found.settled);
     witness_release(&v->found.witness);
-    for (size_t i = 0; i < v->n_commands; i++)
-        free(v->commands[i]);
-    free(v->commands);
+    for (size_t i = 0; i < v->commands.n; i++)
+        free(v->commands.items[i]);
+    ARRAY_RELEASE(&v->commands);
     free(v->name);
 }
 
 Status verification_add_command(Verification *v, const char *command, Err *err)
 {
-    TRY(mem_reserve(&v->commands, &v->command_capacity, v->n_commands + 1, sizeof *v->commands,
-                    "commands", err));
-    TRY(mem_strdup(&v->commands[v->n_commands], command, err));
-    v->n_commands++;
-    return STATUS_OK;
+    TRY(ARRAY_PUSH(&v->commands, "commands", err, NULL));
+    return mem_strdup(&v->commands.items[v->commands.n - 1], command, err);
 }
 
 /* ---- corcast's side -------------------------------------------------------------------------- */
@@ -82,7 +79,7 @@ static Status write_frame(const Verification *v, const Frame *frame, const char 
                              .encoding = encoding,
                              .picture = true,
                              .dpi = v->options->picture.size.dpi,
-                             .provenance = v->commands[0],
+                             .provenance = v->commands.items[0],
                              .colors = v->scene.appearance.meaning};
     Status status = frames_write(frame, &form, err);
     free(path);
@@ -193,7 +190,7 @@ static Status texts_init(const Verification *v, SceneTexts *texts, Err *err)
 static EmitParams emit_params(const Verification *v, const Scene *scene, const SceneTexts *texts)
 {
     return (EmitParams){.scene = scene,
-                        .command = v->commands[0],
+                        .command = v->commands.items[0],
                         .shadows = v->options->picture.stage.shadows,
                         .cells = picture_cells(&v->options->picture),
                         .templates = texts->templates,

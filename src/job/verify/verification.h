@@ -54,10 +54,9 @@ typedef struct Verification {
     Picture shown[2];    /* 16-bit colors of POV-Ray and corcast as 8-bit sRGB; empty for 8 bits */
     RenderStats stats;   /* of corcast's last frame */
     PovrayRun run;
-    size_t n_tiles;  /* in which POV-Ray drew the picture; 1: the whole picture */
-    bool has_alpha;  /* the picture is transparent, and alpha is compared */
-    char **commands; /* command lines that repeat the verification; the first is corcast's */
-    size_t n_commands, command_capacity;
+    size_t n_tiles;         /* in which POV-Ray drew the picture; 1: the whole picture */
+    bool has_alpha;         /* the picture is transparent, and alpha is compared */
+    ARRAY(char *) commands; /* command lines that repeat the verification; the first: corcast's */
     VerifyFindings found;
     bool agrees; /* everything agrees */
 } Verification;
@@ -77,8 +76,8 @@ bool verification_takes_two_steps(const Verification *v);
 MUST_CHECK Status verification_pick_frame(Verification *v, int frame, Err *err);
 
 /* Draws the scene with POV-Ray, corcast and, if asked, Tachyon. Writes scenes and planes into the
- * existing folder. v->commands[0] must be set. Errors: as povraytiles_prepare, povraytiles_draw,
- * tachyon_draw, render and frames_write. */
+ * existing folder. v->commands.items[0] must be set. Errors: as povraytiles_prepare,
+ * povraytiles_draw, tachyon_draw, render and frames_write. */
 MUST_CHECK Status verification_draw(Verification *v, Err *err);
 
 /* Compares what was drawn. Sets v->found. Errors: STATUS_MEMORY. */

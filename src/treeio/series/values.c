@@ -588,6 +588,11 @@ Status tree_read_flows(Tree *tree, const char *path, Err *err)
     TRY_GOTO(tree_read_values(&only, path, "flow", NULL, err));
     TRY_GOTO(mem_calloc(&share, tree->n, sizeof *share, "flow shares", err));
     TRY_GOTO(sum_flows(&only, path, share, &sum, err));
+    for (size_t i = 0; i < tree->n; i++)
+        if (tree_is_link(tree, i)) { /* the flow leaves at the place of the node */
+            share[tree->link[i]] += share[i];
+            share[i] = 0;
+        }
     tree_set_flow_shares(tree, share);
     tree->meta.number[META_Q_PERF] = sum;
     tree->meta.known[META_Q_PERF] = true;

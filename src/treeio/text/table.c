@@ -518,14 +518,13 @@ static int64_t id_of(const char *field)
     return field && integer_parse(field, 1, TREE_MAX_ID, &id) ? id : 0;
 }
 
-/* Notes the link of the element that was read last, if it has one. */
-static Status note_link(Table *table, GraphPoint *point, size_t at, Err *err)
+/* Notes the link of point `at`, if the row has one. */
+static Status note_link(Table *table, size_t at, size_t line, Err *err)
 {
     char *link = field_of(table, ROLE_LINK);
-    point->is_link = link && *link && strcmp(link, "-1") != 0;
-    return point->is_link
-               ? ARRAY_PUSH(&table->links, "links", err, (TableChild){at, point->record, link})
-               : STATUS_OK;
+    bool is_link = link && *link && strcmp(link, "-1") != 0;
+    return is_link ? ARRAY_PUSH(&table->links, "links", err, (TableChild){at, line, link})
+                   : STATUS_OK;
 }
 
 static Status read_node(Table *table, size_t line, Err *err)
@@ -545,7 +544,7 @@ static Status read_node(Table *table, size_t line, Err *err)
         TRY(field_integer("type", type, INT32_MIN, INT32_MAX, &point.type, err));
     if (share && *share)
         TRY(field_number("flow_share", share, 0, &point.flow_share, err));
-    TRY(note_link(table, &point, at, err));
+    TRY(note_link(table, at, line, err));
     TRY(graph_point(graph, &point, err));
     TRY(put_values(table, at, err));
     if (!parent || !*parent || strcmp(parent, "-1") == 0)
@@ -564,8 +563,7 @@ static Status read_vessel(Table *table, size_t line, Err *err)
         char *id = field_of(table, ROLE_ID), *parent = field_of(table, ROLE_PARENT);
         ends[0].id = id_of(parent);
         ends[1].id = id_of(id);
-        TRY(note_link(table, &ends[1], vessel.b, err));
-        vessel.link_id = ends[1].is_link ? ends[1].id : 0;
+        TRY(note_link(table, vessel.b, line, err));
         TRY(names_add(table->nodes, id, vessel.b, line, err));
         TRY(ARRAY_PUSH(&table->children, "parents", err, (TableChild){vessel.a, line, parent}));
     }
@@ -677,8 +675,6 @@ static Status add_parents(const Table *table, Err *err)
         const TableChild *child = &table->children.items[i];
         GraphLine line = {
             .b = child->point, .radius = (double)NAN, .is_directed = true, .record = child->line};
-        if (graph->point[line.b].is_link)
-            line.link_id = graph->point[line.b].id;
         TRY(graph_blame(graph, GRAPH_LINES, child->line,
                         names_find(table->nodes, child->parent, &line.a, err), err));
         TRY(graph_line(graph, &line, err));
@@ -727,7 +723,7 @@ static Status read_tables(Table *table, char *bytes, size_t size, Err *err)
                        "%s: the table has nodes, but no parents; give the edge table as `edges`",
                        table->name);
     bool as_network = options && (options->merge_tolerance_mm > 0 || options->break_loops);
-    graph->is_tree = table->kind == NODES && !edges && !as_network;
+    graph->is_tree = table->kind == NODES && !edges && !as_network && table->links.n == 0;
     if (table->kind == VESSELS)
         TRY(join_vessels(table, err));
     else if (!edges)

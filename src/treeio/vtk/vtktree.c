@@ -70,7 +70,7 @@ static int32_t link_id(const VtkTree *tree, GraphElement of, size_t at)
 {
     const VtkArray *array = tree->meaning->link[of];
     double id = array ? array->value[at] : 0;
-    return id >= 1 && id <= TREE_MAX_ID ? (int32_t)id : 0;
+    return id >= 1 && id <= TREE_MAX_ID && id == floor(id) ? (int32_t)id : 0;
 }
 
 /* Lists the ids, each once. */
