@@ -124,12 +124,10 @@ static double slack_of(Vec3 centre, double half_diagonal)
     return rounding * half_diagonal + 1e-15 * (fabs(centre.x) + fabs(centre.y) + fabs(centre.z));
 }
 
-/* Pushes all sites that may be the nearest of some point at most `reach` away from `centre`, which
- * is `nearest_mm` away from its own. */
-static Status gather_sites(SiteLists *lists, const Sites *sites, Vec3 centre, double reach,
-                           double nearest_mm, SiteRange *out, Err *err)
+/* Pushes all sites that are at most `most` away from `centre`. */
+static Status gather_sites(SiteLists *lists, const Sites *sites, Vec3 centre, double most,
+                           SiteRange *out, Err *err)
 {
-    double most = nearest_mm + 2 * reach + slack_of(centre, reach);
     uint32_t stack[BOXTREE_DEPTH + 2] = {0};
     *out = (SiteRange){lists->site.n, 0};
     for (int top = 1; top > 0;) {
@@ -276,8 +274,10 @@ static Status gather(const SiteFilling *filling, const VoxelBlock *block, double
     SiteRange list;
     if (reach <= wide * fabs(nearest_mm) || reach == 0) {
         pop_to(filling->lists, (SiteRange){0});
-        TRY(gather_sites(filling->lists, filling->sites, block_centre(filling->grid, block), reach,
-                         nearest_mm, &list, err));
+        /* The nearest site of a point of the block is at most nearest_mm + reach away from it. */
+        Vec3 centre = block_centre(filling->grid, block);
+        double most = nearest_mm + 2 * reach + slack_of(centre, reach);
+        TRY(gather_sites(filling->lists, filling->sites, centre, most, &list, err));
         return fill(filling, block, list, err);
     }
     for (int which = 0; which < 8; which++) {
