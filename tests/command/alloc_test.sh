@@ -120,6 +120,9 @@ test_failed_allocations_in_networks() {
     printf '# vtk DataFile Version 3.0\n\nASCII\nDATASET POLYDATA\nPOINTS 4 float\n0 0 0 1 0 0 1 1 0 0 1 0\n' >loop.vtk
     printf 'LINES 1 6\n5 0 1 2 3 0\nPOINT_DATA 4\nFIELD f 1\nradius 1 4 float\n4 3 2 1\n' >>loop.vtk
     fail_each 1 one info ../loop.vtk --break-loops --merge-tolerance 0.1 --json
+    fail_each 2 one convert ../loop.vtk --step 0.4 --fields level,tree o.vtp
+    run_ok corcast convert --quiet loop.vtk net.vtp
+    fail_each 2 one convert ../net.vtp --break-loops o.csv
     tail -n +2 "$corpus/networks/skeleton.am" >skeleton.am
     fail_each 2 one info ../skeleton.am --radius 2 --repair-radii
     printf '100000000 3 0 0 0 1 -1\n1 3 0 0 1 nan 100000000\n' >far.swc
