@@ -1,4 +1,5 @@
-/* Pulse waves, the distance of tissue from vessels, and answers for pictures. */
+/* Analyses of trees: pulse waves, the distance of tissue from vessels, and answers for pictures.
+ * Each runs the job of the command with the same name, in memory. */
 #include "api/reports.h"
 #include "api/request.h"
 

@@ -5,7 +5,7 @@
 
 static size_t slots_per_triangle(const EmitParams *params)
 {
-    return params->layers->n_layers + 2;
+    return prismcell_has_layers(params) ? params->layers->n_layers + 2 : 1;
 }
 
 size_t prismcell_slots(const EmitParams *params)
@@ -15,8 +15,10 @@ size_t prismcell_slots(const EmitParams *params)
 
 size_t prismcell_count(const EmitParams *params)
 {
-    const size_t empty =
-        params->mesh->n_triangles - params->layers->n_prisms / params->layers->n_layers;
+    const PrismLayers *layers = params->layers;
+    if (!prismcell_has_layers(params))
+        return params->mesh->n_triangles;
+    const size_t empty = params->mesh->n_triangles - layers->n_prisms / layers->n_layers;
     return prismcell_slots(params) - empty;
 }
 
@@ -38,8 +40,9 @@ static void set_ring(const PrismLayers *layers, const uint32_t triangle[3], Pris
 bool prismcell_at(const EmitParams *params, size_t slot, PrismCell *cell)
 {
     const PrismLayers *layers = params->layers;
+    const size_t n_layers = slots_per_triangle(params) > 1 ? layers->n_layers : 0;
     const size_t own = slot % slots_per_triangle(params);
-    const bool is_layer = own >= 1 && own <= layers->n_layers;
+    const bool is_layer = own >= 1 && own <= n_layers;
     *cell = (PrismCell){
         .triangle = slot / slots_per_triangle(params), .layer = is_layer ? own : 0, .n_corners = 3};
     const bool is_cap = mesh_is_cap(params->mesh, cell->triangle);
@@ -51,11 +54,9 @@ bool prismcell_at(const EmitParams *params, size_t slot, PrismCell *cell)
     }
     cell->kind = own == 0 ? CELL_SURFACE : is_layer ? CELL_PRISM : CELL_INNER;
     const bool on_wall = own == 0 && !is_cap;
+    const size_t surface = on_wall ? 0 : is_layer ? own - 1 : n_layers;
     for (int k = 0; k < 3; k++) {
-        cell->corners[k] = prismlayers_point(layers, triangle[k],
-                                             on_wall    ? 0
-                                             : is_layer ? own - 1
-                                                        : layers->n_layers);
+        cell->corners[k] = prismlayers_point(layers, triangle[k], surface);
         cell->corners[k + 3] = prismlayers_point(layers, triangle[k], cell->layer);
     }
     cell->n_corners = is_layer ? 6 : 3;

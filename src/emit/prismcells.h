@@ -1,5 +1,5 @@
-/* Enumerates the cells of a file with prism layers, in the same order for all formats. Each cell
- * has a slot, and some slots are empty. Private to the module emit. */
+/* Enumerates the cells of a surface or of a file with prism layers, in the same order for all
+ * formats. Each cell has a slot, and some slots are empty. Private to the module emit. */
 #ifndef CORCAST_EMIT_PRISMCELLS_H
 #define CORCAST_EMIT_PRISMCELLS_H
 
@@ -16,11 +16,16 @@ typedef enum PrismCellKind {
 typedef struct PrismCell {
     PrismCellKind kind;
     int n_corners;
-    uint32_t corners[6]; /* indices in PrismLayers.points */
+    uint32_t corners[6]; /* indices in PrismLayers.points; of a surface, in VesselMesh.points */
     size_t triangle;     /* index of the triangle of the mesh that the cell belongs to */
     size_t layer;        /* layer of a prism or quadrangle, counted from 1 at the wall; else 0 */
 } PrismCell;
 
+/* Returns true if the file has layers. Otherwise its cells are the triangles of the mesh. */
+static inline bool prismcell_has_layers(const EmitParams *params)
+{
+    return params->layers && params->layers->n_layers > 0;
+}
 /* Returns the number of slots, including empty slots. */
 size_t prismcell_slots(const EmitParams *params);
 /* Returns the number of cells. */

@@ -149,7 +149,7 @@ typedef struct ImageOutput {
     char *description;    /* owned; all notes except "Software" and "Shard", one per line; set if
                            * the encoder has profiles */
     int chunk_rows;       /* number of rows that `rows` gets at a time, fewer only at the end of the
-                           * image; `begin` sets it; 0: `rows` gets as many rows as the caller passes */
+                           * image; `begin` sets it; 0: as many rows as the caller passes */
     uint8_t *chunk;       /* owned; NULL if chunk_rows is 0. `rows` may change it */
     int n_gathered;       /* rows in the chunk */
     /* Arguments of `rows`: */

@@ -452,9 +452,10 @@ static Status refuse_loop(const JunctionBuild *build, Err *err)
     free(kept);
     return err_set(
         err, STATUS_INFEASIBLE,
-        "the loop of segments %s%s is narrower than its vessels: its hole closes, so its "
-        "surface is not that of the network; use thinner vessels, or `break_loops`",
-        names, n > MOST_NAMED ? " and others" : "");
+        "%s of segments %s%s is narrower than its vessels: its hole closes, so its surface is not "
+        "that of the network; use thinner vessels, or `break_loops`",
+        build->plan->n_loops > 1 ? "a loop" : "the loop", names,
+        n > MOST_NAMED ? " and others" : "");
 }
 
 static Status refuse(const JunctionBuild *build, double grid_mm, Err *err)

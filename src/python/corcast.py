@@ -438,19 +438,20 @@ class Tree(_Handle):
         return self._report("info", options)
 
     def pulse(self, **options):
-        """Computes pulse waves over a cycle, in place: the tree gets a column for each moment, such
+        """Computes pulse waves over a cycle, in place. The tree gets a column for each moment, such
         as "wss_0.0333", which `render(color_by="wss", moment=2)` draws. Returns the report of
         `corcast pulse`. Options: fields="wss,dilation", frames=24."""
         return self._report("pulse", options)
 
     def coverage(self, **options):
-        """Measures how far tissue is from the nearest vessel; returns the report of
+        """Measures how far the tissue is from the nearest vessel. Returns the report of
         `corcast coverage`: `mean_mm`, `quantiles`, `beyond`, `largest_mm`."""
         return self._report("coverage", options)
 
     def answer(self, path, **options):
-        """Writes two proven bounds of each pixel's color to the OpenEXR file `path`, by which
-        `corcast compare` grades pictures. Returns the numbers of pixels and undecided pixels."""
+        """Computes two proven bounds of each pixel's color, and writes them to the OpenEXR file
+        `path`. `corcast compare` grades pictures by this file. Returns a report with the counts of
+        pixels and of undecided pixels."""
         options = _Options("answer", options)
         report = _ReportHandle()
         options.run("answer", self._handle, options._handle, _text(path), byref(report._handle))

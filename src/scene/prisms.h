@@ -31,10 +31,10 @@ typedef struct PrismLayers {
 /* Returns the index in `points` of a mesh's point on surface 0 to n_layers. */
 static inline uint32_t prismlayers_point(const PrismLayers *layers, uint32_t point, size_t surface)
 {
-    const uint32_t rank = layers->rank[point];
-    if (surface == 0 || rank == NO_RANK)
+    if (surface == 0 || layers->rank[point] == NO_RANK)
         return point;
-    return (uint32_t)(layers->n_mesh_points + (surface - 1) * layers->n_wall_points) + rank;
+    return (uint32_t)(layers->n_mesh_points + (surface - 1) * layers->n_wall_points) +
+           layers->rank[point];
 }
 
 #endif

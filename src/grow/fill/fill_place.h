@@ -38,6 +38,7 @@ typedef struct Places {
     FillNear *near; /* segments that the last search found; owned */
     size_t n_near, near_capacity;
     size_t left_out; /* number of elements without a position */
+    int32_t last_id; /* of the tree that is filled */
 } Places;
 
 void places_release(Places *places);

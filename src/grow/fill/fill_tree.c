@@ -157,75 +157,46 @@ done:
 
 /* ---- the tree -------------------------------------------------------------------------------- */
 
-/* Lists the nodes so that parents come first, each subtree in one piece, in the order of their
- * indices. `rank` receives the position of each node. */
-static Status order_nodes(const Places *places, int32_t *rank, Err *err)
+/* New nodes have ids beyond those of `from`, whose nodes come first. */
+static int64_t id_of(const Places *places, const Tree *from, int32_t i)
 {
-    int32_t *first = NULL, *next = NULL, *stack = NULL, listed = 0;
-    size_t depth = 0;
-    Status status;
-    TRY_GOTO(mem_calloc(&first, places->n, sizeof *first, "nodes", err));
-    TRY_GOTO(mem_calloc(&next, places->n, sizeof *next, "nodes", err));
-    TRY_GOTO(mem_calloc(&stack, places->n, sizeof *stack, "nodes", err));
-    for (size_t i = 0; i < places->n; i++)
-        first[i] = next[i] = NO_NODE;
-    for (size_t i = places->n; i-- > 0;) {
-        int32_t parent = places->node[i].parent;
-        if (parent == NO_NODE)
-            stack[depth++] = (int32_t)i;
-        else {
-            next[i] = first[parent];
-            first[parent] = (int32_t)i;
-        }
-    }
-    while (depth > 0) {
-        int32_t i = stack[--depth];
-        rank[i] = listed++;
-        if (next[i] != NO_NODE)
-            stack[depth++] = next[i];
-        if (first[i] != NO_NODE)
-            stack[depth++] = first[i];
-    }
-done:
-    free(first);
-    free(next);
-    free(stack);
-    return status;
+    int32_t origin = places->node[i].origin;
+    return origin == NO_NODE ? places->last_id + 1 + i - (int32_t)from->n : from->id[origin];
 }
 
-static Status write_columns(const Places *places, const Tree *from, const int32_t *rank, Tree *out,
-                            Err *err)
+/* Adds a node, with the values of its columns, which have the indices that they have in `from`. */
+static Status add_node(const Places *places, const Tree *from, int32_t i, TreeBuilder *builder,
+                       Err *err)
 {
-    for (size_t k = 0; k < from->n_columns; k++) {
-        double *value;
-        TRY(tree_add_column(out, from->column[k].name, from->column[k].unit, &value, err));
-        for (size_t i = 0; i < places->n; i++)
-            if (places->node[i].origin != NO_NODE)
-                value[rank[i]] = from->column[k].value[places->node[i].origin];
-    }
+    const FillNode *node = &places->node[i];
+    bool is_new = node->origin == NO_NODE;
+    TRY(builder_node(builder,
+                     &(BuilderNode){.id = id_of(places, from, i),
+                                    .parent = node->parent == NO_NODE
+                                                  ? TREE_NO_PARENT
+                                                  : id_of(places, from, node->parent),
+                                    .type = is_new ? TREE_VESSEL_TYPE : from->type[node->origin],
+                                    .position = node->at,
+                                    .radius_mm = node->radius},
+                     err));
+    for (size_t k = 0; k < from->n_columns && !is_new; k++)
+        TRY(builder_value(builder, k, from->column[k].value[node->origin], err));
     return STATUS_OK;
 }
 
 static Status write_nodes(const Places *places, const Tree *from, Tree *out, Err *err)
 {
-    int32_t *rank = NULL, id = tree_last_id(from);
+    TreeBuilder builder = {.name = "the filled tree"};
     Status status;
-    TRY_GOTO(mem_calloc(&rank, places->n, sizeof *rank, "nodes", err));
-    TRY_GOTO(order_nodes(places, rank, err));
-    TRY_GOTO(tree_init(out, places->n, err));
-    for (size_t i = 0; i < places->n; i++) {
-        const FillNode *node = &places->node[i];
-        size_t at = (size_t)rank[i];
-        bool is_new = node->origin == NO_NODE;
-        out->id[at] = is_new ? ++id : from->id[node->origin];
-        out->type[at] = is_new ? TREE_VESSEL_TYPE : from->type[node->origin];
-        out->parent[at] = node->parent == NO_NODE ? TREE_NO_PARENT : rank[node->parent];
-        out->position[at] = node->at;
-        out->radius_mm[at] = node->radius;
-    }
-    TRY_GOTO(write_columns(places, from, rank, out, err));
+    size_t column;
+    for (size_t k = 0; k < from->n_columns; k++)
+        TRY_GOTO(
+            builder_column(&builder, from->column[k].name, from->column[k].unit, &column, err));
+    for (size_t i = 0; i < places->n; i++)
+        TRY_GOTO(add_node(places, from, (int32_t)i, &builder, err));
+    TRY_GOTO(builder_build(&builder, out, err));
 done:
-    free(rank);
+    builder_release(&builder);
     return status;
 }
 

@@ -106,9 +106,9 @@ static Status set_options(const Figure *figure, size_t i, Err *err)
 {
     const FigureOptions *options = figure->options;
     Section *section = figure->plan.sections[i];
-    const Place *place = &figure->places[i];
+    const PanelRect *rect = &figure->rects[i];
     char size[64], dpi[NUMBER_TEXT_SIZE], pt[NUMBER_TEXT_SIZE];
-    snprintf(size, sizeof size, "%dx%d", place->width, place->height);
+    snprintf(size, sizeof size, "%dx%d", rect->width, rect->height);
     number_text(figure->sheet.page.dpi, dpi);
     number_text(options->text_pt, pt);
     TRY(set_key(&section->render, "size", size, err));
@@ -136,7 +136,7 @@ static Status set_tree(const Figure *figure, size_t i, Err *err)
 {
     Section *section = figure->plan.sections[i];
     const PanelOptions *panel = section->own.options;
-    char **path = &figure->places[i].path;
+    char **path = &figure->rects[i].path;
     if (section->maker) {
         parsed_give(&section->render, madetrees_tree(&figure->plan, &figure->trees, i),
                     section->tree_name);
@@ -186,7 +186,8 @@ static Status measure_panel(const Figure *figure, size_t i, double *scale, Err *
     return STATUS_OK;
 }
 
-/* Gives all panels the scale of the panel whose tree is the largest for its place. */
+/* Gives all panels the same scale: that of the panel whose tree is the largest relative to the
+ * panel. */
 static Status set_scale(const Figure *figure, Err *err)
 {
     double scale = 0;
@@ -197,7 +198,7 @@ static Status set_scale(const Figure *figure, Err *err)
     for (size_t i = 0; i < figure->plan.n; i++)
         if (figure_has_tree(figure, i))
             TRY(set_key(&figure->plan.sections[i]->render, "height",
-                        number_text(scale * figure->places[i].height, height), err));
+                        number_text(scale * figure->rects[i].height, height), err));
     return STATUS_OK;
 }
 
@@ -231,9 +232,9 @@ static FigureColor color_of(Vec3 srgb)
 static Status read_image(Figure *figure, size_t i, Err *err)
 {
     const PanelOptions *panel = figure->plan.sections[i]->own.options;
-    Place *place = &figure->places[i];
-    TRY(figure_path(figure->folder, panel->image, &place->path, err));
-    return figureartwork_read(place->path, color_of(figure->options->background),
+    PanelRect *rect = &figure->rects[i];
+    TRY(figure_path(figure->folder, panel->image, &rect->path, err));
+    return figureartwork_read(rect->path, color_of(figure->options->background),
                               &figure->artworks[i], err);
 }
 
@@ -259,7 +260,7 @@ static FigureColor ink_on(FigureColor paper)
 static Status put_letter(Figure *figure, size_t i, const char *letter, FigureColor paper, Err *err)
 {
     const FigureOptions *options = figure->options;
-    const bool above = figure->places[i].title_mm > 0;
+    const bool above = figure->rects[i].title_mm > 0;
     const double em = options->text_pt * MM_PER_POINT;
     const Rgb inside = figure_has_tree(figure, i) ? figure->panels[i].scene.view.background
                                                   : rgb_of_option(options->background);
@@ -325,7 +326,7 @@ static void put_image(Figure *figure, size_t i)
 static Status put_panel(Figure *figure, size_t i, int number, Err *err)
 {
     Panel *panel = &figure->panels[i];
-    const Place *place = &figure->places[i];
+    const PanelRect *rect = &figure->rects[i];
     const Letters letters = figure->options->letters;
     const RenderOptions *render = figure->plan.sections[i]->render.options;
     Annotation annotation = panel->annotation;
@@ -338,7 +339,7 @@ static Status put_panel(Figure *figure, size_t i, int number, Err *err)
         figure_add_strokes(&figure->sheet.page, &panel->strokes, (FigurePoint){box.left, box.top},
                            figure->ink);
     else
-        figure_add_picture(&figure->sheet.page, &panel->picture, place->left, place->top);
+        figure_add_picture(&figure->sheet.page, &panel->picture, rect->left, rect->top);
     automatic_letter(number, letters == LETTERS_UPPER, letter);
     const char *shown = annotation.letter ? annotation.letter : letter;
     FigureColor paper = figure->sheet.page.background;
@@ -568,8 +569,8 @@ void figure_done(Figure *figure)
 {
     for (size_t i = 0; figure->panels && i < figure->plan.n; i++)
         panel_release(&figure->panels[i]);
-    for (size_t i = 0; figure->places && i < figure->plan.n; i++)
-        free(figure->places[i].path);
+    for (size_t i = 0; figure->rects && i < figure->plan.n; i++)
+        free(figure->rects[i].path);
     for (size_t i = 0; figure->artworks && i < figure->plan.n; i++)
         figureartwork_release(&figure->artworks[i]);
     madetrees_release(&figure->trees);
@@ -578,7 +579,7 @@ void figure_done(Figure *figure)
     press_release(&figure->press);
     text_release(&figure->recipe);
     free(figure->folder);
-    free(figure->places);
+    free(figure->rects);
     free(figure->panels);
     free(figure->insets);
     free(figure->artworks);

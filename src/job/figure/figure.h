@@ -24,12 +24,12 @@ typedef struct FigureOptions {
     Vec3 background; /* sRGB in [0, 1] */
 } FigureOptions;
 
-/* The position and size of a panel, in pixels from the page's upper left corner. */
-typedef struct Place {
+/* The rectangle of a panel, in pixels from the page's upper left corner. */
+typedef struct PanelRect {
     int left, top, width, height;
     double title_mm; /* height of the line above the panel */
     char *path;      /* path of the panel's tree or image; NULL: the recipe makes the tree; owned */
-} Place;
+} PanelRect;
 
 /* A figure: its panels and its page. Zero it before use; release it with figure_done. */
 typedef struct Figure {
@@ -38,12 +38,12 @@ typedef struct Figure {
     char *folder; /* folder of the recipe: ends with '/', or ""; owned */
     FigurePlan plan;
     MadeTrees trees;
-    Press press; /* of a page in pixels */
+    Press press; /* the output profile of a page in pixels */
     Sheet sheet; /* the page and its metadata */
     Text recipe; /* with --dump-recipe: the complete recipe */
     /* Per section: zeroed if the section is of another kind; owned. The insets are in the order of
      * their panels. */
-    Place *places;
+    PanelRect *rects;
     Panel *panels;
     PanelInset *insets;
     FigureArtwork *artworks; /* the images of panels that show no tree */

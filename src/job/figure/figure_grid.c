@@ -26,7 +26,8 @@ static int find_cells(const Figure *figure, int (*cell)[2])
     return row + 1;
 }
 
-/* Whether any panel of the row has a title: all keep its place then. */
+/* Returns true if any panel of the row has a title. All panels of the row then leave space for a
+ * title. */
 static bool has_titles(const Figure *figure, int (*cell)[2], int row)
 {
     for (size_t i = 0; i < figure->plan.n; i++)
@@ -51,16 +52,16 @@ static Status place_panel(const Figure *figure, const FigureBox *cell, double ti
         height = fitting / panel->aspect;
     }
     const FigurePage *page = &figure->sheet.page;
-    Place place = {
+    PanelRect rect = {
         .left = figure_pixels(page, left), .top = figure_pixels(page, top), .title_mm = title_mm};
-    place.width = figure_pixels(page, left + width) - place.left;
-    place.height = figure_pixels(page, top + height) - place.top;
-    if (place.width < 1 || place.height < 1)
+    rect.width = figure_pixels(page, left + width) - rect.left;
+    rect.height = figure_pixels(page, top + height) - rect.top;
+    if (rect.width < 1 || rect.height < 1)
         return err_set(err, STATUS_USAGE,
                        "[panel %s] does not fit: the page has %.4g x %.4g mm, including "
                        "`margin_mm` and `gap_mm`",
                        section->name, page->width_mm, page->height_mm);
-    figure->places[i] = place;
+    figure->rects[i] = rect;
     return STATUS_OK;
 }
 
@@ -93,7 +94,7 @@ Status figure_place_panels(Figure *figure, Err *err)
 {
     int(*cell)[2];
     size_t n = figure->plan.n;
-    TRY(mem_calloc(&figure->places, n, sizeof *figure->places, "panels", err));
+    TRY(mem_calloc(&figure->rects, n, sizeof *figure->rects, "panels", err));
     TRY(mem_calloc(&figure->panels, n, sizeof *figure->panels, "panels", err));
     TRY(mem_calloc(&figure->insets, n, sizeof *figure->insets, "insets", err));
     TRY(mem_calloc(&figure->artworks, n, sizeof *figure->artworks, "images", err));
@@ -105,8 +106,8 @@ Status figure_place_panels(Figure *figure, Err *err)
 
 FigureBox figure_panel_box(const Figure *figure, size_t i)
 {
-    const Place *place = &figure->places[i];
+    const PanelRect *rect = &figure->rects[i];
     double pixel = MM_PER_INCH / figure->sheet.page.dpi;
-    return (FigureBox){place->left * pixel, place->top * pixel,
-                       (place->left + place->width) * pixel, (place->top + place->height) * pixel};
+    return (FigureBox){rect->left * pixel, rect->top * pixel, (rect->left + rect->width) * pixel,
+                       (rect->top + rect->height) * pixel};
 }

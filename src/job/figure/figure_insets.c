@@ -275,13 +275,13 @@ static Status put_inset(Figure *figure, const Section *section, size_t of, const
     enum { CORNERS = 4 };
     const InsetOptions *options = section->own.options;
     const Panel *panel = &figure->panels[of];
-    const Place *place = &figure->places[of];
+    const PanelRect *rect = &figure->rects[of];
     FigurePage *page = &figure->sheet.page;
     const double pixel = MM_PER_INCH / page->dpi, line_mm = 0.18;
     const FigureBox box = figure_panel_box(figure, of);
     const double width = box.right - box.left, height = box.bottom - box.top;
-    int left = place->left + (int)lround(options->place.x * place->width) - inset->pixels[0] / 2;
-    int top = place->top + (int)lround(options->place.y * place->height) - inset->pixels[1] / 2;
+    int left = rect->left + (int)lround(options->place.x * rect->width) - inset->pixels[0] / 2;
+    int top = rect->top + (int)lround(options->place.y * rect->height) - inset->pixels[1] / 2;
     if (left < 0 || top < 0 || left + inset->pixels[0] > figure_pixels(page, page->width_mm) ||
         top + inset->pixels[1] > figure_pixels(page, page->height_mm))
         return err_set(err, STATUS_USAGE, "[inset %s] extends beyond the page", section->name);

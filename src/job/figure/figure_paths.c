@@ -27,7 +27,7 @@ static const char *path_of_domain(const char *value)
     return NULL;
 }
 
-/* Returns the place in `value` where a path begins; NULL if there is none. `from_folder` is the
+/* Returns the position in `value` where a path begins; NULL if there is none. `from_folder` is the
  * value with the folder before it. */
 static const char *find_path(const Option *option, const char *value, const char *from_folder)
 {
