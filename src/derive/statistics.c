@@ -308,12 +308,8 @@ static Status list_vessels(const Tree *tree, const Vessels *vessels, TreeStatist
 static Status count_degrees(const Tree *tree, TreeStatistics *made, Err *err)
 {
     int32_t *others = NULL;
-    uint32_t *component = NULL;
-    Status status;
-    TRY_GOTO(tree_child_counts(tree, &others, err));
-    TRY_GOTO(tree_components(tree, &component, &made->components, err));
-    TRY_GOTO(tree_loop_count(tree, &made->loops, err));
-    TRY_GOTO(mem_calloc(&made->degree, tree->n, sizeof *made->degree, "degrees", err));
+    TRY(mem_calloc(&made->degree, tree->n, sizeof *made->degree, "degrees", err));
+    TRY(tree_child_counts(tree, &others, err));
     for (size_t i = 0; i < tree->n; i++) {
         if (tree_is_link(tree, i))
             continue;
@@ -321,10 +317,8 @@ static Status count_degrees(const Tree *tree, TreeStatistics *made, Err *err)
         made->degree[i] = (uint8_t)(degree < UINT8_MAX ? degree : UINT8_MAX);
         made->nodes_of_degree[degree < READ_MAX_DEGREE ? degree : READ_MAX_DEGREE]++;
     }
-done:
     free(others);
-    free(component);
-    return status;
+    return STATUS_OK;
 }
 
 Status derive_statistics(const Tree *tree, TreeStatistics *statistics, Err *err)

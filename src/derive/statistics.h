@@ -58,7 +58,6 @@ typedef struct TreeStatistics {
     uint8_t *degree;   /* per node: number of segments that meet there, at most 255; 0 for a node
                         * with a link, which is the same point as another node; owned */
     size_t nodes_of_degree[READ_MAX_DEGREE + 1]; /* the last entry counts higher degrees, too */
-    size_t components, loops;                    /* connected components and independent loops */
     bool has_orders;   /* false for a network with links: without Strahler orders, symmetry and area
                         * ratio, because its vessels have no daughters */
     double volume_mm3; /* sum of pi r^2 l over the segments */

@@ -174,16 +174,17 @@ static void put_points(Text *text, const Tree *tree, const TreeStatistics *stati
     }
 }
 
-static Status write_statistics(const Tree *tree, const TreeStatistics *statistics, const char *path,
-                               Err *err)
+static Status write_statistics(const InfoReport *report, const char *path, Err *err)
 {
+    const Tree *tree = &report->tree;
+    const TreeStatistics *statistics = &report->statistics;
     const BifurcationSpread *symmetry = &statistics->symmetry, *area = &statistics->area_ratio;
     Text text = TEXT_INIT;
     text_puts(&text, "table,number,quantity,mean,sd\n");
     put_count(&text, "tree", -1, "vessels", (double)statistics->vessels);
     put_count(&text, "tree", -1, "volume_mm3", statistics->volume_mm3);
-    put_count(&text, "tree", -1, "components", (double)statistics->components);
-    put_count(&text, "tree", -1, "loops", (double)statistics->loops);
+    put_count(&text, "tree", -1, "components", (double)report->summary.components);
+    put_count(&text, "tree", -1, "loops", (double)report->summary.loops);
     if (statistics->has_orders) {
         put_row(&text, "tree", -1, "symmetry", (Spread){symmetry->mean, symmetry->sd});
         put_row(&text, "tree", -1, "area_ratio", (Spread){area->mean, area->sd});
@@ -208,9 +209,7 @@ Status info_make(void *options, Parsed *parsed, InfoReport *report, Err *err)
     TRY(reading_tree(parsed, report->name, &report->tree, &report->reading, err));
     TRY(blood_settle(&own_options->blood, parsed, &report->tree, err));
     TRY(measure(own_options, report, err));
-    return own_options->output
-               ? write_statistics(&report->tree, &report->statistics, own_options->output, err)
-               : STATUS_OK;
+    return own_options->output ? write_statistics(report, own_options->output, err) : STATUS_OK;
 }
 
 void inforeport_release(InfoReport *report)
