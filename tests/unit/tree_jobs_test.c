@@ -8,7 +8,9 @@
 #include "unit.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 /* A command and its options, "NAME VALUE ..." in turn. */
 typedef struct Asked {
@@ -201,6 +203,20 @@ static void options_of_reading_are_refused_of_a_tree_in_memory(void **state)
     madetree_release(&tree);
 }
 
+static char folder[] = "/tmp/tree_jobs_test.XXXXXX";
+
+static int enter_folder(void **state)
+{
+    (void)state;
+    return mkdtemp(folder) && chdir(folder) == 0 ? 0 : -1;
+}
+
+static int remove_folder(void **state)
+{
+    (void)state;
+    return remove("T.swc") || remove("R.swc") || remove("G.swc") || chdir("/") || rmdir(folder);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -210,5 +226,5 @@ int main(void)
         cmocka_unit_test(a_tree_in_memory_is_measured_and_certified),
         cmocka_unit_test(options_of_reading_are_refused_of_a_tree_in_memory),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, enter_folder, remove_folder);
 }

@@ -68,8 +68,9 @@ static const Option own[] = {
      SETS(FLAG, ExportOptions, parts),
      .group = GROUP_VESSELS,
      .when = OF_SURFACE,
-     .help = "STL only: write the wall and each vessel end as a named solid, as text; a VTP file "
-             "always has them"},
+     .help =
+         "STL only: write the wall and each vessel end as a named solid, as text; VTP, gmsh and "
+         "VTU files always have them"},
     {.name = "layers",
      SETS(WHOLE, ExportOptions, meshing.layers.n_layers),
      .group = GROUP_VESSELS,

@@ -13,11 +13,11 @@ static const char *const ends_names[] = {"refuse", "closed", "estimate", NULL};
 static const Option rows[] = {
     {.name = "output",
      SETS(OUTPUT, FlowingOptions, output),
-     .argument = "T.vtp",
+     .argument = "F.vtp",
      .otherwise = "",
      .help = "write the network with its fields: flow, velocity and wss, all 0 or more; pressure; "
              "direction (1 along the segment, -1 against it, 0 if the flow is 0 or lost in "
-             "rounding); hematocrit"},
+             "rounding); hematocrit, with --viscosity-law pries. The extension selects the format"},
     {.name = "summary",
      SETS(OUTPUT, FlowingOptions, summary),
      .argument = "S.csv",
@@ -37,41 +37,46 @@ static const Option rows[] = {
      SETS(CHOICE, FlowingOptions, ends),
      .choices = ends_names,
      .group = GROUP_BLOOD,
-     .help = "ends without a boundary condition: refuse (an error), closed (no flow), estimate "
+     .help = "with a table or a file: ends without a boundary condition: refuse (an error), closed "
+             "(no flow), estimate "
              "(pressures that bring all pressures and wall shear stresses near targets; Fry 2012)"},
     {.name = "separation",
      SETS(FLAG, FlowingOptions, separation),
      .group = GROUP_BLOOD,
      .when = WHEN(PRIES),
-     .help = "divide red cells at bifurcations by the law of phase separation (Pries 1989)"},
+     .help = "divide red cells at bifurcations by the law of phase separation (Pries 1989); needs "
+             "--viscosity-law pries"},
     {.name = "cell-volume",
      SETS(NUMBER, FlowingOptions, cell_fl),
      FROM_TO(5, 500),
      .unit = "fl",
      .group = GROUP_BLOOD,
      .when = WHEN(PRIES),
-     .help = "mean corpuscular volume of the red cells: 92 for human blood, 55 for rats"},
+     .help =
+         "--viscosity-law pries: mean corpuscular volume of the red cells, 92 for human blood, 55 "
+         "for rats"},
     {.name = "target-pressure",
      SETS(NUMBER, FlowingOptions, target_mmhg),
      FROM_TO(0, 1000),
      .unit = "mmHg",
      .group = GROUP_BLOOD,
      .when = WHEN(ESTIMATED),
-     .help = "pressure that the estimate aims at in all vessels"},
+     .help = "--ends estimate: pressure that all vessels should have"},
     {.name = "target-wss",
      SETS(NUMBER, FlowingOptions, target_pa),
      FROM_TO(0, 1000),
      .unit = "Pa",
      .group = GROUP_BLOOD,
      .when = WHEN(ESTIMATED),
-     .help = "wall shear stress that the estimate aims at in all vessels"},
+     .help = "--ends estimate: wall shear stress that all vessels should have"},
     {.name = "starts",
      SETS(COUNT, FlowingOptions, starts),
      FROM_TO(1, 100),
      .group = GROUP_BLOOD,
      .when = WHEN(ESTIMATED),
-     .help = "number of estimates: the first has no chance in it and is the result; the others "
-             "begin with random directions, and the report states how far they differ"},
+     .help = "--ends estimate: number of estimates. The first starts without directions and is the "
+             "result. The others start with random directions, and the report states how far they "
+             "differ from it"},
 };
 
 static void set_defaults(void *options)
@@ -556,7 +561,7 @@ static const OptionTable table = {OPTION_ROWS(rows), .unmet = unmet};
 const Command command_flow = {
     .name = "flow",
     .summary = "compute steady flow in a network of vessels, also with loops",
-    .operands = "T -o T.vtp",
+    .operands = "T.vtp [-o F.vtp] [--summary S.csv] [--json]",
     .examples =
         "  corcast flow tree.swc -o flow.vtp\n"
         "  corcast flow network.dat --viscosity 3 -o flow.vtp --summary flow.csv\n"

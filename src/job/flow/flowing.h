@@ -1,9 +1,10 @@
 /* The operation `flow`: computes steady flow in a network of vessels, which may have loops.
  *
- *     Status status = flowing_make(parsed->options, parsed, &made, err);
+ *     Flowing result;
+ *     Status status = flowing_make(parsed->options, parsed, &result, err);
  *     if (status == STATUS_OK)
- *         status = flowing_write(&made, err);
- *     flowing_release(&made); */
+ *         status = flowing_write(&result, err);
+ *     flowing_release(&result); */
 #ifndef CORCAST_JOB_FLOW_FLOWING_H
 #define CORCAST_JOB_FLOW_FLOWING_H
 
@@ -22,13 +23,15 @@ typedef struct FlowingOptions {
     int ends;                                /* a FlowingEnds */
     bool separation, json;
     double cell_fl, target_mmhg, target_pa;
-    size_t starts;
+    size_t starts; /* number of starts of the estimate [NetworkGuess.starts] */
     BloodOptions blood;
 } FlowingOptions;
 
 /* A number of the report. */
 typedef struct FlowingRow {
-    const char *key, *title, *unit; /* in tables; in the printed report; "" for pure numbers */
+    const char *key;   /* name in the summary table and in JSON */
+    const char *title; /* name in the printed report */
+    const char *unit;  /* "" for pure numbers */
     double value;
 } FlowingRow;
 enum { FLOWING_ROWS = 40 };
@@ -53,8 +56,8 @@ typedef struct Flowing {
  * the fields flow, pressure, velocity, wss, direction and, in Pries's law, hematocrit to the tree.
  * Warns if the iteration of the hematocrit has not converged.
  *
- * options  a FlowingOptions.
- * made     release it with flowing_release even after an error.
+ * options  a FlowingOptions: the command line passes the options of every command as void *.
+ * made     receives the result; release it with flowing_release even after an error.
  * Errors   STATUS_USAGE for options without effect; STATUS_INPUT for boundary conditions that do
  *          not determine the flow, naming the node; the errors of reading_tree, blood_settle,
  *          tree_read_values, flownetwork_solve and flownetwork_guess. */

@@ -61,7 +61,8 @@ MUST_CHECK Status coloring_read_look(const char *name, Look *look, Err *err);
 /* Reads the file that --color-by names, if it names one, and adds the values to the tree.
  *
  * joined  receives the name of the values in the tree; release it with free. Unchanged if
- * --color-by names no file. Errors  as tree_read_values. */
+ *         --color-by names no file.
+ * Errors  as tree_read_values. */
 MUST_CHECK Status coloring_join(const Coloring *coloring, Tree *tree, char **joined, Err *err);
 
 /* A tree that is colored. All pointers are borrowed. */

@@ -750,6 +750,11 @@ Status picture_appearance(const PictureOptions *options, const PictureSource *so
     Status status = blend(options, &made, err);
     if (status == STATUS_OK && options->beat > 0 && made.n_frames > 0)
         status = picture_widths(options, &source->of, made.n_frames, &made.widths, err);
+    else if (status == STATUS_OK && options->beat > 0 && options->coloring.frame == 0)
+        status = err_set(err, STATUS_USAGE,
+                         "--beat: the field '%s' does not change in time; --color-by takes a field "
+                         "of %s that does, such as wss of corcast pulse",
+                         options->coloring.field, source->of.path);
     if (status == STATUS_OK)
         *appearance = made;
     else

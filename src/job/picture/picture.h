@@ -111,8 +111,9 @@ MUST_CHECK Status picture_check_povray(const PictureOptions *options, Err *err);
     .name = "beat", SETS(NUMBER, Type, path), FROM_TO(0, 1000), .group = GROUP_ANIMATION,          \
     .needs = "color-by",                                                                           \
     .help =                                                                                        \
-        "draw the beat of the vessels: the tree's series dilation, times this factor, changes "    \
-        "the radii; 0 draws the radii of the tree"
+        "draw the beat of the vessels: change the radii by this factor times the tree's series "   \
+        "dilation, which `corcast pulse T -o P.vtp --fields dilation,wss` writes. Needs "          \
+        "--color-by with a field that changes in time; 0 draws the radii of the tree"
 
 /* A tree that has been read for drawing. Release it with picture_tree_release. */
 typedef struct PictureTree {

@@ -6,7 +6,7 @@
 #include <string.h>
 #include <strings.h>
 
-static const char of_tree[] = "from the tree; required if it has none";
+static const char of_tree[] = "from the tree; flow, pressure and wss need it";
 
 #define SAYS(KEY) SETS_KEY(BloodOptions, said.number[META_##KEY], said.known, KEY)
 

@@ -154,22 +154,26 @@ static const Option rows[] = {
      .group = GROUP_TREE,
      .needs = "from stages",
      .list = "morphometries",
-     .help = "do not grow, but fill the tree with small vessels drawn from a published data set: "
-             "its name, or the path of a file of your own (with a '/')"},
+     .help =
+         "do not grow terminals, but fill the tree of --from with small vessels. Their numbers, "
+         "diameters and lengths are drawn at random from a published data set: its name, or "
+         "the path of a file of your own (with a '/'). The domain must be a volume"},
     {.name = "fill-from",
      SETS(WHOLE, Growing, fill_from),
      FROM_TO(2, 100),
      .group = GROUP_TREE,
      .argument = "ORDER",
      .needs = "fill stages",
-     .help = "--fill: vessels of this order and above are grown; lower orders are drawn"},
+     .help =
+         "--fill: lowest order of the vessels that the tree has already; vessels of lower orders "
+         "are added"},
     {.name = "fill-to",
      SETS(WHOLE, Growing, fill_to),
      FROM_TO(1, 99),
      .group = GROUP_TREE,
      .argument = "ORDER",
      .needs = "fill stages",
-     .help = "--fill: the lowest order that is drawn"},
+     .help = "--fill: lowest order of the vessels that are added"},
     {.name = "partial",
      SETS(FLAG, Growing, params.partial),
      .group = GROUP_TREE,

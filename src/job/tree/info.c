@@ -44,8 +44,8 @@ static const Option own[] = {
      SETS(CHOICE, InfoOptions, orders),
      .choices = morphometry_orders_names,
      .needs = "morphometry",
-     .help = "orders of the tree that are compared: published (by the diameters of the data set), "
-             "found (by the diameters of the tree)"},
+     .help = "how vessels are sorted into orders, classes of size numbered from the smallest: "
+             "published (by the diameters of the data set), found (by the diameters of the tree)"},
     {.name = "lambda",
      SETS_KEY(InfoOptions, blood.said.number[META_LAMBDA], blood.said.known, LAMBDA),
      .group = GROUP_OPTIMUM,
@@ -226,7 +226,7 @@ void inforeport_release(InfoReport *report)
 const Command command_info = {
     .name = "info",
     .summary = "count, measure and check a tree",
-    .operands = "T.swc [--stats [-o S.csv]] [--json]",
+    .operands = "T.swc [--stats [-o S.csv]] [--morphometry NAME] [--json]",
     .examples = "  corcast info tree.swc\n"
                 "  corcast info tree.swc --json | jq .volume_mm3\n"
                 "  corcast info tree.swc --stats -o statistics.csv\n"
