@@ -1,6 +1,13 @@
 /* The computation of one pixel: workspace, color intervals and visibility, which pattern answers
- * and area answers share. Pixels are computed in tiles, because all pixels of a tile search one
- * list of faces. */
+ * and area answers [answer.h] share. Pixels are computed in tiles, because all pixels of a tile
+ * search one list of faces. These tiles are not the tiles of the renderer.
+ *
+ * A beam is the set of the camera rays through a rectangle of the picture, or a single ray
+ * [faces.h]. A form encloses a quantity that varies over that rectangle, with a proven error
+ * [affine.h]. An area answer divides its pixel into leaves, one beam each, until the sum of their
+ * intervals is narrow enough or there are AnswerParams.leaves of them. A pixel is decided if its
+ * interval is at most AnswerParams.width wide; an edge of a face is decided in a beam if all its
+ * rays pass on the same side. */
 #ifndef CORCAST_ANSWER_ANSWERTILE_H
 #define CORCAST_ANSWER_ANSWERTILE_H
 
@@ -8,8 +15,8 @@
 
 enum {
     TILE_SIDE = 16, /* pixels along a side of a tile */
-    MAX_HITS = 48   /* capacity for the hits of a beam; a beam with more may have any color of the
-                     * scene */
+    MAX_HITS = 48   /* capacity for the hits of a beam. The interval of a beam with more hits
+                     * contains all colors of the scene. */
 };
 
 /* A part of a pixel: a rectangle that may be turned, clipped to an upright square. All positions
@@ -21,10 +28,15 @@ typedef struct AreaLeaf {
     double clip[4];         /* the square: left, right, top, bottom; unused unless `turned` */
     double low[3], high[3]; /* per channel: bounds of the integral of the color over the leaf, in
                              * color times square pixels */
-    double turn[2]; /* unit vector across the only wall that the leaf shows; (0, 0): do not turn */
-    bool turned;    /* `across` is across a vessel in the picture, and `along` along it */
-    bool is_mixed;  /* the leaf shows several faces or a face that is no wall, or strips along
-                     * undecided edges cause more than half of the width of its interval */
+    /* A square leaf that shows only the wall of one vessel is replaced by a turned leaf, because
+     * color varies across a vessel and hardly along it. `turn` is the unit vector in the picture
+     * across that vessel; (0, 0): the leaf is not replaced. */
+    double turn[2];
+    bool turned; /* `across` is across a vessel in the picture, and `along` along it */
+    /* What makes the interval of the leaf wide. false: the shading of one wall. true: the leaf
+     * shows several faces, or a face that is no wall, or strips along undecided edges cause more
+     * than half of the width. */
+    bool is_mixed;
 } AreaLeaf;
 
 /* Faces that may block a light on the part of a face that is visible in the present pixel:

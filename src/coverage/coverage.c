@@ -1,8 +1,8 @@
 /* Blocks of 16 voxels a side are measured by several threads, a layer of blocks at a time. Sums of
  * a block are added in the order of blocks, so that rounding does not depend on the threads; counts
  * are integers, which workers may add in any order. */
+#include "coverage/farthest.h"
 #include "coverage/sites.h"
-#include "coverage/void.h"
 
 /* Voxels along a side of a block, and samples that are compressed together. How BLOCK was chosen:
  * a layer of 16 voxels of a large volume fits into memory. */
@@ -42,7 +42,7 @@ typedef struct Worker {
 /* The sums of a block, and its tissue voxel that is farthest from any vessel. */
 typedef struct BlockSums {
     double sum_mm;
-    CoverageVoid farthest;
+    FarthestPoint farthest;
 } BlockSums;
 
 typedef struct Coverage {
@@ -150,7 +150,7 @@ static void count_tissue(const Coverage *coverage, Worker *worker, double distan
         worker->beyond[k] += distance > params->beyond[k];
     sums->sum_mm += distance;
     if (distance > sums->farthest.distance_mm)
-        sums->farthest = (CoverageVoid){distance, centre};
+        sums->farthest = (FarthestPoint){distance, centre};
 }
 
 /* A loop over the voxels of a block: `from` is a voxel's position in the arrays of the block, `to`
@@ -206,24 +206,24 @@ static Status measure_block(size_t index, int worker_index, void *context, Err *
     const VoxelBlock block = block_at(coverage, index, coverage->layer);
     bool is_tissue[BLOCK_VOXELS];
     size_t at = index + (size_t)coverage->layer * blocks_a_layer(coverage);
-    SiteFilling filling = {.sites = &coverage->walls,
-                           .lists = &worker->lists,
-                           .grid = grid,
-                           .block = &block,
-                           .wanted = worker->inside,
-                           .nearest = worker->nearest};
+    SiteSearch search = {.sites = &coverage->walls,
+                         .lists = &worker->lists,
+                         .grid = grid,
+                         .block = &block,
+                         .wanted = worker->inside,
+                         .nearest = worker->nearest};
     coverage->sums[index] = (BlockSums){0};
     test_block(coverage->params, &block, worker->inside);
-    TRY(sites_fill(&filling, coverage->nearest_mm[at], err));
+    TRY(sites_search(&search, coverage->nearest_mm[at], err));
     take_distances(coverage, worker, &block, &coverage->sums[index]);
     if (!coverage->owners)
         return STATUS_OK;
     for (size_t i = 0; i < BLOCK_VOXELS; i++)
         is_tissue[i] = worker->inside[i] && worker->nearest[i].distance_mm > 0;
-    filling.sites = coverage->owners;
-    if (filling.sites != &coverage->walls)
-        TRY(sites_fill(&filling,
-                       sites_nearest(filling.sites, block_centre(grid, &block), -INFINITY), err));
+    search.sites = coverage->owners;
+    if (search.sites != &coverage->walls)
+        TRY(sites_search(&search,
+                         sites_nearest(search.sites, block_centre(grid, &block), -INFINITY), err));
     take_territories(coverage, worker, &block, is_tissue);
     return STATUS_OK;
 }
@@ -381,15 +381,15 @@ static Status add_counts(const Coverage *coverage, CoverageReport *report, Err *
 }
 
 /* Finds the largest distance of any point of the tissue, from that of the voxel centres. */
-static Status find_void(const Coverage *coverage, CoverageVoid start, CoverageReport *report,
-                        Err *err)
+static Status find_farthest(const Coverage *coverage, FarthestPoint start, CoverageReport *report,
+                            Err *err)
 {
     const CoverageParams *params = coverage->params;
     const VoxelGrid *grid = &params->grid;
-    VoidSearch search = {.domain = params->domain,
-                         .sites = &coverage->walls,
-                         .accepted_mm = box_min(1e-3, 0.02 * grid->step.x),
-                         .best = start};
+    FarthestSearch search = {.domain = params->domain,
+                             .sites = &coverage->walls,
+                             .accepted_mm = box_min(1e-3, 0.02 * grid->step.x),
+                             .best = start};
     size_t a_layer = blocks_a_layer(coverage);
     Status status = STATUS_OK;
     for (size_t i = 0; i < a_layer * (size_t)coverage->n_blocks[2]; i++) {
@@ -398,8 +398,8 @@ static Status find_void(const Coverage *coverage, CoverageVoid start, CoverageRe
         for (int axis = 0; axis < 3; axis++)
             half[axis] = 0.5 * (double)(block.high[axis] - block.low[axis]) * grid->step.x;
         half[2] = params->domain->dimension == 2 ? 0 : half[2];
-        TRY_GOTO(void_search(&search, block_centre(grid, &block), vec3(half[0], half[1], half[2]),
-                             coverage->nearest_mm[i], err));
+        TRY_GOTO(farthest_search(&search, block_centre(grid, &block),
+                                 vec3(half[0], half[1], half[2]), coverage->nearest_mm[i], err));
     }
     report->largest_mm = search.best.distance_mm;
     report->largest_at = search.best.at;
@@ -423,7 +423,7 @@ static Status run(Coverage *coverage, CoverageReport *report, Err *err)
     report->mean_mm = report->largest_mm = NAN;
     if (report->tissue_voxels > 0) {
         report->mean_mm = total.sum_mm / (double)report->tissue_voxels;
-        TRY(find_void(coverage, total.farthest, report, err));
+        TRY(find_farthest(coverage, total.farthest, report, err));
     }
     if (params->distances)
         volume_end(params->distances);

@@ -74,8 +74,8 @@ double coverage_memory(const CoverageParams *params);
  * report   receives the result; release it with coveragereport_release.
  * Errors   STATUS_CANCELLED if `progress` returned false; STATUS_IO, STATUS_MEMORY.
  * Threads  neither the report nor the bytes of the streams depend on their number.
- * Cost     about 6 distances to a tube per voxel of the domain. Memory for a layer of the grid that
- *          is 16 voxels high. */
+ * Cost     computes about 6 distances to a tube per voxel of the domain. Stores one layer of the
+ *          grid, 16 voxels high. */
 MUST_CHECK Status coverage_measure(const CoverageParams *params, CoverageReport *report, Err *err);
 void coveragereport_release(CoverageReport *report);
 

@@ -208,12 +208,12 @@ static size_t place_of(const VoxelBlock *block, int64_t x, int64_t y, int64_t z)
     return (size_t)(x - block->low[0] + nx * (y - block->low[1] + ny * (z - block->low[2])));
 }
 
-static bool is_wanted(const SiteFilling *filling, const VoxelBlock *part)
+static bool is_wanted(const SiteSearch *search, const VoxelBlock *part)
 {
     int64_t width = part->high[0] - part->low[0];
     for (int64_t z = part->low[2]; z < part->high[2]; z++)
         for (int64_t y = part->low[1]; y < part->high[1]; y++)
-            if (memchr(&filling->wanted[place_of(filling->block, part->low[0], y, z)], true,
+            if (memchr(&search->wanted[place_of(search->block, part->low[0], y, z)], true,
                        (size_t)width))
                 return true;
     return false;
@@ -243,55 +243,54 @@ static bool is_empty(const VoxelBlock *block)
            block->low[2] == block->high[2];
 }
 
-static Status fill(const SiteFilling *filling, const VoxelBlock *block, SiteRange list, Err *err)
+static Status fill(const SiteSearch *search, const VoxelBlock *block, SiteRange list, Err *err)
 {
     const int64_t *low = block->low;
-    Vec3 centre = block_centre(filling->grid, block);
-    double reach = block_reach(filling->grid, block);
-    Nearest nearest = measure_list(filling->lists, filling->sites, list, centre);
+    Vec3 centre = block_centre(search->grid, block);
+    double reach = block_reach(search->grid, block);
+    Nearest nearest = measure_list(search->lists, search->sites, list, centre);
     if (reach == 0) {
-        filling->nearest[place_of(filling->block, low[0], low[1], low[2])] = nearest;
+        search->nearest[place_of(search->block, low[0], low[1], low[2])] = nearest;
         return STATUS_OK;
     }
     SiteRange shorter;
     double most = nearest.distance_mm + 2 * reach + slack_of(centre, reach);
-    TRY(narrow_list(filling->lists, list, most, &shorter, err));
+    TRY(narrow_list(search->lists, list, most, &shorter, err));
     for (int which = 0; which < 8; which++) {
         VoxelBlock part = part_of(block, which);
-        if (!is_empty(&part) && is_wanted(filling, &part))
-            TRY(fill(filling, &part, shorter, err));
-        pop_to(filling->lists, shorter);
+        if (!is_empty(&part) && is_wanted(search, &part))
+            TRY(fill(search, &part, shorter, err));
+        pop_to(search->lists, shorter);
     }
     return STATUS_OK;
 }
 
 /* Gathers the sites of a block, and fills it. A block that is wide beside its distance from the
  * vessels has a long list; its parts find theirs sooner in the tree of boxes. */
-static Status gather(const SiteFilling *filling, const VoxelBlock *block, double nearest_mm,
-                     Err *err)
+static Status gather(const SiteSearch *search, const VoxelBlock *block, double nearest_mm, Err *err)
 {
-    const double reach = block_reach(filling->grid, block);
+    const double reach = block_reach(search->grid, block);
     SiteRange list;
     if (reach <= wide * fabs(nearest_mm) || reach == 0) {
-        pop_to(filling->lists, (SiteRange){0});
+        pop_to(search->lists, (SiteRange){0});
         /* The nearest site of a point of the block is at most nearest_mm + reach away from it. */
-        Vec3 centre = block_centre(filling->grid, block);
+        Vec3 centre = block_centre(search->grid, block);
         double most = nearest_mm + 2 * reach + slack_of(centre, reach);
-        TRY(gather_sites(filling->lists, filling->sites, centre, most, &list, err));
-        return fill(filling, block, list, err);
+        TRY(gather_sites(search->lists, search->sites, centre, most, &list, err));
+        return fill(search, block, list, err);
     }
     for (int which = 0; which < 8; which++) {
         VoxelBlock part = part_of(block, which);
-        if (is_empty(&part) || !is_wanted(filling, &part))
+        if (is_empty(&part) || !is_wanted(search, &part))
             continue;
-        Vec3 centre = block_centre(filling->grid, &part);
-        TRY(gather(filling, &part, sites_nearest(filling->sites, centre, -INFINITY), err));
+        Vec3 centre = block_centre(search->grid, &part);
+        TRY(gather(search, &part, sites_nearest(search->sites, centre, -INFINITY), err));
     }
     return STATUS_OK;
 }
 
-Status sites_fill(const SiteFilling *filling, double nearest_mm, Err *err)
+Status sites_search(const SiteSearch *search, double nearest_mm, Err *err)
 {
-    const VoxelBlock *block = filling->block;
-    return is_wanted(filling, block) ? gather(filling, block, nearest_mm, err) : STATUS_OK;
+    const VoxelBlock *block = search->block;
+    return is_wanted(search, block) ? gather(search, block, nearest_mm, err) : STATUS_OK;
 }

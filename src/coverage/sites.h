@@ -63,18 +63,18 @@ typedef struct VoxelBlock {
 
 /* A search for the nearest site of each wanted voxel of a block, at the voxel's centre. All
  * pointers are borrowed. */
-typedef struct SiteFilling {
+typedef struct SiteSearch {
     const Sites *sites;
     SiteLists *lists;
     const VoxelGrid *grid;
     const VoxelBlock *block;
     const bool *wanted; /* per voxel of the block, x fastest */
     Nearest *nearest;   /* receives the result per wanted voxel */
-} SiteFilling;
+} SiteSearch;
 
-/* Fills filling->nearest for the wanted voxels. `nearest_mm` is the exact result of sites_nearest
- * for the block_centre of filling->block. Errors: STATUS_MEMORY. */
-MUST_CHECK Status sites_fill(const SiteFilling *filling, double nearest_mm, Err *err);
+/* Finds the nearest site of each wanted voxel, and sets search->nearest. `nearest_mm` is the exact
+ * result of sites_nearest for the block_centre of search->block. Errors: STATUS_MEMORY. */
+MUST_CHECK Status sites_search(const SiteSearch *search, double nearest_mm, Err *err);
 
 /* Returns the middle of the voxel centres of a block. */
 Vec3 block_centre(const VoxelGrid *grid, const VoxelBlock *block);

@@ -55,12 +55,12 @@ typedef struct Field {
  * so does every segment that leaves a root.
  *
  * In a network with links, flow and pressure are those of Kirchhoff's laws with the same boundary
- * conditions [derive/treenetwork.h], and flow is its size. Flow shares are the tree's, or those of
- * tree/outlets.h. mu is the constant viscosity of the
- * blood, or viscosity_pries_pa_s of each segment's radius. Velocity, wall shear stress and Reynolds
- * number of a segment of radius 0 are NAN, and so are the pressures at and below it.
+ * conditions [derive/treenetwork.h], and the field flow is the absolute value. Flow shares are the
+ * tree's, or those of tree/outlets.h. mu is the constant viscosity of the blood, or
+ * viscosity_pries_pa_s of each segment's radius. Velocity, wall shear stress and Reynolds number of
+ * a segment of radius 0 are NAN, and so are the pressures at and below it.
  *
- * overrides     values that the user specified; they take precedence over those of the tree.
+ * overrides  values that the user specified; they take precedence over those of the tree.
  * field    is released with field_release. Its names are borrowed, from the tree if it is a column.
  * Errors   STATUS_USAGE for an unknown name; STATUS_INPUT if a value is missing that the field
  *          needs, naming the option and the key of the file, and for an order of a network with

@@ -40,11 +40,15 @@ typedef struct Morphometry {
  *     source TEXT
  *     ratios NUMBER DIAMETER LENGTH
  *     fitted-from NUMBER DIAMETER LENGTH   (default: 1 1 1)
- *     8 numbers for each order, from 1     (micrometres, millimetres; "nan": not published)
+ *     8 numbers for each order, from 1     ("nan": not published)
  *     daughters ORDER MEAN SE MEAN SE ...  (after its order's line: 0, 1, ... orders lower)
  *     # comment
  *
- * A line of an order may have 4 numbers more: the mean numbers of daughters, without errors.
+ * The 8 numbers are: order; mean and standard deviation of the diameter, um; mean and standard
+ * deviation of the length, mm; number of elements; mean and standard deviation of the number of
+ * segments per element. A line of an order may have 4 numbers more: the mean numbers of daughters
+ * 0, 1, 2 and 3 orders lower, without errors.
+ *
  * Release *table with morphometry_release. Errors: STATUS_INPUT for any other line, naming file and
  * line; STATUS_IO, STATUS_MEMORY. */
 MUST_CHECK Status morphometry_read(Morphometry *table, const char *path, Err *err);
@@ -115,8 +119,9 @@ extern const char *const morphometry_orders_names[MORPHOMETRY_ORDERS + 1]; /* NU
  * its diameter, or the largest order of its daughters if that is higher.
  *
  * Found orders: a tree rarely covers a whole organ, so order k of the tree is compared with the
- * published order k + shift. Among the shifts for which the most orders have a counterpart, the
- * shift is the one with the least mean squared logarithm of the ratio of mean diameters.
+ * published order k + shift. Only shifts are tried at which all orders of the tree, or all orders
+ * of the table, have a counterpart. The shift with the smallest mean squared logarithm of the ratio
+ * of mean diameters is used, the lowest of equals.
  *
  * Horton's ratios of the tree are computed from the orders that also gave the published ratios. A
  * number agrees if it is within the published standard deviation. If there is none, it agrees

@@ -1,9 +1,11 @@
 /* A tree, or a network with links, as a network for the flow solver. Part of the public header of
  * derive.
  *
- * Node i of the network is the place of node i of the tree [tree/tree.h]; a node with a link stands
- * alone. Segment i is the segment that ends at node i of the tree, from its parent's place to its
- * own. The segment of a root leads from the root to itself and carries no flow. */
+ * Node i of the network is node i of the tree. Segment i of the network is the segment that ends at
+ * node i of the tree. It leads from the place of the node's parent to the place of node i
+ * [tree/tree.h], so that segments that meet at a link share a node of the network. No segment of
+ * the network begins or ends at a node with a link. The segment of a root leads from the root to
+ * itself and carries no flow. */
 #ifndef CORCAST_DERIVE_TREENETWORK_H
 #define CORCAST_DERIVE_TREENETWORK_H
 
@@ -27,10 +29,13 @@ MUST_CHECK Status treenetwork_make(const Tree *tree, const double *viscosity, Tr
                                    Err *err);
 void treenetwork_release(TreeNetwork *network);
 
-/* Sets the boundary conditions of trees: p_perf at all roots, or 0 if it is not known; and at each
- * node with a flow share that part of q_perf flows out. `overrides` as in derive_field. Errors:
- * STATUS_INPUT if q_perf is missing, with a sentence that continues "the field NAME ";
- * STATUS_MEMORY. */
+/* Sets the boundary conditions of trees. The pressure at each root is p_perf, or 0 if p_perf is not
+ * known. At each node flows out the part of q_perf that the node's flow share is of the sum of all
+ * flow shares [tree_flow_shares].
+ *
+ * overrides  values that the user specified; they take precedence over those of the tree.
+ * Errors     STATUS_INPUT if q_perf is missing, with a sentence that continues "the field NAME ";
+ *            STATUS_MEMORY. */
 MUST_CHECK Status treenetwork_set_terminals(TreeNetwork *network, const Tree *tree,
                                             const TreeMeta *overrides, Err *err);
 

@@ -1,7 +1,8 @@
 /* The public header of the module flownetwork: steady flow in networks of vessels, also with loops.
  *
  * Each segment obeys Poiseuille's law: flow = (pressure at its first node - pressure at its second
- * node) / resistance. At each node the flows sum to the known inflow, as in Kirchhoff's laws.
+ * node) / resistance. At each node the flows sum to the known inflow, as in Kirchhoff's laws. A
+ * segment of infinite resistance is closed: no blood flows in it.
  *
  *     TRY(flownetwork_solve(&network, &flow, err));
  *     double q = flow.flow[segment];
@@ -22,37 +23,46 @@
 typedef struct FlowNetwork {
     size_t n_nodes, n_segments;
     const uint32_t (*ends)[2]; /* per segment: its first and its second node */
-    const double *resistance;  /* per segment: Pa s/mm^3, >= 0; INFINITY: no blood flows */
+    const double *resistance;  /* per segment: Pa s/mm^3, >= 0; INFINITY: closed. Where the reduced
+                                * network needs a value above 0, 0 counts as 1e-6 of its smallest
+                                * resistance above 0. */
     const double *pressure;    /* per node: known pressure, Pa; NAN: not known */
     const double *inflow; /* per node: flow that enters the network there, mm^3/s; below 0 if it
                            * leaves. It is not read at a node of known pressure. */
     const int32_t *id;    /* per node: its name in errors */
-    bool absorbs;         /* accepts inflows of any sum in components without a known pressure */
+    /* What happens if the inflows of a component without a known pressure do not sum to 0. false:
+     * STATUS_INPUT. true: the excess leaves at the node with the largest absolute inflow. The
+     * derivatives in flownetwork_guess need this: their inflows are no flows of blood. */
+    bool absorbs;
 } FlowNetwork;
 
-/* The largest sum of the inflows of a component without a known pressure, divided by the sum of
- * their sizes. Inflows that a file states with four digits stay below it. */
+/* The largest accepted sum of the inflows of a component without a known pressure, divided by the
+ * sum of their absolute values. Inflows that a file states with four digits stay below it. */
 #define NETWORK_MAX_EXCESS 1e-3
 
 /* The steady flow. Arrays are owned; release with networkflow_release. */
 typedef struct NetworkFlow {
     double *flow;     /* per segment: flow from its first to its second node */
-    double *pressure; /* per node; NAN if it is not known and no open segment ends there */
+    double *pressure; /* per node; NAN if it is not known and all segments there are closed */
     double *inflow;   /* per node: flow that enters the network there; at nodes of known pressure it
                        * follows from the flow */
     bool *is_lost;    /* per segment: rounding errors may exceed the flow, or the flow is 0; its
                        * direction is not known */
-    double largest;   /* largest size of the flow in a segment */
-    double imbalance; /* largest sum of the flows at a node, divided by `largest` */
-    double own_imbalance; /* largest sum of the flows at a node, divided by half the sum of their
-                           * sizes there; nodes with lost segments alone do not count */
-    size_t components;    /* connected components that have a segment */
-    size_t floating;      /* components without a known pressure. One node of each has the pressure
-                           * 0, and its inflow is the negative sum of the component's inflows. */
-    size_t idle;          /* floating components without any inflow, so that all flow is 0 */
-    uint32_t idle_node;   /* a node of the last of them */
-    size_t unknowns;      /* pressures that were solved for after the reduction */
-    size_t steps;         /* steps of conjugate gradients */
+    double largest;   /* largest absolute flow in a segment */
+    double imbalance; /* largest absolute net flow into a node, inflow included, divided by
+                       * `largest` */
+    double own_imbalance; /* largest ratio, at one node, of the absolute net flow to half the sum of
+                           * the absolute flows. Nodes whose segments are all `is_lost` do not
+                           * count. */
+    size_t components;    /* connected components that have a segment that is not closed */
+    /* Number of these components without a known pressure. In each, the node with the largest
+     * absolute inflow, the first of equals, has the pressure 0. The inflow of this node is the
+     * negative sum of the other inflows of the component. */
+    size_t floating;
+    size_t idle;        /* floating components in which all inflows, and so all flows, are 0 */
+    uint32_t idle_node; /* a node of the last idle component; unused if `idle` is 0 */
+    size_t unknowns;    /* pressures that were solved for after the reduction */
+    size_t steps;       /* steps of conjugate gradients */
 } NetworkFlow;
 
 /* Computes the steady flow.
@@ -61,6 +71,7 @@ typedef struct NetworkFlow {
  * gradients, preconditioned by an incomplete Cholesky factor without fill, and the removed nodes
  * are restored in reverse order. In a tree whose terminals have known inflows nothing remains.
  *
+ * out      receives the flow; release it with networkflow_release. Unchanged on error.
  * Errors   STATUS_INPUT, naming a node, if the inflows of a component without a known pressure do
  *          not sum to 0 within NETWORK_MAX_EXCESS; STATUS_MEMORY.
  * Cost     O(n) for the reduction; the number of steps grows like the cube root of the unknowns. */
@@ -72,26 +83,29 @@ void networkflow_release(NetworkFlow *flow);
 /* What the hematocrit of each segment follows from. Arrays are borrowed. */
 typedef struct NetworkBlood {
     const double *radius_mm, *length_mm; /* per segment */
-    const double *inflow_hematocrit;     /* per node: of the blood that enters there, in [0,
-                                          * MAX_HEMATOCRIT]; NAN: `hematocrit` */
-    double hematocrit;                   /* of all segments at the start, in [0, MAX_HEMATOCRIT] */
-    double plasma_pa_s;                  /* viscosity of the plasma, above 0 */
-    double cell_fl;                      /* mean corpuscular volume, above 0 */
+    /* Per node: discharge hematocrit of the blood that enters there, in [0, MAX_HEMATOCRIT]; NAN:
+     * it is `hematocrit`. */
+    const double *inflow_hematocrit;
+    double hematocrit;  /* discharge hematocrit of all segments before the first round, in [0,
+                         * MAX_HEMATOCRIT] */
+    double plasma_pa_s; /* viscosity of the plasma, above 0 */
+    double cell_fl;     /* mean corpuscular volume, above 0 */
 } NetworkBlood;
 
-/* Returns the resistance of segment i at this hematocrit, Pa s/mm^3, by viscosity_pries_pa_s. */
+/* Returns the resistance of segment i at this hematocrit, Pa s/mm^3, by viscosity_pries_pa_s.
+ * Returns INFINITY for radius 0, and where viscosity_pries_pa_s is infinite. */
 double flownetwork_resistance(const NetworkBlood *blood, size_t i, double hematocrit);
 
 /* The red cells in the network. */
 typedef struct NetworkCells {
-    double *hematocrit;    /* per segment: of the blood that flows out of it; owned */
+    double *hematocrit;    /* per segment: discharge hematocrit; owned */
     size_t rounds, capped; /* rounds of the iteration; segments at MAX_HEMATOCRIT */
     bool converged;
-    double flow_change, hematocrit_change; /* largest changes of the last round, the flow in mm^3/s
-                                            * and the hematocrit where flow is above 1e-6 of the
-                                            * largest */
-    double imbalance; /* largest sum of the cell flows at a node without inflow, divided by the
-                       * largest cell flow */
+    double flow_change;       /* largest change of a flow in the last round, mm^3/s */
+    double hematocrit_change; /* largest change of a hematocrit in the last round, in segments with
+                               * more than 1e-6 of the largest flow */
+    double imbalance; /* largest absolute sum of the cell flows into a node where no blood enters or
+                       * leaves the network, divided by the largest cell flow */
 } NetworkCells;
 
 enum { NETWORK_MAX_ROUNDS = 100 };
@@ -100,50 +114,66 @@ enum { NETWORK_MAX_ROUNDS = 100 };
  * and the red cells divide at diverging bifurcations by the law of Pries & Secomb [Pries, Ley,
  * Claassen & Gaehtgens, Microvasc. Res. 38 (1989) 81; constants of Pries & Secomb 2008]. From one
  * hematocrit in all segments, each round computes viscosity, flow, and the hematocrit in the order
- * of falling pressure. The iteration ends when no flow changes by 1e-3 nl/min or 1e-6 of the
- * largest flow, and no hematocrit by 1e-3. After NETWORK_MAX_ROUNDS it ends without convergence,
- * and cells->converged is false. Several steady states can exist; this start selects one.
+ * of falling pressure. The iteration has converged when cells->flow_change is below 1e-3 nl/min or
+ * 1e-6 of the largest flow, whichever is larger, and cells->hematocrit_change is below 1e-3. After
+ * NETWORK_MAX_ROUNDS the iteration ends without convergence, and cells->converged is false. Several
+ * steady states can exist; this start selects one.
  *
- * network  its resistances are not read.
- * flow     release with networkflow_release.
- * cells    free the array.
+ * network  its resistances are not read: flownetwork_resistance decides which segments are closed.
+ * flow     receives the flow of the last round; release it with networkflow_release. Zeroed on
+ *          error.
+ * cells    the caller frees cells->hematocrit, which is NULL on error.
  * Errors   those of flownetwork_solve. */
 MUST_CHECK Status flownetwork_separate(const FlowNetwork *network, const NetworkBlood *blood,
                                        NetworkFlow *flow, NetworkCells *cells, Err *err);
 
-/* ---- unknown boundary conditions --------------------------------------------------------------
- */
+/* ---- unknown boundary conditions ------------------------------------------------------------- */
 
-/* The estimate of boundary conditions. Arrays are borrowed. */
+/* What an estimate of boundary conditions depends on. A node is open if neither pressure nor inflow
+ * is known there. Arrays are borrowed. */
 typedef struct NetworkGuess {
-    const bool *is_open;                 /* per node: neither pressure nor inflow is known there */
+    const bool *is_open;                 /* per node */
     const double *radius_mm, *length_mm; /* per segment */
     double pressure_pa, stress_pa;       /* targets: pressure and wall shear stress */
-    size_t starts;                       /* at least 1. The first start has no chance in it. */
-    uint64_t seed;                       /* of the other starts */
-    int threads;
+    size_t starts; /* number of starts, at least 1. The first start is not random. */
+    uint64_t seed; /* of the random directions with which the other starts begin */
+    int threads;   /* maximum number of threads; 0: all processors */
 } NetworkGuess;
 
-/* How far the other starts differ from the first. */
+/* How far the other starts differ from the first start. Segments whose direction is not known in
+ * the first start do not count. */
 typedef struct NetworkSpread {
-    size_t open, solves; /* open nodes; solutions of the first start */
-    double turned[2];    /* smallest and largest share of segments with another direction */
-    double change[2];    /* smallest and largest median of |flow / flow of the first start - 1| */
+    size_t open;      /* number of open nodes */
+    size_t solves;    /* number of solutions of the first start */
+    double turned[2]; /* smallest and largest share of segments with another direction than in the
+                       * first start; {INFINITY, 0} if there is only one start */
+    double change[2]; /* smallest and largest median of |flow / flow of the first start - 1|;
+                       * {INFINITY, 0} if there is only one start */
 } NetworkSpread;
 
-/* The largest number of open nodes: two square matrices of this size are stored. */
+/* The largest number of open nodes. Three square matrices of doubles with this many rows are
+ * stored: 600 MB. */
 enum { NETWORK_MAX_OPEN = 5000 };
 
 /* Estimates the pressures of open nodes [Fry, Lee, Smith & Secomb, Microcirculation 19 (2012) 530]:
  * they minimize the sum of w (p - target)^2 over nodes plus k times the sum of l (tau - s target)^2
- * over segments, with p in mmHg and tau in dyn/cm^2. w is half the length of the segments at a
- * node, l the length, tau the wall shear stress and s = 1 or -1 its direction in the solution
- * before. k is 0 at first, then 0.002, and doubles up to 4.096; at most 5 solutions for each k.
+ * over segments that are not closed, with p in mmHg and tau in dyn/cm^2. w is half the length of
+ * the segments at a node, and l is the length of a segment. tau is the wall shear stress, and s = 1
+ * or -1 is its direction in the previous solution of the same start.
  *
- * pressure  per node: receives the pressures of the open nodes; other nodes stay as they are.
+ * The first start begins with one solution for k = 0, which needs no directions. The other starts
+ * begin with random directions. All starts continue with k = 0.002, 0.004, ..., 4.096. For each k,
+ * a start is solved until no direction changes, at most 5 times. The result is that of the first
+ * start; the others only show how much it depends on the directions.
+ *
+ * pressure  per node, Pa: receives the pressures of the open nodes. Other nodes stay as they are.
+ *           Unchanged on error.
+ * spread    receives the comparison of the starts.
  * Errors    STATUS_INFEASIBLE if more than NETWORK_MAX_OPEN nodes are open; those of
- * flownetwork_solve. Cost      three solutions per open node, and the cube of their number. Threads
- * the result does not depend on their number. */
+ *           flownetwork_solve.
+ * Threads   the result does not depend on their number.
+ * Cost      three solutions of the network per open node, two per solution of a start, and time
+ *           that grows with the cube of the number of open nodes. */
 MUST_CHECK Status flownetwork_guess(const FlowNetwork *network, const NetworkGuess *guess,
                                     double *pressure, NetworkSpread *spread, Err *err);
 

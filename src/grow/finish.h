@@ -13,7 +13,7 @@
  * domain   for the metadata.
  * out      receives the tree; release it with tree_release.
  * Errors   STATUS_INFEASIBLE if a radius is beyond the range of a double, radii do not converge or
- * a trunk that is kept uses up the pressure; STATUS_MEMORY. */
+ *          a trunk that is kept uses up the pressure; STATUS_MEMORY. */
 MUST_CHECK Status finish_tree(Network *net, const GrowParams *params, const Domain *domain,
                               Tree *out, Err *err);
 

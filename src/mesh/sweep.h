@@ -13,18 +13,27 @@ typedef struct LayerParams {
 
 enum { LAYERS_MAX = 20 };
 
-/* Sweeps the layers of a valid mesh of BODY_POTENTIAL, without a wall of its own. Where a prism
- * would be inverted, or where the inner surface would cross itself, the layers become thinner, and
- * their thickness then grows by at most half the distance from there.
+/* Sweeps the layers of a valid mesh of BODY_POTENTIAL, without a wall of its own.
  *
- * The result is proved, on the points that are written: the Jacobian of each prism is positive
+ * The thickness at a point is params->thickness times the radius of the thinnest segment at this
+ * point. Two rules make the layers thinner. PrismLayers.n_thinner counts the points at which either
+ * rule applies.
+ *
+ * 1. From any point to its neighbours on the wall, the thickness grows by at most half the length
+ *    of the edge between them [STEEPEST in sweep.c]. So the layers are thinner near a narrower
+ *    vessel, and near every point that rule 2 changes.
+ * 2. The thickness at a fault is halved, in at most 12 rounds [ROUNDS]. The faults are: the inner
+ *    surface crosses itself; a prism, or the stack of all prisms of a triangle, is inverted
+ *    somewhere; its inner face is smaller than 0.1 of its outer face [LEAST_FACE].
+ *
+ * The result is proved on the points that are written: the Jacobian of each prism is positive
  * everywhere in the prism, and the inner surface with its flat ends is free of crossings. So no two
  * prisms overlap, and the core is a solid that a mesher can fill.
  *
  * threads  number of threads; 0: one per processor. The result does not depend on it.
  * out      receives the layers; release it with prismlayers_release. Unchanged on error.
- * Errors   STATUS_INFEASIBLE, with a segment, if prisms stay inverted or crossings stay, or if
- * there are too many prisms for 31-bit numbers; STATUS_MEMORY. */
+ * Errors   STATUS_INFEASIBLE, naming a segment, if faults remain after the last round;
+ *          STATUS_INFEASIBLE if there are too many prisms for 31-bit numbers; STATUS_MEMORY. */
 MUST_CHECK Status prismlayers_sweep(const VesselMesh *mesh, const VesselTree *tree,
                                     const LayerParams *params, int threads, PrismLayers *out,
                                     Err *err);

@@ -47,8 +47,9 @@ size_t seams_count_unjoined(const Seams *seams, uint32_t kind);
  * grid_mm  all coordinates are integer multiples of it.
  * threads  number of threads; 0: one per processor.
  * Errors   STATUS_DIFFERS if a component of the graph does not have the Euler number
- *          2 (surfaces - rings - loops of its surfaces) in the mesh; STATUS_MEMORY. Call
- * meshreport_check for the rest. */
+ *          2 (surfaces - rings - loops of its surfaces) in the mesh; STATUS_MEMORY.
+ *
+ * Call meshreport_check for the other errors that the report can hold. */
 MUST_CHECK Status seams_prove(const Seams *seams, const VesselMesh *mesh, double grid_mm,
                               int threads, MeshReport *report, Err *err);
 

@@ -1,11 +1,13 @@
 /* Finds which nodes and segments of a tree coincide. Two vessel surfaces at the same position would
  * make pictures undefined, so one of them is left out.
  *
- * A junction is a set of nodes at the same position: nodes that links or segments without length
- * connect. One node of the set represents the junction. Nodes of unconnected vessels that happen to
- * be at the same position are not one junction. Of the segments between the same two junctions, the
- * thickest is drawn, and of equally thick ones the first. It is the twin of the others, which are
- * not drawn. Private to the module stage.
+ * A junction is a set of nodes at the same position that the tree connects: by links, by segments
+ * without length, or because segments between the same two points end there. One node of the set
+ * represents the junction. Nodes of unconnected vessels that happen to be at the same position
+ * belong to different junctions. Of the segments between the same two junctions, the thickest is
+ * drawn, and of equally thick ones the first. The drawn segment is the twin of each of the others.
+ * The others lie within it and are left out of the geometry; StageReport counts them in `drawn` and
+ * in `covered`. Private to the module stage.
  *
  *     Coincidence found;
  *     TRY(coincidence_find(&tree, &found, err));
@@ -28,7 +30,8 @@ enum { NO_TWIN = -1, CANNOT_DRAW = -2, BACKWARD_TWIN = -3 };
 typedef struct Coincidence {
     /* Per node: the twin of the segment that ends at the node. Owned.
      *     0 or more       index of the twin, which starts at the same junction
-     *     BACKWARD_TWIN   the twin runs in the opposite direction
+     *     BACKWARD_TWIN   the twin runs in the opposite direction, or was found by its junctions in
+     *                     a network with links; its index is not stored
      *     NO_TWIN         the segment has no twin, and is drawn
      *     CANNOT_DRAW     no segment ends here, or it has no length or no radius */
     int32_t *twin;

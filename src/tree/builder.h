@@ -59,8 +59,9 @@ Status builder_blame(const TreeBuilder *builder, size_t record, Status status, E
 
 /* Adds a node. O(1) on average.
  *
- * Errors   STATUS_INPUT if the id or the parent is not in 1 .. TREE_MAX_ID, the position is not
- *          finite, or reading_radius refuses the radius. STATUS_MEMORY. */
+ * Errors   STATUS_INPUT if the id, or a parent other than TREE_NO_PARENT, is not in [1,
+ *          TREE_MAX_ID], the position is not finite, or reading_radius refuses the radius.
+ *          STATUS_MEMORY. */
 MUST_CHECK Status builder_node(TreeBuilder *builder, const BuilderNode *node, Err *err);
 
 /* Adds a column with one value for each node. Copies the name and the unit.
@@ -71,21 +72,32 @@ MUST_CHECK Status builder_node(TreeBuilder *builder, const BuilderNode *node, Er
  * Cost     O(columns), because the name is compared with all others. */
 MUST_CHECK Status builder_column(TreeBuilder *builder, const char *name, const char *unit,
                                  size_t *column, Err *err);
-/* Sets the value of a column for the node that was added last. A value that is not set, or is not
- * finite, is stored as NAN. Errors: STATUS_MEMORY. */
+/* Sets the value of a column for the node that was added last. Requires a node, and an index that
+ * builder_column has set. A value that is not set, or is not finite, is stored as NAN. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status builder_value(TreeBuilder *builder, size_t column, double value, Err *err);
 
-/* Sets the flow share of a node, which must be above 0. The node may be added later. */
+/* Sets the flow share of a node. The node may be added later.
+ *
+ * record   record of the file that states the share, for errors of builder_build.
+ * Errors   STATUS_INPUT if the share is not a finite number above 0, or the id is not in [1,
+ *          TREE_MAX_ID]. STATUS_MEMORY. */
 MUST_CHECK Status builder_share(TreeBuilder *builder, int64_t id, double share, size_t record,
                                 Err *err);
 
 /* Adds a pair of nodes [pairs.h]. The nodes may be added later. Pairs are numbered in the order of
- * the calls. */
+ * the calls.
+ *
+ * record   record of the file that states the pair, for errors of builder_build.
+ * Errors   STATUS_INPUT if an id is not in [1, TREE_MAX_ID]. STATUS_MEMORY. */
 MUST_CHECK Status builder_pair(TreeBuilder *builder, int64_t id, int64_t other, size_t record,
                                Err *err);
 
 /* States that the node `id` is the same point as the node `other` [Tree.link]. builder_build gives
- * it the position of `other`. The nodes may be added later. */
+ * it the position of `other`. The nodes may be added later.
+ *
+ * record   record of the file that states the link, for errors of builder_build.
+ * Errors   STATUS_INPUT if an id is not in [1, TREE_MAX_ID]. STATUS_MEMORY. */
 MUST_CHECK Status builder_link(TreeBuilder *builder, int64_t id, int64_t other, size_t record,
                                Err *err);
 
@@ -95,8 +107,10 @@ MUST_CHECK Status builder_link(TreeBuilder *builder, int64_t id, int64_t other, 
  * tree     receives the tree; release it with tree_release.
  * Errors   STATUS_INPUT if there is no node, an id occurs twice, a parent does not exist, nodes
  *          form a cycle, a share, a pair or a link refers to a node that does not exist or occurs
- *          twice, tree_check_links refuses a link, or there is a share although the key
- * terminal_flow forbids it. STATUS_MEMORY. Cost     O(n log n) for n nodes. */
+ *          twice, tree_check_links refuses a link, or the key terminal_flow is known and
+ *          contradicts the shares: it requires shares and there are none, or forbids shares and
+ *          there are some. STATUS_MEMORY.
+ * Cost     O(n log n) for n nodes. */
 MUST_CHECK Status builder_build(TreeBuilder *builder, Tree *tree, Err *err);
 
 #endif

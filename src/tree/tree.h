@@ -147,8 +147,8 @@ MUST_CHECK Status tree_flow_shares(const Tree *tree, double **share, Err *err);
 
 /* Checks the invariants of the type: parents come before children, positions and radii are finite,
  * radii and flow shares are not negative, ids are unique and in range, links are as Tree.link
- * states. Errors: STATUS_INPUT, naming
- * the id of the first node that violates them; STATUS_MEMORY. */
+ * states. Errors: STATUS_INPUT, naming the id of the first node that violates them; STATUS_MEMORY.
+ */
 MUST_CHECK Status tree_check(const Tree *tree, Err *err);
 
 /* Checks the invariants of links alone [Tree.link]. Errors: as tree_check. */

@@ -70,8 +70,8 @@ void tree_format_list(Text *text);
  * Errors   STATUS_USAGE for an unknown extension. STATUS_INPUT, with file and line, for a wrong
  *          number of fields, a value that is not a number or is out of range, a duplicate id, an
  *          unknown parent, a cycle, a metadata key with a bad value or with two values, a flow
- * share given twice or to an unknown node, flow shares that contradict terminal_flow, and a file
- *          without nodes. STATUS_IO, STATUS_MEMORY. */
+ *          share given twice or to an unknown node, flow shares that contradict terminal_flow, and
+ *          a file without nodes. STATUS_IO, STATUS_MEMORY. */
 MUST_CHECK Status tree_read(Tree *tree, const char *path, Err *err);
 
 /* Reads a tree with options, and reports what the reader found and assumed.
@@ -79,7 +79,7 @@ MUST_CHECK Status tree_read(Tree *tree, const char *path, Err *err);
  * options  such as the unit of the file. NULL: the defaults.
  * reading  receives the report; release it with reading_release. NULL: no report is wanted.
  * Errors   those of tree_read and graph_build; STATUS_USAGE for an option that does not apply to
- * the file's format, and for an unknown options->input_format. */
+ *          the file's format, and for an unknown options->input_format. */
 MUST_CHECK Status tree_read_as(Tree *tree, const char *path, const ReadOptions *options,
                                TreeReading *reading, Err *err);
 

@@ -30,9 +30,10 @@ typedef struct Choice {
 /* Chooses a tolerance.
  *
  * pictures   the reference, then n >= 2 repeats, in sRGB, of one size, depth and number of
- * channels. rate       highest accepted `rate`; 0: the lowest that n repeats can guarantee, 1 / (n
- * + 1). Errors     STATUS_INPUT if the pictures differ in form, or n repeats cannot guarantee
- * `rate`; STATUS_MEMORY. */
+ *            channels.
+ * rate       highest accepted `rate`; 0: the lowest that n repeats can guarantee, 1 / (n + 1).
+ * Errors     STATUS_INPUT if the pictures differ in form, or n repeats cannot guarantee `rate`;
+ *            STATUS_MEMORY. */
 MUST_CHECK Status choose_tolerance(const Picture *pictures, size_t n_pictures, double rate,
                                    int threads, Choice *choice, Err *err);
 

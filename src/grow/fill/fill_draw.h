@@ -14,21 +14,25 @@
 
 enum { NO_ELEMENT = -1 };
 
-/* An element: a chain of segments of one order. */
+/* An element: a chain of segments of one order. A grown element belongs to the tree that is filled.
+ * All other elements are drawn: random numbers determine them. The filling may extend a grown
+ * element at its distal end. */
 typedef struct FillElement {
     int32_t order;    /* from 1 */
-    int32_t parent;   /* the element that it branches off; NO_ELEMENT for a grown element */
-    int32_t daughter; /* its first drawn daughter; NO_ELEMENT: none */
-    int32_t sister;   /* next daughter of the same parent, in their order along it; NO_ELEMENT */
+    int32_t parent;   /* drawn: the element that it branches off; grown: NO_ELEMENT */
+    int32_t daughter; /* first drawn daughter; NO_ELEMENT: none */
+    int32_t sister;   /* next drawn daughter of the same parent, along the parent from its proximal
+                       * to its distal end; NO_ELEMENT: none */
     int32_t peer;     /* the element of the same order that was added next; NO_ELEMENT: none */
-    int32_t segments; /* of a drawn element: number of segments that it is cut into */
-    bool grown;       /* the element is part of the tree that is filled */
-    bool is_open;     /* grown, and its last segment is a terminal */
-    uint16_t present[PUBLISHED_DAUGHTERS]; /* grown daughters by the number of orders below */
-    double radius_mm;                      /* of a grown element: the radius at its distal end */
-    double widest_mm;                      /* its largest radius */
-    double grown_mm;                       /* length that was grown; 0 for a drawn element */
-    double length_mm;                      /* length that the filling adds */
+    int32_t segments; /* drawn: number of its segments; grown: number of segments of its extension,
+                       * from places_fill on */
+    bool grown;
+    bool is_open; /* grown, and its most distal segment is a terminal, so that it can be extended */
+    uint16_t present[PUBLISHED_DAUGHTERS]; /* [k]: number of grown daughters k orders lower */
+    double radius_mm; /* drawn: radius of all its segments; grown: radius of its most distal one */
+    double widest_mm; /* largest radius of its segments */
+    double grown_mm;  /* grown: length without the extension; drawn: 0 */
+    double length_mm; /* drawn: its length; grown: length of its extension, 0: none */
 } FillElement;
 
 /* The elements of a filling. A drawn element comes after its parent. */
@@ -51,12 +55,16 @@ MUST_CHECK Status filling_add(Filling *filling, FillElement element, Err *err);
 
 /* Draws the daughters of all elements, of the daughters, and so on, down to the order rules.to.
  *
- * An element of order n gets floor(C) or ceil(C) daughters of each order, C being the mean number
- * of the table. The probability of ceil(C) is such that the mean is C. A grown element has
- * daughters already: they are subtracted, and a grown element of an order from rules.from on gets
- * daughters below rules.from only. The last two daughters close the element and are of lower
- * orders; the others are along it, in random order. Elements of the lowest order end without
- * daughters.
+ * An element gets floor(C) or ceil(C) daughters of each order, where C is the mean number of the
+ * table. The probability of ceil(C) is such that the mean is C. The daughters that a grown element
+ * has already are subtracted. A grown element of order rules.from or above gets daughters below
+ * rules.from only.
+ *
+ * The last two daughters of a drawn or open element start at its distal end and are of lower orders
+ * than the element. If fewer than two lower daughters were drawn, daughters of the highest lower
+ * order are added, so that the mean number of these daughters exceeds C. The other daughters start
+ * along the element, in random order. Elements of the lowest order, rules.to, have daughters along
+ * them but none at the distal end.
  *
  * The diameter is normally distributed within the bounds of the order. The length has a lognormal
  * distribution. An open grown element is extended to the length that was drawn for it, unless the
@@ -66,10 +74,13 @@ MUST_CHECK Status filling_add(Filling *filling, FillElement element, Err *err);
  * Errors   as filling_add. */
 MUST_CHECK Status filling_draw(Filling *filling, Err *err);
 
-/* Cuts the length of a drawn element into element->segments lengths, which are set in `length`.
- * Each is the width of the element, the first of them the sum of the element's and the parent's
- * radius, and a share of the remaining length by an exponential distribution. All are shorter in
- * proportion if there is not enough length. */
+/* Divides element->length_mm among element->segments segments, whose lengths are set in `length`.
+ *
+ * Each segment gets a minimum length and a random share of the remaining length, from an
+ * exponential distribution. The minimum is the diameter 2 radius_mm. For the first segment of a
+ * drawn element, it is 1.1 to 1.5 times the sum of the element's radius and the parent's largest
+ * radius, because this segment must leave its parent. Requires a length of at least the sum of
+ * these minima: filling_draw and places_fill see to it. */
 void filling_cut(Filling *filling, const FillElement *element, double *length);
 
 #endif

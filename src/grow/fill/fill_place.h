@@ -26,34 +26,42 @@ typedef struct FillNear {
 /* The nodes of the filled tree. Begin with {.domain = ..., .filling = ...}; release with
  * places_release. */
 typedef struct Places {
-    const Domain *domain;
-    Filling *filling;
-    FillNode *node; /* owned */
+    const Domain *domain; /* borrowed */
+    Filling *filling;     /* borrowed; places_fill draws random numbers from it, and changes the
+                           * lists of daughters and `segments` of grown elements */
+    FillNode *node;       /* owned */
     size_t n, capacity;
     Grid grid;       /* of all segments; owned */
     int32_t *end;    /* per element: its most distal node so far; NO_NODE: none; owned */
-    int32_t *start;  /* per element: the node at which it branches off; NO_NODE: left out; owned */
+    int32_t *start;  /* per element: the node at which it branches off; NO_NODE: none so far, left
+                      * out, or grown; owned */
     uint32_t *stamp; /* per node: the last search that found its segment; owned */
     uint32_t searches;
     FillNear *near; /* segments that the last search found; owned */
     size_t n_near, near_capacity;
-    size_t left_out; /* number of elements without a position */
+    size_t left_out; /* number of drawn elements of which no segment has a place: their start does
+                      * not exist, no direction stays in the domain, or all spare nodes are used.
+                      * An element that ends early for such a reason does not count. */
     int32_t last_id; /* of the tree that is filled */
 } Places;
 
 void places_release(Places *places);
 
-/* Copies the nodes of a tree. `end` receives NO_NODE for every element; the caller sets it to the
- * last nodes of grown elements. Errors: STATUS_MEMORY. */
+/* Copies the nodes of a tree. Requires a filling that filling_draw has drawn. `end` receives
+ * NO_NODE for every element; the caller then sets the entries of grown elements to their most
+ * distal nodes. Errors: STATUS_MEMORY. */
 MUST_CHECK Status places_init(Places *places, const Tree *tree, Err *err);
 
-/* Positions all elements of places->filling, which is drawn. Calls `progress` of `params` now and
- * then. Errors: STATUS_CANCELLED if progress returns false; STATUS_MEMORY. */
+/* Positions all elements of places->filling after places_init. Calls params->progress after every
+ * 1024 elements. Errors: STATUS_CANCELLED if params->progress returns false; STATUS_MEMORY. */
 MUST_CHECK Status places_fill(Places *places, const GrowParams *params, Err *err);
 
-/* Moves nodes between drawn segments so that segments that are too near to others, or shorter than
- * wide, become clear of them [fill_repair.c]. *broken receives how many remain. Errors:
- * STATUS_MEMORY. */
+/* Repairs broken segments by moving nodes that are not grown [fill_repair.c]. A drawn segment is
+ * broken if it is shorter than wide, or if it overlaps a segment with which it shares no node. Of
+ * two drawn segments that overlap, only the later one counts.
+ *
+ * broken   receives the number of segments that remain broken.
+ * Errors   STATUS_MEMORY. */
 MUST_CHECK Status places_repair(Places *places, size_t *broken, Err *err);
 
 /* Enters segment i into the grid, or moves it there. Errors: STATUS_MEMORY. */

@@ -1,35 +1,35 @@
 /* Finds the point of the tissue that is farthest from any vessel: the centre of the largest ball
  * without a vessel inside. Private to the module coverage. */
-#ifndef CORCAST_COVERAGE_VOID_H
-#define CORCAST_COVERAGE_VOID_H
+#ifndef CORCAST_COVERAGE_FARTHEST_H
+#define CORCAST_COVERAGE_FARTHEST_H
 
 #include "coverage/sites.h"
 
 /* A point and its distance from the nearest vessel, mm. */
-typedef struct CoverageVoid {
+typedef struct FarthestPoint {
     double distance_mm;
     Vec3 at;
-} CoverageVoid;
+} FarthestPoint;
 
 /* A box that may hold the farthest point. All boxes of a step of the search have the same size. */
-typedef struct VoidBox {
+typedef struct FarthestBox {
     Vec3 centre;
-    double distance_mm; /* distance of the centre from the nearest vessel, or from any vessel that
-                         * is too near for the box to be kept */
-} VoidBox;
+    double distance_mm; /* distance of the centre from the nearest vessel. In a box that is about
+                         * to be dropped, an upper bound of this distance. */
+} FarthestBox;
 
-typedef ARRAY(VoidBox) VoidBoxes;
+typedef ARRAY(FarthestBox) FarthestBoxes;
 
-typedef struct VoidSearch {
+typedef struct FarthestSearch {
     const Domain *domain;
     const Sites *sites;
     double accepted_mm; /* above 0: boxes are dropped in which no point is farther than `best` by
                          * more than this */
-    CoverageVoid best;  /* the farthest point so far; the caller sets it to a point of the tissue */
+    FarthestPoint best; /* the farthest point so far; the caller sets it to a point of the tissue */
     double most_mm;     /* upper bound of the distance in boxes that were not decided; the caller
                          * sets it to 0 before the first search */
-    VoidBoxes boxes;    /* workspace; the caller releases it with ARRAY_RELEASE */
-} VoidSearch;
+    FarthestBoxes boxes; /* workspace; the caller releases it with ARRAY_RELEASE */
+} FarthestSearch;
 
 /* Searches a box for the farthest point of the domain. Replaces search->best if a point is farther.
  *
@@ -40,7 +40,7 @@ typedef struct VoidSearch {
  * half        half of the sides of the box, mm; 0 along z in two dimensions.
  * nearest_mm  result of sites_nearest for `centre`.
  * Errors      STATUS_MEMORY. */
-MUST_CHECK Status void_search(VoidSearch *search, Vec3 centre, Vec3 half, double nearest_mm,
-                              Err *err);
+MUST_CHECK Status farthest_search(FarthestSearch *search, Vec3 centre, Vec3 half, double nearest_mm,
+                                  Err *err);
 
 #endif
