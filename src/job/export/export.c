@@ -83,7 +83,7 @@ static const Option own[] = {
      FROM_TO(0.001, 0.5),
      .when = WHEN(LAYERS) | OF_SURFACE,
      .help = "thickness of all layers together, as a fraction of the local radius; layers are "
-             "thinner where prisms would be inverted"},
+             "thinner where prisms would be inverted, or walls are near each other"},
     {.name = "layer-growth",
      SETS(NUMBER, ExportOptions, meshing.layers.growth),
      .group = GROUP_VESSELS,

@@ -442,9 +442,9 @@ static void report_flow(Flowing *made, size_t loops)
     add_row(made, "lost_segments", "segments without flow above rounding", lost, "");
     add_row(made, "unknowns", "unknowns after reduction", (double)flow->unknowns, "");
     add_row(made, "steps", "steps of conjugate gradients", (double)flow->steps, "");
-    add_row(made, "mass_imbalance", "mass balance, of the largest flow", flow->imbalance, "");
-    add_row(made, "own_mass_imbalance", "mass balance, of the node's flow", flow->own_imbalance,
-            "");
+    add_row(made, "mass_imbalance", "mass imbalance, of the largest flow", flow->imbalance, "");
+    add_row(made, "own_mass_imbalance", "mass imbalance, of the flow at the node",
+            flow->own_imbalance, "");
 }
 
 static void report_cells(Flowing *made)
