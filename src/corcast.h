@@ -232,8 +232,8 @@ CORCAST_API int corcast_schema(const char *command, corcast_report **out, corcas
 /* An arterial tree, or a forest of several. Each node i, except a root, is the distal end of
  * segment i: the straight tube from its parent's position to its own, with one radius. Parents come
  * before their children. In a network with loops, a line that closes a loop ends at a node of its
- * own, at the position of the node where the loop closes (docs/NETWORKS.md); arrays do not state it.
- */
+ * own, at the position of the node where the loop closes (docs/NETWORKS.md). Arrays do not state
+ * which node that is. */
 typedef struct corcast_tree corcast_tree;
 
 /* The nodes of a tree as arrays with an entry per node; positions has three. */

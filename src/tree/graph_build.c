@@ -457,7 +457,7 @@ static uint32_t direct_link(Building *building, GraphLink *link, uint32_t from)
     return link->b;
 }
 
-enum { NO_POINT = UINT32_MAX };
+#define NO_POINT UINT32_MAX
 
 /* Directs a vessel, from its link `at` at the point `from` on. Returns the point at its other end
  * if no link led there before, else NO_POINT. */

@@ -45,11 +45,11 @@ agrees() {
 # programs: one pixel in 19,200 differs by one level.
 test_smooth_vessels_agree_in_every_model() {
     local model pixels
-    tree_3d 12
+    tree_3d 6
     for model in $(corcast models | cut -f 1) 'isosurface --potential graph'; do
-        run_ok corcast verify tree.swc --smooth --model $model --size 160x120 -o report
+        run_ok corcast verify tree.swc --smooth --model $model --size 120x90 -o report
         expect_json report/report.json '.verdict == "agree"'
-        grep -q 'smooth: 23 segments are drawn as' stderr || fail "expected the pieces of $model"
+        grep -q 'smooth: 11 segments are drawn as' stderr || fail "expected the pieces of $model"
         pixels=$(differing report/povray.png report/native.png 1)
         [ "$pixels" -eq 0 ] || fail "expected the same pixels of $model, got $pixels that differ"
     done

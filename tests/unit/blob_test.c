@@ -235,7 +235,7 @@ static void first_hits_are_those_of_a_walk_in_small_steps(void **state)
             TestScene test;
             make_test_scene((SceneKind)kind, &random, &test);
             TestSearch cast = cast_of(&test.geometry);
-            for (int i = 0; i < 60; i++)
+            for (int i = 0; i < 60 / SHARE; i++)
                 check_ray(&cast, &test, random_ray(&random, &test, i), 0.03L, &tally);
             testsearch_close(&cast);
         }

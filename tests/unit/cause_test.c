@@ -448,7 +448,7 @@ static void names_no_move_where_a_part_was_not_moved(void **state)
 {
     (void)state;
     int named = 0;
-    for (int first = H / 2; first < H; first += 2) {
+    for (int first = H / 2; first < H; first += 2 * SHARE) {
         Shot shot = spoilt(restore_rows, first);
         shot.dx = 3;
         shot.dy = -2;

@@ -418,7 +418,7 @@ static void discs_and_balls_draw_x_then_y_then_z(void **state)
  * of those at most one in two hundred. */
 static void expect_whole_segments(const char *spec)
 {
-    enum { SEGMENTS = 4000, STEPS = 500 };
+    enum { SEGMENTS = 4000 / SHARE, STEPS = 500 };
     Domain domain = parse(spec);
     Random random;
     random_seed(&random, 41);

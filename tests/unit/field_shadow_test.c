@@ -261,7 +261,7 @@ static void try_scenes(SceneModel model, int cameras, uint64_t seed)
     for (int kind = 0; kind < N_TAME_KINDS; kind++) {
         Tally tally = {.name = kind_names[kind]};
         int runs =
-            kind == KIND_STAR || kind == KIND_SHORT ? 2 : 12; /* brute force is slow on these */
+            kind == KIND_STAR || kind == KIND_SHORT ? 2 : 24; /* brute force is slow on these */
         for (int run = 0; run < (runs + SHARE - 1) / SHARE; run++) {
             TestScene test;
             make_test_scene((SceneKind)kind, &random, &test);
