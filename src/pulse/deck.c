@@ -42,7 +42,7 @@ static void put_cycle(const Deck *deck, const char *key, const Waveform *at)
 static void put_inlet(const Deck *deck, size_t root)
 {
     const Pulse *pulse = deck->pulse;
-    const bool is_flow = pulse->params.drive_is_flow;
+    const bool is_flow = pulse->params.drive->is_flow;
     const double unit = is_flow ? flow_cgs : pressure_cgs;
     Waveform at = {.period_s = pulse->period_s, .harmonics = pulse->params.harmonics};
     at.mean = unit * (is_flow ? mm3_s_from_ml_min(pulse->flow[root])
@@ -164,7 +164,7 @@ static Status check(const Deck *deck, Err *err)
         return err_set(err, STATUS_INPUT, "a deck cannot hold structured trees; use `outlets` rcr");
     for (size_t i = 0; i < tree->n; i++) {
         const bool is_end = deck->children[i] == 0, flows = pulse->outflow[i] > 0;
-        if (!tree_is_segment(tree, i) && deck->children[i] > 1 && pulse->params.drive_is_flow)
+        if (!tree_is_segment(tree, i) && deck->children[i] > 1 && pulse->params.drive->is_flow)
             return err_set(err, STATUS_INPUT,
                            "%d segments leave root %d; a deck that is driven by flow needs one, so "
                            "use a `drive` of pressure",

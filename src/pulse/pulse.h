@@ -63,7 +63,6 @@ typedef struct PulseParams {
     int harmonics;             /* in [1, WAVEFORM_MAX_HARMONICS] */
     const Waveform *drive;     /* pressure or flow at all inlets over a cycle; at each inlet it is
                                 * scaled to the mean of the steady solution there */
-    bool drive_is_flow;        /* false: `drive` is pressure */
     double range_pa; /* pressure drive: wanted maximum - minimum of the pressure at the inlets. 0:
                       * the oscillation is scaled by the factor of the mean */
     PulseWall wall;

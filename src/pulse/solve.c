@@ -142,7 +142,7 @@ static PairC drive_of(const PulseParams *params, int first)
 {
     const Waveform *drive = params->drive;
     double factor = 1 / drive->mean;
-    if (!params->drive_is_flow && params->range_pa > 0)
+    if (!params->drive->is_flow && params->range_pa > 0)
         factor = params->range_pa / waveform_range(drive);
     PairC x = pairc(0, 0);
     for (int lane = 0; lane < PAIR && first + lane <= params->harmonics; lane++) {
@@ -158,7 +158,7 @@ static void drive_root(const Pulse *pulse, size_t root, int first, PulseWaves *a
     const PulseParams *params = &pulse->params;
     PairC admittance = load(at->q_re, at->q_im), source = load(at->p_re, at->p_im);
     PairC drive = drive_of(params, first), p, q;
-    if (params->drive_is_flow) {
+    if (params->drive->is_flow) {
         q = pairc_scale(drive, (PairR){0} + mm3_s_from_ml_min(pulse->flow[root]));
         p = pairc_mul(pairc_add(q, source), pairc_inverse(admittance));
     } else {

@@ -13,7 +13,8 @@ typedef struct Waveform {
     double period_s, mean;
     double re[WAVEFORM_MAX_HARMONICS + 1], im[WAVEFORM_MAX_HARMONICS + 1]; /* index 0 is unused */
     int harmonics; /* number of known harmonics; all higher coefficients are 0 */
-    bool is_flow;  /* the quantity is flow, as a template states; false: pressure, or unknown */
+    bool is_flow;  /* the quantity: flow, or pressure. A template states it; waveform_read sets
+                    * false, because a table does not state it */
     /* Description and source, from a template; else "". */
     char about[WAVEFORM_MAX_TEXT + 1], source[WAVEFORM_MAX_TEXT + 1];
 } Waveform;

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# `pulse`: waves against a sparse solution of all nodes with Bessel functions, decks against an independent solver,
-# reports, films and scenes, and all inputs that it refuses. tests/unit/pulse_test.c has the checks of single vessels.
+# `pulse`: waves against a sparse solution of all nodes with Bessel functions and against a nonlinear solver, decks
+# against an independent solver, reports, films and scenes, and all inputs that it refuses. tests/unit/pulse_test.c
+# has the checks of single vessels.
 . "$(dirname "$0")/../lib.sh"
 
 oracle() {
@@ -47,6 +48,12 @@ test_a_solved_deck_has_the_waves_of_the_tree_and_its_results_are_read() {
     expect_stdout 'pressure_out.*25 frames, 0 to 0.8'
 }
 
+# The table of the differences is in docs/PULSE.md.
+test_the_waves_of_a_body_are_near_those_of_a_nonlinear_solver() {
+    run /usr/bin/python3 "$REPO/tests/oracle/openbf.py" "$CORCAST" "$REPO/tests/data"
+    expect_status 0
+}
+
 # Flow that reverses, and pressure that falls below the venous pressure.
 test_the_report_warns_where_the_model_does_not_hold() {
     run_ok corcast grow --domain ball:30 --terminals 50 --seed 3 -o tree.swc
@@ -54,6 +61,9 @@ test_the_report_warns_where_the_model_does_not_hold() {
     expect_json stdout '.osi_max > 0.05 and .reversing_fraction == 1 and .velocity_over_wave_speed_max > 0.25'
     expect_json stdout '.resistance_mmhg_s_ml > 11 and .resistance_mmhg_s_ml < 12'
     grep -q 'below the venous pressure' stderr || fail "expected a warning about the pressure"
+    # The drive is the flow of the first segment, not its pressure.
+    run_ok corcast pulse tree.swc --drive aorta-flow --summary s.csv
+    awk -F, 'NR == 2 { exit !($9 > 5.6 * $6 && $9 < 5.9 * $6) }' s.csv || fail "expected the flow of the drive"
     run_ok corcast pulse tree.swc --pulse-pressure 44 --wall olufsen --json
     expect_json stdout '.osi_max == 0 and .inlet_pressure_mmhg[1] - .inlet_pressure_mmhg[0] > 43.5'
     expect_json stdout '.inlet_pressure_mmhg[1] - .inlet_pressure_mmhg[0] < 44.5'

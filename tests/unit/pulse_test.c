@@ -319,7 +319,7 @@ static void cycles_agree_with_the_frames(void **state)
     Tree tree = make_tree(31);
     Waveform cycle = make_cycle();
     PulseParams params = make_params(&tree, &cycle);
-    params.drive_is_flow = true;
+    cycle.is_flow = true;
     cycle.mean = 0.6; /* flow that reverses */
     Pulse pulse;
     PulseCycle *cycles;

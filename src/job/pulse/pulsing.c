@@ -506,7 +506,6 @@ static Status solve(Pulsing *made, Err *err)
     PulseParams params = {.tree = &made->tree,
                           .overrides = &said,
                           .drive = &made->drive,
-                          .drive_is_flow = made->drive.is_flow,
                           .range_pa = pa_from_mmhg(options->range_mmhg),
                           .wall_time_s = options->wall_time_s,
                           .outlet_time_s = options->outlet_time_s,
