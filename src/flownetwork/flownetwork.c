@@ -67,8 +67,8 @@ static Status fix_pressures(const FlowNetwork *network, const Component *compone
             continue;
         pressure[at->reference] = 0;
         out->floating++;
-        out->idle += at->sizes == 0;
-        out->idle_node = at->sizes == 0 ? v : out->idle_node;
+        out->no_flow += at->sizes == 0;
+        out->no_flow_node = at->sizes == 0 ? v : out->no_flow_node;
     }
     return STATUS_OK;
 }

@@ -32,7 +32,7 @@ typedef struct FlowNetwork {
     const int32_t *id;    /* per node: its name in errors */
     /* What happens if the inflows of a component without a known pressure do not sum to 0. false:
      * STATUS_INPUT. true: the excess leaves at the node with the largest absolute inflow. The
-     * derivatives in flownetwork_guess need this: their inflows are no flows of blood. */
+     * derivatives in flownetwork_estimate need this: their inflows are no flows of blood. */
     bool absorbs;
 } FlowNetwork;
 
@@ -59,10 +59,10 @@ typedef struct NetworkFlow {
      * absolute inflow, the first of equals, has the pressure 0. The inflow of this node is the
      * negative sum of the other inflows of the component. */
     size_t floating;
-    size_t idle;        /* floating components in which all inflows, and so all flows, are 0 */
-    uint32_t idle_node; /* a node of the last idle component; unused if `idle` is 0 */
-    size_t unknowns;    /* pressures that were solved for after the reduction */
-    size_t steps;       /* steps of conjugate gradients */
+    size_t no_flow;        /* floating components in which all inflows, and so all flows, are 0 */
+    uint32_t no_flow_node; /* a node of the last of them; unused if `no_flow` is 0 */
+    size_t unknowns;       /* pressures that were solved for after the reduction */
+    size_t steps;          /* steps of conjugate gradients */
 } NetworkFlow;
 
 /* Computes the steady flow.
@@ -131,14 +131,14 @@ MUST_CHECK Status flownetwork_separate(const FlowNetwork *network, const Network
 
 /* What an estimate of boundary conditions depends on. A node is open if neither pressure nor inflow
  * is known there. Arrays are borrowed. */
-typedef struct NetworkGuess {
+typedef struct NetworkEstimate {
     const bool *is_open;                 /* per node */
     const double *radius_mm, *length_mm; /* per segment */
     double pressure_pa, stress_pa;       /* targets: pressure and wall shear stress */
     size_t starts; /* number of starts, at least 1. The first start is not random. */
     uint64_t seed; /* of the random directions with which the other starts begin */
     int threads;   /* maximum number of threads; 0: all processors */
-} NetworkGuess;
+} NetworkEstimate;
 
 /* How far the other starts differ from the first start. Segments whose direction is not known in
  * the first start do not count. */
@@ -174,7 +174,7 @@ enum { NETWORK_MAX_OPEN = 5000 };
  * Threads   the result does not depend on their number.
  * Cost      three solutions of the network per open node, two per solution of a start, and time
  *           that grows with the cube of the number of open nodes. */
-MUST_CHECK Status flownetwork_guess(const FlowNetwork *network, const NetworkGuess *guess,
-                                    double *pressure, NetworkSpread *spread, Err *err);
+MUST_CHECK Status flownetwork_estimate(const FlowNetwork *network, const NetworkEstimate *estimate,
+                                       double *pressure, NetworkSpread *spread, Err *err);
 
 #endif

@@ -139,7 +139,7 @@ static void without_a_pressure_inflows_must_sum_to_0(void **state)
     test.inflow[3] = -3.5;
     NetworkFlow flow = solve(&test), failed = {0};
     assert_close(flow.inflow[0], 3.5, 1e-13);
-    assert_true(flow.floating == 1 && flow.components == 1 && flow.idle == 0);
+    assert_true(flow.floating == 1 && flow.components == 1 && flow.no_flow == 0);
     networkflow_release(&flow);
     test.inflow[3] = -3.4;
     assert_int_equal(flownetwork_solve(&test.network, &failed, &err), STATUS_INPUT);

@@ -255,16 +255,16 @@ static Status find_open(const Flowing *made, const bool *is_known, bool *is_open
 static Status estimate(Flowing *made, const bool *is_open, Err *err)
 {
     const FlowingOptions *options = made->options;
-    const NetworkGuess guess = {.is_open = is_open,
-                                .radius_mm = made->tree.radius_mm,
-                                .length_mm = made->network.length_mm,
-                                .pressure_pa = pa_from_mmhg(options->target_mmhg),
-                                .stress_pa = options->target_pa,
-                                .starts = options->starts,
-                                .seed = made->parsed->common.seed,
-                                .threads = made->parsed->common.threads};
-    return flownetwork_guess(&made->network.network, &guess, made->network.pressure, &made->spread,
-                             err);
+    const NetworkEstimate estimate = {.is_open = is_open,
+                                      .radius_mm = made->tree.radius_mm,
+                                      .length_mm = made->network.length_mm,
+                                      .pressure_pa = pa_from_mmhg(options->target_mmhg),
+                                      .stress_pa = options->target_pa,
+                                      .starts = options->starts,
+                                      .seed = made->parsed->common.seed,
+                                      .threads = made->parsed->common.threads};
+    return flownetwork_estimate(&made->network.network, &estimate, made->network.pressure,
+                                &made->spread, err);
 }
 
 static Status set_boundary(Flowing *made, const TreeMeta *said, Err *err)
@@ -344,11 +344,11 @@ static Status solve(Flowing *made, Err *err)
                   "not converged: after %zu rounds the hematocrit still changes by %.2g and the "
                   "flow by %.2g ml/min; the fields are those of the last round",
                   cells->rounds, cells->hematocrit_change, ml_min_from_mm3_s(cells->flow_change));
-    if (made->flow.idle > 0 && made->options->ends == ENDS_REFUSED)
+    if (made->flow.no_flow > 0 && made->options->ends == ENDS_REFUSED)
         return err_set(err, STATUS_INPUT,
                        "the vessels that are connected with node %d have no boundary condition; "
                        "give a pressure or flow there, or --ends closed",
-                       made->tree.id[made->flow.idle_node]);
+                       made->tree.id[made->flow.no_flow_node]);
     return STATUS_OK;
 }
 

@@ -23,7 +23,7 @@ typedef struct FlowingOptions {
     int ends;                                /* a FlowingEnds */
     bool separation, json;
     double cell_fl, target_mmhg, target_pa;
-    size_t starts; /* number of starts of the estimate [NetworkGuess.starts] */
+    size_t starts; /* number of starts of the estimate [NetworkEstimate.starts] */
     BloodOptions blood;
 } FlowingOptions;
 
@@ -60,7 +60,7 @@ typedef struct Flowing {
  * made     receives the result; release it with flowing_release even after an error.
  * Errors   STATUS_USAGE for options without effect; STATUS_INPUT for boundary conditions that do
  *          not determine the flow, naming the node; the errors of reading_tree, blood_settle,
- *          tree_read_values, flownetwork_solve and flownetwork_guess. */
+ *          tree_read_values, flownetwork_solve and flownetwork_estimate. */
 MUST_CHECK Status flowing_make(void *options, Parsed *parsed, Flowing *made, Err *err);
 void flowing_release(Flowing *made);
 

@@ -14,15 +14,15 @@ static const double first_weight = 0.002, last_weight = 4.096;
 enum { SOLVES_PER_WEIGHT = 5 };
 
 /* The state of an estimate. Owns its arrays. */
-typedef struct Guess {
+typedef struct Estimation {
     const FlowNetwork *network;
-    const NetworkGuess *params;
+    const NetworkEstimate *params;
     uint32_t *open;  /* the open nodes */
     size_t n;        /* their number */
     double *weight;  /* per node: half the length of its segments */
     double *s0, *s1; /* n x n: second derivatives of the two parts of the objective */
     double *matrix;  /* n x n, lower triangle: Cholesky factor of S */
-} Guess;
+} Estimation;
 
 /* Which inflows and pressures a solution has. */
 typedef struct Load {
@@ -32,7 +32,7 @@ typedef struct Load {
     bool is_whole;          /* known pressures and inflows are those of the network, else 0 */
 } Load;
 
-static Status solve(const Guess *made, const Load *load, NetworkFlow *flow, Err *err)
+static Status solve(const Estimation *made, const Load *load, NetworkFlow *flow, Err *err)
 {
     FlowNetwork network = *made->network;
     double *pressure = NULL, *inflow = NULL;
@@ -57,14 +57,14 @@ done:
 }
 
 /* Returns the wall shear stress of a segment per difference of pressure. */
-static double stress_factor(const Guess *made, size_t i)
+static double stress_factor(const Estimation *made, size_t i)
 {
     double length = made->params->length_mm[i];
     return length > 0 ? made->params->radius_mm[i] / (2 * length) : 0;
 }
 
 /* Adds the derivative by p of half the sum of l (tau - target)^2. `sign` is NULL for target 0. */
-static void add_stress(const Guess *made, const double *pressure, const signed char *sign,
+static void add_stress(const Estimation *made, const double *pressure, const signed char *sign,
                        double weight, double *slope)
 {
     for (size_t i = 0; i < made->network->n_segments; i++) {
@@ -79,14 +79,15 @@ static void add_stress(const Guess *made, const double *pressure, const signed c
     }
 }
 
-static void add_pressure(const Guess *made, const double *pressure, double target, double *slope)
+static void add_pressure(const Estimation *made, const double *pressure, double target,
+                         double *slope)
 {
     for (size_t v = 0; v < made->network->n_nodes; v++)
         slope[v] += isnan(pressure[v]) ? 0 : made->weight[v] * (pressure[v] - target);
 }
 
 /* Turns the derivative by p into that by y: the product with the transpose of Z. */
-static Status project(const Guess *made, const double *slope, double *out, Err *err)
+static Status project(const Estimation *made, const double *slope, double *out, Err *err)
 {
     NetworkFlow flow = {0};
     TRY(solve(made, &(Load){.inflow = slope, .unit = UINT32_MAX}, &flow, err));
@@ -99,7 +100,7 @@ static Status project(const Guess *made, const double *slope, double *out, Err *
 /* Computes the rows b of S0 and S1. */
 static Status fill_row(size_t b, int worker, void *context, Err *err)
 {
-    const Guess *made = context;
+    const Estimation *made = context;
     NetworkFlow flow = {0};
     double *slope = NULL;
     Status status = STATUS_OK;
@@ -118,7 +119,7 @@ done:
 }
 
 /* Factorizes S0 + weight S1 by Cholesky's method. */
-static void factorize(const Guess *made, double weight)
+static void factorize(const Estimation *made, double weight)
 {
     size_t n = made->n;
     double *a = made->matrix;
@@ -131,7 +132,7 @@ static void factorize(const Guess *made, double weight)
         }
 }
 
-static void substitute(const Guess *made, double *x)
+static void substitute(const Estimation *made, double *x)
 {
     size_t n = made->n;
     for (size_t i = 0; i < n; i++) {
@@ -155,7 +156,7 @@ typedef struct Start {
 
 /* Finds the minimum for the directions of a start, and takes the directions of the solution.
  * *turned receives whether one has changed. */
-static Status minimize(const Guess *made, const double *base, double weight, Start *start,
+static Status minimize(const Estimation *made, const double *base, double weight, Start *start,
                        bool *turned, Err *err)
 {
     double *slope = NULL;
@@ -184,7 +185,7 @@ done:
 }
 
 /* Raises the weight of the stress. The first start alone begins with the weight 0. */
-static Status raise(const Guess *made, const double *base, Start *start, NetworkSpread *spread,
+static Status raise(const Estimation *made, const double *base, Start *start, NetworkSpread *spread,
                     Err *err)
 {
     const double unit = pa_from_mmhg(10);
@@ -201,7 +202,7 @@ static Status raise(const Guess *made, const double *base, Start *start, Network
     return STATUS_OK;
 }
 
-static Status begin_start(const Guess *made, size_t s, Random *random, Start *start, Err *err)
+static Status begin_start(const Estimation *made, size_t s, Random *random, Start *start, Err *err)
 {
     TRY(mem_calloc(&start->sign, made->network->n_segments, 1, "directions", err));
     TRY(mem_calloc(&start->pressure, made->n, sizeof *start->pressure, "pressures", err));
@@ -211,7 +212,7 @@ static Status begin_start(const Guess *made, size_t s, Random *random, Start *st
 }
 
 /* Compares the flow of another start with that of the first, where its direction is known. */
-static Status compare(const Guess *made, const NetworkFlow *first, const NetworkFlow *other,
+static Status compare(const Estimation *made, const NetworkFlow *first, const NetworkFlow *other,
                       NetworkSpread *spread, Err *err)
 {
     double *change = NULL, turned = 0;
@@ -235,7 +236,7 @@ static Status compare(const Guess *made, const NetworkFlow *first, const Network
     return STATUS_OK;
 }
 
-static Status begin(Guess *made, Err *err)
+static Status begin(Estimation *made, Err *err)
 {
     const FlowNetwork *network = made->network;
     TRY(mem_alloc(&made->open, network->n_nodes, sizeof *made->open, "nodes", err));
@@ -256,7 +257,7 @@ static Status begin(Guess *made, Err *err)
     return threads_try(made->n, made->params->threads, fill_row, made, err);
 }
 
-static Status run(const Guess *made, Start *start, double *pressure, NetworkSpread *spread,
+static Status run(const Estimation *made, Start *start, double *pressure, NetworkSpread *spread,
                   Err *err)
 {
     NetworkFlow base = {0};
@@ -276,10 +277,10 @@ done:
     return status;
 }
 
-Status flownetwork_guess(const FlowNetwork *network, const NetworkGuess *params, double *pressure,
-                         NetworkSpread *spread, Err *err)
+Status flownetwork_estimate(const FlowNetwork *network, const NetworkEstimate *params,
+                            double *pressure, NetworkSpread *spread, Err *err)
 {
-    Guess made = {.network = network, .params = params};
+    Estimation made = {.network = network, .params = params};
     Start *start = NULL;
     Status status = STATUS_OK;
     *spread = (NetworkSpread){.turned = {HUGE_VAL, 0}, .change = {HUGE_VAL, 0}};
