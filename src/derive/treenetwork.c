@@ -15,13 +15,12 @@ Status treenetwork_make(const Tree *tree, const double *viscosity, TreeNetwork *
     TRY_GOTO(mem_calloc(&made.length_mm, tree->n, sizeof *made.length_mm, "lengths", err));
     for (size_t i = 0; i < tree->n; i++) {
         bool is_segment = tree_is_segment(tree, i);
-        double radius = tree->radius_mm[i], square = radius * radius;
         made.ends[i][0] = (uint32_t)tree_place(tree, is_segment ? (size_t)tree->parent[i] : i);
         made.ends[i][1] = (uint32_t)tree_place(tree, i);
         made.length_mm[i] = tree_segment_length(tree, i);
-        made.resistance[i] = radius > 0 && is_segment
-                                 ? 8 * viscosity[i] * made.length_mm[i] / (PI * square * square)
-                                 : HUGE_VAL;
+        made.resistance[i] =
+            is_segment ? poiseuille_resistance(viscosity[i], made.length_mm[i], tree->radius_mm[i])
+                       : HUGE_VAL;
         made.pressure[i] = (double)NAN;
     }
     made.network = (FlowNetwork){.n_nodes = tree->n,

@@ -32,9 +32,7 @@ double flownetwork_resistance(const NetworkBlood *blood, size_t i, double hemato
 {
     double radius = blood->radius_mm[i], scale = viscosity_cell_scale(blood->cell_fl);
     double viscosity = viscosity_pries_pa_s(radius * scale, hematocrit, blood->plasma_pa_s);
-    return radius > 0
-               ? 8 * viscosity * blood->length_mm[i] / (PI * radius * radius * radius * radius)
-               : HUGE_VAL;
+    return poiseuille_resistance(viscosity, blood->length_mm[i], radius);
 }
 
 /* Returns the share of the cells that enters the branch `a`. Diameters are in um. */

@@ -63,7 +63,7 @@ PulseVessel pulse_vessel(const PulseWall *wall, double radius_mm, double length_
     const double r2 = radius_mm * radius_mm, area = PI * r2;
     const double stiffness = pulse_wall_stiffness(wall, radius_mm);
     return (PulseVessel){
-        .resistance = 8 * viscosity * length_mm / (area * r2),
+        .resistance = poiseuille_resistance(viscosity, length_mm, radius_mm),
         .inertance = BLOOD_DENSITY_G_MM3 * length_mm / area,
         .compliance = stiffness > 0 ? 1.5 * area / stiffness * length_mm : 0,
         .womersley_s = r2 * BLOOD_DENSITY_G_MM3 / viscosity,

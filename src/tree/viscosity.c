@@ -33,6 +33,12 @@ double viscosity_pries_pa_s(double radius_mm, double hematocrit, double plasma_v
     return relative * plasma_viscosity_pa_s;
 }
 
+double poiseuille_resistance(double viscosity_pa_s, double length_mm, double radius_mm)
+{
+    double square = radius_mm * radius_mm;
+    return radius_mm > 0 ? 8 * viscosity_pa_s * length_mm / (PI * square * square) : HUGE_VAL;
+}
+
 double viscosity_cell_scale(double cell_fl)
 {
     return elementary_cbrt(RED_CELL_FL / cell_fl);

@@ -29,6 +29,11 @@ typedef enum ViscosityLaw {
  * radius by viscosity_cell_scale. */
 double viscosity_pries_pa_s(double radius_mm, double hematocrit, double plasma_viscosity_pa_s);
 
+/* Returns the resistance of a vessel to steady flow by Poiseuille's law, Pa s/mm^3: 8 viscosity
+ * length / (pi radius^4). The viscosity is in Pa s and above 0. Returns INFINITY for the radius 0.
+ */
+double poiseuille_resistance(double viscosity_pa_s, double length_mm, double radius_mm);
+
 /* Mean corpuscular volume of human red cells, fl. */
 #define RED_CELL_FL 92
 /* Returns the size of human red cells divided by that of cells of this mean corpuscular volume, fl,

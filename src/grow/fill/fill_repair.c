@@ -14,9 +14,16 @@ static const double spare = 1e-3;
 
 typedef struct Mending {
     Places *places;
-    int32_t *child; /* children of all nodes, node by node; owned */
-    size_t *end;    /* per node: end of its children in `child`; owned */
+    IndexLists children; /* per node */
 } Mending;
+
+/* The children of node i, and the end behind them. */
+static const uint32_t *children_of(const Mending *mending, int32_t i, const uint32_t **end)
+{
+    const IndexLists *children = &mending->children;
+    *end = children->items + children->first[i + 1];
+    return children->items + children->first[i];
+}
 
 static bool are_joined(const FillNode *node, int32_t i, int32_t j)
 {
@@ -48,9 +55,10 @@ static Status fault_of(Places *places, int32_t i, int32_t below, double *fault, 
 static Status fault_at(Mending *mending, int32_t i, double enough, double *sum, Err *err)
 {
     double fault;
+    const uint32_t *end, *child = children_of(mending, i, &end);
     TRY(fault_of(mending->places, i, INT32_MAX, sum, err));
-    for (size_t k = i ? mending->end[i - 1] : 0; k < mending->end[i] && *sum < enough; k++) {
-        TRY(fault_of(mending->places, mending->child[k], INT32_MAX, &fault, err));
+    for (; child < end && *sum < enough; child++) {
+        TRY(fault_of(mending->places, (int32_t)*child, INT32_MAX, &fault, err));
         *sum += fault;
     }
     return STATUS_OK;
@@ -61,8 +69,9 @@ static bool is_inside(const Mending *mending, int32_t i)
     const Places *places = mending->places;
     const FillNode *node = places->node;
     bool inside = domain_holds_segment(places->domain, node[node[i].parent].at, node[i].at);
-    for (size_t k = i ? mending->end[i - 1] : 0; k < mending->end[i] && inside; k++)
-        inside = domain_holds_segment(places->domain, node[i].at, node[mending->child[k]].at);
+    const uint32_t *end, *child = children_of(mending, i, &end);
+    for (; child < end && inside; child++)
+        inside = domain_holds_segment(places->domain, node[i].at, node[*child].at);
     return inside;
 }
 
@@ -90,24 +99,23 @@ static Status move(Mending *mending, int32_t i, Err *err)
     }
     node->at = best;
     TRY(places_enter(places, i, err));
-    for (size_t k = i ? mending->end[i - 1] : 0; k < mending->end[i]; k++)
-        TRY(places_enter(places, mending->child[k], err));
+    const uint32_t *end, *child = children_of(mending, i, &end);
+    for (; child < end; child++)
+        TRY(places_enter(places, (int32_t)*child, err));
     return STATUS_OK;
 }
 
-static Status find_children(Mending *mending, Err *err)
+/* Lists the children of each node. */
+static Status list_children(const Places *places, IndexLists *children, Err *err)
 {
-    const Places *places = mending->places;
-    TRY(mem_calloc(&mending->child, places->n, sizeof *mending->child, "nodes", err));
-    TRY(mem_calloc(&mending->end, places->n + 1, sizeof *mending->end, "nodes", err));
+    TRY(indexlists_begin(children, places->n, "nodes", err));
     for (size_t i = 0; i < places->n; i++)
         if (places->node[i].parent != NO_NODE)
-            mending->end[places->node[i].parent + 1]++;
-    for (size_t i = 0; i < places->n; i++)
-        mending->end[i + 1] += mending->end[i];
+            indexlists_count(children, (size_t)places->node[i].parent);
+    TRY(indexlists_allot(children, "nodes", err));
     for (size_t i = 0; i < places->n; i++)
         if (places->node[i].parent != NO_NODE)
-            mending->child[mending->end[places->node[i].parent]++] = (int32_t)i;
+            indexlists_put(children, (size_t)places->node[i].parent, (uint32_t)i);
     return STATUS_OK;
 }
 
@@ -129,7 +137,7 @@ Status places_repair(Places *places, size_t *left, Err *err)
     Mending mending = {.places = places};
     int32_t *broken = NULL;
     Status status;
-    TRY_GOTO(find_children(&mending, err));
+    TRY_GOTO(list_children(places, &mending.children, err));
     TRY_GOTO(mem_calloc(&broken, places->n, sizeof *broken, "segments", err));
     for (int round = 0;; round++) {
         TRY_GOTO(find_broken(places, broken, left, err));
@@ -142,7 +150,6 @@ Status places_repair(Places *places, size_t *left, Err *err)
     }
 done:
     free(broken);
-    free(mending.child);
-    free(mending.end);
+    indexlists_release(&mending.children);
     return status;
 }

@@ -130,8 +130,8 @@ static Status solve_flow(Tree *tree, double drop_pa, double *q_ml_min, Err *err)
     TRY_GOTO(mem_calloc(&below, tree->n, sizeof *below, "conductances", err));
     TRY_GOTO(mem_calloc(&flow, tree->n, sizeof *flow, "flows", err));
     for (size_t i = tree->n; i-- > 0;) {
-        double r2 = tree->radius_mm[i] * tree->radius_mm[i];
-        double resistance = 8 * viscosity[i] * tree_segment_length(tree, i) / (PI * r2 * r2);
+        double resistance =
+            poiseuille_resistance(viscosity[i], tree_segment_length(tree, i), tree->radius_mm[i]);
         conductance[i] = 1 / (resistance + (below[i] > 0 ? 1 / below[i] : 0));
         if (tree_is_segment(tree, i))
             below[tree->parent[i]] += conductance[i];

@@ -411,11 +411,12 @@ static void add_row(Flowing *made, const char *key, const char *title, double va
 static void report_flow(Flowing *made, size_t loops)
 {
     const NetworkFlow *flow = &made->flow;
-    double segments = 0, lost = 0, inflow = 0, pressure[2] = {HUGE_VAL, -HUGE_VAL};
+    double segments = 0, closed = 0, lost = 0, inflow = 0, pressure[2] = {HUGE_VAL, -HUGE_VAL};
     for (size_t i = 0; i < made->tree.n; i++) {
         bool is_segment = tree_is_segment(&made->tree, i),
-             is_closed = !(made->network.resistance[i] < HUGE_VAL);
+             is_closed = is_segment && !(made->network.resistance[i] < HUGE_VAL);
         segments += is_segment;
+        closed += is_closed;
         lost += is_segment && !is_closed && flow->is_lost[i];
         inflow += ml_min_from_mm3_s(fmax(flow->inflow[i], 0));
         if (!isnan(flow->pressure[i])) {
@@ -437,8 +438,7 @@ static void report_flow(Flowing *made, size_t loops)
     add_row(made, "largest_flow", "largest flow", ml_min_from_mm3_s(flow->largest), "ml/min");
     add_row(made, "pressure_min", "lowest pressure", pressure[0], "mmHg");
     add_row(made, "pressure_max", "highest pressure", pressure[1], "mmHg");
-    add_row(made, "closed_segments", "segments too narrow for flow", (double)count_closed(made),
-            "");
+    add_row(made, "closed_segments", "segments too narrow for flow", closed, "");
     add_row(made, "lost_segments", "segments without flow above rounding", lost, "");
     add_row(made, "unknowns", "unknowns after reduction", (double)flow->unknowns, "");
     add_row(made, "steps", "steps of conjugate gradients", (double)flow->steps, "");
