@@ -5,11 +5,12 @@
  * points near the surface and keeps full precision. POV-Ray then finds the surface to within 2e-9
  * radii.
  *
- * The function [docs/METHODS.md section 7]. The frame is that of the first circle: x along e_1, y
- * along f, z along the circle's axis, unit r_1. A ruling connects the points of the two circles at
- * the same angle p. Projected to (x, z), it is a straight line from (cos p, 0) to a point of the
- * line from a = C_2(pi) to b = C_2(0). Let l in [0, 1] be the position along a ruling. The points
- * of equal l lie in a plane parallel to y, on an ellipse. One diameter of the ellipse goes from (1
+ * The function [docs/METHODS.md section 7]. The coordinates are those of the first circle: x is
+ * along e_1, y along f, and z along the circle's axis; the unit of length is the radius r_1. A
+ * ruling connects the points of the two circles at the same angle p. Projected to (x, z), it is a
+ * straight line from (cos p, 0) to a point of the line from a = C_2(pi) to b = C_2(0). Let l in [0,
+ * 1] be the position along a ruling. The points of equal l lie in a plane parallel to y, on an
+ * ellipse. One diameter of the ellipse goes from (1
  * - l) (-1, 0) + l a to (1 - l) (1, 0) + l b. Its half axis along y is R = 1 - l + l r_2 / r_1. Let
  * s in [-1, 1] be the position along the diameter. Then G = y^2 - R^2 (1 - s^2) is 0 on the
  * surface. For given x and z, l is a root of a quadratic equation: (x, z) must be on the diameter

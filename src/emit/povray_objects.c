@@ -65,7 +65,7 @@ static bool hits_primitive(const PovrayGeometry *geometry, size_t item)
     return rayvolume_meets(geometry->volume, box);
 }
 
-/* Reduces the items to those that a ray of the part can hit. */
+/* Drops the items that no ray of the part can hit. */
 static Status choose_items(PovrayGeometry *geometry, Err *err)
 {
     PovrayItems *all = &geometry->objects[0];

@@ -1,9 +1,9 @@
-/* Finds a change of hue or of saturation: one map of colors takes every pixel of A to the pixel of
- * B, and leaves greys as they are. Each map has one parameter, which is fitted to the samples. The
- * map is named if it fits the whole picture: for 50 pixels of A and B that differ by more than the
- * rounding of codes, it leaves at most one pixel that differs. A saturation moves a color away from
- * the grey of its pixel. Programs define this grey in different ways, and compute in codes or in
- * light.
+/* Finds a change of hue or of saturation: one map of colors changes every pixel of A into the pixel
+ * of B. The map does not change greys. Each map has one parameter, which is fitted to the samples.
+ * The map is named if it fits the whole picture: for 50 pixels of A and B that differ by more than
+ * the rounding of codes, it leaves at most one pixel that differs. A saturation moves a color away
+ * from the grey of its pixel. Programs define this grey in different ways, and compute in codes or
+ * in light.
  */
 #include "compare/cause/guesses.h"
 

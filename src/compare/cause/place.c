@@ -36,8 +36,8 @@ static bool is_seen(const Labels *labels, const Picture *picture, int side, int 
 
 /* ---- another background ---------------------------------------------------------------------- */
 
-/* Pixels that are not background on both sides: those that are equal, those that differ beside
- * background, which are mixed with it, and others that differ. */
+/* The kinds of pixels that are not background in both pictures: equal pixels; differing pixels next
+ * to background, whose colors are mixed with it; other differing pixels. */
 enum { EQUAL_PIXELS, RIM_PIXELS, OTHER_PIXELS, BACKGROUND_SUMS };
 
 typedef struct Backgrounds {
