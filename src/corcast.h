@@ -437,6 +437,14 @@ CORCAST_API void corcast_scene_free(corcast_scene *scene);
  * Stability: stable. */
 CORCAST_API int corcast_image_read(const char *path, corcast_image **out, corcast_error *error);
 
+/* Reads a picture or plane from the bytes of a file, as corcast_image_read reads a file.
+ *
+ * size   of `bytes`, in bytes.
+ * name   names the bytes in errors, for example the file they came from. NULL: "the bytes".
+ * Stability: provisional. */
+CORCAST_API int corcast_image_read_bytes(const void *bytes, size_t size, const char *name,
+                                         corcast_image **out, corcast_error *error);
+
 /* Pixels in memory: rows from the top down, pixels from left to right, channels interleaved, no
  * padding. */
 typedef struct corcast_pixels {
@@ -480,6 +488,14 @@ CORCAST_API int corcast_image_pixels(const corcast_image *image, corcast_plane p
  * Stability: stable. */
 CORCAST_API int corcast_image_write(const corcast_image *image, corcast_plane plane,
                                     corcast_type type, const char *path, corcast_error *error);
+
+/* Passes the bytes of the file that corcast_image_write would write to `sink`. `name` is the name
+ * of the file, without a folder; its extension decides the format. The file is made in a temporary
+ * folder in /tmp, which is removed.
+ * Stability: provisional. */
+CORCAST_API int corcast_image_write_bytes(const corcast_image *image, corcast_plane plane,
+                                          corcast_type type, const char *name, corcast_sink *sink,
+                                          void *user, corcast_error *error);
 
 /* Frees an image. NULL is allowed.
  * Stability: stable. */

@@ -1,6 +1,7 @@
 /* Runs the jobs that write files of a tree: meshes, scenes, pictures and figures. */
 #include "api/reports.h"
 #include "api/request.h"
+#include "api/sink.h"
 
 #include "job/coverage/coverage.h"
 #include "job/export/export.h"
@@ -11,8 +12,6 @@
 #include "job/picture/diagram.h"
 #include "job/picture/render.h"
 #include "job/pulse/pulsing.h"
-#include <dirent.h>
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -94,93 +93,17 @@ int corcast_export(const corcast_tree *tree, const corcast_options *options, con
 
 /* ---- to a sink ------------------------------------------------------------------------------- */
 
-/* The receiver of the bytes of files. */
-typedef struct Sink {
-    corcast_sink *take;
-    void *user;
-    locale_t before; /* locale of the caller's thread */
-} Sink;
+/* The arguments of corcast_export_bytes. */
+typedef struct ExportSource {
+    const corcast_tree *tree;
+    const corcast_options *options;
+    const Call *call;
+} ExportSource;
 
-static bool give(const Sink *sink, const char *name, const void *bytes, size_t size)
+static Status export_source(const void *context, const char *path, Err *err)
 {
-    locale_t own = callback_begin(sink->before);
-    const int stop = sink->take(sink->user, name, bytes, size);
-    callback_end(own);
-    return stop == 0;
-}
-
-static Status pass_stream(const Sink *sink, const char *name, FILE *stream, Err *err)
-{
-    enum { BLOCK = 1 << 16 };
-    char block[BLOCK];
-    size_t count;
-    bool is_first = true;
-    while ((count = fread(block, 1, BLOCK, stream)) > 0 || is_first) {
-        is_first = false;
-        if (!give(sink, name, block, count))
-            return err_set(err, STATUS_IO, "%s: the sink did not take the bytes", name);
-    }
-    return ferror(stream) ? err_set(err, STATUS_IO, "%s: reading failed", name) : STATUS_OK;
-}
-
-static Status pass_file(const Sink *sink, const char *folder, const char *name, Err *err)
-{
-    char *path = NULL;
-    TRY(file_join(folder, name, &path, err));
-    FILE *stream = fopen(path, "rb");
-    Status status = stream
-                        ? pass_stream(sink, name, stream, err)
-                        : err_set(err, STATUS_IO, "%s: cannot be read: %s", path, strerror(errno));
-    if (stream)
-        fclose(stream);
-    free(path);
-    return status;
-}
-
-/* Passes the bytes of all files in a folder to the sink, in the order of the files' names. */
-static Status pass_folder(const Sink *sink, const char *folder, Err *err)
-{
-    struct dirent **entries = NULL;
-    const int n = scandir(folder, &entries, NULL, alphasort);
-    Status status = STATUS_OK;
-    if (n < 0)
-        return mem_out_of("to list", folder, err);
-    for (int i = 0; i < n; i++) {
-        const char *name = entries[i]->d_name;
-        if (strcmp(name, ".") != 0 && strcmp(name, "..") != 0)
-            TRY_GOTO(pass_file(sink, folder, name, err));
-    }
-done:
-    for (int i = 0; i < n; i++)
-        free(entries[i]);
-    free(entries);
-    return status;
-}
-
-static Status check_name(const char *name, Err *err)
-{
-    TRY(path_check(name, "name", err));
-    return strchr(name, '/')
-               ? err_set(err, STATUS_USAGE, "name is '%s'; it must have no folder", name)
-               : STATUS_OK;
-}
-
-static Status export_bytes(const corcast_tree *tree, const corcast_options *options,
-                           const char *name, const Sink *sink, const Call *call, Err *err)
-{
-    char *folder = NULL, *path = NULL;
-    Status status = STATUS_OK;
-    TRY(check_name(name, err));
-    if (!sink->take)
-        return err_set(err, STATUS_USAGE, "sink is NULL");
-    TRY(file_temporary_folder("/tmp/", &folder, err));
-    TRY_GOTO(file_join(folder, name, &path, err));
-    TRY_GOTO(export_files(tree, options, path, call, err));
-    status = pass_folder(sink, folder, err);
-done:
-    file_forget(folder);
-    free(path);
-    return status;
+    const ExportSource *from = context;
+    return export_files(from->tree, from->options, path, from->call, err);
 }
 
 int corcast_export_bytes(const corcast_tree *tree, const corcast_options *options, const char *name,
@@ -188,7 +111,8 @@ int corcast_export_bytes(const corcast_tree *tree, const corcast_options *option
 {
     Call call = call_begin(error);
     const Sink to = {sink, user, call.before};
-    return call_end(&call, export_bytes(tree, options, name, &to, &call, &call.err));
+    const ExportSource from = {tree, options, &call};
+    return call_end(&call, sink_files(&to, name, export_source, &from, &call.err));
 }
 
 /* ---- figures --------------------------------------------------------------------------------- */

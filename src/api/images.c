@@ -1,6 +1,7 @@
 /* Pictures in memory. Colors are stored as they were drawn or read: as integer codes or as floats.
  * They are converted when the caller requests another type. */
 #include "api/image.h"
+#include "api/sink.h"
 
 #include "options/output.h"
 #include <stdlib.h>
@@ -8,13 +9,21 @@
 
 /* ---- making ---------------------------------------------------------------------------------- */
 
-static Status read_image(const char *path, corcast_image **out, Err *err)
+/* The encoded bytes of a picture: those of a file, or of a buffer of the caller. */
+typedef struct ImageSource {
+    const char *name;  /* of the file; for bytes, their name in errors */
+    const void *bytes; /* NULL: read the file */
+    size_t size;
+} ImageSource;
+
+static Status read_image(const ImageSource *from, corcast_image **out, Err *err)
 {
-    corcast_image *made = NULL;
-    TRY(path_check(path, "path", err));
+    corcast_image *made;
     TRY(argument_check(out, "out", err));
     TRY(handle_new(&made, HANDLE_IMAGE, sizeof *made, err));
-    Status status = image_read(&made->color, path, ALPHA_KEPT, NULL, err);
+    Status status = from->bytes ? image_decode(&made->color, from->name, from->bytes, from->size,
+                                               ALPHA_KEPT, err)
+                                : image_read(&made->color, from->name, ALPHA_KEPT, NULL, err);
     if (status != STATUS_OK) {
         corcast_image_free(made);
         return status;
@@ -26,7 +35,18 @@ static Status read_image(const char *path, corcast_image **out, Err *err)
 int corcast_image_read(const char *path, corcast_image **out, corcast_error *error)
 {
     Call call = call_begin(error);
-    return call_end(&call, read_image(path, out, &call.err));
+    const ImageSource from = {.name = path};
+    Status status = path_check(path, "path", &call.err);
+    return call_end(&call, status == STATUS_OK ? read_image(&from, out, &call.err) : status);
+}
+
+int corcast_image_read_bytes(const void *bytes, size_t size, const char *name, corcast_image **out,
+                             corcast_error *error)
+{
+    Call call = call_begin(error);
+    const ImageSource from = {name ? name : "the bytes", bytes, size};
+    Status status = argument_check(bytes, "bytes", &call.err);
+    return call_end(&call, status == STATUS_OK ? read_image(&from, out, &call.err) : status);
 }
 
 /* Returns the size of one number in bytes; 0 for an unknown type. */
@@ -314,6 +334,29 @@ int corcast_image_write(const corcast_image *image, corcast_plane plane, corcast
 {
     Call call = call_begin(error);
     return call_end(&call, write_image(image, plane, type, path, &call.err));
+}
+
+/* The arguments of corcast_image_write_bytes. */
+typedef struct PlaneSource {
+    const corcast_image *image;
+    corcast_plane plane;
+    corcast_type type;
+} PlaneSource;
+
+static Status write_source(const void *context, const char *path, Err *err)
+{
+    const PlaneSource *from = context;
+    return write_image(from->image, from->plane, from->type, path, err);
+}
+
+int corcast_image_write_bytes(const corcast_image *image, corcast_plane plane, corcast_type type,
+                              const char *name, corcast_sink *sink, void *user,
+                              corcast_error *error)
+{
+    Call call = call_begin(error);
+    const Sink to = {sink, user, call.before};
+    const PlaneSource from = {image, plane, type};
+    return call_end(&call, sink_files(&to, name, write_source, &from, &call.err));
 }
 
 void corcast_image_free(corcast_image *image)

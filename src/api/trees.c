@@ -1,5 +1,6 @@
 /* Trees: reading from files, bytes and arrays, and access to their arrays. */
 #include "api/request.h"
+#include "api/sink.h"
 
 #include "derive/derive.h"
 #include "job/tree/blood.h"
@@ -268,21 +269,14 @@ int corcast_tree_write(const corcast_tree *tree, const char *path, corcast_error
     return call_end(&call, write_tree(tree, path, &call.err));
 }
 
-static Status write_bytes(const corcast_tree *tree, const char *name, corcast_sink *sink,
-                          void *user, const Call *call, Err *err)
+static Status write_bytes(const corcast_tree *tree, const char *name, const Sink *sink, Err *err)
 {
     Text text = TEXT_INIT;
     Status status = STATUS_OK;
     TRY(handle_check(tree, HANDLE_TREE, "tree", err));
     TRY(path_check(name, "name", err));
-    if (!sink)
-        return err_set(err, STATUS_USAGE, "sink is NULL");
     TRY_GOTO(tree_write_text(&tree->tree, name, &text, err));
-    locale_t own = callback_begin(call->before);
-    const int stop = sink(user, file_name(name), text_chars(&text), text.length);
-    callback_end(own);
-    if (stop)
-        status = err_set(err, STATUS_IO, "%s: the sink did not take the bytes", file_name(name));
+    status = sink_give(sink, file_name(name), text_chars(&text), text.length, err);
 done:
     text_release(&text);
     return status;
@@ -292,7 +286,8 @@ int corcast_tree_write_bytes(const corcast_tree *tree, const char *name, corcast
                              void *user, corcast_error *error)
 {
     Call call = call_begin(error);
-    return call_end(&call, write_bytes(tree, name, sink, user, &call, &call.err));
+    const Sink to = {sink, user, call.before};
+    return call_end(&call, write_bytes(tree, name, &to, &call.err));
 }
 
 void corcast_tree_free(corcast_tree *tree)

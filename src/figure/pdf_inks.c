@@ -173,14 +173,14 @@ static bool has(const char *from, const char *to, const char *word)
 /* Decodes a JPEG to 8-bit codes of three channels. The caller frees *out. */
 static Status decode_jpeg(const char *from, size_t n, char **out, size_t *size, Err *err)
 {
-    Picture picture;
-    TRY(picture_decode(&picture, "a JPEG of a .pdf panel", from, n, err));
-    if (picture.channels != 3) {
-        picture_release(&picture);
+    Image image;
+    TRY(image_decode(&image, "a JPEG of a .pdf panel", from, n, ALPHA_REFUSED, err));
+    if (image.picture.channels != 3 || !image.picture.codes8) {
+        image_release(&image);
         return broken("a JPEG in RGB has another number of colors", err);
     }
-    *size = picture_stride(&picture) * (size_t)picture.height;
-    *out = (char *)picture.codes8;
+    *size = picture_stride(&image.picture) * (size_t)image.picture.height;
+    *out = (char *)image.picture.codes8;
     return STATUS_OK;
 }
 

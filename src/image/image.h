@@ -342,10 +342,10 @@ bool image_exr_text(const char *path, const char *name, char *text, size_t size)
  * Errors: also STATUS_INPUT if the file holds the other kind. */
 MUST_CHECK Status picture_read(Picture *picture, const char *path, ImageAlpha alpha, Err *err);
 MUST_CHECK Status plane_read(Plane *plane, const char *path, ImageAlpha alpha, Err *err);
-/* Reads a file in memory as picture_read. `name` is the file's name in errors. Errors: also
- * STATUS_INPUT if the format is unknown. */
-MUST_CHECK Status picture_decode(Picture *picture, const char *name, const void *bytes, size_t size,
-                                 Err *err);
+/* Decodes a file in memory as image_read reads a file. `name` is the file's name in errors.
+ * Errors: those of image_read, except those of opening a file. */
+MUST_CHECK Status image_decode(Image *image, const char *name, const void *bytes, size_t size,
+                               ImageAlpha alpha, Err *err);
 
 /* Composites an image with alpha over a background in linear light. `background` is linear red,
  * green and blue, from 0 to 1. The result has 3 channels. Its codes are linear if they were linear,

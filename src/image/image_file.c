@@ -109,19 +109,13 @@ Status picture_read(Picture *picture, const char *path, ImageAlpha alpha, Err *e
     return STATUS_OK;
 }
 
-Status picture_decode(Picture *picture, const char *name, const void *bytes, size_t size, Err *err)
+Status image_decode(Image *image, const char *name, const void *bytes, size_t size,
+                    ImageAlpha alpha, Err *err)
 {
-    Image image;
     const ImageBytes file = {name, bytes, size, NULL};
     if (!is_known(bytes, size))
         return err_set(err, STATUS_INPUT, "%s: is not an image of a known format", name);
-    TRY(decode(&file, ALPHA_REFUSED, &image, err));
-    if (image.plane.values) {
-        image_release(&image);
-        return err_set(err, STATUS_INPUT, "%s: holds floats", name);
-    }
-    *picture = image.picture;
-    return STATUS_OK;
+    return decode(&file, alpha, image, err);
 }
 
 Status plane_read(Plane *plane, const char *path, ImageAlpha alpha, Err *err)

@@ -91,7 +91,8 @@ _FUNCTIONS = {
     "tree_nodes": "hp", "tree_field": "hshpp", "tree_write": "hs", "grow": "hHH",
     "refine": "hhH", "certify": "hhH", "info": "hhH", "pulse": "hhH",
     "coverage": "hhH", "answer": "hhsH", "scene_new": "hhH", "render": "hHH",
-    "image_read": "sH", "image_from_pixels": "pH", "image_shape": "hippp",
+    "image_read": "sH", "image_read_bytes": "pzsH", "image_from_pixels": "pH",
+    "image_shape": "hippp", "image_write_bytes": "hiisfp",
     "image_pixels": "hiipz", "image_write": "hiis", "compare": "hhhH", "mesh_new": "hhH",
     "mesh_triangles": "hp", "export": "hhs", "export_bytes": "hhsfp", "verify": "hhsH",
     "figure": "shs",
@@ -485,17 +486,9 @@ class Tree(_Handle):
 
     def export_bytes(self, name, command="export", **options):
         """Returns the files that `export` would write: a dict from file name to bytes."""
-        files = {}
         options = _Options(command, options)
-
-        def take(_user, file, data, size):
-            files.setdefault(os.fsdecode(file), bytearray()).extend(ctypes.string_at(data, size))
-            return 0
-
-        sink = _SINK(take)
-        options.run("export_bytes", self._handle, options._handle, _text(name),
-                    ctypes.cast(sink, c_void_p), None)
-        return {file: bytes(data) for file, data in files.items()}
+        return _files(lambda sink: options.run("export_bytes", self._handle, options._handle,
+                                               _text(name), sink, None))
 
     def page(self, **options):
         """Returns the web page that `corcast export T -o P.html` writes: a Page, which shows the
@@ -554,6 +547,19 @@ def _type_of(dtype):
     raise ValueError(f"{numpy.dtype(dtype)} is not one of uint8, uint16, float32, uint32")
 
 
+def _files(make):
+    """Calls `make` with a sink; returns a dict from the names of the files it takes to bytes."""
+    files = {}
+
+    def take(_user, file, data, size):
+        files.setdefault(os.fsdecode(file), bytearray()).extend(ctypes.string_at(data, size))
+        return 0
+
+    sink = _SINK(take)
+    make(ctypes.cast(sink, c_void_p))
+    return {file: bytes(data) for file, data in files.items()}
+
+
 class Image(_Handle):
     """A picture, and optionally planes of the same size: depth, normals and ids.
 
@@ -568,6 +574,14 @@ class Image(_Handle):
         """Reads a picture: PNG, TIFF, JPEG, WebP, PNM, PFM or OpenEXR."""
         image = cls()
         _call("image_read", _text(path), byref(image._handle))
+        return image
+
+    @classmethod
+    def from_bytes(cls, data, name="the bytes"):
+        """Reads a picture from the bytes of a file. `name` names them in errors."""
+        image = cls()
+        data = bytes(data)
+        _call("image_read_bytes", data, len(data), _text(name), byref(image._handle))
         return image
 
     @classmethod
@@ -614,25 +628,33 @@ class Image(_Handle):
     def __array__(self, dtype=None, copy=None):
         return self.pixels if dtype is None else self.pixels.astype(dtype)
 
+    @staticmethod
+    def _file_type(name, plane, dtype):
+        kind = {"depth": _F32, "normal": _F32, "id": _U32}.get(plane)
+        if kind is not None:
+            return kind
+        extension = os.fspath(name).rsplit(".", 1)[-1].lower()
+        return _type_of(dtype or (numpy.float32 if extension in ("exr", "pfm") else numpy.uint8))
+
     def save(self, path, plane="color", dtype=None):
         """Writes a plane to a file. The extension selects the format."""
-        extension = os.fspath(path).rsplit(".", 1)[-1].lower()
-        kind = {"depth": _F32, "normal": _F32, "id": _U32}.get(plane)
-        if kind is None:
-            kind = _type_of(dtype or (numpy.float32 if extension in ("exr", "pfm")
-                                      else numpy.uint8))
-        _call("image_write", self._handle, _PLANES[plane], kind, _text(path))
+        _call("image_write", self._handle, _PLANES[plane], self._file_type(path, plane, dtype),
+              _text(path))
+
+    def to_bytes(self, name, plane="color", dtype=None):
+        """Returns the bytes of the file that `save` would write. The extension of `name`, a file
+        name without a folder, selects the format."""
+        kind = self._file_type(name, plane, dtype)
+        made = _files(lambda sink: _call("image_write_bytes", self._handle, _PLANES[plane], kind,
+                                         _text(name), sink, None))
+        return made[os.fspath(name)]
 
     def __repr__(self):
         return "<corcast.Image of {} x {} pixels>".format(*self.size)
 
     def _repr_png_(self):
         """Returns a PNG, so that a notebook displays the picture."""
-        import tempfile
-        with tempfile.TemporaryDirectory() as folder:
-            path = pathlib.Path(folder) / "image.png"
-            self.save(path)
-            return path.read_bytes()
+        return self.to_bytes("image.png")
 
 
 class Scene(_Handle):

@@ -195,6 +195,32 @@ static void small_buffers(void)
     corcast_image_free(image);
 }
 
+static int refuse(void *user, const char *name, const void *bytes, size_t size)
+{
+    (void)user;
+    (void)name;
+    (void)bytes;
+    return size < 1u << 30;
+}
+
+static void wrong_image_bytes(void)
+{
+    const unsigned char pixels[12] = {0};
+    const corcast_pixels given = {2, 2, 3, CORCAST_U8, pixels, 12};
+    corcast_image *image = NULL;
+    EXPECT(2, "bytes is NULL", corcast_image_read_bytes(NULL, 3, "a.png", &image, error));
+    EXPECT(2, "a.png: is not an image", corcast_image_read_bytes("abc", 3, "a.png", &image, error));
+    EXPECT(2, "the bytes:", corcast_image_read_bytes("P6\n2 2\n255\n", 11, NULL, &image, error));
+    OK(corcast_image_from_pixels(&given, &image, error));
+#define WRITE(name, sink)                                                                          \
+    corcast_image_write_bytes(image, CORCAST_COLOR, CORCAST_U8, name, sink, NULL, error)
+    EXPECT(3, "sink", WRITE("a.png", refuse));
+    EXPECT(2, "sink is NULL", WRITE("a.png", NULL));
+    EXPECT(2, "folder", WRITE("b/a.png", refuse));
+    EXPECT(2, "floats", WRITE("a.exr", refuse));
+    corcast_image_free(image);
+}
+
 /* ---- callbacks ------------------------------------------------------------------------------- */
 
 static int stop(void *user, const char *step, double fraction)
@@ -202,14 +228,6 @@ static int stop(void *user, const char *step, double fraction)
     (void)fraction;
     *(int *)user += step != NULL;
     return 1;
-}
-
-static int refuse(void *user, const char *name, const void *bytes, size_t size)
-{
-    (void)user;
-    (void)name;
-    (void)bytes;
-    return size < 1u << 30;
 }
 
 static corcast_options *stopping(const char *command, int *calls)
@@ -308,6 +326,7 @@ int main(int argc, char **argv)
     reset_options();
     wrong_arrays();
     small_buffers();
+    wrong_image_bytes();
     cancelled_growth(tree);
     cancelled_picture(tree, "model", "joined");
     cancelled_picture(tree, "model", "isosurface");

@@ -9,7 +9,9 @@
  *   session compare A B NAME=VALUE...              prints the report
  *   session info IN NAME=VALUE...                  prints the report; also coverage
  *   session pulse OUT IN NAME=VALUE...             writes the tree, prints the report; also answer
- *   session convert IN OUT                         reads the bytes of IN in memory
+ *   session convert IN OUT                         reads the bytes of the tree IN in memory
+ *   session recode IN OUT                          reads the bytes of the picture IN in memory, and
+ *                                                  writes it through a sink into OUT's folder
  *
  * Ends with the status of the library, and its error message on standard error. */
 #include "corcast.h"
@@ -232,18 +234,43 @@ static int answer(char **arguments)
     return measure("answer", answer_to_output, arguments + 1);
 }
 
+static char bytes_read[1 << 20];
+
+/* Reads a file into bytes_read. Returns its size; ends the program with 3 if it cannot be read. */
+static size_t read_file(const char *path)
+{
+    FILE *file = fopen(path, "rb");
+    if (!file) {
+        perror(path);
+        exit(3);
+    }
+    const size_t size = fread(bytes_read, 1, sizeof bytes_read, file);
+    fclose(file);
+    return size;
+}
+
 static int convert(char **arguments)
 {
-    static char bytes[1 << 20];
     corcast_tree *tree = NULL;
-    FILE *file = fopen(arguments[0], "rb");
-    const size_t size = file ? fread(bytes, 1, sizeof bytes, file) : 0;
-    int status = corcast_tree_read_bytes(bytes, size, arguments[0], NULL, &tree, error);
+    const size_t size = read_file(arguments[0]);
+    int status = corcast_tree_read_bytes(bytes_read, size, arguments[0], NULL, &tree, error);
     if (!status)
         status = corcast_tree_write(tree, arguments[1], error);
-    if (file)
-        fclose(file);
     corcast_tree_free(tree);
+    return status;
+}
+
+static int recode(char **arguments)
+{
+    corcast_image *image = NULL;
+    char *slash = strrchr(arguments[1], '/');
+    const size_t size = read_file(arguments[0]);
+    int status = corcast_image_read_bytes(bytes_read, size, NULL, &image, error);
+    *slash = '\0';
+    if (!status)
+        status = corcast_image_write_bytes(image, CORCAST_COLOR, CORCAST_U8, slash + 1, keep,
+                                           arguments[1], error);
+    corcast_image_free(image);
     return status;
 }
 
@@ -255,7 +282,7 @@ int main(int argc, char **argv)
     } operations[] = {{"grow", grow},          {"refine", refine},   {"export", export_tree},
                       {"bytes", export_bytes}, {"render", render},   {"compare", compare},
                       {"info", info},          {"convert", convert}, {"coverage", coverage},
-                      {"pulse", pulse},        {"answer", answer}};
+                      {"pulse", pulse},        {"answer", answer},   {"recode", recode}};
     int status = 2;
     error = corcast_error_new();
     for (size_t i = 0; argc > 1 && i < sizeof operations / sizeof *operations; i++)

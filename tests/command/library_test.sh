@@ -80,6 +80,10 @@ test_facts_and_conversions_are_those_of_the_command_line() {
     expect_same program.json library.json
     run_ok session convert tree.swc same.swc
     expect_same tree.swc same.swc
+    run_ok corcast render tree.swc --size 60x40 -o picture.ppm
+    mkdir recoded
+    run_ok session recode picture.ppm recoded/same.ppm
+    expect_same picture.ppm recoded/same.ppm
 }
 
 test_pulses_coverage_and_answers_are_those_of_the_command_line() {
@@ -146,6 +150,9 @@ test_failing_allocations_are_errors() {
     expect_failing 7 info "$tree" threads=1
     expect_failing 7 convert "$tree" out.vtp
     expect_failing 29 render "$tree" out.ppm size=20x16 threads=1
+    run_ok corcast render "$tree" --size 20x16 -o picture.png
+    # Without .tif: an allocation that fails in libtiff ends a program that uses the library [tiff_stream.c].
+    expect_failing 5 recode "$PWD/picture.png" ./out.png
     if [ "${ALLOC:-}" = all ]; then
         expect_failing 1 refine "$tree" out.swc threads=1
         FAILING_OUTPUTS=many expect_failing 1 export export "$tree" out.stl threads=1

@@ -134,6 +134,20 @@ static int from_bytes(Play *play)
     return corcast_tree_read_bytes(bytes, size, name, options, slot, play->error);
 }
 
+/* Reads pictures of two formats that are cut off anywhere, and passes them on in another format. */
+static int recode(Play *play)
+{
+    static const char picture[] = "P5 3 2 255\n......PF 1 1 -1\n............";
+    static const char *const outputs[] = {"b.png", "b.exr", "b.tif", "b.webp", "b", "c/b.ppm"};
+    corcast_image **image = &ANY(images);
+    const size_t from = next(play) % 2 ? 17 : 0, size = next(play) % (sizeof picture - from);
+    corcast_image_free(*image);
+    (void)corcast_image_read_bytes(picture + from, size, "b", image, play->error);
+    return corcast_image_write_bytes(*image, (corcast_plane)(next(play) % 5),
+                                     (corcast_type)(next(play) % 5), outputs[next(play) % 6], sink,
+                                     play, play->error);
+}
+
 static int get_pixels(Play *play)
 {
     static float buffer[4096];
@@ -191,7 +205,7 @@ static int play_one(Play *play)
     corcast_image **image = &ANY(images);
     corcast_options *options = ANY(options);
     corcast_error *error = play->error;
-    switch (what % 26) {
+    switch (what % 27) {
     case 0:
         return new_options(play);
     case 1:
@@ -246,6 +260,8 @@ static int play_one(Play *play)
         return corcast_pulse(*tree, options, REPORT, error);
     case 24:
         return corcast_coverage(*tree, options, REPORT, error);
+    case 25:
+        return recode(play);
     case 22:
         corcast_image_free(*image);
         return 0;

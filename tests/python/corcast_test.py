@@ -144,6 +144,19 @@ class Pictures(unittest.TestCase):
         self.assertTrue((corcast.Image.read("array.png").plane("color", numpy.uint16)
                          == pixels).all())
 
+    def test_files_in_memory_are_those_that_save_writes(self):
+        image = self.tree.render(size="40x30", planes="depth")
+        for name, plane in (("a.png", "color"), ("a.exr", "depth"), ("a.tif", "color")):
+            image.save(name, plane)
+            content = image.to_bytes(name, plane)
+            self.assertEqual(content, data(name))
+            again = corcast.Image.from_bytes(content, name)
+            numpy.testing.assert_array_equal(
+                again.plane("color", numpy.float32 if plane == "depth" else None),
+                image.plane(plane))
+        with self.assertRaisesRegex(corcast.Error, "mine: is not an image"):
+            corcast.Image.from_bytes(b"abc", "mine")
+
     def test_a_comparison_names_what_differs(self):
         a = self.tree.render(size=(80, 60))
         found = corcast.compare(a, corcast.Image.from_array(a.pixels[::-1]))
