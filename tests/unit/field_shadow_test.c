@@ -52,21 +52,20 @@ static void keep_sight(const TracedTile *tile, Sight *sight)
 
 static void look(const Geometry *geometry, const Camera *camera, Sight *sight)
 {
-    const FieldTilesParams params = {.geometry = geometry,
-                                     .camera = camera,
-                                     .grid = {.side = 1, .n_columns = 8, .n_rows = 8},
-                                     .z_min = 1e-4,
-                                     .workers = 1};
-    FieldTiles *tiles;
-    TileHits hits;
-    TracedTile seen = {
-        .n_columns = 8, .n_rows = 8, .perspective = camera->projection == PROJECTION_PERSPECTIVE};
+    const RenderParams params = {.threads = 1};
+    const View view = {.camera = *camera};
+    const Drawing drawing = {.geometry = geometry, .view = &view, .params = &params};
+    const SampleGrid grid = {.side = 1, .n_columns = 8, .n_rows = 8};
+    BatchTile tile = {.traced = {.n_columns = 8,
+                                 .n_rows = 8,
+                                 .perspective = camera->projection == PROJECTION_PERSPECTIVE}};
+    void *bins;
     *sight = (Sight){.seen = 0};
-    assert_int_equal(fieldtiles_new(&params, &tiles, NULL), STATUS_OK);
-    assert_int_equal(fieldtiles_list(tiles, 0, 0, NULL), STATUS_OK);
-    assert_int_equal(fieldtiles_trace(tiles, 0, &seen, &hits, NULL), STATUS_OK);
-    keep_sight(&seen, sight);
-    fieldtiles_free(tiles);
+    assert_int_equal(field_tiles.bin(&drawing, &grid, &bins, NULL), STATUS_OK);
+    assert_int_equal(field_tiles.list(bins, 0, 0, NULL), STATUS_OK);
+    assert_int_equal(field_tiles.trace(bins, 0, -1, &tile, NULL), STATUS_OK);
+    keep_sight(&tile.traced, sight);
+    field_tiles.release(bins);
 }
 
 /* Of what is seen, as bits, that which faces the light. */

@@ -84,7 +84,6 @@ static void see(SceneModel model, Projection projection, Sight *sight)
     assert_int_equal(thinvessels_find(&sight->scene.geometry, &sight->scene.view.camera,
                                       (ThinWidths){1, 0}, 2, &sight->thin, &err),
                      STATUS_OK);
-    thinvessels_init_lights(&sight->thin);
     assert_int_equal(caster_new(&sight->scene.geometry, NULL, 2, &sight->drawing.caster, &err),
                      STATUS_OK);
     sight->drawing.geometry = &sight->scene.geometry;

@@ -169,24 +169,3 @@ void fieldterms_make(const FrameSegment *segments, const uint32_t *list, size_t 
     if (!tile->plane && !tile->any_depth)
         sort_terms(terms, tile->n_terms);
 }
-
-Status tilework_reserve(TileWork *work, size_t n, Err *err)
-{
-    if (n <= work->capacity)
-        return STATUS_OK;
-    size_t capacity = n > 2 * work->capacity ? n : 2 * work->capacity;
-    void *memory = capacity <= SIZE_MAX / TILE_WORK_BYTES
-                       ? aligned_alloc(64, capacity * TILE_WORK_BYTES)
-                       : NULL;
-    if (!memory)
-        return err_set(err, STATUS_MEMORY, "no memory for %zu terms of the potential", capacity);
-    free(work->memory);
-    *work = (TileWork){memory, capacity};
-    return STATUS_OK;
-}
-
-void tilework_release(TileWork *work)
-{
-    free(work->memory);
-    *work = (TileWork){0};
-}

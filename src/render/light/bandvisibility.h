@@ -12,10 +12,6 @@
  * shadows are on. */
 bool pixelvisibility_is_needed(const View *view, const RenderParams *params);
 
-/* Number of rows above and below a band on which the band's visibility depends. Ambient occlusion
- * averages over 3 x 3 blocks of 2 x 2 pixels, which reach three rows. */
-enum { VISIBILITY_MARGIN = 3 };
-
 /* Rows of a block of the image. The shading points of a block query an area light together.
  * Rounding in the isosurface and blob kernels depends on which shading points are queried together.
  * Where a view has area lights, the caller of pixelvisibility_compute therefore passes a band of
@@ -39,8 +35,9 @@ typedef struct VisibilitySources {
 
 /* Computes the visibility of all pixels of the drawing's band.
  *
- * The VISIBILITY_MARGIN rows next to an edge of the band are correct only if that edge is also an
- * edge of the image. If ambient occlusion is on, the band's first row must be even.
+ * The three rows next to an edge of the band are correct only if that edge is also an edge of the
+ * image: ambient occlusion averages over 3 x 3 blocks of 2 x 2 pixels, which reach three rows. If
+ * ambient occlusion is on, the band's first row must be even.
  *
  * out      receives the result; release it with pixelvisibility_free. Set on success only.
  * Errors   STATUS_MEMORY. */

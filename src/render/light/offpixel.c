@@ -78,7 +78,7 @@ Status offpixel_query(const Drawing *drawing, const OffPixelViews *views, size_t
     TRY_GOTO(shadowpass_init(drawing, views->bins, views->n_views, NULL, &job.pass, err));
     TRY_GOTO(threads_try(run_count(points), drawing->params->threads, query_run, &job, err));
 done:
-    shadowpass_release(&job.pass, drawing);
+    shadowpass_release(&job.pass);
     return status;
 }
 

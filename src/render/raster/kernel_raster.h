@@ -1,15 +1,10 @@
 /* The kernel RasterKernels.trace: finds the first primitive at each sample of a tile, several
- * samples at once. Each source that compiles it for its lanes includes this file and defines
- * RASTER_KERNEL(name), which makes the names of its functions.
+ * samples at once. rasterkernels.c compiles this file for each instruction set.
  *
  * For every item of the tile's list, the blocks of LANES samples that its capsule may touch are
  * found all at once, and the samples of these blocks are intersected with the item. A sample keeps
  * the nearest item and its normal, or the ruling of a joint. Normals of joints are computed at the
  * end. */
-#ifndef RASTER_KERNEL
-#error "define RASTER_KERNEL(name), the name of a function"
-#endif
-
 #include "render/raster/kernel_joint.h"
 #include "render/raster/rasterbins.h"
 #include "render/raster/rasterkernels.h"
@@ -181,8 +176,8 @@ RASTER_FN void trace_items(RasterState *state, bool perspective)
     }
 }
 
-LANE_TARGET static uint64_t RASTER_KERNEL(trace)(const RasterTile *tile, RasterHits *hits,
-                                                 TileHits *surface)
+LANE_TARGET static uint64_t LANES_NAME(trace)(const RasterTile *tile, RasterHits *hits,
+                                              TileHits *surface)
 {
     RasterState state = {.tile = tile, .hits = hits, .surface = surface};
     for (int sample = 0; sample < TILE_SAMPLES; sample += LANES) {
@@ -209,9 +204,7 @@ LANE_TARGET static void resolve_decided(const RasterTile *tile, uint32_t number,
     Vec3 normal = {0, 0, 0};
     raster_decide(tile->bins, number, tile->x + (double)tile->grid->x[sample],
                   tile->y + (double)tile->grid->y[sample], &normal);
-    surface->normal[0][sample] = (float)normal.x;
-    surface->normal[1][sample] = (float)normal.y;
-    surface->normal[2][sample] = (float)normal.z;
+    tile_set_vector(surface->normal, sample, normal);
 }
 
 /* Sets the normals of those samples of a block that hit the joint, and the index of its
@@ -257,8 +250,8 @@ RASTER_FN void resolve_block(const RasterTile *tile, RasterHits *hits, int block
     }
 }
 
-LANE_TARGET static void RASTER_KERNEL(resolve)(const RasterTile *tile, RasterHits *hits,
-                                               TileHits *surface)
+LANE_TARGET static void LANES_NAME(resolve)(const RasterTile *tile, RasterHits *hits,
+                                            TileHits *surface)
 {
     for (int block = 0; block < BLOCKS; block++)
         if (tile->perspective)

@@ -37,9 +37,6 @@ static inline size_t rasterbins_items(const Geometry *geometry)
 
 /* Returns true if rasterbins_new supports a geometry and an image of this size in pixels. */
 bool rasterbins_take(const Geometry *geometry, int width, int height);
-/* Returns true if the geometry is so small that rasterbins_new uses one thread. */
-bool rasterbins_are_small(const Geometry *geometry);
-
 /* Builds the bins; release them with rasterbins_free. They borrow `geometry` and copy `view`.
  *
  * Errors   STATUS_MEMORY; STATUS_USAGE if a side of the picture has more than 65535 tiles.

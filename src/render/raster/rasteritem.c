@@ -44,15 +44,12 @@ static void face_sight(JointFrame *joint, Vec3 sight, Vec3 out[6])
 RasterJoint rasterjoint_make(const RasterView *view, const Primitive *primitive, Vec3 middle)
 {
     RasterJoint made;
-    JointFrame joint = primitive_joint(primitive);
-    Vec3 from_eye = vec3_sub(joint.base, view->eye.location), part[6];
-    joint.base = vec3_sub(viewpoint_frame_direction(&view->eye, from_eye), middle);
-    joint.span = viewpoint_frame_direction(&view->eye, joint.span);
+    JointFrame joint = rasterview_joint(view, primitive);
+    Vec3 part[6];
+    joint.base = vec3_sub(joint.base, middle);
     /* The frame is left-handed. Reversing the direction of rotation keeps S_p x S_l pointing
      * outward. */
-    joint.side = vec3_scale(viewpoint_frame_direction(&view->eye, joint.side), -1);
-    joint.across = viewpoint_frame_direction(&view->eye, joint.across);
-    joint.across_change = viewpoint_frame_direction(&view->eye, joint.across_change);
+    joint.side = vec3_scale(joint.side, -1);
     face_sight(&joint, view->eye.perspective ? middle : vec3(0, 0, 1), part);
     Vec3 base = part[0], span = part[1], a = part[2], b = part[3], da = part[4], db = part[5];
     store_floats(made.base, base);

@@ -47,6 +47,20 @@ typedef struct TileHits {
                                * sample is TILE_UNSURE, or was before it was decided */
 } TileHits;
 
+/* Returns the vector of a sample in an array by component. */
+static inline Vec3 tile_vector(const float v[3][TILE_SAMPLES], int sample)
+{
+    return vec3((double)v[0][sample], (double)v[1][sample], (double)v[2][sample]);
+}
+
+/* Sets the vector of a sample in an array by component. */
+static inline void tile_set_vector(float to[3][TILE_SAMPLES], int sample, Vec3 v)
+{
+    to[0][sample] = (float)v.x;
+    to[1][sample] = (float)v.y;
+    to[2][sample] = (float)v.z;
+}
+
 /* A tile whose lines of sight have been traced. */
 typedef struct TracedTile {
     int column, row;       /* position of its first sample in the picture's grid of samples */

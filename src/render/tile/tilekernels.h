@@ -89,20 +89,28 @@ typedef struct TileKernels {
     uint64_t (*within)(const ProjectedPoints *aimed, int32_t tile);
 } TileKernels;
 
-/* The kinds of kernels: first the portable one, then one for each newer instruction set. */
-extern const TileKernels tilekernels_portable;
+/* The kinds of kernels: first the portable one, then one for each newer instruction set. Each table
+ * of functions has one version per kind, whose name LANES_NAME [lanes.h] makes. DECLARE_KERNELS
+ * declares the versions of the table `name`, of struct `type`. EACH_KIND is the list of their
+ * addresses. */
 #ifdef __x86_64__
 enum { KINDS_OF_KERNELS = 3 };
-extern const TileKernels tilekernels_avx2, tilekernels_avx512;
+#define DECLARE_KERNELS(type, name) extern const type name##_portable, name##_avx2, name##_avx512
+#define EACH_KIND(name) &name##_portable, &name##_avx2, &name##_avx512
 #else
 enum { KINDS_OF_KERNELS = 1 };
+#define DECLARE_KERNELS(type, name) extern const type name##_portable
+#define EACH_KIND(name) &name##_portable
 #endif
+
+DECLARE_KERNELS(TileKernels, tilekernels);
+extern const TileKernels *const tilekernels[KINDS_OF_KERNELS];
+
 /* Returns the number of kinds, from the first on, that this processor can run. The last of them is
  * the fastest. */
 int kernels_usable(void);
-/* Returns the index of the requested kind, which this processor must be able to run. */
+/* Returns the index of the requested kind, which this processor must be able to run, in the
+ * tables of kernels: KERNELS_FASTEST gives the last usable one. */
 int kernels_kind(RenderKernels kernels);
-
-extern const TileKernels *const tilekernels[KINDS_OF_KERNELS];
 
 #endif
