@@ -31,8 +31,9 @@ int effects_reach(const Effects *effects, int side);
 
 /* The band of samples that effects are drawn on. All pointers are borrowed. */
 typedef struct EffectSamples {
-    const View
-        *view; /* its effects, fade and background, and the camera whose pixels are the samples */
+    /* The view with its effects, fade, background and camera. The pixels of the camera are the
+     * samples. */
+    const View *view;
     const RadiusTable *radii;
     int side; /* samples per pixel width */
     int threads;

@@ -117,7 +117,8 @@ static int compare_terms(const void *a, const void *b)
     return one->segment < other->segment ? -1 : 1;
 }
 
-/* Sorts terms by ascending `on`. Most lists are short, for which insertion is fastest. */
+/* Sorts terms by ascending `on`. Most lists are short, and insertion is fastest for them. Reason
+ * for the limit of 64 not recorded. */
 static void sort_terms(TileTerm *terms, size_t n)
 {
     if (n > 64) {

@@ -24,9 +24,9 @@
  * nearest term is passed. Then rays are marched, and each step may end with a proof that the point
  * is lit or dark.
  *
- * -  Rim. Points are on the surface only as exactly as it was found. Until Phi has fallen below RIM
- *    of the level when the line leaves the surface, the level is replaced by SKIN times the
- *    level. */
+ * Points are on the surface only as exactly as they were found. While the line leaves the surface,
+ * until Phi has fallen below RIM of the level, the level is therefore replaced by SKIN times the
+ * level. A sum of bounds counts as below the level if it is below SURELY_BELOW. */
 #define RIM 0.998f
 #define SKIN 1.002f
 #define SURELY_BELOW (0.999f * LEVEL)

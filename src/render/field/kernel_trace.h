@@ -21,7 +21,9 @@
  *    margin, and a hit is a point where the potential rises through T + margin. */
 #include "render/field/kernel_packet.h"
 
-/* Lack of potential below which a very certain hit is completed by Newton's method. */
+/* Lack of potential below which a very certain hit is completed by Newton's method, and the maximum
+ * number of steps of a march; rays that need more are decided in double precision. Reasons for the
+ * values are not recorded. */
 #define NEAR_ENOUGH (2e-2f * LEVEL)
 #define MOST_STEPS 128
 
@@ -214,7 +216,7 @@ LANE_FN Gradient gradient_at(const Group *group, Lanes z, LaneMask rays, Lanes *
     return sum;
 }
 
-/* One more Newton step comes with the gradient. */
+/* Stores the hits. The gradient gives one more step of Newton's method. */
 LANE_FN void describe_hits(const Group *group, int first, LaneMask hit, Lanes z, TileHits *hits)
 {
     const FieldTile *tile = group->packet->tile;

@@ -141,8 +141,10 @@ LANE_FN void list_cones(const OcclusionDirection *direction, const OcclusionPoin
     }
 }
 
-/* Sets a grid over the cones, with a few cones per cell. A cell is a quarter as wide as it is high,
- * because a capsule takes the rows one by one. */
+/* Sets a grid over the cones, with about `a_square` cones per square, unless a square would be
+ * narrower than the widest cone. A square is divided into `columns_a_square` cells side by side,
+ * because a capsule blocks cones row by row. Reasons for the two values are not recorded; they
+ * decide how many cones out of reach are computed. */
 static inline void set_grid(const OcclusionPoints *points, float wide, ConeScratch *scratch)
 {
     const float a_square = 20, columns_a_square = 4;

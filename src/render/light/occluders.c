@@ -21,9 +21,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* In units of the mean radius. Wider cones err less in dense trees and more in sparse ones. */
+/* Largest half width of a cone, in units of the mean radius of the vessels. Wider cones err less in
+ * dense trees and more in sparse ones; the value is a compromise. */
 static const double wide_in_radii = 3.5;
-static const double golden_turn = 2.399963229728653;
+static const double golden_turn = 2.399963229728653; /* the golden angle, radians */
 
 static void store_point(float to[3][OCCLUDER_BLOCK], size_t lane, Vec3 point, Vec3 origin)
 {

@@ -26,8 +26,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Sets of lines, and the maximum number of lines of a set. Reason for MAX_LINES not recorded: it
+ * bounds the memory of the answers, one byte per probe and line. */
 enum { SETS = 4, MAX_LINES = 128 };
-/* Cosine of the largest angle between the normals of a probe and of a pixel that it serves. */
+/* Cosine of the largest angle between the normals of a probe and of a pixel that it serves: 60
+ * degrees [at the top of this file]. */
 static const float least_cosine = 0.5f;
 /* Lines per occlusion direction of RenderParams. */
 enum { LINES = 4 };

@@ -21,7 +21,7 @@ static bool shadowed(void *context, Vec3 point, Vec3 towards, double distance)
     return caster_shadow(shadow->caster, shadow->worker, shadow->ground, point, towards, distance);
 }
 
-/* What the sample (i, j) shares with its pixel. */
+/* Sets the visibility that the sample (i, j) shares with its pixel. */
 static void add_shared(const Drawing *drawing, double i, double j, double t, bool on_ground,
                        float light_visibility[VIEW_MAX_LIGHTS], ShadingInput *at)
 {

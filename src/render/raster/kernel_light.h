@@ -5,7 +5,9 @@
 #include "render/raster/rasterbins.h"
 #include "render/raster/rasterkernels.h"
 
-/* See may_enter_joint. */
+/* Largest 1 / sine of the angle between a joint's axis and the line of sight at which the sides of
+ * its capsule can decide whether a line enters [may_enter_joint]. Reason for the value not
+ * recorded. */
 static const float most_per_sine = 50;
 
 /* LANES queries as floats, relative to the tile's middle. */
@@ -16,7 +18,7 @@ typedef struct QueryBlock {
     uint32_t box; /* packed box of the queries, compared with the boxes of items [RasterBox] */
 } QueryBlock;
 
-/* item_covers() for one query, in double precision. */
+/* Does the same as item_covers for one query, in double precision. */
 LANE_TARGET static bool decide_query(const NearItem *near, const RasterTile *tile,
                                      const ShadowPoints *points, int query)
 {

@@ -20,6 +20,7 @@ enum {
 
 /* ---- tiles ----------------------------------------------------------------------------------- */
 
+/* The state of `trace` for one tile. */
 typedef struct RasterState {
     const RasterTile *tile;
     RasterHits *hits;
@@ -27,6 +28,7 @@ typedef struct RasterState {
     float farthest[PARTS]; /* depth beyond which a part needs no item */
 } RasterState;
 
+/* Sets `farthest` of all parts of a block. */
 RASTER_FN void set_farthest(RasterState *state, int block, float depth)
 {
     for (int part = 0; part < PARTS_OF_BLOCK; part++)
@@ -53,6 +55,7 @@ RASTER_FN LaneMask keep_nearer(RasterState *state, const NearItem *near, uint32_
     return nearer;
 }
 
+/* Replaces the lanes `of` in an array. */
 RASTER_FN void keep_lanes(float *values, LaneMask of, Lanes lanes)
 {
     lanes_store(values, lanes_select(of, lanes, lanes_load(values)));
@@ -85,6 +88,7 @@ LANE_TARGET static void decide_block(RasterState *state, const NearItem *near, i
     set_farthest(state, block, lanes_largest(lanes_load(&hits->z[block * LANES])));
 }
 
+/* Intersects the lines of sight of a block with an item, and keeps the nearer hits. */
 RASTER_FN void meet_block(RasterState *state, const NearItem *near, int block)
 {
     const RasterGrid *grid = state->tile->grid;
@@ -151,7 +155,7 @@ RASTER_FN unsigned touched_parts(const RasterState *state, const NearItem *near)
     return bits;
 }
 
-/* Number of items by which prefetching is ahead. */
+/* Number of items by which prefetching is ahead; reason for the value not recorded. */
 enum { ITEMS_AHEAD = 8 };
 
 RASTER_FN void trace_items(RasterState *state, bool perspective)

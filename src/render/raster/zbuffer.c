@@ -71,8 +71,8 @@ static bool touches_row(const ZBrush *brush, Vec3 center, double radius)
     return below >= brush->row - 1 && above <= brush->row + TILE_SIDE;
 }
 
-/* Draws points around a circle in the plane of e and f. Their normals lead away from its centre;
- * `normal` not NULL: all are that. */
+/* Draws points around a circle in the plane of two vectors. `normal` is the normal of all points;
+ * NULL: the normals lead away from the centre. */
 static void draw_circle(const ZBrush *brush, Vec3 center, const Vec3 plane[2], double radius,
                         int points, const Vec3 *normal)
 {

@@ -1,9 +1,9 @@
-/* Samples miss what is narrower than their distance, or hit it by chance: a tree of 10^6 terminals
- * at 640 pixels becomes noise. Vessels that narrow are strips instead, drawn by the area that they
- * have in each sample's cell [tile/thincells.h]. Wider vessels are sampled, which is right wherever
- * it is fine enough.
+/* Samples miss a vessel that is narrower than their distance, or hit it by chance: a tree of 10^6
+ * terminals at 640 pixels becomes noise. Such vessels are drawn as strips instead, by the area that
+ * they have in each sample's cell [tile/thincells.h]. Wider vessels are sampled, which is right
+ * wherever the samples are close enough.
  *
- * A strip is cut into pieces of about PIECE_PX pixels. A piece has one color: the mean of the
+ * A strip is cut into pieces of about piece_px pixels. A piece has one color: the mean of the
  * shading model over the visible half of the wall, at normals in the middle of SHADED parts of
  * equal width. The light visibility of a piece is that of the point of its wall that faces the
  * light. The point that faces the viewer would not do: where the light comes from behind, the
@@ -19,6 +19,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Normals per piece, and rows of samples that a thread draws at a time. Reasons for these values
+ * and for piece_px are not recorded. */
 enum { SHADED = 5, ROWS = 8 };
 static const double piece_px = 1.5;
 /* Height of shading points above the vessel's surface, in radii: less than a sample can resolve,
@@ -65,8 +67,8 @@ static ThinVessel vessel_part(const ThinVessel *vessel, double from, double to)
     return part;
 }
 
-/* The greater width of the vessel in pixels; infinite if an end is not in front of a perspective
- * camera. */
+/* Returns the greater width of the vessel in pixels; infinite if an end is not in front of a
+ * perspective camera. */
 static double widest(const ThinVessel *vessel, const Camera *camera)
 {
     const CameraPoint a = camera_point(camera, vessel->a), b = camera_point(camera, vessel->b);
@@ -348,9 +350,11 @@ static Vec3 lit_point(const void *context, const Light *light, size_t piece)
 
 /* ---- ambient visibility ---------------------------------------------------------------------- */
 
-/* Columns of a picture of one row whose pixels are pieces. Runs are apart by more than the pixels
- * that share answers [light/occlusion.c], as their walls have nothing in common. Sets *n to the
- * number of columns. */
+/* Lays the pieces out as pixels of a picture of one row, so that occlusion_compute can process
+ * them. Sets
+ * (*columns)[piece], which the caller frees, and *n to the number of columns. Runs are farther
+ * apart than pixels that share answers [light/occlusion.c], because their walls have nothing in
+ * common. */
 static Status place_pieces(const ThinVessels *thin, uint32_t **columns, size_t *n, Err *err)
 {
     enum { APART = 4 };

@@ -56,9 +56,9 @@ static void share_surfaces(const PixelVisibility *visibility, CanvasWorker *own)
     TileSurface *surfaces[] = {&own->surface, &own->ground};
     for (int i = 0; visibility && i < 2; i++) {
         surfaces[i]->ambient = own->ambient;
-        surfaces[i]->light_visibility = (const float(*)[TILE_SAMPLES])own->light_visibility;
         for (int light = 0; light < VIEW_MAX_LIGHTS; light++)
-            surfaces[i]->is_shared[light] = visibility->lights[light] != NULL;
+            surfaces[i]->light_visibility[light] =
+                visibility->lights[light] ? own->light_visibility[light] : NULL;
     }
 }
 

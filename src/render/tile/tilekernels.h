@@ -34,10 +34,8 @@ typedef struct TileSurface {
     const uint8_t (*shadowed)[TILE_SAMPLES]; /* per light and sample: 1 in shadow; NULL: none is */
     const float *fade;    /* per sample: fraction of the paper's color; NULL: 0 for all */
     const float *ambient; /* per sample: ambient visibility, 0 to 1; NULL: 1 for all */
-    const float (
-        *light_visibility)[TILE_SAMPLES]; /* per light and sample: visibility of the light, 0 to 1,
-                                           * if is_shared[light]; NULL: no light is shared */
-    bool is_shared[VIEW_MAX_LIGHTS];
+    /* Per light: visibility of the light, 0 to 1, per sample; NULL: 1 for all. */
+    const float *light_visibility[VIEW_MAX_LIGHTS];
 } TileSurface;
 
 /* The points that the samples of a tile hit, mm in the view's frame; undefined for samples that hit
