@@ -20,11 +20,11 @@
 typedef struct Engine {
     const char *name; /* name for statistics and messages, such as "raster" */
     /* The functions that draw one tile, of an engine that draws tile by tile [tile/tilerender.h];
-     * NULL: another engine. Engines of tiles alone
-     * - can write 8-bit sRGB codes instead of linear float colors [RenderParams.codes_suffice];
-     * - leave out the vessels of Drawing.hidden, which are thinner than a pixel, and blend
-     *   Drawing.thin, which stands for them, over the samples: render.c sets neither for others;
-     * - answer shadow queries, by TileEngine.shadows; for others, shadow rays are traced. */
+     * NULL: another engine. Only an engine of tiles can do the following. It writes 8-bit sRGB
+     * codes instead of linear float colors, if RenderParams.codes_suffice is true. It leaves out
+     * the vessels of Drawing.hidden, which are thinner than a pixel, and blends Drawing.thin, which
+     * stands for them, over the samples; for another engine, both are NULL. It answers shadow
+     * queries by TileEngine.shadows; for another engine, shadow rays are traced. */
     const struct TileEngine *tiles;
     /* Returns true if the engine supports the drawing's geometry and view, and the parameters
      * select it. Does not read band, caster or appearance. */
@@ -51,20 +51,28 @@ typedef struct Engine {
     void (*free)(void *prepared);
 } Engine;
 
-/* xray_engine     the x-ray effect of a view, if colors are wanted: colors only, one sample per
- *                 pixel.
- * field_engine    the potential, unless POV-Ray's cells are specified, and the blob, unless the
- *                 method is RENDER_TRACE, tile by tile. Surfaces are drawn at their proven
- * positions. Traces rays only for soft shadows, for lights that lightview_sees_all rejects, and for
- * the colors of all samples if raycolor_is_needed() returns true. raster_engine   primitives, tile
- * by tile in single precision: for RENDER_RASTER, and for RENDER_FASTEST if the number of
- * primitives and the size of the image are within the limits of rasterbins_take. Traces shadow rays
- * only for lights that raster_shadows does not support: lights among the vessels or next to them,
- * and lights on the other side of the ground. zbuffer_engine  primitives, by sampling their
- * surfaces into a depth buffer, as the paper does [N, section 3]: for RENDER_ZBUFFER. Takes one
- * sample per pixel and draws no shadows. `prepare` returns STATUS_USAGE for a camera among the
- * vessels. ray_engine      every drawing, ray by ray. It comes last, where no other engine supports
- * the drawing or RENDER_TRACE is asked for. */
-extern const Engine xray_engine, field_engine, raster_engine, zbuffer_engine, ray_engine;
+/* Draws the x-ray effect of a view, if colors are wanted: colors only, one sample per pixel. */
+extern const Engine xray_engine;
+
+/* Draws implicit models tile by tile, at their proven positions: the potential, unless POV-Ray's
+ * cells are specified, and the blob, unless the method is RENDER_TRACE. Traces rays only for soft
+ * shadows, for lights that lightview_sees_all rejects, and for the colors of all samples if
+ * raycolor_is_needed() returns true. */
+extern const Engine field_engine;
+
+/* Draws primitives tile by tile, in single precision: for RENDER_RASTER, and for RENDER_FASTEST if
+ * the number of primitives and the size of the image are within the limits of rasterbins_take.
+ * Traces shadow rays only for lights that raster_shadows does not support: lights among the vessels
+ * or next to them, and lights on the other side of the ground. */
+extern const Engine raster_engine;
+
+/* Draws primitives by sampling their surfaces into a depth buffer, as the paper does [N, section
+ * 3]: for RENDER_ZBUFFER. Takes one sample per pixel and draws no shadows. `prepare` returns
+ * STATUS_USAGE for a camera among the vessels. */
+extern const Engine zbuffer_engine;
+
+/* Draws everything, ray by ray: every model and every option of a view. It comes last, where no
+ * other engine supports the drawing or RENDER_TRACE is asked for. */
+extern const Engine ray_engine;
 
 #endif

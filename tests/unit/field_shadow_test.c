@@ -5,7 +5,6 @@
  * has fallen below 0.998 C - e, it reaches C + e, and lit if from there on it does not reach C - e,
  * and before did not reach 1.002 C + e; of others, which are counted, nothing is said. e is what
  * single precision and the terms left out amount to. */
-#include "render/field/fieldshadow.h"
 #include "render/light/shadowqueue.h"
 #include "unit.h"
 

@@ -1,8 +1,8 @@
 /* Thin vessels of a grown tree have the same shadows from light views, and from the points of
  * area lights, as from rays. */
-#include "render/field/fieldshadow.h"
+#include "render/field/fieldtiles.h"
 #include "render/light/offpixel.h"
-#include "render/raster/rastershadow.h"
+#include "render/raster/rasterbins.h"
 #include "render/render.h"
 #include "render/thin/thinvessels.h"
 #include "unit.h"

@@ -5,20 +5,20 @@
  * it may exceed the cut-off. The ray is searched group by group. A group is a maximal run of terms
  * whose intervals overlap. T is the level.
  *
- * - Windows. Phi >= T among n terms requires that one of them is at least T / n. p is the peak of a
- *   term. Beside its segment, the term is that large only where w^2 <= ln(n p / T) - e^2. At x
- * beyond an end, where the term is at most exp(-e^2 - x^2) / 2, only where x^2 <= ln(n / 2T) - e^2.
- * There is no hit outside these windows.
+ * - Windows. Phi >= T among n terms requires that one of them is at least T / n. p is the peak of
+ *   a term. Beside its segment, the term is that large only where w^2 <= ln(n p / T) - e^2. At x
+ *   beyond an end, where the term is at most exp(-e^2 - x^2) / 2, only where x^2 <= ln(n / 2T) -
+ *   e^2. There is no hit outside these windows.
  * - Safe steps. On [t, next), until the interval of another term begins, Phi'' is at most M, the
- * sum over terms of exp(-e^2) (0.8926 p w'^2 + 0.9682 |w' u'| + 0.4840 u'^2). With G = exp(-w^2)
- * and A the axial factor, the suprema of G'', 2 |G'| |A'| and A'' are 4 exp(-3/2), 2 sqrt(2/e) /
- * sqrt(pi) and sqrt(2/e) / sqrt(pi). With lack = T - Phi(t) and the slope of Phi at t, Phi stays
- * below T up to the positive root of lack = slope x + M x^2 / 2. Such steps converge quadratically
- * from before the surface.
+ *   sum over terms of exp(-e^2) (0.8926 p w'^2 + 0.9682 |w' u'| + 0.4840 u'^2). With G = exp(-w^2)
+ *   and A the axial factor, the suprema of G'', 2 |G'| |A'| and A'' are 4 exp(-3/2), 2 sqrt(2/e) /
+ *   sqrt(pi) and sqrt(2/e) / sqrt(pi). With lack = T - Phi(t) and the slope of Phi at t, Phi stays
+ *   below T up to the positive root of lack = slope x + M x^2 / 2. Such steps converge
+ *   quadratically from before the surface.
  * - Existence. Phi'' is at least -N, computed in the same way from G'' >= -2 and A'' >= -2
- * sqrt(2/e) / sqrt(pi). If slope^2 >= 2 N lack, Phi reaches T, and rises all the way, before the
- * smaller root of lack = slope x - N x^2 / 2. This gives a bracket with one crossing, and Newton's
- * method finds it.
+ *   sqrt(2/e) / sqrt(pi). If slope^2 >= 2 N lack, Phi reaches T, and rises all the way, before the
+ *   smaller root of lack = slope x - N x^2 / 2. This gives a bracket with one crossing, and
+ *   Newton's method finds it.
  *
  * A ray that starts inside a vessel leaves it by the same method with the sign of Phi - T inverted,
  * without windows. From a union of bodies, the ray leaves one body after another until it is in

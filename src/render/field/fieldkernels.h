@@ -12,7 +12,8 @@
  * tile   has at least one term. x and y of all TILE_SAMPLES samples are read, also those of samples
  *        outside the image.
  * work   a workspace of at least tile->n_terms * TILE_WORK_BYTES bytes, aligned to 64 bytes.
- * Nothing in it is reused between calls. hits   receives the hits; all fields are set. */
+ *        Nothing in it is reused between calls.
+ * hits   receives the hits; all fields are set. */
 typedef void FieldKernel(const FieldTile *tile, void *work, TileHits *hits);
 
 /* Answers the shadow queries of points in a tile of a light view: sets points->state. A point is

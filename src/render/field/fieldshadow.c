@@ -2,7 +2,7 @@
  * the image. Kernels look from the points to the light. So once the lists are made, the segments
  * are reflected: in the plane of a parallel light, in the position of a point light. Lines of sight
  * then keep their places in the view, and z rises towards the light. */
-#include "render/field/fieldshadow.h"
+#include "render/field/fieldtiles.h"
 
 #include "render/cast/caster.h"
 #include "render/field/fieldkernels.h"

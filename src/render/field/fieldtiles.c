@@ -9,7 +9,6 @@
 #include "render/cast/caster.h"
 #include "render/engine.h"
 #include "render/field/fieldkernels.h"
-#include "render/field/fieldshadow.h"
 #include "render/field/fieldspace.h"
 #include "render/field/vessellists.h"
 #include <assert.h>

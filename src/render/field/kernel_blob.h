@@ -7,15 +7,15 @@
  * is not yet multiplied:
  *
  * - Distance. At the distance x from the segment, the field is at most ENVELOPE exp(2 - 2 x^2).
- * Beyond an end it is at most half of that. At y within an end it is at most 1/2 + INWARDS y of
- * that. The field is at least -DIP: beads beyond an end may outweigh the other components there.
+ *   Beyond an end it is at most half of that. At y within an end it is at most 1/2 + INWARDS y of
+ *   that. The field is at least -DIP: beads beyond an end may outweigh the other components there.
  * - Steepness. At the distance x within the reach R, the gradient is at most STEEPNESS (1 - x^2 /
- * R^2).
+ *   R^2).
  * - Curvature. A line passes the segment at the distance d, and the nearer of its ends at the
- * distance e. Along the line, the second derivative is at most the largest of CURVED (1 - x^2 /
- * WIDTH^2), near an end with x = e, near the axis and far from it with x = d, and of 0. Where the
- * line stays out of reach of both ends, it is at most that times the squared sine of the angle
- * between line and axis. It is at least -1.25 times that. */
+ *   distance e. Along the line, the second derivative is at most the largest of CURVED (1 - x^2 /
+ *   WIDTH^2), near an end with x = e, near the axis and far from it with x = d, and of 0. Where
+ *   the line stays out of reach of both ends, it is at most that times the squared sine of the
+ *   angle between line and axis. It is at least -1.25 times that. */
 #ifndef CORCAST_RENDER_FIELD_KERNEL_BLOB_H
 #define CORCAST_RENDER_FIELD_KERNEL_BLOB_H
 

@@ -6,7 +6,7 @@
  *
  * One sample set is processed after another. Each of its points gets a light view, as a light with
  * hard shadows does. If the engine has no light views for a light, shadow rays are traced. */
-#include "render/light/arealights.h"
+#include "render/light/pixelpoints.h"
 
 #include "render/light/shade.h"
 #include "render/light/shadowpass.h"

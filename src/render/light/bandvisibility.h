@@ -3,7 +3,7 @@
 #ifndef CORCAST_RENDER_LIGHT_BANDVISIBILITY_H
 #define CORCAST_RENDER_LIGHT_BANDVISIBILITY_H
 
-#include "render/light/occluders.h"
+#include "render/light/occlusion.h"
 #include "render/light/offpixel.h"
 #include "render/light/visibility.h"
 

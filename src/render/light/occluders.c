@@ -16,7 +16,7 @@
  * 0.037 instead of 0.029. At a flat end that is visible, such as a tip, the capsule's round end
  * stays within the cylinder. Otherwise it would block all points of the flat end, and the error of
  * a dense ball would be 0.052 instead of 0.031. */
-#include "render/light/occluders.h"
+#include "render/light/occlusion.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -4,7 +4,7 @@
 #ifndef CORCAST_RENDER_LIGHT_OCCLUSIONKERNELS_H
 #define CORCAST_RENDER_LIGHT_OCCLUSIONKERNELS_H
 
-#include "render/light/occluders.h"
+#include "render/light/occlusion.h"
 #include "render/tile/tilekernels.h"
 
 /* Shading points at which cones begin. Arrays have room for a multiple of OCCLUDER_BLOCK, and hold

@@ -4,7 +4,6 @@
 #include "render/light/resample.h"
 #include "render/raster/rasterbins.h"
 #include "render/raster/rasterkernels.h"
-#include "render/raster/rastershadow.h"
 #include "render/tile/tilerender.h"
 #include <stdlib.h>
 

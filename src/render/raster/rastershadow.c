@@ -5,8 +5,6 @@
  * The lists of a light view hold the primitives, their boxes and their depths. Several boxes are
  * compared with the points at once, so that few primitives remain to be tested. Memory is
  * prefetched for these primitives and for the list of the next tile. */
-#include "render/raster/rastershadow.h"
-
 #include "render/raster/rasterbins.h"
 #include "render/raster/rasterkernels.h"
 #include <stdlib.h>

@@ -12,7 +12,6 @@
 #include "render/thin/thinvessels.h"
 
 #include "render/cast/caster.h"
-#include "render/light/occlusion.h"
 #include "render/light/shade.h"
 #include "render/tile/interval.h"
 #include <math.h>
@@ -351,10 +350,9 @@ static Vec3 lit_point(const void *context, const Light *light, size_t piece)
 /* ---- ambient visibility ---------------------------------------------------------------------- */
 
 /* Lays the pieces out as pixels of a picture of one row, so that occlusion_compute can process
- * them. Sets
- * (*columns)[piece], which the caller frees, and *n to the number of columns. Runs are farther
- * apart than pixels that share answers [light/occlusion.c], because their walls have nothing in
- * common. */
+ * them. Sets (*columns)[piece], which the caller frees, and *n to the number of columns. Runs are
+ * farther apart than pixels that share answers [light/occlusion.c], because their walls have
+ * nothing in common. */
 static Status place_pieces(const ThinVessels *thin, uint32_t **columns, size_t *n, Err *err)
 {
     enum { APART = 4 };

@@ -12,7 +12,7 @@
 
 #include "base/base.h"
 #include "render/job.h"
-#include "render/light/occluders.h"
+#include "render/light/occlusion.h"
 #include "render/light/offpixel.h"
 #include "render/tile/thincells.h"
 

@@ -6,7 +6,6 @@
 #define CORCAST_RENDER_TILE_TILERENDER_H
 
 #include "render/light/shadowengine.h"
-#include "render/tile/samplegrid.h"
 #include "render/tile/thincells.h"
 
 /* A tile of a batch, and the results for its samples. */
