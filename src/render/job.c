@@ -1,5 +1,5 @@
-/* Progress counts samples: a picture with N x N further samples a pixel is 1 + N N passes over its
- * rows, of which the first is that of the centres. */
+/* Progress counts samples: a picture with N x N further samples per pixel takes 1 + N N passes over
+ * its rows, the first of which draws the centre samples. */
 #include "render/job.h"
 
 const char *const render_kernel_names[] = {[KERNELS_FASTEST] = "fastest",
@@ -8,16 +8,18 @@ const char *const render_kernel_names[] = {[KERNELS_FASTEST] = "fastest",
                                            [KERNELS_AVX512] = "avx512",
                                            NULL};
 
-Status band_progress(const Band *band, const RenderParams *params, int height, bool further,
-                     double part, Err *err)
+Status drawing_progress(const Drawing *drawing, int worker, bool further, size_t rows, Err *err)
 {
-    if (!params->progress)
+    const RenderParams *params = drawing->params;
+    const Band *band = &drawing->band;
+    if (worker != 0 || !params->progress)
         return STATUS_OK;
-    double more = params->want_color && params->antialias > 1
-                      ? (double)params->antialias * params->antialias
-                      : 0;
-    double done = (further ? 1 + more * part : part) / (1 + more);
-    const double fraction = (band->first + done * band->rows) / height;
+    const double part = (double)rows / band->rows;
+    const double more = params->want_color && params->antialias > 1
+                            ? (double)params->antialias * params->antialias
+                            : 0;
+    const double done = (further ? 1 + more * part : part) / (1 + more);
+    const double fraction = (band->first + done * band->rows) / drawing->view->camera.height;
     return params->progress(fraction, params->progress_context) ? STATUS_OK : err_cancelled(err);
 }
 

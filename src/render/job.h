@@ -121,13 +121,13 @@ typedef struct Drawing {
  * [scene/geometry.h], `point` is in mm. */
 Rgb drawing_color(const Drawing *drawing, uint32_t segment, Vec3 point);
 
-/* Reports progress of the whole image to params->progress. Does nothing if that is NULL. Errors:
- * STATUS_CANCELLED if the callback asks to stop.
+/* Reports progress of the whole image to params->progress, if that is not NULL and `worker` is 0.
+ * Errors: STATUS_CANCELLED if the callback asks to stop.
  *
- * height   height of the image, pixels.
+ * worker   index of the calling thread.
  * further  true: the pass draws the further samples of antialiasing; false: the centre samples.
- * part     finished fraction of this pass over the band, 0..1. */
-MUST_CHECK Status band_progress(const Band *band, const RenderParams *params, int height,
-                                bool further, double part, Err *err);
+ * rows     number of rows of the band that this pass has drawn. */
+MUST_CHECK Status drawing_progress(const Drawing *drawing, int worker, bool further, size_t rows,
+                                   Err *err);
 
 #endif

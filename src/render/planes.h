@@ -8,12 +8,6 @@
 #include <math.h>
 #include <string.h>
 
-/* Returns true if the frame has a plane of depth, normals or ids. */
-static inline bool planes_want_geometry(const Frame *frame)
-{
-    return frame->depth.values || frame->normal.values || frame->id.ids;
-}
-
 /* Stores the hit of a pixel in the depth, normal and id planes that the frame has.
  *
  * pixel    index of the pixel, row by row.

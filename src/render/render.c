@@ -1,34 +1,32 @@
-/* A picture is drawn in passes. The colors come from one pass, and the planes of geometry from the
- * same pass if the colors show just what the planes do [opaque_rows].
+/* A picture is drawn in passes: one for the colors, and one for the planes of geometry unless the
+ * colors show exactly what the planes show [opaque_rows].
  *
- * What the geometry alone decides, such as the search structure of rays (Caster), is made once.
- * What a view decides, such as an engine's lists of tiles and its light views, is kept as long as
- * its key stays the same [ViewKey]. An appearance decides colors only.
+ * Three kinds of data have three lifetimes. Data of the geometry alone, such as the search
+ * structure of rays (Caster), are made once. Data of a view, such as the lists of an engine's tiles
+ * and its light views, are kept as long as the key of the view stays the same [ViewKey]. An
+ * appearance affects colors only, so nothing is kept for it. The first engine of the table that
+ * supports a drawing draws it: the special engines come first, rays, which can draw anything, come
+ * last.
  *
- * The first engine of the table that can draws: the special ones first, rays, which can draw
- * anything, last.
+ * Vessels that are thinner than the distance of samples are drawn by coverage. A second renderer of
+ * the same geometry, the covering renderer, then draws the colors. Its camera does not see the thin
+ * vessels; they are drawn over each of its samples [thin/thinvessels.h]. Shadows and occlusion are
+ * those of all vessels. The visibility of lights at the thin vessels of a view is computed once: of
+ * area lights together with the view's first rows, whose light views it uses, and of other lights
+ * afterwards.
  *
- * Vessels that are thinner than the distance of samples are drawn by coverage. Their colors come
- * from a second renderer of the same geometry, the covering one, whose camera does not see the thin
- * vessels. They are drawn over each of its samples [thin/thinvessels.h]. Shadows and occlusion are
- * those of all vessels. The visibility of lights at the thin vessels of a view is found once: that
- * of area lights with the view's first rows, whose light views it uses, that of other lights after
- * them.
- *
- * A picture with effects is drawn as one of N x N times the pixels, N being its antialiasing, part
- * of the band by part. Effects are drawn on those samples. A pixel is the mean of its samples. */
+ * With effects, and N of antialiasing, a picture of N x N times as many pixels is drawn, part of
+ * the band by part. Its pixels are the samples on which effects are drawn. A pixel is the mean of
+ * its samples. */
 #include "render/render.h"
 
 #include "render/cast/caster.h"
 #include "render/effect/effect.h"
-#include "render/field/fieldrender.h"
+#include "render/engine.h"
 #include "render/light/bandvisibility.h"
-#include "render/light/rayrender.h"
-#include "render/raster/rasterrender.h"
-#include "render/raster/zbuffer.h"
 #include "render/thin/thinvessels.h"
 #include "render/tile/tilekernels.h"
-#include "render/xray/xray.h"
+#include "render/tile/tilerender.h"
 #include <assert.h>
 #include <math.h>
 #include <stddef.h>
@@ -69,7 +67,7 @@ struct Renderer {
     /* Only in a covering renderer: */
     ViewKey thin_key; /* of `thin`; without an engine */
     ThinVessels thin;
-    OffPixelPoints *unlit; /* those of `thin` until its visibility is known; borrowed */
+    OffPixelPoints *unlit; /* &thin.lights until the visibility there is known, then NULL */
 };
 
 /* ---- planes ---------------------------------------------------------------------------------- */
@@ -144,7 +142,10 @@ static Status make_caster(Renderer *renderer, Err *err)
 /* Makes the caster if the drawing's engine casts rays, and sets drawing->caster. */
 static Status prepare_caster(Renderer *renderer, Drawing *drawing, Err *err)
 {
-    if (engine_for(drawing)->needs_rays(drawing))
+    const Engine *engine = engine_for(drawing);
+    if (engine->needs_rays
+            ? engine->needs_rays(drawing)
+            : engine->tiles && shadowengine_needs_rays(engine->tiles->shadows, drawing))
         TRY(make_caster(renderer, err));
     drawing->caster = renderer->caster;
     return STATUS_OK;
@@ -261,7 +262,7 @@ static Status prepare_view(Renderer *renderer, const Drawing *drawing, Err *err)
         return STATUS_OK;
     forget_view(renderer);
     if (engine->prepare)
-        TRY(engine->prepare(drawing, &renderer->prepared, err));
+        TRY(engine->prepare(engine->tiles, drawing, &renderer->prepared, err));
     memcpy(&renderer->key, &key, sizeof key);
     renderer->stats.engine = engine->name;
     renderer->stats.preparations++;
@@ -345,9 +346,10 @@ static Status share(Renderer *renderer, const Drawing *drawing, int margin, Pixe
         TRY(occluderset_new(renderer->geometry, &renderer->occluders, err));
     const bool soft = softshadows_are_on(drawing->view, params);
     const Drawing wide = widened(drawing, margin, soft ? VISIBILITY_BLOCK : 1);
+    const TileEngine *tiles = renderer->key.engine->tiles;
     const VisibilitySources from = {.draw_planes = draw_vessel_planes,
                                     .context = renderer,
-                                    .engine = renderer->key.engine->shadows,
+                                    .engine = tiles ? tiles->shadows : NULL,
                                     .occluders = &renderer->occluders,
                                     .off_pixel = renderer->unlit};
     return pixelvisibility_compute(&wide, &from, out, err);
@@ -360,8 +362,8 @@ static Status share(Renderer *renderer, const Drawing *drawing, int margin, Pixe
 static Status find_light(Renderer *renderer, const Drawing *drawing, size_t light, Err *err)
 {
     const Viewpoint eye = viewpoint_of_camera(&drawing->view->camera);
-    const Engine *engine = renderer->key.engine;
-    LightBins *bins = engine->light_bins ? engine->light_bins(renderer->prepared, light) : NULL;
+    LightBins *bins =
+        renderer->key.engine->tiles ? tilerender_light_bins(renderer->prepared, light) : NULL;
     if (bins)
         return offpixel_query(drawing, &(OffPixelViews){&bins, 1, &eye}, light, renderer->unlit,
                               err);
@@ -390,14 +392,6 @@ static Status find_lights(Renderer *renderer, const Drawing *drawing, Err *err)
     return STATUS_OK;
 }
 
-/* Sets the colors of the thin vessels of a band. */
-static Status light_thin(Renderer *renderer, const Drawing *drawing, Err *err)
-{
-    TRY(find_lights(renderer, drawing, err));
-    thinvessels_color(drawing, &renderer->thin);
-    return STATUS_OK;
-}
-
 /* ---- passes ---------------------------------------------------------------------------------- */
 
 /* Draws the band of a drawing, whose visibility is found unless it is given, into new planes. */
@@ -412,15 +406,17 @@ static Status draw(Renderer *renderer, const Drawing *drawing, Frame *frame, Err
     TRY_GOTO(prepare_view(renderer, drawing, err));
     const Engine *engine = renderer->key.engine;
     const double start_s = clock_seconds();
-    const bool codes = params->codes_suffice && params->antialias == 1 && engine->writes_codes;
+    const bool codes = params->codes_suffice && params->antialias == 1 && engine->tiles;
     TRY_GOTO(
         make_planes(drawing->view->camera.width, drawing->band.rows, params, codes, frame, err));
     if (!drawing->visibility) {
         TRY_GOTO(share(renderer, drawing, RENDER_BAND_STEP, &visibility, err));
         lit.visibility = visibility;
     }
-    if (drawing->hidden)
-        TRY_GOTO(light_thin(renderer, &lit, err));
+    if (drawing->hidden) {
+        TRY_GOTO(find_lights(renderer, &lit, err));
+        thinvessels_color(&lit, &renderer->thin);
+    }
     TRY_GOTO(engine->rows(&lit, renderer->prepared, frame, err));
     renderer->stats.trace_s += clock_seconds() - start_s;
     renderer->stats.rays += (size_t)drawing->view->camera.width * (size_t)drawing->band.rows;
@@ -429,7 +425,8 @@ done:
     return status;
 }
 
-/* About how many samples are drawn at a time, of some fifty bytes each. */
+/* Approximate number of samples that are drawn at a time. At about fifty bytes per sample, they
+ * take 100 megabytes. */
 static const double samples_at_once = 2e6;
 
 /* Returns the rows of samples of the pixel rows [first, first + rows), and the rows of samples that
@@ -451,11 +448,8 @@ static Status draw_samples(Renderer *renderer, const Drawing *fine, int row, int
     Status status;
     drawing.band = band_of_samples(view, renderer->params.antialias, fine->band.first + row, rows);
     TRY_GOTO(draw(renderer, &drawing, &frame, err));
-    const EffectSamples samples = {.effects = &view->effects,
-                                   .camera = &view->camera,
+    const EffectSamples samples = {.view = view,
                                    .radii = &renderer->radii,
-                                   .fade = &view->fade,
-                                   .paper = view->background,
                                    .side = renderer->params.antialias,
                                    .threads = fine->params->threads,
                                    .band = drawing.band,
@@ -572,8 +566,8 @@ done:
 
 /* ---- thin vessels ---------------------------------------------------------------------------- */
 
-/* Vessels are thin if they are narrower than a pixel, and than this many distances of its samples.
- */
+/* A vessel is thin if it is narrower than a pixel and than this number of sample distances. Reason
+ * for the value not recorded: it decides which vessels are drawn by coverage instead of samples. */
 static const double most_samples = 3;
 
 /* Returns the camera of the samples that thin vessels are drawn over. With effects, samples are the
@@ -608,7 +602,6 @@ static Status find_thin(Renderer *covering, const View *view, Err *err)
     thinvessels_release(thin);
     memset(&covering->thin_key, 0, sizeof covering->thin_key);
     TRY(thinvessels_find(covering->geometry, &camera, widths, params->threads, thin, err));
-    thinvessels_init_lights(thin);
     covering->unlit = &thin->lights;
     if (params->shadows)
         TRY(offpixel_init(view, &thin->lights, err));
@@ -623,7 +616,7 @@ static bool may_cover(const Renderer *renderer, const View *view)
     const RenderParams *params = &renderer->params;
     const Drawing drawing = {.geometry = renderer->geometry, .view = view, .params = params};
     return params->cover_thin && params->want_color && !effects_have_shape(&view->effects) &&
-           engine_for(&drawing)->draws_thin;
+           engine_for(&drawing)->tiles;
 }
 
 /* Sets *colors to the renderer that draws the view's colors. */
@@ -642,8 +635,9 @@ static Status choose_renderer(Renderer *renderer, const View *view, Renderer **c
     return STATUS_OK;
 }
 
-/* Draws the planes of geometry and the colors, in one pass if the colors show just what the
- * planes do. Else the planes are drawn first: what the centres of pixels hit of all vessels. */
+/* Draws the planes of geometry and the colors, in one pass if the colors show exactly what the
+ * planes show. Otherwise the planes are drawn first: they show what the centres of pixels hit, thin
+ * vessels included. */
 static Status opaque_rows(Renderer *renderer, const WantedRows *wanted, Frame *frame, Err *err)
 {
     const View *view = wanted->view;
@@ -673,12 +667,12 @@ done:
 
 /* ---- transparency ---------------------------------------------------------------------------- */
 
-/* Returns alpha of a pixel from the share of it that shows the background.
+/* Returns alpha of a pixel from the fraction of the pixel that shows the background.
  *
- * The share is a difference of two averages, each with errors of rounding. Where it is, to those
- * errors, a multiple of one sample, it becomes that multiple: alpha of three of ten samples is then
- * the float 1 - 7/10, as in POV-Ray, whose code of 8 bits, 76.5 rounded, is 77. A pixel has N x N
- * samples, and one more at its centre unless the look has effects. */
+ * The fraction is a difference of two averages, each with rounding errors. If it is a multiple of
+ * one sample to within these errors, it becomes that multiple. For three of ten samples, alpha then
+ * is the float 1 - 7/10, as in POV-Ray, whose 8-bit code is 77, which is 76.5 rounded. A pixel has
+ * N x N samples, and one more at its centre unless the view has effects. */
 static float alpha_of_background(float share, int antialias)
 {
     static const float rounding_error = 0x1p-21f;

@@ -53,22 +53,21 @@ static void keep_answer(const TracedTile *seen, Answer *answer)
 
 static void ask(const Geometry *geometry, const Camera *camera, int kernel, Answer *answer)
 {
-    const FieldTilesParams params = {.geometry = geometry,
-                                     .camera = camera,
-                                     .grid = {.side = 1, .n_columns = 8, .n_rows = 8},
-                                     .z_min = 1e-4,
-                                     .workers = 1,
-                                     .kernels = (RenderKernels)(KERNELS_PORTABLE + kernel)};
-    FieldTiles *tiles;
-    TileHits hits;
-    TracedTile seen = {
-        .n_columns = 8, .n_rows = 8, .perspective = camera->projection == PROJECTION_PERSPECTIVE};
-    assert_int_equal(fieldtiles_new(&params, &tiles, NULL), STATUS_OK);
-    assert_int_equal(fieldtiles_list(tiles, 0, 0, NULL), STATUS_OK);
-    assert_int_equal(fieldtiles_trace(tiles, 0, &seen, &hits, NULL), STATUS_OK);
+    const RenderParams params = {.threads = 1,
+                                 .kernels = (RenderKernels)(KERNELS_PORTABLE + kernel)};
+    const View view = {.camera = *camera};
+    const Drawing drawing = {.geometry = geometry, .view = &view, .params = &params};
+    const SampleGrid grid = {.side = 1, .n_columns = 8, .n_rows = 8};
+    BatchTile tile = {.traced = {.n_columns = 8,
+                                 .n_rows = 8,
+                                 .perspective = camera->projection == PROJECTION_PERSPECTIVE}};
+    void *bins;
+    assert_int_equal(field_tiles.bin(&drawing, &grid, &bins, NULL), STATUS_OK);
+    assert_int_equal(field_tiles.list(bins, 0, 0, NULL), STATUS_OK);
+    assert_int_equal(field_tiles.trace(bins, 0, -1, &tile, NULL), STATUS_OK);
     *answer = (Answer){.eye = viewpoint_of_camera(camera)};
-    keep_answer(&seen, answer);
-    fieldtiles_free(tiles);
+    keep_answer(&tile.traced, answer);
+    field_tiles.release(bins);
 }
 
 /* The normal is the gradient's direction, and the segment that of the largest term. */

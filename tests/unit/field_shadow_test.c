@@ -5,7 +5,6 @@
  * has fallen below 0.998 C - e, it reaches C + e, and lit if from there on it does not reach C - e,
  * and before did not reach 1.002 C + e; of others, which are counted, nothing is said. e is what
  * single precision and the terms left out amount to. */
-#include "render/field/fieldshadow.h"
 #include "render/light/shadowqueue.h"
 #include "unit.h"
 
@@ -52,21 +51,20 @@ static void keep_sight(const TracedTile *tile, Sight *sight)
 
 static void look(const Geometry *geometry, const Camera *camera, Sight *sight)
 {
-    const FieldTilesParams params = {.geometry = geometry,
-                                     .camera = camera,
-                                     .grid = {.side = 1, .n_columns = 8, .n_rows = 8},
-                                     .z_min = 1e-4,
-                                     .workers = 1};
-    FieldTiles *tiles;
-    TileHits hits;
-    TracedTile seen = {
-        .n_columns = 8, .n_rows = 8, .perspective = camera->projection == PROJECTION_PERSPECTIVE};
+    const RenderParams params = {.threads = 1};
+    const View view = {.camera = *camera};
+    const Drawing drawing = {.geometry = geometry, .view = &view, .params = &params};
+    const SampleGrid grid = {.side = 1, .n_columns = 8, .n_rows = 8};
+    BatchTile tile = {.traced = {.n_columns = 8,
+                                 .n_rows = 8,
+                                 .perspective = camera->projection == PROJECTION_PERSPECTIVE}};
+    void *bins;
     *sight = (Sight){.seen = 0};
-    assert_int_equal(fieldtiles_new(&params, &tiles, NULL), STATUS_OK);
-    assert_int_equal(fieldtiles_list(tiles, 0, 0, NULL), STATUS_OK);
-    assert_int_equal(fieldtiles_trace(tiles, 0, &seen, &hits, NULL), STATUS_OK);
-    keep_sight(&seen, sight);
-    fieldtiles_free(tiles);
+    assert_int_equal(field_tiles.bin(&drawing, &grid, &bins, NULL), STATUS_OK);
+    assert_int_equal(field_tiles.list(bins, 0, 0, NULL), STATUS_OK);
+    assert_int_equal(field_tiles.trace(bins, 0, -1, &tile, NULL), STATUS_OK);
+    keep_sight(&tile.traced, sight);
+    field_tiles.release(bins);
 }
 
 /* Of what is seen, as bits, that which faces the light. */

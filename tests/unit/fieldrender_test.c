@@ -232,18 +232,18 @@ static void adaptive_antialiasing_changes_edges_alone(void **state)
     stage(&staged, KIND_TREE, PROJECTION_ORTHOGRAPHIC);
     Frame plain = drawn(&staged.scene, 2, 1, 0), full = drawn(&staged.scene, 2, 3, 0);
     Frame adaptive = drawn(&staged.scene, 2, 3, 0.1);
-    uint8_t *mask = calloc(WIDTH * HEIGHT, 1);
-    assert_non_null(mask);
-    resample_mask(&plain.color, 0, 0, 0.1f, 1, mask);
+    const RenderParams chosen = {.threads = 1, .antialias_threshold = 0.1};
+    Resampling more = resampling_for(3);
+    assert_int_equal(resampling_choose(&more, &chosen, &(Band){0}, &plain.color, NULL), STATUS_OK);
     int refined = 0;
     for (int pixel = 0; pixel < WIDTH * HEIGHT; pixel++) {
-        const Frame *expected = mask[pixel] ? &full : &plain;
+        const Frame *expected = more.mask[pixel] ? &full : &plain;
         assert_memory_equal(&adaptive.color.values[3 * pixel], &expected->color.values[3 * pixel],
                             3 * sizeof(float));
-        refined += mask[pixel];
+        refined += more.mask[pixel];
     }
     assert_true(refined > 100 && refined < WIDTH * HEIGHT / 2);
-    free(mask);
+    resampling_release(&more);
     frame_release(&plain);
     frame_release(&full);
     frame_release(&adaptive);
@@ -275,25 +275,27 @@ static void all_kernels_agree(void **state)
     stage(&staged, KIND_TREE, PROJECTION_ORTHOGRAPHIC);
     const TileLook look = {
         .finish = staged.scene.appearance.finish, .lights = {light}, .n_lights = 1};
-    FieldTilesParams params = {.geometry = &staged.scene.geometry,
-                               .camera = &staged.scene.view.camera,
-                               .grid = {.side = 1, .n_columns = 64, .n_rows = 64},
-                               .workers = 1};
+    RenderParams params = {.threads = 1};
+    const Drawing drawing = {
+        .geometry = &staged.scene.geometry, .view = &staged.scene.view, .params = &params};
+    const SampleGrid grid = {.side = 1, .n_columns = 64, .n_rows = 64};
     int n_kernels = kernels_usable();
     static Tile tiles[KINDS_OF_KERNELS][64];
     for (int k = 0; k < n_kernels; k++) {
-        FieldTiles *field;
+        void *bins;
         params.kernels = (RenderKernels)(KERNELS_PORTABLE + k);
-        assert_int_equal(fieldtiles_new(&params, &field, NULL), STATUS_OK);
+        assert_int_equal(field_tiles.bin(&drawing, &grid, &bins, NULL), STATUS_OK);
         for (int n = 0; n < 64; n++) {
-            TracedTile seen = {.column = n % 8 * 8, .row = n / 8 * 8, .n_columns = 8, .n_rows = 8};
+            BatchTile tile = {
+                .traced = {.column = n % 8 * 8, .row = n / 8 * 8, .n_columns = 8, .n_rows = 8}};
             memset(&tiles[k][n], 0, sizeof tiles[k][n]);
-            assert_int_equal(fieldtiles_list(field, n / 8, 0, NULL), STATUS_OK);
-            assert_int_equal(fieldtiles_trace(field, 0, &seen, &tiles[k][n].hits, NULL), STATUS_OK);
-            if (seen.hits)
+            assert_int_equal(field_tiles.list(bins, n / 8, 0, NULL), STATUS_OK);
+            assert_int_equal(field_tiles.trace(bins, 0, -1, &tile, NULL), STATUS_OK);
+            tiles[k][n].hits = tile.hits;
+            if (tile.traced.hits)
                 shade_tile(tilekernels[k], &look, &tiles[k][n]);
         }
-        fieldtiles_free(field);
+        field_tiles.release(bins);
     }
     int hits = 0;
     for (int n = 0; n < 64 * TILE_SAMPLES * n_kernels; n++) {

@@ -1,8 +1,8 @@
 /* Thin vessels of a grown tree have the same shadows from light views, and from the points of
  * area lights, as from rays. */
-#include "render/field/fieldshadow.h"
+#include "render/field/fieldtiles.h"
 #include "render/light/offpixel.h"
-#include "render/raster/rastershadow.h"
+#include "render/raster/rasterbins.h"
 #include "render/render.h"
 #include "render/thin/thinvessels.h"
 #include "unit.h"
@@ -84,7 +84,6 @@ static void see(SceneModel model, Projection projection, Sight *sight)
     assert_int_equal(thinvessels_find(&sight->scene.geometry, &sight->scene.view.camera,
                                       (ThinWidths){1, 0}, 2, &sight->thin, &err),
                      STATUS_OK);
-    thinvessels_init_lights(&sight->thin);
     assert_int_equal(caster_new(&sight->scene.geometry, NULL, 2, &sight->drawing.caster, &err),
                      STATUS_OK);
     sight->drawing.geometry = &sight->scene.geometry;

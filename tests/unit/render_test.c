@@ -316,18 +316,21 @@ static void pixels_that_differ_from_a_neighbour_are_sampled_again(void **state)
     (void)state;
     enum { SIDE = 5 };
     Plane color;
-    uint8_t mask[SIDE * SIDE];
     assert_int_equal(plane_init(&color, SIDE, SIDE, 3, NULL), STATUS_OK);
     for (int i = 0; i < 3 * SIDE * SIDE; i++)
         color.values[i] = i % 3 == 2 ? 1.7f : 0.25f;
     color.values[3 * (2 * SIDE + 2) + 1] = 0.390625f; /* 0.5 and 0.625, exact */
     color.values[3 * (2 * SIDE + 2) + 2] = 1.2f;      /* as white as the others */
     for (int above = 0; above < 2; above++) {
-        resample_mask(&color, 0, 0, above ? nextafterf(0.125f, 1) : 0.125f, 1, mask);
+        const float threshold = above ? nextafterf(0.125f, 1) : 0.125f;
+        const RenderParams params = {.threads = 1, .antialias_threshold = (double)threshold};
+        Resampling more = resampling_for(2);
+        assert_int_equal(resampling_choose(&more, &params, &(Band){0}, &color, NULL), STATUS_OK);
         for (int i = 0; i < SIDE * SIDE; i++) {
             int steps = abs(i % SIDE - 2) + abs(i / SIDE - 2);
-            assert_int_equal(mask[i], !above && steps <= 1);
+            assert_int_equal(more.mask[i], !above && steps <= 1);
         }
+        resampling_release(&more);
     }
     plane_release(&color);
 }

@@ -1,30 +1,33 @@
-/* Along a ray a component's 1 - d^2 / R^2 is top - curve (t - nearest)^2: for a ball throughout,
- * for a tube with other numbers before, beside and beyond its axis. So each is a few *pieces*, and
- * between any two neighbours among the ends of all pieces the field is one quartic.
+/* A blob is a sum of components, tubes and beads, of radius R and with the field (1 - d^2 / R^2)^2
+ * at the distance d [field/blob.h]. Along a ray, 1 - d^2 / R^2 is top - curve (t - nearest)^2:
+ * everywhere for a ball, and for a tube with other numbers before, beside and beyond its axis. So
+ * each component is a few *pieces*. Between two neighbours among the ends of all pieces, the field
+ * is one quartic.
  *
- * A hierarchy of boxes gives the segments whose field the ray may feel; each is felt in one
- * interval of t. Intervals that overlap make a group, and groups are taken in their order along the
- * ray until one holds a hit. Within a group the ends of pieces are passed in order. Where a piece
- * is felt from l to h, its 1 - d^2 / R^2 has the Bernstein coefficients w0, w1, w2 there, and its
+ * A hierarchy of boxes finds the segments whose field may reach the ray. Each segment reaches it in
+ * one interval of t. Intervals that overlap make a group. Groups are processed in their order along
+ * the ray until one holds a hit. Within a group, the ends of pieces are passed in order. Between
+ * the ends l and h, the 1 - d^2 / R^2 of a piece has the Bernstein coefficients w0, w1, w2. Its
  * square, the field, has w0^2, w0 w1, (2 w1^2 + w0 w2) / 3, w1 w2, w2^2. Nothing large is
- * subtracted from anything large in these, however far the ray has come. Their sum less 1 is a
- * quartic whose roots geom/quartic.h isolates by the signs of its coefficients, so none is missed
- * but two that lie within 2^-32 of the interval of each other. Where neighbouring quartics disagree
- * about the sign at their common end, by rounding, that end is the root. */
+ * subtracted from anything large in these, however far the ray has come. The sum of the fields
+ * minus 1 is a quartic. geom/quartic.h isolates its roots by the signs of its coefficients, so that
+ * no root is missed, except two roots within 2^-32 of the interval of each other. Where
+ * neighbouring quartics disagree by rounding about the sign at their common end, that end is the
+ * root. */
 #include "render/cast/raysearch.h"
 
 #include <stdlib.h>
 
 enum { MAX_PIECES = 5 * BLOB_TUBES + 8 * BLOB_BEADS };
 
-/* Along a line 1 - d^2 / R^2 = top - curve (t - nearest)^2, felt from t0 to t1. */
+/* A piece of a component: 1 - d^2 / R^2 = top - curve (t - nearest)^2 for t0 <= t <= t1. */
 typedef struct BlobPiece {
     double t0, t1;
     double nearest, top, curve;
     double strength;
 } BlobPiece;
 
-/* Part of a line, of the segment or piece of that number. */
+/* The part of a ray that segment or piece `number` reaches. */
 typedef struct BlobSpan {
     double t0, t1;
     uint32_t number;
@@ -33,13 +36,13 @@ typedef struct BlobSpan {
 /* A ray relative to a segment. */
 typedef struct BlobCourse {
     double along;        /* cosine of the angle between ray and axis */
-    double across2;      /* squared sine of it */
-    double t[2];         /* nearest to either end */
-    double distance2[2]; /* from it, there */
+    double across2;      /* squared sine of this angle */
+    double t[2];         /* parameters of the points nearest to the two ends */
+    double distance2[2]; /* squared distances of these points from the ends, mm^2 */
     double slope[2];     /* half the change of distance2 as the end moves along the axis, 1/mm */
     double gate[2];      /* parameters at which the ray crosses the planes perpendicular to the axis
                           * at the ends */
-    double t_axis, axis_distance2; /* nearest to the axis line */
+    double t_axis, axis_distance2; /* point nearest to the axis line: parameter, squared distance */
 } BlobCourse;
 
 /* The workspace of one thread. All arrays are owned. */
@@ -141,8 +144,9 @@ static BlobPiece *put_piece(BlobPiece *end, double nearest, double distance2, do
     return end + (end->t0 < end->t1);
 }
 
-/* Where the ray is before the plane across the axis at the segment's first end, between the planes
- * of both, and beyond that of the second; empty where `low` is above `high`. */
+/* The parts of a ray before the plane across the axis at the segment's first end, between the
+ * planes at both ends, and beyond the plane at the second end. A part is empty if `low` is above
+ * `high`. */
 typedef struct BlobParts {
     double low[3], high[3];
 } BlobParts;
@@ -170,8 +174,8 @@ static double place_along(const FieldSegment *segment, Ray ray)
     return vec3_dot(vec3_sub(ray.origin, segment->a), span) / vec3_dot(span, span);
 }
 
-/* A tube and the two balls of minus half its strength at its ends: where the tube is a half ball
- * itself, half of it is left. */
+/* Appends the pieces of a tube, and of the two balls of minus half its strength at its ends. Beyond
+ * an end, where the tube itself is half a ball, half of its field is left. */
 static BlobPiece *put_tube(BlobPiece *end, const BlobCourse *course, const BlobParts *parts,
                            const BlobTube *tube, double radius_mm)
 {
@@ -192,6 +196,7 @@ static BlobPiece *put_tube(BlobPiece *end, const BlobCourse *course, const BlobP
     return end;
 }
 
+/* Appends the pieces of the two pairs of beads at the ends. */
 static BlobPiece *put_beads(BlobPiece *end, const BlobCourse *course, const BlobBead *bead,
                             double radius_mm)
 {

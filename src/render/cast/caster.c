@@ -81,7 +81,6 @@ void caster_free(Caster *caster)
 
 bool caster_first(Caster *caster, int worker, Ray ray, Surfel *surfel)
 {
-    const Geometry *geometry = &caster->geometry;
     const RayPart part = {ray, caster->search->nearest_mm, INFINITY};
     RayHit hit = {.cell = 0};
     if (!caster->search->first(&caster->index, caster->workspaces[worker], &part, &hit))
@@ -89,8 +88,7 @@ bool caster_first(Caster *caster, int worker, Ray ray, Surfel *surfel)
     bool inwards = vec3_dot(hit.normal, ray.direction) > 0;
     *surfel = (Surfel){.t = hit.t,
                        .normal = inwards ? vec3_scale(hit.normal, -1) : hit.normal,
-                       .segment = geometry->n_primitives ? geometry->primitives[hit.index].segment
-                                                         : geometry->segments[hit.index].segment,
+                       .segment = geometry_segment(&caster->geometry, hit.index),
                        .from_inside = caster->index.planes ? hit.from_inside : inwards,
                        .cell = hit.cell};
     return true;

@@ -1,32 +1,34 @@
-/* The proof of a first hit.
+/* Finds the first hit of a ray with an isosurface of the potential, by proof and without sampling.
  *
- * Along a ray every term is exp(-e^2 - w^2) (erf(u) + erf(h - u)) / 2 with a constant e, the
- * distance of the ray from the axis line, and w and u affine in t. A term counts
- * on the stretch where it may exceed the cut-off, and the ray is done group by group, a group being
- * a maximal run of terms whose stretches overlap. T is the level.
+ * Along a ray, every term is exp(-e^2 - w^2) (erf(u) + erf(h - u)) / 2. e, the distance of the ray
+ * from the axis line, is constant; w and u are affine in t. A term counts in the interval in which
+ * it may exceed the cut-off. The ray is searched group by group. A group is a maximal run of terms
+ * whose intervals overlap. T is the level.
  *
- * - Windows. Phi >= T among n terms needs one of them to be T / n at least. With the peak p of the
- *   term that is w^2 <= ln(n p / T) - e^2, and beyond an end by x, where the term is at most
- *   exp(-e^2 - x^2) / 2, x^2 <= ln(n / 2T) - e^2. Outside these windows there is no hit.
- * - Safe steps. On [t, next), until another term's stretch begins, Phi'' is at most M, the sum over
- * terms of exp(-e^2) (0.8926 p w'^2 + 0.9682 |w' u'| + 0.4840 u'^2): with G = exp(-w^2) and A the
- * axial factor, the suprema of G'', 2 |G'| |A'| and A'' are 4 exp(-3/2), 2 sqrt(2/e) / sqrt(pi) and
- *   sqrt(2/e) / sqrt(pi). With lack = T - Phi(t) and the slope of Phi at t, Phi stays below T up to
- *   the positive root of lack = slope x + M x^2 / 2. Such steps converge quadratically from before
- *   the surface.
- * - Existence. Phi'' is at least -N, made likewise of G'' >= -2 and A'' >= -2 sqrt(2/e) / sqrt(pi).
- *   If slope^2 >= 2 N lack, Phi reaches T, and rises all the way, before the smaller root of lack =
- *   slope x - N x^2 / 2: a bracket with one crossing, which Newton's method closes.
+ * - Windows. Phi >= T among n terms requires that one of them is at least T / n. p is the peak of
+ *   a term. Beside its segment, the term is that large only where w^2 <= ln(n p / T) - e^2. At x
+ *   beyond an end, where the term is at most exp(-e^2 - x^2) / 2, only where x^2 <= ln(n / 2T) -
+ *   e^2. There is no hit outside these windows.
+ * - Safe steps. On [t, next), until the interval of another term begins, Phi'' is at most M, the
+ *   sum over terms of exp(-e^2) (0.8926 p w'^2 + 0.9682 |w' u'| + 0.4840 u'^2). With G = exp(-w^2)
+ *   and A the axial factor, the suprema of G'', 2 |G'| |A'| and A'' are 4 exp(-3/2), 2 sqrt(2/e) /
+ *   sqrt(pi) and sqrt(2/e) / sqrt(pi). With lack = T - Phi(t) and the slope of Phi at t, Phi stays
+ *   below T up to the positive root of lack = slope x + M x^2 / 2. Such steps converge
+ *   quadratically from before the surface.
+ * - Existence. Phi'' is at least -N, computed in the same way from G'' >= -2 and A'' >= -2
+ *   sqrt(2/e) / sqrt(pi). If slope^2 >= 2 N lack, Phi reaches T, and rises all the way, before the
+ *   smaller root of lack = slope x - N x^2 / 2. This gives a bracket with one crossing, and
+ *   Newton's method finds it.
  *
- * The way out of a vessel in which a ray starts is the same with the sign of Phi - T turned, and
- * needs no windows. Of a union of bodies it is found by leaving one after the other until none is
- * left. */
+ * A ray that starts inside a vessel leaves it by the same method with the sign of Phi - T inverted,
+ * without windows. From a union of bodies, the ray leaves one body after another until it is in
+ * none. */
 #include "render/cast/raysearch.h"
 #include "render/cast/rayterms.h"
 
 #include <float.h>
 
-/* Phi counts as equal to the level within this difference. */
+/* Phi counts as equal to the level within this difference, which exceeds the rounding of Phi. */
 static const double touch = 1e-12 * FIELD_LEVEL;
 
 /* For x of at least this, erf(x) = 1 and exp(-x^2) = 0 to the last bit of a sum near the level. */
@@ -302,33 +304,18 @@ static bool hit_of_union(FieldQuery *query)
     return hit;
 }
 
-/* Finds the first hit of the terms in the scratch. */
-static bool first_hit(FieldQuery *query)
-{
-    if (query->scratch->groups)
-        return hit_of_union(query);
-    rayterms_choose_all(query->scratch);
-    return hit_of_sum(query);
-}
-
-static void list_terms(FieldQuery *query, const uint32_t *list, size_t n)
-{
-    rayterms_clear(query->scratch);
-    for (size_t i = 0; i < n; i++) {
-        FieldTube tube = fieldtube_of(&query->geometry->segments[list[i]], list[i]);
-        if (tube.reach2 > 0)
-            rayterms_add(query->scratch, &tube, &query->part);
-    }
-}
-
+/* Finds the first hit of a ray. */
 static bool search_terms(const RayIndex *index, FieldQuery *query)
 {
     query->part.t_max = fmin(query->part.t_max, DBL_MAX);
     if (index->field)
         rayterms_find(index->field, query->scratch, &query->part);
     else
-        list_terms(query, index->list, index->n);
-    return first_hit(query);
+        rayterms_find_listed(index->geometry, index->list, index->n, query->scratch, &query->part);
+    if (query->scratch->groups)
+        return hit_of_union(query);
+    rayterms_choose(query->scratch, NULL, query->scratch->n_terms);
+    return hit_of_sum(query);
 }
 
 static bool first_of_field(const RayIndex *index, void *workspace, const RayPart *part, RayHit *hit)

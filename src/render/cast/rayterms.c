@@ -1,4 +1,6 @@
-/* A term is stored relative to t_mid, where the ray is nearest to the segment, so that a distant
+/* Each term of the potential becomes a function of t along one ray.
+ *
+ * A term is stored relative to t_mid, where the ray is nearest to the segment, so that a distant
  * camera or a long segment costs no digits. The support of a term is taken to be a cylinder around
  * its capsule. Both are convex, so a term counts on one interval. A heap orders the terms: a ray
  * that hits its first group never sorts the rest. */
@@ -124,39 +126,34 @@ static bool meets_node(const FieldNode *node, const double origin[3], const doub
     return t0 <= t1;
 }
 
-void rayterms_clear(FieldScratch *scratch)
-{
-    scratch->n_terms = 0;
-}
-
-void rayterms_add(FieldScratch *scratch, const FieldTube *tube, const RayPart *part)
+/* Adds the term of a tube if the ray passes it near enough. */
+static void add_term(FieldScratch *scratch, const FieldTube *tube, const RayPart *part)
 {
     RayTerm *term = &scratch->terms[scratch->n_terms];
     if (pass_tube(tube, part->ray, term) && term->t1 >= part->t_min && term->t0 <= part->t_max)
         scratch->n_terms++;
 }
 
-/* Stores term `i` at index `at` of the heap, which is not ordered yet. */
-static void put_term(FieldScratch *scratch, size_t at, uint32_t i)
-{
-    const RayTerm *term = &scratch->terms[i];
-    scratch->heap.items[at] = (HeapItem){term->t0, term->segment, i};
-}
-
-void rayterms_choose_all(FieldScratch *scratch)
-{
-    for (size_t i = 0; i < scratch->n_terms; i++)
-        put_term(scratch, i, (uint32_t)i);
-    scratch->heap.n = scratch->n_terms;
-    heap_order(&scratch->heap);
-}
-
 void rayterms_choose(FieldScratch *scratch, const uint32_t *numbers, size_t n)
 {
-    for (size_t i = 0; i < n; i++)
-        put_term(scratch, i, numbers[i]);
+    for (size_t i = 0; i < n; i++) {
+        const uint32_t number = numbers ? numbers[i] : (uint32_t)i;
+        const RayTerm *term = &scratch->terms[number];
+        scratch->heap.items[i] = (HeapItem){term->t0, term->segment, number};
+    }
     scratch->heap.n = n;
     heap_order(&scratch->heap);
+}
+
+void rayterms_find_listed(const Geometry *geometry, const uint32_t *list, size_t n,
+                          FieldScratch *scratch, const RayPart *part)
+{
+    scratch->n_terms = 0;
+    for (size_t i = 0; i < n; i++) {
+        const FieldTube tube = fieldtube_of(&geometry->segments[list[i]], list[i]);
+        if (tube.reach2 > 0)
+            add_term(scratch, &tube, part);
+    }
 }
 
 void rayterms_find(const FieldIndex *index, FieldScratch *scratch, const RayPart *part)
@@ -166,7 +163,7 @@ void rayterms_find(const FieldIndex *index, FieldScratch *scratch, const RayPart
     const double inverse[3] = {1 / ray.direction.x, 1 / ray.direction.y, 1 / ray.direction.z};
     uint32_t stack[FIELD_STACK_SIZE];
     int top = 0;
-    rayterms_clear(scratch);
+    scratch->n_terms = 0;
     if (index->n_nodes)
         stack[top++] = 0;
     while (top > 0) {
@@ -179,7 +176,7 @@ void rayterms_find(const FieldIndex *index, FieldScratch *scratch, const RayPart
             stack[top++] = number + 1;
         }
         for (uint32_t i = node->first; i < node->first + node->n_tubes; i++)
-            rayterms_add(scratch, &index->tubes[i], part);
+            add_term(scratch, &index->tubes[i], part);
     }
 }
 

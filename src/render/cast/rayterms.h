@@ -3,7 +3,7 @@
  * another along the ray, and looks for the level within the windows of the group's terms:
  *
  *     rayterms_find(field, scratch, &part);
- *     rayterms_choose_all(scratch);
+ *     rayterms_choose(scratch, NULL, scratch->n_terms);
  *     while (rayterms_next_group(scratch))
  *         if (rayterms_find_windows(scratch))
  *             ... */
@@ -45,16 +45,15 @@ typedef struct FieldScratch {
 MUST_CHECK Status fieldscratch_new(const Geometry *geometry, size_t n, void **out, Err *err);
 void fieldscratch_free(void *workspace);
 
-/* Empties the scratch. Follow with rayterms_add for every segment that may matter. */
-void rayterms_clear(FieldScratch *scratch);
-/* Adds the term of a tube if the ray passes it near enough. part->t_max must be finite. */
-void rayterms_add(FieldScratch *scratch, const FieldTube *tube, const RayPart *part);
-/* Empties the scratch and adds the terms of all tubes of the index. part->t_max must be finite. */
+/* Empties the scratch and adds the terms of all tubes of the index that the ray passes near enough.
+ * part->t_max must be finite. */
 void rayterms_find(const FieldIndex *index, FieldScratch *scratch, const RayPart *part);
+/* Does the same with the n listed segments of a geometry. */
+void rayterms_find_listed(const Geometry *geometry, const uint32_t *list, size_t n,
+                          FieldScratch *scratch, const RayPart *part);
 
-/* Selects the terms from which rayterms_next_group forms groups: all terms, or the `n` terms whose
- * indices are listed. */
-void rayterms_choose_all(FieldScratch *scratch);
+/* Selects the `n` terms, whose indices are listed, from which rayterms_next_group forms groups.
+ * NULL: the first n terms. */
 void rayterms_choose(FieldScratch *scratch, const uint32_t *numbers, size_t n);
 
 /* Sets scratch->group to the next group along the ray: a maximal run of terms whose intervals

@@ -1,29 +1,38 @@
-/* EffectEdges are found first: samples of a vessel beside paper, or beside another vessel that lies
- * deeper by a number of radii of the first [scene/effects.h]; what lies at about the same depth is
- * joined to it, and no line parts the two. Then each row gathers what the edges near it spread: a
- * line on the samples at the edge's own depth, which are of the same wall, and a gap on those that
- * lie deeper. A sample takes the most that any edge gives it, so that order does not matter. Widths
- * are distances from the edge itself, half a sample beyond the samples that have it, and the part
- * of a sample that they cover is its share.
+/* Edges are found first. A sample of a vessel has an edge if a neighbour shows the background, or
+ * another vessel that is deeper by a number of the first vessel's radii [scene/effects.h]. A vessel
+ * at about the same depth is joined to the first one, and no line divides them. Then each row
+ * gathers what the edges near it spread: a line on the samples at about the depth of the edge,
+ * which belong to the same wall, and a gap on samples that are deeper. A sample takes the maximum
+ * over all edges, so the order of edges does not matter. Widths are distances from the edge itself,
+ * which is half a sample beyond the sample that has it. The fraction of a sample that a line covers
+ * is its weight.
  *
- * A line is inside its vessel: with it a vessel is as wide as without. After T. Saito and T.
- * Takahashi: Comprehensible rendering of 3-D shapes, SIGGRAPH 1990, 197-206; gaps as in A. Appel et
- * al.: The haloed line effect for hidden line elimination, SIGGRAPH 1979, 151-157. */
+ * A line lies inside its vessel, so that a vessel is as wide with a line as without. Source of
+ * lines: T. Saito and T. Takahashi: Comprehensible rendering of 3-D shapes, SIGGRAPH 1990, 197-206;
+ * of gaps: A. Appel et al.: The haloed line effect for hidden line elimination, SIGGRAPH 1979,
+ * 151-157. */
 #include "render/effect/effect.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-/* How many radii the wall that ends at an edge reaches from it towards the viewer. */
+/* Depth of the wall that ends at an edge, towards the viewer, in radii: nearer samples get no line.
+ * Reason for the value not recorded. */
 static const double wall_radii = 3;
 
+/* The edge at a sample. Zeroed, the sample has none. */
+typedef struct EffectEdge {
+    float line, gap; /* how far a line and a gap reach from the sample, in samples; 0: neither */
+    float radius_mm; /* of the vessel that ends at the edge */
+} EffectEdge;
+
+/* What draw_row works with. All arrays are owned. */
 typedef struct EffectEdges {
     const EffectSamples *samples;
-    float *line, *gap; /* of each sample, how far they reach from it, in samples; 0: no edge */
-    float *radius_mm;  /* of its vessel */
+    EffectEdge *edges; /* per sample */
     float *cover;      /* per worker two rows: the fraction of each sample that lines cover, and
                         * that gaps cover */
-    int reach;
+    int reach;         /* effects_reach() */
 } EffectEdges;
 
 /* ---- radii ----------------------------------------------------------------------------------- */
@@ -62,7 +71,8 @@ void radiustable_release(RadiusTable *table)
     *table = (RadiusTable){0};
 }
 
-double radiustable_find(const RadiusTable *table, uint32_t id)
+/* Returns the radius of a vessel, mm; 0 if the id is not in the table. */
+static double find_radius(const RadiusTable *table, uint32_t id)
 {
     const size_t row = sorted_find_row(table->rows, table->n, sizeof *table->rows, id);
     return row < table->n ? (double)table->rows[row].radius_mm : 0;
@@ -94,32 +104,33 @@ static bool is_crease(const EffectSamples *samples, size_t at, size_t beside)
     const float *normals = samples->frame->normal.values;
     return normals && samples->frame->id.ids[beside] &&
            cosine_of(normals + 3 * at, normals + 3 * beside) <
-               samples->effects->outline.crease_cosine;
+               samples->view->effects.outline.crease_cosine;
 }
 
 /* Marks the sample if an edge lies between it and a neighbour of another id. */
 static void mark(EffectEdges *edges, size_t at, const size_t *beside, int n)
 {
     const EffectSamples *samples = edges->samples;
-    const Effects *effects = samples->effects;
+    const Effects *effects = &samples->view->effects;
     const Frame *frame = samples->frame;
-    const Camera *camera = samples->camera;
-    double radius_mm = radiustable_find(samples->radii, frame->id.ids[at]);
+    const Camera *camera = &samples->view->camera;
+    double radius_mm = find_radius(samples->radii, frame->id.ids[at]);
     double sample_mm = vec3_length(camera->up) / camera->height;
     if (camera->projection == PROJECTION_PERSPECTIVE)
         sample_mm *= (double)frame->depth.values[at];
     double wide = radius_mm / sample_mm;
     double line = fmin(effects->outline.width_px * samples->side, effects->outline.radii * wide);
     double gap = fmin(effects->halo.width_px * samples->side, effects->halo.radii * wide);
-    edges->radius_mm[at] = (float)radius_mm;
+    EffectEdge *edge = &edges->edges[at];
+    edge->radius_mm = (float)radius_mm;
     for (int i = 0; i < n; i++) {
         if (frame->id.ids[beside[i]] == frame->id.ids[at])
             continue;
         if (ends_before(samples, at, beside[i], radius_mm, effects->outline.deeper) ||
             is_crease(samples, at, beside[i]))
-            edges->line[at] = (float)line;
+            edge->line = (float)line;
         if (ends_before(samples, at, beside[i], radius_mm, effects->halo.deeper))
-            edges->gap[at] = (float)gap;
+            edge->gap = (float)gap;
     }
 }
 
@@ -128,7 +139,7 @@ static void find_in_row(size_t row, int worker, void *context)
     (void)worker;
     EffectEdges *edges = context;
     const uint32_t *ids = edges->samples->frame->id.ids;
-    size_t width = (size_t)edges->samples->camera->width;
+    size_t width = (size_t)edges->samples->view->camera.width;
     size_t rows = (size_t)edges->samples->band.rows;
     for (size_t x = 0; x < width; x++) {
         size_t at = row * width + x, beside[4];
@@ -159,45 +170,46 @@ static float raised(float cover, double by)
 }
 
 /* Spreads an edge over the samples of a row `down` rows from it. */
-static void spread(const EffectEdges *edges, size_t edge, int column, size_t row, int down,
+static void spread(const EffectEdges *edges, size_t at, int column, size_t row, int down,
                    float *line, float *gap)
 {
+    const EffectEdge edge = edges->edges[at];
     const EffectSamples *samples = edges->samples;
     const float *depths = samples->frame->depth.values;
-    int width = samples->camera->width;
-    double reach = fmax((double)edges->line[edge], (double)edges->gap[edge] + 1);
+    int width = samples->view->camera.width;
+    double reach = fmax((double)edge.line, (double)edge.gap + 1);
     if (abs(down) > reach)
         return;
     int half = (int)sqrt(reach * reach - (double)down * down);
-    double depth = (double)depths[edge], radius = (double)edges->radius_mm[edge];
+    double depth = (double)depths[at], radius = (double)edge.radius_mm;
     double nearest = depth - wall_radii * radius;
-    double farthest = depth + samples->effects->outline.deeper / 2 * radius;
-    double behind = depth + samples->effects->halo.deeper * radius;
+    double farthest = depth + samples->view->effects.outline.deeper / 2 * radius;
+    double behind = depth + samples->view->effects.halo.deeper * radius;
     int first = column > half ? column - half : 0;
     int last = column + half < width - 1 ? column + half : width - 1;
     for (int x = first; x <= last; x++) {
         double here = (double)depths[row * (size_t)width + (size_t)x];
         double distance = elementary_hypot(x - column, down);
         if (here >= nearest && here <= farthest)
-            line[x] = raised(line[x], (double)edges->line[edge] - distance);
-        else if (here > behind && isfinite(here) && edges->gap[edge] > 0)
-            gap[x] = raised(gap[x], (double)edges->gap[edge] + 1 - distance);
+            line[x] = raised(line[x], (double)edge.line - distance);
+        else if (here > behind && isfinite(here) && edge.gap > 0)
+            gap[x] = raised(gap[x], (double)edge.gap + 1 - distance);
     }
 }
 
 static void gather(const EffectEdges *edges, size_t row, float *line, float *gap)
 {
     const EffectSamples *samples = edges->samples;
-    int width = samples->camera->width, rows = samples->band.rows, at = (int)row;
+    int width = samples->view->camera.width, rows = samples->band.rows, at = (int)row;
     for (int x = 0; x < width; x++)
         line[x] = gap[x] = 0;
     for (int y = at - edges->reach; y <= at + edges->reach; y++) {
         if (y < 0 || y >= rows)
             continue;
         for (int x = 0; x < width; x++) {
-            size_t edge = (size_t)y * (size_t)width + (size_t)x;
-            if (edges->line[edge] > 0 || edges->gap[edge] > 0)
-                spread(edges, edge, x, row, at - y, line, gap);
+            size_t other = (size_t)y * (size_t)width + (size_t)x;
+            if (edges->edges[other].line > 0 || edges->edges[other].gap > 0)
+                spread(edges, other, x, row, at - y, line, gap);
         }
     }
 }
@@ -207,11 +219,11 @@ static void gather(const EffectEdges *edges, size_t row, float *line, float *gap
 /* Returns the background's color at a sample. */
 static Rgb paper_at(const EffectSamples *samples, size_t x, size_t row)
 {
-    const Grade *grade = &samples->effects->grade;
-    const Camera *camera = samples->camera;
+    const Grade *grade = &samples->view->effects.grade;
+    const Camera *camera = &samples->view->camera;
     const double y = (double)row + samples->band.first + 0.5;
     return grade->present ? grade_at(grade, (double)x + 0.5, y, camera->width, camera->height)
-                          : samples->paper;
+                          : samples->view->background;
 }
 
 static float graded(float color, float paper, float center, float dither)
@@ -235,7 +247,7 @@ static float dither_at(const EffectSamples *samples, size_t x, size_t row)
 /* Gives a sample of the background, or of a ground plane, its part of the graded background. */
 static void grade(const EffectSamples *samples, Rgb paper, float dither, float color[3])
 {
-    const Rgb center = samples->effects->grade.center;
+    const Rgb center = samples->view->effects.grade.center;
     color[0] = graded(color[0], paper.r, center.r, dither);
     color[1] = graded(color[1], paper.g, center.g, dither);
     color[2] = graded(color[2], paper.b, center.b, dither);
@@ -245,9 +257,9 @@ static void draw_row(size_t number, int worker, void *context)
 {
     const EffectEdges *edges = context;
     const EffectSamples *samples = edges->samples;
-    const Effects *effects = samples->effects;
+    const Effects *effects = &samples->view->effects;
     Frame *frame = samples->frame;
-    size_t width = (size_t)samples->camera->width;
+    size_t width = (size_t)samples->view->camera.width;
     size_t row = number + (size_t)samples->band.above;
     float *line = edges->cover + 2 * (size_t)worker * width, *gap = line + width;
     gather(edges, row, line, gap);
@@ -260,10 +272,10 @@ static void draw_row(size_t number, int worker, void *context)
                 grade(samples, paper, dither_at(samples, x, row), color);
             continue;
         }
-        const double faded = fade_at(samples->fade, (double)frame->depth.values[at]);
-        const Rgb drawn = {color[0] + (float)faded * (paper.r - samples->paper.r),
-                           color[1] + (float)faded * (paper.g - samples->paper.g),
-                           color[2] + (float)faded * (paper.b - samples->paper.b)};
+        const double faded = fade_at(&samples->view->fade, (double)frame->depth.values[at]);
+        const Rgb drawn = {color[0] + (float)faded * (paper.r - samples->view->background.r),
+                           color[1] + (float)faded * (paper.g - samples->view->background.g),
+                           color[2] + (float)faded * (paper.b - samples->view->background.b)};
         const Rgb outline = rgb_mixed(effects->outline.color, paper, faded);
         Rgb seen = rgb_mixed(drawn, outline, (double)line[x]);
         seen = rgb_mixed(seen, paper, (double)gap[x]);
@@ -276,22 +288,18 @@ static void draw_row(size_t number, int worker, void *context)
 Status effects_draw(const EffectSamples *samples, Err *err)
 {
     const Band *band = &samples->band;
-    size_t width = (size_t)samples->camera->width, n = width * (size_t)band->rows;
+    size_t width = (size_t)samples->view->camera.width, n = width * (size_t)band->rows;
     EffectEdges edges = {.samples = samples,
-                         .reach = effects_reach(samples->effects, samples->side)};
+                         .reach = effects_reach(&samples->view->effects, samples->side)};
     Status status;
-    TRY_GOTO(mem_calloc(&edges.line, n, sizeof *edges.line, "edges", err));
-    TRY_GOTO(mem_calloc(&edges.gap, n, sizeof *edges.gap, "edges", err));
-    TRY_GOTO(mem_calloc(&edges.radius_mm, n, sizeof *edges.radius_mm, "edges", err));
+    TRY_GOTO(mem_calloc(&edges.edges, n, sizeof *edges.edges, "edges", err));
     TRY_GOTO(mem_calloc(&edges.cover, 2 * width * (size_t)samples->threads, sizeof *edges.cover,
                         "edges", err));
     threads_for((size_t)band->rows, samples->threads, find_in_row, &edges);
     threads_for((size_t)(band->rows - band->above - band->below), samples->threads, draw_row,
                 &edges);
 done:
-    free(edges.line);
-    free(edges.gap);
-    free(edges.radius_mm);
+    free(edges.edges);
     free(edges.cover);
     return status;
 }
@@ -302,7 +310,7 @@ void effects_reduce(const EffectSamples *samples, Plane *color, int row)
 {
     const int side = samples->side;
     const Band *band = &samples->band;
-    size_t fine = 3 * (size_t)samples->camera->width, width = fine / (size_t)side;
+    size_t fine = 3 * (size_t)samples->view->camera.width, width = fine / (size_t)side;
     const float *from = samples->frame->color.values + (size_t)band->above * fine;
     float *to = color->values + (size_t)row * width;
     size_t rows = (size_t)(band->rows - band->above - band->below) / (size_t)side;

@@ -25,21 +25,17 @@ typedef struct RadiusTable {
  * O(n log n). */
 MUST_CHECK Status radiustable_make(const Geometry *geometry, RadiusTable *table, Err *err);
 void radiustable_release(RadiusTable *table);
-/* Returns the radius of a vessel, mm; 0 if the id is not in the table. O(log n). */
-double radiustable_find(const RadiusTable *table, uint32_t id);
-
 /* Returns the distance, in samples, up to which other samples change a sample. A pixel is `side`
  * samples wide. */
 int effects_reach(const Effects *effects, int side);
 
 /* The band of samples that effects are drawn on. All pointers are borrowed. */
 typedef struct EffectSamples {
-    const Effects *effects;
-    const Camera *camera; /* camera whose pixels are the samples */
+    /* The view with its effects, fade, background and camera. The pixels of the camera are the
+     * samples. */
+    const View *view;
     const RadiusTable *radii;
-    const Fade *fade; /* that the colors of vessels have */
-    Rgb paper;        /* background */
-    int side;         /* samples per pixel width */
+    int side; /* samples per pixel width */
     int threads;
     Band band;    /* rows of samples */
     Frame *frame; /* color, depth and ids; normals if outlines follow creases */

@@ -11,10 +11,10 @@
  *
  * tile   has at least one term. x and y of all TILE_SAMPLES samples are read, also those of samples
  *        outside the image.
- * work   holds at least tile->n_terms terms [TILE_WORK_BYTES each]. Nothing in it is reused between
- *        calls.
+ * work   a workspace of at least tile->n_terms * TILE_WORK_BYTES bytes, aligned to 64 bytes.
+ *        Nothing in it is reused between calls.
  * hits   receives the hits; all fields are set. */
-typedef void FieldKernel(const FieldTile *tile, TileWork *work, TileHits *hits);
+typedef void FieldKernel(const FieldTile *tile, void *work, TileHits *hits);
 
 /* Answers the shadow queries of points in a tile of a light view: sets points->state. A point is
  * dark if a blocker lies at depth points->z or deeper on the line of sight from the point to the
@@ -24,23 +24,16 @@ typedef void FieldKernel(const FieldTile *tile, TileWork *work, TileHits *hits);
  * tile     lines of sight lead to the light. x and y of the tile are not read.
  * points   x and y are positions as in a FieldTile. Behind the last point are POINT_PADDING copies
  *          of the last point. */
-typedef void ShadowKernel(const FieldTile *tile, TileWork *work, ShadowPoints *points);
-
-FieldKernel trace_portable, trace_blob_portable;
-ShadowKernel shadow_portable, shadow_blob_portable;
-#ifdef __x86_64__
-FieldKernel trace_avx2, trace_avx512, trace_blob_avx2, trace_blob_avx512;
-ShadowKernel shadow_avx2, shadow_avx512, shadow_blob_avx2, shadow_blob_avx512;
-#endif
+typedef void ShadowKernel(const FieldTile *tile, void *work, ShadowPoints *points);
 
 typedef struct FieldKernels {
     FieldKernel *trace;
     ShadowKernel *shadow;
 } FieldKernels;
 
-/* The kernels of the potential and of the blob, one entry per instruction set, in the order of
- * tilekernels [tilekernels.h]. */
-extern const FieldKernels potentialkernels[KINDS_OF_KERNELS], blobkernels[KINDS_OF_KERNELS];
+/* The kernels of the potential and of the blob. */
+DECLARE_KERNELS(FieldKernels, potentialkernels);
+DECLARE_KERNELS(FieldKernels, blobkernels);
 
 /* Returns the kernels of an instruction set for the geometry's model. The processor must be able to
  * run them. */

@@ -2,12 +2,13 @@
  * the image. Kernels look from the points to the light. So once the lists are made, the segments
  * are reflected: in the plane of a parallel light, in the position of a point light. Lines of sight
  * then keep their places in the view, and z rises towards the light. */
-#include "render/field/fieldshadow.h"
+#include "render/field/fieldtiles.h"
 
 #include "render/cast/caster.h"
 #include "render/field/fieldkernels.h"
 #include "render/field/fieldspace.h"
 #include "render/field/vessellists.h"
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -40,11 +41,10 @@ static bool can_look(const Geometry *geometry, const View *view, const Light *li
 
 static Status list_segments_of_row(size_t row, int worker, void *context, Err *err)
 {
-    (void)err; /* list_segments reports the error */
     FieldLists *lists = context;
     return vessellists_row(&lists->vessels, row,
                            lists->columns + (size_t)worker * lists->vessels.longest,
-                           &lists->rows[row], NULL);
+                           &lists->rows[row], err);
 }
 
 static Status list_segments(FieldLists *lists, int threads, Err *err)
@@ -53,8 +53,7 @@ static Status list_segments(FieldLists *lists, int threads, Err *err)
     TRY(mem_calloc(&lists->rows, n, sizeof *lists->rows, "rows of tiles", err));
     TRY(mem_calloc(&lists->columns, (size_t)threads * longest, sizeof *lists->columns,
                    "rows of tiles", err));
-    if (threads_try(n, threads, list_segments_of_row, lists, NULL) != STATUS_OK)
-        return err_set(err, STATUS_MEMORY, "out of memory: no room for shadows");
+    TRY(threads_try(n, threads, list_segments_of_row, lists, err));
     free(lists->columns);
     lists->columns = NULL;
     return STATUS_OK;
@@ -161,16 +160,11 @@ static void place_points(const LightProjection *aim, ShadowPoints *points, Field
     float half_x = (float)fabs(0.50005 / aim->per_x), half_y = (float)fabs(0.50005 / aim->per_y);
     int n = 0;
     for (int i = 0; i < points->n; i++) {
-        float x = points->x[i], y = points->y[i];
-        double z = -(points->z[i] + aim->z_middle);
-        if (!(fabsf(x) <= half_x && fabsf(y) <= half_y))
+        if (!(fabsf(points->x[i]) <= half_x && fabsf(points->y[i]) <= half_y))
             continue;
-        points->x[n] = x;
-        points->y[n] = y;
-        points->z[n] = z;
-        points->query[n] = points->query[i];
-        tile->z_min = min_of(tile->z_min, z);
-        n++;
+        shadowpoints_copy(points, i, points, n);
+        points->z[n] = -(points->z[n] + aim->z_middle);
+        tile->z_min = min_of(tile->z_min, points->z[n++]);
     }
     points->n = n;
 }
@@ -178,11 +172,8 @@ static void place_points(const LightProjection *aim, ShadowPoints *points, Field
 /* Repeats the last point POINT_PADDING times behind it, for the kernel. */
 static void pad_points(ShadowPoints *points)
 {
-    for (int n = points->n, i = n; i < n + POINT_PADDING; i++) {
-        points->x[i] = points->x[n - 1];
-        points->y[i] = points->y[n - 1];
-        points->z[i] = points->z[n - 1];
-    }
+    for (int n = points->n, i = n; i < n + POINT_PADDING; i++)
+        shadowpoints_copy(points, n - 1, points, i);
 }
 
 /* Returns point i in the frame of the segments. */
@@ -214,7 +205,8 @@ static Status decide_points(FieldTester *tester, const FieldTile *tile, ShadowPo
     if (points->n == 0)
         return STATUS_OK;
     pad_points(points);
-    tester->kernel(tile, &tester->space.work, points);
+    assert(tile->n_terms <= tester->space.work_capacity);
+    tester->kernel(tile, tester->space.work, points);
     for (int i = 0; i < points->n; i++)
         if (points->state[i] == SHADOW_UNSURE)
             TRY(decide(tester, tile, points, i, err));
@@ -253,7 +245,7 @@ static void find_near(FieldTester *tester, const FieldTile *tile, const ShadowPo
     }
     memset(tester->is_near, 0, (size_t)n);
     for (size_t i = 0; i < tile->n_terms; i++) {
-        const uint32_t number = tester->space.candidates[i];
+        const uint32_t number = tester->space.candidates.items[i];
         const FrameSegment *segment = &tester->lists->vessels.segments[number];
         if (!tester->hidden[number])
             continue;
@@ -266,36 +258,29 @@ static void find_near(FieldTester *tester, const FieldTile *tile, const ShadowPo
     }
 }
 
-/* Appends point i to `to`, with its answer. */
-static void append_point(const ShadowPoints *points, int i, ShadowPoints *to)
-{
-    const int at = to->n++;
-    to->x[at] = points->x[i];
-    to->y[at] = points->y[i];
-    to->z[at] = points->z[i];
-    to->query[at] = points->query[i];
-    to->state[at] = points->state[i];
-}
-
 /* Moves the marked points from `points` to tester->near. */
 static void set_apart(FieldTester *tester, ShadowPoints *points)
 {
     const int n = points->n;
     points->n = tester->near.n = 0;
     for (int i = 0; i < n; i++)
-        append_point(points, i, tester->is_near[i] ? &tester->near : points);
+        if (tester->is_near[i])
+            shadowpoints_copy(points, i, &tester->near, tester->near.n++);
+        else
+            shadowpoints_copy(points, i, points, points->n++);
 }
 
 /* Removes the terms of hidden segments. */
 static void remove_hidden(const FieldTester *tester, FieldTile *tile)
 {
-    const FieldSpace *space = &tester->space;
+    TileTerm *terms = tester->space.terms.items;
+    uint32_t *candidates = tester->space.candidates.items;
     size_t n = 0;
     for (size_t i = 0; i < tile->n_terms; i++) {
-        if (tester->hidden[space->candidates[i]])
+        if (tester->hidden[candidates[i]])
             continue;
-        space->terms[n] = space->terms[i];
-        space->candidates[n++] = space->candidates[i];
+        terms[n] = terms[i];
+        candidates[n++] = candidates[i];
     }
     tile->n_terms = n;
 }
@@ -311,7 +296,7 @@ static Status decide_apart(FieldTester *tester, FieldTile *tile, ShadowPoints *p
     remove_hidden(tester, tile);
     TRY(decide_points(tester, tile, &tester->near, err));
     for (int i = 0; i < tester->near.n; i++)
-        append_point(&tester->near, i, points);
+        shadowpoints_copy(&tester->near, i, points, points->n++);
     return STATUS_OK;
 }
 
@@ -344,7 +329,7 @@ static Status test_by_terms(const LightBins *light, void *workspace, const TileQ
     if (points->n == 0)
         return STATUS_OK;
     TRY(fieldspace_reserve(space, n, err));
-    fieldterms_make(segments, listed, n, &tile, space->terms, space->candidates);
+    fieldterms_make(segments, listed, n, &tile, space->terms.items, space->candidates.items);
     tester->kernel = fieldkernels_for(light->geometry, queries->kernels)->shadow;
     if (tester->hidden)
         return decide_apart(tester, &tile, points, err);

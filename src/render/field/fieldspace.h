@@ -9,12 +9,11 @@
 /* A workspace. Create it with fieldspace_init, and before each tile reserve space for the tile's
  * terms. */
 typedef struct FieldSpace {
-    const Geometry *geometry; /* borrowed */
-    TileTerm *terms;          /* owned, like all following pointers */
-    size_t terms_capacity;
-    uint32_t *candidates; /* per term: its segment */
-    size_t candidates_capacity;
-    TileWork work;
+    const Geometry *geometry;   /* borrowed */
+    ARRAY(TileTerm) terms;      /* owned, like all following pointers */
+    ARRAY(uint32_t) candidates; /* per term: its segment */
+    void *work;                 /* a kernel's workspace, for work_capacity terms */
+    size_t work_capacity;
     LocalGroups *groups;     /* NULL if all segments blend */
     const RaySearch *search; /* searches single rays among the candidates */
     void *scratch;           /* workspace of `search`; NULL before fieldspace_reserve_rays */

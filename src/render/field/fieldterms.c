@@ -117,7 +117,8 @@ static int compare_terms(const void *a, const void *b)
     return one->segment < other->segment ? -1 : 1;
 }
 
-/* Sorts terms by ascending `on`. Most lists are short, for which insertion is fastest. */
+/* Sorts terms by ascending `on`. Most lists are short, and insertion is fastest for them. Reason
+ * for the limit of 64 not recorded. */
 static void sort_terms(TileTerm *terms, size_t n)
 {
     if (n > 64) {
@@ -168,25 +169,4 @@ void fieldterms_make(const FrameSegment *segments, const uint32_t *list, size_t 
     }
     if (!tile->plane && !tile->any_depth)
         sort_terms(terms, tile->n_terms);
-}
-
-Status tilework_reserve(TileWork *work, size_t n, Err *err)
-{
-    if (n <= work->capacity)
-        return STATUS_OK;
-    size_t capacity = n > 2 * work->capacity ? n : 2 * work->capacity;
-    void *memory = capacity <= SIZE_MAX / TILE_WORK_BYTES
-                       ? aligned_alloc(64, capacity * TILE_WORK_BYTES)
-                       : NULL;
-    if (!memory)
-        return err_set(err, STATUS_MEMORY, "no memory for %zu terms of the potential", capacity);
-    free(work->memory);
-    *work = (TileWork){memory, capacity};
-    return STATUS_OK;
-}
-
-void tilework_release(TileWork *work)
-{
-    free(work->memory);
-    *work = (TileWork){0};
 }

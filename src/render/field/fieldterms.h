@@ -67,14 +67,4 @@ void fieldterms_fetch(const FrameSegment *segments, const uint32_t *list, size_t
 /* Bytes that one term takes in a kernel's workspace; kernel_packet.h checks that they suffice. */
 enum { TILE_WORK_BYTES = 2176 };
 
-/* The workspace of a kernel, for up to `capacity` terms. */
-typedef struct TileWork {
-    void *memory;
-    size_t capacity;
-} TileWork;
-
-/* Reserves space for `n` terms. The old content is lost. Errors: STATUS_MEMORY. */
-MUST_CHECK Status tilework_reserve(TileWork *work, size_t n, Err *err);
-void tilework_release(TileWork *work);
-
 #endif

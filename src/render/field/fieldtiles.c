@@ -1,9 +1,17 @@
-/* A row of tiles is the unit of work. The lists of its tiles are made, and the kernel traces each
- * tile's terms. Samples that the kernel cannot decide are cast as single rays in double precision
- * among the terms of the tile. */
+/* The tile engine of implicit models. The segments are sorted into rows of tiles once. When a row
+ * is drawn, the lists of its tiles are made, and the kernel traces each tile's terms. Samples that
+ * the kernel cannot decide are cast as single rays in double precision among the terms of the tile.
+ *
+ * Shadow kernels round differently when other shading points share a packet, so batches are large:
+ * of 8 rows of tiles, as many tiles as a shadow queue holds. */
 #include "render/field/fieldtiles.h"
 
+#include "render/cast/caster.h"
+#include "render/engine.h"
+#include "render/field/fieldkernels.h"
 #include "render/field/fieldspace.h"
+#include "render/field/vessellists.h"
+#include <assert.h>
 #include <stdlib.h>
 
 typedef struct FieldWorker {
@@ -19,13 +27,17 @@ typedef struct TileAxis {
     float samples[TILE_SAMPLES]; /* from the middle; those outside the grid repeat its last */
 } TileAxis;
 
-struct FieldTiles {
-    FieldTilesParams params;
+/* What TileEngine.bin makes. Nothing changes afterwards, except the workers. */
+typedef struct FieldTiles {
+    const Geometry *geometry; /* borrowed, like `camera` */
+    const Camera *camera;
+    SampleGrid grid;
     VesselLists lists;
     TileAxis *x, *y; /* per column and per row of tiles; owned */
     FieldKernel *trace;
     FieldWorker *workers; /* owned */
-};
+    int n_workers;
+} FieldTiles;
 
 /* Makes the axes of `count` samples at these positions. */
 static Status make_axes(const double *at, int count, int (*sample_at)(int sample), TileAxis **axes,
@@ -48,43 +60,23 @@ static Status make_axes(const double *at, int count, int (*sample_at)(int sample
 
 static Status make_workers(FieldTiles *tiles, Err *err)
 {
-    size_t n = (size_t)tiles->params.workers;
+    size_t n = (size_t)tiles->n_workers;
     TRY(mem_calloc(&tiles->workers, n, sizeof *tiles->workers, "workspaces", err));
     for (size_t i = 0; i < n; i++) {
         FieldWorker *own = &tiles->workers[i];
         TRY(mem_calloc(&own->columns, tiles->lists.longest, sizeof *own->columns, "rows of tiles",
                        err));
-        TRY(fieldspace_init(tiles->params.geometry, &own->space, err));
+        TRY(fieldspace_init(tiles->geometry, &own->space, err));
     }
     return STATUS_OK;
 }
 
-Status fieldtiles_new(const FieldTilesParams *params, FieldTiles **out, Err *err)
+static void release_field(void *bins)
 {
-    Status status;
-    FieldTiles *tiles = NULL;
-    const SampleGrid *grid = &params->grid;
-    TRY_GOTO(mem_calloc(&tiles, 1, sizeof *tiles, "tiles", err));
-    tiles->params = *params;
-    tiles->trace = fieldkernels_for(params->geometry, params->kernels)->trace;
-    tiles->lists.hidden = params->hidden;
-    TRY_GOTO(vessellists_make(params->geometry, params->camera, grid, params->workers,
-                              &tiles->lists, err));
-    TRY_GOTO(make_axes(tiles->lists.x, grid->n_columns, tile_sample_x, &tiles->x, err));
-    TRY_GOTO(make_axes(tiles->lists.y, grid->n_rows, tile_sample_y, &tiles->y, err));
-    TRY_GOTO(make_workers(tiles, err));
-    *out = tiles;
-    return STATUS_OK;
-done:
-    fieldtiles_free(tiles);
-    return status;
-}
-
-void fieldtiles_free(FieldTiles *tiles)
-{
+    FieldTiles *tiles = bins;
     if (!tiles)
         return;
-    for (int i = 0; tiles->workers && i < tiles->params.workers; i++) {
+    for (int i = 0; tiles->workers && i < tiles->n_workers; i++) {
         FieldWorker *own = &tiles->workers[i];
         free(own->columns);
         indexlists_release(&own->lists);
@@ -97,8 +89,33 @@ void fieldtiles_free(FieldTiles *tiles)
     free(tiles);
 }
 
-Status fieldtiles_list(FieldTiles *tiles, int row, int worker, Err *err)
+static Status bin_field(const Drawing *drawing, const SampleGrid *grid, void **bins, Err *err)
 {
+    const RenderParams *params = drawing->params;
+    Status status;
+    FieldTiles *tiles = NULL;
+    TRY_GOTO(mem_calloc(&tiles, 1, sizeof *tiles, "tiles", err));
+    tiles->geometry = drawing->geometry;
+    tiles->camera = &drawing->view->camera;
+    tiles->grid = *grid;
+    tiles->n_workers = params->threads;
+    tiles->trace = fieldkernels_for(tiles->geometry, params->kernels)->trace;
+    tiles->lists.hidden = drawing->hidden;
+    TRY_GOTO(vessellists_make(tiles->geometry, tiles->camera, grid, params->threads, &tiles->lists,
+                              err));
+    TRY_GOTO(make_axes(tiles->lists.x, grid->n_columns, tile_sample_x, &tiles->x, err));
+    TRY_GOTO(make_axes(tiles->lists.y, grid->n_rows, tile_sample_y, &tiles->y, err));
+    TRY_GOTO(make_workers(tiles, err));
+    *bins = tiles;
+    return STATUS_OK;
+done:
+    release_field(tiles);
+    return status;
+}
+
+static Status list_field(void *bins, int row, int worker, Err *err)
+{
+    const FieldTiles *tiles = bins;
     FieldWorker *own = &tiles->workers[worker];
     size_t longest = 0;
     TRY(vessellists_row(&tiles->lists, (size_t)row, own->columns, &own->lists, err));
@@ -108,15 +125,16 @@ Status fieldtiles_list(FieldTiles *tiles, int row, int worker, Err *err)
     }
     own->row = (FieldTile){.groups = own->space.groups,
                            .perspective = tiles->lists.eye.perspective,
-                           .blob = model_has(tiles->params.geometry->model, MODEL_BLOB),
+                           .blob = model_has(tiles->geometry->model, MODEL_BLOB),
                            .y = tiles->y[row].samples,
                            .middle_y = tiles->y[row].middle,
-                           .z_min = tiles->params.z_min};
+                           .z_min = caster_nearest_mm(tiles->geometry)};
     return fieldspace_reserve(&own->space, longest, err);
 }
 
-bool fieldtiles_is_listed(const FieldTiles *tiles, int column, int worker)
+static bool is_field_listed(const void *bins, int column, int worker)
 {
+    const FieldTiles *tiles = bins;
     return indexlists_length(&tiles->workers[worker].lists, (size_t)column) > 0;
 }
 
@@ -135,9 +153,7 @@ static Status decide_sample(const FieldTiles *tiles, FieldSpace *space, const Fi
     hits->any_hit = true;
     hits->state[sample] = TILE_HIT;
     hits->z[sample] = hit.t * vec3_dot(ray.direction, tiles->lists.eye.axes[2]);
-    hits->normal[0][sample] = (float)normal.x;
-    hits->normal[1][sample] = (float)normal.y;
-    hits->normal[2][sample] = (float)normal.z;
+    tile_set_vector(hits->normal, sample, normal);
     hits->segment[sample] = hit.index;
     return STATUS_OK;
 }
@@ -146,20 +162,24 @@ static Status decide_sample(const FieldTiles *tiles, FieldSpace *space, const Fi
 static Status decide_rest(const FieldTiles *tiles, FieldSpace *space, const FieldTile *tile,
                           const TracedTile *traced, TileHits *hits, Err *err)
 {
-    const SampleGrid *grid = &tiles->params.grid;
+    const SampleGrid *grid = &tiles->grid;
     for (int sample = 0; hits->any_unsure && sample < TILE_SAMPLES; sample++) {
         int i = tile_sample_x(sample), j = tile_sample_y(sample);
         if (hits->state[sample] != TILE_UNSURE || i >= traced->n_columns || j >= traced->n_rows)
             continue;
-        Ray ray = camera_ray(tiles->params.camera, samplegrid_at(grid, traced->column + i),
+        Ray ray = camera_ray(tiles->camera, samplegrid_at(grid, traced->column + i),
                              samplegrid_at(grid, traced->row + j));
         TRY(decide_sample(tiles, space, tile, ray, sample, hits, err));
     }
     return STATUS_OK;
 }
 
-Status fieldtiles_trace(FieldTiles *tiles, int worker, TracedTile *traced, TileHits *hits, Err *err)
+static Status trace_field(void *bins, int worker, int shift, BatchTile *batch_tile, Err *err)
 {
+    (void)shift; /* there are no shifted passes */
+    const FieldTiles *tiles = bins;
+    TracedTile *traced = &batch_tile->traced;
+    TileHits *hits = &batch_tile->hits;
     FieldWorker *own = &tiles->workers[worker];
     FieldSpace *space = &own->space;
     FieldTile tile = own->row;
@@ -175,11 +195,37 @@ Status fieldtiles_trace(FieldTiles *tiles, int worker, TracedTile *traced, TileH
         return STATUS_OK;
     tile.half_size = (float)sqrt(x->half * x->half + y->half * y->half);
     fieldterms_make(tiles->lists.segments, own->lists.items + list[0], list[1] - list[0], &tile,
-                    space->terms, space->candidates);
+                    space->terms.items, space->candidates.items);
     if (tile.n_terms == 0)
         return STATUS_OK;
-    tiles->trace(&tile, &space->work, hits);
+    assert(tile.n_terms <= space->work_capacity);
+    tiles->trace(&tile, space->work, hits);
     TRY(decide_rest(tiles, space, &tile, traced, hits, err));
     traced->hits = hits->any_hit ? hits : NULL;
     return STATUS_OK;
 }
+
+const TileEngine field_tiles = {.fine_grid = true,
+                                .batch_tiles = SHADOW_BATCH,
+                                .rows_at_once = 8,
+                                .shadows = &field_shadows,
+                                .bin = bin_field,
+                                .release = release_field,
+                                .list = list_field,
+                                .is_listed = is_field_listed,
+                                .trace = trace_field};
+
+static bool can_draw_field(const Drawing *drawing)
+{
+    const SceneModel model = drawing->geometry->model;
+    return model_has(model, MODEL_BLOB)
+               ? drawing->params->method != RENDER_TRACE
+               : model_has(model, MODEL_POTENTIAL) && !drawing->params->povray_cells;
+}
+
+const Engine field_engine = {.name = "field",
+                             .tiles = &field_tiles,
+                             .supports = can_draw_field,
+                             .prepare = tilerender_prepare,
+                             .rows = tilerender_rows,
+                             .free = tilerender_free};

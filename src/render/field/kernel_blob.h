@@ -1,21 +1,21 @@
 /* Terms of the blob [field/blob.h; kernel_packet.h], times FIELD_LEVEL, so that the level is that
  * of the potential.
  *
- * The field of a segment is 0 beyond its reach, and a polynomial piece by piece, with jumps of the
- * second derivative from piece to piece. Its bounds are those of blob_shape, over segments of any
- * length; tests/unit/blob_test.c holds them against the field. In radii, and before the
- * field is multiplied:
+ * The field of a segment is 0 beyond its reach. It is a polynomial piece by piece, and its second
+ * derivative jumps from piece to piece. The bounds below hold for blob_shape and segments of any
+ * length; tests/unit/blob_test.c compares them with the field. Lengths are in radii, and the field
+ * is not yet multiplied:
  *
- * - Distance. At the distance x of the segment it is at most ENVELOPE exp(2 - 2 x^2), beyond an end
- *   at most half of that, and y within it at most 1/2 + INWARDS y of that. It is at least -DIP:
- *   beads beyond an end may outweigh what else is there.
- * - Steepness. At the distance x within the reach R its gradient is at most STEEPNESS (1 - x^2 /
+ * - Distance. At the distance x from the segment, the field is at most ENVELOPE exp(2 - 2 x^2).
+ *   Beyond an end it is at most half of that. At y within an end it is at most 1/2 + INWARDS y of
+ *   that. The field is at least -DIP: beads beyond an end may outweigh the other components there.
+ * - Steepness. At the distance x within the reach R, the gradient is at most STEEPNESS (1 - x^2 /
  *   R^2).
- * - Curvature. Along a line that passes the segment at the distance d, and the nearer of its ends
- *   at e, the second derivative is at most the largest of CURVED (1 - x^2 / WIDTH^2): near an end,
- *   x = e; near the axis and far from it, x = d; and 0. Where the line stays out of reach of both
- *   ends it is at most that times the squared sine of the line to the axis. It is no less than
- *   -1.25 times that. */
+ * - Curvature. A line passes the segment at the distance d, and the nearer of its ends at the
+ *   distance e. Along the line, the second derivative is at most the largest of CURVED (1 - x^2 /
+ *   WIDTH^2), near an end with x = e, near the axis and far from it with x = d, and of 0. Where
+ *   the line stays out of reach of both ends, it is at most that times the squared sine of the
+ *   angle between line and axis. It is at least -1.25 times that. */
 #ifndef CORCAST_RENDER_FIELD_KERNEL_BLOB_H
 #define CORCAST_RENDER_FIELD_KERNEL_BLOB_H
 
@@ -68,7 +68,7 @@ LANE_FN void bound_term(PacketTerm *term, LaneMask beyond)
     term->peak = lanes_select(d2 < term->term->reach2, most, lanes_set(0));
 }
 
-/* curved (1 - x^2 / width^2) of x in radii */
+/* Returns the bound CURVED (1 - x^2 / WIDTH^2), in units of 1 / k, from x^2 in these units. */
 LANE_FN Lanes curved_within(float curved, float width, Lanes distance2)
 {
     const float most = PER_UNITS2(curved);
@@ -111,8 +111,8 @@ typedef struct BlobSum {
     Lanes value, across, along;
 } BlobSum;
 
-/* Adds a tube, whose numbers are known where this is folded in, of so much of its strength, at a
- * squared distance. */
+/* Adds `part` of the strength of a tube, at a squared distance from the tube. The compiler knows
+ * the numbers of the tube where it inlines this function. */
 FOLDED_FN void add_tube(const BlobTube *tube, double part, Lanes distance2, BlobSum *sum)
 {
     const double strength = part * tube->strength * FIELD_LEVEL, per = 1 / IN_UNITS2(tube->radius);
@@ -122,8 +122,9 @@ FOLDED_FN void add_tube(const BlobTube *tube, double part, Lanes distance2, Blob
     sum->across = lanes_fma(inside, lanes_set((float)(2 * strength * per)), sum->across);
 }
 
-/* Adds two opposite beads, offset within an end and beyond it, at x inwards from it and at a
- * squared distance; of what they add `along` is less by x times what they add `across`. */
+/* Adds two opposite beads: one inwards of an end of the segment, one beyond it. The point is at x
+ * inwards from the end and at a squared distance from the end. What is added to `along` lacks x
+ * times what is added to `across`; the caller adds that. */
 FOLDED_FN void add_beads(const BlobBead *bead, Lanes distance2, Lanes x, BlobSum *sum)
 {
     const double offset = sqrt(2) * bead->offset, per = 1 / IN_UNITS2(bead->radius);
@@ -152,26 +153,27 @@ LANE_FN BlobSum sum_end(Lanes rho2, Lanes x)
     return sum;
 }
 
-/* Returns the value of the term at the point (w, u, v) of its ray. */
-FOLDED_FN BlobSum blob_sum_at(const PacketTerm *term, Lanes w, Lanes u, Lanes v)
+/* Returns the value of the term at a place of its ray. */
+FOLDED_FN BlobSum blob_sum_at(const PacketTerm *term, const RayPlace *at)
 {
     const Lanes zero = lanes_set(0);
     const float reach =
         (float)(sqrt(2) * (blob_numbers.bead[1].offset + blob_numbers.bead[1].radius));
     BlobSum sum = {zero, zero, zero};
-    Lanes rho2 = lanes_fma(w, w, term->e2), x = lanes_min(u, zero) - lanes_min(v, zero);
+    Lanes rho2 = lanes_fma(at->w, at->w, term->e2);
+    Lanes x = lanes_min(at->u, zero) - lanes_min(at->v, zero);
     Lanes distance2 = lanes_fma(x, x, rho2);
     add_tube(&blob_numbers.tube[0], 1, distance2, &sum);
     add_tube(&blob_numbers.tube[1], 1, distance2, &sum);
     sum.along = sum.across * x;
-    if (lanes_any(u < reach)) {
-        BlobSum end = sum_end(rho2, u);
+    if (lanes_any(at->u < reach)) {
+        BlobSum end = sum_end(rho2, at->u);
         sum.value += end.value;
         sum.across += end.across;
         sum.along += end.along;
     }
-    if (lanes_any(v < reach)) {
-        BlobSum end = sum_end(rho2, v);
+    if (lanes_any(at->v < reach)) {
+        BlobSum end = sum_end(rho2, at->v);
         sum.value += end.value;
         sum.across += end.across;
         sum.along -= end.along;
@@ -179,42 +181,29 @@ FOLDED_FN BlobSum blob_sum_at(const PacketTerm *term, Lanes w, Lanes u, Lanes v)
     return sum;
 }
 
-/* Returns the value of the term at dz, where its ray is at w. */
-FOLDED_FN BlobSum blob_sum(const PacketTerm *term, Lanes dz, Lanes w)
+/* Returns the value of the term at a place. Only the fields of its ray need to be set. */
+FOLDED_FN TermSample sample_once(const PacketTerm *term, const RayPlace *at)
 {
-    return blob_sum_at(term, w, lanes_fma(term->u1, dz, term->u0),
-                       lanes_fma(-term->u1, dz, term->v0));
-}
-
-/* Returns the derivative of a sum along the ray. */
-LANE_FN Lanes slope_of(const PacketTerm *term, Lanes w, const BlobSum *sum)
-{
-    return -2.0f * lanes_fma(sum->across, w * term->w1, sum->along * term->u1);
-}
-
-/* Returns the value of the term at w, u and v. Only the fields of its ray need to be set. */
-FOLDED_FN TermSample sample_once(const PacketTerm *term, Lanes w, Lanes u, Lanes v)
-{
-    BlobSum sum = blob_sum_at(term, w, u, v);
-    return (TermSample){sum.value, slope_of(term, w, &sum)};
+    BlobSum sum = blob_sum_at(term, at);
+    Lanes slope = lanes_fma(sum.across, at->w * term->w1, sum.along * term->u1);
+    return (TermSample){sum.value, -2.0f * slope};
 }
 
 FOLDED_FN TermSample sample_term(const PacketTerm *term, Lanes z)
 {
-    Lanes dz = z - term->z, w = lanes_fma(term->w1, dz, term->w0);
-    return sample_once(term, w, lanes_fma(term->u1, dz, term->u0),
-                       lanes_fma(-term->u1, dz, term->v0));
+    const RayPlace at = place_at(term, z - term->z);
+    return sample_once(term, &at);
 }
 
 LANE_FN void add_gradient(const PacketTerm *term, const Packet *packet, Lanes z, Lanes *phi,
                           Gradient *sum)
 {
     const float k = term->term->k;
-    Lanes dz = z - term->z, w = lanes_fma(term->w1, dz, term->w0);
-    BlobSum at = blob_sum(term, dz, w);
-    *phi += at.value;
-    add_direction(term, packet, dz, at.across * (-2 * k * k), at.along * (-2 * k), sum);
-    name_largest(term->term, at.value, sum);
+    const RayPlace at = place_at(term, z - term->z);
+    BlobSum here = blob_sum_at(term, &at);
+    *phi += here.value;
+    add_direction(term, packet, at.dz, here.across * (-2 * k * k), here.along * (-2 * k), sum);
+    name_largest(term->term, here.value, sum);
 }
 
 /* Returns the lanes on which a term exceeds the level somewhere beyond z, for any values of the
@@ -226,10 +215,9 @@ LANE_FN LaneMask term_hides(const PacketTerm *term, Lanes z, size_t n)
     LaneMask near = term->e2 <= (float)IN_UNITS2(0.92);
     if (n > 40 || !lanes_any(near))
         return (LaneMask){0};
-    Lanes dz = -term->w0 * inverse(term->w1);
-    Lanes u = lanes_fma(term->u1, dz, term->u0), v = lanes_fma(-term->u1, dz, term->v0);
-    Lanes inside = lanes_min(u, v);
-    return near & (inside > 0.0f) & (square(inside) >= reach2) & (dz + term->z > z);
+    const RayPlace at = place_at(term, -term->w0 * inverse(term->w1));
+    Lanes inside = lanes_min(at.u, at.v);
+    return near & (inside > 0.0f) & (square(inside) >= reach2) & (at.dz + term->z > z);
 }
 
 /* Returns an upper bound of a term from w on. The end that the ray leaves is at `leaves`. */
@@ -242,10 +230,9 @@ LANE_FN Lanes most_beyond(Lanes e2, Lanes w, Lanes leaves)
 
 LANE_FN TermThere term_at(const PacketTerm *term, Lanes z)
 {
-    Lanes dz = z - term->z, w = lanes_fma(term->w1, dz, term->w0);
-    Lanes u = lanes_fma(term->u1, dz, term->u0), v = lanes_fma(-term->u1, dz, term->v0);
-    Lanes most = most_beyond(term->e2, w, lanes_select(term->u1 > 0.0f, v, u));
-    return (TermThere){sample_once(term, w, u, v), lanes_min(most, term->peak)};
+    const RayPlace at = place_at(term, z - term->z);
+    Lanes most = most_beyond(term->e2, at.w, lanes_select(term->u1 > 0.0f, at.v, at.u));
+    return (TermThere){sample_once(term, &at), lanes_min(most, term->peak)};
 }
 
 #endif

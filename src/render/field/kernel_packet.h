@@ -34,11 +34,11 @@ typedef struct PacketTerm {
     Lanes half_gauss;         /* exp(-E^2) / 2 */
     Lanes curvature, spare;   /* M, an upper bound of the second derivative; and an upper bound of
                                * -ln B - E^2 */
-    Lanes steep;              /* steepness() of it */
+    Lanes steep;              /* steepness() of the term */
     Lanes end_z[2];           /* dz nearest to the ends */
     Lanes window[2];          /* range of z in which the term can be as large as its share of the
                                * level */
-    Lanes reach[2];           /* z between which it may exceed the cut-off */
+    Lanes reach[2];           /* range of z in which the term may exceed the cut-off */
     const TileTerm *term;
     float z;       /* z of the term, relative to the z of the group */
     float felt[2]; /* range of z in which the term can exceed the cut-off, relative to the z of the
@@ -60,10 +60,12 @@ _Static_assert(sizeof(Outlines) + sizeof(PacketTerm) + sizeof(PacketTerm *) + si
                    TILE_WORK_BYTES,
                "TILE_WORK_BYTES");
 
+/* LANES rays, and the terms of the tile along them. All pointers are into the kernel's workspace,
+ * except `tile`. */
 typedef struct Packet {
     const FieldTile *tile;
-    Lanes x, y;            /* of the samples */
-    float middle[2], half; /* of a circle about them */
+    Lanes x, y;            /* positions of the samples */
+    float middle[2], half; /* middle and radius of a circle around the samples */
     Outlines *outlines;    /* outlines of the tile's terms; orthographic views only */
     PacketTerm *terms;     /* terms of the tile that can affect the packet, in the order of the
                             * tile */
@@ -72,6 +74,8 @@ typedef struct Packet {
     size_t n, n_sum;
 } Packet;
 
+/* Sets the outlines of the tile's terms; lanes behind the last term repeat the first of its group.
+ */
 LANE_FN void outline_terms(const FieldTile *tile, Outlines *outlines)
 {
     for (size_t i = 0; i < tile->n_terms; i += LANES) {
@@ -120,7 +124,7 @@ LANE_FN uint32_t terms_near(const Packet *packet, size_t first)
     return all & lanes_bits(lanes_fma(past, past, square(across)) < square(far));
 }
 
-/* 1 / a, finite for a near 0. */
+/* Returns 1 / a; a finite number if a is near 0. */
 LANE_FN Lanes inverse(Lanes a)
 {
     return 1.0f / lanes_select(lanes_abs(a) > 1e-20f, a, lanes_set(1e-20f));
@@ -154,14 +158,6 @@ LANE_FN Stretch stretch_within(const PacketTerm *term, const Inverses *per, Lane
     LaneMask seen = (width2 >= 0.0f) & (from <= to);
     return (Stretch){lanes_select(seen, from, lanes_set(1e30f)),
                      lanes_select(seen, to, lanes_set(-1e30f))};
-}
-
-/* Returns an interval that contains all points whose squared distance from the segment is at most
- * distance2 + E^2. */
-LANE_FN Stretch stretch_near(const PacketTerm *term, const Inverses *per, Lanes distance2)
-{
-    Lanes distance = lanes_sqrt(lanes_max(distance2, lanes_set(0)));
-    return stretch_within(term, per, distance2, distance, distance);
 }
 
 /* Returns an interval that contains the points beside the segment whose squared distance from the
@@ -258,6 +254,17 @@ FOLDED_FN void place_bundle(const Packet *packet, const TileTerm *term, PacketTe
     out->share = per_cross * length;
     out->cosine = lanes_abs(speed) / length;
     out->inverse_speed2 = 1.0f / (length2 * (k * k));
+}
+
+/* The point of each ray at some z: dz, w, u and v. */
+typedef struct RayPlace {
+    Lanes dz, w, u, v;
+} RayPlace;
+
+FOLDED_FN RayPlace place_at(const PacketTerm *term, Lanes dz)
+{
+    return (RayPlace){dz, lanes_fma(term->w1, dz, term->w0), lanes_fma(term->u1, dz, term->u0),
+                      lanes_fma(-term->u1, dz, term->v0)};
 }
 
 /* Sets the points of the ray that are nearest to the ends. */

@@ -75,24 +75,24 @@ LANE_FN void complete_term(PacketTerm *term, bool perspective)
 
 FOLDED_FN TermSample sample_term(const PacketTerm *term, Lanes z)
 {
-    Lanes dz = z - term->z, w = lanes_fma(term->w1, dz, term->w0);
-    Lanes gauss = term->half_gauss * lanes_exp_minus(square(w)), w_slope = -2.0f * w * term->w1;
+    const RayPlace at = place_at(term, z - term->z);
+    Lanes gauss = term->half_gauss * lanes_exp_minus(square(at.w));
+    Lanes w_slope = -2.0f * at.w * term->w1;
     if (term->flat)
         return (TermSample){gauss, gauss * w_slope};
     Lanes ends, ends_slope;
-    axial_factors(lanes_fma(term->u1, dz, term->u0), lanes_fma(-term->u1, dz, term->v0), &ends,
-                  &ends_slope);
+    axial_factors(at.u, at.v, &ends, &ends_slope);
     Lanes change = lanes_fma(term->u1 * ends_slope, lanes_set(1.12837917f), w_slope * ends);
     return (TermSample){gauss * ends, gauss * change};
 }
 
-/* Returns the value of the term at w, u and v. Only the fields of its ray need to be set. */
-LANE_FN TermSample sample_once(const PacketTerm *term, Lanes w, Lanes u, Lanes v)
+/* Returns the value of the term at a place. Only the fields of its ray need to be set. */
+LANE_FN TermSample sample_once(const PacketTerm *term, const RayPlace *at)
 {
-    Lanes half_gauss = lanes_exp_minus(lanes_fma(w, w, term->e2)) * 0.5f, ends, ends_slope;
-    axial_factors(u, v, &ends, &ends_slope);
+    Lanes half_gauss = lanes_exp_minus(lanes_fma(at->w, at->w, term->e2)) * 0.5f, ends, ends_slope;
+    axial_factors(at->u, at->v, &ends, &ends_slope);
     Lanes change =
-        lanes_fma(term->u1 * ends_slope, lanes_set(1.12837917f), -2.0f * w * term->w1 * ends);
+        lanes_fma(term->u1 * ends_slope, lanes_set(1.12837917f), -2.0f * at->w * term->w1 * ends);
     return (TermSample){half_gauss * ends, half_gauss * change};
 }
 
@@ -100,20 +100,19 @@ LANE_FN void add_gradient(const PacketTerm *term, const Packet *packet, Lanes z,
                           Gradient *sum)
 {
     const float k = term->term->k;
-    Lanes dz = z - term->z, w = lanes_fma(term->w1, dz, term->w0);
-    Lanes gauss = term->half_gauss * lanes_exp_minus(square(w)), value = gauss, ends_slope;
-    Lanes u = lanes_fma(term->u1, dz, term->u0), v = lanes_fma(-term->u1, dz, term->v0);
+    const RayPlace at = place_at(term, z - term->z);
+    Lanes gauss = term->half_gauss * lanes_exp_minus(square(at.w)), value = gauss, ends_slope;
     if (term->flat) {
-        ends_slope = lanes_exp_minus(square(u)) - lanes_exp_minus(square(v));
-        gauss = lanes_exp_minus(square(w) + term->e2) * 0.5f;
+        ends_slope = lanes_exp_minus(square(at.u)) - lanes_exp_minus(square(at.v));
+        gauss = lanes_exp_minus(square(at.w) + term->e2) * 0.5f;
     } else {
         Lanes ends;
-        axial_factors(u, v, &ends, &ends_slope);
+        axial_factors(at.u, at.v, &ends, &ends_slope);
         value *= ends;
     }
     *phi += value;
-    add_direction(term, packet, dz, value * (-2.0f * k * k), gauss * ends_slope * (k * 1.12837917f),
-                  sum);
+    add_direction(term, packet, at.dz, value * (-2.0f * k * k),
+                  gauss * ends_slope * (k * 1.12837917f), sum);
     name_largest(term->term, value, sum);
 }
 
@@ -125,9 +124,8 @@ LANE_FN LaneMask term_hides(const PacketTerm *term, Lanes z, size_t n)
     LaneMask near = term->e2 <= 1.9f;
     if (!lanes_any(near))
         return near;
-    Lanes dz = -term->w0 * inverse(term->w1);
-    Lanes u = lanes_fma(term->u1, dz, term->u0), v = lanes_fma(-term->u1, dz, term->v0);
-    return near & (lanes_min(u, v) >= 1.5f) & (dz + term->z > z);
+    const RayPlace at = place_at(term, -term->w0 * inverse(term->w1));
+    return near & (lanes_min(at.u, at.v) >= 1.5f) & (at.dz + term->z > z);
 }
 
 /* Returns an upper bound of a term from w on. The end that the ray leaves is at `leaves`. The axial
@@ -143,19 +141,19 @@ LANE_FN Lanes most_beyond(Lanes e2, Lanes w, Lanes leaves)
  * from both the axis line and the end that it leaves, or if exp(-w^2) is negligible. */
 LANE_FN TermThere term_at(const PacketTerm *term, Lanes z)
 {
-    Lanes dz = z - term->z, w = lanes_fma(term->w1, dz, term->w0);
-    Lanes gauss = term->half_gauss * lanes_exp_minus(square(w)), w_slope = -2.0f * w * term->w1;
+    const RayPlace at = place_at(term, z - term->z);
+    Lanes gauss = term->half_gauss * lanes_exp_minus(square(at.w));
+    Lanes w_slope = -2.0f * at.w * term->w1;
     TermThere there = {{gauss, gauss * w_slope}, lanes_set(0)};
-    LaneMask falls = w >= 0.0f;
+    LaneMask falls = at.w >= 0.0f;
     if (!term->flat) {
-        Lanes u = lanes_fma(term->u1, dz, term->u0), v = lanes_fma(-term->u1, dz, term->v0);
         Lanes ends, ends_slope;
-        axial_factors(u, v, &ends, &ends_slope);
+        axial_factors(at.u, at.v, &ends, &ends_slope);
         Lanes change = lanes_fma(term->u1 * ends_slope, lanes_set(1.12837917f), w_slope * ends);
         there.at.value = gauss * ends;
         there.at.slope = gauss * change;
-        falls &= lanes_select(term->u1 > 0.0f, v, u) < 0.0f;
-        falls |= (w > 4.8f) | ((change < 0.0f) & (ends > 0.02f));
+        falls &= lanes_select(term->u1 > 0.0f, at.v, at.u) < 0.0f;
+        falls |= (at.w > 4.8f) | ((change < 0.0f) & (ends > 0.02f));
     }
     there.most = lanes_select(falls, there.at.value, term->peak);
     return there;

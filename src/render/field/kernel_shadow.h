@@ -1,6 +1,5 @@
-/* Tests whether anything is between points and a light, several points at once. Each source that
- * compiles this file for its lanes includes it after kernel_trace.h and defines SHADOW_KERNEL, the
- * name of the kernel.
+/* Tests whether anything is between points and a light, several points at once. A source includes
+ * kernel_trace.h first.
  *
  * Lines of sight lead from the points to the light, which is at the end of z. Most lines are free,
  * and this is proven by two fast tests:
@@ -25,13 +24,9 @@
  * nearest term is passed. Then rays are marched, and each step may end with a proof that the point
  * is lit or dark.
  *
- * -  Rim. Points are on the surface only as exactly as it was found. Until Phi has fallen below RIM
- *    of the level when the line leaves the surface, the level is replaced by SKIN times the
- *    level. */
-#ifndef SHADOW_KERNEL
-#error "define SHADOW_KERNEL, the name of the function"
-#endif
-
+ * Points are on the surface only as exactly as they were found. While the line leaves the surface,
+ * until Phi has fallen below RIM of the level, the level is therefore replaced by SKIN times the
+ * level. A sum of bounds counts as below the level if it is below SURELY_BELOW. */
 #define RIM 0.998f
 #define SKIN 1.002f
 #define SURELY_BELOW (0.999f * LEVEL)
@@ -49,9 +44,9 @@ typedef struct Departures {
     Packet packet;
     Blocker *blockers; /* in the memory of the packet's terms */
     size_t n_blockers;
-    double base;    /* about which z is */
-    Lanes z;        /* of the places */
-    float from, to; /* the least and the largest of these */
+    double base;    /* depth to which z, `from` and `to` are relative, mm */
+    Lanes z;        /* depths of the points */
+    float from, to; /* smallest and largest z */
 } Departures;
 
 /* Returns as bits the terms, among the LANES terms from `first` on, that may be within reach of a
@@ -68,25 +63,18 @@ LANE_FN uint32_t terms_ahead(const Departures *rays, size_t first)
     return ahead;
 }
 
-FOLDED_FN void set_depths(const Departures *rays, PacketTerm *term)
-{
-    term->z = (float)(term->term->z_near - rays->base);
-    term->felt[0] = (float)(term->term->on - rays->base);
-    term->felt[1] = (float)(term->term->off - rays->base);
-}
-
 /* Stores the term as a blocker, and adds its value at the points to *at. */
 FOLDED_FN void pass_term(Departures *rays, PacketTerm *term, LaneMask open, PacketSample *at,
                          float *extent)
 {
-    Lanes dz = rays->z - term->z, w = lanes_fma(term->w1, dz, term->w0);
-    Lanes u = lanes_fma(term->u1, dz, term->u0), v = lanes_fma(-term->u1, dz, term->v0);
-    rays->blockers[rays->n_blockers++] = (Blocker){.w = w,
-                                                   .w1 = term->w1,
-                                                   .leaves = lanes_select(term->u1 > 0.0f, v, u),
-                                                   .u1 = lanes_abs(term->u1),
-                                                   .e2 = term->e2,
-                                                   .peak = term->peak};
+    const RayPlace place = place_at(term, rays->z - term->z);
+    rays->blockers[rays->n_blockers++] =
+        (Blocker){.w = place.w,
+                  .w1 = term->w1,
+                  .leaves = lanes_select(term->u1 > 0.0f, place.v, place.u),
+                  .u1 = lanes_abs(term->u1),
+                  .e2 = term->e2,
+                  .peak = term->peak};
     if (term->felt[0] > rays->to) {
         at->next = lanes_min(at->next, lanes_set(term->felt[0]));
         return;
@@ -94,7 +82,7 @@ FOLDED_FN void pass_term(Departures *rays, PacketTerm *term, LaneMask open, Pack
     if (!matters(term, open))
         return;
     bound_bend(term);
-    TermSample one = sample_once(term, w, u, v);
+    TermSample one = sample_once(term, &place);
     add_sample(&one, open, term, at);
     float far = fabsf(term->z);
     *extent = far > *extent ? far : *extent;
@@ -116,7 +104,7 @@ LANE_FN LaneMask depart(Departures *rays, LaneMask open, PacketSample *at, Lanes
             PacketTerm term;
             if (!place_term(&rays->packet, &tile->terms[i + (size_t)__builtin_ctz(near)], &term))
                 continue;
-            set_depths(rays, &term);
+            set_depths(&term, rays->base);
             hidden |= term_hides(&term, rays->z, tile->n_terms);
             if (!lanes_any(open & ~hidden))
                 return hidden;
@@ -357,9 +345,7 @@ LANE_FN void decide_by_march(ShadowPoints *points, PendingPoints *later, Departu
     if (rays->packet.tile->groups) {
         test_union(rays, &open, &dark, &unsure);
     } else {
-        rays->packet.n_sum = rays->packet.n;
-        for (size_t i = 0; i < rays->packet.n; i++)
-            rays->packet.sum[i] = &rays->packet.terms[i];
+        sum_all(&rays->packet);
         test_sum(rays, &open, &dark, &unsure);
     }
     set_states(points, later->numbers, unsure, SHADOW_UNSURE);
@@ -376,11 +362,10 @@ LANE_FN void postpone(const ShadowPoints *points, int number, PendingPoints *lat
     later->numbers[n] = (uint16_t)number;
 }
 
-LANE_TARGET void SHADOW_KERNEL(const FieldTile *tile, TileWork *work, ShadowPoints *points)
+LANE_TARGET static void LANES_NAME(shadow)(const FieldTile *tile, void *work, ShadowPoints *points)
 {
     PendingPoints later = {.n = 0};
-    assert(tile->n_terms <= work->capacity);
-    Departures rays = {.packet = {.tile = tile, .terms = work->memory}, .blockers = work->memory};
+    Departures rays = {.packet = {.tile = tile, .terms = work}, .blockers = work};
     share_memory(&rays.packet);
     __builtin_memset(points->state, SHADOW_LIT, (size_t)points->n);
     for (int first = 0; first < points->n; first += LANES)

@@ -1,7 +1,6 @@
-/* Finds the first hits of a tile, several rays at once. Each source that compiles this file for its
- * lanes includes it and defines FIELD_KERNEL, the name of the kernel. If PLANE_KERNEL is defined,
- * the name of the function for tiles in a plane, the terms are those of the potential; otherwise
- * those of the blob.
+/* Finds the first hits of a tile, several rays at once. A source includes the header of its kind of
+ * term first, kernel_potential.h or kernel_blob.h. With TRACES_PLANES, tiles whose vessels all lie
+ * in one plane go to trace_plane [kernel_trace_flat.h].
  *
  * fieldcast.c proves the first hit of one ray in double precision. This file makes the same proof
  * in single precision, for a packet of neighbouring rays. Lanes whose proof needs more precision
@@ -20,19 +19,11 @@
  * -  Steps and acceptance are those of fieldcast.c, with a margin about T for the errors of single
  *    precision, of erf and of the terms left out. No step passes a point that could reach T -
  *    margin, and a hit is a point where the potential rises through T + margin. */
-#ifndef FIELD_KERNEL
-#error "define FIELD_KERNEL, the name of the function"
-#endif
+#include "render/field/kernel_packet.h"
 
-#ifdef PLANE_KERNEL
-#include "render/field/kernel_potential.h"
-#include "render/field/kernel_trace_flat.h"
-#else
-#include "render/field/kernel_blob.h"
-#endif
-#include <assert.h>
-
-/* Lack of potential below which a very certain hit is completed by Newton's method. */
+/* Lack of potential below which a very certain hit is completed by Newton's method, and the maximum
+ * number of steps of a march; rays that need more are decided in double precision. Reasons for the
+ * values are not recorded. */
 #define NEAR_ENOUGH (2e-2f * LEVEL)
 #define MOST_STEPS 128
 
@@ -131,7 +122,9 @@ LANE_FN void place_windows(PacketTerm *term, bool perspective, Lanes excess, Lan
     const Inverses per = inverses_of(term, perspective);
     Lanes beside2 = excess + term->spare;
     Stretch window = stretch_about(term, &per, beside2, beside2 - 0.69314718f);
-    Stretch reach = stretch_near(term, &per, term->term->reach2 - term->e2);
+    Lanes reach2 = term->term->reach2 - term->e2,
+          within = lanes_sqrt(lanes_max(reach2, lanes_set(0)));
+    Stretch reach = stretch_within(term, &per, reach2, within, within);
     term->window[0] = lanes_select(counts, window.low + term->z, none);
     term->window[1] = lanes_select(counts, window.high + term->z, -none);
     term->reach[0] = reach.low + term->z;
@@ -223,7 +216,7 @@ LANE_FN Gradient gradient_at(const Group *group, Lanes z, LaneMask rays, Lanes *
     return sum;
 }
 
-/* One more Newton step comes with the gradient. */
+/* Stores the hits. The gradient gives one more step of Newton's method. */
 LANE_FN void describe_hits(const Group *group, int first, LaneMask hit, Lanes z, TileHits *hits)
 {
     const FieldTile *tile = group->packet->tile;
@@ -239,6 +232,14 @@ LANE_FN void describe_hits(const Group *group, int first, LaneMask hit, Lanes z,
     store_hits(tile, first, hit, group->base, z, normal, at.segment, hits);
 }
 
+/* Sets the depths of a term relative to `base`. */
+FOLDED_FN void set_depths(PacketTerm *term, double base)
+{
+    term->z = (float)(term->term->z_near - base);
+    term->felt[0] = (float)(term->term->on - base);
+    term->felt[1] = (float)(term->term->off - base);
+}
+
 /* Forms a group of the overlapping terms from `first` on. Returns the index of the first term of
  * the next group. Ignores everything nearer than `nearest`. */
 LANE_FN size_t next_group(const Packet *packet, size_t first, double nearest, Group *group)
@@ -251,9 +252,7 @@ LANE_FN size_t next_group(const Packet *packet, size_t first, double nearest, Gr
     for (; last < packet->n_sum && terms[last]->term->on <= end; last++)
         end = terms[last]->term->off > end ? terms[last]->term->off : end;
     for (size_t i = first; i < last; i++) {
-        terms[i]->z = (float)(terms[i]->term->z_near - base);
-        terms[i]->felt[0] = (float)(terms[i]->term->on - base);
-        terms[i]->felt[1] = (float)(terms[i]->term->off - base);
+        set_depths(terms[i], base);
         depth = fmaxf(depth, terms[i]->felt[1] - terms[i]->felt[0]);
     }
     double reach = end - base > base - begin ? end - base : base - begin;
@@ -301,6 +300,14 @@ LANE_FN size_t find_groups(Packet *packet)
     return localgroups_find(packet->tile->groups, packet->segments, packet->n);
 }
 
+/* Selects all terms for the sum. */
+LANE_FN void sum_all(Packet *packet)
+{
+    packet->n_sum = packet->n;
+    for (size_t i = 0; i < packet->n; i++)
+        packet->sum[i] = &packet->terms[i];
+}
+
 /* Selects the terms of one blend group for the sum. */
 LANE_FN void sum_group(Packet *packet, size_t group)
 {
@@ -346,23 +353,20 @@ LANE_FN void trace_packet(Packet *packet, int first, TileHits *hits)
         trace_union(packet, first, hits);
         return;
     }
-    packet->n_sum = packet->n;
-    for (size_t i = 0; i < packet->n; i++)
-        packet->sum[i] = &packet->terms[i];
+    sum_all(packet);
     trace_sum(packet, first, hits);
 }
 
-LANE_TARGET void FIELD_KERNEL(const FieldTile *tile, TileWork *work, TileHits *hits)
+LANE_TARGET static void LANES_NAME(trace)(const FieldTile *tile, void *work, TileHits *hits)
 {
-    assert(tile->n_terms <= work->capacity);
     __builtin_memset(hits, 0, sizeof *hits);
-#ifdef PLANE_KERNEL
+#ifdef TRACES_PLANES
     if (tile->plane) {
-        PLANE_KERNEL(tile, work->memory, hits);
+        trace_plane(tile, work, hits);
         return;
     }
 #endif
-    Packet packet = {.tile = tile, .terms = work->memory};
+    Packet packet = {.tile = tile, .terms = work};
     share_memory(&packet);
     for (int first = 0; first < TILE_SAMPLES; first += LANES)
         trace_packet(&packet, first, hits);

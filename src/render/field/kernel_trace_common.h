@@ -24,8 +24,9 @@ LANE_FN Lanes square(Lanes a)
     return a * a;
 }
 
-/* The axial factor of a term, twice, and exp(-u^2) - exp(-v^2). Ends that are out of reach of all
- * lanes are not told apart: a branch that is guessed wrongly costs more than it spares. */
+/* Computes twice the axial factor of a term, and exp(-u^2) - exp(-v^2). Ends that are out of reach
+ * of all lanes have no branch of their own: a branch that is predicted wrongly costs more than it
+ * saves. */
 LANE_FN void axial_factors(Lanes u, Lanes v, Lanes *ends, Lanes *ends_slope)
 {
     Lanes gauss_u = lanes_exp_minus(square(u)), gauss_v = lanes_exp_minus(square(v));
@@ -33,13 +34,14 @@ LANE_FN void axial_factors(Lanes u, Lanes v, Lanes *ends, Lanes *ends_slope)
     *ends_slope = gauss_u - gauss_v;
 }
 
-/* The data of a hit that the image needs. */
+/* The gradient of the potential at a hit, and the segment of the largest term. */
 typedef struct Gradient {
     Lanes x, y, z;
-    Lanes largest; /* term */
+    Lanes largest; /* value of the largest term so far */
     LaneMask segment;
 } Gradient;
 
+/* Updates the largest term. Among equal terms, the lowest segment wins. */
 LANE_FN void name_largest(const TileTerm *term, Lanes value, Gradient *sum)
 {
     int32_t segment = (int32_t)term->segment;

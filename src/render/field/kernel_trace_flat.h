@@ -1,53 +1,62 @@
-/* The first hits of a tile whose vessels all lie in one plane, square to the rays: trees in a disc,
- * seen face-on.
+/* Finds the first hits of a tile whose vessels all lie in one plane across the rays, as those of a
+ * tree in a disc do, seen face-on.
  *
- * With q the square of the distance from the plane, a term is A exp(-k^2 q), A = exp(-E^2) (erf u +
- * erf v) / 2. So the potential falls strictly with q: a ray hits if the sum of A exceeds the level,
- * once on its way to the plane, and needs no search. About a lone vessel ln Phi = ln A - k^2 q
- * gives q at once. Else Halley's method finds it, in units of 1 / K^2, K the largest k of the tile:
- * ln Phi is convex in q, its first derivative is -m, m the mean, and its second v, the variance, of
- * p = (k / K)^2 among the terms.
+ * q is the square of the distance from the plane. A term is A exp(-k^2 q) with A = exp(-E^2) (erf u
+ * + erf v) / 2, so the potential decreases strictly as q grows. A ray hits if and only if the sum
+ * of the A exceeds the level, and it hits once on its way to the plane. No search is needed. Around
+ * a single vessel, ln Phi = ln A - k^2 q gives q directly. Otherwise Halley's method finds q, in
+ * units of 1 / K^2, where K is the largest k of the tile. ln Phi is a convex function of q. With p
+ * = (k / K)^2 of a term, its first derivative is -m and its second derivative is v, where m and v
+ * are the mean and the variance of p, weighted by the terms.
  *
- * A step d of Halley's method solves a parabola but for v^2 |d|^3 / (4 m (1 + v d / (2 m))), and
- * the parabola leaves out |d|^3 / 6 of the third central moment somewhere on the way. With R the
- * range of p, that is at most R v there, so v grows by exp(R |d|) at most; and v <= m R [Bhatia &
- * Davis 2000]. Where R |d| <= 1 the step thus leaves ln Phi off by less than R v |d|^3. Rays that
- * start between surface and plane, and those within the margin of the level, are handed back. */
+ * A step d of Halley's method solves the parabola of ln Phi up to an error of v^2 |d|^3 / (4 m (1 +
+ * v d / (2 m))). The parabola leaves out |d|^3 / 6 times the third central moment of p somewhere on
+ * the step. R is the range of p. The third moment is at most R v there, so v grows by at most exp(R
+ * |d|); and v <= m R [Bhatia & Davis 2000]. Where R |d| <= 1, the error of ln Phi after the step is
+ * therefore less than R v |d|^3. Rays that start between surface and plane, and rays within the
+ * margin of the level, are TILE_UNSURE. */
 #include "render/field/kernel_potential.h"
 
-/* Maximum error of ln Phi after the last step; rounding adds 1e-6. */
+/* Tells kernel_trace.h that trace_plane exists. */
+#define TRACES_PLANES
+
+/* Maximum error of ln Phi after the last step; rounding adds 1e-6. Reason for the value not
+ * recorded: it decides how many steps are taken. */
 #define PLANE_CLOSE 3e-6f
+/* Maximum number of steps; rays that are not solved by then are TILE_UNSURE. */
 #define PLANE_STEPS 32
 
-/* A tile in a plane. */
+/* A tile whose vessels lie in one plane. */
 typedef struct FlatTile {
     const FieldTile *tile;
     TileHits *hits;
     double base;  /* z of the plane */
-    float extent; /* mm, of places */
-    float k;      /* K */
+    float extent; /* bound of the size of positions, mm; their rounding error is relative to it */
+    float k;      /* K: the largest k of the tile, 1 / mm */
 } FlatTile;
 
+/* A term along the rays of a packet. */
 typedef struct PlaneTerm {
-    Lanes e;
+    Lanes e;         /* E */
     Lanes amplitude; /* A */
-    Lanes slope;     /* A's derivative along the axis, 1 / (2 k) of it */
+    Lanes slope;     /* derivative of A along the axis, divided by 2 k */
     Lanes fall;      /* exp(-k^2 q) */
     const TileTerm *term;
-    float p;
+    float p; /* (k / K)^2 */
 } PlaneTerm;
 
+/* LANES rays, and the terms that touch them. */
 typedef struct PlanePacket {
     const FlatTile *plane;
     PlaneTerm *terms;
     size_t n;
-    int first;                    /* sample */
+    int first;                    /* index of the first sample */
     LaneMask hit, unsure, solved; /* lanes whose potential exceeds the level, may exceed it, and
                                    * whose q is found */
-    float low, range;             /* of p */
-    Lanes q;
-    Lanes step;               /* last step of q, which is not applied to the terms */
-    Lanes sum, sum_p, sum_p2; /* sums of A exp(-k^2 q) times powers of p */
+    float low, range;             /* smallest p, and R: range of p */
+    Lanes q;                      /* in units of 1 / K^2 */
+    Lanes step;                   /* last step of q, which is not applied to the terms */
+    Lanes sum, sum_p, sum_p2;     /* sums of A exp(-k^2 q) times powers of p */
 } PlanePacket;
 
 enum {
@@ -74,11 +83,12 @@ LANE_FN PlanePlace place_in_plane(const TileTerm *term, Lanes x, Lanes y)
                         .v = term->v - along};
 }
 
-/* Sets of `touched`, one for each term, the bits of those packets on whose rays it may be above the
- * cut-off, and returns the bits of those that may hit something: some term must be at least its
- * part, 1 / n, of the level, so near enough; the 0.02 is for the margin. A packet's rays are all
- * within `half` of its middle; those of the first, which is nowhere cut off before another, are the
- * farthest apart. A lone term need not be looked at: trace_lone() finds out as fast. */
+/* Finds the packets that terms touch. Sets touched[i] to the bits of the packets on whose rays term
+ * i may exceed the cut-off. Returns the bits of the packets that may hit something: some term must
+ * be at least its share of the level, 1 / n, and therefore be near enough. The 0.02 is for the
+ * margin. All rays of a packet are within `half` of the packet's middle; the first packet is never
+ * cut off at the edge of the image before another, so its rays are the farthest apart. A single
+ * term is not examined: trace_lone() decides as fast. */
 LANE_FN uint32_t find_touched(const FieldTile *tile, uint32_t *touched)
 {
     if (tile->n_terms == 1)
@@ -111,8 +121,8 @@ LANE_FN uint32_t find_touched(const FieldTile *tile, uint32_t *touched)
     return hopeful;
 }
 
-/* Marks rays that start beyond their hits at -height for double precision, and returns the other
- * hits. */
+/* Marks rays that start beyond their hits, which are `height` before the plane, as TILE_UNSURE.
+ * Returns the other hits. */
 LANE_FN LaneMask hits_in_front(const FlatTile *plane, int first, LaneMask hit, LaneMask unsure,
                                Lanes height)
 {
@@ -123,8 +133,8 @@ LANE_FN LaneMask hits_in_front(const FlatTile *plane, int first, LaneMask hit, L
     return hit & ~behind;
 }
 
-/* Traces a packet that only one term touches. With k^2 q = ln(A / C), the gradient is, up to a
- * factor, given by the gradient of A over A, and by sqrt q. Returns false if the packet needs a
+/* Traces a packet that only one term touches. With the level C, k^2 q = ln(A / C). The gradient is,
+ * up to a factor, given by the gradient of ln A and by sqrt q. Returns false if the packet needs a
  * wider margin than this method allows. */
 LANE_FN bool trace_lone(const FlatTile *plane, int first, const TileTerm *term)
 {
@@ -204,6 +214,7 @@ LANE_FN void sum_up_plane(PlanePacket *packet)
     packet->unsure = ~packet->hit & (packet->sum >= LEVEL - margin);
 }
 
+/* Sets `fall` of the terms, and the sums, at the present q. */
 LANE_FN void fall_to(PlanePacket *packet)
 {
     clear_sums(packet);
@@ -214,8 +225,9 @@ LANE_FN void fall_to(PlanePacket *packet)
     }
 }
 
-/* Takes Halley's step, of at most twice Newton's, and sets where it is the last: nowhere where it
- * is cut short, as v d > 2 m there. */
+/* Takes a step of Halley's method, at most twice as long as Newton's. Sets `solved` in the lanes in
+ * which it is the last step. A step that was shortened is never the last, because v d > 2 m there.
+ */
 LANE_FN void plane_step(PlanePacket *packet)
 {
     Lanes sum = packet->sum, above = lanes_log(lanes_max(sum * (1 / LEVEL), lanes_set(1e-30f)));
@@ -241,8 +253,8 @@ LANE_FN void solve_plane(PlanePacket *packet)
     packet->hit &= packet->solved;
 }
 
-/* The gradient, half of it, at a height. What the last step has changed in the terms' proportions,
- * exp(y) with |y| <= R |d| / 2, is taken to second order. */
+/* Returns half the gradient at a height before the plane. The last step changes the terms'
+ * proportions by exp(y), |y| <= R |d| / 2. This factor is computed to second order. */
 LANE_FN Gradient plane_gradient(const PlanePacket *packet, Lanes height)
 {
     Gradient sum = {.largest = lanes_set(-1)};
@@ -275,8 +287,8 @@ LANE_FN void describe_plane_hits(const PlanePacket *packet)
                plane->hits);
 }
 
-/* Collects the terms of the packet of this number, and their sums; false if nothing is left to do,
- * as when it is touched by one term. */
+/* Collects the terms of packet `number`, and their sums. Returns false if nothing is left to do,
+ * for instance because one term alone touched the packet and has been traced. */
 LANE_FN bool begin_packet(const FlatTile *plane, int number, const uint32_t *touched,
                           PlaneTerm *terms, PlanePacket *packet)
 {
@@ -298,8 +310,8 @@ LANE_FN bool begin_packet(const FlatTile *plane, int number, const uint32_t *tou
 
 /* The work for one packet is a long chain of dependent operations. Each stage is therefore done for
  * all packets before the next stage begins. */
-LANE_TARGET static __attribute__((noinline)) void PLANE_KERNEL(const FieldTile *tile, void *memory,
-                                                               TileHits *hits)
+LANE_TARGET static __attribute__((noinline)) void trace_plane(const FieldTile *tile, void *memory,
+                                                              TileHits *hits)
 {
     PlaneTerm *terms = memory;
     uint32_t *touched = (uint32_t *)(terms + PLANE_PACKETS * tile->n_terms);

@@ -51,7 +51,7 @@ static TileSpan rows_of(const VesselLists *lists, const FrameSegment *segment)
     return tilespan_intersection(rows, lists->listed_rows);
 }
 
-enum { CHUNK = 2048 };
+enum { CHUNK = 2048 }; /* segments that a thread moves at a time; reason not recorded */
 
 /* Returns the distance from the segment within which its term counts, mm; 0: nowhere. The peak of a
  * term of the potential, erf(x), is at most 1 and at most 2 x / sqrt(pi). */

@@ -5,7 +5,6 @@
 #include "render/field/fieldterms.h"
 #include "render/light/lightview.h"
 #include "render/tile/interval.h"
-#include "render/tile/samplegrid.h"
 
 /* The segments of a model, sorted into the rows of tiles of a picture. Nothing changes it after it
  * is made. All arrays except `hidden` are owned. */

@@ -1,16 +1,17 @@
-/* The outline of a cylinder is two lines along its wall, that of a ball is a circle: where the wall
- * is seen edge-on. A cylinder's end that is neither in a ball nor a joint's has the edge of its
- * disc besides. The outline of a joint is followed from ellipse to ellipse, and runs on along the
- * edge between a joint and its cylinder where the viewer sees one of the two from behind. Where
- * such a curve is part of the picture's outline, nothing is in front of it, and it lies inside
- * nothing: a ray from beside it to the viewer meets no vessel, since one that begins inside a
- * vessel leaves it. So every curve is followed in steps of half a line, and where what is seen
- * changes, the place is halved down to a hundredth of a line [A. Appel, Proc. 22nd ACM Nat. Conf.
- * (1967) 387-393, with rays instead of counted crossings].
+/* The outline of a cylinder consists of two lines along its wall, that of a ball is a circle: the
+ * points where the wall is viewed edge-on. A cylinder's end that is neither in a ball nor at a
+ * joint also has the edge of its disc. The outline of a joint is followed from ellipse to ellipse.
+ * It continues along the edge between a joint and its cylinder where the viewer sees one of the two
+ * surfaces from behind.
  *
- * Where vessels run into one another no line is drawn, as illustrators leave it out, too.
+ * A point of such a curve is drawn if nothing is in front of it and if it lies inside no vessel.
+ * One ray from beside the point to the viewer tests both, because a ray that begins inside a vessel
+ * leaves it. Every curve is followed in steps of half a line. Where the visibility changes, the
+ * step is halved until the change is known to a hundredth of a line [A. Appel, Proc. 22nd ACM Nat.
+ * Conf. (1967) 387-393, with rays instead of counted crossings]. Where vessels run into one another
+ * no line is drawn; illustrators leave it out, too.
  *
- * Blocks of vessels are the unit of work and are put together in order, so that the drawing does
+ * Threads draw blocks of vessels. The blocks are put together in order, so that the drawing does
  * not depend on the number of threads. */
 #include "render/ink/ink.h"
 
@@ -20,11 +21,17 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* BLOCK: vessels that a thread draws at a time. LEAST_STEPS: steps along a curve, however short; an
+ * arc takes four times as many. HALVINGS: 2^-6 of half a line is a hundredth of a line.
+ * FINE_SAMPLES: samples around the edge of a joint. RULINGS: intervals between ellipses along a
+ * joint. Reasons for the other values are not recorded. */
 enum { BLOCK = 64, LEAST_STEPS = 4, HALVINGS = 6, FINE_SAMPLES = 384, RULINGS = 16 };
 
-/* How far beside a wall, in radii, the ray begins. */
+/* Distance from the wall at which the ray to the viewer begins, in radii: the wall does not hide
+ * itself. */
 #define BESIDE 1e-6
-/* How far a drawn polygon may be off its circle, mm. */
+/* Maximum distance of a drawn polygon from its circle, mm. It decides the number of sides; reason
+ * for the value not recorded. */
 #define SAGITTA_MM 0.004
 
 /* A line drawing while it is made. */
@@ -40,7 +47,7 @@ typedef struct InkDrawing {
     InkPieces *pieces; /* per block; owned */
 } InkDrawing;
 
-/* What one block of vessels is drawn with. */
+/* The arguments for drawing one block of vessels. */
 typedef struct InkPen {
     const InkDrawing *ink;
     int worker;
@@ -123,7 +130,7 @@ static bool curve_is_visible(const InkPen *pen, const InkCurve *curve, double t)
     return is_visible(pen, point);
 }
 
-/* Half a line within the outline. */
+/* Adds a point of a joint's outline, moved inwards by half a line. */
 static Status add_ruled(const InkPen *pen, const InkCurve *curve, double t, Err *err)
 {
     Vec3 normal, point = ruled_point(pen->ink, curve, t, &normal);
@@ -146,7 +153,7 @@ static Status add_point(const InkPen *pen, const InkCurve *curve, double t, Err 
     return inkpieces_add(pen->pieces, point.at, err);
 }
 
-/* Draws the curve from t to end; a circle as a polygon. */
+/* Draws the curve from t to `end`. A circle is drawn as a polygon. */
 static Status add_piece(const InkPen *pen, const InkCurve *curve, double t, double end, Err *err)
 {
     double radius_mm = curve->length_mm / curve->span / FULL_TURN;
@@ -202,7 +209,7 @@ static double distance_on_paper(const OnPaper *a, const OnPaper *b)
     return elementary_hypot(b->at[0] - a->at[0], b->at[1] - a->at[1]);
 }
 
-/* The wall's normal that is nearest to the viewer's direction. */
+/* Returns the normal of the wall that is nearest to the direction to the viewer. */
 static Vec3 front_normal(const Camera *camera, const Primitive *vessel)
 {
     double distance;
@@ -213,7 +220,7 @@ static Vec3 front_normal(const Camera *camera, const Primitive *vessel)
     return vec3_length(front) > 1e-6 ? vec3_normalized(front) : towards;
 }
 
-/* A vessel that is one line on paper. */
+/* Draws a vessel as one line, as wide on paper as the vessel. */
 static Status draw_thin(const InkPen *pen, const Primitive *vessel, const OnPaper ends[2], Err *err)
 {
     const InkCurve axis = {.from = vessel->a,
@@ -225,7 +232,8 @@ static Status draw_thin(const InkPen *pen, const Primitive *vessel, const OnPape
     return draw_curve(pen, &axis, err);
 }
 
-/* One of the two lines along the wall of a cylinder; `normal` is the wall's there. */
+/* Draws one of the two lines along the wall of a cylinder. `normal` is the normal of the wall
+ * there. */
 static Status draw_side(const InkPen *pen, const Primitive *vessel, Vec3 normal,
                         const OnPaper ends[2], Err *err)
 {
@@ -313,7 +321,8 @@ static Status draw_cylinder(const InkPen *pen, const Primitive *vessel, Err *err
     return STATUS_OK;
 }
 
-/* The outline between two ellipses: from each angle of the first to the nearest of the second. */
+/* Draws the outline between two ellipses of a joint: from each angle of the first ellipse to the
+ * nearest angle of the second. */
 static Status draw_rulings(const InkPen *pen, const JointFrame *joint, const double fraction[2],
                            double length_mm, Err *err)
 {
@@ -338,7 +347,7 @@ static Status draw_rulings(const InkPen *pen, const JointFrame *joint, const dou
     return STATUS_OK;
 }
 
-/* The parts of the edge between a joint and its cylinder that are part of the outline. */
+/* Draws the parts of the edge between a joint and its cylinder that are part of the outline. */
 static Status draw_creases(const InkPen *pen, const JointFrame *joint, int end, double per_mm,
                            Err *err)
 {
@@ -423,7 +432,7 @@ done:
     return status;
 }
 
-/* The ends of all joints. */
+/* Lists the ends of all joints, sorted. */
 static Status list_joined(InkDrawing *ink, Err *err)
 {
     const Geometry *geometry = ink->geometry;

@@ -6,6 +6,8 @@
 
 #include <math.h>
 
+/* Angles at which signs are taken, and steps of Newton's iteration. Reasons for the values not
+ * recorded. */
 enum { SAMPLES = 48, NEWTON = 4 };
 
 Vec3 towards_viewer(const Camera *camera, Vec3 point, double *distance)

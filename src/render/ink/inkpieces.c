@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Side of a square, mm: how close ends must be to be joined. Reason for the value not recorded. */
 #define GRID_MM 0.02
 
 Status inkpieces_begin(InkPieces *pieces, double width_mm, Err *err)
@@ -125,7 +126,7 @@ static bool fits(const End *a, const End *b)
     return a->x == b->x && a->y == b->y && a->width == b->width && a->number / 2 != b->number / 2;
 }
 
-/* mates[e]: the end that end e is joined to, or SIZE_MAX. */
+/* Sets mates[e] to the end that end e is joined to, or to SIZE_MAX. */
 static Status find_mates(const Strokes *list, size_t *mates, Err *err)
 {
     End *ends;
@@ -147,8 +148,8 @@ static Status find_mates(const Strokes *list, size_t *mates, Err *err)
     return STATUS_OK;
 }
 
-/* The end at which the stroke of a piece begins, walking from its first point from mate to mate; of
- * a closed stroke that is its own first point. */
+/* Returns the end at which the stroke of a piece begins: walks from the first point of the piece
+ * from mate to mate. A closed stroke begins at the first point of the piece. */
 static size_t beginning(const size_t *mates, size_t piece)
 {
     size_t end = 2 * piece;

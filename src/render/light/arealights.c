@@ -6,7 +6,7 @@
  *
  * One sample set is processed after another. Each of its points gets a light view, as a light with
  * hard shadows does. If the engine has no light views for a light, shadow rays are traced. */
-#include "render/light/arealights.h"
+#include "render/light/pixelpoints.h"
 
 #include "render/light/shade.h"
 #include "render/light/shadowpass.h"
@@ -113,7 +113,7 @@ static Status query_views(AreaJob *job, const OffPixelViews *views, Err *err)
         shadowpass_init(drawing, views->bins, views->n_views, drawing->hidden, &job->pass, err));
     TRY_GOTO(threads_try(job->points->n_runs, drawing->params->threads, query_run, job, err));
 done:
-    shadowpass_release(&job->pass, drawing);
+    shadowpass_release(&job->pass);
     TRY(status);
     if (!job->sources->off_pixel)
         return STATUS_OK;

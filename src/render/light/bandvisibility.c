@@ -2,8 +2,7 @@
  * all of them at once [occlusion.c], then one area light after the other [arealights.c]. */
 #include "render/light/bandvisibility.h"
 
-#include "render/light/arealights.h"
-#include "render/light/occlusion.h"
+#include "render/light/pixelpoints.h"
 
 bool pixelvisibility_is_needed(const View *view, const RenderParams *params)
 {

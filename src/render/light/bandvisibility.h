@@ -3,7 +3,7 @@
 #ifndef CORCAST_RENDER_LIGHT_BANDVISIBILITY_H
 #define CORCAST_RENDER_LIGHT_BANDVISIBILITY_H
 
-#include "render/light/occluders.h"
+#include "render/light/occlusion.h"
 #include "render/light/offpixel.h"
 #include "render/light/visibility.h"
 
@@ -11,10 +11,6 @@
  * method is not RENDER_TRACE, the view is not an x-ray, and ambient occlusion or soft
  * shadows are on. */
 bool pixelvisibility_is_needed(const View *view, const RenderParams *params);
-
-/* Number of rows above and below a band on which the band's visibility depends. Ambient occlusion
- * averages over 3 x 3 blocks of 2 x 2 pixels, which reach three rows. */
-enum { VISIBILITY_MARGIN = 3 };
 
 /* Rows of a block of the image. The shading points of a block query an area light together.
  * Rounding in the isosurface and blob kernels depends on which shading points are queried together.
@@ -39,8 +35,9 @@ typedef struct VisibilitySources {
 
 /* Computes the visibility of all pixels of the drawing's band.
  *
- * The VISIBILITY_MARGIN rows next to an edge of the band are correct only if that edge is also an
- * edge of the image. If ambient occlusion is on, the band's first row must be even.
+ * The three rows next to an edge of the band are correct only if that edge is also an edge of the
+ * image: ambient occlusion averages over 3 x 3 blocks of 2 x 2 pixels, which reach three rows. If
+ * ambient occlusion is on, the band's first row must be even.
  *
  * out      receives the result; release it with pixelvisibility_free. Set on success only.
  * Errors   STATUS_MEMORY. */

@@ -10,10 +10,6 @@
  * A capsule blocks a part of about a third of the cones that are taken at once. Whether it blocks
  * any is not tested early: the branch is unpredictable, and costs more than the division and the
  * root that it may save. */
-#ifndef OCCLUSION_KERNEL
-#error "define OCCLUSION_KERNEL(name), the name of a function"
-#endif
-
 #include "render/light/occlusionkernels.h"
 #include "render/tile/lanes.h"
 
@@ -145,8 +141,10 @@ LANE_FN void list_cones(const OcclusionDirection *direction, const OcclusionPoin
     }
 }
 
-/* Sets a grid over the cones, with a few cones per cell. A cell is a quarter as wide as it is high,
- * because a capsule takes the rows one by one. */
+/* Sets a grid over the cones, with about `a_square` cones per square, unless a square would be
+ * narrower than the widest cone. A square is divided into `columns_a_square` cells side by side,
+ * because a capsule blocks cones row by row. Reasons for the two values are not recorded; they
+ * decide how many cones out of reach are computed. */
 static inline void set_grid(const OcclusionPoints *points, float wide, ConeScratch *scratch)
 {
     const float a_square = 20, columns_a_square = 4;
@@ -302,10 +300,10 @@ LANE_FN void cover_rows(const ProjectedBlock *projected, int i, float wide, Cone
     }
 }
 
-LANE_TARGET static void OCCLUSION_KERNEL(trace)(const OccluderSet *occluders,
-                                                const OcclusionDirection *direction,
-                                                const OcclusionPoints *points, ConeScratch *scratch,
-                                                uint8_t *answers)
+LANE_TARGET static void LANES_NAME(trace)(const OccluderSet *occluders,
+                                          const OcclusionDirection *direction,
+                                          const OcclusionPoints *points, ConeScratch *scratch,
+                                          uint8_t *answers)
 {
     list_cones(direction, points, scratch);
     set_grid(points, occluders->wide, scratch);
@@ -354,9 +352,9 @@ LANE_FN void add_lines(const OcclusionLines *lines, const QuadAnswers *answers, 
     *all += cosine;
 }
 
-LANE_TARGET static float OCCLUSION_KERNEL(ambient)(const OcclusionLines *lines,
-                                                   const QuadAnswers *answers, int n, int pixel,
-                                                   const float normal[3])
+LANE_TARGET static float LANES_NAME(ambient)(const OcclusionLines *lines,
+                                             const QuadAnswers *answers, int n, int pixel,
+                                             const float normal[3])
 {
     float open[ANSWER_STEP] = {0}, all[ANSWER_STEP] = {0};
     for (int first = 0; first < ANSWER_STEP; first += LANES) {
@@ -375,5 +373,5 @@ LANE_TARGET static float OCCLUSION_KERNEL(ambient)(const OcclusionLines *lines,
     return all[0] > 0 ? open[0] / (CONE_CLEAR * all[0]) : 1;
 }
 
-const OcclusionKernels OCCLUSION_KERNEL(occlusionkernels) = {.trace = OCCLUSION_KERNEL(trace),
-                                                             .ambient = OCCLUSION_KERNEL(ambient)};
+const OcclusionKernels LANES_NAME(occlusionkernels) = {.trace = LANES_NAME(trace),
+                                                       .ambient = LANES_NAME(ambient)};

@@ -16,14 +16,15 @@
  * 0.037 instead of 0.029. At a flat end that is visible, such as a tip, the capsule's round end
  * stays within the cylinder. Otherwise it would block all points of the flat end, and the error of
  * a dense ball would be 0.052 instead of 0.031. */
-#include "render/light/occluders.h"
+#include "render/light/occlusion.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-/* In units of the mean radius. Wider cones err less in dense trees and more in sparse ones. */
+/* Largest half width of a cone, in units of the mean radius of the vessels. Wider cones err less in
+ * dense trees and more in sparse ones; the value is a compromise. */
 static const double wide_in_radii = 3.5;
-static const double golden_turn = 2.399963229728653;
+static const double golden_turn = 2.399963229728653; /* the golden angle, radians */
 
 static void store_point(float to[3][OCCLUDER_BLOCK], size_t lane, Vec3 point, Vec3 origin)
 {

@@ -26,8 +26,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Sets of lines, and the maximum number of lines of a set. Reason for MAX_LINES not recorded: it
+ * bounds the memory of the answers, one byte per probe and line. */
 enum { SETS = 4, MAX_LINES = 128 };
-/* Cosine of the largest angle between the normals of a probe and of a pixel that it serves. */
+/* Cosine of the largest angle between the normals of a probe and of a pixel that it serves: 60
+ * degrees [at the top of this file]. */
 static const float least_cosine = 0.5f;
 /* Lines per occlusion direction of RenderParams. */
 enum { LINES = 4 };
@@ -38,11 +41,15 @@ enum { SQUARE = 32, RUN = 512 };
  * the probe, plus 1. 0 behind the last. */
 typedef uint32_t QuadProbes[QUAD];
 
+struct OcclusionJob;
+typedef void VisitQuad(const struct OcclusionJob *job, int column, int row, uint32_t *next);
+
 typedef struct OcclusionJob {
     const Drawing *drawing;
     const OccluderSet *occluders;
     const OcclusionKernels *kernels;
     const PixelVisibility *visibility;
+    VisitQuad *visit;        /* for visit_quads */
     int columns, rows;       /* of quads */
     QuadProbes *quad_probes; /* per quad; owned, as all arrays below */
     uint32_t (*next)[SETS];  /* per square: the next probe of each set */
@@ -94,16 +101,25 @@ static uint32_t *probes_of(const OcclusionJob *job, int column, int row)
     return job->quad_probes[(size_t)row * (size_t)job->columns + (size_t)column];
 }
 
-static void visit_square(const OcclusionJob *job, size_t number,
-                         void (*visit)(const OcclusionJob *job, int column, int row,
-                                       uint32_t *next))
+/* Calls job->visit for the quads of a square. Quads are visited square by square, because
+ * neighbouring pixels use the answers of the same quads. */
+static void visit_square(size_t number, int worker, void *context)
 {
+    (void)worker;
+    const OcclusionJob *job = context;
     int first_column = (int)(number % (size_t)squares_across(job)) * SQUARE;
     int first_row = (int)(number / (size_t)squares_across(job)) * SQUARE;
     for (int row = first_row; row < first_row + SQUARE && row < job->rows; row++)
         for (int column = first_column; column < first_column + SQUARE && column < job->columns;
              column++)
-            visit(job, column, row, &job->next[number][set_of(job, column, row)]);
+            job->visit(job, column, row, &job->next[number][set_of(job, column, row)]);
+}
+
+/* Calls `visit` for all quads, in parallel. `next` is the element of job->next for the quad. */
+static void visit_quads(OcclusionJob *job, VisitQuad *visit)
+{
+    job->visit = visit;
+    threads_for(squares_of(job), job->drawing->params->threads, visit_square, job);
 }
 
 /* Chooses the probes of a quad, and counts them. */
@@ -155,18 +171,6 @@ static void store_probes(const OcclusionJob *job, int column, int row, uint32_t 
     }
 }
 
-static void list_square(size_t number, int worker, void *context)
-{
-    (void)worker;
-    visit_square(context, number, list_probes);
-}
-
-static void store_square(size_t number, int worker, void *context)
-{
-    (void)worker;
-    visit_square(context, number, store_probes);
-}
-
 /* Turns counts into indices of first probes: set by set, square by square. */
 static void number_squares(OcclusionJob *job)
 {
@@ -184,17 +188,16 @@ static void number_squares(OcclusionJob *job)
 
 static Status choose_probes(OcclusionJob *job, Err *err)
 {
-    int threads = job->drawing->params->threads;
     size_t quads = (size_t)job->columns * (size_t)job->rows;
     TRY(mem_alloc(&job->quad_probes, quads, sizeof *job->quad_probes, "occlusion", err));
     TRY(mem_calloc(&job->next, squares_of(job), sizeof *job->next, "occlusion", err));
-    threads_for(squares_of(job), threads, list_square, job);
+    visit_quads(job, list_probes);
     number_squares(job);
     TRY(mem_alloc(&job->probes, job->first[SETS], sizeof *job->probes, "occlusion", err));
     for (int set = 0; set < SETS; set++)
         TRY(occlusionpoints_new(job->first[set + 1] - job->first[set], &job->cone_points[set],
                                 err));
-    threads_for(squares_of(job), threads, store_square, job);
+    visit_quads(job, store_probes);
     return STATUS_OK;
 }
 
@@ -248,9 +251,10 @@ static Status list_lines(OcclusionJob *job, Err *err)
     for (int set = 0; set < SETS; set++) {
         OcclusionLines *lines = &job->lines[set];
         lines->n = job->stride;
-        for (int c = 0; c < 3; c++)
-            TRY(mem_calloc(&lines->towards[c], (size_t)job->stride, sizeof(float), "occlusion",
-                           err));
+        TRY(mem_calloc(&lines->towards[0], 3 * (size_t)job->stride, sizeof(float), "occlusion",
+                       err));
+        for (int c = 1; c < 3; c++)
+            lines->towards[c] = lines->towards[c - 1] + job->stride;
     }
     for (int k = 0; k < SETS * job->n_lines; k++) {
         Vec3 towards = occlusion_direction(SETS * job->n_lines, k);
@@ -346,13 +350,6 @@ static void gather_quad(const OcclusionJob *job, int column, int row, uint32_t *
     }
 }
 
-/* Square by square, because neighbouring pixels use the answers of the same quads. */
-static void gather_square(size_t number, int worker, void *context)
-{
-    (void)worker;
-    visit_square(context, number, gather_quad);
-}
-
 /* ---- all of it ------------------------------------------------------------------------------- */
 
 static void release(OcclusionJob *job)
@@ -361,12 +358,11 @@ static void release(OcclusionJob *job)
     free(job->next);
     free(job->probes);
     for (int set = 0; set < SETS; set++)
+        free(job->lines[set].towards[0]);
+    for (int set = 0; set < SETS; set++)
         occlusionpoints_release(&job->cone_points[set]);
     free(job->traced);
     free(job->answers);
-    for (int set = 0; set < SETS; set++)
-        for (int c = 0; c < 3; c++)
-            free(job->lines[set].towards[c]);
     for (int i = 0; job->scratch && i < job->drawing->params->threads; i++)
         conescratch_release(&job->scratch[i]);
     free(job->scratch);
@@ -386,7 +382,7 @@ Status occlusion_compute(const Drawing *drawing, const OccluderSet *occluders,
                        sizeof *visibility->ambient, "occlusion", err));
     TRY_GOTO(choose_probes(&job, err));
     TRY_GOTO(trace_all(&job, err));
-    threads_for(squares_of(&job), drawing->params->threads, gather_square, &job);
+    visit_quads(&job, gather_quad);
 done:
     release(&job);
     return status;

@@ -1,36 +1,28 @@
-/* The kernels for any processor, and the choice among all. */
-#define OCCLUSION_KERNEL(name) LANES_NAME(name)
+/* The kernels of ambient occlusion, and the memory that they work on. */
 #include "render/light/kernel_occlusion.h"
 
 #include <stdlib.h>
 
 #ifdef LANES_PORTABLE
 
-const OcclusionKernels *const occlusionkernels[] = {
-    &occlusionkernels_portable,
-#ifdef __x86_64__
-    &occlusionkernels_avx2,
-    &occlusionkernels_avx512,
-#endif
-};
+const OcclusionKernels *const occlusionkernels[] = {EACH_KIND(occlusionkernels)};
 
 Status occlusionpoints_new(size_t n, OcclusionPoints *points, Err *err)
 {
+    const size_t room = n + OCCLUDER_BLOCK;
+    TRY(mem_calloc(&points->memory, 7 * room, sizeof *points->memory, "occlusion", err));
     points->n = (uint32_t)n;
-    for (int c = 0; c < 3; c++) {
-        TRY(mem_calloc(&points->at[c], n + OCCLUDER_BLOCK, sizeof(float), "occlusion", err));
-        TRY(mem_calloc(&points->normal[c], n + OCCLUDER_BLOCK, sizeof(float), "occlusion", err));
+    for (size_t c = 0; c < 3; c++) {
+        points->at[c] = points->memory + c * room;
+        points->normal[c] = points->memory + (3 + c) * room;
     }
-    return mem_calloc(&points->above, n + OCCLUDER_BLOCK, sizeof(float), "occlusion", err);
+    points->above = points->memory + 6 * room;
+    return STATUS_OK;
 }
 
 void occlusionpoints_release(OcclusionPoints *points)
 {
-    for (int c = 0; c < 3; c++) {
-        free(points->at[c]);
-        free(points->normal[c]);
-    }
-    free(points->above);
+    free(points->memory);
 }
 
 Status conescratch_new(size_t n, ConeScratch *scratch, Err *err)

@@ -4,13 +4,14 @@
 #ifndef CORCAST_RENDER_LIGHT_OCCLUSIONKERNELS_H
 #define CORCAST_RENDER_LIGHT_OCCLUSIONKERNELS_H
 
-#include "render/light/occluders.h"
+#include "render/light/occlusion.h"
 #include "render/tile/tilekernels.h"
 
 /* Shading points at which cones begin. Arrays have room for a multiple of OCCLUDER_BLOCK, and hold
- * zeros behind the last point. All arrays are owned. */
+ * zeros behind the last point. They are parts of one block of memory. */
 typedef struct OcclusionPoints {
     uint32_t n;
+    float *memory;    /* owned */
     float *at[3];     /* mm, relative to OccluderSet.origin */
     float *normal[3]; /* unit */
     float *above;     /* +1 above the ground, -1 below it; 0: the ground blocks no light */
@@ -81,7 +82,7 @@ enum { ANSWER_STEP = 16 };
 
 /* Unit directions of lines, by coordinate; zeros for lines that pad the answers. */
 typedef struct OcclusionLines {
-    float *towards[3]; /* owned */
+    float *towards[3]; /* `n` numbers each, in one block of memory; owned */
     int n;             /* a multiple of ANSWER_STEP */
 } OcclusionLines;
 
@@ -106,10 +107,7 @@ typedef struct OcclusionKernels {
                      const float normal[3]);
 } OcclusionKernels;
 
-extern const OcclusionKernels occlusionkernels_portable;
-#ifdef __x86_64__
-extern const OcclusionKernels occlusionkernels_avx2, occlusionkernels_avx512;
-#endif
+DECLARE_KERNELS(OcclusionKernels, occlusionkernels);
 /* One entry per instruction set, in the order of tilekernels [tilekernels.h]. */
 extern const OcclusionKernels *const occlusionkernels[KINDS_OF_KERNELS];
 

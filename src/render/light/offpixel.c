@@ -1,11 +1,12 @@
-/* Points query in runs of the order that they have. So an answer depends neither on the number of
- * threads nor on the band that is drawn. */
+/* Points query in runs, in the order of their indices. An answer therefore depends neither on the
+ * number of threads nor on the band that is drawn, although rounding in kernels depends on which
+ * points are queried together. */
 #include "render/light/offpixel.h"
 
 #include "render/light/shadowpass.h"
 #include <stdlib.h>
 
-enum { RUN = 4096 };
+enum { RUN = 4096 }; /* points, at most SHADOW_RUN; reason for the value not recorded */
 
 Status offpixel_init(const View *view, OffPixelPoints *points, Err *err)
 {
@@ -78,7 +79,7 @@ Status offpixel_query(const Drawing *drawing, const OffPixelViews *views, size_t
     TRY_GOTO(shadowpass_init(drawing, views->bins, views->n_views, NULL, &job.pass, err));
     TRY_GOTO(threads_try(run_count(points), drawing->params->threads, query_run, &job, err));
 done:
-    shadowpass_release(&job.pass, drawing);
+    shadowpass_release(&job.pass);
     return status;
 }
 

@@ -1,5 +1,5 @@
-/* The shading points of a band of pixels, sorted so that consecutive points query the same few
- * tiles of a light view. */
+/* The shading points of a band of pixels, and the visibility of area lights at them. Points are
+ * sorted so that consecutive points query the same few tiles of a light view. */
 #ifndef CORCAST_RENDER_LIGHT_PIXELPOINTS_H
 #define CORCAST_RENDER_LIGHT_PIXELPOINTS_H
 
@@ -76,5 +76,11 @@ typedef struct PixelPoints {
 MUST_CHECK Status pixelpoints_find(const Drawing *drawing, const VisibilitySources *sources,
                                    PixelVisibility *visibility, PixelPoints *points, Err *err);
 void pixelpoints_release(PixelPoints *points);
+
+/* Computes soft shadows at the points [arealights.c]: sets visibility->lights[i] for each area
+ * light i of the view that casts shadows, and the visibility of those lights at sources->off_pixel.
+ * `points` belong to `visibility` and have sample sets. Errors: STATUS_MEMORY. */
+MUST_CHECK Status arealights_compute(const Drawing *drawing, const VisibilitySources *sources,
+                                     PixelPoints *points, PixelVisibility *visibility, Err *err);
 
 #endif

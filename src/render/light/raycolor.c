@@ -6,6 +6,7 @@
 #include "render/light/rayocclusion.h"
 #include "render/light/shade.h"
 #include "render/light/visibility.h"
+#include "render/planes.h"
 #include <math.h>
 
 typedef struct ShadowContext {
@@ -20,7 +21,7 @@ static bool shadowed(void *context, Vec3 point, Vec3 towards, double distance)
     return caster_shadow(shadow->caster, shadow->worker, shadow->ground, point, towards, distance);
 }
 
-/* What the sample (i, j) shares with its pixel. */
+/* Sets the visibility that the sample (i, j) shares with its pixel. */
 static void add_shared(const Drawing *drawing, double i, double j, double t, bool on_ground,
                        float light_visibility[VIEW_MAX_LIGHTS], ShadingInput *at)
 {
@@ -77,4 +78,21 @@ Rgb ray_color(const Drawing *drawing, int worker, Ray ray, double i, double j, c
                                           params->occlusion, rayocclusion_turn(i, j));
     const Rgb color = shade(view, &at, params->shadows ? shadowed : NULL, &context);
     return on_ground ? color : rgb_mixed(color, view->background, fade_at(&view->fade, t));
+}
+
+void raycolor_store(const Drawing *drawing, int worker, int column, int row, const Surfel *surfel,
+                    Frame *frame)
+{
+    const Camera *camera = &drawing->view->camera;
+    const size_t pixel = (size_t)row * (size_t)camera->width + (size_t)column;
+    const int j = drawing->band.first + row;
+    if (surfel)
+        planes_store(frame, pixel, surfel->t, surfel->normal,
+                     drawing->geometry->ids[surfel->segment]);
+    else
+        planes_store_nothing(frame, pixel, 1);
+    if (frame->color.values)
+        planes_store_color(
+            frame, pixel,
+            ray_color(drawing, worker, camera_ray(camera, column, j), column, j, surfel));
 }

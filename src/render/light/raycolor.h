@@ -20,4 +20,11 @@ bool raycolor_is_needed(const View *view, const RenderParams *params);
 Rgb ray_color(const Drawing *drawing, int worker, Ray ray, double i, double j,
               const Surfel *surfel);
 
+/* Stores the planes that `frame` has of a pixel of the drawing's band: color, depth, normal and id
+ * of the ray through the pixel's centre. `surfel` and `worker` are those of ray_color.
+ *
+ * column, row   of the pixel; row 0 is the first of the band. */
+void raycolor_store(const Drawing *drawing, int worker, int column, int row, const Surfel *surfel,
+                    Frame *frame);
+
 #endif

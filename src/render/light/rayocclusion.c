@@ -1,21 +1,24 @@
-/* Directions are points of a disc lifted to the hemisphere above it (Malley), which makes them as
- * frequent as their cosine, so that the mean needs no weights. The points are those of a sunflower:
- * the k-th of n at the radius sqrt((k + u) / n) and k golden angles round, evenly spread for every
- * n. The same points everywhere would leave bands; turned, and moved by another u, from pixel to
- * pixel they leave fine grain, and are right on average. */
+/* Directions are points of a disc, lifted to the hemisphere above the disc (Malley). The density of
+ * the directions is then proportional to their cosine, so that the mean needs no weights. The
+ * points of the disc are those of a sunflower: point k of n lies at the radius sqrt((k + u) / n),
+ * turned by k golden angles, and is evenly spread for every n. The same points at every pixel would
+ * leave bands. Turned, and with another u, from pixel to pixel, they leave fine grain whose mean is
+ * right. */
 #include "render/light/rayocclusion.h"
 
 #include <math.h>
 
-static const double shifts_per_turn = 12; /* so that u takes all values in every direction */
+/* Number of times that u runs from 0 to 1 while the turn does: u takes all values in every
+ * direction. */
+static const double shifts_per_turn = 12;
 static const double golden_part = 0.3819660112501051; /* of a full turn */
 
 typedef struct Axes {
     Vec3 a, b;
 } Axes;
 
-/* Two unit vectors square to the normal and to each other. T. Duff et al.: Building an orthonormal
- * basis, revisited, J. Comput. Graph. Tech. 6 (2017) 1-8. */
+/* Returns two unit vectors perpendicular to the normal and to each other. Source: T. Duff et al.:
+ * Building an orthonormal basis, revisited, J. Comput. Graph. Tech. 6 (2017) 1-8. */
 static Axes axes_about(Vec3 n)
 {
     double sign = copysign(1, n.z), s = -1 / (sign + n.z), t = n.x * n.y * s;

@@ -1,10 +1,9 @@
-/* One ray a sample, its color as light/raycolor.c finds it; a row of pixels is the unit of work,
- * so that the picture does not depend on the number of threads. Samples stand where POV-Ray puts
- * them: the centre of the pixel, and with antialiasing an N x N grid more; their mean weighs all N
- * * N + 1 alike (tracetask.cpp of 3.7.0.10: every pixel is supersampled when the threshold is 0).
- */
-#include "render/light/rayrender.h"
-
+/* The engine that traces each ray separately. The color of a ray is found by raycolor.c. A row of
+ * pixels is the unit of work, so that the picture does not depend on the number of threads. Samples
+ * are where POV-Ray puts them: at the centre of the pixel and, with antialiasing, at N x N more
+ * positions. The N * N + 1 samples have equal weights (tracetask.cpp of 3.7.0.10: every pixel is
+ * supersampled if the threshold is 0). */
+#include "render/engine.h"
 #include "render/light/raycolor.h"
 #include "render/light/resample.h"
 #include "render/planes.h"
@@ -23,7 +22,7 @@ static Rgb sample_color(const RayPicture *picture, int worker, double i, double 
     return ray_color(picture->drawing, worker, ray, i, j, seen ? &surfel : NULL);
 }
 
-/* The mean of the centre sample and the grid around it, summed row by row in float. */
+/* Returns the mean of the centre sample and the N x N samples, summed row by row in float. */
 static Rgb antialiased(const RayPicture *picture, int worker, int i, int j, Rgb center)
 {
     int n = picture->more.side;
@@ -41,36 +40,17 @@ static Rgb antialiased(const RayPicture *picture, int worker, int i, int j, Rgb 
                  resampling_mean(&picture->more, sum.b)};
 }
 
-static Status report_progress(const RayPicture *picture, bool further, size_t row, int worker,
-                              Err *err)
-{
-    const Drawing *drawing = picture->drawing;
-    if (worker != 0)
-        return STATUS_OK;
-    return band_progress(&drawing->band, drawing->params, drawing->view->camera.height, further,
-                         (double)row / drawing->band.rows, err);
-}
-
 static Status render_row(size_t row, int worker, void *context, Err *err)
 {
     const RayPicture *picture = context;
     const Camera *camera = &picture->drawing->view->camera;
-    TRY(report_progress(picture, false, row, worker, err));
+    TRY(drawing_progress(picture->drawing, worker, false, row, err));
     for (int i = 0; i < camera->width; i++) {
-        size_t pixel = row * (size_t)camera->width + (size_t)i;
         Ray ray = camera_ray(camera, i, picture->drawing->band.first + (int)row);
         Surfel surfel;
         bool seen = caster_first(picture->drawing->caster, worker, ray, &surfel);
-        if (seen)
-            planes_store(picture->frame, pixel, surfel.t, surfel.normal,
-                         picture->drawing->geometry->ids[surfel.segment]);
-        else
-            planes_store_nothing(picture->frame, pixel, 1);
-        if (picture->frame->color.values)
-            planes_store_color(picture->frame, pixel,
-                               ray_color(picture->drawing, worker, ray, i,
-                                         picture->drawing->band.first + (int)row,
-                                         seen ? &surfel : NULL));
+        raycolor_store(picture->drawing, worker, i, (int)row, seen ? &surfel : NULL,
+                       picture->frame);
     }
     return STATUS_OK;
 }
@@ -79,7 +59,7 @@ static Status resample_row(size_t row, int worker, void *context, Err *err)
 {
     const RayPicture *picture = context;
     const Camera *camera = &picture->drawing->view->camera;
-    TRY(report_progress(picture, true, row, worker, err));
+    TRY(drawing_progress(picture->drawing, worker, true, row, err));
     for (int i = 0; i < camera->width; i++) {
         size_t pixel = row * (size_t)camera->width + (size_t)i;
         if (!resampling_wants(&picture->more, pixel))
@@ -105,7 +85,7 @@ static Status draw_rows(const Drawing *drawing, void *prepared, Frame *frame, Er
     TRY_GOTO(threads_try(rows, params->threads, render_row, &picture, err));
     if (picture.more.side == 0)
         goto done;
-    TRY_GOTO(resampling_choose(&picture.more, params, band, &frame->color, params->threads, err));
+    TRY_GOTO(resampling_choose(&picture.more, params, band, &frame->color, err));
     status = threads_try(rows, params->threads, resample_row, &picture, err);
 done:
     resampling_release(&picture.more);

@@ -40,16 +40,6 @@ static void mask_row(size_t row, int worker, void *context)
     }
 }
 
-void resample_mask(const Plane *color, int above, int below, float threshold, int threads,
-                   uint8_t *mask)
-{
-    MaskJob job = {color, threshold, mask};
-    size_t width = (size_t)color->width, height = (size_t)color->height;
-    threads_for(height, threads, mask_row, &job);
-    memset(mask, 0, (size_t)above * width);
-    memset(mask + (height - (size_t)below) * width, 0, (size_t)below * width);
-}
-
 Resampling resampling_for(int antialias)
 {
     assert(antialias <= RENDER_MAX_ANTIALIAS);
@@ -60,13 +50,16 @@ Resampling resampling_for(int antialias)
 }
 
 Status resampling_choose(Resampling *more, const RenderParams *params, const Band *band,
-                         const Plane *color, int threads, Err *err)
+                         const Plane *color, Err *err)
 {
     if (!(params->antialias_threshold > 0))
         return STATUS_OK;
-    TRY(mem_calloc(&more->mask, (size_t)color->width * (size_t)color->height, 1, "masks", err));
-    resample_mask(color, band->above, band->below, (float)params->antialias_threshold, threads,
-                  more->mask);
+    const size_t width = (size_t)color->width, height = (size_t)color->height;
+    TRY(mem_calloc(&more->mask, width * height, 1, "masks", err));
+    MaskJob job = {color, (float)params->antialias_threshold, more->mask};
+    threads_for(height, params->threads, mask_row, &job);
+    memset(more->mask, 0, (size_t)band->above * width);
+    memset(more->mask + (height - (size_t)band->below) * width, 0, (size_t)band->below * width);
     return STATUS_OK;
 }
 

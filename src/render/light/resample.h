@@ -1,20 +1,13 @@
 /* Antialiasing: the samples that a pixel gets beside its centre sample, and which pixels get them.
- */
+ *
+ *     Resampling more = resampling_for(params.antialias);
+ *     TRY_GOTO(resampling_choose(&more, &params, &band, &color, err));
+ *     resampling_release(&more); */
 #ifndef CORCAST_RENDER_LIGHT_RESAMPLE_H
 #define CORCAST_RENDER_LIGHT_RESAMPLE_H
 
 #include "image/image.h"
 #include "render/job.h"
-
-/* Selects the pixels of a band that differ from a neighbour. Sets mask[pixel] to 1 if the square
- * root of a channel, clipped to [0, 1], differs by `threshold` or more from the square root of the
- * same channel in the pixel to the left, right, above or below; sets it to 0 otherwise.
- *
- * color    3 channels. Its first `above` and last `below` rows belong to neighbouring bands: they
- *          serve as neighbours, and their mask is 0.
- * mask     receives one byte per pixel of `color`. */
-void resample_mask(const Plane *color, int above, int below, float threshold, int threads,
-                   uint8_t *mask);
 
 /* The further samples of the pixels in a band: N x N per pixel, beside the centre sample. */
 typedef struct Resampling {
@@ -25,10 +18,15 @@ typedef struct Resampling {
 
 /* Returns the further samples for `antialias` of RenderParams, without a mask. */
 Resampling resampling_for(int antialias);
-/* Makes the mask from the colors of the centre samples, if `params` has a threshold. Errors:
- * STATUS_MEMORY. */
+/* Selects the pixels that get further samples, if params->antialias_threshold is above 0; changes
+ * nothing otherwise. A pixel is selected if the square root of a channel, clipped to [0, 1],
+ * differs by the threshold or more from the square root of the same channel in the pixel to the
+ * left, right, above or below. Errors: STATUS_MEMORY.
+ *
+ * color    colors of the centre samples: 3 channels. The first band->above and the last band->below
+ *          rows belong to neighbouring bands: they serve as neighbours and are not selected. */
 MUST_CHECK Status resampling_choose(Resampling *more, const RenderParams *params, const Band *band,
-                                    const Plane *color, int threads, Err *err);
+                                    const Plane *color, Err *err);
 /* Frees the mask. */
 void resampling_release(Resampling *more);
 

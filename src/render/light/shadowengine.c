@@ -20,12 +20,6 @@ bool shadowengine_supports(const ShadowEngine *engine, const Drawing *drawing, c
     return supports;
 }
 
-bool shadowengine_serves(const ShadowEngine *engine, const Drawing *drawing, const Light *light)
-{
-    return light->casts_shadows && light->samples <= 1 && drawing->params->method != RENDER_TRACE &&
-           engine->supports(drawing->geometry, drawing->view, light);
-}
-
 bool shadowengine_needs_rays(const ShadowEngine *engine, const Drawing *drawing)
 {
     const RenderParams *params = drawing->params;
@@ -93,6 +87,13 @@ Status lightbins_new(const LightBinsParams *params, const Light *lights, size_t 
     return STATUS_OK;
 }
 
+/* Returns true if hard shadows of a light come from a light view. */
+static bool serves(const ShadowEngine *engine, const Drawing *drawing, const Light *light)
+{
+    return light->casts_shadows && light->samples <= 1 && drawing->params->method != RENDER_TRACE &&
+           engine->supports(drawing->geometry, drawing->view, light);
+}
+
 Status lightbins_new_hard(const ShadowEngine *engine, const Drawing *drawing, const Viewpoint *eye,
                           LightBins *bins[VIEW_MAX_LIGHTS], Err *err)
 {
@@ -102,7 +103,7 @@ Status lightbins_new_hard(const ShadowEngine *engine, const Drawing *drawing, co
     LightBins *made[VIEW_MAX_LIGHTS];
     size_t n = 0, of[VIEW_MAX_LIGHTS];
     for (size_t i = 0; i < view->n_lights; i++)
-        if (shadowengine_serves(engine, drawing, &view->lights[i])) {
+        if (serves(engine, drawing, &view->lights[i])) {
             lights[n] = view->lights[i];
             of[n++] = i;
         }

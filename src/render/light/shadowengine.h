@@ -41,6 +41,17 @@ typedef struct ShadowPoints {
     uint8_t state[POINT_CAPACITY];  /* ShadowState: the answer */
 } ShadowPoints;
 
+/* Copies the query of point `i` and its answer to point `at` of `to`. */
+static inline void shadowpoints_copy(const ShadowPoints *from, int i, ShadowPoints *to, int at)
+{
+    to->x[at] = from->x[i];
+    to->y[at] = from->y[i];
+    to->z[at] = from->z[i];
+    to->query[at] = from->query[i];
+    to->item[at] = from->item[i];
+    to->state[at] = from->state[i];
+}
+
 /* The queries for one tile of a light view. */
 typedef struct TileQueries {
     int tile, next; /* indices of the tile and of the tile that will come next, row by row; -1:
@@ -87,10 +98,6 @@ typedef struct ShadowEngine {
 /* Returns true if the engine supports light views from all points of a light. */
 bool shadowengine_supports(const ShadowEngine *engine, const Drawing *drawing, const Light *light);
 
-/* Returns true if hard shadows of a light come from a light view. False for a light that casts no
- * shadows, for an area light, for RENDER_TRACE and for a light that the engine does not support. */
-bool shadowengine_serves(const ShadowEngine *engine, const Drawing *drawing, const Light *light);
-
 /* Returns true if some light of the view needs shadow rays or, with RENDER_TRACE, ambient occlusion
  * does: the drawing must have a caster then. */
 bool shadowengine_needs_rays(const ShadowEngine *engine, const Drawing *drawing);
@@ -110,8 +117,10 @@ typedef struct LightBinsParams {
 MUST_CHECK Status lightbins_new(const LightBinsParams *params, const Light *lights, size_t n,
                                 LightBins **bins, Err *err);
 
-/* Makes the bins of all lights of the view that shadowengine_serves: bins[i] for light i, NULL for
- * the others. For points anywhere in the frame `eye`. Ownership and errors as lightbins_new. */
+/* Makes the bins of all lights of the view whose hard shadows come from a light view: bins[i] for
+ * light i. bins[i] stays as it is for a light that casts no shadows, for an area light, for
+ * RENDER_TRACE and for a light that the engine does not support. For points anywhere in the frame
+ * `eye`. Ownership and errors as lightbins_new. */
 MUST_CHECK Status lightbins_new_hard(const ShadowEngine *engine, const Drawing *drawing,
                                      const Viewpoint *eye, LightBins *bins[VIEW_MAX_LIGHTS],
                                      Err *err);

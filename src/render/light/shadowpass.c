@@ -12,6 +12,7 @@ Status shadowpass_init(const Drawing *drawing, LightBins *const *bins, int n_vie
     const RenderParams *params = drawing->params;
     size_t n = (size_t)params->threads * (size_t)n_views;
     pass->n_views = n_views;
+    pass->n_queues = n;
     TRY(mem_calloc(&pass->queues, n, sizeof *pass->queues, "lights", err));
     for (size_t i = 0; i < n; i++)
         TRY(shadowqueue_new(bins[i % (size_t)n_views], params->kernels, hidden, &pass->queues[i],
@@ -19,10 +20,9 @@ Status shadowpass_init(const Drawing *drawing, LightBins *const *bins, int n_vie
     return STATUS_OK;
 }
 
-void shadowpass_release(ShadowPass *pass, const Drawing *drawing)
+void shadowpass_release(ShadowPass *pass)
 {
-    int n = drawing->params->threads * pass->n_views;
-    for (int i = 0; pass->queues && i < n; i++)
+    for (size_t i = 0; pass->queues && i < pass->n_queues; i++)
         shadowqueue_free(pass->queues[i]);
     free(pass->queues);
     *pass = (ShadowPass){0};

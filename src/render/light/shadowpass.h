@@ -24,6 +24,7 @@ typedef struct ShadowPass {
     ShadowPoser poser;
     int n_views;
     ShadowQueue **queues; /* n_views for each worker; owned */
+    size_t n_queues;
 } ShadowPass;
 
 /* Makes the queues to n_views light bins, which are borrowed.
@@ -33,7 +34,7 @@ typedef struct ShadowPass {
  * Errors   STATUS_MEMORY. */
 MUST_CHECK Status shadowpass_init(const Drawing *drawing, LightBins *const *bins, int n_views,
                                   const bool *hidden, ShadowPass *pass, Err *err);
-void shadowpass_release(ShadowPass *pass, const Drawing *drawing);
+void shadowpass_release(ShadowPass *pass);
 
 /* Counts for each of the points [begin, end), at most SHADOW_RUN, the light views from which the
  * point is lit, and passes the counts to poser.store. Rounding in kernels depends on which points

@@ -11,7 +11,9 @@ bool softshadows_are_on(const View *view, const RenderParams *params)
     return params->shadows && view_has_soft_shadows(view);
 }
 
-enum { SEARCH_PIXELS = 2 }; /* pixels to each side */
+/* Pixels to each side in which a pixel of the same surface is searched. Reason for the value not
+ * recorded. */
+enum { SEARCH_PIXELS = 2 };
 
 static float distance2(const ShadingPoint *a, const ShadingPoint *b)
 {

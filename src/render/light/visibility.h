@@ -45,8 +45,9 @@ static inline Vec3 shadingpoint_position(const ShadingPoint *point)
     return vec3((double)point->position[0], (double)point->position[1], (double)point->position[2]);
 }
 
-/* Returns true if a and b are on the same surface: both are vessel or both are ground, and each is
- * less than 5/4 of a's pixel width from the other's tangent plane. */
+/* Returns true if a and b count as points of the same surface: both are vessel or both are ground,
+ * and each is less than 5/4 of a's pixel width from the other's tangent plane. Reason for 5/4 not
+ * recorded: it decides how much a surface may bend between pixels that share visibility. */
 static inline bool shadingpoints_share_surface(const ShadingPoint *a, const ShadingPoint *b)
 {
     float off_a = 0, off_b = 0, limit = 1.25f * a->pixel_mm;

@@ -18,6 +18,8 @@
 /* Tolerances: distance of a crossing beyond a joint's ends, relative to the joint's length, and
  * from its line, relative to the joint's size. */
 static const float off_joint_end = 1e-5f, off_joint_line = 1e-4f;
+/* Maximum number of Newton steps to a ruling, and of halvings of an interval. Lines that need more
+ * are decided in double precision; reasons for the values are not recorded. */
 enum { RULING_STEPS = 12, MOST_HALVINGS = 5, MOST_PIECES = MOST_HALVINGS + 2 };
 
 /* g of rastertile.h: k0 + k1 cos + k2 sin + k3 cos^2 + k4 cos sin. */
@@ -25,6 +27,7 @@ typedef struct Ruling {
     Lanes k[5];
 } Ruling;
 
+/* Returns one coefficient k_i of g. `by` is by[i] of the joint. `run` is R_i; NULL: R_i = 0. */
 RASTER_FN Lanes ruling_part(const NearItem *near, const SightLines *sight, const float by[3],
                             const float *run)
 {
@@ -103,9 +106,10 @@ RASTER_FN void halve(Bernstein *piece, Bernstein *second)
 typedef struct Falls {
     LaneMask there[2]; /* a second interval exists only if the first does */
     Lanes low[2], high[2], half[2];
-    LaneMask unsure; /* may have others */
+    LaneMask unsure; /* lines that may have further falls */
 } Falls;
 
+/* Adds an interval for the lines `there`; a third interval makes a line unsure. */
 RASTER_FN void add_fall(Falls *falls, LaneMask there, float low, float high, float half)
 {
     LaneMask second = there & falls->there[0];
@@ -119,6 +123,8 @@ RASTER_FN void add_fall(Falls *falls, LaneMask there, float low, float high, flo
     }
 }
 
+/* A part of one half of the circle, from u = low to low + size, with the lines `among` it is for.
+ */
 typedef struct QuarticPiece {
     Bernstein g;
     LaneMask among;
@@ -231,6 +237,7 @@ typedef struct Line3 {
     Lanes start[3], run[3];
 } Line3;
 
+/* Returns the ruling at the angle q. */
 RASTER_FN Line3 ruling_line(const RasterJoint *joint, Lanes cosine, Lanes sine)
 {
     Line3 line;
@@ -303,6 +310,7 @@ RASTER_FN LaneMask joint_entry(const NearItem *near, const RasterJoint *joint,
     return met & ~*unsure;
 }
 
+/* Computes the outward unit normals where the lines pass the rulings u = tan(q / 2). */
 RASTER_FN void joint_normal(const NearItem *near, const RasterJoint *joint, const SightLines *sight,
                             Lanes u, Lanes normal[3])
 {

@@ -1,33 +1,13 @@
 /* The kernel RasterKernels.cover: tests several shadow queries of a tile of a light view at once.
  * Each source that compiles it for its lanes includes this file. Loops over samples have no
  * branches, so that compilers can vectorise them. */
-#ifndef RASTER_KERNEL
-#error "define RASTER_KERNEL(name), the name of a function"
-#endif
-
 #include "render/raster/kernel_raster.h"
 #include "render/raster/rasterbins.h"
 #include "render/raster/rasterkernels.h"
 
-/* ---- aiming ---------------------------------------------------------------------------------- */
-
-LANE_TARGET static void RASTER_KERNEL(locate)(const RasterTile *tile, const RasterHits *hits,
-                                              HitPoints *points)
-{
-    const RasterGrid *grid = tile->grid;
-    double middle_x = tile->x, middle_y = tile->y, z_middle = tile->z_middle;
-    bool perspective = tile->perspective;
-    for (int sample = 0; sample < TILE_SAMPLES; sample++) {
-        double z = z_middle + (double)hits->z[sample], scale = perspective ? z : 1;
-        points->x[sample] = (middle_x + (double)grid->x[sample]) * scale;
-        points->y[sample] = (middle_y + (double)grid->y[sample]) * scale;
-        points->z[sample] = z;
-    }
-}
-
-/* ---- what is in the way ---------------------------------------------------------------------- */
-
-/* See may_enter_joint. */
+/* Largest 1 / sine of the angle between a joint's axis and the line of sight at which the sides of
+ * its capsule can decide whether a line enters [may_enter_joint]. Reason for the value not
+ * recorded. */
 static const float most_per_sine = 50;
 
 /* LANES queries as floats, relative to the tile's middle. */
@@ -38,7 +18,7 @@ typedef struct QueryBlock {
     uint32_t box; /* packed box of the queries, compared with the boxes of items [RasterBox] */
 } QueryBlock;
 
-/* item_covers() for one query, in double precision. */
+/* Does the same as item_covers for one query, in double precision. */
 LANE_TARGET static bool decide_query(const NearItem *near, const RasterTile *tile,
                                      const ShadowPoints *points, int query)
 {
@@ -227,15 +207,12 @@ RASTER_FN void cover_block(const RasterTile *tile, ShadowPoints *points, int fir
         points->state[first + lane] = !open[lane];
 }
 
-LANE_TARGET static void RASTER_KERNEL(cover)(const RasterTile *tile, ShadowPoints *points)
+LANE_TARGET static void LANES_NAME(cover)(const RasterTile *tile, ShadowPoints *points)
 {
     __builtin_memset(points->state, 1, (size_t)points->n);
     /* The last block is filled with copies of the first query; their results are not used. */
     for (int i = points->n; i % LANES; i++) {
-        points->x[i] = points->x[0];
-        points->y[i] = points->y[0];
-        points->z[i] = points->z[0];
-        points->item[i] = points->item[0];
+        shadowpoints_copy(points, 0, points, i);
         points->state[i] = 0;
     }
     for (int first = 0; first < points->n; first += LANES)
@@ -245,7 +222,5 @@ LANE_TARGET static void RASTER_KERNEL(cover)(const RasterTile *tile, ShadowPoint
             cover_block(tile, points, first, false);
 }
 
-const RasterKernels RASTER_KERNEL(rasterkernels) = {.trace = RASTER_KERNEL(trace),
-                                                    .resolve = RASTER_KERNEL(resolve),
-                                                    .locate = RASTER_KERNEL(locate),
-                                                    .cover = RASTER_KERNEL(cover)};
+const RasterKernels LANES_NAME(rasterkernels) = {
+    .trace = LANES_NAME(trace), .resolve = LANES_NAME(resolve), .cover = LANES_NAME(cover)};

@@ -1,15 +1,10 @@
 /* The kernel RasterKernels.trace: finds the first primitive at each sample of a tile, several
- * samples at once. Each source that compiles it for its lanes includes this file and defines
- * RASTER_KERNEL(name), which makes the names of its functions.
+ * samples at once. rasterkernels.c compiles this file for each instruction set.
  *
  * For every item of the tile's list, the blocks of LANES samples that its capsule may touch are
  * found all at once, and the samples of these blocks are intersected with the item. A sample keeps
  * the nearest item and its normal, or the ruling of a joint. Normals of joints are computed at the
  * end. */
-#ifndef RASTER_KERNEL
-#error "define RASTER_KERNEL(name), the name of a function"
-#endif
-
 #include "render/raster/kernel_joint.h"
 #include "render/raster/rasterbins.h"
 #include "render/raster/rasterkernels.h"
@@ -25,6 +20,7 @@ enum {
 
 /* ---- tiles ----------------------------------------------------------------------------------- */
 
+/* The state of `trace` for one tile. */
 typedef struct RasterState {
     const RasterTile *tile;
     RasterHits *hits;
@@ -32,6 +28,7 @@ typedef struct RasterState {
     float farthest[PARTS]; /* depth beyond which a part needs no item */
 } RasterState;
 
+/* Sets `farthest` of all parts of a block. */
 RASTER_FN void set_farthest(RasterState *state, int block, float depth)
 {
     for (int part = 0; part < PARTS_OF_BLOCK; part++)
@@ -58,6 +55,7 @@ RASTER_FN LaneMask keep_nearer(RasterState *state, const NearItem *near, uint32_
     return nearer;
 }
 
+/* Replaces the lanes `of` in an array. */
 RASTER_FN void keep_lanes(float *values, LaneMask of, Lanes lanes)
 {
     lanes_store(values, lanes_select(of, lanes, lanes_load(values)));
@@ -90,6 +88,7 @@ LANE_TARGET static void decide_block(RasterState *state, const NearItem *near, i
     set_farthest(state, block, lanes_largest(lanes_load(&hits->z[block * LANES])));
 }
 
+/* Intersects the lines of sight of a block with an item, and keeps the nearer hits. */
 RASTER_FN void meet_block(RasterState *state, const NearItem *near, int block)
 {
     const RasterGrid *grid = state->tile->grid;
@@ -156,7 +155,7 @@ RASTER_FN unsigned touched_parts(const RasterState *state, const NearItem *near)
     return bits;
 }
 
-/* Number of items by which prefetching is ahead. */
+/* Number of items by which prefetching is ahead; reason for the value not recorded. */
 enum { ITEMS_AHEAD = 8 };
 
 RASTER_FN void trace_items(RasterState *state, bool perspective)
@@ -181,8 +180,8 @@ RASTER_FN void trace_items(RasterState *state, bool perspective)
     }
 }
 
-LANE_TARGET static uint64_t RASTER_KERNEL(trace)(const RasterTile *tile, RasterHits *hits,
-                                                 TileHits *surface)
+LANE_TARGET static uint64_t LANES_NAME(trace)(const RasterTile *tile, RasterHits *hits,
+                                              TileHits *surface)
 {
     RasterState state = {.tile = tile, .hits = hits, .surface = surface};
     for (int sample = 0; sample < TILE_SAMPLES; sample += LANES) {
@@ -209,9 +208,7 @@ LANE_TARGET static void resolve_decided(const RasterTile *tile, uint32_t number,
     Vec3 normal = {0, 0, 0};
     raster_decide(tile->bins, number, tile->x + (double)tile->grid->x[sample],
                   tile->y + (double)tile->grid->y[sample], &normal);
-    surface->normal[0][sample] = (float)normal.x;
-    surface->normal[1][sample] = (float)normal.y;
-    surface->normal[2][sample] = (float)normal.z;
+    tile_set_vector(surface->normal, sample, normal);
 }
 
 /* Sets the normals of those samples of a block that hit the joint, and the index of its
@@ -257,8 +254,8 @@ RASTER_FN void resolve_block(const RasterTile *tile, RasterHits *hits, int block
     }
 }
 
-LANE_TARGET static void RASTER_KERNEL(resolve)(const RasterTile *tile, RasterHits *hits,
-                                               TileHits *surface)
+LANE_TARGET static void LANES_NAME(resolve)(const RasterTile *tile, RasterHits *hits,
+                                            TileHits *surface)
 {
     for (int block = 0; block < BLOCKS; block++)
         if (tile->perspective)

@@ -9,8 +9,8 @@
 
 #define RASTER_FN LANE_FN __attribute__((always_inline))
 
-/* Below this squared sine of the angle between axis and line, a cylinder counts as viewed along its
- * axis. */
+/* Squared sine of the angle between axis and line of sight below which a cylinder is drawn in
+ * double precision: the square of least_sine [rasteritem.c]. */
 static const float steep_sine2 = 4e-4f;
 
 RASTER_FN LaneMask load_items(const uint32_t *items)
@@ -42,7 +42,7 @@ typedef struct NearItem {
     float depth;  /* depth of the item's middle along the view; 1 in a parallel view */
     float dx, dy; /* direction of the tile's middle line */
     float z;      /* depth of the item's middle, minus z_middle */
-    float z_near; /* nothing of it is nearer */
+    float z_near; /* lower bound of the item's depths, minus z_middle */
     float along_x, along_y, reach_along,
         reach_across; /* outline of its capsule at the depth of its middle */
     float axis[3];
@@ -71,6 +71,7 @@ RASTER_FN void outline(const RasterTile *tile, NearItem *near)
     near->reach_along = size * item->half + near->reach_across;
 }
 
+/* Returns item `number` relative to a tile. The outline is not set. */
 RASTER_FN NearItem approach(const RasterTile *tile, uint32_t number, bool perspective)
 {
     const RasterItem *item = &tile->items[number];
@@ -108,6 +109,7 @@ RASTER_FN NearItem approach(const RasterTile *tile, uint32_t number, bool perspe
     return near;
 }
 
+/* Returns the lines of sight at (x, y), relative to the tile's middle, relative to an item. */
 RASTER_FN SightLines sight_of(const NearItem *near, Lanes x, Lanes y)
 {
     SightLines sight;
@@ -158,12 +160,13 @@ RASTER_FN LaneMask sphere_entry(const NearItem *near, const SightLines *sight, L
 /* Lines of sight relative to an infinite cylinder. */
 typedef struct CylinderPassage {
     LaneMask met;
-    Lanes middle; /* depth at which they are nearest to the axis, relative to the cylinder's
+    Lanes middle; /* depth at which a line is nearest to the axis, relative to the cylinder's
                    * middle */
-    Lanes half;   /* half the length of the part inside, in depth */
+    Lanes half;   /* half the length of the part of a line inside, in depth */
     Lanes along;  /* position of the nearest point along the axis, relative to its middle */
-    Lanes rate;   /* of that with depth */
-    Lanes off2;   /* squared distance there; it grows by sine2 t^2 at the depth t farther */
+    Lanes rate;   /* growth of `along` with depth */
+    Lanes off2;   /* squared distance at the nearest point; it is larger by sine2 t^2 at the depth t
+                   * farther */
     Lanes sine2;
 } CylinderPassage;
 

@@ -66,11 +66,6 @@ static Status make_room_for_joints(Build *build, int threads, Err *err)
     return mem_calloc(&bins->joints, (size_t)n + 1, sizeof *bins->joints, "joints", err);
 }
 
-static bool touches_tiles(const RasterItem *item)
-{
-    return item->rows.first <= item->rows.last;
-}
-
 static void make_chunk(size_t chunk, int worker, void *context)
 {
     (void)worker;
@@ -90,7 +85,7 @@ static void make_chunk(size_t chunk, int worker, void *context)
             item->primitive = (uint32_t)i;
         for (int row = item->rows.first; row <= item->rows.last; row++)
             counts[row]++;
-        to += bins->view.light || touches_tiles(item);
+        to += bins->view.light || item->rows.first <= item->rows.last;
     }
     build->ends[chunk] = to;
 }
@@ -148,7 +143,8 @@ static Status sort_into_rows(Build *build, int threads, Err *err)
     return STATUS_OK;
 }
 
-bool rasterbins_are_small(const Geometry *geometry)
+/* Returns true if the geometry is so small that one thread makes its items. */
+static bool are_small(const Geometry *geometry)
 {
     return rasterbins_items(geometry) / LEAST_CHUNK < 2;
 }
@@ -157,7 +153,7 @@ bool rasterbins_are_small(const Geometry *geometry)
 static size_t chunks_for(const Geometry *geometry, size_t threads)
 {
     size_t chunks = rasterbins_items(geometry) / LEAST_CHUNK;
-    if (rasterbins_are_small(geometry))
+    if (are_small(geometry))
         return 1;
     chunks = chunks < MOST_CHUNKS ? chunks : MOST_CHUNKS;
     threads = threads < chunks ? threads : chunks;
@@ -207,7 +203,7 @@ Status rasterbins_new(const Geometry *geometry, const RasterView *view, int thre
     bins->view = *view;
     bins->view.per_x = 1 / view->step_x;
     bins->view.per_y = 1 / view->step_y;
-    bins->view.many = !rasterbins_are_small(geometry);
+    bins->view.many = !are_small(geometry);
     bins->tile_columns = (view->columns + TILE_SIDE - 1) / TILE_SIDE;
     bins->tile_rows = (view->rows + TILE_SIDE - 1) / TILE_SIDE;
     if (!view->light) {

@@ -11,6 +11,7 @@
 #ifndef CORCAST_RENDER_RASTER_RASTERBINS_H
 #define CORCAST_RENDER_RASTER_RASTERBINS_H
 
+#include "render/light/shadowengine.h"
 #include "render/raster/rasteritem.h"
 
 /* Immutable once built. */
@@ -37,9 +38,6 @@ static inline size_t rasterbins_items(const Geometry *geometry)
 
 /* Returns true if rasterbins_new supports a geometry and an image of this size in pixels. */
 bool rasterbins_take(const Geometry *geometry, int width, int height);
-/* Returns true if the geometry is so small that rasterbins_new uses one thread. */
-bool rasterbins_are_small(const Geometry *geometry);
-
 /* Builds the bins; release them with rasterbins_free. They borrow `geometry` and copy `view`.
  *
  * Errors   STATUS_MEMORY; STATUS_USAGE if a side of the picture has more than 65535 tiles.
@@ -74,5 +72,15 @@ void raster_joint(const RasterBins *bins, uint32_t number, RasterJoint *joint);
  * precision. Returns the depth of the hit along the view in mm, or INFINITY. If there is a hit,
  * sets *normal to the unit normal in the view's frame; `normal` may be NULL. */
 double raster_decide(const RasterBins *bins, uint32_t number, double x, double y, Vec3 *normal);
+
+/* Answers shadow queries among primitives, by the bins of light views
+ * [render/light/shadowengine.h].
+ *
+ * Supports every light for which lightview_sees_all is true. A point is in shadow if a primitive is
+ * between the point and the light. The primitive must be nearer to the light than the point by more
+ * than 0.001 mm, POV-Ray's limit, plus the rounding error of the light view. ShadowPoints.item is
+ * as in RasterHits: a sphere or cylinder whose hit was found in single precision does not shadow
+ * its own points. */
+extern const ShadowEngine raster_shadows;
 
 #endif

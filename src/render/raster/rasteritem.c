@@ -19,42 +19,33 @@ static void store_floats(float to[3], Vec3 v)
     to[2] = (float)v.z;
 }
 
-/* Rotates the parameter p of a joint so that p = 0 is the ruling that faces `sight`, a direction in
- * the frame, most: the ruling where the first harmonic of sight . (S_p x S_l) at l = 1/2 is
- * minimal. */
-static void face_sight(JointFrame *joint, Vec3 sight, Vec3 out[6])
+/* Turns a pair of vectors, such as those that span a circle, by an angle. */
+static void turn_pair(Vec3 *a, Vec3 *b, double cosine, double sine)
 {
-    Vec3 a = joint->across, b = vec3_scale(joint->side, joint->radius);
-    Vec3 da = joint->across_change, db = vec3_scale(joint->side, joint->radius_change);
-    double along_a = vec3_dot(sight, vec3_cross(vec3_add_scaled(a, da, 0.5), joint->span));
-    double along_b = vec3_dot(sight, vec3_cross(vec3_add_scaled(b, db, 0.5), joint->span));
-    double size = sqrt(along_a * along_a + along_b * along_b), cosine = 1, sine = 0;
-    if (size > 0) {
-        cosine = -along_b / size;
-        sine = along_a / size;
-    }
-    out[0] = joint->base;
-    out[1] = joint->span;
-    out[2] = vec3_add_scaled(vec3_scale(a, cosine), b, sine);
-    out[3] = vec3_add_scaled(vec3_scale(b, cosine), a, -sine);
-    out[4] = vec3_add_scaled(vec3_scale(da, cosine), db, sine);
-    out[5] = vec3_add_scaled(vec3_scale(db, cosine), da, -sine);
+    const Vec3 turned = vec3_add_scaled(vec3_scale(*a, cosine), *b, sine);
+    *b = vec3_add_scaled(vec3_scale(*b, cosine), *a, -sine);
+    *a = turned;
 }
 
 RasterJoint rasterjoint_make(const RasterView *view, const Primitive *primitive, Vec3 middle)
 {
     RasterJoint made;
-    JointFrame joint = primitive_joint(primitive);
-    Vec3 from_eye = vec3_sub(joint.base, view->eye.location), part[6];
-    joint.base = vec3_sub(viewpoint_frame_direction(&view->eye, from_eye), middle);
-    joint.span = viewpoint_frame_direction(&view->eye, joint.span);
-    /* The frame is left-handed. Reversing the direction of rotation keeps S_p x S_l pointing
+    JointFrame joint = rasterview_joint(view, primitive);
+    const Vec3 base = vec3_sub(joint.base, middle), span = joint.span;
+    const Vec3 sight = view->eye.perspective ? middle : vec3(0, 0, 1);
+    /* The frame is left-handed. Reversing the direction of rotation keeps S_q x S_l pointing
      * outward. */
-    joint.side = vec3_scale(viewpoint_frame_direction(&view->eye, joint.side), -1);
-    joint.across = viewpoint_frame_direction(&view->eye, joint.across);
-    joint.across_change = viewpoint_frame_direction(&view->eye, joint.across_change);
-    face_sight(&joint, view->eye.perspective ? middle : vec3(0, 0, 1), part);
-    Vec3 base = part[0], span = part[1], a = part[2], b = part[3], da = part[4], db = part[5];
+    joint.side = vec3_scale(joint.side, -1);
+    Vec3 a = joint.across, b = vec3_scale(joint.side, joint.radius);
+    Vec3 da = joint.across_change, db = vec3_scale(joint.side, joint.radius_change);
+    /* The joint is turned so that q = 0 is the ruling that faces the line of sight most: the ruling
+     * at which the first harmonic of sight . (S_q x S_l), halfway along the joint, is minimal. */
+    double along_a = vec3_dot(sight, vec3_cross(vec3_add_scaled(a, da, 0.5), span));
+    double along_b = vec3_dot(sight, vec3_cross(vec3_add_scaled(b, db, 0.5), span));
+    double size = sqrt(along_a * along_a + along_b * along_b);
+    double cosine = size > 0 ? -along_b / size : 1, sine = size > 0 ? along_a / size : 0;
+    turn_pair(&a, &b, cosine, sine);
+    turn_pair(&da, &db, cosine, sine);
     store_floats(made.base, base);
     store_floats(made.span, span);
     store_floats(made.a, a);

@@ -1,6 +1,6 @@
 /* The kernels that process several samples of a tile of primitives at once, in one version for each
  * instruction set. The raster engine calls `trace` for a tile and then, if a sample hits an item,
- * `resolve` and, for shadow queries, `locate`. raster_shadows calls `cover`.
+ * `resolve`. raster_shadows calls `cover`.
  *
  * Kernels read and write whole blocks of as many samples as the processor has lanes, at most 16.
  * Arrays of TILE_SAMPLES elements are not exceeded; where a kernel reads or writes farther, its
@@ -25,8 +25,6 @@ typedef struct RasterKernels {
      *          joints and of samples that were decided in double precision. any_hit and any_unsure
      *          are not changed. */
     void (*resolve)(const RasterTile *tile, RasterHits *hits, TileHits *surface);
-    /* Sets the points that the samples hit, in the frame of the view, mm. */
-    void (*locate)(const RasterTile *tile, const RasterHits *hits, HitPoints *points);
     /* Answers the shadow queries of the points in one tile of a light view: sets points->state.
      *
      * If points->item is a sphere or a cylinder whose hit was found in single precision, this item
@@ -39,10 +37,7 @@ typedef struct RasterKernels {
     void (*cover)(const RasterTile *tile, ShadowPoints *points);
 } RasterKernels;
 
-extern const RasterKernels rasterkernels_portable;
-#ifdef __x86_64__
-extern const RasterKernels rasterkernels_avx2, rasterkernels_avx512;
-#endif
+DECLARE_KERNELS(RasterKernels, rasterkernels);
 /* One entry per instruction set, in the order of tilekernels [tilekernels.h]. */
 extern const RasterKernels *const rasterkernels[KINDS_OF_KERNELS];
 

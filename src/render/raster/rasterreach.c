@@ -112,21 +112,13 @@ static bool is_behind(const RasterItem *item)
     return item->z + item_depth(item) < 0;
 }
 
-/* A range of samples along one axis of the image; empty if first > last. */
-typedef struct SampleSpan {
-    int first, last;
-} SampleSpan;
-
 /* Returns the samples within `reach` of `middle`. There are `count` samples, `per` per unit, the
  * first at `first`. */
 static inline SampleSpan samples_about(double middle, double reach, double first, double per,
                                        double max_offset, int count)
 {
     Interval range = interval_in_samples((Interval){middle - reach, middle + reach}, first, per);
-    double low = max_of(range.low - max_offset, 0),
-           high = min_of(range.high + max_offset, count - 1);
-    int from = low < count ? (int)low : count;
-    return (SampleSpan){from + (from < low), high < 0 ? -1 : (int)high};
+    return samplespan_within(range, max_offset, count);
 }
 
 /* Returns true if a point is within the distance sqrt(reach2) of a segment. (dx, dy) leads from the

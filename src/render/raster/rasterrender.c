@@ -1,11 +1,9 @@
 /* The tile engine of primitives. Shifted passes of antialiasing use the lists of the tiles of the
  * centre samples. The bins therefore hold every item that any sample of a pixel may hit. */
-#include "render/raster/rasterrender.h"
-
+#include "render/engine.h"
 #include "render/light/resample.h"
 #include "render/raster/rasterbins.h"
 #include "render/raster/rasterkernels.h"
-#include "render/raster/rastershadow.h"
 #include "render/tile/tilerender.h"
 #include <stdlib.h>
 
@@ -139,23 +137,9 @@ static bool can_draw_raster(const Drawing *drawing)
              rasterbins_take(drawing->geometry, camera->width, camera->height)));
 }
 
-static bool raster_needs_rays(const Drawing *drawing)
-{
-    return shadowengine_needs_rays(&raster_shadows, drawing);
-}
-
-static Status prepare_raster(const Drawing *drawing, void **prepared, Err *err)
-{
-    return tilerender_prepare(&raster_tiles, drawing, prepared, err);
-}
-
 const Engine raster_engine = {.name = "raster",
-                              .writes_codes = true,
-                              .draws_thin = true,
+                              .tiles = &raster_tiles,
                               .supports = can_draw_raster,
-                              .needs_rays = raster_needs_rays,
-                              .prepare = prepare_raster,
+                              .prepare = tilerender_prepare,
                               .rows = tilerender_rows,
-                              .free = tilerender_free,
-                              .shadows = &raster_shadows,
-                              .light_bins = tilerender_light_bins};
+                              .free = tilerender_free};

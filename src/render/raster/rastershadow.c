@@ -5,8 +5,6 @@
  * The lists of a light view hold the primitives, their boxes and their depths. Several boxes are
  * compared with the points at once, so that few primitives remain to be tested. Memory is
  * prefetched for these primitives and for the list of the next tile. */
-#include "render/raster/rastershadow.h"
-
 #include "render/raster/rasterbins.h"
 #include "render/raster/rasterkernels.h"
 #include <stdlib.h>
@@ -59,23 +57,22 @@ static RasterView view_of(const LightView *light)
                         .z_middle = light->z_middle};
 }
 
-static Status take_words(RowStore *store, size_t n, uint32_t **out)
+static Status take_words(RowStore *store, size_t n, uint32_t **out, Err *err)
 {
     *out = slabs_take(&store->slabs, n * sizeof **out, SLAB_WORDS * sizeof **out);
-    return *out ? STATUS_OK : STATUS_MEMORY;
+    return *out ? STATUS_OK : mem_out_of("for", "shadows", err);
 }
 
 static Status list_boxes_of_row(size_t row, int worker, void *context, Err *err)
 {
-    (void)err; /* list_boxes reports the error */
     RasterLists *lists = context;
     RowStore *store = &lists->stores[worker];
     const RasterBins *bins = lists->bins;
     size_t columns = (size_t)bins->tile_columns;
     uint32_t *offsets, *words;
-    TRY(take_words(store, columns + 1, &offsets));
-    TRY(rasterbins_count(bins, row, offsets, NULL));
-    TRY(take_words(store, 3 * (size_t)offsets[columns] + MOST_LANES, &words));
+    TRY(take_words(store, columns + 1, &offsets, err));
+    TRY(rasterbins_count(bins, row, offsets, err));
+    TRY(take_words(store, 3 * (size_t)offsets[columns] + MOST_LANES, &words, err));
     memset(store->taken, 0, columns * sizeof *store->taken);
     for (size_t i = bins->row_offsets[row]; i < bins->row_offsets[row + 1]; i++) {
         const RasterTiles span = bins->row_columns[i];
@@ -101,8 +98,7 @@ static Status list_boxes(RasterLists *lists, Err *err)
     for (int i = 0; i < lists->workers; i++)
         TRY(mem_calloc(&lists->stores[i].taken, columns, sizeof *lists->stores[i].taken, "shadows",
                        err));
-    if (threads_try(n, lists->workers, list_boxes_of_row, lists, NULL) != STATUS_OK)
-        return err_set(err, STATUS_MEMORY, "out of memory: no room for shadows");
+    TRY(threads_try(n, lists->workers, list_boxes_of_row, lists, err));
     rasterbins_forget_rows(lists->bins);
     return STATUS_OK;
 }

@@ -26,6 +26,17 @@ Ray rasterview_ray(const RasterView *view, double x, double y)
     return (Ray){vec3_add(view->eye.location, across), view->eye.axes[2]};
 }
 
+JointFrame rasterview_joint(const RasterView *view, const Primitive *primitive)
+{
+    JointFrame joint = primitive_joint(primitive);
+    joint.base = viewpoint_frame_point(&view->eye, joint.base);
+    joint.span = viewpoint_frame_direction(&view->eye, joint.span);
+    joint.side = viewpoint_frame_direction(&view->eye, joint.side);
+    joint.across = viewpoint_frame_direction(&view->eye, joint.across);
+    joint.across_change = viewpoint_frame_direction(&view->eye, joint.across_change);
+    return joint;
+}
+
 static void set_blocks(const RasterGrid *grid, int size, float *x, float *y, float half[2])
 {
     for (int block = 0; block < TILE_SAMPLES / size; block++) {

@@ -38,6 +38,10 @@ RasterView rasterview_of_camera(const Camera *camera, Box bounds, int antialias)
  * a unit vector. */
 Ray rasterview_ray(const RasterView *view, double x, double y);
 
+/* Returns the joint of a PRIMITIVE_JOINT in the frame of the view. The frame is left-handed, so a
+ * normal that leads outwards in world coordinates leads inwards in the frame. */
+JointFrame rasterview_joint(const RasterView *view, const Primitive *primitive);
+
 /* Returns the sample positions of a tile if each sample is (x, y) pixels from the centre of its
  * pixel. */
 RasterGrid rastergrid_make(const RasterView *view, double x, double y);

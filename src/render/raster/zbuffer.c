@@ -5,10 +5,8 @@
  * nearest to the camera is kept. Where a surface covers the centre of a pixel, the pixel therefore
  * has a point of it, and outlines are right to 0.177 pixels. A row of tiles is the unit of work,
  * with its own depth buffer. */
-#include "render/raster/zbuffer.h"
-
+#include "render/engine.h"
 #include "render/light/raycolor.h"
-#include "render/planes.h"
 #include "render/raster/rasterbins.h"
 #include <stdlib.h>
 
@@ -73,8 +71,8 @@ static bool touches_row(const ZBrush *brush, Vec3 center, double radius)
     return below >= brush->row - 1 && above <= brush->row + TILE_SIDE;
 }
 
-/* Draws points around a circle in the plane of e and f. Their normals lead away from its centre;
- * `normal` not NULL: all are that. */
+/* Draws points around a circle in the plane of two vectors. `normal` is the normal of all points;
+ * NULL: the normals lead away from the centre. */
 static void draw_circle(const ZBrush *brush, Vec3 center, const Vec3 plane[2], double radius,
                         int points, const Vec3 *normal)
 {
@@ -176,12 +174,7 @@ static void draw_primitive(const ZBuffers *buffers, const RasterItem *item, ZBru
     } else if (primitive->kind == PRIMITIVE_SPHERE) {
         draw_sphere(brush, a, primitive->radius_mm);
     } else {
-        JointFrame joint = primitive_joint(primitive);
-        joint.base = a;
-        joint.span = viewpoint_frame_direction(&view->eye, joint.span);
-        joint.side = viewpoint_frame_direction(&view->eye, joint.side);
-        joint.across = viewpoint_frame_direction(&view->eye, joint.across);
-        joint.across_change = viewpoint_frame_direction(&view->eye, joint.across_change);
+        const JointFrame joint = rasterview_joint(view, primitive);
         draw_joint(brush, &joint);
     }
 }
@@ -191,24 +184,17 @@ static void finish_pixel(const ZBuffers *buffers, const ZPoint *point, int i, in
 {
     const Drawing *drawing = buffers->drawing;
     const RasterView *view = &buffers->bins->view;
-    const bool seen = point->z < HUGE_VAL;
-    size_t pixel = (size_t)j * (size_t)view->columns + (size_t)i;
     Ray ray = camera_ray(&drawing->view->camera, i, drawing->band.first + j);
     Surfel surfel;
-    planes_store_nothing(buffers->frame, pixel, 1);
+    const bool seen = point->z < HUGE_VAL;
     if (seen) {
         Vec3 normal = viewpoint_world_direction(&view->eye, point->normal);
         bool away = vec3_dot(normal, ray.direction) > 0;
         surfel = (Surfel){.t = point->z / vec3_dot(ray.direction, view->eye.axes[2]),
                           .normal = away ? vec3_scale(normal, -1) : normal,
                           .segment = drawing->geometry->primitives[point->primitive].segment};
-        planes_store(buffers->frame, pixel, surfel.t, surfel.normal,
-                     drawing->geometry->ids[surfel.segment]);
     }
-    if (buffers->frame->color.values)
-        planes_store_color(
-            buffers->frame, pixel,
-            ray_color(drawing, worker, ray, i, drawing->band.first + j, seen ? &surfel : NULL));
+    raycolor_store(drawing, worker, i, j, seen ? &surfel : NULL, buffers->frame);
 }
 
 static Status draw_zbuffer_row(size_t number, int worker, void *context, Err *err)
@@ -220,9 +206,7 @@ static Status draw_zbuffer_row(size_t number, int worker, void *context, Err *er
     const int width = view->columns, first = drawing->band.first + (int)number * TILE_SIDE;
     const size_t row = (size_t)first / TILE_SIDE;
     ZPoint *points = buffers->points + (size_t)worker * TILE_SIDE * (size_t)width;
-    if (worker == 0)
-        TRY(band_progress(&drawing->band, drawing->params, view->rows, false,
-                          (double)number * TILE_SIDE / drawing->band.rows, err));
+    TRY(drawing_progress(drawing, worker, false, number * TILE_SIDE, err));
     for (int i = 0; i < TILE_SIDE * width; i++)
         points[i].z = HUGE_VAL;
     ZBrush brush = {.view = view, .points = points, .row = first};
@@ -252,8 +236,10 @@ static void release_zbuffer(void *prepared)
     rasterbins_free(prepared);
 }
 
-static Status prepare_zbuffer(const Drawing *drawing, void **prepared, Err *err)
+static Status prepare_zbuffer(const struct TileEngine *tiles, const Drawing *drawing,
+                              void **prepared, Err *err)
 {
+    (void)tiles;
     Status status;
     RasterBins *bins = NULL;
     /* Points up to half a pixel off are caught. */
@@ -285,15 +271,8 @@ static bool can_draw_zbuffer(const Drawing *drawing)
            !drawing->params->shadows && !raycolor_is_needed(drawing->view, drawing->params);
 }
 
-static bool zbuffer_needs_rays(const Drawing *drawing)
-{
-    (void)drawing;
-    return false;
-}
-
 const Engine zbuffer_engine = {.name = "zbuffer",
                                .supports = can_draw_zbuffer,
-                               .needs_rays = zbuffer_needs_rays,
                                .prepare = prepare_zbuffer,
                                .rows = draw_zbuffer,
                                .free = release_zbuffer};

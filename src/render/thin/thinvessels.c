@@ -1,9 +1,9 @@
-/* Samples miss what is narrower than their distance, or hit it by chance: a tree of 10^6 terminals
- * at 640 pixels becomes noise. Vessels that narrow are strips instead, drawn by the area that they
- * have in each sample's cell [tile/thincells.h]. Wider vessels are sampled, which is right wherever
- * it is fine enough.
+/* Samples miss a vessel that is narrower than their distance, or hit it by chance: a tree of 10^6
+ * terminals at 640 pixels becomes noise. Such vessels are drawn as strips instead, by the area that
+ * they have in each sample's cell [tile/thincells.h]. Wider vessels are sampled, which is right
+ * wherever the samples are close enough.
  *
- * A strip is cut into pieces of about PIECE_PX pixels. A piece has one color: the mean of the
+ * A strip is cut into pieces of about piece_px pixels. A piece has one color: the mean of the
  * shading model over the visible half of the wall, at normals in the middle of SHADED parts of
  * equal width. The light visibility of a piece is that of the point of its wall that faces the
  * light. The point that faces the viewer would not do: where the light comes from behind, the
@@ -12,12 +12,14 @@
 #include "render/thin/thinvessels.h"
 
 #include "render/cast/caster.h"
-#include "render/light/occlusion.h"
 #include "render/light/shade.h"
+#include "render/tile/interval.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+/* Normals per piece, and rows of samples that a thread draws at a time. Reasons for these values
+ * and for piece_px are not recorded. */
 enum { SHADED = 5, ROWS = 8 };
 static const double piece_px = 1.5;
 /* Height of shading points above the vessel's surface, in radii: less than a sample can resolve,
@@ -64,8 +66,8 @@ static ThinVessel vessel_part(const ThinVessel *vessel, double from, double to)
     return part;
 }
 
-/* The greater width of the vessel in pixels; infinite if an end is not in front of a perspective
- * camera. */
+/* Returns the greater width of the vessel in pixels; infinite if an end is not in front of a
+ * perspective camera. */
 static double widest(const ThinVessel *vessel, const Camera *camera)
 {
     const CameraPoint a = camera_point(camera, vessel->a), b = camera_point(camera, vessel->b);
@@ -88,23 +90,12 @@ typedef struct ThinSearch {
     ThinStrips *found;  /* per chunk; owned */
 } ThinSearch;
 
-/* Cuts [*from, *to] down to where a value that is `a` at 0 and `b` at 1 is not below 0. */
-static void clip_above(double a, double b, double *from, double *to)
-{
-    if (a < 0 && b < 0)
-        *to = -1;
-    else if (a < 0)
-        *from = fmax(*from, a / (a - b));
-    else if (b < 0)
-        *to = fmin(*to, a / (a - b));
-}
-
 /* Clips the range [*from, *to] of a vessel to the part in front of an orthographic camera. */
 static void clip_at_camera(const ThinVessel *vessel, const Camera *camera, double *from, double *to)
 {
     if (camera->projection == PROJECTION_ORTHOGRAPHIC)
-        clip_above(camera_point(camera, vessel->a).depth_mm - NEAREST_VISIBLE_MM,
-                   camera_point(camera, vessel->b).depth_mm - NEAREST_VISIBLE_MM, from, to);
+        clip_part(camera_point(camera, vessel->a).depth_mm - NEAREST_VISIBLE_MM,
+                  camera_point(camera, vessel->b).depth_mm - NEAREST_VISIBLE_MM, from, to);
 }
 
 static double depth_along_view(const Camera *camera, Vec3 point)
@@ -129,10 +120,10 @@ static bool make_strip(const ThinSearch *search, uint32_t number, ThinStrip *str
     const double margin = width + 1; /* so that clipped ends are in no cell */
     const double z[2] = {depth_along_view(camera, vessel.a) - vessel.radius_a,
                          depth_along_view(camera, vessel.b) - vessel.radius_b};
-    clip_above(a.x + margin, b.x + margin, &from, &to);
-    clip_above(camera->width + margin - a.x, camera->width + margin - b.x, &from, &to);
-    clip_above(a.y + margin, b.y + margin, &from, &to);
-    clip_above(camera->height + margin - a.y, camera->height + margin - b.y, &from, &to);
+    clip_part(a.x + margin, b.x + margin, &from, &to);
+    clip_part(camera->width + margin - a.x, camera->width + margin - b.x, &from, &to);
+    clip_part(a.y + margin, b.y + margin, &from, &to);
+    clip_part(camera->height + margin - a.y, camera->height + margin - b.y, &from, &to);
     if (!(from < to))
         return false;
     const double length = elementary_hypot(b.x - a.x, b.y - a.y) * (to - from);
@@ -254,6 +245,8 @@ static Status number_pieces(ThinVessels *thin, Err *err)
     return STATUS_OK;
 }
 
+static Vec3 lit_point(const void *context, const Light *light, size_t piece);
+
 static Status find(ThinSearch *search, int threads, Err *err)
 {
     ThinLayer *layer = &search->thin->layer;
@@ -268,6 +261,8 @@ static Status find(ThinSearch *search, int threads, Err *err)
                      i + 1 == layer->n || strip[1].run != strip->run);
     }
     TRY(number_pieces(search->thin, err));
+    search->thin->lights =
+        (OffPixelPoints){.n = layer->n_pieces, .at = lit_point, .context = search->thin};
     return thinlayer_sort(layer, search->camera, err);
 }
 
@@ -352,17 +347,12 @@ static Vec3 lit_point(const void *context, const Light *light, size_t piece)
     return above_wall(&wall, vec3_length(across) > 1e-6 ? vec3_normalized(across) : wall.front);
 }
 
-void thinvessels_init_lights(ThinVessels *thin)
-{
-    offpixel_release(&thin->lights);
-    thin->lights = (OffPixelPoints){.n = thin->layer.n_pieces, .at = lit_point, .context = thin};
-}
-
 /* ---- ambient visibility ---------------------------------------------------------------------- */
 
-/* Columns of a picture of one row whose pixels are pieces. Runs are apart by more than the pixels
- * that share answers [light/occlusion.c], as their walls have nothing in common. Sets *n to the
- * number of columns. */
+/* Lays the pieces out as pixels of a picture of one row, so that occlusion_compute can process
+ * them. Sets (*columns)[piece], which the caller frees, and *n to the number of columns. Runs are
+ * farther apart than pixels that share answers [light/occlusion.c], because their walls have
+ * nothing in common. */
 static Status place_pieces(const ThinVessels *thin, uint32_t **columns, size_t *n, Err *err)
 {
     enum { APART = 4 };
@@ -530,7 +520,7 @@ static Status draw_rows(size_t index, int worker, void *context, Err *err)
     ThinCells *cells = &job->cells[worker];
     const CellBlock block = {0, band->first + first, camera->width, rows, 1};
     TRY(thincells_fill(&job->thin->layer, block, cells, err));
-    for (int row = 0; row < rows && cells->n > 0; row++)
+    for (int row = 0; row < rows && cells->fragments.n > 0; row++)
         for (int column = 0; column < camera->width; column++) {
             size_t pixel = (size_t)(first + row) * (size_t)camera->width + (size_t)column;
             if (thincells_are_empty(cells, column, row))

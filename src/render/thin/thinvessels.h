@@ -12,7 +12,7 @@
 
 #include "base/base.h"
 #include "render/job.h"
-#include "render/light/occluders.h"
+#include "render/light/occlusion.h"
 #include "render/light/offpixel.h"
 #include "render/tile/thincells.h"
 
@@ -22,8 +22,7 @@ typedef struct ThinVessels {
     Camera camera;          /* a copy of the caller's camera */
     ThinLayer layer;        /* the strips; `colors` are set by thinvessels_color */
     uint32_t *piece_strips; /* per piece: index of its strip; owned */
-    OffPixelPoints lights;  /* shading points of the pieces; set by thinvessels_init_lights, then by
-                             * offpixel_init */
+    OffPixelPoints lights;  /* shading points of the pieces; offpixel_init adds the lights */
     float *ambient;         /* per piece: ambient visibility, 0 to 1; owned. NULL: all are 1. */
 } ThinVessels;
 
@@ -38,7 +37,8 @@ typedef struct ThinWidths {
  * thin, and neither is a vessel with an end behind a perspective camera.
  *
  * whole     borrowed.
- * thin      receives the vessels; release it with thinvessels_release.
+ * thin      receives the vessels; release it with thinvessels_release. Must not be moved: `lights`
+ *           has its address.
  * Errors    STATUS_MEMORY.
  * Cost      O(n); the result does not depend on `threads`. */
 MUST_CHECK Status thinvessels_find(const Geometry *whole, const Camera *camera, ThinWidths widths,
@@ -53,10 +53,6 @@ MUST_CHECK Status thinvessels_find_ambient(const Drawing *drawing, const Occlude
 /* Sets the colors of pieces whose strips may touch the drawing's band. Uses thin->lights and
  * thin->ambient as they are now. */
 void thinvessels_color(const Drawing *drawing, const ThinVessels *thin);
-
-/* Sets thin->lights to the shading points of the pieces. Call offpixel_init afterwards to add the
- * lights. */
-void thinvessels_init_lights(ThinVessels *thin);
 
 /* Draws the vessels over the colors of a frame. The frame must have a depth plane, with depths
  * along the rays, and the rows of the drawing's band, one sample per pixel. Errors:

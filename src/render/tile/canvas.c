@@ -1,6 +1,8 @@
-/* Tiles come row by row, and from left to right in a row. Only tiles that may have hits are drawn;
- * the pixels between them are filled row by row, so that a pixel is written once. If a worker
- * fails, it draws nothing more, and its error is returned when all others are done. */
+/* A worker draws tiles row by row, and from left to right in a row. Only tiles that may have hits
+ * are drawn. The pixels between the drawn tiles are filled row by row with the background, so that
+ * each pixel is written once: writing a whole image first would cost as much time as drawing a
+ * sparse one. If a worker fails, it draws nothing more; its error is returned when all others are
+ * done. */
 #include "render/tile/canvas.h"
 
 #include "render/cast/caster.h"
@@ -54,9 +56,9 @@ static void share_surfaces(const PixelVisibility *visibility, CanvasWorker *own)
     TileSurface *surfaces[] = {&own->surface, &own->ground};
     for (int i = 0; visibility && i < 2; i++) {
         surfaces[i]->ambient = own->ambient;
-        surfaces[i]->light_visibility = (const float(*)[TILE_SAMPLES])own->light_visibility;
         for (int light = 0; light < VIEW_MAX_LIGHTS; light++)
-            surfaces[i]->is_shared[light] = visibility->lights[light] != NULL;
+            surfaces[i]->light_visibility[light] =
+                visibility->lights[light] ? own->light_visibility[light] : NULL;
     }
 }
 
@@ -107,7 +109,7 @@ Status canvas_init(const Drawing *drawing, Frame *frame, const Viewpoint *eye, C
                  .needs_points = needs_points(drawing->view) || drawing->mean ||
                                  drawing->visibility || drawing->view->ground.present,
                  .wants_color = frame->color.values || frame->codes.codes8,
-                 .wants_geometry = planes_want_geometry(frame)};
+                 .wants_geometry = frame->depth.values || frame->normal.values || frame->id.ids};
     TRY(make_background(canvas, err));
     TRY(mem_calloc(&canvas->each, (size_t)canvas->workers, sizeof *canvas->each, "canvases", err));
     for (int i = 0; i < canvas->workers; i++) {
@@ -133,33 +135,12 @@ void canvas_blank_is_mean(Canvas *canvas)
     fill_row(canvas, canvas->more.side * canvas->more.side + 1, canvas->blank);
 }
 
-Status canvas_choose(Canvas *canvas, Err *err)
-{
-    return resampling_choose(&canvas->more, canvas->drawing->params, &canvas->drawing->band,
-                             &canvas->frame->color, canvas->workers, err);
-}
-
 /* ---- colors --------------------------------------------------------------------------------- */
 
-/* The number of the segment that a hit is on. */
+/* Returns the segment index of the vessel that a sample hits. */
 static uint32_t segment_of(const Canvas *canvas, const TileHits *hits, int sample)
 {
-    const Geometry *geometry = canvas->drawing->geometry;
-    uint32_t index = hits->segment[sample];
-    return model_has(geometry->model, MODEL_FIELD) ? geometry->segments[index].segment
-                                                   : geometry->primitives[index].segment;
-}
-
-static void store_vec3(float values[3][TILE_SAMPLES], int sample, Vec3 v)
-{
-    values[0][sample] = (float)v.x;
-    values[1][sample] = (float)v.y;
-    values[2][sample] = (float)v.z;
-}
-
-static Vec3 load_vec3(const float values[3][TILE_SAMPLES], int sample)
-{
-    return vec3((double)values[0][sample], (double)values[1][sample], (double)values[2][sample]);
+    return geometry_segment(canvas->drawing->geometry, hits->segment[sample]);
 }
 
 static void set_pigments(const Canvas *canvas, const TracedTile *traced, TileSurface *surface)
@@ -186,20 +167,20 @@ static void set_places(const TracedTile *traced, TileSurface *surface)
         if (traced->hits->state[sample] != TILE_HIT)
             continue;
         Vec3 through = tile_line(traced, sample);
-        store_vec3(surface->point, sample, tile_hit_point(traced, sample));
+        tile_set_vector(surface->point, sample, tile_hit_point(traced, sample));
         if (traced->perspective)
-            store_vec3(surface->direction, sample, vec3_normalized(through));
+            tile_set_vector(surface->direction, sample, vec3_normalized(through));
     }
 }
 
-/* The pixel that a sample shares the light of. `per` are pixels across and down per unit of the
- * view's plane. */
+/* Returns the pixel whose shared visibility a sample uses, or NO_HIT. per[0] and per[1] are pixels
+ * across and down per unit of the view's plane. */
 static uint32_t shared_pixel(const Canvas *canvas, const TracedTile *traced, int sample,
                              const double per[2])
 {
     const PixelVisibility *visibility = canvas->drawing->visibility;
     const Camera *camera = &canvas->drawing->view->camera;
-    Vec3 line = tile_line(traced, sample), normal = load_vec3(traced->hits->normal, sample);
+    Vec3 line = tile_line(traced, sample), normal = tile_vector(traced->hits->normal, sample);
     double away = traced->perspective ? vec3_dot(normal, line) : normal.z;
     ShadingPoint place = pixelvisibility_point(
         visibility, traced->ground >> sample & 1 ? SURFACE_GROUND : SURFACE_VESSEL,
@@ -228,8 +209,8 @@ static void fetch_shared(const Canvas *canvas, const TracedTile *traced)
     }
 }
 
-/* The parts of light that samples share with their pixels, whose centres they are where there is
- * one a pixel. */
+/* Sets the visibility that samples share with their pixels. With one sample per pixel, a sample is
+ * the centre of its pixel and needs no search. */
 static void set_shared(const Canvas *canvas, const TracedTile *traced, CanvasWorker *own)
 {
     const PixelVisibility *visibility = canvas->drawing->visibility;
@@ -271,7 +252,7 @@ void canvas_trace_ground(const Canvas *canvas, TracedTile *traced, TileHits *hit
         if (!(z >= NEAREST_VISIBLE_MM) || !isfinite(z) || before)
             continue;
         double away = traced->perspective ? across + n.z : n.z;
-        store_vec3(hits->normal, sample, away > 0 ? vec3_scale(n, -1) : n);
+        tile_set_vector(hits->normal, sample, away > 0 ? vec3_scale(n, -1) : n);
         hits->z[sample] = z;
         hits->state[sample] = TILE_HIT;
         traced->ground |= (uint64_t)1 << sample;
@@ -341,7 +322,7 @@ float (*canvas_cover(const Canvas *canvas, int worker, const TracedTile *traced,
 {
     CanvasWorker *own = &canvas->each[worker];
     const int step = cells->block.columns / TILE_SIDE;
-    if (cells->n == 0)
+    if (cells->fragments.n == 0)
         return color;
     for (int c = 0; c < 3 && !color; c++)
         for (int sample = 0; sample < TILE_SAMPLES; sample++)
@@ -395,14 +376,15 @@ static void store_geometry(const Canvas *canvas, const TracedTile *traced)
             int sample = tile_sample_at(i, j);
             if (hits->state[sample] != TILE_HIT || traced->ground >> sample & 1)
                 continue;
-            Vec3 normal = viewpoint_world_direction(&canvas->eye, load_vec3(hits->normal, sample));
+            Vec3 normal =
+                viewpoint_world_direction(&canvas->eye, tile_vector(hits->normal, sample));
             planes_store(canvas->frame, first + (size_t)i, tile_hit_distance(traced, sample),
                          normal, canvas->drawing->geometry->ids[segment_of(canvas, hits, sample)]);
         }
     }
 }
 
-/* A rectangle of pixels, which may cover several tiles, without hits. */
+/* Stores a rectangle of pixels without hits, which may cover several tiles. */
 static void store_nothing(const Canvas *canvas, const TracedTile *empty, const float *background)
 {
     const Frame *frame = canvas->frame;
@@ -417,7 +399,7 @@ static void store_nothing(const Canvas *canvas, const TracedTile *empty, const f
     }
 }
 
-/* What the worker has not drawn of a row of tiles up to this column. */
+/* Stores the pixels of a row of tiles that the worker has not drawn, up to column `end`. */
 static void store_blank(const Canvas *canvas, CanvasWorker *own, int end, int row)
 {
     const Camera *camera = &canvas->drawing->view->camera;
@@ -429,13 +411,24 @@ static void store_blank(const Canvas *canvas, CanvasWorker *own, int end, int ro
         store_nothing(canvas, &empty, canvas->blank);
 }
 
-/* What the worker has not drawn of the rows of tiles above this. */
+/* Stores the pixels that the worker has not drawn of the rows of tiles above `row`. */
 static void blank_rows(const Canvas *canvas, CanvasWorker *own, int row)
 {
     for (; own->row < row; own->row += TILE_SIDE) {
         store_blank(canvas, own, canvas->drawing->view->camera.width, own->row);
         own->column = 0;
     }
+}
+
+void canvas_begin_rows(const Canvas *canvas, int worker, int first)
+{
+    canvas->each[worker].row = first * TILE_SIDE;
+    canvas->each[worker].column = 0;
+}
+
+void canvas_end_rows(const Canvas *canvas, int worker, int end)
+{
+    blank_rows(canvas, &canvas->each[worker], end * TILE_SIDE);
 }
 
 void canvas_draw(const Canvas *canvas, int worker, const TracedTile *traced,
@@ -459,47 +452,4 @@ void canvas_draw(const Canvas *canvas, int worker, const TracedTile *traced,
         store_codes(canvas, traced, color, frame->codes.codes8 + first, width);
     if (canvas->wants_geometry)
         store_geometry(canvas, traced);
-}
-
-/* ---- passes ---------------------------------------------------------------------------------- */
-
-typedef struct Pass {
-    Canvas *canvas;
-    bool further;
-    int rows, at_once; /* of tiles */
-    CanvasRows *draw;
-    void *context;
-} Pass;
-
-static Status draw_rows(size_t number, int worker, void *context, Err *err)
-{
-    const Pass *pass = context;
-    Canvas *canvas = pass->canvas;
-    const Band *band = &canvas->drawing->band;
-    const Camera *camera = &canvas->drawing->view->camera;
-    CanvasWorker *own = &canvas->each[worker];
-    int done = (int)number * pass->at_once, row = band->first / TILE_SIDE + done;
-    int n = pass->rows - done < pass->at_once ? pass->rows - done : pass->at_once;
-    if (worker == 0)
-        TRY(band_progress(band, canvas->drawing->params, camera->height, pass->further,
-                          (double)done * TILE_SIDE / band->rows, err));
-    own->row = row * TILE_SIDE;
-    own->column = 0;
-    TRY(pass->draw(pass->context, row, n, worker, err));
-    if (!pass->further)
-        blank_rows(canvas, own, (row + n) * TILE_SIDE);
-    return STATUS_OK;
-}
-
-Status canvas_pass(Canvas *canvas, bool further, int at_once, CanvasRows *draw, void *context,
-                   Err *err)
-{
-    Pass pass = {.canvas = canvas,
-                 .further = further,
-                 .rows = (canvas->drawing->band.rows + TILE_SIDE - 1) / TILE_SIDE,
-                 .at_once = at_once,
-                 .draw = draw,
-                 .context = context};
-    return threads_try((size_t)((pass.rows + at_once - 1) / at_once), canvas->workers, draw_rows,
-                       &pass, err);
 }

@@ -1,9 +1,14 @@
-/* Draws a band of an image tile by tile: shades, encodes and stores tiles, runs the passes of
- * antialiasing, and distributes rows of tiles to threads. The engine only traces the tiles:
+/* Turns traced tiles into pixels: shades them, encodes their colors, and stores them in the planes
+ * of a band of an image.
  *
- *     TRY(canvas_init(&drawing, frame, &eye, &canvas, err));
- *     TRY(canvas_pass(&canvas, false, 1, draw_rows, context, err));  calls draw_rows per row of
- * tiles, which calls canvas_shade and canvas_draw per tile canvas_release(&canvas); */
+ *     TRY_GOTO(canvas_init(&drawing, frame, &eye, &canvas, err));
+ *     canvas_begin_rows(&canvas, worker, first);            per worker, for some rows of tiles
+ *     color = canvas_shade(&canvas, worker, &traced, NULL);     per tile
+ *     canvas_draw(&canvas, worker, &traced, color);
+ *     canvas_end_rows(&canvas, worker, end);
+ *     canvas_release(&canvas);
+ *
+ * Nothing is allocated after canvas_init. Workers draw different rows at the same time. */
 #ifndef CORCAST_RENDER_TILE_CANVAS_H
 #define CORCAST_RENDER_TILE_CANVAS_H
 
@@ -13,7 +18,8 @@
 #include "render/tile/tilekernels.h"
 #include "render/tile/viewpoint.h"
 
-/* Returns a finish, and the lights of a view in the frame of a viewpoint. */
+/* Returns the look of a surface with this finish: the finish, and the lights and the background
+ * color of the view, in the frame of a viewpoint. */
 TileLook tilelook_of(const View *view, const Finish *finish, const Viewpoint *eye);
 
 /* The scratch memory of one thread. */
@@ -58,19 +64,11 @@ void canvas_release(Canvas *canvas);
  * mean may differ from the background in the last digit. */
 void canvas_blank_is_mean(Canvas *canvas);
 
-/* Draws `rows` rows of tiles; `first` is the index of the first row from the top of the picture. */
-typedef Status CanvasRows(void *context, int first, int rows, int worker, Err *err);
-
-/* Draws all rows of tiles in the band. Calls `draw` for `at_once` rows at a time, in parallel, each
- * call with its own worker, and reports progress. In the pass of the centre samples (`further` is
- * false), tiles that were not passed to canvas_draw become blank. Errors: the first error of
- * `draw`; STATUS_CANCELLED if the progress callback asks to stop. */
-MUST_CHECK Status canvas_pass(Canvas *canvas, bool further, int at_once, CanvasRows *draw,
-                              void *context, Err *err);
-
-/* Selects the pixels that get further samples, from the colors of the centre samples. Errors:
- * STATUS_MEMORY. */
-MUST_CHECK Status canvas_choose(Canvas *canvas, Err *err);
+/* Begins and ends the rows of tiles [first, end), counted from the top of the picture, that a
+ * worker draws in the pass of the centre samples. At the end, tiles that were not passed to
+ * canvas_draw become blank. */
+void canvas_begin_rows(const Canvas *canvas, int worker, int first);
+void canvas_end_rows(const Canvas *canvas, int worker, int end);
 
 /* Returns the index of a pixel of the picture in the frame's planes. */
 static inline size_t canvas_pixel(const Canvas *canvas, int column, int row)

@@ -82,17 +82,28 @@ static inline Interval interval_in_samples(Interval range, double first, double 
     return (Interval){min_of(from, to) - SLACK_PIXELS, max_of(from, to) + SLACK_PIXELS};
 }
 
-/* Returns the tiles of the samples within an interval of sample indices. Samples have the indices 0
- * .. count - 1, and each may be up to `max_offset` samples from its grid position. */
-static inline TileSpan tilespan_of_samples(Interval samples, double max_offset, int count)
+/* A range of columns or of rows of samples, both ends included; empty if first > last. */
+typedef struct SampleSpan {
+    int first, last;
+} SampleSpan;
+
+/* Returns the samples within an interval of sample indices. Samples have the indices 0 .. count -
+ * 1, and each may be up to `max_offset` samples from its grid position. */
+static inline SampleSpan samplespan_within(Interval samples, double max_offset, int count)
 {
     double low = max_of(samples.low - max_offset, 0),
            high = min_of(samples.high + max_offset, count - 1);
-    if (!(low <= high))
-        return NO_TILES;
-    int first = (int)low, last = (int)high;
+    int first = low < count ? (int)low : count;
     first += first < low; /* rounds up */
-    return first <= last ? (TileSpan){first / TILE_SIDE, last / TILE_SIDE} : NO_TILES;
+    return (SampleSpan){first, high < 0 ? -1 : (int)high};
+}
+
+/* Returns the tiles of the samples that samplespan_within returns. */
+static inline TileSpan tilespan_of_samples(Interval samples, double max_offset, int count)
+{
+    SampleSpan span = samplespan_within(samples, max_offset, count);
+    return span.first <= span.last ? (TileSpan){span.first / TILE_SIDE, span.last / TILE_SIDE}
+                                   : NO_TILES;
 }
 
 /* Clips the parameter range [*from, *to] of a line to the part where a linear function is not

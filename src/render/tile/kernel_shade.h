@@ -99,7 +99,7 @@ LANE_FN void add_light(Shading *shading, size_t index)
     if (finish->specular > 0)
         highlight += specular(shading, towards);
     Lanes visible_part = lanes_set(1);
-    if (shading->surface->light_visibility && shading->surface->is_shared[index])
+    if (shading->surface->light_visibility[index])
         visible_part = lanes_load(&shading->surface->light_visibility[index][shading->first]);
     for (int c = 0; c < 3; c++) {
         Lanes pigment = lanes_load(&shading->surface->pigment[c][shading->first]);

@@ -1,7 +1,9 @@
-/* A strip is drawn as lines side by side. The area that a line stands for in a cell is its length
- * in the cell times the distance of lines. Areas of vessels that follow one another end to end (a
- * run) add up, as these vessels lie side by side; vessels of different runs cover one another by
- * chance, so their transparencies multiply. */
+/* A strip covers a part of each cell that it touches. Away from the strip's ends, the area in a
+ * cell has a closed form, because the cell is a trapezoid across the strip. Near an end, the strip
+ * is divided into lines side by side: the area of a line is its length in the cell times the
+ * distance of lines. Areas of vessels that follow one another end to end (a run) add up, because
+ * these vessels lie side by side. Vessels of different runs cover one another by chance, so their
+ * transparencies multiply. */
 #include "render/tile/thincells.h"
 
 #include "render/tile/interval.h"
@@ -10,7 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Lines per cell that the area of the end of a strip is added up along, for two cells' width. */
+/* Number of lines into which a strip that is two cells wide is divided near its ends. Reason for
+ * the value not recorded: the area is exact to about the width divided by LINES. */
 enum { LINES = 24 };
 
 /* fminf and fmaxf are calls. No argument here is NaN. */
@@ -57,7 +60,7 @@ static TileSpan tiles_between(float low, float high, int n)
     return (TileSpan){first > 0 ? first : 0, last < n ? last : n - 1};
 }
 
-/* The tiles of a row that a strip may touch. */
+/* Returns the tiles of a row that a strip may touch. */
 static TileSpan tiles_in_row(const ThinLayer *layer, const ThinStrip *strip, int row)
 {
     float reach = strip->width / 2 + 0.01f, t = 0, end = 1;
@@ -136,29 +139,21 @@ typedef struct Brush {
     Err *err;
 } Brush;
 
-/* Makes room for one more fragment. */
-static Status make_room_for_one(ThinCells *cells, Err *err)
-{
-    TRY(mem_reserve(&cells->fragments, &cells->capacity, cells->n + 1, sizeof *cells->fragments,
-                    "thin vessels", err));
-    return mem_reserve(&cells->order, &cells->order_capacity, cells->n + 1, sizeof *cells->order,
-                       "thin vessels", err);
-}
-
+/* Returns the fragment of the strip's run in the cell whose latest fragment is *first. Adds one if
+ * the latest fragment is of another run. Returns NULL, brush->status set, if there is no memory. */
 static ThinFragment *fragment_at(Brush *brush, uint32_t *first)
 {
     ThinCells *cells = brush->cells;
     uint32_t run = brush->strip->run;
-    if (*first > 0 && cells->fragments[*first - 1].run == run)
-        return &cells->fragments[*first - 1];
+    if (*first > 0 && cells->fragments.items[*first - 1].run == run)
+        return &cells->fragments.items[*first - 1];
     if (brush->status == STATUS_OK)
-        brush->status = make_room_for_one(cells, brush->err);
+        brush->status = ARRAY_PUSH(&cells->fragments, "thin vessels", brush->err,
+                                   (ThinFragment){.run = run, .next = *first});
     if (brush->status != STATUS_OK)
         return NULL;
-    ThinFragment *fragment = &cells->fragments[cells->n++];
-    *fragment = (ThinFragment){.run = run, .next = *first};
-    *first = (uint32_t)cells->n;
-    return fragment;
+    *first = (uint32_t)cells->fragments.n;
+    return &cells->fragments.items[*first - 1];
 }
 
 /* Returns the part of a cell that lies below a line along the strip at a distance from the cell's
@@ -237,13 +232,6 @@ static void draw_strip(Brush *brush, int first_column, int end_column, int first
     }
 }
 
-void thincells_clear(ThinCells *cells)
-{
-    if (cells->n > 0)
-        memset(cells->first, 0, cells->n_cells * sizeof *cells->first);
-    cells->n = 0;
-}
-
 static Status make_room(ThinCells *cells, Err *err)
 {
     size_t n = (size_t)cells->block.columns * (size_t)cells->block.rows;
@@ -301,7 +289,9 @@ static Status fill_tile(const ThinLayer *layer, int tile_column, int tile_row, T
 
 Status thincells_fill(const ThinLayer *layer, CellBlock block, ThinCells *cells, Err *err)
 {
-    thincells_clear(cells);
+    if (cells->fragments.n > 0)
+        memset(cells->first, 0, cells->n_cells * sizeof *cells->first);
+    cells->fragments.n = 0;
     if (!layer)
         return STATUS_OK;
     const int tile_side = block.per_pixel * TILE_SIDE;
@@ -312,14 +302,14 @@ Status thincells_fill(const ThinLayer *layer, CellBlock block, ThinCells *cells,
     for (int y = block.row / tile_side; y <= last_row && y < layer->tile_rows; y++)
         for (int x = block.column / tile_side; x <= last_column && x < layer->tile_columns; x++)
             TRY(fill_tile(layer, x, y, cells, err));
-    return STATUS_OK;
+    return ARRAY_RESERVE(&cells->order, cells->fragments.n, "thin vessels", err);
 }
 
 void thincells_release(ThinCells *cells)
 {
     free(cells->first);
-    free(cells->fragments);
-    free(cells->order);
+    ARRAY_RELEASE(&cells->fragments);
+    ARRAY_RELEASE(&cells->order);
     *cells = (ThinCells){0};
 }
 
@@ -329,10 +319,10 @@ void thincells_release(ThinCells *cells)
  * list. Returns their number. Cells have few fragments. */
 static size_t sort_fragments(ThinCells *cells, uint32_t first, float z)
 {
-    ThinDepth *order = cells->order;
+    ThinDepth *order = cells->order.items;
     size_t n = 0;
-    for (uint32_t i = first; i > 0; i = cells->fragments[i - 1].next) {
-        const ThinFragment *at = &cells->fragments[i - 1];
+    for (uint32_t i = first; i > 0; i = cells->fragments.items[i - 1].next) {
+        const ThinFragment *at = &cells->fragments.items[i - 1];
         const ThinDepth depth = {at->z / at->area, i - 1};
         if (depth.z > z)
             continue;
@@ -349,7 +339,7 @@ void thincells_over(ThinCells *cells, int column, int row, float z, float color[
     const size_t n = sort_fragments(cells, cells->first[row * cells->block.columns + column], z);
     float clear = 1, sum[3] = {0};
     for (size_t i = 0; i < n && clear > 0; i++) {
-        const ThinFragment *at = &cells->fragments[cells->order[i].index];
+        const ThinFragment *at = &cells->fragments.items[cells->order.items[i].index];
         const float part = clear * least(1, at->area);
         for (int c = 0; c < 3; c++)
             sum[c] += part * at->color[c] / at->area;

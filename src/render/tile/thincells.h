@@ -50,13 +50,13 @@ typedef struct CellBlock {
     int per_pixel;     /* cells across a pixel */
 } CellBlock;
 
-/* The fragments of a block of cells. */
+/* The fragments of a block of cells. Zeroed, there are none. */
 typedef struct ThinCells {
     CellBlock block;
-    uint32_t *first;         /* per cell: index + 1 of its latest fragment; 0: none. Owned. */
-    ThinFragment *fragments; /* owned */
-    ThinDepth *order;        /* workspace of thincells_over, as long as `fragments`; owned */
-    size_t n, capacity, order_capacity, n_cells;
+    uint32_t *first; /* per cell: index + 1 of its latest fragment; 0: none. Owned. */
+    size_t n_cells;  /* length of `first` */
+    ARRAY(ThinFragment) fragments;
+    ARRAY(ThinDepth) order; /* workspace of thincells_over */
 } ThinCells;
 
 /* Lists the strips of each tile.
@@ -81,9 +81,6 @@ double thinstrip_part(const ThinLayer *layer, const ThinStrip *strip, double s);
 MUST_CHECK Status thincells_fill(const ThinLayer *layer, CellBlock block, ThinCells *cells,
                                  Err *err);
 void thincells_release(ThinCells *cells);
-
-/* Drops all fragments. */
-void thincells_clear(ThinCells *cells);
 
 /* Returns true if cell (column, row) of the block has no fragment. */
 static inline bool thincells_are_empty(const ThinCells *cells, int column, int row)

@@ -7,6 +7,7 @@
 #ifndef CORCAST_RENDER_TILE_TILE_H
 #define CORCAST_RENDER_TILE_TILE_H
 
+#include "render/job.h"
 #include "scene/scene.h"
 #include <stdint.h>
 
@@ -47,6 +48,20 @@ typedef struct TileHits {
                                * sample is TILE_UNSURE, or was before it was decided */
 } TileHits;
 
+/* Returns the vector of a sample in an array by component. */
+static inline Vec3 tile_vector(const float v[3][TILE_SAMPLES], int sample)
+{
+    return vec3((double)v[0][sample], (double)v[1][sample], (double)v[2][sample]);
+}
+
+/* Sets the vector of a sample in an array by component. */
+static inline void tile_set_vector(float to[3][TILE_SAMPLES], int sample, Vec3 v)
+{
+    to[0][sample] = (float)v.x;
+    to[1][sample] = (float)v.y;
+    to[2][sample] = (float)v.z;
+}
+
 /* A tile whose lines of sight have been traced. */
 typedef struct TracedTile {
     int column, row;       /* position of its first sample in the picture's grid of samples */
@@ -58,6 +73,20 @@ typedef struct TracedTile {
     const TileHits *hits; /* borrowed; NULL: no sample of the tile hits anything */
     uint64_t ground;      /* bit i: the hit of sample i is on the ground [canvas_trace_ground] */
 } TracedTile;
+
+/* The sample positions of one pass over an image: a grid of side x side samples per pixel. */
+typedef struct SampleGrid {
+    int side;                             /* samples per pixel in each direction, 1 or more */
+    double offsets[RENDER_MAX_ANTIALIAS]; /* offsets of a pixel's samples from its centre, in
+                                           * pixels, the same in both directions */
+    int n_columns, n_rows;                /* number of samples across and down the image */
+} SampleGrid;
+
+/* Returns the position of a column or row of samples, in pixels as camera_ray() takes it. */
+static inline double samplegrid_at(const SampleGrid *grid, int index)
+{
+    return index / grid->side + grid->offsets[index % grid->side];
+}
 
 /* Returns the number of columns (or rows) of a tile in an image of which `left` > 0 columns (rows)
  * remain. */

@@ -3,13 +3,7 @@
 
 #ifdef LANES_PORTABLE
 
-const TileKernels *const tilekernels[] = {
-    &tilekernels_portable,
-#ifdef __x86_64__
-    &tilekernels_avx2,
-    &tilekernels_avx512,
-#endif
-};
+const TileKernels *const tilekernels[] = {EACH_KIND(tilekernels)};
 
 int kernels_usable(void)
 {

@@ -34,10 +34,8 @@ typedef struct TileSurface {
     const uint8_t (*shadowed)[TILE_SAMPLES]; /* per light and sample: 1 in shadow; NULL: none is */
     const float *fade;    /* per sample: fraction of the paper's color; NULL: 0 for all */
     const float *ambient; /* per sample: ambient visibility, 0 to 1; NULL: 1 for all */
-    const float (
-        *light_visibility)[TILE_SAMPLES]; /* per light and sample: visibility of the light, 0 to 1,
-                                           * if is_shared[light]; NULL: no light is shared */
-    bool is_shared[VIEW_MAX_LIGHTS];
+    /* Per light: visibility of the light, 0 to 1, per sample; NULL: 1 for all. */
+    const float *light_visibility[VIEW_MAX_LIGHTS];
 } TileSurface;
 
 /* The points that the samples of a tile hit, mm in the view's frame; undefined for samples that hit
@@ -89,20 +87,28 @@ typedef struct TileKernels {
     uint64_t (*within)(const ProjectedPoints *aimed, int32_t tile);
 } TileKernels;
 
-/* The kinds of kernels: first the portable one, then one for each newer instruction set. */
-extern const TileKernels tilekernels_portable;
+/* The kinds of kernels: first the portable one, then one for each newer instruction set. Each table
+ * of functions has one version per kind, whose name LANES_NAME [lanes.h] makes. DECLARE_KERNELS
+ * declares the versions of the table `name`, of struct `type`. EACH_KIND is the list of their
+ * addresses. */
 #ifdef __x86_64__
 enum { KINDS_OF_KERNELS = 3 };
-extern const TileKernels tilekernels_avx2, tilekernels_avx512;
+#define DECLARE_KERNELS(type, name) extern const type name##_portable, name##_avx2, name##_avx512
+#define EACH_KIND(name) &name##_portable, &name##_avx2, &name##_avx512
 #else
 enum { KINDS_OF_KERNELS = 1 };
+#define DECLARE_KERNELS(type, name) extern const type name##_portable
+#define EACH_KIND(name) &name##_portable
 #endif
+
+DECLARE_KERNELS(TileKernels, tilekernels);
+extern const TileKernels *const tilekernels[KINDS_OF_KERNELS];
+
 /* Returns the number of kinds, from the first on, that this processor can run. The last of them is
  * the fastest. */
 int kernels_usable(void);
-/* Returns the index of the requested kind, which this processor must be able to run. */
+/* Returns the index of the requested kind, which this processor must be able to run, in the
+ * tables of kernels: KERNELS_FASTEST gives the last usable one. */
 int kernels_kind(RenderKernels kernels);
-
-extern const TileKernels *const tilekernels[KINDS_OF_KERNELS];
 
 #endif

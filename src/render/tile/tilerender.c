@@ -50,11 +50,12 @@ typedef struct TilePicture {
     const TilePrepared *prepared; /* borrowed, like `engine` and `pass` */
     const TileEngine *engine;
     const TilePass *pass;
-    bool has_shadows; /* hard shadows are wanted */
-    bool further;     /* the centres of the pixels are drawn */
-    bool shifts;      /* there are shifted passes */
-    bool chooses;     /* a threshold chooses the pixels that get further samples */
-    int batch_tiles;
+    bool has_shadows;   /* hard shadows are wanted */
+    bool further;       /* the centres of the pixels are drawn */
+    bool shifts;        /* there are shifted passes */
+    bool chooses;       /* a threshold chooses the pixels that get further samples */
+    int batch_tiles;    /* size of a batch */
+    int rows_at_once;   /* rows of tiles that a worker draws at a time */
     TileBatch *batches; /* per worker */
 } TilePicture;
 
@@ -83,8 +84,8 @@ static uint64_t find_hits(const TracedTile *traced)
     return hits;
 }
 
-/* Sets the positions of a tile's hits in the frame of the view. Those of the ground are rounded as
- * the engine rounds its own. */
+/* Sets the positions of a tile's hits in the frame of the view. Positions on the ground are rounded
+ * as the engine rounds its own hits. */
 static void locate(const TileEngine *engine, const BatchTile *tile, HitPoints *restrict points)
 {
     const TracedTile *traced = &tile->traced;
@@ -172,13 +173,12 @@ static Ray sample_ray(const TilePicture *picture, const TracedTile *traced, int 
 /* Returns the surface that a sample hits. */
 static Surfel surfel_of(const TilePicture *picture, const TracedTile *traced, int sample)
 {
-    const float(*n)[TILE_SAMPLES] = traced->hits->normal;
-    const Vec3 normal = {(double)n[0][sample], (double)n[1][sample], (double)n[2][sample]};
+    const Vec3 normal = tile_vector(traced->hits->normal, sample);
     const Geometry *geometry = picture->canvas.drawing->geometry;
     return (Surfel){.t = tile_hit_distance(traced, sample),
                     .normal =
                         vec3_normalized(viewpoint_world_direction(&picture->canvas.eye, normal)),
-                    .segment = geometry->segments[traced->hits->segment[sample]].segment};
+                    .segment = geometry_segment(geometry, traced->hits->segment[sample])};
 }
 
 /* Colors each sample on its own, with the effects that the kernel does not know. */
@@ -201,8 +201,8 @@ static void color_samples(const TilePicture *picture, int worker, const TracedTi
     }
 }
 
-/* Returns the colors of a tile with its thin vessels, cells (x, y) of each sample's block of
- * `cells`; NULL: those of the background. */
+/* Returns the colors of a tile, with its thin vessels drawn over them: cell (x, y) of each sample's
+ * block of `cells`. NULL: all samples have the color of the background. */
 static float (*color_tile(const TilePicture *picture, int worker, const BatchTile *tile,
                           ThinCells *cells, int x, int y))[TILE_SAMPLES]
 {
@@ -335,14 +335,13 @@ static void add_up_rows(const TilePicture *picture, const TileBatch *batch, int 
 /* Turns the normals of hits towards the viewer. */
 static void face_viewer(const TracedTile *traced, TileHits *hits)
 {
-    float(*normal)[TILE_SAMPLES] = hits->normal;
     for (int sample = 0; sample < TILE_SAMPLES; sample++) {
         if (hits->state[sample] != TILE_HIT)
             continue;
-        Vec3 v = {(double)normal[0][sample], (double)normal[1][sample], (double)normal[2][sample]};
+        Vec3 normal = tile_vector(traced->hits->normal, sample);
         Vec3 line = traced->perspective ? tile_line(traced, sample) : vec3(0, 0, 1);
-        for (int c = 0; c < 3 && vec3_dot(v, line) > 0; c++)
-            normal[c][sample] = -normal[c][sample];
+        if (vec3_dot(normal, line) > 0)
+            tile_set_vector(hits->normal, sample, vec3_scale(normal, -1));
     }
 }
 
@@ -390,7 +389,7 @@ static Status find_thin(const TilePicture *picture, BatchTile *tile, Err *err)
     const CellBlock center = {traced->column, traced->row, TILE_SIDE, TILE_SIDE, per_pixel};
     const CellBlock further = {traced->column * side, traced->row * side, fine, fine, side};
     TRY(thincells_fill(thin, center, &tile->cells, err));
-    if (!picture->shifts || tile->cells.n == 0)
+    if (!picture->shifts || tile->cells.fragments.n == 0)
         thin = NULL;
     return thincells_fill(thin, further, &tile->further, err);
 }
@@ -410,7 +409,7 @@ static Status begin_tile(const TilePicture *picture, int column, int row, int wo
                                 .n_rows = tile_extent(grid->n_rows - row * TILE_SIDE),
                                 .perspective = camera->projection == PROJECTION_PERSPECTIVE};
     TRY(find_thin(picture, tile, err));
-    *shown = tile->cells.n > 0 || picture->canvas.wholly_colored ||
+    *shown = tile->cells.fragments.n > 0 || picture->canvas.wholly_colored ||
              picture->canvas.drawing->view->ground.present;
     if (!listed && !*shown)
         return STATUS_OK;
@@ -445,12 +444,22 @@ static Status draw_tiles(const TilePicture *picture, int row, const uint8_t *wan
 
 /* ---- passes ---------------------------------------------------------------------------------- */
 
-static Status draw_centers(void *context, int first, int rows, int worker, Err *err)
+/* Draws the centre samples of the rows of tiles of part `number` of the band. */
+static Status draw_centers(size_t number, int worker, void *context, Err *err)
 {
     const TilePicture *picture = context;
-    for (int row = first; row < first + rows; row++)
+    const Canvas *canvas = &picture->canvas;
+    const Band *band = &canvas->drawing->band;
+    const int done = (int)number * picture->rows_at_once, top = band->first / TILE_SIDE;
+    const int most = tiles_of(band->rows), last = done + picture->rows_at_once;
+    const int first = top + done, end = top + (last < most ? last : most);
+    TRY(drawing_progress(canvas->drawing, worker, false, (size_t)done * TILE_SIDE, err));
+    canvas_begin_rows(canvas, worker, first);
+    for (int row = first; row < end; row++)
         TRY(draw_tiles(picture, row, NULL, worker, err));
-    return draw_batch(picture, worker, err);
+    TRY(draw_batch(picture, worker, err));
+    canvas_end_rows(canvas, worker, end);
+    return STATUS_OK;
 }
 
 /* Marks the tiles of one row of the grid that hold samples of pixels that want more, of the rows of
@@ -472,15 +481,17 @@ static bool mark_wanted(const TilePicture *picture, int tile_row, int end, uint8
     return any;
 }
 
-/* Draws the further samples of one row of pixel tiles. */
-static Status draw_further(void *context, int row, int rows, int worker, Err *err)
+/* Draws the further samples of row `number` of pixel tiles in the band. */
+static Status draw_further(size_t number, int worker, void *context, Err *err)
 {
-    (void)rows; /* one */
     const TilePicture *picture = context;
-    const Band *band = &picture->canvas.drawing->band;
+    const Drawing *drawing = picture->canvas.drawing;
+    const Band *band = &drawing->band;
     const SampleGrid *grid = &picture->pass->grid;
     TileBatch *batch = &picture->batches[worker];
-    int first = row * TILE_SIDE, end = first + tile_extent(band->first + band->rows - first);
+    TRY(drawing_progress(drawing, worker, true, number * TILE_SIDE, err));
+    int row = band->first / TILE_SIDE + (int)number, first = row * TILE_SIDE,
+        end = first + tile_extent(band->first + band->rows - first);
     batch->fine_row = first * grid->side;
     for (int i = row * grid->side; i < (row + 1) * grid->side && i < tiles_of(grid->n_rows); i++)
         if (mark_wanted(picture, i, end, batch->wanted))
@@ -545,16 +556,27 @@ done:
 
 /* ---- a band ---------------------------------------------------------------------------------- */
 
+/* Returns the pass of the further samples. Shifted passes use the tiles of the centre samples. */
+static const TilePass *further_pass(const TilePicture *picture)
+{
+    return picture->shifts ? &picture->prepared->center : &picture->prepared->further;
+}
+
 static Status make_batch(const TilePicture *picture, TileBatch *batch, Err *err)
 {
     const TileEngine *engine = picture->engine;
     const Drawing *drawing = picture->canvas.drawing;
+    const SampleGrid *further = &further_pass(picture)->grid;
     size_t n = (size_t)picture->batch_tiles, n_lights = drawing->view->n_lights;
+    size_t row = (size_t)further->n_columns * TILE_SIDE * (size_t)further->side;
     TRY(mem_calloc(&batch->tiles, n, sizeof *batch->tiles, "tiles", err));
     TRY(mem_calloc(&batch->own, n, engine->tile_bytes, "tiles", err));
     TRY(mem_calloc(&batch->shadowed, n * n_lights, sizeof *batch->shadowed, "lights", err));
+    TRY(mem_calloc(&batch->wanted, (size_t)tiles_of(further->n_columns), 1, "bands", err));
     if (picture->shifts)
         TRY(mem_calloc(&batch->sums, n * 3, sizeof *batch->sums, "tiles", err));
+    else
+        TRY(mem_calloc(&batch->fine_colors, row, 3 * sizeof *batch->fine_colors, "bands", err));
     for (size_t i = 0; i < n; i++) {
         batch->tiles[i].own = batch->own + i * engine->tile_bytes;
         batch->tiles[i].shadowed = batch->shadowed + i * n_lights;
@@ -600,37 +622,22 @@ static void release_picture(TilePicture *picture)
     canvas_release(&picture->canvas);
 }
 
-/* Allocates the memory of batches for the further samples. */
-static Status make_further(TilePicture *picture, Err *err)
-{
-    const SampleGrid *grid = &picture->pass->grid;
-    const size_t tiles = (size_t)tiles_of(grid->n_columns), side = (size_t)grid->side;
-    for (int i = 0; i < picture->canvas.workers; i++) {
-        TileBatch *batch = &picture->batches[i];
-        TRY(mem_calloc(&batch->wanted, tiles, 1, "bands", err));
-        if (!picture->shifts)
-            TRY(mem_calloc(&batch->fine_colors, (size_t)grid->n_columns * TILE_SIDE * side,
-                           3 * sizeof *batch->fine_colors, "bands", err));
-    }
-    return STATUS_OK;
-}
-
 static Status draw_band(TilePicture *picture, Err *err)
 {
     Canvas *canvas = &picture->canvas;
-    const int rows_at_once = picture->has_shadows ? picture->engine->rows_at_once : 1;
+    const size_t rows = (size_t)tiles_of(canvas->drawing->band.rows);
+    const size_t at_once = (size_t)picture->rows_at_once;
     if (picture->shifts && !picture->chooses)
         canvas_blank_is_mean(canvas);
     TRY(make_batches(picture, err));
-    TRY(canvas_pass(canvas, false, rows_at_once, draw_centers, picture, err));
+    TRY(threads_try((rows + at_once - 1) / at_once, canvas->workers, draw_centers, picture, err));
     if (canvas->more.side == 0 || (picture->shifts && !picture->chooses))
         return STATUS_OK;
     picture->further = true;
-    if (!picture->shifts)
-        picture->pass = &picture->prepared->further;
-    TRY(canvas_choose(canvas, err));
-    TRY(make_further(picture, err));
-    return canvas_pass(canvas, true, 1, draw_further, picture, err);
+    picture->pass = further_pass(picture);
+    TRY(resampling_choose(&canvas->more, canvas->drawing->params, &canvas->drawing->band,
+                          &canvas->frame->color, err));
+    return threads_try(rows, canvas->workers, draw_further, picture, err);
 }
 
 Status tilerender_rows(const Drawing *drawing, void *prepared, Frame *frame, Err *err)
@@ -650,6 +657,7 @@ Status tilerender_rows(const Drawing *drawing, void *prepared, Frame *frame, Err
     picture.shifts = canvas->more.side > 0 && !tiles->engine->fine_grid;
     picture.has_shadows = params->shadows && canvas->wants_color && !canvas->wholly_colored;
     picture.batch_tiles = picture.has_shadows ? tiles->engine->batch_tiles : 1;
+    picture.rows_at_once = picture.has_shadows ? tiles->engine->rows_at_once : 1;
     status = draw_band(&picture, err);
 done:
     release_picture(&picture);

@@ -1,13 +1,14 @@
-/* A primitive is a solid: the ray is inside between its first and its second crossing, its third
- * and its fourth. A joint has the two discs besides its wall, which nobody draws, as they are
- * covered; where its rulings cross, what is enclosed is what an odd number of crossings precedes.
- */
+/* A primitive is a solid: the ray is inside between its first and its second crossing, between the
+ * third and the fourth, and so on. The surface of a joint is closed by two discs, which no picture
+ * shows, because they lie inside other vessels. Where the rulings of a joint cross, a point counts
+ * as inside if an odd number of crossings precedes it. */
 #include "render/xray/xray.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-/* Where the ray crosses the disc across the axis. */
+/* Sets *t to the parameter at which the ray crosses a disc across the axis. Returns the number of
+ * crossings, 0 or 1. */
 static int cross_disc(Ray ray, Vec3 center, Vec3 axis, double radius, double *t)
 {
     double along = vec3_dot(ray.direction, axis);

@@ -1,12 +1,15 @@
-/* Of primitives the stretches that rays have inside them are found primitive by primitive: a row of
- * samples takes those primitives whose hull, that of two balls, comes near it, and of each only the
- * samples that its outline can reach. What a sample has got is then united, so that overlaps count
- * once. Everything else is crossed from surface to surface by the search for first hits: a stretch
- * ends where the next hit is seen from inside. What is thinner than the least distance at which the
- * search sees (caster.h) does not count. */
+/* The x-ray engine: the color of a pixel follows from the length of its ray inside vessels.
+ *
+ * Primitives are processed row by row of pixels. A primitive is hidden by the hull of two discs in
+ * the picture; in each row that this hull reaches, only the columns of the hull are intersected
+ * with the primitive. The stretches of each column are then united, so that overlaps count once.
+ * Other models are crossed from surface to surface by the search for first hits: a stretch ends
+ * where the next hit is seen from inside. A stretch that is shorter than caster_nearest_mm does not
+ * count. */
 #include "render/xray/xray.h"
 
 #include "render/cast/caster.h"
+#include "render/engine.h"
 #include "render/planes.h"
 #include <math.h>
 #include <stdlib.h>
@@ -16,7 +19,7 @@ typedef struct XrayHull {
     double ax, ay, bx, by, radius;
 } XrayHull;
 
-/* What one thread works with: the stretches of a row. */
+/* The workspace of one thread: the stretches of a row. */
 typedef struct XrayRow {
     ARRAY(RayStretch) found;  /* primitive by primitive */
     ARRAY(uint32_t) column;   /* per stretch found */
@@ -48,9 +51,13 @@ static Vec3 seen_from(const Camera *camera, Vec3 point)
     return vec3(right * camera->width, up * camera->height, vec3_dot(from, camera->direction));
 }
 
-/* Half the breadth that a ball has at most in the band, whose middle *x becomes, along an axis
- * of it on which it is x pixels off and one mm is `scale` pixels, at the depth z; in perspective
- * for a picture at depth 1. */
+/* Returns half the extent of a ball along one axis of the picture, and moves *x to the middle of
+ * the extent. For a perspective camera; the picture is at depth 1. Infinite if the ball may reach
+ * beside or behind the camera.
+ *
+ * x        position of the ball's center on this axis, pixels.
+ * z        its depth, mm.
+ * scale    pixels per mm at depth 1. */
 static double breadth(double *x, double z, double radius_mm, double scale)
 {
     double across = *x / scale, far = elementary_hypot(across, z);
@@ -62,7 +69,8 @@ static double breadth(double *x, double z, double radius_mm, double scale)
     return (high - low) / 2;
 }
 
-/* The disc about a ball in the picture: its middle in *x and *y; returns its radius. */
+/* Returns the radius, in pixels, of a disc that hides a ball in the picture, and sets its center.
+ */
 static double disc_about(const Camera *camera, Ball ball, double *x, double *y)
 {
     Vec3 seen = seen_from(camera, ball.center);
@@ -93,7 +101,7 @@ static void find_hull(size_t i, int worker, void *context)
     band->frames[i] = primitive_frame(&geometry->primitives[i]);
 }
 
-/* The columns that the hull may cover in a row: false if none. */
+/* Finds the columns that the hull may cover in a row. Returns false if there is none. */
 static bool columns_in(const XrayHull *hull, double row, int width, int *first, int *last)
 {
     *first = 0;
@@ -118,7 +126,8 @@ static bool columns_in(const XrayHull *hull, double row, int width, int *first, 
     return *first <= *last;
 }
 
-/* The strips of the band that the hull may cover: false if none. */
+/* Finds the strips of the band that the hull of primitive i may cover. Returns false if there is
+ * none. */
 static bool strips_of(const XrayBand *band, size_t i, size_t *first, size_t *last)
 {
     const XrayHull *hull = &band->hulls[i];
@@ -151,7 +160,7 @@ static Status make_strips(XrayBand *band, Err *err)
 
 /* ---- rows ------------------------------------------------------------------------------------ */
 
-/* The lengths become light. */
+/* Stores the color of a pixel: vessels absorb light along the length of the ray inside them. */
 static void store(const XrayBand *band, size_t pixel, double length_mm)
 {
     const View *view = band->drawing->view;
@@ -233,9 +242,7 @@ static Status draw_row(size_t row, int worker, void *context, Err *err)
     const XrayBand *band = context;
     const Drawing *drawing = band->drawing;
     const Camera *camera = &drawing->view->camera;
-    if (worker == 0)
-        TRY(band_progress(&drawing->band, drawing->params, camera->height, false,
-                          (double)row / drawing->band.rows, err));
+    TRY(drawing_progress(drawing, worker, false, row, err));
     if (model_has(drawing->geometry->model, MODEL_PRIMITIVES))
         return draw_primitives(band, &band->rows[worker], row, err);
     for (int x = 0; x < camera->width; x++)

@@ -1,12 +1,9 @@
-/* The x-ray view: the color of a pixel depends on the length of the ray inside vessels [Xray in
- * scene/effects.h]. */
+/* Lengths of rays inside vessels, for the x-ray view: there, the color of a pixel depends on the
+ * length of its ray inside vessels [Xray in scene/effects.h]. All functions are pure. */
 #ifndef CORCAST_RENDER_XRAY_XRAY_H
 #define CORCAST_RENDER_XRAY_XRAY_H
 
-#include "render/engine.h"
-
-/* Supports views with an x-ray effect. Draws colors only, one sample per pixel. */
-extern const Engine xray_engine;
+#include "scene/scene.h"
 
 /* A part of a ray inside a vessel, mm from the ray's origin. */
 typedef struct RayStretch {
