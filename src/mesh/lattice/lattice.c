@@ -121,7 +121,7 @@ static Status add_point(LatticeCutter *cutter, const OctreeCell *from, Vec3 x, u
 {
     Lattice *lattice = cutter->lattice;
     TRY(mem_reserve(&lattice->points, &lattice->capacity, lattice->n_points + 1,
-                    sizeof *lattice->points, "points of a junction", cutter->err));
+                    sizeof *lattice->points, patch_items, cutter->err));
     bool is_near = from && from->state == CELL_ACTIVE;
     FieldValue value;
     if (is_near)
@@ -224,7 +224,7 @@ static Status crossing_of(LatticeCutter *cutter, const OctreeCell *from, uint32_
          *number = lattice->crossings.items[*number].next)
         if (lattice->crossings.items[*number].outside == b)
             return STATUS_OK;
-    TRY(ARRAY_RESERVE(&lattice->crossings, cutter->patch->n_points + 1, "points of a junction",
+    TRY(ARRAY_RESERVE(&lattice->crossings, cutter->patch->n_points + 1, patch_items,
                       cutter->err));
     PatchPoint point;
     if (points[a].is_repaired || !from)
@@ -343,7 +343,7 @@ static Status cut_about_edge(LatticeCutter *cutter, const uint32_t around[4], in
         TRY(centers[b] ? STATUS_OK : add_center(cutter, from, b));
         at[2] = centers[a];
         at[3] = centers[b];
-        TRY(cutter->list ? ARRAY_PUSH(cutter->list, "points of a junction", cutter->err,
+        TRY(cutter->list ? ARRAY_PUSH(cutter->list, patch_items, cutter->err,
                                       (Tetrahedron){{at[0], at[1], at[2], at[3]}})
                          : cut_tetrahedron(cutter, from, at));
     }
@@ -483,12 +483,12 @@ Status lattice_make(Lattice *lattice, const JunctionSurface *surface, Err *err)
 {
     const Octree *tree = surface->tree;
     LatticeCutter cutter = {lattice, tree, surface->plan, surface->patch, err, .list = NULL};
-    TRY(keymap_begin(&lattice->corners, tree->n_cells / 2, "points of a junction", err));
-    TRY(ARRAY_RESERVE(&lattice->centers, tree->n_cells, "points of a junction", err));
+    TRY(keymap_begin(&lattice->corners, tree->n_cells / 2, patch_items, err));
+    TRY(ARRAY_RESERVE(&lattice->centers, tree->n_cells, patch_items, err));
     for (size_t i = 0; i < tree->n_cells; i++)
         lattice->centers.items[i] = 0;
     TRY(mem_reserve(&lattice->points, &lattice->capacity, 1, sizeof *lattice->points,
-                    "points of a junction", err));
+                    patch_items, err));
     lattice->n_points = 1; /* the first is not used, so that 0 means "not made yet" */
     begin_cut(lattice, surface->patch);
     return walk_cell(&cutter, 0);
