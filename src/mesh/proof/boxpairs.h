@@ -21,7 +21,7 @@ static inline bool floatbox_meets(const FloatBox *a, const FloatBox *b)
            b->low[1] <= a->high[1] && a->low[2] <= b->high[2] && b->low[2] <= a->high[2];
 }
 
-/* Returns x with two zero bits inserted after each of its lowest 21 bits. The Morton code of a point
+/* Returns x with two zero bits after each of its lowest 21 bits. The Morton code of a point
  * combines the spread coordinates bit by bit, so that near points have near codes. */
 static inline uint64_t morton_spread(uint64_t x)
 {
