@@ -250,8 +250,8 @@ static Status find_status(const JunctionBuild *build, uint32_t segment, double r
     return STATUS_OK;
 }
 
-/* Finds the statuses of the region's whole segments. The segment of a stub is present because it has
- * a tube. */
+/* Finds the statuses of the region's whole segments. The segment of a stub is present because it
+ * has a tube. */
 static Status find_statuses(const JunctionBuild *build, double ratio)
 {
     const Patch *patch = &build->workspace->patch;
@@ -529,10 +529,10 @@ static Status make_sound(const JunctionBuild *build, MeshFineness *used, bool *s
     return STATUS_OK;
 }
 
-/* Tries finer cells if a triangle is too far from the surface, and keeps the attempt whose triangles
- * are nearest. A triangle is too far over the bottom of a groove that is so narrow that splits do
- * not find it. The attempts end early if a triangle does not belong to the surface and finer cells
- * do not bring it nearer. */
+/* Tries finer cells if a triangle is too far from the surface, and keeps the attempt whose
+ * triangles are nearest. A triangle is too far over the bottom of a groove that is so narrow that
+ * splits do not find it. The attempts end early if a triangle does not belong to the surface and
+ * finer cells do not bring it nearer. */
 static Status come_near(const JunctionBuild *build, MeshFineness *used)
 {
     MeshFineness tried = *used;

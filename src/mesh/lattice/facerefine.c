@@ -39,8 +39,8 @@ typedef struct FaceRefining {
     const Octree *tree;
     Patch *patch;
     MeshDeviation *deviation;
-    double split, limit;   /* in local radii; in the last round the limit is infinite */
-    KeyMap edges;          /* edge to be split -> index of the point that splits it, or NONE; owned */
+    double split, limit; /* in local radii; in the last round the limit is infinite */
+    KeyMap edges;        /* edge to be split -> index of the point that splits it, or NONE; owned */
     ARRAY(uint8_t) states; /* per triangle: TriangleState */
     Err *err;
 } FaceRefining;
@@ -62,7 +62,7 @@ static bool is_inside(const FaceRefining *refining, Vec3 x, bool otherwise)
 /* Returns the distance of x from the surface, at most radius_mm: along `outward` if x is inside, in
  * the opposite direction if not. `inside` is true if x is inside. */
 static double search_surface(const FaceRefining *refining, Vec3 x, bool inside, Vec3 outward,
-                          double radius_mm)
+                             double radius_mm)
 {
     double low = 0, high = 0.01 * radius_mm, sign = inside ? 1 : -1;
     while (high < radius_mm &&
