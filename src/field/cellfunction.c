@@ -100,10 +100,11 @@ static double term_at(const CellTree *cells, const CellTerm *term, Vec3 x)
     return term_form_value(&cells->forms[term->segment], (TermPart)term->part, cells->erf, x);
 }
 
-/* A sum of terms of a cell, and the largest of them. */
+/* A sum of terms of a cell, and the largest of these terms. */
 typedef struct TermSum {
     double phi, largest;
-    uint32_t segment;
+    uint32_t segment; /* of the largest term */
+    uint32_t group;   /* the group that was summed; 0 if all terms blend */
 } TermSum;
 
 /* Sums n of the terms: those at these positions, or, if positions is NULL, the first n. */
@@ -123,7 +124,7 @@ static TermSum sum_terms(const CellTree *cells, const CellTerm *terms, const uin
     return sum;
 }
 
-/* Returns the largest of the sums of the cell's groups at x. */
+/* Returns the largest of the sums of the cell's groups at x; on a tie, the first. */
 static TermSum largest_sum(const CellTree *cells, const Cell *cell, Vec3 x)
 {
     const CellTerm *terms = cells->terms + cell->first;
@@ -134,6 +135,7 @@ static TermSum largest_sum(const CellTree *cells, const Cell *cell, Vec3 x)
         uint32_t n;
         const uint32_t *positions = cell_group(cells, cell, group, &n);
         TermSum sum = sum_terms(cells, terms, positions, n, x);
+        sum.group = group;
         best = sum.phi > best.phi ? sum : best;
     }
     return best;
@@ -154,37 +156,21 @@ uint32_t cell_largest_term(const CellTree *cells, const Cell *cell, Vec3 x)
     return largest_sum(cells, cell, x).segment;
 }
 
-/* Returns the group whose sum at x is largest; on a tie, the first. */
-static uint32_t largest_group(const CellTree *cells, const Cell *cell, Vec3 x)
-{
-    const CellTerm *terms = cells->terms + cell->first;
-    double most = -1;
-    uint32_t best = 0;
-    for (uint32_t group = 0; group < cell->n_groups; group++) {
-        uint32_t n;
-        const uint32_t *positions = cell_group(cells, cell, group, &n);
-        double phi = sum_terms(cells, terms, positions, n, x).phi;
-        best = phi > most ? group : best;
-        most = fmax(phi, most);
-    }
-    return best;
-}
-
 double cell_mean(const CellTree *cells, const Cell *cell, const FieldSegment *segments,
-                 const double *numbers, Vec3 x)
+                 const double *values, Vec3 x)
 {
     uint32_t n = cell->count;
     const uint32_t *positions =
-        cell->n_groups ? cell_group(cells, cell, largest_group(cells, cell, x), &n) : NULL;
+        cell->n_groups ? cell_group(cells, cell, largest_sum(cells, cell, x).group, &n) : NULL;
     double all = 0, known = 0, sum = 0;
     for (uint32_t i = 0; i < n; i++) {
         const CellTerm *term = &cells->terms[cell->first + (positions ? positions[i] : i)];
-        double value = term_at(cells, term, x), number = numbers[segments[term->segment].segment];
-        all += value;
-        if (isnan(number))
+        double weight = term_at(cells, term, x), value = values[segments[term->segment].segment];
+        all += weight;
+        if (isnan(value))
             continue;
-        known += value;
-        sum += value * number;
+        known += weight;
+        sum += weight * value;
     }
     return 2 * known >= all && known > 0 ? sum / known : (double)NAN;
 }

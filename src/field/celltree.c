@@ -469,24 +469,19 @@ static Status descend(CellBuilder *builder, const TermList *parent, const Cube *
  * the list of all terms. */
 static Status descend_from_top(CellBuilder *builder, const TermList *all, Box box, Err *err)
 {
-    Vec3 extent = vec3_sub(box.high, box.low);
-    double widest = fmax(extent.x, fmax(extent.y, extent.z));
+    double widest = vec3_component(vec3_sub(box.high, box.low), box_longest_axis(box));
     double side = builder->root_side;
     while (side < widest)
         side *= 2;
-    const double low[3] = {box.low.x, box.low.y, box.low.z};
-    const double high[3] = {box.high.x, box.high.y, box.high.z};
     int64_t first[3], last[3];
     for (int axis = 0; axis < 3; axis++) {
-        first[axis] = (int64_t)floor(low[axis] / side);
-        last[axis] = (int64_t)floor(high[axis] / side);
+        first[axis] = (int64_t)floor(vec3_component(box.low, axis) / side);
+        last[axis] = (int64_t)floor(vec3_component(box.high, axis) / side);
     }
-    for (int64_t z = first[2]; z <= last[2]; z++) {
-        for (int64_t y = first[1]; y <= last[1]; y++) {
+    for (int64_t z = first[2]; z <= last[2]; z++)
+        for (int64_t y = first[1]; y <= last[1]; y++)
             for (int64_t x = first[0]; x <= last[0]; x++)
                 TRY(descend(builder, all, &(Cube){side, {x, y, z}}, err));
-        }
-    }
     return STATUS_OK;
 }
 

@@ -6,10 +6,10 @@
 
 #include <stdlib.h>
 
-FieldTube fieldtube_of(const FieldSegment *segment, uint32_t number)
+FieldTube fieldtube_of(const FieldSegment *segment, uint32_t index)
 {
     Vec3 span = vec3_sub(segment->b, segment->a);
-    FieldTube tube = {.a = segment->a, .length = vec3_length(span), .segment = number};
+    FieldTube tube = {.a = segment->a, .length = vec3_length(span), .segment = index};
     tube.axis = vec3_scale(span, 1 / tube.length);
     tube.k = potential_k(segment->radius_mm);
     tube.length_k = tube.k * tube.length;
@@ -31,28 +31,17 @@ static Box tube_box(const FieldTube *tube)
     return box_with_ball(box, vec3_add_scaled(tube->a, tube->axis, tube->length), reach);
 }
 
-static int compare(double x, double y, const FieldTube *a, const FieldTube *b)
+/* Orders tubes by their midpoints along *axis, an int, and then by segment. */
+static int compare_tubes(const void *a, const void *b, void *axis)
 {
-    if (x != y)
-        return x < y ? -1 : 1;
-    return a->segment < b->segment ? -1 : 1;
+    const FieldTube *one = a, *other = b;
+    const int along = *(const int *)axis;
+    int order =
+        number_order(vec3_component(middle(one), along), vec3_component(middle(other), along));
+    return order ? order : number_order(one->segment, other->segment);
 }
 
-static int compare_x(const void *a, const void *b)
-{
-    return compare(middle(a).x, middle(b).x, a, b);
-}
-
-static int compare_y(const void *a, const void *b)
-{
-    return compare(middle(a).y, middle(b).y, a, b);
-}
-
-static int compare_z(const void *a, const void *b)
-{
-    return compare(middle(a).z, middle(b).z, a, b);
-}
-
+/* Adds a node for n tubes from `first` on, and the nodes below it. Returns its index. */
 static uint32_t build_node(FieldIndex *index, uint32_t first, uint32_t n)
 {
     Box box = box_empty(), middles = box_empty();
@@ -65,11 +54,8 @@ static uint32_t build_node(FieldIndex *index, uint32_t first, uint32_t n)
         {{box.low.x, box.low.y, box.low.z}, {box.high.x, box.high.y, box.high.z}}, first, n};
     if (n <= FIELD_LEAF_SIZE)
         return node;
-    Vec3 size = vec3_sub(middles.high, middles.low);
-    qsort(index->tubes + first, n, sizeof *index->tubes,
-          size.x >= size.y && size.x >= size.z ? compare_x
-          : size.y >= size.z                   ? compare_y
-                                               : compare_z);
+    int axis = box_longest_axis(middles);
+    qsort_r(index->tubes + first, n, sizeof *index->tubes, compare_tubes, &axis);
     build_node(index, first, n / 2);
     uint32_t second = build_node(index, first + n / 2, n - n / 2);
     index->nodes[node].first = second;

@@ -36,13 +36,13 @@ typedef struct Split {
     double cost;
 } Split;
 
-/* The map from centres to bins along an axis. */
+/* The map from centres to bins along an axis: bin = (centre - low) * per_bin. */
 typedef struct Scale {
     int bins;
     double low, per_bin;
 } Scale;
 
-/* No more bins than items: most nodes are small. */
+/* Returns the map for n items. It has no more bins than items, because most nodes are small. */
 static Scale scale_of(Box centers, int axis, uint32_t n)
 {
     double low = vec3_component(centers.low, axis), size = vec3_component(centers.high, axis) - low;

@@ -9,7 +9,7 @@
 
 #include "geom/quartic.h"
 
-/* Below this sine of the angle between the axes they are parallel. */
+/* The axes count as parallel if the sine of the angle between them is below this. */
 static const double parallel = 1e-12;
 /* Tolerances of an intersection: its distance from the line, relative to the size of the joint, and
  * how far l may be outside [0, 1]. Reasons for the numbers not recorded. */
@@ -27,7 +27,8 @@ JointFrame joint_frame(const Vec3 center[2], const Vec3 axis[2], const double ra
     if (vec3_length(side) < parallel)
         side = any_square(axis[0]);
     side = vec3_normalized(side);
-    /* The cross product of nearly parallel axes is square to neither; what is left of it is. */
+    /* The cross product of nearly parallel axes is not exactly perpendicular to them. Its part that
+     * is perpendicular to the first axis is used. */
     side = vec3_normalized(vec3_add_scaled(side, axis[0], -vec3_dot(side, axis[0])));
     Vec3 across = vec3_scale(vec3_cross(side, axis[0]), radius[0]);
     return (JointFrame){.base = center[0],
@@ -40,7 +41,7 @@ JointFrame joint_frame(const Vec3 center[2], const Vec3 axis[2], const double ra
                         .radius_change = radius[1] - radius[0]};
 }
 
-/* C_1(p) and C_2(p) - C_1(p). */
+/* Sets *start to C_1(p) and *run to C_2(p) - C_1(p). */
 static void joint_ruling(const JointFrame *joint, double cosine, double sine, Vec3 *start,
                          Vec3 *run)
 {
@@ -62,8 +63,9 @@ static double triple(Vec3 a, Vec3 b, Vec3 c)
     return vec3_dot(a, vec3_cross(b, c));
 }
 
-/* Where the line meets the ruling of an angle at which g is 0: false when that is off the ends, or
- * when the ruling runs along the line beside it. The line starts near the joint. */
+/* Finds where the line meets the ruling of an angle at which g is 0. Returns false if that point is
+ * off the ends of the ruling, or if the ruling is parallel to the line and beside it. The line
+ * starts near the joint. */
 static bool ruling_hit(const JointFrame *joint, Ray line, double cosine, double sine, Hit *hit)
 {
     Vec3 start, run;
@@ -89,7 +91,8 @@ static bool ruling_hit(const JointFrame *joint, Ray line, double cosine, double 
 
 int hit_joint(Ray ray, const JointFrame *joint, Hit hits[4])
 {
-    /* From the point of the line that is nearest to the joint, numbers are as small as it is. */
+    /* The line is shifted to start at its point nearest to the joint's base, so that all numbers
+     * are as small as the joint. */
     Vec3 d = ray.direction;
     double nearest = vec3_dot(vec3_sub(joint->base, ray.origin), d);
     Ray line = {ray_at(ray, nearest), d};

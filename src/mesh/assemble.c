@@ -1,10 +1,10 @@
-/* A tube is a strip of triangles between two rims. Both rims are walked by rising angle; the next
- * triangle uses the rim whose next point has the smaller angle. All points are on one cylinder, so
- * the strip is no farther from the surface than the longest chord of its rims. Additional rims,
- * which make triangles shorter, are regular polygons.
+/* A tube is a strip of triangles between two rims. Both rims are walked by rising angle. The next
+ * triangle advances on the rim whose next point has the smaller angle. All points are on one
+ * cylinder, so no triangle of the strip is farther from the surface than the longest chord of the
+ * two rims. Additional rims, which make triangles shorter, are regular polygons.
  *
- * Coordinates are rounded to integer multiples of the spacing of floats at the largest of them, so
- * that every test of the finished mesh is exact in integers. */
+ * Coordinates are rounded to integer multiples of the grid step [mesh_grid], so that every test of
+ * the finished mesh is exact in integers. O(points + triangles). */
 #include "mesh/assemble.h"
 
 #include "mesh/precision.h"
@@ -12,7 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Freed memory is returned to the system after this many regions. */
+/* Freed memory is returned to the system after this many regions, because the meshes of the regions
+ * are freed while the whole mesh grows. Reason for the number not recorded. */
 enum { JUNCTIONS_PER_TRIM = 1024 };
 
 typedef struct RimRange {
@@ -113,31 +114,28 @@ static void add_cap(Assembly *assembly, uint32_t segment, int end)
     }
 }
 
-/* Finds the angles of a rim's points about the axis. They rise from about -pi on. A full turn is
- * added where that brings an angle nearer to the one before, because rounding may exchange -pi and
- * pi. */
+/* Finds the angles of a rim's points about the axis. The angles rise from about -pi on. A full turn
+ * is added where the sum is nearer to the angle before, because rounding may exchange -pi and pi.
+ */
 static void find_angles(const Assembly *assembly, const FieldSegment *segment, RimRange rim,
                         double *angles)
 {
-    Vec3 u, v;
     double before = -FULL_TURN / 2;
-    vec3_across(segment_axis(segment), &u, &v);
     for (uint32_t i = 0; i < rim.n; i++) {
-        const float *x = assembly->mesh->points[assembly->rim_points[rim.first + i]];
-        Vec3 from = vec3_sub(vec3((double)x[0], (double)x[1], (double)x[2]), segment->a);
-        double angle = elementary_atan2(vec3_dot(from, v), vec3_dot(from, u));
+        uint32_t point = assembly->rim_points[rim.first + i];
+        double angle = segment_angle(segment, mesh_point(assembly->mesh, point));
         before = angles[i] = angle - FULL_TURN * rint((angle - before) / FULL_TURN);
     }
 }
 
-/* Returns the angle of the i-th point; i may go on beyond a full turn. */
+/* Returns the angle of the i-th point of a rim of n points. Beyond n, a full turn is added. */
 static double turned_angle(const double *angles, uint32_t n, uint32_t i)
 {
     return angles[i % n] + FULL_TURN * (i / n);
 }
 
-/* Measures a rim. A chord is farthest from its circle half way; other vessels move the circle from
- * the surface. */
+/* Raises the deviation to that of a rim: the distance of its longest chord from the circle, half
+ * way, and the distance by which other vessels move the surface off the circle. */
 static void measure_rim(const Assembly *assembly, const double *angles, uint32_t n, double radius)
 {
     double widest = 0;
@@ -168,14 +166,14 @@ static Status add_strip(Assembly *assembly, uint32_t segment, RimRange a, RimRan
     return STATUS_OK;
 }
 
-/* Returns the number of rims between those of a tube that its triangles need to be short enough. */
+/* Returns the number of rims that divide a tube so that its triangles are short enough. */
 static uint32_t count_rims(const Assembly *assembly, uint32_t segment)
 {
     const FieldSegment *self = &assembly->tree->segments[segment];
     const double *plane = assembly->junctions->plane[segment];
     if (assembly->params->tube_edge == 0)
         return 0;
-    double edges = (vec3_distance(self->a, self->b) - plane[0] - plane[1]) /
+    double edges = (segment_length(self) - plane[0] - plane[1]) /
                    (assembly->params->tube_edge * self->radius_mm);
     return edges > 1 ? (uint32_t)ceil(edges) - 1 : 0;
 }
@@ -191,7 +189,8 @@ static double rim_along(const Assembly *assembly, const FieldSegment *self, RimR
     return sum / rim.n;
 }
 
-/* Adds the strips of a tube between its rims and those in between, each turned by half a side. */
+/* Adds the strips of a tube, and the rims that divide it. Each rim is turned by half a side against
+ * the rim before. */
 static Status add_tube(Assembly *assembly, uint32_t segment, Err *err)
 {
     const FieldSegment *self = &assembly->tree->segments[segment];

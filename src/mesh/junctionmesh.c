@@ -1,13 +1,15 @@
-/* Builds and proves the mesh of one junction region.
+/* An attempt extracts the surface from the lattice, cuts it at the end planes of the stubs,
+ * collapses edges, and splits triangles that are too far from the surface. Then the result is
+ * proved to be a sphere with one hole per stub, and with one handle per loop of the region's whole
+ * segments. The proof consists of four facts:
  *
- * The steps are: extract the surface from the lattice, cut it at the end planes of the stubs,
- * collapse edges, split triangles that are too far from the surface. Then the result is proved to
- * be a sphere with one hole per stub, and with one handle per loop of the region's whole segments:
- * - each edge has two triangles, one on each side, or is on a rim;
- * - each stub has one rim, a closed loop that goes about the stub's axis once;
- * - the mesh is connected;
- * - vertices - edges + triangles = 2 - stubs - 2 loops.
- * If the proof fails, the steps are repeated with smaller cells. */
+ * - Each edge has two triangles, one on each side, or is on a rim.
+ * - Each stub has one rim, a closed loop that goes about the stub's axis once.
+ * - The mesh is connected.
+ * - points - edges + triangles = 2 - stubs - 2 loops.
+ *
+ * If the proof fails, narrow tunnels are closed [latticerepair.h]. If the proof fails again, the
+ * next attempt has smaller cells. */
 #include "mesh/junctionmesh.h"
 
 #include "mesh/patchcross.h"
@@ -18,12 +20,13 @@
 #define NONE UINT32_MAX
 
 /* Limits on repetition: steps of smaller cells until the mesh is valid, and further attempts to
- * bring a valid mesh closer to the surface. */
+ * bring a valid mesh closer to the surface. Reasons for the numbers not recorded. */
 enum { MAX_REFINEMENTS = 7, MAX_ACCURACY_RETRIES = 3 };
-/* Factors on the cell size: of one refinement step, and the smallest of one accuracy retry. */
+/* Factors on the cell size: of one refinement step, and the smallest of one accuracy retry. Reasons
+ * for the numbers not recorded. */
 static const double refinement_factor = 0.85, min_retry_factor = 0.5;
-/* In units of the local radius: a triangle farther off does not belong to the surface, as happens
- * where vessels overlap. A region that still has such a triangle is refused. */
+/* In units of the local radius: a triangle farther from the surface does not belong to it, as
+ * happens where vessels overlap. A region that still has such a triangle is refused. */
 static const double max_error = 0.5;
 /* In units of the thinner vessel's radius: cells may be too large to resolve a narrower gap between
  * two vessels that do not blend. If a wide hole occurs there, all remaining refinement steps are
@@ -37,7 +40,7 @@ static const double min_real_hole = 0.25;
  * width. Up to max_closed_tunnel local radii wide, it is closed all the same. */
 static const double max_closed_tunnel = 0.1, persistent_ratio = 0.9;
 
-/* What one build needs. All pointers are borrowed. */
+/* The state of junctionmesh_make. All pointers are borrowed. */
 typedef struct JunctionBuild {
     JunctionWorkspace *workspace;
     const VesselTree *tree;
@@ -62,62 +65,51 @@ void junctionworkspace_release(JunctionWorkspace *workspace)
 {
     octree_release(&workspace->tree);
     lattice_release(&workspace->lattice);
-    repairer_release(&workspace->repairer);
-    planecutter_release(&workspace->cutter);
-    collapser_release(&workspace->collapser);
-    refiner_release(&workspace->refiner);
-    keymap_release(&workspace->edges);
     patch_release(&workspace->patch);
-    ARRAY_RELEASE(&workspace->next);
-    ARRAY_RELEASE(&workspace->order);
 }
 
-/* Fills next[] with the next point along a rim, or NONE for a point that is not on a rim. *sound
- * receives false if an edge has two triangles on one side, or is open and not on a rim. */
-static Status follow_edges(const JunctionBuild *build, size_t *n_edges, bool *sound)
+/* Fills next[], per point of the patch, with the next point along a rim, or NONE for a point that
+ * is not on a rim. *sound receives false if an edge has two triangles on one side, or is open and
+ * not on a rim. */
+static Status follow_edges(const JunctionBuild *build, uint32_t *next, size_t *n_edges, bool *sound)
 {
-    JunctionWorkspace *workspace = build->workspace;
-    const Patch *patch = &workspace->patch;
-    TRY(ARRAY_RESERVE(&workspace->next, patch->n_points, "points of a junction", build->err));
+    const Patch *patch = &build->workspace->patch;
     size_t corners = 3 * patch->n_triangles, open = 0;
-    TRY(keymap_begin(&workspace->edges, corners, "points of a junction", build->err));
+    KeyMap edges = {0};
+    Status status;
+    TRY_GOTO(keymap_begin(&edges, corners, patch_items, build->err));
     *sound = true;
     for (size_t i = 0; i < corners; i++) {
         const uint32_t *at = patch->triangles[i / 3].at;
         uint32_t *value;
         bool is_new;
         uint64_t key = (uint64_t)at[i % 3] << 32 | at[(i + 1) % 3];
-        TRY(keymap_put(&workspace->edges, key, &value, &is_new, build->err));
+        TRY_GOTO(keymap_put(&edges, key, &value, &is_new, build->err));
         *sound = *sound && is_new;
     }
     for (size_t i = 0; i < patch->n_points; i++)
-        workspace->next.items[i] = NONE;
+        next[i] = NONE;
     for (size_t i = 0; i < corners; i++) {
         const uint32_t *at = patch->triangles[i / 3].at;
         uint32_t a = at[i % 3], b = at[(i + 1) % 3];
-        if (keymap_find(&workspace->edges, (uint64_t)b << 32 | a))
+        if (keymap_find(&edges, (uint64_t)b << 32 | a))
             continue;
         open++;
         *sound = *sound && patch->points[a].rim_stub != NO_STUB &&
-                 patch->points[a].rim_stub == patch->points[b].rim_stub &&
-                 workspace->next.items[a] == NONE;
-        workspace->next.items[a] = b;
+                 patch->points[a].rim_stub == patch->points[b].rim_stub && next[a] == NONE;
+        next[a] = b;
     }
     *n_edges = (corners + open) / 2;
-    return STATUS_OK;
+done:
+    keymap_release(&edges);
+    return status;
 }
 
-static double angle_of(const FieldSegment *segment, Vec3 x)
-{
-    Vec3 u, v, from = vec3_sub(x, segment->a);
-    vec3_across(segment_axis(segment), &u, &v);
-    return elementary_atan2(vec3_dot(from, v), vec3_dot(from, u));
-}
-
-/* Adds the rim of a stub to the mesh. The edges of triangles go about the axis in one direction at
- * the segment's first end, in the other at its second. Returns false if the rim does not go about
- * the axis once. */
-static bool add_rim(const JunctionBuild *build, size_t stub_index, uint32_t *n_points)
+/* Adds the rim of a stub to the mesh, by rising angle. Along `next`, the angle falls at the
+ * segment's first end, and rises at its second. Returns false if the rim does not go about the axis
+ * once. */
+static bool add_rim(const JunctionBuild *build, const uint32_t *next, size_t stub_index,
+                    uint32_t *n_points)
 {
     const BranchStub *stub = &build->plan->stubs[stub_index];
     const Patch *patch = &build->workspace->patch;
@@ -127,7 +119,7 @@ static bool add_rim(const JunctionBuild *build, size_t stub_index, uint32_t *n_p
     for (uint32_t i = 0; i < patch->n_points; i++) {
         if (patch->points[i].rim_stub != stub_index)
             continue;
-        double angle = angle_of(segment, patch->points[i].x);
+        double angle = segment_angle(segment, patch->points[i].x);
         total++;
         if (angle < lowest) {
             lowest = angle;
@@ -135,47 +127,58 @@ static bool add_rim(const JunctionBuild *build, size_t stub_index, uint32_t *n_p
         }
     }
     uint32_t *rim = &build->mesh->rim_points[*n_points], at = start;
-    for (; at != NONE && n < total; n++, at = build->workspace->next.items[at])
+    for (; at != NONE && n < total; n++, at = next[at])
         rim[n == 0 || stub->end == 1 ? n : total - n] = at;
     for (uint32_t i = 1; i < n; i++)
-        if (!(angle_of(segment, patch->points[rim[i]].x) >
-              angle_of(segment, patch->points[rim[i - 1]].x)))
+        if (!(segment_angle(segment, patch->points[rim[i]].x) >
+              segment_angle(segment, patch->points[rim[i - 1]].x)))
             return false;
     build->mesh->rims[stub_index] = (Rim){stub->segment, stub->end, *n_points, total};
     *n_points += total;
     return total >= 3 && n == total && at == start;
 }
 
-/* Proves the patch, and finds the rims of the mesh. */
-static Status prove(const JunctionBuild *build, bool *sound)
+/* Finds the rims of the mesh. *sound receives false if a rim does not go about its axis once. */
+static Status find_rims(const JunctionBuild *build, const uint32_t *next, bool *sound)
 {
     const Patch *patch = &build->workspace->patch;
     JunctionMesh *mesh = build->mesh;
-    size_t n_edges, n_stubs = build->plan->n_stubs, n_on_rims = 0;
+    size_t n_stubs = build->plan->n_stubs, n_on_rims = 0;
     uint32_t n_points = 0;
-    TRY(follow_edges(build, &n_edges, sound));
-    long long euler =
-        (long long)patch->n_points - (long long)n_edges + (long long)patch->n_triangles;
-    long long expected = 2 - (long long)n_stubs - 2 * (long long)build->plan->n_loops;
-    mesh->loops_are_closed = *sound && euler > expected;
-    *sound = *sound && patch->n_triangles > 0 && euler == expected;
-    if (!*sound)
-        return STATUS_OK;
     for (size_t i = 0; i < patch->n_points; i++)
         n_on_rims += patch->points[i].rim_stub != NO_STUB;
     TRY(mem_calloc(&mesh->rims, n_stubs, sizeof *mesh->rims, "rims", build->err));
     TRY(mem_calloc(&mesh->rim_points, n_on_rims + 1, sizeof *mesh->rim_points, "rims", build->err));
     mesh->n_rims = n_stubs;
     for (size_t k = 0; k < n_stubs && *sound; k++)
-        *sound = add_rim(build, k, &n_points);
-    size_t parts;
-    TRY(patch_count_parts(&build->workspace->patch, &parts, build->err));
-    *sound = *sound && parts == 1;
+        *sound = add_rim(build, next, k, &n_points);
     return STATUS_OK;
 }
 
-/* Returns true if a point is inside a stub's whole segment, of which the region's field has only a
- * part. */
+/* Proves the four facts about the patch, and finds the rims of the mesh. */
+static Status prove(const JunctionBuild *build, bool *sound)
+{
+    Patch *patch = &build->workspace->patch;
+    long long expected = 2 - (long long)build->plan->n_stubs - 2 * (long long)build->plan->n_loops;
+    size_t n_edges, parts;
+    uint32_t *next = NULL;
+    Status status;
+    TRY_GOTO(mem_alloc(&next, patch->n_points, sizeof *next, patch_items, build->err));
+    TRY_GOTO(follow_edges(build, next, &n_edges, sound));
+    long long euler =
+        (long long)patch->n_points - (long long)n_edges + (long long)patch->n_triangles;
+    build->mesh->loops_are_closed = *sound && euler > expected;
+    TRY_GOTO(patch_count_parts(patch, &parts, build->err));
+    *sound = *sound && parts == 1 && euler == expected;
+    if (*sound)
+        TRY_GOTO(find_rims(build, next, sound));
+done:
+    free(next);
+    return status;
+}
+
+/* Returns true if x is inside the vessel of a stub. The region's field has only a part of this
+ * vessel. */
 static bool is_in_stub(const JunctionBuild *build, Vec3 x)
 {
     for (size_t k = 0; k < build->plan->n_stubs; k++) {
@@ -187,24 +190,26 @@ static bool is_in_stub(const JunctionBuild *build, Vec3 x)
 }
 
 /* Looks for a point of the surface about a segment where the segment's own term is the largest.
- * Returns false if there is none. */
-static bool find_own_surface(const JunctionBuild *build, const LocalField *all, uint32_t number,
+ * Halves the interval in which the surface is, along rays away from the axis. Returns false if
+ * there is no such point on any ray. The reasons for the numbers of rays and halvings are not
+ * recorded. */
+static bool find_own_surface(const JunctionBuild *build, const LocalField *all, uint32_t segment,
                              Vec3 *at)
 {
-    enum { PLACES = 5, ANGLES = 8 };
+    enum { PLACES = 5, ANGLES = 8, HALVINGS = 40 };
     const JunctionPlan *plan = build->plan;
     const Octree *tree = &build->workspace->tree;
-    const FieldSegment *segment = &build->tree->segments[number];
-    Vec3 u, v, axis = vec3_sub(segment->b, segment->a);
+    const FieldSegment *self = &build->tree->segments[segment];
+    Vec3 u, v, axis = vec3_sub(self->b, self->a);
     vec3_across(vec3_normalized(axis), &u, &v);
     for (int i = 0; i < PLACES * ANGLES; i++) {
         double angle = FULL_TURN / ANGLES * (i % ANGLES);
-        Vec3 from = vec3_add_scaled(segment->a, axis, (0.5 + i / ANGLES) / PLACES);
+        Vec3 from = vec3_add_scaled(self->a, axis, (0.5 + i / ANGLES) / PLACES);
         Vec3 outward = direction_at(u, v, angle), gradient;
-        double low = 0, high = 2.5 * segment->radius_mm;
+        double low = 0, high = 2.5 * self->radius_mm;
         if (localfield_value(&plan->field, &tree->stack, all, from).phi < FIELD_LEVEL)
             continue;
-        for (int k = 0; k < 40; k++) {
+        for (int k = 0; k < HALVINGS; k++) {
             double middle = 0.5 * (low + high);
             Vec3 x = vec3_add_scaled(from, outward, middle);
             bool inside = localfield_value(&plan->field, &tree->stack, all, x).phi >= FIELD_LEVEL;
@@ -212,7 +217,7 @@ static bool find_own_surface(const JunctionBuild *build, const LocalField *all, 
         }
         *at = vec3_add_scaled(from, outward, low);
         FieldValue value = localfield_gradient(&plan->field, &tree->stack, all, *at, &gradient);
-        if (plan->field.terms[value.largest_term].segment == number && !is_in_stub(build, *at))
+        if (plan->field.terms[value.largest_term].segment == segment && !is_in_stub(build, *at))
             return true;
     }
     return false;
@@ -220,77 +225,67 @@ static bool find_own_surface(const JunctionBuild *build, const LocalField *all, 
 
 /* Finds the status of a segment that is wholly in the region, and that no point of the patch
  * belongs to. */
-static Status look_for(const JunctionBuild *build, uint32_t number, double ratio, uint8_t *status)
+static Status find_status(const JunctionBuild *build, uint32_t segment, double ratio,
+                          uint8_t *status)
 {
     const Patch *patch = &build->workspace->patch;
-    const FieldSegment *segment = &build->tree->segments[number];
+    const FieldSegment *self = &build->tree->segments[segment];
     Octree *tree = &build->workspace->tree;
     LocalField all;
     NarrowField near;
-    Vec3 at, middle = vec3_scale(vec3_add(segment->a, segment->b), 0.5);
-    double reach = vec3_distance(segment->a, middle) + 3 * segment->radius_mm;
+    Vec3 at, middle = vec3_scale(vec3_add(self->a, self->b), 0.5);
+    double reach = vec3_distance(self->a, middle) + 3 * self->radius_mm;
     TRY(localfield_all(&build->plan->field, &tree->stack, &all, build->err));
     const FieldBalls balls = {middle, reach, 0};
     TRY(localfield_narrow(&build->plan->field, &tree->stack, &all, &balls, &near, build->err));
     *status = SEGMENT_ENCLOSED;
     if (near.local.n_terms <= MAX_LOCAL_TERMS &&
-        find_own_surface(build, &near.local, number, &at)) {
+        find_own_surface(build, &near.local, segment, &at)) {
         double nearest = HUGE_VAL;
         for (size_t i = 0; i < patch->n_points; i++)
             nearest = fmin(nearest, vec3_distance(patch->points[i].x, at));
-        *status = nearest <= ratio * segment->radius_mm ? SEGMENT_PRESENT : SEGMENT_MISSING;
+        *status = nearest <= ratio * self->radius_mm ? SEGMENT_PRESENT : SEGMENT_MISSING;
     }
     tree->stack.n_terms = tree->stack.n_groups = 0;
     return STATUS_OK;
 }
 
-static bool is_stub(const JunctionPlan *plan, uint32_t segment)
-{
-    for (size_t k = 0; k < plan->n_stubs; k++)
-        if (plan->stubs[k].segment == segment)
-            return true;
-    return false;
-}
-
-/* Stubs have no status here: they are present if their tubes are. */
+/* Finds the statuses of the region's whole segments. The segment of a stub is present because it
+ * has a tube. */
 static Status find_statuses(const JunctionBuild *build, double ratio)
 {
     const Patch *patch = &build->workspace->patch;
     const JunctionField *field = &build->plan->field;
-    uint8_t *segment_status = build->statuses;
     for (uint32_t i = 0; i < field->n_terms; i++)
-        if (!is_stub(build->plan, field->terms[i].segment))
-            segment_status[field->terms[i].segment] = SEGMENT_MISSING;
+        if (field->terms[i].stub == NO_STUB)
+            build->statuses[field->terms[i].segment] = SEGMENT_MISSING;
     for (size_t i = 0; i < patch->n_points; i++)
-        if (segment_status[patch->points[i].segment] == SEGMENT_MISSING &&
-            !is_stub(build->plan, patch->points[i].segment))
-            segment_status[patch->points[i].segment] = SEGMENT_PRESENT;
+        if (patch->points[i].vessel_stub == NO_STUB)
+            build->statuses[patch->points[i].segment] = SEGMENT_PRESENT;
     for (uint32_t i = 0; i < field->n_terms; i++) {
         uint32_t segment = field->terms[i].segment;
-        if (!is_stub(build->plan, segment) && segment_status[segment] == SEGMENT_MISSING)
-            TRY(look_for(build, segment, ratio, &segment_status[segment]));
+        if (field->terms[i].stub == NO_STUB && build->statuses[segment] == SEGMENT_MISSING)
+            TRY(find_status(build, segment, ratio, &build->statuses[segment]));
     }
     return STATUS_OK;
 }
 
-/* Turns the surface that the lattice left into a finished one. */
+/* Turns the surface that the lattice left into a finished one, and proves it. */
 static Status finish(const JunctionBuild *build, const MeshFineness *fineness, bool *sound)
 {
-    JunctionWorkspace *workspace = build->workspace;
-    Patch *patch = &workspace->patch;
-    TRY(planecut_apply(&workspace->cutter, &build->surface, fineness->cells.ratio, sound,
-                       build->err));
+    Patch *patch = &build->workspace->patch;
+    TRY(planecut_apply(&build->surface, fineness->cells.ratio, sound, build->err));
     if (!*sound)
         return STATUS_OK;
-    /* other parts are the ends of stubs that another vessel hid from the cut; a segment that is
-     * lost with them is found missing */
+    /* The other parts are ends of stubs that the cut did not reach, because another vessel encloses
+     * them. If a segment is lost with them, its status is SEGMENT_MISSING. */
     TRY(patch_keep_largest(patch, build->err));
     TRY(find_statuses(build, fineness->cells.ratio));
-    TRY(collapse_apply(&workspace->collapser, patch, fineness->sagitta, build->err));
+    TRY(collapse_apply(patch, fineness->sagitta, build->err));
     build->mesh->deviation = (MeshDeviation){0};
     size_t n_points = patch->n_points;
-    TRY(facerefine_apply(&workspace->refiner, &build->surface, fineness->split_distance,
-                         &build->mesh->deviation, build->err));
+    TRY(facerefine_apply(&build->surface, fineness->split_distance, &build->mesh->deviation,
+                         build->err));
     TRY(prove(build, sound));
     *build->crossing = PATCHCROSS_NONE;
     if (*sound && patch->n_points > n_points)
@@ -299,8 +294,8 @@ static Status finish(const JunctionBuild *build, const MeshFineness *fineness, b
     return STATUS_OK;
 }
 
-/* Makes one attempt. *hole receives the width of the tunnel that makes the surface unsound, in
- * local radii. */
+/* Makes one attempt. *hole receives the width of the widest tunnel that makes the surface unsound,
+ * in local radii; 0 if the surface is sound without a repair. */
 static Status attempt(const JunctionBuild *build, const MeshFineness *fineness, bool *sound,
                       double *hole)
 {
@@ -311,8 +306,7 @@ static Status attempt(const JunctionBuild *build, const MeshFineness *fineness, 
     TRY(finish(build, fineness, sound));
     if (*sound || *build->crossing == PATCHCROSS_ROUNDING)
         return STATUS_OK;
-    TRY(repair_apply(&workspace->repairer, &workspace->lattice, &build->surface,
-                     fineness->max_repair, hole, build->err));
+    TRY(repair_apply(&workspace->lattice, &build->surface, fineness->max_repair, hole, build->err));
     return *hole <= fineness->max_repair ? finish(build, fineness, sound) : STATUS_OK;
 }
 
@@ -349,41 +343,29 @@ static double find_gap(const JunctionBuild *build, uint32_t pair[2])
     return least;
 }
 
-/* Inserts two zero bits after each of the lowest ten. */
-static uint32_t spread(uint32_t x)
+static int compare_keys(const void *a, const void *b)
 {
-    x = (x | x << 16) & 0x30000ff;
-    x = (x | x << 8) & 0x300f00f;
-    x = (x | x << 4) & 0x30c30c3;
-    return (x | x << 2) & 0x9249249;
-}
-
-static int compare_placed(const void *a, const void *b)
-{
-    const PlacedTriangle *one = a, *other = b;
-    uint32_t x = one->code, y = other->code;
-    return x != y ? (x > y) - (x < y) : (one->index > other->index) - (one->index < other->index);
+    uint64_t one = *(const uint64_t *)a, other = *(const uint64_t *)b;
+    return (one > other) - (one < other);
 }
 
 /* Orders the triangles by the Morton codes of their first points, so that neighbours in memory are
- * near in space. */
-static Status order_triangles(JunctionWorkspace *workspace, Err *err)
+ * near in space. Fills keys[]: the upper half of a key is the code, the lower half the index of the
+ * triangle. */
+static void order_triangles(const JunctionWorkspace *workspace, uint64_t *keys)
 {
     const Patch *patch = &workspace->patch;
     const Octree *tree = &workspace->tree;
-    TRY(ARRAY_RESERVE(&workspace->order, patch->n_triangles, "triangles of a junction", err));
     for (uint32_t i = 0; i < patch->n_triangles; i++) {
         Vec3 from = vec3_sub(patch->points[patch->triangles[i].at[0]].x, tree->corner);
-        uint32_t code = 0;
+        uint64_t code = 0;
         for (int axis = 0; axis < 3; axis++) {
             double part = vec3_component(from, axis) / tree->side;
-            code |= spread((uint32_t)(1023 * fmin(fmax(part, 0), 1))) << axis;
+            code |= morton_spread((uint64_t)(1023 * fmin(fmax(part, 0), 1))) << axis;
         }
-        workspace->order.items[i] = (PlacedTriangle){code, i};
+        keys[i] = code << 32 | i;
     }
-    qsort(workspace->order.items, patch->n_triangles, sizeof *workspace->order.items,
-          compare_placed);
-    return STATUS_OK;
+    qsort(keys, patch->n_triangles, sizeof *keys, compare_keys);
 }
 
 static JunctionPoint rounded_point(const PatchPoint *point, double grid)
@@ -397,17 +379,21 @@ static JunctionPoint rounded_point(const PatchPoint *point, double grid)
 }
 
 /* Copies the patch into as little memory as possible. */
-static Status keep_patch(JunctionWorkspace *workspace, double grid, JunctionMesh *mesh, Err *err)
+static Status keep_patch(const JunctionWorkspace *workspace, double grid, JunctionMesh *mesh,
+                         Err *err)
 {
     const Patch *patch = &workspace->patch;
-    TRY(order_triangles(workspace, err));
+    uint64_t *keys;
     TRY(mem_calloc(&mesh->points, patch->n_points, sizeof *mesh->points, "points", err));
     TRY(mem_calloc(&mesh->triangles, patch->n_triangles, sizeof *mesh->triangles, "triangles",
                    err));
+    TRY(mem_alloc(&keys, patch->n_triangles, sizeof *keys, patch_items, err));
+    order_triangles(workspace, keys);
     for (size_t i = 0; i < patch->n_points; i++)
         mesh->points[mesh->n_points++] = rounded_point(&patch->points[i], grid);
     for (size_t i = 0; i < patch->n_triangles; i++)
-        mesh->triangles[mesh->n_triangles++] = patch->triangles[workspace->order.items[i].index];
+        mesh->triangles[mesh->n_triangles++] = patch->triangles[(uint32_t)keys[i]];
+    free(keys);
     return STATUS_OK;
 }
 
@@ -469,7 +455,7 @@ static Status refuse(const JunctionBuild *build, double grid_mm, Err *err)
             err, STATUS_INFEASIBLE,
             "segment %u and the segments that it meets are so short for their radii that "
             "they have no surface",
-            ids[build->plan->field.terms[0].segment]);
+            ids[first]);
     if (build->mesh->loops_are_closed)
         return refuse_loop(build, err);
     if (find_gap(build, pair) < 0)
@@ -480,7 +466,7 @@ static Status refuse(const JunctionBuild *build, double grid_mm, Err *err)
     return err_set(err, STATUS_INFEASIBLE,
                    "the vessels near segment %u touch each other: their surface has a loop, or a "
                    "gap too narrow for the finest cells",
-                   ids[build->plan->field.terms[0].segment]);
+                   ids[first]);
 }
 
 /* Returns true if a tunnel persists with finer cells and may be closed. Where vessels that do not
@@ -498,10 +484,15 @@ static void make_finer(MeshFineness *fineness, double factor)
     fineness->cells.bending *= factor * factor;
 }
 
-/* Returns how many steps finer the cells of the next attempt are; 0 if no attempt would help. A
- * wide hole persists, unless it is closed by a gap that the cells cannot resolve. A hole that finer
- * cells left as wide persists if vessels that do not blend overlap. So do crossings that only come
- * from rounding: smaller triangles have more of them. */
+/* Returns by how many steps the cells of the next attempt are finer; 0 if no attempt would help.
+ *
+ * A wide hole persists with finer cells, unless a gap between vessels causes it that the present
+ * cells cannot resolve. A hole that the last finer cells did not make narrower persists if vessels
+ * overlap that do not blend. Crossings that come from rounding alone persist, too, because smaller
+ * triangles have more of them.
+ *
+ * cell  side of the cells, in local radii.
+ * left  number of steps that remain. */
 static int steps_finer(const JunctionBuild *build, double hole, double before, double cell,
                        int left)
 {
@@ -538,10 +529,10 @@ static Status make_sound(const JunctionBuild *build, MeshFineness *used, bool *s
     return STATUS_OK;
 }
 
-/* Tries finer cells where a triangle is too far from the surface, and keeps the attempt that is
- * nearest. That happens over the bottom of a groove that is too narrow to be found by splitting.
- * Triangles that do not belong to the surface, and that finer cells do not bring nearer, stay as
- * they are. */
+/* Tries finer cells if a triangle is too far from the surface, and keeps the attempt whose
+ * triangles are nearest. A triangle is too far over the bottom of a groove that is so narrow that
+ * splits do not find it. The attempts end early if a triangle does not belong to the surface and
+ * finer cells do not bring it nearer. */
 static Status come_near(const JunctionBuild *build, MeshFineness *used)
 {
     MeshFineness tried = *used;

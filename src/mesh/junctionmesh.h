@@ -13,10 +13,7 @@
 #ifndef CORCAST_MESH_JUNCTIONMESH_H
 #define CORCAST_MESH_JUNCTIONMESH_H
 
-#include "mesh/lattice/collapse.h"
-#include "mesh/lattice/facerefine.h"
 #include "mesh/lattice/latticerepair.h"
-#include "mesh/lattice/planecut.h"
 
 /* The rim of a branch stub. Its points are JunctionMesh.rim_points[first .. first + n). Their angle
  * about the axis rises; the axis leads from the segment's first end to its second. */
@@ -70,23 +67,12 @@ typedef struct MeshFineness {
     double grid_mm;          /* coordinates are rounded to integer multiples of it [mesh_grid] */
 } MeshFineness;
 
-/* A triangle and the Morton code of its first point. */
-typedef struct PlacedTriangle {
-    uint32_t code, index;
-} PlacedTriangle;
-
-/* Workspace of one thread. Zero it before first use; release it with junctionworkspace_release. */
+/* Workspace of one thread: the largest arrays of a region, whose memory serves the next region,
+ * too. Zero it before first use; release it with junctionworkspace_release. */
 typedef struct JunctionWorkspace {
     Octree tree;
     Lattice lattice;
-    Repairer repairer;
-    PlaneCutter cutter;
-    Collapser collapser;
-    Refiner refiner;
-    KeyMap edges;
     Patch patch;
-    ARRAY(uint32_t) next; /* per point: the next point along its rim */
-    ARRAY(PlacedTriangle) order;
 } JunctionWorkspace;
 
 void junctionworkspace_release(JunctionWorkspace *workspace);

@@ -1,15 +1,14 @@
-/* The tree is cut into junction regions and tubes (junctions.c). The surface of each region is made
- * by a lattice of its own (octree.c, lattice.c), cut at the planes of its stubs (planecut.c),
- * simplified (collapse.c), and proved to be a sphere with holes (junctionmesh.c). Strips and caps
- * join the regions (assemble.c). Over a whole tree that gives one sphere: regions are spheres with
- * k holes, strips are rings, caps are discs. Each loop of a network adds a handle to it. Two things
- * can still go wrong: vessels that meet although they do not blend, and rounding. They are found on
- * the finished triangles (topology.c, crossings.c). If triangles cross, all is made again, with
- * finer cells in the regions about them.
+/* The tree is cut into junction regions and tubes (junctions.c). The surface of each region is
+ * extracted from a lattice of its own, and is proved to be a sphere with holes (junctionmesh.c).
+ * Strips and caps join the regions (assemble.c). The regions are spheres with holes, the strips are
+ * rings, and the caps are discs, so together they are one sphere per tree. Each loop of a network
+ * adds a handle. Two faults remain possible: vessels that meet although they do not blend, and
+ * rounding. Both are found on the finished triangles (topology.c, crossings.c). If triangles cross,
+ * the whole mesh is built again, with smaller cells in the regions near the crossings.
  *
- * One octree for all regions was tried, and its mesh was not valid: cells join vessels whose gap is
- * narrower than a cell. Swept rings alone cannot be used, because two junctions of five are in
- * regions of several nodes. */
+ * Two simpler ways fail. One octree for all regions gives meshes that are not valid, because cells
+ * join vessels whose gap is narrower than a cell. Swept rings alone are not enough, because two
+ * junctions of five are in regions of several nodes. */
 #include "mesh/mesh.h"
 
 #include "mesh/assemble.h"
@@ -19,29 +18,31 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 
-/* Fineness of a mesh as factors of the tolerance, and the size of cells at a tolerance of cells_at.
- * They were measured, so that the mean distance to the surface is below 0.15 tolerances, and one
- * sample of a thousand is beyond the tolerance. */
+/* The side of the cells at a tolerance of cells_at, in local radii, and the other members of
+ * MeshFineness divided by the tolerance. The numbers were chosen by measurement: the mean distance
+ * of the mesh from the surface is below 0.15 tolerances, and one sample of a thousand is beyond the
+ * tolerance. */
 static const double cells_at = 0.02, cell_ratio = 0.54, bending_ratio = 0.25, sagitta_part = 0.325,
                     split_part = 0.65, cap_part = 0.2, farthest_part = 1.4, worst_part = 2.25;
 /* The factors for BODY_ROUND, whose balls are curved in both directions, and whose creases are cut
  * off by triangles. */
 static const double round_sagitta_part = 0.24, round_farthest_part = 1.75;
 
-/* Maximum number of cells of a junction region. With all that is made from them, they take 4 GB of
+/* Maximum number of cells of a junction region. So many cells, with their lattice, take 4 GB of
  * memory. */
 enum { MAX_CELLS = 5000000 };
 
-/* If triangles cross, all is built again, up to MAX_ROUNDS times. In each round, the cells of the
- * regions about the crossings are smaller by the factor `finer`. */
+/* If triangles cross, the mesh is built again, up to MAX_ROUNDS times. In each round, the cells of
+ * the regions near the crossings are smaller by the factor `finer`. Reasons for both numbers not
+ * recorded. */
 enum { MAX_ROUNDS = 4 };
-/* Far from the origin, nothing is built again if more than one triangle in FOLDED_PART crosses
- * another. */
+/* In a tree far from the origin, the mesh is not built again if more than one triangle in
+ * FOLDED_PART crosses another. Reason for the number not recorded. */
 enum { FOLDED_PART = 20 };
 static const double finer = 0.8;
 
-/* After a region with more terms, a thread releases its workspace, which would be ten times larger
- * than most regions need. */
+/* After a region with more terms, a thread releases its workspace, because most regions need a
+ * tenth of it. */
 enum { TERMS_TO_KEEP = 100 };
 
 typedef struct MeshBuild {
@@ -80,15 +81,16 @@ static uint32_t sides_of(double sagitta)
     return (uint32_t)fmax(8, ceil(PI / elementary_acos(1 - sagitta)));
 }
 
-/* Measured on grown trees of 200 to 20,000 segments at tolerances of 0.005 to 1.6. Per radius of
- * length, at most most_radii per segment, the numbers of triangles and of seconds are
- * a / tolerance + b, and the number of triangles is at least least_triangles. */
+/* The cost per radius of vessel length, where a segment counts with at most most_radii. The number
+ * of triangles is triangles_a / tolerance + triangles_b, and at least least_triangles; the time is
+ * seconds_a / tolerance + seconds_b. Measured on grown trees of 200 to 20,000 segments at
+ * tolerances of 0.005 to 1.6. */
 static const double most_radii = 6, triangles_a = 1.9, triangles_b = 5, least_triangles = 8,
                     seconds_a = 1.15e-5, seconds_b = 1.6e-4, bytes_a_triangle = 50,
                     least_bytes = 24e6;
-/* BODY_ROUND takes this many times as much. */
+/* The cost of BODY_ROUND divided by that of BODY_POTENTIAL; measured. */
 static const double round_part = 2.7;
-/* A tolerance above this does not lower the number of triangles. */
+/* A larger tolerance does not lower the number of triangles. */
 static const double coarsest = 1.6;
 
 /* Returns the tolerance whose mesh has about `lod` times the triangles. */
@@ -256,9 +258,9 @@ static Status find_topology(const MeshBuild *build, const VesselMesh *mesh, Mesh
     uint32_t *trees = NULL, *loops = NULL;
     Status status;
     TRY_GOTO(meshcheck_trees(build->tree, &trees, &report->trees, err));
-    TRY_GOTO(meshcheck_loops(build->tree, trees, &loops, err));
+    TRY_GOTO(meshcheck_loops(build->tree, trees, report->trees, &loops, err));
     report->expected_components = report->trees;
-    for (size_t i = 0; i < build->tree->n_nodes; i++)
+    for (size_t i = 0; i < report->trees; i++)
         report->expected_genus += loops[i];
     TRY_GOTO(meshcheck_topology(mesh, trees, report, err));
 done:

@@ -1,25 +1,27 @@
-/* Each point of the wall moves inwards along one straight line. Its direction makes the largest
- * angle to the normals of the point's triangles as small as possible. If that angle is below 90
- * degrees at the three corners of a triangle, the triangle's prism is sound if it is thin enough.
- * So the only remedy that is needed is to make bad layers thinner, in rounds, until none is bad.
+/* Each point of the wall moves inwards along one straight line. The direction of this line makes
+ * the largest angle to the normals of the point's triangles as small as possible. If this angle is
+ * below 90 degrees at the three corners of a triangle, the triangle's prism is sound as soon as it
+ * is thin enough. So one remedy suffices: bad layers become thinner, in rounds, until none is bad.
  *
- * That no two prisms overlap need not be tested pair by pair. The layers map (wall) x [0, 1] into
- * space. If all Jacobians are positive, a place in space is covered as often as the outer surface
- * winds about it more than the inner one. Both surfaces are free of crossings, so that each winds
- * about a place once or never. Hence no place is covered twice. */
+ * No test of pairs of prisms is needed to prove that prisms do not overlap. The layers map wall x
+ * [0, 1] into space. If all Jacobians are positive, the number of times that a point of space is
+ * covered is the winding number of the outer surface about the point minus that of the inner one.
+ * Both surfaces are free of crossings, so each winding number is 0 or 1. Hence no point is covered
+ * twice. */
 #include "mesh/sweep.h"
 
 #include "mesh/precision.h"
 #include "mesh/proof/meshcheck.h"
 #include <stdlib.h>
 
-/* The thickness of the layers grows by at most this fraction of the distance along the wall. */
+/* The thickness of the layers grows by at most this fraction of the distance along the wall. Reason
+ * for the number not recorded. */
 #define STEEPEST 0.5
 /* The smallest inner face of a sound prism or stack of prisms, in parts of its outer face. Flatter
  * prisms are correct but useless for solvers. */
 #define LEAST_FACE 0.1
-/* Rounds in which bad layers become half as thick. After 12, they are 4000 times thinner than asked
- * for, and what is still bad has no sound direction. */
+/* Maximum number of rounds, in each of which bad layers become half as thick. After 12 rounds they
+ * are 4000 times thinner than asked for. A layer that is still bad then has no sound direction. */
 enum { ROUNDS = 12 };
 /* Steps of the search for a direction. Its error falls as 1 / steps; a direction need not be
  * exact. */
@@ -34,8 +36,8 @@ typedef struct Sweep {
     Vec3 *normals;               /* per triangle: unit, outwards */
     /* The next four are per point of the mesh. Points that are not on the wall have no values. */
     Vec3 *inwards;    /* unit */
-    double *asked;    /* the thickness asked for, mm */
-    double *depth;    /* thickness, mm */
+    double *asked;    /* thickness of all layers that was asked for, mm */
+    double *depth;    /* thickness of all layers, mm */
     bool *is_bad;     /* the layers must be thinner here */
     VesselMesh inner; /* the last surface; borrows triangles and labels */
     atomic_bool *crossed;
@@ -102,7 +104,7 @@ static Vec3 find_direction(const Sweep *sweep, uint32_t point)
     return vec3_scale(vec3_normalized(center), -1);
 }
 
-/* Turns the directions of an end's rim into the plane of the end. */
+/* Turns the directions of a flat end's rim into the plane of the end. */
 static void flatten_rim(Sweep *sweep, size_t cap)
 {
     const FieldSegment *segment = &sweep->tree->segments[mesh_segment(sweep->mesh, cap)];
@@ -153,7 +155,7 @@ static void limit_growth(Sweep *sweep)
     }
 }
 
-/* Sets the thickness asked for. At a point between segments, it is that of the thinnest. */
+/* Sets the thickness asked for. A point between segments gets the thickness of the thinnest one. */
 static void ask_depths(Sweep *sweep, double thickness)
 {
     const VesselMesh *mesh = sweep->mesh;
@@ -293,30 +295,14 @@ static Status make_sound(Sweep *sweep, int threads, Err *err)
 
 /* ---- together -------------------------------------------------------------------------------- */
 
-/* Numbers the trees: meshcheck_trees names a tree after the lowest of its nodes. */
-static Status number_trees(const VesselTree *tree, PrismLayers *layers, Err *err)
-{
-    uint32_t *index = NULL;
-    TRY(meshcheck_trees(tree, &layers->trees, &layers->n_trees, err));
-    TRY(mem_calloc(&index, tree->n_nodes, sizeof *index, "nodes", err));
-    layers->n_trees = 0;
-    for (size_t i = 0; i < tree->n_segments; i++) {
-        uint32_t *at = &index[layers->trees[i]];
-        *at = *at ? *at : (uint32_t)++layers->n_trees;
-        layers->trees[i] = *at - 1;
-    }
-    free(index);
-    return STATUS_OK;
-}
-
-/* Numbers the points of the wall, and allocates all arrays. */
+/* Numbers the trees and the points of the wall, and allocates all arrays. */
 static Status prepare(Sweep *sweep, Err *err)
 {
     const VesselMesh *mesh = sweep->mesh;
     const size_t n = mesh->n_points;
     PrismLayers *layers = &sweep->layers;
     TRY(list_fans(sweep, err));
-    TRY(number_trees(sweep->tree, layers, err));
+    TRY(meshcheck_trees(sweep->tree, &layers->trees, &layers->n_trees, err));
     TRY(mem_alloc(&layers->rank, n, sizeof *layers->rank, "points", err));
     for (size_t i = 0; i < n; i++)
         layers->rank[i] =

@@ -1,5 +1,5 @@
-/* The rest of a block is bounded by its faces and by the vessels' surface turned inside out. Ports
- * join the two, so that no boolean operation is needed. */
+/* The faces of the block and the vessels' surface, turned inside out, bound the solid. Ports join
+ * the two. So no boolean operation is needed. */
 #include "print/block.h"
 
 #include <stdlib.h>
@@ -19,7 +19,7 @@ static double reach_about(const VesselTree *tree, Vec3 middle, int axis)
     return reach;
 }
 
-/* A cylinder stands along the axis that the first vessel is nearest to. */
+/* Returns the coordinate axis that the first segment is nearest to. */
 static int axis_of(const VesselTree *tree)
 {
     Vec3 span = vec3_sub(tree->segments[0].b, tree->segments[0].a);
@@ -59,7 +59,7 @@ Status block_casing(const VesselTree *tree, const PrintBlock *block, Casing *out
     return STATUS_OK;
 }
 
-/* The block with a hole for each port. */
+/* Adds the faces of the block, with a hole for each port. */
 static Status add_faces(Solid *solid, const Casing *casing, const Ports *ports, Err *err)
 {
     CasingHole *holes;

@@ -1,4 +1,4 @@
-/* A cylinder is a prism. Corners are shared by the faces that meet there, so that the casing is
+/* A cylinder is approximated by a prism. Faces share the corners where they meet, so the casing is
  * closed. */
 #include "print/casing.h"
 
@@ -14,7 +14,7 @@ typedef struct Enclosing {
     const CasingHole *holes;
     size_t n_holes;
     FaceLoop *loops;
-    uint32_t *turned; /* points of holes the other way round */
+    uint32_t *turned; /* points of holes, clockwise seen from outside */
     Err *err;
 } Enclosing;
 

@@ -1,28 +1,24 @@
-/* Each hole is joined to the loop round the face by a bridge, which is gone along there and back.
- * The bridge leads from the hole's point that is farthest along the first axis to the nearest
- * corner that is visible from there. Holes that are farther along come first, so that there always
- * is such a corner. Then ears are cut off the one loop that is left: corners that turn left, and
- * whose triangle has no other corner in it [Eberly, Triangulation by Ear Clipping]. Coordinates are
- * integer multiples of a grid, and their differences have 26 bits, so that every turn is exact. */
+/* A bridge joins each hole to the loop round the face. The loop follows the bridge to the hole,
+ * goes round the hole, and follows the bridge back. The bridge leads from the hole's point that is
+ * farthest along the first axis to the nearest corner that is visible from this point. Holes that
+ * are farther along the first axis come first, so that such a corner always exists. Then ears are
+ * cut off the one loop that is left: corners that turn left, and whose triangle has no other corner
+ * in it [Eberly, Triangulation by Ear Clipping]. Coordinates are integer multiples of a grid, and
+ * their differences have 26 bits, so every turn is exact. */
 #include "print/casing.h"
 
 #include <stdlib.h>
 
 typedef struct FaceCorner {
-    uint32_t point, next, before; /* the others are corners */
+    uint32_t point;        /* index of the point in the solid */
+    uint32_t next, before; /* indices of the neighbours in the loop */
 } FaceCorner;
-
-typedef struct BridgeCandidate {
-    double distance2;
-    uint32_t corner;
-} BridgeCandidate;
 
 typedef struct FaceWork {
     const VesselMesh *mesh;
     int u, v; /* axes */
     FaceCorner *corners;
     uint32_t n;
-    BridgeCandidate *candidates;
     FaceLoop *holes; /* farthest first */
     size_t n_holes;
 } FaceWork;
@@ -40,7 +36,7 @@ static double turn(const FaceWork *work, uint32_t a, uint32_t b, uint32_t c)
            y * (across(work, c, 0) - across(work, a, 0));
 }
 
-/* Returns true if p, which is on the line through a and b, is between them. */
+/* Returns true if the point p, which is on the line through a and b, is between a and b. */
 static bool is_between(const FaceWork *work, uint32_t a, uint32_t b, uint32_t p)
 {
     double along = 0, whole = 0;
@@ -98,22 +94,22 @@ static bool is_visible(const FaceWork *work, size_t first_hole, const FaceCorner
     return true;
 }
 
-static int compare_candidates(const void *a, const void *b)
+/* Returns the nearest corner that is visible from a point of a hole; on a tie, the one with the
+ * lowest index. Returns work->n if there is none. */
+static uint32_t nearest_visible(const FaceWork *work, size_t hole, uint32_t point)
 {
-    const BridgeCandidate *one = a, *other = b;
-    if (one->distance2 != other->distance2)
-        return one->distance2 < other->distance2 ? -1 : 1;
-    return (one->corner > other->corner) - (one->corner < other->corner);
-}
-
-static void order_candidates(FaceWork *work, uint32_t point)
-{
+    uint32_t best = work->n;
+    double least = HUGE_VAL;
     for (uint32_t i = 0; i < work->n; i++) {
-        double x = across(work, work->corners[i].point, 0) - across(work, point, 0);
-        double y = across(work, work->corners[i].point, 1) - across(work, point, 1);
-        work->candidates[i] = (BridgeCandidate){x * x + y * y, i};
+        const FaceCorner *corner = &work->corners[i];
+        double x = across(work, corner->point, 0) - across(work, point, 0);
+        double y = across(work, corner->point, 1) - across(work, point, 1);
+        if (x * x + y * y < least && is_visible(work, hole, corner, point)) {
+            least = x * x + y * y;
+            best = i;
+        }
     }
-    qsort(work->candidates, work->n, sizeof *work->candidates, compare_candidates);
+    return best;
 }
 
 static uint32_t add_corner(FaceWork *work, uint32_t point, uint32_t before)
@@ -136,18 +132,14 @@ static uint32_t farthest_of(const FaceWork *work, const FaceLoop *loop)
 }
 
 /* Joins a hole to the loop. Returns false if no corner is visible from it. */
-static bool bridge(FaceWork *work, size_t number)
+static bool bridge(FaceWork *work, size_t index)
 {
-    const FaceLoop *hole = &work->holes[number];
-    uint32_t first = farthest_of(work, hole), point = hole->points[first], i = 0;
-    order_candidates(work, point);
-    while (i < work->n &&
-           !is_visible(work, number, &work->corners[work->candidates[i].corner], point))
-        i++;
-    if (i == work->n)
+    const FaceLoop *hole = &work->holes[index];
+    uint32_t first = farthest_of(work, hole);
+    uint32_t corner = nearest_visible(work, index, hole->points[first]), last = corner;
+    if (corner == work->n)
         return false;
-    uint32_t corner = work->candidates[i].corner, next = work->corners[corner].next;
-    uint32_t last = corner;
+    uint32_t next = work->corners[corner].next;
     for (uint32_t k = 0; k <= hole->n; k++)
         last = add_corner(work, hole->points[(first + k) % hole->n], last);
     last = add_corner(work, work->corners[corner].point, last);
@@ -225,7 +217,6 @@ Status face_fill(Solid *solid, int face, const FaceLoop *loops, size_t n_loops, 
     for (size_t i = 0; i < n_loops; i++)
         most += loops[i].n + 2;
     TRY_GOTO(mem_calloc(&work.corners, most, sizeof *work.corners, "a face", err));
-    TRY_GOTO(mem_calloc(&work.candidates, most, sizeof *work.candidates, "a face", err));
     TRY_GOTO(mem_calloc(&work.holes, n_loops, sizeof *work.holes, "a face", err));
     for (uint32_t i = 0; i < loops[0].n; i++)
         add_corner(&work, loops[0].points[i], i ? i - 1 : 0);
@@ -239,7 +230,6 @@ Status face_fill(Solid *solid, int face, const FaceLoop *loops, size_t n_loops, 
     TRY_GOTO(cut_ears(&work, solid, label, err));
 done:
     free(work.corners);
-    free(work.candidates);
     free(work.holes);
     return status;
 }

@@ -168,9 +168,9 @@ static bool lay_bent(const PortSearch *search, const PortRing *rim, int face, Po
            casing_holds_disc(search->casing, face, out, last_mm + edge_room(last_mm));
 }
 
-/* Returns the part of a port between two rings. That of a straight port reaches as far as its
+/* Returns the part of a port that ends at ring i. The part of a straight port reaches as far as its
  * ellipse. */
-static FieldSegment stretch_of(const PortRing *rim, const Port *port, int i)
+static FieldSegment part_of(const PortRing *rim, const Port *port, int i)
 {
     const PortRing *from = i ? &port->rings[i - 1] : rim, *to = &port->rings[i];
     double cosine = vec3_dot(to->direction, face_normal(port->face)), beyond = 0;
@@ -221,60 +221,52 @@ static bool is_own(const OwnVessels *own, uint32_t segment)
 
 /* Returns true if a part of a port keeps clear of all vessels except its own. A vessel is clear if
  * its box does not meet that of the part, padded by the clearance. */
-static bool is_off_vessels(const PortSearch *search, const FieldSegment *stretch,
+static bool is_off_vessels(const PortSearch *search, const FieldSegment *part,
                            const OwnVessels *own)
 {
     uint32_t k;
-    Box around = segment_box(stretch, (1 + min_clearance) * stretch->radius_mm);
+    Box around = segment_box(part, (1 + min_clearance) * part->radius_mm);
     for (BoxWalk walk = boxwalk_box(&search->boxes, around); boxwalk_next(&walk, &k);)
-        if (!is_apart(stretch, &search->tree->segments[k]) && !is_own(own, k))
+        if (!is_apart(part, &search->tree->segments[k]) && !is_own(own, k))
             return false;
     return true;
 }
 
-/* Returns true if a part of a port keeps clear of another port. */
-static bool is_off_port(const PortSearch *search, const FieldSegment *stretch, const Port *other)
+/* Returns true if two ports keep clear of each other. */
+static bool is_off_port(const Port *port, const Port *other)
 {
-    PortRing its_rim = rim_at_end(search->tree, other->end);
-    for (int i = 0; i < other->n_rings; i++) {
-        FieldSegment its = stretch_of(&its_rim, other, i);
-        if (!is_apart(stretch, &its))
-            return false;
-    }
+    for (int i = 0; i < port->n_rings; i++)
+        for (int k = 0; k < other->n_rings; k++)
+            if (!is_apart(&port->parts[i], &other->parts[k]))
+                return false;
     return true;
 }
 
-/* Sets the box of a port, with the clearance about it. */
-static void set_box(const PortRing *rim, Port *port)
+/* Sets the parts and the box of a port, with the clearance about it. */
+static void set_parts(const PortRing *rim, Port *port)
 {
     port->box = box_empty();
     for (int i = 0; i < port->n_rings; i++) {
-        FieldSegment own = stretch_of(rim, port, i);
-        port->box = box_union(port->box, segment_box(&own, (1 + min_clearance) * own.radius_mm));
+        const FieldSegment *own = &port->parts[i];
+        port->parts[i] = part_of(rim, port, i);
+        port->box = box_union(port->box, segment_box(own, (1 + min_clearance) * own->radius_mm));
     }
 }
 
-/* Returns true if a port, whose box is set, keeps clear of all vessels except its own, and of all
- * ports. */
+/* Returns true if a port, whose parts are set, keeps clear of all vessels except its own, and of
+ * all ports. */
 static bool is_free(const PortSearch *search, const PortRing *rim, const Port *port)
 {
     OwnVessels vessels = {.n = 0};
     list_own(search, port->end->segment, search->tree->nodes[port->end->segment][port->end->end],
              own_vessel_reach * rim->radius_mm, &vessels);
-    for (int i = 0; i < port->n_rings; i++) {
-        FieldSegment own = stretch_of(rim, port, i);
-        if (!is_off_vessels(search, &own, &vessels))
+    for (int i = 0; i < port->n_rings; i++)
+        if (!is_off_vessels(search, &port->parts[i], &vessels))
             return false;
-    }
     for (size_t p = 0; p < search->ports->n; p++) {
         const Port *other = &search->ports->items[p];
-        if (!box_meets(port->box, other->box))
-            continue;
-        for (int i = 0; i < port->n_rings; i++) {
-            FieldSegment own = stretch_of(rim, port, i);
-            if (!is_off_port(search, &own, other))
-                return false;
-        }
+        if (box_meets(port->box, other->box) && !is_off_port(port, other))
+            return false;
     }
     return true;
 }
@@ -284,7 +276,7 @@ static bool lay_port(const PortSearch *search, const PortRing *rim, int face, bo
 {
     if (!(bent ? lay_bent : lay_straight)(search, rim, face, port))
         return false;
-    set_box(rim, port);
+    set_parts(rim, port);
     return is_free(search, rim, port);
 }
 

@@ -27,6 +27,7 @@ typedef struct Port {
     int n_rings;
     Box box;                    /* about the channel and the clearance that is left about it, mm */
     PortRing rings[PORT_RINGS]; /* from the vessel on; the last one is in the face */
+    FieldSegment parts[PORT_RINGS]; /* per ring: a capsule about the channel before the ring */
     bool is_straight; /* the port has one ring, an ellipse where the face cuts off a cone */
     uint32_t *points; /* indices in the solid of the last ring's points; owned; set by
                        * ports_add */

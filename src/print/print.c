@@ -1,8 +1,8 @@
 /* The two sides of a wall are meshed in the same way: the lumen from the vessels, the outer side
- * from the vessels with radii that are larger by the wall. Their flat ends are in the same planes
- * and have rims with the same number of points, so a flat ring joins them. No boolean operation is
- * needed. What is proved of both surfaces is true of the wall, except that the two surfaces may
- * cross. So the wall is searched for crossings as a whole. */
+ * from vessels whose radii are larger by the wall. The flat ends of both are in the same planes and
+ * have rims with the same number of points, so a flat ring joins them. No boolean operation is
+ * needed. Both surfaces are proved to be valid before they are joined. The only new fault that is
+ * possible is that one surface crosses the other, so the whole solid is searched for crossings. */
 #include "print/print.h"
 
 #include "mesh/mesh.h"
@@ -25,7 +25,7 @@ typedef struct PrintMaking {
     VesselTree outer; /* the vessels with their walls, and with pins */
     SupportPins pins;
     PrintParams params;
-    PrintSide sides[2]; /* the outer one, and that of the lumen */
+    PrintSide sides[2]; /* the outer side, and the side of the lumen */
     Casing casing;      /* the block or the plate */
     Solid solid;
     Seams seams;
@@ -279,7 +279,7 @@ static void name_owners(PrintMaking *making, MeshReport *report)
     uint32_t *const lists[] = {report->enclosed, report->slivers, report->round};
     const size_t counts[] = {report->n_enclosed, report->n_slivers, report->n_round};
     enum { LISTS = sizeof counts / sizeof *counts };
-    if (pins->n_added == 0)
+    if (pins->added.n == 0)
         return;
     for (size_t i = 0; i < mesh->n_triangles; i++) {
         uint32_t segment = mesh_segment(mesh, i);

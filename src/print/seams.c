@@ -1,7 +1,7 @@
-/* A ring takes a disc off either end of what it joins. With them it takes 2 from the sum of Euler
- * numbers, and so does each handle of a surface. So a part of the solid that is made of s surfaces
- * with h handles and r rings has the Euler number 2 (s - r - h). The part must be connected in the
- * mesh as it is in the graph. */
+/* A ring replaces a disc of each of the two surfaces that it joins. So a ring lowers the sum of the
+ * Euler numbers by 2, and so does each handle of a surface. A part of the solid that is made of s
+ * surfaces with h handles, joined by r rings, has the Euler number 2 (s - r - h). A part that is
+ * connected in the graph must be connected in the mesh. */
 #include "print/seams.h"
 
 #include "mesh/mesh.h"
@@ -21,16 +21,18 @@ void seams_release(Seams *seams)
 
 static uint32_t surface_count(const Seams *seams)
 {
-    return 2 * seams->n_nodes + 1;
+    return 2 * seams->n_trees + 1;
 }
 
 Status seams_make(const VesselTree *tree, Seams *out, Err *err)
 {
-    Seams seams = {.n_nodes = (uint32_t)tree->n_nodes, .n_segments = tree->n_segments};
-    size_t n_trees, n = surface_count(&seams);
+    Seams seams = {0};
+    size_t n_trees = 0;
     Status status;
     TRY_GOTO(meshcheck_trees(tree, &seams.trees, &n_trees, err));
-    TRY_GOTO(meshcheck_loops(tree, seams.trees, &seams.loops, err));
+    seams.n_trees = (uint32_t)n_trees;
+    size_t n = surface_count(&seams);
+    TRY_GOTO(meshcheck_loops(tree, seams.trees, n_trees, &seams.loops, err));
     TRY_GOTO(mem_calloc(&seams.root, n, sizeof *seams.root, "trees", err));
     TRY_GOTO(mem_calloc(&seams.rings, n, sizeof *seams.rings, "trees", err));
     TRY_GOTO(mem_calloc(&seams.is_used, n, sizeof *seams.is_used, "trees", err));
@@ -45,8 +47,8 @@ done:
 uint32_t seams_surface(const Seams *seams, uint32_t label)
 {
     if (label & MESH_FRAME)
-        return 2 * seams->n_nodes;
-    return seams->trees[label & ~MESH_FLAGS] + (label & MESH_LUMEN ? seams->n_nodes : 0);
+        return 2 * seams->n_trees;
+    return seams->trees[label & ~MESH_FLAGS] + (label & MESH_LUMEN ? seams->n_trees : 0);
 }
 
 void seams_add(Seams *seams, uint32_t label)
@@ -67,8 +69,8 @@ void seams_ring(Seams *seams, uint32_t label, uint32_t other)
 size_t seams_count_unjoined(const Seams *seams, uint32_t kind)
 {
     size_t n = 0;
-    uint32_t first = kind == MESH_LUMEN ? seams->n_nodes : 0;
-    for (uint32_t i = first; i < first + seams->n_nodes; i++)
+    uint32_t first = kind == MESH_LUMEN ? seams->n_trees : 0;
+    for (uint32_t i = first; i < first + seams->n_trees; i++)
         n += seams->is_used[i] && seams->root[i] == i && seams->rings[i] == 0;
     return n;
 }
@@ -76,8 +78,8 @@ size_t seams_count_unjoined(const Seams *seams, uint32_t kind)
 /* Returns the Euler number of a surface. */
 static long long surface_euler(const Seams *seams, uint32_t surface)
 {
-    bool is_casing = surface == 2 * seams->n_nodes;
-    return is_casing ? 2 : 2 - 2 * (long long)seams->loops[surface % seams->n_nodes];
+    bool is_casing = surface == 2 * seams->n_trees;
+    return is_casing ? 2 : 2 - 2 * (long long)seams->loops[surface % seams->n_trees];
 }
 
 /* Finds the Euler number that each part of the graph must have, at the surface that represents the
@@ -101,8 +103,8 @@ static void expect(const Seams *seams, long long *euler, MeshReport *report)
     report->expected_genus = (size_t)((2 * (long long)report->expected_components - sum) / 2);
 }
 
-/* Doubles euler[] and subtracts twice the Euler number of the parts of the mesh, which is twice
- * their points less their triangles. Returns how often a point has triangles of two parts. */
+/* Doubles euler[], and subtracts twice the Euler number of each part of the mesh, which is 2 points
+ * - triangles. Returns how often a point has triangles of two parts. */
 static size_t take_found(const Seams *seams, const VesselMesh *mesh, uint32_t *part_of,
                          long long *euler)
 {
@@ -124,7 +126,7 @@ static size_t take_found(const Seams *seams, const VesselMesh *mesh, uint32_t *p
     return mixed;
 }
 
-/* Checks each part; after meshcheck_topology. */
+/* Checks each part. Call it after meshcheck_topology. */
 static Status check_parts(const Seams *seams, const VesselMesh *mesh, MeshReport *report, Err *err)
 {
     long long *euler = NULL;
@@ -150,11 +152,7 @@ done:
 Status seams_prove(const Seams *seams, const VesselMesh *mesh, double grid_mm, int threads,
                    MeshReport *report, Err *err)
 {
-    uint32_t *none;
-    TRY(mem_calloc(&none, seams->n_segments, sizeof *none, "segments", err));
-    Status status = meshcheck_topology(mesh, none, report, err);
-    free(none);
-    TRY(status);
+    TRY(meshcheck_topology(mesh, NULL, report, err));
     TRY(meshcheck_crossings(mesh, grid_mm, threads, NULL, &report->crossings, err));
     return check_parts(seams, mesh, report, err);
 }

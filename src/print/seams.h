@@ -10,14 +10,13 @@
 
 #include "mesh/mesh.h"
 
-/* The graph. A surface is the outer side of a tree, the lumen of a tree, or the casing. Surfaces
- * have indices: the tree's number, n_nodes plus this number, and 2 n_nodes. All arrays are
+/* The graph. A surface is the outer side of a tree, the lumen of a tree, or the casing. The outer
+ * side of tree t has the index t, its lumen n_trees + t, and the casing 2 n_trees. All arrays are
  * owned. */
 typedef struct Seams {
-    uint32_t *trees; /* per segment: the number of its tree, below n_nodes [meshcheck_trees] */
-    uint32_t *loops; /* per number of a tree: the number of its loops [meshcheck_loops] */
-    size_t n_segments;
-    uint32_t n_nodes;
+    uint32_t *trees; /* per segment: the index of its tree [meshcheck_trees] */
+    uint32_t *loops; /* per tree: the number of its independent loops [meshcheck_loops] */
+    uint32_t n_trees;
     uint32_t *root;  /* per surface: disjoint sets of joined surfaces [base/sets.h] */
     uint32_t *rings; /* per surface that is the root of a set: the number of rings in the set */
     size_t n_rings;  /* number of all rings */

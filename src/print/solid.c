@@ -1,6 +1,6 @@
-/* A cap of the mesher is a fan of triangles about a point that no other triangle has. Leaving the
- * fan out opens one rim, whose points keep their order by angle. Two surfaces of one tree whose
- * segments differ only in their radii have rims of equally many points at the same angles. */
+/* A cap of the mesh is a fan of triangles about a point that no other triangle has. Without the
+ * fan, one rim is open, whose points are ordered by angle. Two surfaces of one tree whose segments
+ * differ in their radii alone have rims with the same number of points at the same angles. */
 #include "print/solid.h"
 
 #include <stdlib.h>
@@ -15,7 +15,7 @@ void cutends_release(CutEnds *ends)
     *ends = (CutEnds){0};
 }
 
-/* The triangles of one cap from `first` on. */
+/* Returns the number of triangles of the cap that begins at `first`. */
 static uint32_t count_fan(const VesselMesh *mesh, size_t first)
 {
     uint32_t n = 1, middle = mesh->triangles[first][0];
@@ -28,18 +28,16 @@ static uint32_t count_fan(const VesselMesh *mesh, size_t first)
 Status cutends_find(const VesselMesh *mesh, CutEnds *out, Err *err)
 {
     CutEnds ends = {0};
-    size_t capacity = 0, points = 0;
+    size_t points = 0;
     Status status;
     for (size_t i = 0, n; i < mesh->n_triangles; i += n) {
         n = mesh_is_cap(mesh, i) ? count_fan(mesh, i) : 1;
         if (!mesh_is_cap(mesh, i))
             continue;
-        TRY_GOTO(mem_reserve(&ends.items, &capacity, ends.n + 1, sizeof *ends.items,
-                             "ends of vessels", err));
-        ends.items[ends.n++] = (CutEnd){.segment = mesh_segment(mesh, i),
-                                        .end = mesh->triangles[i][2] == mesh->triangles[i + 1][1],
-                                        .first = (uint32_t)i,
-                                        .n = (uint32_t)n};
+        int end = mesh->triangles[i][2] == mesh->triangles[i + 1][1];
+        TRY_GOTO(ARRAY_PUSH(
+            &ends, "ends of vessels", err,
+            (CutEnd){mesh_segment(mesh, i), end, (uint32_t)i, (uint32_t)n, false, NULL}));
         points += n;
     }
     TRY_GOTO(mem_calloc(&ends.rims, points, sizeof *ends.rims, "ends of vessels", err));

@@ -23,7 +23,7 @@ typedef struct CutEnd {
 /* The flat ends of one mesh. Release it with cutends_release. */
 typedef struct CutEnds {
     CutEnd *items; /* owned; by rising segment, then end */
-    size_t n;
+    size_t n, capacity;
     uint32_t *rims; /* owned; the items point into it */
 } CutEnds;
 

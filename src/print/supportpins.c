@@ -1,5 +1,5 @@
-/* A pin is added to the tree as a vessel, so that it blends with what it holds. It is vertical, so
- * that it is cut off flat in the plane of the plate, whose face has a hole there. */
+/* A pin is added to the tree as a vessel, so that it blends with the vessel that it supports. It is
+ * vertical, so that it is cut off flat in the plane of the plate, whose face has a hole there. */
 #include "print/supportpins.h"
 
 #include "mesh/mesh.h"
@@ -32,17 +32,15 @@ typedef struct Standing {
     BoxTree boxes;         /* of the segments before any was added; owned */
     IndexLists incident;   /* per node, before any was added: its segments; owned */
     size_t incident_nodes; /* number of nodes before any was added */
-    PinFoot *feet;
-    size_t n_feet, foot_capacity;
-    size_t segment_capacity[3], owner_capacity, pin_capacity;
+    ARRAY(PinFoot) feet;   /* owned */
+    size_t segment_capacity[3];
     SupportPins pins;
     Err *err;
 } Standing;
 
 void supportpins_release(SupportPins *pins)
 {
-    free(pins->owner);
-    free(pins->is_pin);
+    ARRAY_RELEASE(&pins->added);
     *pins = (SupportPins){0};
 }
 
@@ -51,7 +49,7 @@ static Vec3 end_of(const VesselTree *tree, uint32_t segment, int end)
     return segment_end(&tree->segments[segment], end);
 }
 
-/* Returns true if no segment descends from the node. */
+/* Returns true if no segment descends from the node. *foot receives the point of a pin there. */
 static bool is_lowest(const Standing *standing, uint32_t node, PinFoot *foot)
 {
     const VesselTree *tree = standing->tree;
@@ -77,9 +75,7 @@ static Status find_feet(Standing *standing)
         if (!is_lowest(standing, node, &foot))
             continue;
         foot.radius_mm = fmax(pin_part * foot.radius_mm, standing->base->min_pin_radius_mm);
-        TRY(mem_reserve(&standing->feet, &standing->foot_capacity, standing->n_feet + 1,
-                        sizeof *standing->feet, "pins", standing->err));
-        standing->feet[standing->n_feet++] = foot;
+        TRY(ARRAY_PUSH(&standing->feet, "pins", standing->err, foot));
     }
     return STATUS_OK;
 }
@@ -88,8 +84,8 @@ static double top_of(const Standing *standing)
 {
     const VesselTree *tree = standing->tree;
     double low = vesseltree_box(tree, 0).low.z, thick = 0;
-    for (size_t i = 0; i < standing->n_feet; i++)
-        thick = fmax(thick, standing->feet[i].radius_mm);
+    for (size_t i = 0; i < standing->feet.n; i++)
+        thick = fmax(thick, standing->feet.items[i].radius_mm);
     return low - fmax(least_lift_mm, lift_part * thick);
 }
 
@@ -97,24 +93,18 @@ static Status add_segment(Standing *standing, FieldSegment segment, uint32_t fro
                           uint32_t owner, bool is_pin)
 {
     VesselTree *tree = standing->tree;
-    SupportPins *pins = &standing->pins;
     size_t n = tree->n_segments + 1, *capacity = standing->segment_capacity;
     TRY(mem_reserve(&tree->segments, &capacity[0], n, sizeof *tree->segments, "pins",
                     standing->err));
     TRY(mem_reserve(&tree->nodes, &capacity[1], n, sizeof *tree->nodes, "pins", standing->err));
     TRY(mem_reserve(&tree->ids, &capacity[2], n, sizeof *tree->ids, "pins", standing->err));
-    TRY(mem_reserve(&pins->owner, &standing->owner_capacity, pins->n_added + 1, sizeof *pins->owner,
-                    "pins", standing->err));
-    TRY(mem_reserve(&pins->is_pin, &standing->pin_capacity, pins->n_added + 1, sizeof *pins->is_pin,
-                    "pins", standing->err));
+    TRY(ARRAY_PUSH(&standing->pins.added, "pins", standing->err, (AddedSegment){owner, is_pin}));
     segment.segment = tree->segments[owner].segment;
     tree->segments[n - 1] = segment;
     tree->nodes[n - 1][0] = from;
     tree->nodes[n - 1][1] = to;
     tree->ids[n - 1] = tree->ids[owner];
     tree->n_segments = n;
-    pins->owner[pins->n_added] = owner;
-    pins->is_pin[pins->n_added++] = is_pin;
     return STATUS_OK;
 }
 
@@ -162,7 +152,7 @@ static bool walk_from(const Standing *standing, const PinFoot *foot, double mm, 
     uint32_t node = foot->node, segment = foot->segment;
     for (;;) {
         if (tree->nodes[segment][0] != node && tree->nodes[segment][1] != node)
-            return false; /* it was cut in two */
+            return false; /* the segment was split, and the node is at its other piece */
         int end = segment_end_at(tree, segment, node);
         double length = vec3_distance(tree->segments[segment].a, tree->segments[segment].b);
         *spot = (Spot){segment, end, fmin(mm, length)};
@@ -256,19 +246,19 @@ static size_t take_spoilt(Standing *standing, const Junctions *junctions)
 {
     VesselTree *tree = standing->tree;
     SupportPins *pins = &standing->pins;
-    size_t kept = 0, n = pins->n_added;
+    AddedSegment *added = pins->added.items;
+    size_t kept = 0, n = pins->added.n;
     for (size_t i = 0; i < n; i++) {
         size_t from = pins->n_original + i, to = pins->n_original + kept;
-        if (pins->is_pin[i] && is_spoilt(standing, junctions, (uint32_t)from))
+        if (added[i].is_pin && is_spoilt(standing, junctions, (uint32_t)from))
             continue;
         tree->segments[to] = tree->segments[from];
         tree->nodes[to][0] = tree->nodes[from][0];
         tree->nodes[to][1] = tree->nodes[from][1];
         tree->ids[to] = tree->ids[from];
-        pins->owner[kept] = pins->owner[i];
-        pins->is_pin[kept++] = pins->is_pin[i];
+        added[kept++] = added[i];
     }
-    pins->n_added = kept;
+    pins->added.n = kept;
     pins->n_pins -= n - kept;
     pins->n_unsupported += n - kept;
     tree->n_segments = pins->n_original + kept;
@@ -303,15 +293,15 @@ Status supportpins_add(VesselTree *tree, const PrintBase *base, bool open_ends,
     TRY_GOTO(vesseltree_incident(tree, &standing.incident, err));
     TRY_GOTO(find_feet(&standing));
     standing.pins.plate_top_mm = top_of(&standing);
-    for (size_t i = 0; i < standing.n_feet; i++)
-        TRY_GOTO(add_pin(&standing, standing.feet[i], open_ends));
+    for (size_t i = 0; i < standing.feet.n; i++)
+        TRY_GOTO(add_pin(&standing, standing.feet.items[i], open_ends));
     TRY_GOTO(keep_flat(&standing, params));
     *out = standing.pins;
     standing.pins = (SupportPins){0};
 done:
     boxtree_release(&standing.boxes);
     indexlists_release(&standing.incident);
-    free(standing.feet);
+    ARRAY_RELEASE(&standing.feet);
     supportpins_release(&standing.pins);
     return status;
 }

@@ -11,14 +11,18 @@
 #include "print/print.h"
 #include "print/seams.h"
 
-/* Segments added to a tree for printing: support pins, whose second ends are on the base plate, and
- * the pieces of vessels that were split where a pin attaches. Added segment i has the index
- * n_original + i in the tree. */
+/* A segment that was added to a tree for printing: a support pin, whose second end is on the base
+ * plate, or a piece of a vessel that was split where a pin attaches. */
+typedef struct AddedSegment {
+    uint32_t owner; /* the original segment that it belongs to */
+    bool is_pin;    /* false: a piece of a vessel */
+} AddedSegment;
+
+/* The added segments. Added segment i has the index n_original + i in the tree. */
 typedef struct SupportPins {
-    size_t n_original; /* number of segments before any was added */
-    uint32_t *owner;   /* owner[i]: the original segment that added segment i belongs to; owned */
-    bool *is_pin;      /* is_pin[i]: added segment i is a pin, not a piece of a vessel; owned */
-    size_t n_added, n_pins;
+    size_t n_original;         /* number of segments before any was added */
+    ARRAY(AddedSegment) added; /* owned */
+    size_t n_pins;
     size_t n_unsupported; /* points that need a pin, but where no pin is possible */
     double plate_top_mm;  /* z of the plate's upper face */
 } SupportPins;
@@ -58,13 +62,14 @@ MUST_CHECK Status supportpins_join(Solid *solid, const Casing *plate, const CutE
 /* Returns the original segment that a segment of the extended tree belongs to. */
 static inline uint32_t supportpins_original_segment(const SupportPins *pins, uint32_t segment)
 {
-    return segment < pins->n_original ? segment : pins->owner[segment - pins->n_original];
+    return segment < pins->n_original ? segment
+                                      : pins->added.items[segment - pins->n_original].owner;
 }
 
 /* Returns true if a segment of the extended tree is a pin. */
 static inline bool supportpins_is_pin(const SupportPins *pins, uint32_t segment)
 {
-    return segment >= pins->n_original && pins->is_pin[segment - pins->n_original];
+    return segment >= pins->n_original && pins->added.items[segment - pins->n_original].is_pin;
 }
 
 #endif

@@ -29,7 +29,8 @@ static size_t chunk_end(const Pulse *pulse, size_t chunk)
     return end < pulse->n ? end : pulse->n;
 }
 
-/* cos and sin of 2 pi k m / n, of all k at one m together: [m * harmonics + k - 1]. */
+/* Makes a table of cos and sin of 2 pi k m / n. The entry of k and m is [m * harmonics + k - 1], so
+ * that all k of one m are together. The caller frees *table. */
 static Status make_table(const Pulse *pulse, size_t n, Phasor **table, Err *err)
 {
     const size_t harmonics = (size_t)pulse->params.harmonics;
@@ -43,13 +44,15 @@ static Status make_table(const Pulse *pulse, size_t n, Phasor **table, Err *err)
     return STATUS_OK;
 }
 
-/* A field of one segment. */
+/* The amplitudes of a field at one segment. */
 typedef struct Spectrum {
     double mean;
     int harmonics;
     Phasor at[WAVEFORM_MAX_HARMONICS + PAIR]; /* harmonic k is at[k - 1] */
 } Spectrum;
 
+/* Returns the value of a field at the moment whose table entries are turn[0] to turn[harmonics -
+ * 1]. */
 static double value_at(const Spectrum *spectrum, const Phasor *turn)
 {
     double x = spectrum->mean;
@@ -162,7 +165,7 @@ Status pulse_course(const Pulse *pulse, PulseField field, size_t frames, double 
 
 enum { HALF = PULSE_SAMPLES / 2 };
 
-/* cos and sin of 2 pi k m / PULSE_SAMPLES, of all m up to half a cycle at one k together. */
+/* cos and sin of 2 pi k m / PULSE_SAMPLES for one k and all m up to half a cycle. */
 typedef struct Turns {
     double cos[HALF + 1], sin[HALF + 1];
 } Turns;
@@ -256,7 +259,8 @@ static void cycles_chunk(size_t chunk, int worker, void *context)
             find_cycle(cycles, i);
 }
 
-/* The phase is followed segment by segment from the root, so that it does not wrap. */
+/* Finds the phase delays. The phase is followed segment by segment from the root, so that it does
+ * not wrap. Parents come before their children in a tree. */
 static void find_delays(const Pulse *pulse, PulseCycle *cycle)
 {
     const Tree *tree = pulse->params.tree;

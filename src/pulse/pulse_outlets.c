@@ -84,7 +84,7 @@ typedef struct Structured {
     PairC *row;
 } Structured;
 
-/* Powers of `factor` that bring a radius below the minimum. */
+/* Returns the smallest power of `factor` that brings a radius below the minimum. */
 static size_t count_powers(double radius, double factor, double minimum)
 {
     size_t n = 0;
@@ -101,8 +101,8 @@ static double power_of(double factor, size_t n)
     return x;
 }
 
-/* Admittance of a tree whose root has this radius. A row depends on the row of the next power of
- * ALPHA, whose place it takes. */
+/* Returns the admittance of a tree whose root has this radius. A row is computed from the row of
+ * the next power of ALPHA, and replaces it. */
 static PairC structured_admittance(const Structured *tree, double radius_mm, double viscosity)
 {
     const PulseParams *params = tree->params;

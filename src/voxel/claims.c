@@ -82,8 +82,8 @@ static VoxelCell numbered_cell(const VoxelGrid *grid, int64_t voxel)
     return grid_cell(grid, voxel % grid->n[0], row % grid->n[1], row / grid->n[1]);
 }
 
-/* Adds the neighbours of a voxel that the body fills a part of. Every voxel that a body meets has
- * neighbours on all sides, because the grid has a margin. */
+/* Appends the neighbours of a voxel that the body fills at least in part. Every voxel that a body
+ * meets has neighbours on all sides, because the grid has a margin. */
 static Status list_about(const VoxelGrid *grid, const Body *body, int64_t voxel, VoxelList *list,
                          Err *err)
 {

@@ -2,7 +2,7 @@
  * through the middle of the row, intersected with the body widened by half the row's diagonal,
  * gives the voxels that the body may touch. The lines along the four edges of the row give the
  * voxels that lie wholly in the body, because it is convex. A sweep along the row then has the list
- * of bodies of each voxel. Only voxels that lie in no body wholly take work. */
+ * of bodies of each voxel. Only voxels that are not wholly in one body need cover_fraction. */
 #include "voxel/rows.h"
 
 #include <math.h>

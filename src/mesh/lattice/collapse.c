@@ -1,28 +1,33 @@
 /* Half-edge collapses: each point is merged into the nearest neighbour that allows it. If an edge e
- * between points with normals n1 and n2 is the chord of an arc, the arc is |e . (n2 - n1)| / 8 away
- * half way. The link condition [T. Dey et al.: Topology preserving edge contraction, 1999] keeps
- * the topology: two points have no common neighbours except those of their common triangles. The
- * corners at a point are a list through `next`. Corners of removed triangles are taken out of the
- * list when it is walked. */
-#include "mesh/lattice/collapse.h"
+ * between points with normals n1 and n2 is the chord of an arc, the distance between the middles of
+ * chord and arc is |e . (n2 - n1)| / 8. This distance must stay below the sagitta. The link
+ * condition [T. Dey et al.: Topology preserving edge contraction, 1999] keeps the topology: the two
+ * ends of a collapsed edge have no common neighbours except the third corners of the triangles at
+ * the edge. The corners at a point form a list through `next`. Corners of removed triangles leave
+ * the list when it is walked. Each sweep costs O(points). */
+#include "mesh/lattice/patch.h"
 
 #include <stdlib.h>
 
-/* A point with more triangles is not looked at. MAX_SWEEPS bounds how often all points are tried.
- */
+/* A point with more than MAX_RING triangles stays. All points are tried up to MAX_SWEEPS times. The
+ * reasons for the numbers are not recorded; larger ones remove a few more points. */
 enum { MAX_RING = 48, MAX_SWEEPS = 4 };
 #define NONE UINT32_MAX
 
-/* Minimum cosine between the normal of a triangle and the normals at its corners. */
+/* Minimum cosine between the normal of a triangle and the normals at its corners. Reason for the
+ * number not recorded; a smaller one permits triangles that cut across bends. */
 static const double least_cosine = 0.72;
-/* Minimum height of a new triangle over its longest side, unless it was worse before. */
+/* Minimum height of a new triangle divided by its longest side, unless it was worse before. Reason
+ * for the number not recorded. */
 static const double least_shape = 0.04;
 
 typedef struct CollapseWork {
     Patch *patch;
-    uint32_t *next, *first, *stamp; /* the arrays of Collapser */
-    bool *settled;
-    double sagitta; /* in local radii */
+    double sagitta;  /* in local radii */
+    uint32_t *next;  /* per corner of a triangle: the next corner at the same point; owned */
+    uint32_t *first; /* per point: its first corner; owned */
+    uint32_t *stamp; /* per point: marks neighbours while a collapse is tested; owned */
+    bool *settled;   /* per point: it was tested, must stay, and nothing near has changed; owned */
 } CollapseWork;
 
 /* The ring of a point: its triangles are (point, from[i], to[i]). */
@@ -30,14 +35,6 @@ typedef struct Ring {
     uint32_t from[MAX_RING], to[MAX_RING], corner[MAX_RING];
     int n;
 } Ring;
-
-void collapser_release(Collapser *collapser)
-{
-    ARRAY_RELEASE(&collapser->next);
-    ARRAY_RELEASE(&collapser->first);
-    ARRAY_RELEASE(&collapser->stamp);
-    ARRAY_RELEASE(&collapser->settled);
-}
 
 /* Finds the ring of a point. Returns false if the point has no triangles, or too many. */
 static bool find_ring(const CollapseWork *work, uint32_t point, Ring *ring)
@@ -70,7 +67,7 @@ static inline bool edge_is_near(const CollapseWork *work, uint32_t a, uint32_t b
     return off <= work->sagitta * one->radius_mm && off <= work->sagitta * other->radius_mm;
 }
 
-/* Twice the area over the square of the longest side. */
+/* Returns the height of a triangle over its longest side, divided by that side. */
 static double shape_of(Vec3 a, Vec3 b, Vec3 c, double twice_area)
 {
     Vec3 ab = vec3_sub(b, a), bc = vec3_sub(c, b), ca = vec3_sub(a, c);
@@ -99,7 +96,7 @@ static bool triangle_is_fit(const CollapseWork *work, uint32_t a, uint32_t b, ui
                             twice_area(points[old].x, points[b].x, points[c].x));
 }
 
-/* Returns the number of triangles with the edge from the ring's point to `other`. */
+/* Returns the number of triangles at the edge from the ring's point to `other`. */
 static int shared_triangles(const Ring *ring, uint32_t other)
 {
     int n = 0;
@@ -220,35 +217,30 @@ static bool try_point(const CollapseWork *work, uint32_t point)
     return false;
 }
 
-static Status prepare(Collapser *collapser, const Patch *patch, Err *err)
+static Status prepare(CollapseWork *work, Err *err)
 {
+    const Patch *patch = work->patch;
     size_t points = patch->n_points, corners = 3 * patch->n_triangles;
-    TRY(ARRAY_RESERVE(&collapser->next, corners, "points of a junction", err));
-    TRY(ARRAY_RESERVE(&collapser->first, points, "points of a junction", err));
-    TRY(ARRAY_RESERVE(&collapser->stamp, points, "points of a junction", err));
-    TRY(ARRAY_RESERVE(&collapser->settled, points, "points of a junction", err));
-    for (size_t i = 0; i < points; i++) {
-        collapser->first.items[i] = collapser->stamp.items[i] = NONE;
-        collapser->settled.items[i] = false;
-    }
+    TRY(mem_alloc(&work->next, corners, sizeof *work->next, patch_items, err));
+    TRY(mem_alloc(&work->first, points, sizeof *work->first, patch_items, err));
+    TRY(mem_alloc(&work->stamp, points, sizeof *work->stamp, patch_items, err));
+    TRY(mem_calloc(&work->settled, points, sizeof *work->settled, patch_items, err));
+    for (size_t i = 0; i < points; i++)
+        work->first[i] = work->stamp[i] = NONE;
     for (size_t i = corners; i-- > 0;) {
-        uint32_t *first = &collapser->first.items[patch->triangles[i / 3].at[i % 3]];
-        collapser->next.items[i] = *first;
+        uint32_t *first = &work->first[patch->triangles[i / 3].at[i % 3]];
+        work->next[i] = *first;
         *first = (uint32_t)i;
     }
     return STATUS_OK;
 }
 
-Status collapse_apply(Collapser *collapser, Patch *patch, double sagitta, Err *err)
+Status collapse_apply(Patch *patch, double sagitta, Err *err)
 {
-    TRY(prepare(collapser, patch, err));
-    const CollapseWork work = {patch,
-                               collapser->next.items,
-                               collapser->first.items,
-                               collapser->stamp.items,
-                               collapser->settled.items,
-                               sagitta};
+    CollapseWork work = {.patch = patch, .sagitta = sagitta};
     bool changed = true;
+    Status status;
+    TRY_GOTO(prepare(&work, err));
     for (int sweep = 0; sweep < MAX_SWEEPS && changed; sweep++) {
         changed = false;
         for (uint32_t i = 0; i < patch->n_points; i++) {
@@ -258,5 +250,11 @@ Status collapse_apply(Collapser *collapser, Patch *patch, double sagitta, Err *e
             changed |= try_point(&work, i);
         }
     }
-    return patch_compact(patch, err);
+    TRY_GOTO(patch_compact(patch, err));
+done:
+    free(work.next);
+    free(work.first);
+    free(work.stamp);
+    free(work.settled);
+    return status;
 }

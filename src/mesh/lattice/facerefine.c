@@ -1,26 +1,31 @@
-/* In rounds: new triangles are measured. If a triangle is too far from the surface, its longest
- * edge is to be split at a point of the surface, which Newton steps along the field's gradient
- * reach from the edge's middle. An edge is not split if that would turn one of its triangles over,
- * or if the normal at the new point is unlike the normals at the edge's ends: then two surfaces
+/* Triangles are split in rounds. Each round measures the new triangles. If a triangle is too far
+ * from the surface, its longest edge is split at a point of the surface. Newton steps along the
+ * field's gradient lead to this point from the middle of the edge.
+ *
+ * An edge is not split if the split would turn one of its triangles over. It is not split either if
+ * the normal at the new point is unlike the normals at the edge's ends, because two surfaces then
  * face each other in a groove. A triangle with several edges to be split is halved at the longest
- * of them first, so that both triangles at an edge agree. */
-#include "mesh/lattice/facerefine.h"
+ * of these edges first. So the two triangles at an edge agree on its split. */
+#include "mesh/lattice/patch.h"
 
 #include <stdlib.h>
 
+/* Limits that end the rounds and the Newton steps. Reasons for the numbers not recorded. */
 enum { MAX_ROUNDS = 6, MAX_NEWTON_STEPS = 8 };
 #define NONE UINT32_MAX
-/* Minimum cosine between the normal at a new point and the normals at the ends of its edge. */
+/* The reasons for the next five numbers are not recorded.
+ *
+ * Minimum cosine between the normal at a new point and the normals at the ends of its edge. */
 static const double alike = 0.3;
 /* Minimum cosine between the normal at a new point and the normals of the triangles at it. */
 static const double least_facing = 0.1;
-/* In units of the limit: below this distance at two places, a triangle is not measured at others.
- */
+/* In units of the limit: a triangle whose first two measurements are below this distance is not
+ * measured at other points. */
 static const double little = 0.6;
 /* In units of the edge's length: maximum distance of a new point from the middle of its edge. */
 static const double most_moved = 0.3;
-/* In units of the level: maximum difference of the field from the level at a point of the surface.
- */
+/* In units of FIELD_LEVEL: maximum difference of the field from the level at a point that counts as
+ * a point of the surface. */
 static const double precisely = 1e-6;
 
 typedef enum TriangleState {
@@ -30,23 +35,18 @@ typedef enum TriangleState {
 } TriangleState;
 
 typedef struct FaceRefining {
-    Refiner *refiner;
     const JunctionField *field;
     const Octree *tree;
     Patch *patch;
     MeshDeviation *deviation;
     double split, limit; /* in local radii; in the last round the limit is infinite */
+    KeyMap edges;        /* edge to be split -> index of the point that splits it, or NONE; owned */
+    ARRAY(uint8_t) states; /* per triangle: TriangleState */
     Err *err;
 } FaceRefining;
 
-void refiner_release(Refiner *refiner)
-{
-    keymap_release(&refiner->edges);
-    ARRAY_RELEASE(&refiner->states);
-}
-
-/* Returns true if a place is inside the surface; `otherwise` behind a plane, where that is not
- * known. */
+/* Returns true if x is inside the surface. Returns `otherwise` beyond a plane, where the surface is
+ * not known. */
 static bool is_inside(const FaceRefining *refining, Vec3 x, bool otherwise)
 {
     const Octree *tree = refining->tree;
@@ -59,10 +59,10 @@ static bool is_inside(const FaceRefining *refining, Vec3 x, bool otherwise)
     return cell->state == CELL_INSIDE || otherwise;
 }
 
-/* Returns the distance of x from the surface along `outward` or against it, at most radius_mm.
- * `inside` is the side that x is on. */
-static double search_wall(const FaceRefining *refining, Vec3 x, bool inside, Vec3 outward,
-                          double radius_mm)
+/* Returns the distance of x from the surface, at most radius_mm: along `outward` if x is inside, in
+ * the opposite direction if not. `inside` is true if x is inside. */
+static double search_surface(const FaceRefining *refining, Vec3 x, bool inside, Vec3 outward,
+                             double radius_mm)
 {
     double low = 0, high = 0.01 * radius_mm, sign = inside ? 1 : -1;
     while (high < radius_mm &&
@@ -78,12 +78,13 @@ static double search_wall(const FaceRefining *refining, Vec3 x, bool inside, Vec
     return fmin(high, radius_mm);
 }
 
-/* Returns the distance of a point of a triangle from the surface. If the point is near and the
- * field is about as steep as at a vessel's surface, where its slope is 4 FIELD_LEVEL / r, the
- * field's value and slope give the distance. Else the surface is searched for along the field's
- * slope and the triangle's normal. */
+/* Returns the distance of the point x of a triangle from the surface, mm. At a vessel's surface the
+ * slope of the field is 4 FIELD_LEVEL / r. Where the slope is not much smaller, and x is near the
+ * surface, the distance follows from the field's value and slope. Elsewhere the surface is searched
+ * for along the field's gradient and along the triangle's normal. */
 static double measure_at(const FaceRefining *refining, Vec3 x, Vec3 normal, double radius_mm)
 {
+    /* In units of the radius, and of 1 / radius. */
     static const double near = 0.02, steep = FIELD_LEVEL;
     const Octree *tree = refining->tree;
     const OctreeCell *cell = octree_leaf(tree, x);
@@ -91,18 +92,18 @@ static double measure_at(const FaceRefining *refining, Vec3 x, Vec3 normal, doub
     if (!cell || cell->state == CELL_BEYOND_PLANE)
         return 0;
     if (cell->state != CELL_ACTIVE)
-        return search_wall(refining, x, cell->state == CELL_INSIDE, normal, radius_mm);
+        return search_surface(refining, x, cell->state == CELL_INSIDE, normal, radius_mm);
     FieldValue value =
         localfield_gradient(refining->field, &tree->leaf_fields, &cell->local, x, &gradient);
     double slope = vec3_length(gradient), off = fabs(value.phi - FIELD_LEVEL) / slope;
     if (off <= near * radius_mm && slope * radius_mm >= steep)
         return off;
     bool inside = value.phi >= FIELD_LEVEL;
-    double one = search_wall(refining, x, inside, normal, radius_mm);
+    double one = search_surface(refining, x, inside, normal, radius_mm);
     if (!(slope > 0))
         return one;
     Vec3 down = vec3_scale(gradient, -1 / slope);
-    return fmin(one, search_wall(refining, x, inside, down, radius_mm));
+    return fmin(one, search_surface(refining, x, inside, down, radius_mm));
 }
 
 static const PatchPoint *corner(const FaceRefining *refining, const PatchTriangle *triangle, int i)
@@ -167,7 +168,7 @@ static bool find_point(const FaceRefining *refining, uint32_t a, uint32_t b, Pat
 }
 
 /* Marks an edge to be split, if it can be. */
-static Status mark_edge(const FaceRefining *refining, uint32_t a, uint32_t b, bool *marked)
+static Status mark_edge(FaceRefining *refining, uint32_t a, uint32_t b, bool *marked)
 {
     const PatchPoint *points = refining->patch->points;
     uint32_t *place;
@@ -176,7 +177,7 @@ static Status mark_edge(const FaceRefining *refining, uint32_t a, uint32_t b, bo
     *marked = false;
     if (on_rim)
         return STATUS_OK;
-    TRY(keymap_put(&refining->refiner->edges, key_of_pair(a, b), &place, &is_new, refining->err));
+    TRY(keymap_put(&refining->edges, key_of_pair(a, b), &place, &is_new, refining->err));
     if (is_new) {
         *place = NONE;
         if (find_point(refining, a, b, &point))
@@ -186,9 +187,9 @@ static Status mark_edge(const FaceRefining *refining, uint32_t a, uint32_t b, bo
     return STATUS_OK;
 }
 
-/* Returns the distance of a place on a triangle from the surface, which is no longer than the path
- * over one of the corners. Where a triangle closes a tunnel, neither its normal nor the slope leads
- * to the surface. */
+/* Returns the distance of the point x of a triangle from the surface, mm. Where a triangle closes a
+ * tunnel, neither its normal nor the gradient leads to the surface. So the path over a corner of
+ * the triangle counts, too, if it is shorter. */
 static double measure_on(const FaceRefining *refining, const PatchTriangle *triangle, Vec3 x,
                          Vec3 normal, double radius_mm)
 {
@@ -219,10 +220,10 @@ static double measure_triangle(const FaceRefining *refining, const PatchTriangle
 }
 
 /* Measures a triangle. If it is too far from the surface, marks its longest edge. */
-static Status look_at(const FaceRefining *refining, size_t number)
+static Status look_at(FaceRefining *refining, size_t index)
 {
-    const PatchTriangle triangle = refining->patch->triangles[number];
-    uint8_t *state = &refining->refiner->states.items[number];
+    const PatchTriangle triangle = refining->patch->triangles[index];
+    uint8_t *state = &refining->states.items[index];
     int longest = longest_edge(refining, &triangle);
     double radius = HUGE_VAL;
     for (int i = 0; i < 3; i++)
@@ -240,7 +241,7 @@ static Status look_at(const FaceRefining *refining, size_t number)
 /* Returns the point that splits an edge, or NONE. */
 static uint32_t point_on(const FaceRefining *refining, uint32_t a, uint32_t b)
 {
-    const uint32_t *place = keymap_find(&refining->refiner->edges, key_of_pair(a, b));
+    const uint32_t *place = keymap_find(&refining->edges, key_of_pair(a, b));
     return place ? *place : NONE;
 }
 
@@ -257,7 +258,7 @@ static void spare_edges(const FaceRefining *refining, const PatchTriangle *trian
     const PatchPoint *points = refining->patch->points;
     for (int i = 0; i < 3; i++) {
         uint32_t a = triangle->at[i], b = triangle->at[(i + 1) % 3], c = triangle->at[(i + 2) % 3];
-        uint32_t *place = keymap_find(&refining->refiner->edges, key_of_pair(a, b));
+        uint32_t *place = keymap_find(&refining->edges, key_of_pair(a, b));
         if (!place || *place == NONE)
             continue;
         const PatchPoint *at = &points[*place];
@@ -268,10 +269,10 @@ static void spare_edges(const FaceRefining *refining, const PatchTriangle *trian
 }
 
 /* Replaces a triangle by the first of its parts, and appends the others. */
-static Status split(const FaceRefining *refining, size_t number)
+static Status split(FaceRefining *refining, size_t index)
 {
     Patch *patch = refining->patch;
-    const PatchTriangle triangle = patch->triangles[number];
+    const PatchTriangle triangle = patch->triangles[index];
     int best = -1;
     uint32_t at[3];
     double longest = 0;
@@ -288,25 +289,23 @@ static Status split(const FaceRefining *refining, size_t number)
         return STATUS_OK;
     uint32_t a = triangle.at[best], b = triangle.at[(best + 1) % 3],
              c = triangle.at[(best + 2) % 3];
-    patch->triangles[number] = (PatchTriangle){{a, at[best], c}};
+    patch->triangles[index] = (PatchTriangle){{a, at[best], c}};
     TRY(patch_add_triangle(patch, (PatchTriangle){{at[best], b, c}}, refining->err));
     size_t other = patch->n_triangles - 1;
-    Refiner *refiner = refining->refiner;
-    TRY(ARRAY_RESERVE(&refiner->states, other + 1, "triangles of a junction", refining->err));
-    refiner->states.items[number] = refiner->states.items[other] = TRIANGLE_NEW;
-    TRY(split(refining, number));
+    TRY(ARRAY_PUSH(&refining->states, patch_items, refining->err, TRIANGLE_NEW));
+    refining->states.items[index] = TRIANGLE_NEW;
+    TRY(split(refining, index));
     return split(refining, other);
 }
 
-/* One round. */
-static Status refine_once(const FaceRefining *refining, bool *changed)
+/* Runs one round. *changed receives true if an edge was marked to be split. */
+static Status refine_once(FaceRefining *refining, bool *changed)
 {
-    Refiner *refiner = refining->refiner;
     const Patch *patch = refining->patch;
     size_t n = patch->n_triangles, n_points = patch->n_points;
-    TRY(keymap_begin(&refiner->edges, 0, "points of a junction", refining->err));
+    TRY(keymap_begin(&refining->edges, 0, patch_items, refining->err));
     for (size_t i = 0; i < n; i++)
-        if (refiner->states.items[i] != TRIANGLE_SETTLED)
+        if (refining->states.items[i] != TRIANGLE_SETTLED)
             TRY(look_at(refining, i));
     *changed = patch->n_points > n_points;
     for (size_t i = 0; i < n && *changed; i++)
@@ -316,20 +315,30 @@ static Status refine_once(const FaceRefining *refining, bool *changed)
     return STATUS_OK;
 }
 
-Status facerefine_apply(Refiner *refiner, const JunctionSurface *surface, double limit,
-                        MeshDeviation *deviation, Err *err)
+Status facerefine_apply(const JunctionSurface *surface, double limit, MeshDeviation *deviation,
+                        Err *err)
 {
     Patch *patch = surface->patch;
-    FaceRefining refining = {
-        refiner, &surface->plan->field, surface->tree, patch, deviation, limit, limit, err};
+    FaceRefining refining = {.field = &surface->plan->field,
+                             .tree = surface->tree,
+                             .patch = patch,
+                             .deviation = deviation,
+                             .split = limit,
+                             .err = err};
     size_t n_points = patch->n_points;
     bool changed = true;
-    TRY(ARRAY_RESERVE(&refiner->states, patch->n_triangles, "triangles of a junction", err));
-    for (size_t i = 0; i < patch->n_triangles; i++)
-        refiner->states.items[i] = TRIANGLE_NEW;
+    Status status;
+    TRY_GOTO(ARRAY_RESERVE(&refining.states, patch->n_triangles, patch_items, err));
+    for (; refining.states.n < patch->n_triangles; refining.states.n++)
+        refining.states.items[refining.states.n] = TRIANGLE_NEW;
     for (int round = 0; round <= MAX_ROUNDS && changed; round++) {
         refining.limit = round < MAX_ROUNDS ? limit : HUGE_VAL;
-        TRY(refine_once(&refining, &changed));
+        TRY_GOTO(refine_once(&refining, &changed));
     }
-    return patch->n_points > n_points ? patch_compact(patch, err) : STATUS_OK;
+    if (patch->n_points > n_points)
+        TRY_GOTO(patch_compact(patch, err));
+done:
+    keymap_release(&refining.edges);
+    ARRAY_RELEASE(&refining.states);
+    return status;
 }

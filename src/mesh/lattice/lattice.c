@@ -1,28 +1,29 @@
-/* There are three or four leaves about each smallest edge of the octree. Two of them that share a
- * face make a tetrahedron of their centres and the two ends of the edge. In a graded octree these
- * tetrahedra fill space, and none is inverted. In an octree of equal cells they are the
- * body-centred cubic lattice, whose tetrahedra are the best known for such cuts [F. Labelle, J.
- * Shewchuk: Isosurface stuffing, SIGGRAPH 2007]. For any signs at the lattice points, the surface
- * that separates them is a closed manifold.
+/* Three or four leaves meet at each smallest edge of the octree. Two of these leaves that share a
+ * face give a tetrahedron: its corners are the centres of the leaves and the two ends of the edge.
+ * In a graded octree these tetrahedra fill space, and none is inverted. In an octree of equal cells
+ * they are the body-centred cubic lattice, whose tetrahedra are the best known for such cuts [F.
+ * Labelle, J. Shewchuk: Isosurface stuffing, SIGGRAPH 2007]. For any signs at the lattice points,
+ * the surface that separates the signs is a closed manifold.
  *
- * Cells, faces and edges are walked by the three recursions of T. Ju et al.: Dual contouring of
- * Hermite data, SIGGRAPH 2002.
- *
- * Lattice points that are almost on the surface are moved away from it, on their own side, so that
- * no triangle becomes a sliver. */
+ * Three recursions visit cells, faces and edges [T. Ju et al.: Dual contouring of Hermite data,
+ * SIGGRAPH 2002]. Lattice points that are almost on the surface are moved away from it, on their
+ * own side, so that no triangle becomes a sliver. O(cells). */
 #include "mesh/lattice/lattice.h"
 
 #include <stdlib.h>
 
-/* In units of the cell's side: minimum distance of lattice points from the surface. */
+/* In units of the cell's side: minimum distance of lattice points from the surface. Reason for the
+ * number not recorded; a smaller one makes narrower triangles. */
 static const double clearance = 0.1;
-/* In units of height: the distance of points that are nearer than this is measured. */
+/* In units of field_height: the distance of a lattice point from the surface is measured if its
+ * height is below this. Reason for the number not recorded. */
 static const double nearly = 0.3;
 /* In units of the edge: after a shorter Newton step, its end is not evaluated. Crossings stay on
  * the edges, because triangles could run into each other if they were moved off them. */
 static const double last_step = 1e-3;
 enum { MOST_STEPS = 40 };
-/* Away from active cells, all terms are evaluated if there are at most this many. */
+/* Away from active cells, all terms are evaluated if there are at most this many. Reason for the
+ * number not recorded. */
 enum { FEW_TERMS = 512 };
 
 typedef struct LatticeCutter {
@@ -31,11 +32,11 @@ typedef struct LatticeCutter {
     const JunctionPlan *plan;
     Patch *patch;
     Err *err;
-    TetrahedronList *list; /* where all tetrahedra go instead of being cut; or NULL */
-    Octree *away;          /* where also those away from active cells count: the tree, whose stack
-                            * has `whole`: */
-    LocalField whole;      /* all terms, for points away from active cells */
-    LocalField local;      /* of many terms, those that matter within local_mm of local_at */
+    TetrahedronList *list; /* receives all tetrahedra, which are not cut then; NULL: they are cut */
+    Octree *away;          /* the tree, if tetrahedra away from active cells count, too; NULL: they
+                            * do not */
+    LocalField whole;      /* if `away`: all terms, in the stack of the tree */
+    LocalField local;      /* if `away`: the terms that matter within local_mm of local_at */
     Vec3 local_at;
     double local_mm;
 } LatticeCutter;
@@ -64,10 +65,11 @@ static bool move_point(const LatticeCutter *cutter, const LocalField *part, Vec3
     return true;
 }
 
-/* Moves a point away from the surface, on its own side. If it would come too near to another
- * surface, as outside in a crease, it is moved to the inside. */
-static void clear_wall(const LatticeCutter *cutter, const LocalField *part, double side,
-                       LatticePoint *point)
+/* Moves a point that is too near to the surface away from it, on its own side. Outside in a crease,
+ * the point would come too near to another surface, and is moved to the inside. `side` is the side
+ * of the point's cell, mm. */
+static void clear_surface(const LatticeCutter *cutter, const LocalField *part, double side,
+                          LatticePoint *point)
 {
     Vec3 gradient;
     FieldValue value = localfield_gradient(&cutter->plan->field, &cutter->tree->leaf_fields, part,
@@ -83,7 +85,8 @@ static void clear_wall(const LatticeCutter *cutter, const LocalField *part, doub
                    point);
 }
 
-/* Makes cutter->local the terms that matter near x, of which there must be few enough. */
+/* Makes cutter->local the terms that matter near x. Halves the distance that counts as near until
+ * at most MAX_LOCAL_TERMS terms are left. */
 static Status find_local(LatticeCutter *cutter, Vec3 x)
 {
     LocalFieldPool *stack = &cutter->away->stack;
@@ -117,11 +120,11 @@ static Status part_away(LatticeCutter *cutter, Vec3 x, const LocalField **part)
 }
 
 /* Adds a lattice point. Its field is that of the cell `from` if that cell is active. */
-static Status add_point(LatticeCutter *cutter, const OctreeCell *from, Vec3 x, uint32_t *number)
+static Status add_point(LatticeCutter *cutter, const OctreeCell *from, Vec3 x, uint32_t *index)
 {
     Lattice *lattice = cutter->lattice;
     TRY(mem_reserve(&lattice->points, &lattice->capacity, lattice->n_points + 1,
-                    sizeof *lattice->points, "points of a junction", cutter->err));
+                    sizeof *lattice->points, patch_items, cutter->err));
     bool is_near = from && from->state == CELL_ACTIVE;
     FieldValue value;
     if (is_near)
@@ -133,8 +136,8 @@ static Status add_point(LatticeCutter *cutter, const OctreeCell *from, Vec3 x, u
     }
     LatticePoint point = {x, field_height(value.phi), NO_CROSSING, false};
     if (is_near && fabs(point.height) < nearly)
-        clear_wall(cutter, &from->local, octree_side(cutter->tree, from->level), &point);
-    *number = (uint32_t)lattice->n_points;
+        clear_surface(cutter, &from->local, octree_side(cutter->tree, from->level), &point);
+    *index = (uint32_t)lattice->n_points;
     lattice->points[lattice->n_points++] = point;
     return STATUS_OK;
 }
@@ -145,9 +148,9 @@ static Status add_center(LatticeCutter *cutter, const OctreeCell *from, uint32_t
                      &cutter->lattice->centers.items[cell]);
 }
 
-/* `at` in units of the smallest cells. */
+/* Finds or adds the lattice point at a corner of cells. `at` is in units of the smallest cells. */
 static Status corner_at(LatticeCutter *cutter, const OctreeCell *from, const uint32_t at[3],
-                        uint32_t *number)
+                        uint32_t *index)
 {
     const Octree *tree = cutter->tree;
     uint64_t key = (uint64_t)at[0] << 42 | (uint64_t)at[1] << 21 | at[2];
@@ -160,14 +163,14 @@ static Status corner_at(LatticeCutter *cutter, const OctreeCell *from, const uin
                       tree->corner.z + unit * at[2]);
         TRY(add_point(cutter, from, x, place));
     }
-    *number = *place;
+    *index = *place;
     return STATUS_OK;
 }
 
-/* Returns what the field lacks of the level, corrected so that, divided by the slope, it is the
- * distance to a lone vessel's surface. The correction is that of field_height to second order;
- * field_height is linear in the distance. */
-static double step_to_wall(double phi)
+/* Returns FIELD_LEVEL - phi, corrected so that the result, divided by the slope of the field, is
+ * the distance to a lone vessel's surface. The correction makes the result linear in the distance
+ * to second order, as field_height is. */
+static double step_to_surface(double phi)
 {
     double lacks = FIELD_LEVEL - phi;
     return fabs(lacks) < 0.5 * phi ? lacks * (1 - 0.375 * lacks / phi) : lacks;
@@ -186,7 +189,7 @@ static PatchPoint find_crossing(const LatticeCutter *cutter, const LocalField *p
         Vec3 x = vec3_add_scaled(inside->x, way, t);
         FieldValue value =
             localfield_gradient(field, &cutter->tree->leaf_fields, part, x, &gradient);
-        double step = step_to_wall(value.phi) / vec3_dot(gradient, way);
+        double step = step_to_surface(value.phi) / vec3_dot(gradient, way);
         *(value.phi > FIELD_LEVEL ? &low : &high) = t;
         t += step;
         if (!(t > low && t < high))
@@ -198,8 +201,8 @@ static PatchPoint find_crossing(const LatticeCutter *cutter, const LocalField *p
     }
 }
 
-/* Returns the middle of an edge, in place of a crossing, where a point is inside only because it
- * was repaired. Away from active cells there is no other point. */
+/* Returns the middle of an edge in place of its crossing. Serves edges with a repaired end, which
+ * the surface of the field need not cross, and edges away from active cells. */
 static Status find_middle(LatticeCutter *cutter, const OctreeCell *from, const LatticePoint *inside,
                           const LatticePoint *outside, PatchPoint *point)
 {
@@ -216,24 +219,23 @@ static Status find_middle(LatticeCutter *cutter, const OctreeCell *from, const L
 
 /* Finds the point of the surface between two lattice points, of which `a` is inside. */
 static Status crossing_of(LatticeCutter *cutter, const OctreeCell *from, uint32_t a, uint32_t b,
-                          uint32_t *number)
+                          uint32_t *index)
 {
     Lattice *lattice = cutter->lattice;
     LatticePoint *points = lattice->points;
-    for (*number = points[a].first; *number != NO_CROSSING;
-         *number = lattice->crossings.items[*number].next)
-        if (lattice->crossings.items[*number].outside == b)
+    for (*index = points[a].first; *index != NO_CROSSING;
+         *index = lattice->crossings.items[*index].next)
+        if (lattice->crossings.items[*index].outside == b)
             return STATUS_OK;
-    TRY(ARRAY_RESERVE(&lattice->crossings, cutter->patch->n_points + 1, "points of a junction",
-                      cutter->err));
+    TRY(ARRAY_RESERVE(&lattice->crossings, cutter->patch->n_points + 1, patch_items, cutter->err));
     PatchPoint point;
     if (points[a].is_repaired || !from)
         TRY(find_middle(cutter, from, &points[a], &points[b], &point));
     else
         point = find_crossing(cutter, &from->local, &points[a], &points[b]);
-    TRY(patch_add_point(cutter->patch, point, number, cutter->err));
-    lattice->crossings.items[*number] = (LatticeCrossing){b, points[a].first};
-    points[a].first = *number;
+    TRY(patch_add_point(cutter->patch, point, index, cutter->err));
+    lattice->crossings.items[*index] = (LatticeCrossing){b, points[a].first};
+    points[a].first = *index;
     return STATUS_OK;
 }
 
@@ -242,9 +244,8 @@ static bool is_inside(const LatticeCutter *cutter, uint32_t point)
     return cutter->lattice->points[point].height < 0;
 }
 
-/* Cuts off the corner `lone`, which is alone on its side. The other corners are ordered as in a
- * tetrahedron with the orientation that all have, so that the triangle of the crossings faces away
- * from the lone corner. */
+/* Cuts off the corner `lone`, which is alone on its side. others[lone] orders the other corners so
+ * that the triangle of the three crossings faces away from the lone corner. */
 static Status cut_corner(LatticeCutter *cutter, const OctreeCell *from, const uint32_t corners[4],
                          int lone)
 {
@@ -259,8 +260,8 @@ static Status cut_corner(LatticeCutter *cutter, const OctreeCell *from, const ui
     return patch_add_triangle(cutter->patch, (PatchTriangle){{at[0], at[1], at[2]}}, cutter->err);
 }
 
-/* Cuts a tetrahedron with a and b inside, c and d outside, in the orientation that all have. The
- * quadrilateral is cut along its shorter diagonal. */
+/* Cuts a tetrahedron (a, b, c, d) of positive volume with a and b inside, c and d outside. The
+ * quadrilateral of the crossings is cut along its shorter diagonal. */
 static Status cut_middle(LatticeCutter *cutter, const OctreeCell *from, uint32_t a, uint32_t b,
                          uint32_t c, uint32_t d)
 {
@@ -278,9 +279,8 @@ static Status cut_middle(LatticeCutter *cutter, const OctreeCell *from, uint32_t
 }
 
 /* Cuts a tetrahedron. In all tetrahedra det(at[1] - at[0], at[2] - at[0], at[3] - at[0]) is
- * positive. Triangles take their orientation from that, and not from the positions of the
- * crossings: for a triangle that is smaller than the error of the crossings, these would be chance.
- */
+ * positive. The orientation of a triangle follows from this. It must not follow from the positions
+ * of the crossings, because a triangle may be smaller than the error of these positions. */
 static Status cut_tetrahedron(LatticeCutter *cutter, const OctreeCell *from, const uint32_t at[4])
 {
     int in[4], out[4], n_in = 0, n_out = 0;
@@ -297,7 +297,8 @@ static Status cut_tetrahedron(LatticeCutter *cutter, const OctreeCell *from, con
     return cut_middle(cutter, from, at[in[0]], at[in[1]], at[out[swap]], at[out[1 - swap]]);
 }
 
-/* The ends of the smallest edge among four leaves about it, along `axis`. */
+/* Finds the lattice points at the ends of the smallest edge, along `axis`, that four leaves share.
+ */
 static Status edge_ends(LatticeCutter *cutter, const uint32_t around[4], int axis,
                         const OctreeCell *from, uint32_t ends[2])
 {
@@ -318,7 +319,8 @@ static Status edge_ends(LatticeCutter *cutter, const uint32_t around[4], int axi
     return STATUS_OK;
 }
 
-/* Four leaves about a smallest edge; the second and third from the first one across. */
+/* Handles the tetrahedra about a smallest edge. around[i + 2 j] is the leaf at the lower (0) or
+ * upper (1) side along the next axis (i) and along the axis after it (j). */
 static Status cut_about_edge(LatticeCutter *cutter, const uint32_t around[4], int axis)
 {
     static const int turn[5] = {0, 1, 3, 2, 0};
@@ -343,14 +345,15 @@ static Status cut_about_edge(LatticeCutter *cutter, const uint32_t around[4], in
         TRY(centers[b] ? STATUS_OK : add_center(cutter, from, b));
         at[2] = centers[a];
         at[3] = centers[b];
-        TRY(cutter->list ? ARRAY_PUSH(cutter->list, "points of a junction", cutter->err,
+        TRY(cutter->list ? ARRAY_PUSH(cutter->list, patch_items, cutter->err,
                                       (Tetrahedron){{at[0], at[1], at[2], at[3]}})
                          : cut_tetrahedron(cutter, from, at));
     }
     return STATUS_OK;
 }
 
-/* The child of a cell at these halves along the axes, the cell itself when it is a leaf. */
+/* Returns the child of a cell at these halves along the axes, or the cell itself if it is a leaf.
+ */
 static uint32_t child_of(const LatticeCutter *cutter, uint32_t cell, const int half[3])
 {
     uint32_t children = cutter->tree->cells[cell].children;
@@ -362,8 +365,8 @@ static bool is_leaf(const LatticeCutter *cutter, uint32_t cell)
     return cutter->tree->cells[cell].children == 0;
 }
 
-/* Returns true if the surface may pass one of some cells, or leaves below them. A cell that is not
- * active has no active cell below it. */
+/* Returns true if the cells have tetrahedra to handle: if one of them is active, or if tetrahedra
+ * away from active cells count. A cell that is not active has no active cell below it. */
 static bool may_cut(const LatticeCutter *cutter, const uint32_t *cells, int n)
 {
     bool may = cutter->away != NULL;
@@ -372,7 +375,8 @@ static bool may_cut(const LatticeCutter *cutter, const uint32_t *cells, int n)
     return may;
 }
 
-/* around[i + 2 j] stands at the lower or upper side along the next axis but one (i, j). */
+/* Visits the edges, along `axis`, that four cells share. `around` is ordered as in cut_about_edge.
+ */
 static Status walk_edge(LatticeCutter *cutter, const uint32_t around[4], int axis)
 {
     if (!may_cut(cutter, around, 4))
@@ -394,7 +398,8 @@ static Status walk_edge(LatticeCutter *cutter, const uint32_t around[4], int axi
     return STATUS_OK;
 }
 
-/* The edges along `axis` in the face between two cells, whose normal is another axis. */
+/* Visits the edges along `axis` in the face between two cells. `normal` is the normal of the face.
+ */
 static Status walk_face_edges(LatticeCutter *cutter, const uint32_t sides[2], int normal, int axis)
 {
     for (int along = 0; along < 2; along++) {
@@ -462,7 +467,7 @@ static Status walk_cell(LatticeCutter *cutter, uint32_t cell)
     return STATUS_OK;
 }
 
-/* Walks the tree with all that counts away from active cells, too. */
+/* Visits all cells, also those away from active cells. */
 static Status walk_all(LatticeCutter *cutter)
 {
     Octree *tree = cutter->away;
@@ -483,12 +488,12 @@ Status lattice_make(Lattice *lattice, const JunctionSurface *surface, Err *err)
 {
     const Octree *tree = surface->tree;
     LatticeCutter cutter = {lattice, tree, surface->plan, surface->patch, err, .list = NULL};
-    TRY(keymap_begin(&lattice->corners, tree->n_cells / 2, "points of a junction", err));
-    TRY(ARRAY_RESERVE(&lattice->centers, tree->n_cells, "points of a junction", err));
+    TRY(keymap_begin(&lattice->corners, tree->n_cells / 2, patch_items, err));
+    TRY(ARRAY_RESERVE(&lattice->centers, tree->n_cells, patch_items, err));
     for (size_t i = 0; i < tree->n_cells; i++)
         lattice->centers.items[i] = 0;
-    TRY(mem_reserve(&lattice->points, &lattice->capacity, 1, sizeof *lattice->points,
-                    "points of a junction", err));
+    TRY(mem_reserve(&lattice->points, &lattice->capacity, 1, sizeof *lattice->points, patch_items,
+                    err));
     lattice->n_points = 1; /* the first is not used, so that 0 means "not made yet" */
     begin_cut(lattice, surface->patch);
     return walk_cell(&cutter, 0);

@@ -3,51 +3,53 @@
  * tunnels and hollows, and there are more of them the smaller the cells are. So the remedy is not a
  * finer lattice, but a surface of the right topology.
  *
- * The outside is grown anew, from the faces of the octree's root inwards, over the points whose
- * field is below the level. The point with the lowest field comes first. A point is added to the
- * outside only if that does not change the topology. The points about it, with their triangles,
- * form a sphere. Those of them that are outside must be connected, and those that are inside must
- * be, too [G. Bertrand: Simple points, topological numbers and geodesic neighborhoods in cubic
- * grids, 1994, for tetrahedra]. The outside of a sphere is a ball and stays one, so the inside is
- * one, too. A tunnel is entered from both its ends, and is closed where its points are nearest to
- * the surface. If the vessels of the region form loops, as many tunnels are wanted. The widest ones
- * are opened then: at a point whose neighbours outside have two parts, and those inside one. */
+ * The outside is grown anew, from the faces of the octree's root inwards, over the lattice points
+ * whose field is below the level. The point with the lowest field comes first. A point is added to
+ * the outside only if the addition does not change the topology. The neighbours of a point, with
+ * the triangles between them, form a sphere: the point's link. The topology stays if the neighbours
+ * outside are connected, and the neighbours inside are connected, too [G. Bertrand: Simple points,
+ * topological numbers and geodesic neighborhoods in cubic grids, 1994, here for tetrahedra]. At
+ * first the outside is the complement of a ball. So the inside stays a ball. A tunnel is entered
+ * from both its ends, and is closed where its points are nearest to the surface.
+ *
+ * If the vessels of the region form loops, one tunnel per loop is wanted. Then the widest tunnels
+ * are opened again, each at a point whose neighbours outside have two parts, and whose neighbours
+ * inside have one. O(points log points), and O(points) per loop. */
 #include "mesh/lattice/latticerepair.h"
 
 #include <stdlib.h>
 
-/* A point with more points about it stays inside. */
+/* A point with more neighbours stays inside. Reason for the number not recorded. */
 enum { MAX_LINK = 256 };
-static const char what[] = "points of a junction";
 
-/* Points that are outside by their field, and that wait in the heap, are pending. */
+/* Pending points are outside by their field, and wait in the heap. */
 typedef enum PointState { POINT_INSIDE, POINT_PENDING, POINT_OUTSIDE } PointState;
 
-/* The points about one, and their sets [base/sets.h]. */
+/* The state of one repair. All arrays are owned. */
+typedef struct Repairer {
+    TetrahedronList all; /* all tetrahedra of the octree */
+    IndexLists around;   /* per lattice point: its tetrahedra */
+    uint8_t *states;     /* per lattice point: PointState */
+    uint32_t *slots;     /* per lattice point: its position in the current link */
+    Heap heap;           /* points that may be added to the outside, lowest field first */
+} Repairer;
+
+/* The neighbours of a point, and their disjoint sets [base/sets.h]. */
 typedef struct PointLink {
     uint32_t points[MAX_LINK], root[MAX_LINK];
     uint32_t n;
 } PointLink;
 
-void repairer_release(Repairer *repairer)
-{
-    ARRAY_RELEASE(&repairer->all);
-    indexlists_release(&repairer->around);
-    ARRAY_RELEASE(&repairer->states);
-    ARRAY_RELEASE(&repairer->slots);
-    ARRAY_RELEASE(&repairer->heap);
-}
-
 /* Returns the position of a point in the link, after adding it if it is not there; MAX_LINK if
  * there is no room. */
 static uint32_t place_in_link(const Repairer *repairer, PointLink *link, uint32_t point)
 {
-    uint32_t slot = repairer->slots.items[point];
+    uint32_t slot = repairer->slots[point];
     if (slot < link->n && link->points[slot] == point)
         return slot;
     if (link->n == MAX_LINK)
         return MAX_LINK;
-    repairer->slots.items[point] = link->n;
+    repairer->slots[point] = link->n;
     link->points[link->n] = point;
     link->root[link->n] = link->n;
     return link->n++;
@@ -64,8 +66,8 @@ static bool join_triangle(const Repairer *repairer, PointLink *link, const uint3
             return false;
     for (int i = 0; i < 3; i++) {
         uint32_t a = places[i], b = places[(i + 1) % 3];
-        bool one = repairer->states.items[link->points[a]] == POINT_OUTSIDE;
-        bool other = repairer->states.items[link->points[b]] == POINT_OUTSIDE;
+        bool one = repairer->states[link->points[a]] == POINT_OUTSIDE;
+        bool other = repairer->states[link->points[b]] == POINT_OUTSIDE;
         if (one == other)
             sets_join(link->root, a, b);
     }
@@ -84,7 +86,7 @@ static bool has_parts(const Repairer *repairer, uint32_t point, int outside, Poi
             return false;
     for (uint32_t i = 0; i < link->n; i++)
         if (link->root[i] == i)
-            parts[repairer->states.items[link->points[i]] == POINT_OUTSIDE]++;
+            parts[repairer->states[link->points[i]] == POINT_OUTSIDE]++;
     return parts[0] == 1 && parts[1] == outside;
 }
 
@@ -95,10 +97,10 @@ static Status push_neighbors(Repairer *repairer, const Lattice *lattice, uint32_
         for (int k = 0; k < 4; k++) {
             uint32_t other = repairer->all.items[around->items[i]].at[k];
             double height = lattice->points[other].height;
-            if (repairer->states.items[other] != POINT_INSIDE || height < 0)
+            if (repairer->states[other] != POINT_INSIDE || height < 0)
                 continue;
-            repairer->states.items[other] = POINT_PENDING;
-            TRY(heap_push(&repairer->heap, (HeapItem){-height, other, other}, what, err));
+            repairer->states[other] = POINT_PENDING;
+            TRY(heap_push(&repairer->heap, (HeapItem){-height, other, other}, patch_items, err));
         }
     return STATUS_OK;
 }
@@ -115,24 +117,24 @@ static bool seed(Repairer *repairer, const Lattice *lattice, const Octree *tree)
         for (int axis = 0; axis < 3; axis++)
             at_face = at_face || cell->at[axis] == 0 || cell->at[axis] == last;
         if (at_face && lattice->centers.items[i])
-            repairer->states.items[lattice->centers.items[i]] = POINT_OUTSIDE;
+            repairer->states[lattice->centers.items[i]] = POINT_OUTSIDE;
     }
     for (size_t i = 1; i < lattice->n_points; i++) {
         Vec3 from = vec3_sub(lattice->points[i].x, tree->corner);
         for (int axis = 0; axis < 3; axis++) {
             double along = vec3_component(from, axis) / tree->side;
             if (along < 1e-9 || along > 1 - 1e-9)
-                repairer->states.items[i] = POINT_OUTSIDE;
+                repairer->states[i] = POINT_OUTSIDE;
         }
-        outside = outside &&
-                  (repairer->states.items[i] == POINT_INSIDE || lattice->points[i].height >= 0);
+        outside =
+            outside && (repairer->states[i] == POINT_INSIDE || lattice->points[i].height >= 0);
     }
     return outside;
 }
 
 static Status add_outside(Repairer *repairer, const Lattice *lattice, uint32_t point, Err *err)
 {
-    repairer->states.items[point] = POINT_OUTSIDE;
+    repairer->states[point] = POINT_OUTSIDE;
     return push_neighbors(repairer, lattice, point, err);
 }
 
@@ -141,7 +143,7 @@ static Status grow(Repairer *repairer, const Lattice *lattice, Err *err)
     PointLink link;
     while (repairer->heap.n) {
         uint32_t point = heap_pop(&repairer->heap).value;
-        repairer->states.items[point] = POINT_INSIDE;
+        repairer->states[point] = POINT_INSIDE;
         if (has_parts(repairer, point, 1, &link))
             TRY(add_outside(repairer, lattice, point, err));
     }
@@ -150,7 +152,7 @@ static Status grow(Repairer *repairer, const Lattice *lattice, Err *err)
 
 static bool is_closed_up(const Repairer *repairer, const Lattice *lattice, size_t point)
 {
-    return lattice->points[point].height >= 0 && repairer->states.items[point] != POINT_OUTSIDE;
+    return lattice->points[point].height >= 0 && repairer->states[point] != POINT_OUTSIDE;
 }
 
 /* Opens the widest tunnel that the outside was kept from, if there is one: adds the point that is
@@ -179,6 +181,7 @@ static double find_width(const Repairer *repairer, const Lattice *lattice)
     return width;
 }
 
+/* Turns the lattice points that the outside has not reached into points inside. */
 static void take_in(const Repairer *repairer, Lattice *lattice)
 {
     for (size_t i = 1; i < lattice->n_points; i++) {
@@ -194,36 +197,46 @@ static Status prepare(Repairer *repairer, Lattice *lattice, const JunctionSurfac
                       Err *err)
 {
     TetrahedronList *all = &repairer->all;
-    all->n = 0;
     TRY(lattice_list(lattice, surface, all, err));
     TRY(indexlists_sort(&repairer->around, lattice->n_points,
-                        (ItemKeys){(const uint32_t *)all->items, all->n, 4}, what, err));
-    TRY(ARRAY_RESERVE(&repairer->states, lattice->n_points, what, err));
-    TRY(ARRAY_RESERVE(&repairer->slots, lattice->n_points, what, err));
-    for (size_t i = 0; i < lattice->n_points; i++) {
-        repairer->states.items[i] = POINT_INSIDE;
-        repairer->slots.items[i] = 0;
-    }
+                        (ItemKeys){(const uint32_t *)all->items, all->n, 4}, patch_items, err));
+    size_t n = lattice->n_points;
+    TRY(mem_calloc(&repairer->states, n, sizeof *repairer->states, patch_items, err));
+    return mem_calloc(&repairer->slots, n, sizeof *repairer->slots, patch_items, err);
+}
+
+/* Grows the outside, and opens one tunnel per loop. */
+static Status grow_outside(Repairer *repairer, const Lattice *lattice, size_t n_loops, Err *err)
+{
+    for (uint32_t i = 0; i < lattice->n_points; i++)
+        if (repairer->states[i] == POINT_OUTSIDE)
+            TRY(push_neighbors(repairer, lattice, i, err));
+    TRY(grow(repairer, lattice, err));
+    for (size_t i = 0; i < n_loops; i++)
+        TRY(open_tunnel(repairer, lattice, err));
     return STATUS_OK;
 }
 
-Status repair_apply(Repairer *repairer, Lattice *lattice, const JunctionSurface *surface,
-                    double farthest, double *width, Err *err)
+Status repair_apply(Lattice *lattice, const JunctionSurface *surface, double farthest,
+                    double *width, Err *err)
 {
+    Repairer repairer = {0};
+    Status status;
     *width = HUGE_VAL;
-    TRY(prepare(repairer, lattice, surface, err));
-    if (!seed(repairer, lattice, surface->tree))
-        return STATUS_OK;
-    repairer->heap.n = 0;
-    for (uint32_t i = 0; i < lattice->n_points; i++)
-        if (repairer->states.items[i] == POINT_OUTSIDE)
-            TRY(push_neighbors(repairer, lattice, i, err));
-    TRY(grow(repairer, lattice, err));
-    for (size_t i = 0; i < surface->plan->n_loops; i++)
-        TRY(open_tunnel(repairer, lattice, err));
-    *width = find_width(repairer, lattice);
-    if (*width > farthest)
-        return STATUS_OK;
-    take_in(repairer, lattice);
-    return lattice_cut(lattice, surface, err);
+    TRY_GOTO(prepare(&repairer, lattice, surface, err));
+    if (seed(&repairer, lattice, surface->tree)) {
+        TRY_GOTO(grow_outside(&repairer, lattice, surface->plan->n_loops, err));
+        *width = find_width(&repairer, lattice);
+    }
+    if (*width <= farthest) {
+        take_in(&repairer, lattice);
+        TRY_GOTO(lattice_cut(lattice, surface, err));
+    }
+done:
+    ARRAY_RELEASE(&repairer.all);
+    indexlists_release(&repairer.around);
+    free(repairer.states);
+    free(repairer.slots);
+    ARRAY_RELEASE(&repairer.heap);
+    return status;
 }

@@ -1,11 +1,12 @@
-/* A cell is split while it is larger than suits the thinnest vessel that may matter in it. An
- * active cell is also split while the normal turns too much across it, as in the crotch of a
- * bifurcation. Where vessels that do not blend pass each other, cells are six times smaller,
- * because the gap between the vessels must contain cells. Cells behind the plane of a stub are not
- * split below the size that suits the stub, and make no surface: what is there is cut off anyway.
+/* A cell is split while its side is larger than the usual side: CellSize.ratio times the radius of
+ * the thinnest vessel that may matter in the cell. An active cell is also split while the normal
+ * turns too much across it, as in the crotch of a bifurcation. Where vessels that do not blend pass
+ * each other, cells are six times smaller, because the gap between the vessels must contain cells.
+ * Cells beyond the plane of a stub make no surface, because the surface there is cut off.
  *
- * The root's side is a power of two times the side of a cell that suits the stubs. Of eight sides,
- * an eighth of an octave apart, the one with the fewest cells along the stubs is used. */
+ * The root's side is a power of two times a side that suits the segments. Eight such sides, an
+ * eighth of an octave apart, are compared, and the one with the fewest cells along the segments is
+ * used. */
 #include "mesh/lattice/octree.h"
 
 #include <stdlib.h>
@@ -15,17 +16,20 @@ static const double half_diagonal = 0.8660254037844387;
 /* In units of a leaf's side: radius of the ball about its centre in which an active leaf knows all
  * terms. The ball holds the centres of its larger neighbours. */
 static const double known_reach = 1.75;
-/* In units of the usual side: cells near vessels that do not blend, and the smallest cells of all.
- */
+/* In units of the usual side: side of the cells near vessels that do not blend, and side of the
+ * smallest cells. Reasons for the numbers not recorded. */
 static const double parted_part = 1.0 / 6, least_part = 1.0 / 8;
-/* In units of CellSize.bending: what a crease may have, because it is cut off where an arc is
- * followed. */
+/* In units of CellSize.bending: the limit at a crease. It is smaller, because triangles cut a
+ * crease off, while they follow an arc. Reason for the number not recorded. */
 static const double crease_part = 0.22;
-/* In units of the usual side: the surface continues this far behind a plane, so that the plane may
+/* In units of the usual side: the surface continues this far beyond a plane, so that the plane may
  * be shifted. */
 static const double margin_behind = 0.75;
+/* In units of FIELD_LEVEL: the bounds of the field must be this far from the level to prove that a
+ * cell is inside or outside. The errors of gauss.h are far smaller. */
 static const double surely = 1e-3;
-/* In units of the level: where other vessels add less, the surface is that of one tube. */
+/* In units of FIELD_LEVEL: where other vessels add less, the surface is that of one tube. Reason
+ * for the number not recorded. */
 static const double lone = 0.03;
 
 typedef struct OctreeBuilder {
@@ -42,8 +46,8 @@ void octree_release(Octree *tree)
     *tree = (Octree){0};
 }
 
-/* Returns true if the ball is behind the plane of a stub, and only that stub's surface may pass it.
- */
+/* Returns true if the ball is beyond the plane of a stub, and no other surface than the stub's may
+ * pass through the ball. */
 static bool is_behind(const OctreeBuilder *builder, const FieldBounds *bounds, Vec3 center,
                       double ball)
 {
@@ -114,8 +118,8 @@ static bool must_split(const OctreeBuilder *builder, const LocalField *part,
 
 static Status split(OctreeBuilder *builder, uint32_t cell, const LocalField *part, Err *err);
 
-/* Finds the state of a cell, and splits it if it is too large. `part` holds all terms that may
- * matter in it. */
+/* Finds the state of a cell, and splits the cell if it is too large. `part` holds all terms that
+ * may matter in the cell. */
 static Status settle(OctreeBuilder *builder, uint32_t number, const LocalField *part, Err *err)
 {
     Octree *tree = builder->tree;
@@ -159,7 +163,8 @@ static Status refuse(const OctreeBuilder *builder, Err *err)
                    builder->plan->field.n_terms, builder->size->max_cells);
 }
 
-/* Gives a cell children. Those of an active cell are settled; others have the state of the cell. */
+/* Gives a cell children. The children of an active cell are settled. Other children have the state
+ * of the cell. */
 static Status split(OctreeBuilder *builder, uint32_t number, const LocalField *part, Err *err)
 {
     Octree *tree = builder->tree;
@@ -207,7 +212,7 @@ const OctreeCell *octree_leaf(const Octree *tree, Vec3 x)
     return leaf != UINT32_MAX ? &tree->cells[leaf] : NULL;
 }
 
-/* Splits a leaf that is too large beside its neighbour. */
+/* Splits a leaf that is larger than grading permits. */
 static Status split_leaf(OctreeBuilder *builder, uint32_t number, Err *err)
 {
     Octree *tree = builder->tree;
@@ -261,7 +266,8 @@ static Status grade(OctreeBuilder *builder, Err *err)
     return STATUS_OK;
 }
 
-/* Returns the side that, halved to suit each segment, makes the fewest cells along the segments. */
+/* Returns the side that gives the fewest cells along the segments, when it is halved until it suits
+ * each segment. */
 static double best_side(const JunctionPlan *plan, double ratio)
 {
     double best = 0, least = HUGE_VAL, widest = 0;

@@ -1,10 +1,10 @@
-/* Points and triangles are arrays that grow. Steps that remove triangles mark them and compact the
- * arrays once, because indices of points must stay valid during a step. */
+/* Points and triangles are arrays that grow. A step that removes triangles marks them, and compacts
+ * the arrays once at its end, because indices of points must stay valid during the step. */
 #include "mesh/lattice/patch.h"
 
 #include <stdlib.h>
 
-static const char what[] = "points of a junction";
+const char patch_items[] = "points of a junction";
 
 void patch_release(Patch *patch)
 {
@@ -29,7 +29,7 @@ PatchPoint patch_surface_point(const JunctionField *field, Vec3 x, const FieldVa
 Status patch_add_point(Patch *patch, PatchPoint point, uint32_t *index, Err *err)
 {
     TRY(mem_reserve(&patch->points, &patch->point_capacity, patch->n_points + 1,
-                    sizeof *patch->points, what, err));
+                    sizeof *patch->points, patch_items, err));
     *index = (uint32_t)patch->n_points;
     patch->points[patch->n_points++] = point;
     return STATUS_OK;
@@ -38,7 +38,7 @@ Status patch_add_point(Patch *patch, PatchPoint point, uint32_t *index, Err *err
 Status patch_add_triangle(Patch *patch, PatchTriangle triangle, Err *err)
 {
     TRY(mem_reserve(&patch->triangles, &patch->triangle_capacity, patch->n_triangles + 1,
-                    sizeof *patch->triangles, what, err));
+                    sizeof *patch->triangles, patch_items, err));
     patch->triangles[patch->n_triangles++] = triangle;
     return STATUS_OK;
 }
@@ -46,7 +46,7 @@ Status patch_add_triangle(Patch *patch, PatchTriangle triangle, Err *err)
 static Status reserve_scratch(Patch *patch, size_t per_point, Err *err)
 {
     return mem_reserve(&patch->scratch, &patch->scratch_capacity, per_point * patch->n_points,
-                       sizeof *patch->scratch, what, err);
+                       sizeof *patch->scratch, patch_items, err);
 }
 
 Status patch_compact(Patch *patch, Err *err)

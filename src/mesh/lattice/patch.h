@@ -1,14 +1,17 @@
 /* The triangles of one junction region while they are made.
  *
- * The steps that make the surface [lattice.h, planecut.h, collapse.h, facerefine.h] append points
- * and triangles to a patch, mark triangles as REMOVED, and compact the patch. Private to the module
- * mesh. */
+ * The surface of a region is made in steps: lattice_make [lattice.h] extracts the surface from the
+ * octree, planecut_apply cuts it at the ends of the branch stubs, collapse_apply removes points,
+ * and facerefine_apply splits triangles. The steps append points and triangles to a patch, mark
+ * triangles as REMOVED, and compact the patch. Several threads may make different patches. Private
+ * to the module mesh. */
 #ifndef CORCAST_MESH_LATTICE_PATCH_H
 #define CORCAST_MESH_LATTICE_PATCH_H
 
 #include "base/base.h"
 #include "geom/geom.h"
 #include "mesh/lattice/octree.h"
+#include "mesh/meshreport.h"
 #include <stdint.h>
 
 typedef struct PatchPoint {
@@ -40,6 +43,9 @@ typedef struct Patch {
 
 void patch_release(Patch *patch);
 
+/* The name of the items of a region in messages of STATUS_MEMORY. */
+extern const char patch_items[];
+
 /* One region: its plan, its octree and its patch, as the steps that make the surface need them. All
  * pointers are borrowed. */
 typedef struct JunctionSurface {
@@ -67,5 +73,41 @@ MUST_CHECK Status patch_count_parts(Patch *patch, size_t *parts, Err *err);
 
 /* Removes all connected parts except the one with most points. Errors: STATUS_MEMORY. */
 MUST_CHECK Status patch_keep_largest(Patch *patch, Err *err);
+
+/* Cuts the patch at the end plane of each stub, and removes the triangles beyond the planes. Before
+ * the cut, a stub's surface continues STUB_TAIL radii beyond its plane. The cut leaves one boundary
+ * loop per stub, its rim. Compacts the patch.
+ *
+ * First each plane is shifted along its axis into the widest gap between nearby points, so that the
+ * cut leaves no slivers. The shift is at most `ratio` / 4 radii, and at most PLANE_MOVE radii
+ * (CLOSE_MOVE if the stub is_close). A new rim point is on the circle about the axis, or on the
+ * surface if the stub is_close. Its PatchPoint.rim_stub is the index of the stub.
+ *
+ * ratio    side of the cells divided by the local radius.
+ * valid    receives true, or false if one triangle has points beyond two different planes. The
+ *          patch is then of no use.
+ * Errors   STATUS_MEMORY. */
+MUST_CHECK Status planecut_apply(const JunctionSurface *surface, double ratio, bool *valid,
+                                 Err *err);
+
+/* Removes points where the surface is nearly flat, which it is mainly along vessels. Each edge
+ * collapse merges a point into a neighbour. The topology of the patch does not change. The other
+ * points stay where they are, and rim points are merged along their rim alone. Compacts the patch.
+ *
+ * sagitta  maximum distance of the surface from the new edges, in local radii, above 0.
+ * Errors   STATUS_MEMORY. */
+MUST_CHECK Status collapse_apply(Patch *patch, double sagitta, Err *err);
+
+/* Splits triangles that are too far from the exact surface, as happens in the crotch of a
+ * bifurcation. The new points are on the surface, and have higher indices than the other points.
+ * Edges on rims are not split. The topology of the patch does not change. Some triangles may stay
+ * too far away, because a split would turn a triangle over.
+ *
+ * limit      maximum distance of a triangle from the surface, in local radii.
+ * deviation  is raised to the largest distance of a triangle from the surface after the splits,
+ *            measured at the middles of triangles and of their longest edges.
+ * Errors     STATUS_MEMORY. */
+MUST_CHECK Status facerefine_apply(const JunctionSurface *surface, double limit,
+                                   MeshDeviation *deviation, Err *err);
 
 #endif

@@ -1,37 +1,37 @@
 /* A plane is shifted into the widest gap between the points near it, so that no sliver is cut off.
- * A point is beyond a plane if it belongs to the stub's tube and is on the outer side of the plane.
- * Each edge that leads from a point that is not beyond to one that is gets one rim point. The rim
- * point is found on the straight edge, and is then moved to the circle or to the surface. */
-#include "mesh/lattice/planecut.h"
+ * A point is beyond a plane if it is on the stub's tube and on the outer side of the plane. An edge
+ * between a point beyond the plane and another point gets one rim point. The rim point is found on
+ * the straight edge. Then it is moved to the circle about the axis or, for a close stub, to the
+ * surface. O(points log points). */
+#include "mesh/lattice/patch.h"
 
 #include <stdlib.h>
 
-/* In units of the radius: maximum distance of a stub's surface from its axis. */
+/* In units of the radius: maximum distance of a stub's surface from its axis. Reason for the number
+ * not recorded. */
 static const double tube_reach = 1.1;
-/* Minimum cosine between the normal of a stub's surface and the direction from the point where the
- * plane meets the axis. The surface of a thin vessel close to the stub has a smaller one where the
- * stub's term is the larger one. */
+/* Minimum cosine, at a point of a stub's surface, between the normal and the direction from the
+ * point where the plane meets the axis. On the surface of a thin vessel close to the stub the
+ * cosine is smaller, also where the stub's term is the larger one. Reason for the number not
+ * recorded. */
 static const double least_outward = 0.25;
-/* Newton steps of a rim point from the edge to the surface. */
+/* Newton steps of a rim point from the edge to the surface. Reason for the number not recorded. */
 enum { SURFACE_STEPS = 4 };
 
+/* The position of a point relative to the end plane of its stub. */
+typedef struct PlaneOffset {
+    uint16_t stub;
+    double offset_mm; /* distance beyond the plane along the stub's axis; below 0: inside */
+} PlaneOffset;
+
 typedef struct PlaneCut {
-    PlaneCutter *cutter;
-    const Octree *tree;
-    const JunctionField *field;
-    Patch *patch;
-    BranchStub *stubs;
-    size_t n_stubs;
+    const JunctionSurface *surface;
+    BranchStub *stubs;     /* copies of the plan's stubs, with shifted planes; owned */
+    PlaneOffset *offsets;  /* of the stubs' limits and of points near planes; owned */
+    uint16_t *stub_beyond; /* per point: the stub whose plane it is beyond, or NO_STUB; owned */
+    KeyMap rim_points;     /* edge -> index of the point where the edge crosses a plane; owned */
     Err *err;
 } PlaneCut;
-
-void planecutter_release(PlaneCutter *cutter)
-{
-    keymap_release(&cutter->rim_points);
-    ARRAY_RELEASE(&cutter->stub_beyond);
-    ARRAY_RELEASE(&cutter->offsets);
-    ARRAY_RELEASE(&cutter->stubs);
-}
 
 /* Returns how far a point is beyond the plane of its stub, mm, or -HUGE_VAL if it is not on the
  * tube of a stub. */
@@ -52,9 +52,8 @@ static double along_tube(const PlaneCut *cut, const PatchPoint *point)
 static int compare_offsets(const void *a, const void *b)
 {
     const PlaneOffset *one = a, *other = b;
-    if (one->stub != other->stub)
-        return one->stub < other->stub ? -1 : 1;
-    return (one->offset_mm > other->offset_mm) - (one->offset_mm < other->offset_mm);
+    int order = one->stub - other->stub;
+    return order ? order : number_order(one->offset_mm, other->offset_mm);
 }
 
 /* Shifts the plane into the middle of the widest gap between at least two offsets. */
@@ -77,18 +76,16 @@ static double room_of(const BranchStub *stub, double ratio)
     return fmin(0.25 * ratio, stub->is_close ? CLOSE_MOVE : PLANE_MOVE) * stub->radius_mm;
 }
 
-static Status shift_planes(const PlaneCut *cut, double ratio)
+static void shift_planes(const PlaneCut *cut, double ratio)
 {
-    PlaneCutter *cutter = cut->cutter;
+    const Patch *patch = cut->surface->patch;
+    PlaneOffset *offsets = cut->offsets;
     size_t n = 0;
-    TRY(ARRAY_RESERVE(&cutter->offsets, cut->patch->n_points + 2 * cut->n_stubs,
-                      "points of a junction", cut->err));
-    PlaneOffset *offsets = cutter->offsets.items;
-    for (size_t k = 0; k < cut->n_stubs; k++)
+    for (size_t k = 0; k < cut->surface->plan->n_stubs; k++)
         for (int side = -1; side < 2; side += 2)
             offsets[n++] = (PlaneOffset){(uint16_t)k, side * room_of(&cut->stubs[k], ratio)};
-    for (size_t i = 0; i < cut->patch->n_points; i++) {
-        const PatchPoint *point = &cut->patch->points[i];
+    for (size_t i = 0; i < patch->n_points; i++) {
+        const PatchPoint *point = &patch->points[i];
         double along = along_tube(cut, point);
         if (point->vessel_stub != NO_STUB &&
             fabs(along) < room_of(&cut->stubs[point->vessel_stub], ratio))
@@ -100,16 +97,14 @@ static Status shift_planes(const PlaneCut *cut, double ratio)
             to++;
         shift_plane(&cut->stubs[offsets[from].stub], &offsets[from], to - from);
     }
-    return STATUS_OK;
 }
 
 static void mark_beyond(const PlaneCut *cut)
 {
-    for (size_t i = 0; i < cut->patch->n_points; i++) {
-        const PatchPoint *point = &cut->patch->points[i];
-        bool is_beyond = along_tube(cut, point) > 0;
-        cut->cutter->stub_beyond.items[i] = is_beyond ? point->vessel_stub : NO_STUB;
-    }
+    const Patch *patch = cut->surface->patch;
+    for (size_t i = 0; i < patch->n_points; i++)
+        cut->stub_beyond[i] =
+            along_tube(cut, &patch->points[i]) > 0 ? patch->points[i].vessel_stub : NO_STUB;
 }
 
 /* Moves a point of a rim that is not a circle to the surface, along `away`, which leads away from
@@ -117,13 +112,14 @@ static void mark_beyond(const PlaneCut *cut)
 static void move_to_surface(const PlaneCut *cut, const BranchStub *stub, Vec3 away,
                             PatchPoint *point)
 {
-    const OctreeCell *cell = octree_leaf(cut->tree, point->x);
+    const Octree *tree = cut->surface->tree;
+    const OctreeCell *cell = octree_leaf(tree, point->x);
     if (!cell || cell->state != CELL_ACTIVE)
         return;
     for (int i = 0; i < SURFACE_STEPS; i++) {
         Vec3 gradient;
-        FieldValue value = localfield_gradient(cut->field, &cut->tree->leaf_fields, &cell->local,
-                                               point->x, &gradient);
+        FieldValue value = localfield_gradient(&cut->surface->plan->field, &tree->leaf_fields,
+                                               &cell->local, point->x, &gradient);
         double slope = vec3_dot(gradient, away), most = 0.1 * stub->radius_mm;
         double by = (FIELD_LEVEL - value.phi) / slope;
         if (!(slope < 0) || !(fabs(by) < most))
@@ -136,9 +132,10 @@ static void move_to_surface(const PlaneCut *cut, const BranchStub *stub, Vec3 aw
 /* Returns the rim point of an edge. */
 static PatchPoint cut_edge(const PlaneCut *cut, uint32_t before, uint32_t beyond)
 {
-    uint16_t index = cut->cutter->stub_beyond.items[beyond];
+    uint16_t index = cut->stub_beyond[beyond];
     const BranchStub *stub = &cut->stubs[index];
-    Vec3 a = cut->patch->points[before].x, b = cut->patch->points[beyond].x;
+    const PatchPoint *points = cut->surface->patch->points;
+    Vec3 a = points[before].x, b = points[beyond].x;
     double from = vec3_dot(vec3_sub(a, stub->at), stub->outward);
     double to = vec3_dot(vec3_sub(b, stub->at), stub->outward);
     Vec3 x = vec3_add_scaled(a, vec3_sub(b, a), from / (from - to));
@@ -158,45 +155,43 @@ static PatchPoint cut_edge(const PlaneCut *cut, uint32_t before, uint32_t beyond
     return point;
 }
 
-static Status rim_point(const PlaneCut *cut, uint32_t before, uint32_t beyond, uint32_t *index)
+static Status rim_point(PlaneCut *cut, uint32_t before, uint32_t beyond, uint32_t *index)
 {
     uint32_t *value;
     bool is_new;
-    TRY(keymap_put(&cut->cutter->rim_points, key_of_pair(before, beyond), &value, &is_new,
-                   cut->err));
+    TRY(keymap_put(&cut->rim_points, key_of_pair(before, beyond), &value, &is_new, cut->err));
     if (is_new)
-        TRY(patch_add_point(cut->patch, cut_edge(cut, before, beyond), value, cut->err));
+        TRY(patch_add_point(cut->surface->patch, cut_edge(cut, before, beyond), value, cut->err));
     *index = *value;
     return STATUS_OK;
 }
 
 /* Adds the part of a triangle before the plane. Its corner `lone` is alone on its side. */
-static Status add_part(const PlaneCut *cut, PatchTriangle triangle, int lone, bool lone_is_before)
+static Status add_part(PlaneCut *cut, PatchTriangle triangle, int lone, bool lone_is_before)
 {
+    Patch *patch = cut->surface->patch;
     uint32_t a = triangle.at[lone], b = triangle.at[(lone + 1) % 3],
              c = triangle.at[(lone + 2) % 3];
     uint32_t ab, ac;
     if (lone_is_before) {
         TRY(rim_point(cut, a, b, &ab));
         TRY(rim_point(cut, a, c, &ac));
-        return patch_add_triangle(cut->patch, (PatchTriangle){{a, ab, ac}}, cut->err);
+        return patch_add_triangle(patch, (PatchTriangle){{a, ab, ac}}, cut->err);
     }
     TRY(rim_point(cut, b, a, &ab));
     TRY(rim_point(cut, c, a, &ac));
-    const PatchPoint *points = cut->patch->points;
+    const PatchPoint *points = patch->points;
     bool shorter =
         vec3_distance(points[b].x, points[ac].x) < vec3_distance(points[c].x, points[ab].x);
-    TRY(patch_add_triangle(cut->patch, (PatchTriangle){{b, c, shorter ? ac : ab}}, cut->err));
-    return patch_add_triangle(cut->patch,
-                              shorter ? (PatchTriangle){{b, ac, ab}} : (PatchTriangle){{c, ac, ab}},
-                              cut->err);
+    TRY(patch_add_triangle(patch, (PatchTriangle){{b, c, shorter ? ac : ab}}, cut->err));
+    return patch_add_triangle(patch, (PatchTriangle){{shorter ? b : c, ac, ab}}, cut->err);
 }
 
 /* Removes a triangle if it is beyond a plane, and cuts it if the plane crosses it. */
-static Status cut_triangle(const PlaneCut *cut, size_t i, bool *valid)
+static Status cut_triangle(PlaneCut *cut, size_t i, bool *valid)
 {
-    const uint16_t *stub_beyond = cut->cutter->stub_beyond.items;
-    const PatchTriangle triangle = cut->patch->triangles[i];
+    const uint16_t *stub_beyond = cut->stub_beyond;
+    const PatchTriangle triangle = cut->surface->patch->triangles[i];
     int n_beyond = 0, lone = 0;
     uint16_t stub = NO_STUB;
     for (int k = 0; k < 3; k++) {
@@ -207,7 +202,7 @@ static Status cut_triangle(const PlaneCut *cut, size_t i, bool *valid)
     }
     if (n_beyond == 0)
         return STATUS_OK;
-    cut->patch->triangles[i].at[0] = REMOVED;
+    cut->surface->patch->triangles[i].at[0] = REMOVED;
     if (n_beyond == 3)
         return STATUS_OK;
     for (int k = 0; k < 3; k++)
@@ -216,23 +211,35 @@ static Status cut_triangle(const PlaneCut *cut, size_t i, bool *valid)
     return add_part(cut, triangle, lone, n_beyond == 2);
 }
 
-Status planecut_apply(PlaneCutter *cutter, const JunctionSurface *surface, double ratio,
-                      bool *valid, Err *err)
+static Status reserve(PlaneCut *cut)
+{
+    const JunctionPlan *plan = cut->surface->plan;
+    size_t n_points = cut->surface->patch->n_points, n_offsets = n_points + 2 * plan->n_stubs;
+    TRY(mem_alloc(&cut->stubs, plan->n_stubs, sizeof *cut->stubs, "stubs", cut->err));
+    TRY(mem_alloc(&cut->offsets, n_offsets, sizeof *cut->offsets, patch_items, cut->err));
+    TRY(mem_alloc(&cut->stub_beyond, n_points, sizeof *cut->stub_beyond, patch_items, cut->err));
+    return keymap_begin(&cut->rim_points, 0, patch_items, cut->err);
+}
+
+Status planecut_apply(const JunctionSurface *surface, double ratio, bool *valid, Err *err)
 {
     const JunctionPlan *plan = surface->plan;
-    Patch *patch = surface->patch;
-    const size_t n_whole = patch->n_triangles, n_stubs = plan->n_stubs;
+    const size_t n_whole = surface->patch->n_triangles;
+    PlaneCut cut = {.surface = surface, .err = err};
+    Status status;
     *valid = true;
-    TRY(keymap_begin(&cutter->rim_points, 0, "points of a junction", err));
-    TRY(ARRAY_RESERVE(&cutter->stub_beyond, patch->n_points, "points of a junction", err));
-    TRY(ARRAY_RESERVE(&cutter->stubs, n_stubs, "stubs", err));
-    for (size_t k = 0; k < n_stubs; k++)
-        cutter->stubs.items[k] = plan->stubs[k];
-    const PlaneCut cut = {cutter, surface->tree, &plan->field, patch, cutter->stubs.items, n_stubs,
-                          err};
-    TRY(shift_planes(&cut, ratio));
+    TRY_GOTO(reserve(&cut));
+    for (size_t k = 0; k < plan->n_stubs; k++)
+        cut.stubs[k] = plan->stubs[k];
+    shift_planes(&cut, ratio);
     mark_beyond(&cut);
     for (size_t i = 0; i < n_whole; i++)
-        TRY(cut_triangle(&cut, i, valid));
-    return patch_compact(patch, err);
+        TRY_GOTO(cut_triangle(&cut, i, valid));
+    TRY_GOTO(patch_compact(surface->patch, err));
+done:
+    free(cut.stubs);
+    free(cut.offsets);
+    free(cut.stub_beyond);
+    keymap_release(&cut.rim_points);
+    return status;
 }

@@ -1,12 +1,15 @@
-/* Runs of eight items are the leaves of a complete binary tree of boxes, in the order of the Morton
- * codes of their middles. Node i has the children 2 i and 2 i + 1. Pairs of nodes whose boxes meet
- * are descended. The pairs of one level of the tree are the units of work that threads share. */
+/* Eight items of consecutive indices are a run. The runs are the leaves of a complete binary tree
+ * of boxes, ordered by the Morton codes of their centres. Node i has the children 2 i and 2 i + 1.
+ * The search descends into every pair of nodes whose boxes meet. The pairs of nodes of one level
+ * are the units of work that threads share. */
 #include "mesh/proof/boxpairs.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+/* Items per run; nodes of the level whose pairs are the units; runs whose boxes a unit keeps.
+ * Reasons for the numbers not recorded. */
 enum { RUN = 8, UNITS = 256, KEPT_RUNS = 256 };
 
 typedef struct RunLeaf {
@@ -14,9 +17,10 @@ typedef struct RunLeaf {
     uint32_t number;
 } RunLeaf;
 
-/* The boxes that one unit of work keeps of runs that it has met: each at its number's place. */
+/* The boxes of the items of runs that one unit of work has met. A run with the index r is kept at r
+ * modulo KEPT_RUNS, until another run takes its position. */
 typedef struct KeptRuns {
-    uint32_t runs[KEPT_RUNS]; /* and 1; 0: none yet */
+    uint32_t runs[KEPT_RUNS]; /* index of the run plus 1; 0: none yet */
     FloatBox boxes[KEPT_RUNS][RUN];
 } KeptRuns;
 
@@ -27,7 +31,7 @@ typedef struct UnitPair {
 typedef struct RunTree {
     const BoxPairs *pairs;
     RunLeaf *leaves;
-    FloatBox *boxes;         /* of nodes from 1 on */
+    FloatBox *boxes;         /* per node, from 1 on */
     uint32_t n_leaves, size; /* a power of 2, at least n_leaves: the first node that is a leaf */
     UnitPair *units;
     size_t n_units;
@@ -59,17 +63,6 @@ static FloatBox box_of_run(const RunTree *forest, uint32_t leaf)
     return box;
 }
 
-/* Two zero bits after each of the lowest 21. */
-static uint64_t spread(uint64_t x)
-{
-    x &= 0x1fffff;
-    x = (x | x << 32) & 0x1f00000000ffffu;
-    x = (x | x << 16) & 0x1f0000ff0000ffu;
-    x = (x | x << 8) & 0x100f00f00f00f00fu;
-    x = (x | x << 4) & 0x10c30c30c30c30c3u;
-    return (x | x << 2) & 0x1249249249249249u;
-}
-
 static uint64_t morton_code(const FloatBox *box, const FloatBox *all)
 {
     uint64_t code = 0;
@@ -77,7 +70,7 @@ static uint64_t morton_code(const FloatBox *box, const FloatBox *all)
         double size = (double)all->high[axis] - (double)all->low[axis];
         double middle = 0.5 * ((double)box->low[axis] + (double)box->high[axis]);
         double place = size > 0 ? (middle - (double)all->low[axis]) / size : 0;
-        code |= spread((uint64_t)(place * 0x1fffff)) << axis;
+        code |= morton_spread((uint64_t)(place * 0x1fffff)) << axis;
     }
     return code;
 }
@@ -90,7 +83,8 @@ static int compare_leaves(const void *a, const void *b)
     return (one->number > other->number) - (one->number < other->number);
 }
 
-/* The boxes of runs stand where the leaves do until these are in order. */
+/* Fills the leaves and the boxes of all nodes. The boxes of the runs first stand in the order of
+ * the runs, and are computed again in the order of the leaves. */
 static void order_leaves(RunTree *forest)
 {
     FloatBox all = nothing, *runs = &forest->boxes[forest->size];
@@ -119,7 +113,7 @@ static const FloatBox *boxes_of(const RunTree *forest, KeptRuns *kept, uint32_t 
     return boxes;
 }
 
-/* Those of a run whose boxes meet `other`, and their boxes. */
+/* Lists the items of a run whose boxes meet `other`, and their boxes. Returns their number. */
 static uint32_t boxes_near(const RunTree *forest, KeptRuns *kept, uint32_t run,
                            const FloatBox *other, FloatBox near[RUN], uint32_t items[RUN])
 {
@@ -159,7 +153,7 @@ static void report_pairs(Descent *descent, uint32_t node_a, uint32_t node_b)
         }
 }
 
-/* Both nodes are of one level, a <= b. */
+/* Descends from a pair of nodes of one level, a <= b. */
 static void descend(Descent *descent, uint32_t a, uint32_t b)
 {
     const RunTree *forest = descent->forest;
@@ -183,8 +177,7 @@ static void descend_unit(size_t index, int worker, void *context)
     Descent descent;
     descent.forest = forest;
     descent.worker = worker;
-    memset(descent.kept.runs, 0,
-           sizeof descent.kept.runs); /* and not the boxes: fifty times that */
+    memset(descent.kept.runs, 0, sizeof descent.kept.runs); /* the boxes need no clearing */
     descend(&descent, forest->units[index].a, forest->units[index].b);
 }
 

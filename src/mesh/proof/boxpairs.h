@@ -21,7 +21,19 @@ static inline bool floatbox_meets(const FloatBox *a, const FloatBox *b)
            b->low[1] <= a->high[1] && a->low[2] <= b->high[2] && b->low[2] <= a->high[2];
 }
 
-/* What is searched. */
+/* Returns x with two zero bits after each of its lowest 21 bits. The Morton code of a point
+ * combines the spread coordinates bit by bit, so that near points have near codes. */
+static inline uint64_t morton_spread(uint64_t x)
+{
+    x &= 0x1fffff;
+    x = (x | x << 32) & 0x1f00000000ffffu;
+    x = (x | x << 16) & 0x1f0000ff0000ffu;
+    x = (x | x << 8) & 0x100f00f00f00f00fu;
+    x = (x | x << 4) & 0x10c30c30c30c30c3u;
+    return (x | x << 2) & 0x1249249249249249u;
+}
+
+/* The items whose pairs are searched for. */
 typedef struct BoxPairs {
     uint32_t count; /* number of items. The search is faster if items with near indices are near in
                      * space. */

@@ -1,9 +1,12 @@
 /* Two triangles cross if an edge of one meets the other. Every decision is the sign of the volume
- * of four points. Coordinates are integer multiples of a grid, so their differences have 26 bits,
- * and the volume fits into 128 bits. In double precision the error of the volume is below 2^-49 of
- * the sum of the magnitudes of its products. Integers are only used closer to zero. Most pairs are
- * decided because one triangle does not reach through the plane of the other, and nearly all pairs
- * that share a corner by what is proved of all triangles at a point [fans.h]. */
+ * of a tetrahedron of four points. Coordinates are integer multiples of a grid, so their
+ * differences have 26 bits, and the volume fits into 128 bits. In double precision the error of the
+ * volume is below 2^-49 of the sum of the magnitudes of its products. Integers are used only for
+ * volumes closer to zero.
+ *
+ * Most pairs are decided early, because one triangle does not reach through the plane of the other.
+ * Nearly all pairs that share a corner are skipped, because the triangles at the corner are proved
+ * to form a fan [fans.h]. */
 #include "mesh/proof/meshcheck.h"
 
 #include "mesh/proof/boxpairs.h"
@@ -15,9 +18,9 @@ __extension__ typedef __int128 Wide;
 
 typedef struct CrossSearch {
     const VesselMesh *mesh;
-    double per_mm;        /* units of the grid */
-    bool *is_fan;         /* one a point */
-    atomic_bool *crossed; /* one a triangle, or NULL */
+    double per_mm;        /* grid steps per mm */
+    bool *is_fan;         /* per point [fans_find] */
+    atomic_bool *crossed; /* per triangle; or NULL */
     atomic_size_t n_crossings;
 } CrossSearch;
 
@@ -77,7 +80,8 @@ static int side_of(const CrossSearch *search, const float *a, const float *b, co
 /* A triangle, and the plane through it in double precision. */
 typedef struct CrossFace {
     const float *at[3];
-    double normal[3], size; /* not unit; the magnitude of its products */
+    double normal[3]; /* not unit */
+    double size;      /* bound of the magnitude of the products in `normal` */
 } CrossFace;
 
 static CrossFace face_of(const VesselMesh *mesh, uint32_t triangle)
@@ -125,7 +129,8 @@ static bool edge_meets(const CrossSearch *search, const float *p, const float *q
     return (one >= 0 && other >= 0 && third >= 0) || (one <= 0 && other <= 0 && third <= 0);
 }
 
-/* The turn from p over q to r, seen along `axis`; exact, because the products have 52 bits. */
+/* Returns the sign of the turn from p over q to r, seen along `axis`. The sign is exact, because
+ * the products have 52 bits. */
 static int turn_of(const float *p, const float *q, const float *r, int axis)
 {
     int u = (axis + 1) % 3, v = (axis + 2) % 3;

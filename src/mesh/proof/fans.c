@@ -1,15 +1,17 @@
-/* The triangles at a point are a fan if each shares an edge with the next, all the way round, and
- * if there is a direction from which all of them face the viewer and go round the point once. Then
- * they do not overlap in that view, and so they do not meet in space. The direction is the sum of
- * their normals. A number counts as positive only if it is larger than rounding errors by far. */
+/* The triangles at a point are a fan if two conditions hold. Each triangle shares an edge with the
+ * next one, all the way round the point. And there is a direction from which all triangles face the
+ * viewer and go round the point once. Then they do not overlap in this view, so they do not meet in
+ * space. The sum of the normals is tried as the direction. A number counts as positive only if it
+ * is far larger than the rounding errors. */
 #include "mesh/proof/fans.h"
 
 #include "geom/geom.h"
 #include <stdlib.h>
 
-/* A point with more triangles is not proved. One thread takes POINTS_PER_UNIT points at a time. */
+/* A point with more triangles is not proved. One thread takes POINTS_PER_UNIT points at a time.
+ * Reasons for the numbers not recorded. */
 enum { MAX_FAN = 24, POINTS_PER_UNIT = 4096 };
-/* In units of the sum of the magnitudes of the products: rounding errors are below 2^-49 of it. */
+/* In units of the sum of the magnitudes of the products, whose rounding errors are below 2^-49. */
 static const double surely = 0x1p-40;
 
 typedef struct FanSearch {
@@ -66,12 +68,8 @@ static bool is_fan(const FanSearch *search, uint32_t point)
     uint32_t ring[MAX_FAN];
     Vec3 spokes[MAX_FAN], view = vec3(0, 0, 0);
     int n = list_ring(search, point, ring);
-    const float *center = search->mesh->points[point];
-    for (int i = 0; i < n; i++) {
-        const float *x = search->mesh->points[ring[i]];
-        spokes[i] = vec3((double)x[0] - (double)center[0], (double)x[1] - (double)center[1],
-                         (double)x[2] - (double)center[2]);
-    }
+    for (int i = 0; i < n; i++)
+        spokes[i] = vec3_sub(mesh_point(search->mesh, ring[i]), mesh_point(search->mesh, point));
     for (int i = 0; i < n; i++)
         view = vec3_add(view, vec3_cross(spokes[i], spokes[(i + 1) % n]));
     /* Going round once, the turn from the first spoke is to the left, and then to the right. */

@@ -13,24 +13,26 @@ double vesselmesh_volume(const VesselMesh *mesh);
 
 /* Finds the tree of each segment.
  *
- * trees    receives, per segment, the lowest index of a node of its tree; free it with free().
+ * trees    receives, per segment, the index of its tree, below *n_trees; free it with free(). The
+ *          trees are numbered in the order of their first segments.
  * n_trees  receives the number of trees.
- * Errors   STATUS_MEMORY. */
+ * Errors   STATUS_MEMORY; the caller frees *trees also then. It must be NULL before the call. */
 MUST_CHECK Status meshcheck_trees(const VesselTree *tree, uint32_t **trees, size_t *n_trees,
                                   Err *err);
 
 /* Counts the independent loops of each tree: segments - nodes + 1.
  *
- * trees   per segment: the number of its tree, from meshcheck_trees.
- * loops   receives, per node that numbers a tree, the number of the tree's loops, and 0 for other
- *         nodes; free it with free().
+ * trees   per segment: the index of its tree, from meshcheck_trees.
+ * loops   receives, per tree, the number of its loops; free it with free(), also after an error. It
+ *         must be NULL before the call.
  * Errors  STATUS_MEMORY. */
-MUST_CHECK Status meshcheck_loops(const VesselTree *tree, const uint32_t *trees, uint32_t **loops,
-                                  Err *err);
+MUST_CHECK Status meshcheck_loops(const VesselTree *tree, const uint32_t *trees, size_t n_trees,
+                                  uint32_t **loops, Err *err);
 
 /* Fills components, genus, euler, open_edges, volume_mm3 and bridges of the report.
  *
- * trees    per segment: a number of its tree, as from meshcheck_trees.
+ * trees    per segment: the index of its tree, from meshcheck_trees. NULL: bridges are not counted,
+ *          and the report gets 0.
  * Errors   STATUS_MEMORY.
  * Cost     O(triangles). */
 MUST_CHECK Status meshcheck_topology(const VesselMesh *mesh, const uint32_t *trees,

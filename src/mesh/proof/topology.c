@@ -1,19 +1,19 @@
-/* Each edge is listed at its point of lower index, with its other point and its direction. An edge
- * is closed if its list has the other point exactly twice, once in each direction. In a closed
- * component the number of triangles is two thirds of the number of edges, and the genus is (2 -
- * points + edges - triangles) / 2. */
+/* Each edge is listed at its end of lower index, with its other end and its direction. An edge is
+ * closed if the list has the other end exactly twice, once in each direction. In a closed mesh the
+ * number of triangles is two thirds of the number of edges, and the sum of the genera is components
+ * - (points - edges + triangles) / 2. O(triangles). */
 #include "mesh/proof/meshcheck.h"
 
 #include <stdlib.h>
 
 #define NO_TREE UINT32_MAX
 
-/* Edges are listed for this many points at a time, so that the lists take less memory than the
- * mesh. */
+/* Edges are listed for this many points at a time, so that the lists of a large mesh take less
+ * memory than the mesh. */
 enum { POINTS_AT_A_TIME = 1 << 22 };
 
-/* Lists the edges from points [from, to) to points of a higher index: twice the other point, plus 1
- * if the triangle goes from it. */
+/* Lists, per point in [from, to), its edges to points of a higher index. An item is twice the index
+ * of the other end, plus 1 if the triangle's edge leads from the other end to the point. */
 static Status list_edges(const VesselMesh *mesh, size_t from, size_t to, IndexLists *lists,
                          Err *err)
 {
@@ -35,6 +35,7 @@ static Status list_edges(const VesselMesh *mesh, size_t from, size_t to, IndexLi
     return STATUS_OK;
 }
 
+/* Sorts by insertion, because a point has few edges. */
 static void sort_few(uint32_t *numbers, size_t n)
 {
     for (size_t i = 1; i < n; i++) {
@@ -104,11 +105,8 @@ double vesselmesh_volume(const VesselMesh *mesh)
     double six = 0;
     for (size_t i = 0; i < mesh->n_triangles; i++) {
         Vec3 at[3];
-        for (int k = 0; k < 3; k++) {
-            const float *x = mesh->points[mesh->triangles[i][k]], *o = mesh->points[0];
-            at[k] = vec3((double)x[0] - (double)o[0], (double)x[1] - (double)o[1],
-                         (double)x[2] - (double)o[2]);
-        }
+        for (int k = 0; k < 3; k++)
+            at[k] = vec3_sub(mesh_point(mesh, mesh->triangles[i][k]), mesh_point(mesh, 0));
         six += vec3_dot(at[0], vec3_cross(at[1], at[2]));
     }
     return six / 6;
@@ -116,40 +114,44 @@ double vesselmesh_volume(const VesselMesh *mesh)
 
 Status meshcheck_trees(const VesselTree *tree, uint32_t **trees, size_t *n_trees, Err *err)
 {
-    uint32_t *root = NULL;
+    uint32_t *root = NULL, *number = NULL; /* number: per root, the index of its tree plus 1 */
     Status status;
     TRY_GOTO(mem_calloc(&root, tree->n_nodes, sizeof *root, "nodes", err));
+    TRY_GOTO(mem_calloc(&number, tree->n_nodes, sizeof *number, "nodes", err));
     TRY_GOTO(mem_calloc(trees, tree->n_segments, sizeof **trees, "segments", err));
     sets_begin(root, tree->n_nodes);
     for (size_t i = 0; i < tree->n_segments; i++)
         sets_join(root, tree->nodes[i][0], tree->nodes[i][1]);
-    for (size_t i = 0; i < tree->n_segments; i++)
-        (*trees)[i] = sets_find(root, tree->nodes[i][0]);
     *n_trees = 0;
     for (size_t i = 0; i < tree->n_segments; i++) {
-        uint32_t *lowest = &root[(*trees)[i]];
-        *n_trees += *lowest != NO_TREE;
-        *lowest = NO_TREE; /* counted */
+        uint32_t *own = &number[sets_find(root, tree->nodes[i][0])];
+        *own = *own ? *own : (uint32_t)++ * n_trees;
+        (*trees)[i] = *own - 1;
     }
 done:
     free(root);
+    free(number);
     return status;
 }
 
-Status meshcheck_loops(const VesselTree *tree, const uint32_t *trees, uint32_t **loops, Err *err)
+Status meshcheck_loops(const VesselTree *tree, const uint32_t *trees, size_t n_trees,
+                       uint32_t **loops, Err *err)
 {
-    bool *is_counted;
-    TRY(mem_calloc(&is_counted, tree->n_nodes, sizeof *is_counted, "nodes", err));
-    Status status = mem_calloc(loops, tree->n_nodes, sizeof **loops, "nodes", err);
-    for (size_t i = 0; i < tree->n_segments && status == STATUS_OK; i++) {
-        uint32_t *own = &(*loops)[trees[i]];
-        *own += 1;
+    bool *is_counted = NULL;
+    Status status;
+    TRY_GOTO(mem_calloc(&is_counted, tree->n_nodes, sizeof *is_counted, "nodes", err));
+    TRY_GOTO(mem_calloc(loops, n_trees, sizeof **loops, "trees", err));
+    for (size_t i = 0; i < n_trees; i++)
+        (*loops)[i] = 1;
+    for (size_t i = 0; i < tree->n_segments; i++) {
+        (*loops)[trees[i]]++;
         for (int end = 0; end < 2; end++) {
             bool *counted = &is_counted[tree->nodes[i][end]];
-            *own -= !*counted && tree->nodes[i][end] != trees[i];
+            (*loops)[trees[i]] -= !*counted;
             *counted = true;
         }
     }
+done:
     free(is_counted);
     return status;
 }
@@ -167,7 +169,7 @@ Status meshcheck_topology(const VesselMesh *mesh, const uint32_t *trees, MeshRep
     for (size_t i = 0; i < mesh->n_triangles; i++)
         for (int k = 1; k < 3; k++)
             report->components -= sets_join(root, mesh->triangles[i][0], mesh->triangles[i][k]);
-    report->bridges = count_bridges(mesh, root, tree, trees);
+    report->bridges = trees ? count_bridges(mesh, root, tree, trees) : 0;
     report->euler = (long long)mesh->n_points - (long long)(mesh->n_triangles / 2);
     report->genus = (size_t)llabs((2 * (long long)report->components - report->euler) / 2);
     report->volume_mm3 = vesselmesh_volume(mesh);

@@ -1,35 +1,37 @@
-/* Both changes follow one scheme: change the tree a little, find its junction regions anew, and
- * repeat until they are as wanted. One step does not suffice: a change of radii or lengths makes
- * regions larger or smaller, so that vessels that shared a region before may become unconnected.
+/* Both functions change the tree a little, find its junction regions anew, and repeat. One step
+ * does not suffice: a change of radii or lengths makes regions larger or smaller, so that vessels
+ * that shared a region before may become unconnected.
  *
- * Two vessels that overlap are thinned by the same factor, together with the vessels that blend
- * with them and are not much thicker, because the surface of a centre line of short steps is that
- * of many segments.
+ * Two vessels that overlap are thinned by the same factor. The vessels that blend with them and are
+ * not much thicker are thinned, too, because a finely sampled vessel consists of many segments.
  *
- * An end is cut off flat if its vessel is a tube up to there. A short vessel has no room for that
- * if other vessels are near. Each end that is not flat grows by a step at a time. An end that would
- * then overlap a stranger, or that is not flat at its greatest length, goes back to where it was.
- */
+ * An end is cut off flat if its vessel is a tube up to the end. A short vessel is not if other
+ * vessels are near. Each end that is not flat grows by a step at a time. An end that would then
+ * overlap an unconnected vessel, or that is not flat at its maximum length, goes back to its first
+ * position. */
 #include "mesh/regions/adjust.h"
 
 #include "mesh/regions/junctions.h"
 #include "mesh/regions/nearpairs.h"
 #include <stdlib.h>
 
-/* In units of the sum of the radii: the gap left between parted surfaces. */
+/* In units of the sum of the radii: the gap left between parted surfaces. Reason for the number not
+ * recorded. */
 static const double free_part = 0.08;
-/* In units of the original radius: what each vessel keeps. */
+/* In units of the original radius: the minimum radius of a thinned vessel. */
 static const double least_kept = 0.05;
-/* Vessels that blend with a thinned one are thinned, too, up to this many times its radius. */
+/* A vessel that blends with a thinned one is thinned, too, if its radius is at most this many times
+ * as large. Reason for the number not recorded. */
 static const double alike = 1.3;
 enum { MAX_PARTING_ROUNDS = 12 };
-/* In units of the radius: by how much an end grows at a time. */
+/* In units of the radius: by how much an end grows at a time. Reason for the number not recorded.
+ */
 static const double end_step = 0.5;
 
 typedef struct Parting {
     VesselTree *tree;
     Junctions junctions;
-    double *kept;  /* per segment: the part of its radius that it keeps in this round */
+    double *kept;  /* per segment: the fraction of its radius that it keeps in this round */
     double *radii; /* per segment: its radius before the first round */
 } Parting;
 
@@ -40,6 +42,7 @@ static Status find_anew(const VesselTree *tree, const MeshParams *params, Juncti
     return junctions_find(tree, params, junctions, err);
 }
 
+/* Thins the vessels that blend at the ends of a segment. */
 static void thin_about(const Parting *parting, uint32_t segment, double factor)
 {
     const VesselTree *tree = parting->tree;
@@ -116,9 +119,9 @@ done:
 typedef struct TreeTip {
     uint32_t segment;
     int end;
-    bool is_stuck; /* it is back where it was, and stays there */
-    int steps;     /* by which it is longer */
-    Vec3 was;
+    bool is_stuck; /* it is back at its first position, and stays there */
+    int steps;     /* number of steps by which it is longer */
+    Vec3 was;      /* its first position */
 } TreeTip;
 
 typedef struct Lengthening {

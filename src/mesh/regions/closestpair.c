@@ -1,6 +1,6 @@
-/* If two boxes are padded by the radius and half a reach, they meet whenever the gap of the vessels
- * is at most the reach. The search begins with a small reach and doubles it until it finds a gap of
- * at most the reach. */
+/* The boxes about two segments are padded by their radii and half a reach. Such boxes meet whenever
+ * the gap between the vessels is at most the reach. The search begins with a small reach, and
+ * doubles the reach until it finds a gap of at most the reach. */
 #include "mesh/regions/junctions.h"
 
 #include "mesh/regions/nearpairs.h"

@@ -1,30 +1,33 @@
-/* The vessels that blend with a segment on one side change its surface up to the last place where,
- * on the circle of its surface, they add more to the potential than is allowed. Nearer to the end,
- * the segment's own term falls off, and the other vessels make up for it: along a straight chain of
- * segments the sum is that of a cylinder everywhere. So the surface is even where the sum of both
- * is nearly that of the segment alone, if it continued.
+/* The vessels that blend with a segment at one end add to the potential on its surface. The surface
+ * is a cylinder from the last circle on where they add more than is allowed. Nearer to the end, the
+ * segment's own term falls off, and the other vessels make up for the loss: along a straight chain
+ * of segments, the sum is that of a cylinder everywhere. So the surface is nearly a cylinder where
+ * the sum nearly equals the term that the segment would have if it continued.
  *
- * Places are tried in steps from the far end on. The interval that the last one is in is halved. */
+ * Circles are tested in steps from the far end on. The step that holds the last circle is halved a
+ * few times. */
 #include "mesh/regions/freeends.h"
 
 #include "mesh/regions/junctionfield.h"
 #include "mesh/regions/nearpairs.h"
 #include <stdlib.h>
 
-/* In units of the level: what other vessels may add. Adding a part p moves the surface by p / 4
- * radii. least_part and most_part bound the tolerance where the surface must be a cylinder;
- * uneven_part is for where it must nearly be one. */
+/* In units of FIELD_LEVEL: the potential that other vessels may add. An addition of p moves the
+ * surface by p / 4 radii. least_part and most_part bound the tolerance, which is the limit where
+ * the surface must be a cylinder. uneven_part is the limit where the surface must be nearly a
+ * cylinder. Reasons for the numbers not recorded. */
 static const double least_part = 5e-3, most_part = 2e-2, uneven_part = 5e-2;
 /* In units of the radius: the step of the search, and how far the search goes beyond the other end,
- * as the stubs of regions do. */
+ * as the stubs of regions do. Reasons for the numbers not recorded. */
 static const double search_step = 0.15, run_on = 1;
-/* Points on the circle of a place; how often the last step is halved. */
+/* Number of points on a tested circle; number of times that the last step is halved. */
 enum { CIRCLE_POINTS = 12, HALVINGS = 3 };
 /* In units of a vessel's radius: beyond this distance from its axis, its term is below a tenth of
  * least_part, e^(-2 x^2) = 5e-4 e^-2. */
 static const double field_reach = 2.2;
 
-/* A vessel that blends with the segment, and the distance up to which it may disturb it. */
+/* A vessel that blends with the segment, and the distance from the end up to which it may change
+ * the segment's surface. */
 typedef struct Disturber {
     double last_mm;
     uint32_t segment;
@@ -32,7 +35,7 @@ typedef struct Disturber {
 
 typedef struct FreeSearch {
     const FreeEndInput *input;
-    double disturbance; /* what others may add where the surface is a cylinder */
+    double disturbance; /* potential that others may add where the surface is a cylinder */
     FreeEnd (*ends)[2];
 } FreeSearch;
 
@@ -57,23 +60,14 @@ typedef struct EndSearch {
     ARRAY(uint32_t) others; /* segments that blend with this one; may repeat */
 } EndSearch;
 
-/* A test of one place on the segment's surface. Returns true if `others`, the sum of the terms of
- * other vessels, is too large. `ceased` is what the segment's own term lacks there. */
-typedef bool TooMuch(const EndSearch *search, double others, double ceased);
+/* How strictly a circle is tested. */
+typedef enum CircleTest {
+    TEST_CYLINDER,     /* other vessels add at most EndSearch.disturbance */
+    TEST_NEAR_CYLINDER /* other vessels make up for what the segment's own term lacks */
+} CircleTest;
 
-static bool is_disturbed(const EndSearch *search, double others, double ceased)
-{
-    (void)ceased;
-    return others > search->disturbance;
-}
-
-static bool is_uneven(const EndSearch *search, double others, double ceased)
-{
-    (void)search;
-    return fabs(others - ceased) > uneven_part * FIELD_LEVEL;
-}
-
-static Vec3 place_at(const EndSearch *search, double mm)
+/* Returns the point of the axis at a distance from the end. */
+static Vec3 axis_point(const EndSearch *search, double mm)
 {
     const FieldSegment *self = search->self;
     return search->end ? vec3_add_scaled(self->b, search->axis, -mm)
@@ -95,16 +89,15 @@ static Vec3 nearest_of(const PotentialTerm *other, Vec3 x)
     return vec3_add_scaled(other->a, other->axis, fmin(fmax(along, 0), other->length_k / other->k));
 }
 
-/* Tests the circle at a distance from the end against the first `near` disturbers. Tries points all
- * round the circle, and the point that faces each disturber, because a vessel may be thinner than
- * the distance between the points. */
-static bool is_too_much(const EndSearch *search, size_t near, double mm, TooMuch *too_much)
+/* Returns true if the circle at a distance from the end fails a test against the first `near`
+ * disturbers. Tests points all round the circle, and the point that faces each disturber, because a
+ * vessel may be thinner than the distance between the points. */
+static bool fails(const EndSearch *search, size_t near, double mm, CircleTest test)
 {
-    Vec3 u, v, center = place_at(search, mm);
+    Vec3 u, v, center = axis_point(search, mm);
     double radius = search->self->radius_mm;
-    double ceased = search->tree->body == BODY_ROUND
-                        ? 0
-                        : 0.5 * FIELD_LEVEL * elementary_erfc(sqrt(2) * mm / radius);
+    /* the part of its value far from the end that the segment's own term lacks here */
+    double lack = 0.5 * FIELD_LEVEL * elementary_erfc(sqrt(2) * mm / radius);
     vec3_across(search->axis, &u, &v);
     for (size_t i = 0; i < CIRCLE_POINTS + near; i++) {
         double angle = FULL_TURN * (double)i / CIRCLE_POINTS;
@@ -115,7 +108,9 @@ static bool is_too_much(const EndSearch *search, size_t near, double mm, TooMuch
         }
         Vec3 x = vec3_add_scaled(center, u, radius * elementary_cos(angle));
         x = vec3_add_scaled(x, v, radius * elementary_sin(angle));
-        if (too_much(search, sum_at(search->terms, near, x), ceased))
+        double sum = sum_at(search->terms, near, x);
+        if (test == TEST_CYLINDER ? sum > search->disturbance
+                                  : fabs(sum - lack) > uneven_part * FIELD_LEVEL)
             return true;
     }
     return false;
@@ -123,11 +118,12 @@ static bool is_too_much(const EndSearch *search, size_t near, double mm, TooMuch
 
 static double distance_at(const EndSearch *search, double mm, const FieldSegment *other)
 {
-    return segment_distance_to(other, place_at(search, mm));
+    return segment_distance_to(other, axis_point(search, mm));
 }
 
-/* Returns the distance from the end to the place that is nearest to another segment. The distance
- * of a segment is convex along a line. */
+/* Returns the distance from the end to the point of the axis that is nearest to another segment.
+ * The search keeps two thirds of an interval at a time, which is right because the distance from a
+ * segment is convex along a line. */
 static double nearest_place(const EndSearch *search, const FieldSegment *other)
 {
     double low = 0, high = search->length_mm;
@@ -141,8 +137,8 @@ static double nearest_place(const EndSearch *search, const FieldSegment *other)
     return low;
 }
 
-/* Returns the distance from the end up to which another vessel may disturb the surface: that of the
- * last place within reach of the other vessel's axis. */
+/* Returns the distance from the end up to which another vessel may change the surface: that of the
+ * last point of the axis within reach of the other vessel's axis. */
 static double last_near(const EndSearch *search, const FieldSegment *other)
 {
     double radius = search->self->radius_mm, length = search->length_mm;
@@ -163,15 +159,13 @@ static double last_near(const EndSearch *search, const FieldSegment *other)
 static int compare_reach(const void *a, const void *b)
 {
     const Disturber *one = a, *other = b;
-    if (one->last_mm != other->last_mm)
-        return one->last_mm > other->last_mm ? -1 : 1;
-    return (one->segment > other->segment) - (one->segment < other->segment);
+    int order = number_order(other->last_mm, one->last_mm);
+    return order ? order : number_order(one->segment, other->segment);
 }
 
 static int compare_numbers(const void *a, const void *b)
 {
-    uint32_t one = *(const uint32_t *)a, other = *(const uint32_t *)b;
-    return (one > other) - (one < other);
+    return number_order(*(const uint32_t *)a, *(const uint32_t *)b);
 }
 
 /* Lists a node that the search reached, unless a path that is not longer is known. Few nodes are
@@ -248,19 +242,19 @@ static size_t count_near(const EndSearch *search, double mm)
     return near;
 }
 
-/* Returns the distance, at most `most`, beyond the last place that fails the test. The last place
- * counts, not the first that passes: a thin vessel that leaves a thick one at a small angle comes
- * out of its surface far from the node. */
-static double last_place(const EndSearch *search, double most, TooMuch *too_much)
+/* Returns the distance, at most about `most`, of the last circle that fails the test. The last one
+ * that fails counts, not the first one that passes: a thin vessel that leaves a thick one at a
+ * small angle comes out of the thick vessel's surface far from the node. */
+static double last_failure(const EndSearch *search, double most, CircleTest test)
 {
     double step = search_step * search->self->radius_mm;
     for (double steps = ceil(most / step); steps > 0; steps--) {
         double low = (steps - 1) * step, high = steps * step;
-        if (!is_too_much(search, count_near(search, low), low, too_much))
+        if (!fails(search, count_near(search, low), low, test))
             continue;
         for (int i = 0; i < HALVINGS; i++) {
             double middle = 0.5 * (low + high);
-            bool is_low = is_too_much(search, count_near(search, middle), middle, too_much);
+            bool is_low = fails(search, count_near(search, middle), middle, test);
             *(is_low ? &low : &high) = middle;
         }
         return high;
@@ -268,15 +262,16 @@ static double last_place(const EndSearch *search, double most, TooMuch *too_much
     return 0;
 }
 
-/* Returns the distance of the farthest place beside which another vessel ends inside the segment's
- * own. Such a vessel may not change the surface, but it must not come out of it behind a plane. */
+/* Returns the distance along the axis of the farthest end of another vessel that is inside this
+ * vessel; 0 if there is none. Such a vessel may leave the surface as it is, but it must not come
+ * out of the surface beyond a plane. */
 static double last_within(const EndSearch *search)
 {
     double last = 0, sign = search->end ? -1 : 1;
     for (size_t i = 0; i < search->n; i++) {
         const FieldSegment *other = &search->tree->segments[search->disturbers[i].segment];
         for (int end = 0; end < 2; end++) {
-            Vec3 from = vec3_sub(end ? other->b : other->a, place_at(search, 0));
+            Vec3 from = vec3_sub(segment_end(other, end), axis_point(search, 0));
             double along = sign * vec3_dot(from, search->axis);
             double across2 = vec3_dot(from, from) - along * along;
             if (across2 < search->self->radius_mm * search->self->radius_mm)
@@ -301,10 +296,10 @@ static Status find_free(const FreeSearch *all, uint32_t segment, int end, Err *e
     TRY_GOTO(list_others(&search, all->input, segment, err));
     TRY_GOTO(find_disturbers(&search, err));
     if (search.n) {
-        double clear = last_place(&search, search.disturbers[0].last_mm, is_disturbed),
-               even = clear;
-        if (tree->body != BODY_ROUND)
-            even = last_place(&search, fmax(clear, radius), is_uneven);
+        double clear = last_failure(&search, search.disturbers[0].last_mm, TEST_CYLINDER);
+        double even = tree->body == BODY_ROUND
+                          ? clear
+                          : last_failure(&search, fmax(clear, radius), TEST_NEAR_CYLINDER);
         even = fmax(even, last_within(&search));
         all->ends[segment][end] = (FreeEnd){even, fmax(clear, even)};
     }

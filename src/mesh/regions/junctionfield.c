@@ -1,19 +1,24 @@
-/* Bounds of a term in a ball of radius rho about x, in units of 1 / k: Its radial factor is between
- * those at E + rho and max(0, E - rho). Its axial factor is symmetric about the middle of the
- * segment, where it is largest, and falls away from it. In the interval of width 2 rho it is
- * smallest at one of the two ends, and largest at the point nearest to the middle. */
+/* A term is bounded in a ball of radius rho about x. Lengths are in units of 1 / k, and E is the
+ * distance of x from the axis. The radial factor is between its values at E + rho and at
+ * max(0, E - rho). The axial factor is symmetric about the middle of the segment, where it is
+ * largest, and falls on both sides. So in an interval of width 2 rho it is smallest at one of the
+ * two ends, and largest at the point nearest to the middle. */
 #include "mesh/regions/junctionfield.h"
 
 #include "mesh/regions/gauss.h"
 #include <float.h>
 #include <stdlib.h>
 
+/* A term below this does not count for FieldBounds.min_radius_mm and has_unblended_pair. Reason for
+ * the number not recorded. */
 static const double significant = 0.1 * FIELD_LEVEL;
 /* exp(-x^2) is below 10^-5 beyond this. */
 static const double out_of_reach = 3.4;
-/* Factor on the radius of the ball: surfaces bend away from the planes that approximate them. */
+/* Factor on the radius of the ball, because surfaces bend away from the planes that approximate
+ * them. Reason for the number not recorded. */
 static const double crease_slack = 1.2;
-/* In units of the radius: a cap this far outside a capsule is inside it but for rounding. */
+/* In units of the radius: a cap that is less than this outside a capsule counts as inside it,
+ * because of rounding. */
 static const double cap_rounding = 1e-9;
 static const double inv_sqrt_pi = 0.56418958354775628695;
 
@@ -110,7 +115,7 @@ static double lower_bound(const PotentialTerm *term, const TermPlace *place, dou
 {
     double across = sqrt(term->is_round ? distance2(place) : place->e2) + rho;
     if (across > 2)
-        return 0; /* less than 0.02, which no sum needs */
+        return 0; /* the bound would be below 0.02, which is too small to matter in a sum */
     if (term->is_round)
         return exp_minus(across * across);
     double one = axial(place->u + rho, place->v - rho),
@@ -140,7 +145,7 @@ Status localfield_refuse(Err *err)
                    "more than %d segments meet at one point; leave some out", MAX_LOCAL_TERMS);
 }
 
-/* Begins an empty part at the top of the pool. Its groups come after its terms. */
+/* Returns a part without groups at the top of the pool. The caller appends its terms and groups. */
 static LocalField begin_part(const LocalFieldPool *pool, uint32_t n_terms)
 {
     return (LocalField){(uint32_t)pool->n_terms, n_terms, (uint32_t)pool->n_groups, 0,
@@ -182,7 +187,8 @@ Status localfield_copy(const LocalFieldPool *from, const LocalField *part, Local
     return STATUS_OK;
 }
 
-/* Groups are not compared with each other if there are more than this. */
+/* Groups are not compared with each other if there are more than this, because the time of the
+ * comparisons grows with the square of their number. */
 enum { MOST_COMPARED = 256 };
 
 static bool is_subset(const uint64_t *a, const uint64_t *b, uint32_t words)
@@ -305,14 +311,14 @@ static bool has_parted(const LocalFieldPool *pool, const LocalField *part)
 }
 
 /* A surface that may pass a ball: its normal, and the distance of the centre outside it, mm. */
-typedef struct NearWall {
+typedef struct NearSurface {
     Vec3 normal;
     double outside;
-} NearWall;
+} NearSurface;
 
 /* Returns true if two surfaces, taken as planes, meet in a ball of this radius, or face each other
  * in it. */
-static bool walls_meet(const NearWall *a, const NearWall *b, double radius_mm)
+static bool surfaces_meet(const NearSurface *a, const NearSurface *b, double radius_mm)
 {
     double cosine = vec3_dot(a->normal, b->normal);
     double apart = a->outside * a->outside + b->outside * b->outside -
@@ -336,11 +342,11 @@ static double cap_beside(Vec3 end, Vec3 outward, double radius_mm, const Potenti
     return fmin(1, sqrt(2 * short_of) + sqrt(fmax(0, 1 - cosine * cosine)));
 }
 
-/* Returns the wall of the i-th term. The wall of a place beyond an end of the segment is the cap's
- * tangent plane, or the last one that no other term covers. `outside` is HUGE_VAL if the whole part
- * of the surface that may be in the ball is covered. */
-static NearWall find_wall(const JunctionField *field, const LocalFieldPool *pool,
-                          const LocalField *part, uint32_t i, Vec3 center, double radius_mm)
+/* Returns the surface of the i-th term. Beyond an end of the segment, the surface is the cap's
+ * tangent plane, or the last tangent plane that no other term covers. `outside` is HUGE_VAL if
+ * other terms cover the whole part of the surface that may be in the ball. */
+static NearSurface find_surface(const JunctionField *field, const LocalFieldPool *pool,
+                                const LocalField *part, uint32_t i, Vec3 center, double radius_mm)
 {
     const uint32_t *terms = &pool->terms[part->first_term];
     const PotentialTerm *term = &field->terms[terms[i]];
@@ -348,40 +354,40 @@ static NearWall find_wall(const JunctionField *field, const LocalFieldPool *pool
     const double beyond = fmax(0, fmax(-place.u, -place.v)) / term->k;
     const Vec3 from = from_nearest(term, &place);
     double cap = 1;
-    NearWall wall = {vec3_normalized(from), vec3_length(from) - term->radius_mm};
+    NearSurface surface = {vec3_normalized(from), vec3_length(from) - term->radius_mm};
     if (beyond == 0)
-        return wall;
+        return surface;
     const Vec3 outward = place.u < 0 ? vec3_scale(term->axis, -1) : term->axis;
     for (uint32_t k = 0; k < part->n_terms; k++)
         if (k != i)
             cap = fmin(cap, cap_beside(vec3_sub(center, from), outward, term->radius_mm,
                                        &field->terms[terms[k]]));
     if (beyond <= cap * vec3_length(from))
-        return wall;
-    wall.normal = vec3_add_scaled(vec3_scale(vec3_normalized(place.across), sqrt(1 - cap * cap)),
-                                  outward, cap);
-    wall.outside = beyond <= cap * term->radius_mm + radius_mm
-                       ? vec3_dot(from, wall.normal) - term->radius_mm
-                       : HUGE_VAL;
-    return wall;
+        return surface;
+    surface.normal = vec3_add_scaled(vec3_scale(vec3_normalized(place.across), sqrt(1 - cap * cap)),
+                                     outward, cap);
+    surface.outside = beyond <= cap * term->radius_mm + radius_mm
+                          ? vec3_dot(from, surface.normal) - term->radius_mm
+                          : HUGE_VAL;
+    return surface;
 }
 
 /* Returns the maximum difference of the normals of surfaces that meet in the ball. */
 static double find_crease(const JunctionField *field, const LocalFieldPool *pool,
                           const LocalField *part, Vec3 center, double radius_mm)
 {
-    NearWall walls[MAX_LOCAL_TERMS];
+    NearSurface surfaces[MAX_LOCAL_TERMS];
     uint32_t n = 0;
     double most = 0;
     for (uint32_t i = 0; i < part->n_terms && n < MAX_LOCAL_TERMS; i++) {
         if (pool->work[i].upper < FIELD_LEVEL || pool->work[i].lower > FIELD_LEVEL)
             continue;
-        walls[n] = find_wall(field, pool, part, i, center, crease_slack * radius_mm);
-        if (walls[n].outside == HUGE_VAL)
+        surfaces[n] = find_surface(field, pool, part, i, center, crease_slack * radius_mm);
+        if (surfaces[n].outside == HUGE_VAL)
             continue;
         for (uint32_t k = 0; k < n; k++)
-            if (walls_meet(&walls[k], &walls[n], crease_slack * radius_mm))
-                most = fmax(most, vec3_distance(walls[k].normal, walls[n].normal));
+            if (surfaces_meet(&surfaces[k], &surfaces[n], crease_slack * radius_mm))
+                most = fmax(most, vec3_distance(surfaces[k].normal, surfaces[n].normal));
         n++;
     }
     return most;
@@ -399,10 +405,8 @@ static void sum_bounds(const JunctionField *field, const LocalFieldPool *pool,
             bounds->largest_upper = upper;
             bounds->largest_term = number;
         }
-        if (upper > significant) {
+        if (upper > significant)
             bounds->min_radius_mm = fmin(bounds->min_radius_mm, radius);
-            bounds->max_radius_mm = fmax(bounds->max_radius_mm, radius);
-        }
     }
     for (uint32_t g = 0; g < part->n_groups; g++) {
         const uint64_t *group = &pool->groups[part->first_group + (size_t)g * part->words];
@@ -446,7 +450,7 @@ Status localfield_narrow(const JunctionField *field, LocalFieldPool *pool, const
     return STATUS_OK;
 }
 
-/* Finds the group with the largest sum. values[] has the terms of the part. */
+/* Finds the group with the largest sum. values[] has the values of the part's terms. */
 static FieldValue largest_group(const LocalFieldPool *pool, const LocalField *part,
                                 const double *values)
 {
@@ -494,7 +498,7 @@ static inline void add_term(GradientSum *sum, const PotentialTerm *term, uint32_
     }
 }
 
-/* Finds the group with the largest sum first, and then its gradient. */
+/* Finds the group with the largest sum, and then the gradient of this sum alone. */
 static FieldValue gradient_of_largest(const JunctionField *field, const LocalFieldPool *pool,
                                       const LocalField *part, Vec3 x, Vec3 *gradient)
 {

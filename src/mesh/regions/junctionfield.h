@@ -16,13 +16,13 @@
  * units of radius / sqrt 2. The term of a BODY_ROUND segment is exp(-(k d)^2), where d is the
  * distance to the segment: its level set at FIELD_LEVEL is a capsule of the segment's radius. */
 typedef struct PotentialTerm {
-    Vec3 a, axis;    /* the segment's first end, and the unit direction from there */
-    double k;        /* sqrt 2 / radius, 1/mm */
-    double length_k; /* length of the segment, times k */
-    double radius_mm;
-    uint32_t segment; /* index of the segment in the tree */
+    uint32_t segment; /* index of the segment in the tree; the first member [sorted_find_row] */
     uint16_t stub;    /* index of the branch stub in the region, or NO_STUB */
     bool is_round;    /* the tree's body is BODY_ROUND */
+    Vec3 a, axis;     /* the segment's first end, and the unit direction from there */
+    double k;         /* sqrt 2 / radius, 1/mm */
+    double length_k;  /* length of the segment, times k */
+    double radius_mm;
 } PotentialTerm;
 
 /* In PotentialTerm.stub: the segment is wholly in the region. */
@@ -92,8 +92,8 @@ typedef struct FieldBounds {
     double sum_upper;      /* upper bound of the sum of all terms */
     double largest_upper;  /* upper bound of the largest term */
     uint32_t largest_term; /* index in the field of the term with that bound */
-    /* Radii of the terms that may exceed FIELD_LEVEL / 10. Without such a term, HUGE_VAL and 0. */
-    double min_radius_mm, max_radius_mm;
+    double min_radius_mm; /* smallest radius of the terms that may exceed FIELD_LEVEL / 10; HUGE_VAL
+                           * if there is no such term */
     bool has_unblended_pair;      /* two such terms share no group; false for BODY_ROUND */
     double max_normal_difference; /* BODY_ROUND: maximum of |n1 - n2| over the unit normals of
                                    * surfaces that may meet in the ball; else 0 */

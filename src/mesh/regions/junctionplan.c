@@ -1,7 +1,7 @@
-/* The field of a region holds the segments with an end in it. A segment that leaves the region
- * becomes a stub: it is cut off, or prolonged, to end a little behind the plane where its tube
- * begins. That is far enough that the end does not change the field at the plane, and near enough
- * that the stub does not meet other vessels. */
+/* The field of a region holds a term for each segment that has an end in the region. A segment that
+ * leaves the region becomes a stub. The stub's term is cut off, or prolonged, to end STUB_TAIL
+ * radii beyond the plane where the tube begins. The terms are sorted by segment, so that the
+ * members of a group are found in O(log terms). */
 #include "mesh/regions/junctions.h"
 
 #include "mesh/regions/nearpairs.h"
@@ -41,7 +41,8 @@ static Status add_stub(JunctionPlanner *planner, uint32_t segment, int end, Err 
     return STATUS_OK;
 }
 
-/* Adds the segments at one node. A whole segment is added only at its first end. */
+/* Adds the segments at one node. A whole segment is added at its first end alone, so that it is
+ * added once. */
 static Status add_node(JunctionPlanner *planner, uint32_t node, Err *err)
 {
     JunctionPlan *plan = &planner->plan;
@@ -66,24 +67,11 @@ static Status add_node(JunctionPlanner *planner, uint32_t node, Err *err)
 static int compare_terms(const void *a, const void *b)
 {
     const PotentialTerm *one = a, *other = b;
-    int order = (one->segment > other->segment) - (one->segment < other->segment);
-    return order ? order : (one->stub > other->stub) - (one->stub < other->stub);
+    int order = number_order(one->segment, other->segment);
+    return order ? order : one->stub - other->stub;
 }
 
-/* Returns the index of the first term whose segment has at least this index. */
-static uint32_t first_term(const JunctionField *field, uint32_t segment)
-{
-    uint32_t low = 0, high = field->n_terms;
-    while (low < high) {
-        uint32_t middle = low + (high - low) / 2;
-        if (field->terms[middle].segment < segment)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
-}
-
+/* Adds the group of a node: the region's terms of the segments that blend there. */
 static Status add_group(JunctionPlanner *planner, uint32_t node, Err *err)
 {
     JunctionField *field = &planner->plan.field;
@@ -93,9 +81,10 @@ static Status add_group(JunctionPlanner *planner, uint32_t node, Err *err)
                     sizeof *field->members, "terms", err));
     for (uint32_t i = first[node]; i < first[node + 1]; i++) {
         uint32_t segment = planner->junctions->blending.items[i];
-        for (uint32_t k = first_term(field, segment);
+        for (size_t k =
+                 sorted_find_row(field->terms, field->n_terms, sizeof *field->terms, segment);
              k < field->n_terms && field->terms[k].segment == segment; k++)
-            field->members[planner->n_members++] = k;
+            field->members[planner->n_members++] = (uint32_t)k;
     }
     field->first[++field->n_groups] = (uint32_t)planner->n_members;
     return STATUS_OK;

@@ -1,14 +1,15 @@
-/* A segment is a tube if, somewhere along it, it is clear of the vessels at both its ends
- * [freeends.h], and if its planes then have room to be shifted. Many segments along a trunk are not
- * clear anywhere. Such a segment is still a tube if two planes fit close together, each clear of
- * the vessels at the end beyond the other plane, and where the surface is nearly a cylinder. The
- * rims there are not circles. Otherwise both nodes of the segment belong to one region.
+/* A segment is a tube if a part of it is clear of the vessels at both its ends [freeends.h], and if
+ * this part is long enough for two planes that may be shifted. Many segments along a trunk have no
+ * clear part. Such a segment is still a tube if two planes fit close together where the surface is
+ * nearly a cylinder. Each of these planes must be clear of the vessels at the end beyond the other
+ * plane. Their rims are not circles. If no planes fit, both nodes of the segment belong to one
+ * region.
  *
- * In a region, two vessels that share no node may pass close to each other. The tube of one has
- * long triangles, which could cut the other vessel. So the planes of both are pushed past the part
- * where they are near. A tube can become too short by that, which joins regions. Then more pairs
- * may share a region. The steps are repeated until nothing changes. They end, because a plane is
- * only pushed to one of a few positions. */
+ * In a region, two vessels that share no node may pass close to each other. The tube of one vessel
+ * has long triangles, which could cut the other vessel. So the planes of both vessels are pushed
+ * past the part where they are near. A tube that becomes too short joins two regions, and then more
+ * pairs may share a region. The steps are repeated until nothing changes. They end, because a plane
+ * is only pushed to one of a few positions. */
 #include "mesh/regions/junctions.h"
 
 #include "mesh/precision.h"
@@ -22,7 +23,8 @@ static const double plane_room = PLANE_MOVE, plane_gap = 0.05, search_step = 0.1
 /* In units of the radius: beyond this distance from a segment's end, its own term is within a
  * hundredth of its value far from the end. */
 static const double term_room = 1.17;
-/* In units of the radius: minimum and maximum gap left between close planes. */
+/* In units of the radius: minimum and maximum gap left between close planes. Reasons for the
+ * numbers not recorded. */
 static const double close_least = 0.2, close_most = 0.35;
 /* In units of the radius: minimum distance of a plane from the end of a round body, so that the
  * plane does not cut the ball there. */
@@ -62,13 +64,14 @@ static bool is_end(const Junctions *junctions, uint32_t node)
     return junctions->incident.first[node + 1] - junctions->incident.first[node] == 1;
 }
 
-/* A round body has a region at each end, because its end is a ball. */
+/* Returns true if the node is an end that may be cut off flat. A round body has none: its end is a
+ * ball, which needs a region. */
 static bool is_flat_end(const Divider *divider, uint32_t node)
 {
     return divider->tree->body != BODY_ROUND && is_end(divider->junctions, node);
 }
 
-/* The planes of a round body stay off the balls at its ends. */
+/* Moves the planes of a round body off the balls at its ends. */
 static void keep_off_ends(const Divider *divider)
 {
     const VesselTree *tree = divider->tree;
@@ -92,7 +95,7 @@ static bool join_nodes(const Divider *divider, uint32_t a, uint32_t b)
     return sets_join(divider->root, a, b);
 }
 
-/* Joins all nodes on the path between two. */
+/* Joins all nodes on the path between two nodes of one tree. Returns true if a region changes. */
 static bool join_path(const Divider *divider, uint32_t a, uint32_t b)
 {
     const TreeOrder *order = &divider->order;
@@ -161,7 +164,7 @@ static bool may_return(const Divider *divider, uint32_t segment)
            plane[0] + plane[1] + 2 * STUB_TAIL * self->radius_mm <= segment_length(self);
 }
 
-/* Joins the nodes of each segment that is not a tube. */
+/* Joins the nodes of each segment that is not a tube. Returns true if a region changes. */
 static bool join_short(Divider *divider)
 {
     const VesselTree *tree = divider->tree;
@@ -202,8 +205,9 @@ static void near_part(const FieldSegment *a, const FieldSegment *b, double part[
     }
 }
 
-/* Pushes the plane of tube `a` past the part near `b`, at the end that lies in a junction of `b`;
- * at the nearer one if both do. */
+/* Pushes the plane of tube `a` past the part near `b`, at the end that is in a region of `b`. If
+ * both ends are, the plane that needs the shorter push is pushed. Returns true if the plane moves.
+ */
 static bool push_plane(Divider *divider, uint32_t a, uint32_t b)
 {
     const VesselTree *tree = divider->tree;
@@ -245,12 +249,11 @@ static bool share_junction(const Divider *divider, uint32_t a, uint32_t b)
 /* Returns the node at the end of segment `a` that is nearer to segment `b`. */
 static uint32_t nearer_node(const VesselTree *tree, uint32_t a, uint32_t b)
 {
-    Vec3 middle = vec3_scale(vec3_add(tree->segments[b].a, tree->segments[b].b), 0.5);
-    int end =
-        vec3_distance(tree->segments[a].b, middle) < vec3_distance(tree->segments[a].a, middle);
-    return tree->nodes[a][end];
+    return tree->nodes[a][segment_nearer_end(&tree->segments[a], &tree->segments[b])];
 }
 
+/* Joins near vessels that blend but share no region, and pushes the planes of near vessels that
+ * share one. Returns true if something changes. */
 static bool part_near(Divider *divider, const NearPair *pairs, size_t n)
 {
     bool changed = false;
@@ -278,7 +281,7 @@ static Status list_nodes(const Divider *divider, IndexLists *lists, Err *err)
 
 /* Returns the part of a segment in the region of one of its ends, from a distance `from` on. A stub
  * ends behind its plane. */
-static FieldSegment part_in_zone(const Divider *divider, uint32_t segment, int end, double from)
+static FieldSegment part_in_region(const Divider *divider, uint32_t segment, int end, double from)
 {
     FieldSegment part = divider->tree->segments[segment];
     double to = divider->junctions->plane[segment][end] + STUB_TAIL * part.radius_mm;
@@ -296,7 +299,7 @@ static bool is_off(const Divider *divider, const IndexLists *nodes, uint32_t seg
 {
     uint32_t node = divider->tree->nodes[segment][end], root = root_of(divider, node);
     FieldSegment tail =
-        part_in_zone(divider, segment, end, divider->junctions->plane[segment][end]);
+        part_in_region(divider, segment, end, divider->junctions->plane[segment][end]);
     for (uint32_t i = nodes->first[root]; i < nodes->first[root + 1]; i++) {
         const uint32_t *first = &divider->junctions->incident.first[nodes->items[i]];
         for (uint32_t k = first[0]; k < first[1]; k++) {
@@ -304,7 +307,7 @@ static bool is_off(const Divider *divider, const IndexLists *nodes, uint32_t seg
             if (other == segment || indexlists_hold(&divider->junctions->blending, node, other))
                 continue;
             int its_end = segment_end_at(divider->tree, other, nodes->items[i]);
-            FieldSegment part = part_in_zone(divider, other, its_end, 0);
+            FieldSegment part = part_in_region(divider, other, its_end, 0);
             double gap = segments_gap(&tail, &part);
             if (gap < NEAR_GAP * fmin(tail.radius_mm, part.radius_mm))
                 return false;

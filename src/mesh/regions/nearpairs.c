@@ -1,4 +1,4 @@
-/* Each thread lists the pairs that it finds, so that threads need no lock; the lists are then
+/* Each thread lists the pairs that it finds, so that threads need no lock. The lists are then
  * joined and sorted, so that the order does not depend on the threads.
  *
  * The distance of two segments is the smallest distance of one of their four ends from the other
@@ -58,7 +58,8 @@ FloatBox segment_floatbox(const FieldSegment *segment, double radius_mm)
     return wide;
 }
 
-/* Two boxes meet if the gap is below NEAR_GAP times the smaller radius. */
+/* Returns a box so large that the boxes of two segments meet if the gap is below NEAR_GAP times the
+ * smaller radius. */
 static FloatBox near_box(uint32_t item, const void *context)
 {
     const FieldSegment *segment = &((const NearSearch *)context)->tree->segments[item];

@@ -41,6 +41,22 @@ static inline Vec3 segment_inward(const FieldSegment *segment, int end)
     return vec3_normalized(vec3_sub(segment_end(segment, !end), segment_end(segment, end)));
 }
 
+/* Returns the angle of the point x about a segment's axis, from the first vector of vec3_across, in
+ * [-pi, pi] radians. */
+static inline double segment_angle(const FieldSegment *segment, Vec3 x)
+{
+    Vec3 u, v, from = vec3_sub(x, segment->a);
+    vec3_across(segment_axis(segment), &u, &v);
+    return elementary_atan2(vec3_dot(from, v), vec3_dot(from, u));
+}
+
+/* Returns the end of a segment, 0 or 1, that is nearer to the middle of another segment. */
+static inline int segment_nearer_end(const FieldSegment *segment, const FieldSegment *other)
+{
+    Vec3 middle = vec3_scale(vec3_add(other->a, other->b), 0.5);
+    return vec3_distance(segment->b, middle) < vec3_distance(segment->a, middle);
+}
+
 /* Returns the unit vector in the plane of u and v, at `angle` radians from u towards v. u and v
  * must be perpendicular unit vectors. */
 static inline Vec3 direction_at(Vec3 u, Vec3 v, double angle)

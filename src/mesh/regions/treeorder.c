@@ -1,9 +1,11 @@
-/* Nodes are taken from a stack, so that all that lies beyond a node follows it at once; then, from
- * the last node to the first, each tells the one before it where its part of the order ends. In a
- * network a node may be on the stack several times. It takes its position and its previous node
- * from the copy that was pushed last. */
+/* Nodes are taken from a stack, so that all nodes beyond a node follow it in the order. Then the
+ * nodes are visited from the last to the first. Each node raises the end of its previous node's
+ * part of the order to the end of its own part. In a network a node may be on the stack several
+ * times. Such a node takes its position and its previous node from the copy that was pushed last.
+ */
 #include "mesh/regions/treeorder.h"
 
+#include "mesh/regions/nearpairs.h"
 #include <stdlib.h>
 
 void treeorder_release(TreeOrder *order)
@@ -14,7 +16,8 @@ void treeorder_release(TreeOrder *order)
     *order = (TreeOrder){0};
 }
 
-/* Puts a tree in order, from `root` on, behind the `n` nodes that are. */
+/* Appends the nodes of a tree, from `root` on, to the `n` nodes that are in order. Returns the new
+ * number of these nodes. */
 static uint32_t order_tree(const VesselTree *tree, const IndexLists *incident, uint32_t root,
                            uint32_t n, uint32_t *stack, uint32_t *ordered, TreeOrder *order)
 {
@@ -75,13 +78,6 @@ bool treeorder_has(const TreeOrder *order, const VesselTree *tree, uint32_t segm
     return order->previous[ends[1]] == ends[0] || order->previous[ends[0]] == ends[1];
 }
 
-/* Returns the end of a segment that is nearer to the middle of another segment. */
-static int nearer_end(const FieldSegment *segment, const FieldSegment *other)
-{
-    Vec3 middle = vec3_scale(vec3_add(other->a, other->b), 0.5);
-    return vec3_distance(segment->b, middle) < vec3_distance(segment->a, middle);
-}
-
 int treeorder_end_towards(const TreeOrder *order, const VesselTree *tree, uint32_t segment,
                           uint32_t other)
 {
@@ -94,6 +90,6 @@ int treeorder_end_towards(const TreeOrder *order, const VesselTree *tree, uint32
     for (int end = 0; end < 2; end++)
         beyond[end] = treeorder_is_beyond(order, its[end], ends[outer]);
     if (!treeorder_has(order, tree, segment) || beyond[0] != beyond[1])
-        return nearer_end(&tree->segments[segment], &tree->segments[other]);
+        return segment_nearer_end(&tree->segments[segment], &tree->segments[other]);
     return beyond[0] ? outer : !outer;
 }
