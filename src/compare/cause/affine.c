@@ -24,32 +24,52 @@ static float *value_at(const Plane *plane, int x, int y, int c)
            ((size_t)y * (size_t)plane->width + (size_t)x) * (size_t)plane->channels + c;
 }
 
-/* Smooths by the binomial filter 1 4 6 4 1 along both axes. */
+/* Adds `weight` times each of `n` values to the values `to`. */
+static void add_weighted(const float *restrict from, float weight, size_t n, float *restrict to)
+{
+    for (size_t i = 0; i < n; i++)
+        to[i] += weight * from[i];
+}
+
+static int clamp_index(int i, int n)
+{
+    return i < 0 ? 0 : i < n ? i : n - 1;
+}
+
+/* Smooths by the binomial filter 1 4 6 4 1 along rows, then along columns. Pixels beyond an edge
+ * are those at the edge. Whole rows are added at once, which costs a fifth of adding pixel by
+ * pixel. */
 static Status smooth(Plane *plane, Err *err)
 {
-    static const float taps[5] = {0.0625F, 0.25F, 0.375F, 0.25F, 0.0625F};
+    enum { REACH = 2 };
+    static const float taps[2 * REACH + 1] = {0.0625F, 0.25F, 0.375F, 0.25F, 0.0625F};
     const int width = plane->width, height = plane->height, channels = plane->channels;
-    for (int axis = 0; axis < 2; axis++) {
-        Plane out;
-        TRY(plane_init(&out, width, height, channels, err));
-        for (int y = 0; y < height; y++)
-            for (int x = 0; x < width; x++)
-                for (int k = -2; k <= 2; k++) {
-                    int u = axis ? x : x + k, v = axis ? y + k : y;
-                    u = u < 0 ? 0 : u < width ? u : width - 1;
-                    v = v < 0 ? 0 : v < height ? v : height - 1;
-                    for (int c = 0; c < channels; c++)
-                        *value_at(&out, x, y, c) += taps[k + 2] * *value_at(plane, u, v, c);
-                }
-        plane_release(plane);
-        *plane = out;
+    const size_t stride = (size_t)width * (size_t)channels;
+    Plane rows = {0}, padded = {0};
+    Status status = STATUS_OK;
+    TRY_GOTO(plane_init(&rows, width, height, channels, err));
+    TRY_GOTO(plane_init(&padded, width + 2 * REACH, 1, channels, err));
+    for (int y = 0; y < height; y++) {
+        for (int x = 0; x < padded.width; x++)
+            memcpy(value_at(&padded, x, 0, 0), value_at(plane, clamp_index(x - REACH, width), y, 0),
+                   (size_t)channels * sizeof(float));
+        for (int k = 0; k <= 2 * REACH; k++)
+            add_weighted(value_at(&padded, k, 0, 0), taps[k], stride, value_at(&rows, 0, y, 0));
     }
-    return STATUS_OK;
+    memset(plane->values, 0, (size_t)height * stride * sizeof(float));
+    for (int y = 0; y < height; y++)
+        for (int k = 0; k <= 2 * REACH; k++)
+            add_weighted(value_at(&rows, 0, clamp_index(y + k - REACH, height), 0), taps[k], stride,
+                         value_at(plane, 0, y, 0));
+done:
+    plane_release(&rows);
+    plane_release(&padded);
+    return status;
 }
 
 static Status take_plane(Plane *plane, const Picture *picture, bool is_mean, Err *err)
 {
-    const float level = picture->bits == 8 ? 1 : 1 / 257.0F;
+    const float level = 1.0F / (float)codes_per_level(picture);
     const int channels = picture->channels;
     TRY(plane_init(plane, picture->width, picture->height, is_mean ? 1 : channels, err));
     size_t n = (size_t)picture->width * (size_t)picture->height;
@@ -247,23 +267,21 @@ static bool is_sane(const Affine *map)
 static Status find_map(const Picture *a, const Picture *b, Affine *map, bool *found, Err *err)
 {
     Plane levels[2][LEVELS_MAX] = {{{0}}};
-    int n = 1, last = 0;
+    int n = 0, last = 0;
     const LevelFrame whole = {{a->width / 2.0, a->height / 2.0}, 1};
     Status status = STATUS_OK;
     *map = (Affine){.m = {{1, 0}, {0, 1}}};
     *found = true;
-    for (int side = 0; side < 2; side++) {
-        TRY_GOTO(take_plane(&levels[side][0], side ? b : a, true, err));
-        TRY_GOTO(smooth(&levels[side][0], err));
-    }
-    while (n < LEVELS_MAX && levels[0][n - 1].width >= 2 * COARSEST &&
-           levels[0][n - 1].height >= 2 * COARSEST) {
+    do {
         for (int side = 0; side < 2; side++) {
-            TRY_GOTO(halve(&levels[side][n - 1], &levels[side][n], err));
-            TRY_GOTO(smooth(&levels[side][n], err));
+            Plane *level = &levels[side][n];
+            TRY_GOTO(n == 0 ? take_plane(level, side ? b : a, true, err)
+                            : halve(level - 1, level, err));
+            TRY_GOTO(smooth(level, err));
         }
         n++;
-    }
+    } while (n < LEVELS_MAX && levels[0][n - 1].width >= 2 * COARSEST &&
+             levels[0][n - 1].height >= 2 * COARSEST);
     for (int level = n; level-- > 0 && *found;) {
         LevelFrame frame = whole;
         frame.scale = (double)(1 << level);

@@ -27,30 +27,22 @@ static void take_row(const Picture *a, const Picture *b, int y, size_t step, siz
     }
 }
 
-/* Widens the box by the pixels of row y that differ. */
-static void add_row_to_box(const Picture *a, const Picture *b, int y, PixelBox *box)
+/* Finds the bounding box of all pixels that differ. */
+static PixelRect find_box(const Picture *a, const Picture *b)
 {
-    int left = 0, right = a->width - 1;
-    while (picture_rows_equal(a, b, y, left, 1))
-        left++;
-    while (picture_rows_equal(a, b, y, right, 1))
-        right--;
-    if (box->width == 0) {
-        *box = (PixelBox){left, y, right - left + 1, 1};
-        return;
+    PixelRect box = {0};
+    for (int y = 0; y < a->height; y++) {
+        int left = 0, right = a->width - 1;
+        if (picture_rows_equal(a, b, y, 0, a->width))
+            continue;
+        while (picture_rows_equal(a, b, y, left, 1))
+            left++;
+        while (picture_rows_equal(a, b, y, right, 1))
+            right--;
+        pixelrect_include(&box, left, y);
+        pixelrect_include(&box, right, y);
     }
-    int end = box->x + box->width > right + 1 ? box->x + box->width : right + 1;
-    box->x = left < box->x ? left : box->x;
-    box->width = end - box->x;
-    box->height = y + 1 - box->y;
-}
-
-static void find_box(const Picture *a, const Picture *b, PixelBox *box)
-{
-    *box = (PixelBox){0};
-    for (int y = 0; y < a->height; y++)
-        if (!picture_rows_equal(a, b, y, 0, a->width))
-            add_row_to_box(a, b, y, box);
+    return box;
 }
 
 static void choose_samples(const Picture *a, const Picture *b, size_t differing, Samples *samples)
@@ -81,11 +73,9 @@ static void add_turned(const Picture *a, const Picture *b, const Turn *turn, int
                        double sums[2])
 {
     int u = turn->mirrored ? a->width - 1 - x : x, v = turn->upended ? a->height - 1 - y : y;
-    for (int c = 0; c < a->channels; c++) {
-        int code = code_at(b, x, y, c);
-        sums[0] += abs(code - code_at(a, x, y, c));
-        sums[1] += abs(code - code_at(a, u, v, turn->from[c]));
-    }
+    sums[0] += pixels_apart(a, x, y, b, x, y);
+    for (int c = 0; c < a->channels; c++)
+        sums[1] += abs(code_at(b, x, y, c) - code_at(a, u, v, turn->from[c]));
 }
 
 /* Returns true if pixel (x, y) has another color than pixel (0, 0), which usually shows the
@@ -137,18 +127,6 @@ static void find_turn(const Picture *a, const Picture *b, const Samples *samples
 
 /* ---- moved ----------------------------------------------------------------------------------- */
 
-/* Sum of |b - a| of one pixel of A; false where B has no such pixel. */
-static bool differs_by(const Picture *a, const Picture *b, int x, int y, const Shift *shift,
-                       double *sum)
-{
-    int u = x + shift->dx, v = y + shift->dy;
-    if (u < 0 || u >= b->width || v < 0 || v >= b->height)
-        return false;
-    for (int c = 0; c < a->channels; c++)
-        *sum += abs(code_at(b, u, v, c) - code_at(a, x, y, c));
-    return true;
-}
-
 /* A sample of A, with its codes. */
 typedef struct ShiftSample {
     int x, y, codes[3];
@@ -164,13 +142,11 @@ static int most_off_first(const void *left, const void *right)
 static void take_samples(const Picture *a, const Picture *b, const Samples *samples,
                          ShiftSample *out)
 {
-    static const Shift none = {0};
     for (int i = 0; i < samples->n; i++) {
         int x = samples->at[i].x, y = samples->at[i].y;
-        out[i] = (ShiftSample){.x = x, .y = y};
+        out[i] = (ShiftSample){.x = x, .y = y, .off = pixels_apart(a, x, y, b, x, y)};
         for (int c = 0; c < a->channels; c++)
             out[i].codes[c] = code_at(a, x, y, c);
-        differs_by(a, b, x, y, &none, &out[i].off);
     }
     qsort(out, (size_t)samples->n, sizeof *out, most_off_first);
 }
@@ -184,7 +160,7 @@ static double off_when_shifted(const Picture *b, const ShiftSample *samples, int
     int inside = 0;
     for (int i = 0; i < n; i++) {
         int u = samples[i].x + dx, v = samples[i].y + dy;
-        if (u < 0 || u >= b->width || v < 0 || v >= b->height)
+        if (!has_pixel(b, u, v))
             continue;
         for (int c = 0; c < b->channels; c++)
             sum += abs(code_at(b, u, v, c) - samples[i].codes[c]);
@@ -234,17 +210,16 @@ typedef struct ShiftTrial {
 
 static ShiftTrial try_shift(const Picture *a, const Picture *b, const Shift *shift)
 {
-    static const Shift none = {0};
     ShiftTrial trial = {0};
     for (int y = 0; y < a->height; y++)
         for (int x = 0; x < a->width; x++) {
-            double after = 0, there = 0;
-            if (!differs_by(a, b, x, y, shift, &after))
+            const int u = x + shift->dx, v = y + shift->dy;
+            if (!has_pixel(b, u, v))
                 continue;
-            differs_by(a, b, x, y, &none, &trial.before);
-            differs_by(a, b, x + shift->dx, y + shift->dy, &none, &there);
+            const int after = pixels_apart(a, x, y, b, u, v);
+            trial.before += pixels_apart(a, x, y, b, x, y);
             trial.after += after;
-            trial.made += there == 0 ? after : 0;
+            trial.made += pixels_apart(a, u, v, b, u, v) == 0 ? after : 0;
         }
     return trial;
 }
@@ -257,12 +232,12 @@ bool cause_is_same_saturation(double aa, double ab)
 
 static bool has_shifted_saturation(const Picture *a, const Picture *b, const Shift *shift)
 {
-    const double level = a->bits == 8 ? 1 : 257;
+    const double level = codes_per_level(a);
     double aa = 0, ab = 0;
     for (int y = 0; y < a->height; y++)
         for (int x = 0; x < a->width; x++) {
             int u = x + shift->dx, v = y + shift->dy, sum_a = 0, sum_b = 0;
-            if (u < 0 || u >= b->width || v < 0 || v >= b->height)
+            if (!has_pixel(b, u, v))
                 continue;
             for (int c = 0; c < a->channels; c++) {
                 int in_a = code_at(a, x, y, c), in_b = code_at(b, u, v, c);
@@ -286,10 +261,11 @@ static bool has_shifted_saturation(const Picture *a, const Picture *b, const Shi
 static bool find_shift(const Picture *a, const Picture *b, const Samples *samples,
                        const Shift *shift, Sentence *out)
 {
-    static const Shift none = {0};
     double before = 0;
-    for (int i = 0; i < samples->n; i++)
-        differs_by(a, b, samples->at[i].x, samples->at[i].y, &none, &before);
+    for (int i = 0; i < samples->n; i++) {
+        const PixelPlace *at = &samples->at[i];
+        before += pixels_apart(a, at->x, at->y, b, at->x, at->y);
+    }
     if (!leaves(before, shift->off * samples->n, 0.05))
         return false;
     const ShiftTrial trial = try_shift(a, b, shift);
@@ -304,9 +280,35 @@ static bool find_shift(const Picture *a, const Picture *b, const Samples *sample
     return false;
 }
 
-/* ---- kit of all guesses ---------------------------------------------------------------------- */
+/* ---- functions that several guesses use ------------------------------------------------------ */
 
-Status light_of_codes(const Picture *picture, Plane *lights, Err *err)
+int pixels_apart(const Picture *a, int x, int y, const Picture *b, int u, int v)
+{
+    int sum = 0;
+    for (int c = 0; c < a->channels && has_pixel(b, u, v); c++)
+        sum += abs(code_at(a, x, y, c) - code_at(b, u, v, c));
+    return sum;
+}
+
+double golden_section(double (*f)(void *context, double x), void *context, double low, double high,
+                      int steps, double *least)
+{
+    const double golden = 0.6180339887498949;
+    double x[2] = {high - golden * (high - low), low + golden * (high - low)};
+    double value[2] = {f(context, x[0]), f(context, x[1])};
+    for (int i = 0; i < steps; i++) {
+        const int worse = value[0] < value[1];
+        *(worse ? &high : &low) = x[worse];
+        x[worse] = x[!worse];
+        value[worse] = value[!worse];
+        x[!worse] = worse ? high - golden * (high - low) : low + golden * (high - low);
+        value[!worse] = f(context, x[!worse]);
+    }
+    *least = fmin(value[0], value[1]);
+    return (low + high) / 2;
+}
+
+Status linear_of_codes(const Picture *picture, Plane *lights, Err *err)
 {
     Picture codes;
     TRY(picture_init(&codes, 1 << picture->bits, 1, 1, picture->bits, err));
@@ -326,7 +328,7 @@ Status compare_cause(const Picture *a, const Picture *b, CompareResult *result, 
     if (result->values[MEASURE_DIFFERING_PIXELS] == 0)
         return STATUS_OK;
     Samples samples;
-    find_box(a, b, &result->box);
+    result->box = find_box(a, b);
     choose_samples(a, b, result_count(result, MEASURE_DIFFERING_PIXELS), &samples);
     find_turn(a, b, &samples, &out);
     if (!*out.text)

@@ -37,10 +37,9 @@ static bool is_clipped(int code, int most)
 static bool difference_at(const NoiseImages *self, int x, int y, int c, double *d)
 {
     const Picture *a = self->a;
-    if (x < 0 || y < 0 || x >= a->width || y >= a->height)
+    if (!has_pixel(a, x, y))
         return false;
-    int most = a->bits == 8 ? 255 : 65535, from = code_at(a, x, y, c),
-        to = code_at(self->b, x, y, c);
+    const int most = largest_code(a), from = code_at(a, x, y, c), to = code_at(self->b, x, y, c);
     *d = (to - from) * self->levels;
     return !is_clipped(from, most) && !is_clipped(to, most);
 }
@@ -68,7 +67,7 @@ static void add_slopes(const NoiseImages *self, int x, int y, int c, double d, W
 static void add_channel(const NoiseImages *self, int x, int y, int c, WhitenessSums *sums)
 {
     double d, other;
-    int from = code_at(self->a, x, y, c), most = self->a->bits == 8 ? 255 : 65535;
+    int from = code_at(self->a, x, y, c), most = largest_code(self->a);
     sums->clipped += from == 0 || from == most;
     sums->changed += (from == 0 || from == most) && from != code_at(self->b, x, y, c);
     if (!difference_at(self, x, y, c, &d))
@@ -140,7 +139,7 @@ static bool is_noise(const WhitenessSums *sums)
 
 void cause_noise(const Picture *a, const Picture *b, Sentence *out)
 {
-    const NoiseImages self = {a, b, a->bits == 8 ? 1 : 1 / 257.0};
+    const NoiseImages self = {a, b, 1.0 / codes_per_level(a)};
     WhitenessSums sums = {0};
     /* Of a large picture, bands of whole blocks. */
     const int bands = 1 + (int)((double)a->width * a->height / 1e6);

@@ -52,20 +52,24 @@ static double shifted(const Planting *p, int x, int y, int c)
     return between(p->from, x - p->size, y, c);
 }
 
-static double turned(const Planting *p, int x, int y, int c)
+/* Rotates about the middle by an angle with this cosine and sine, times a factor. */
+static double mapped(const Planting *p, int x, int y, int c, double cosine, double sine)
 {
     double middle_x = (p->from->width - 1) / 2.0, middle_y = (p->from->height - 1) / 2.0;
-    double angle = p->size * DEGREE, dx = x - middle_x, dy = y - middle_y;
-    return between(p->from, middle_x + elementary_cos(angle) * dx + elementary_sin(angle) * dy,
-                   middle_y - elementary_sin(angle) * dx + elementary_cos(angle) * dy, c);
+    double dx = x - middle_x, dy = y - middle_y;
+    return between(p->from, middle_x + cosine * dx + sine * dy, middle_y - sine * dx + cosine * dy,
+                   c);
+}
+
+static double turned(const Planting *p, int x, int y, int c)
+{
+    double angle = p->size * DEGREE;
+    return mapped(p, x, y, c, elementary_cos(angle), elementary_sin(angle));
 }
 
 static double larger(const Planting *p, int x, int y, int c)
 {
-    double middle_x = (p->from->width - 1) / 2.0, middle_y = (p->from->height - 1) / 2.0;
-    double scale = 1 / (1 + p->size / 100);
-    return between(p->from, middle_x + scale * (x - middle_x), middle_y + scale * (y - middle_y),
-                   c);
+    return mapped(p, x, y, c, 1 / (1 + p->size / 100), 0);
 }
 
 static double blurred(const Planting *p, int x, int y, int c)

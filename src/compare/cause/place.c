@@ -145,7 +145,7 @@ static void add_lack(const Labels *labels, const Picture *const pictures[2], int
     lack->bottom = y;
     for (int i = 0; i < 4; i++) {
         int u = x + steps[i][0], v = y + steps[i][1];
-        if (u < 0 || v < 0 || u >= labels->width || v >= labels->height)
+        if (!has_pixel(pictures[side], u, v))
             continue;
         bool here = is_seen(labels, pictures[side], side, u, v);
         bool lacking = here && !is_seen(labels, pictures[!side], !side, u, v);
@@ -222,7 +222,7 @@ static int contrast(const Picture *picture, int x, int y)
             }
         largest = high - low > largest ? high - low : largest;
     }
-    return picture->bits == 8 ? largest : largest / 257;
+    return largest / codes_per_level(picture);
 }
 
 enum { LEVELS = 32, SLIGHT = 2, BLOCK = 64 };
@@ -296,7 +296,7 @@ static Status say_outlines(const Picture *a, const Picture *b, const Samples *sa
     OutlineCounts self = {.a = a,
                           .b = b,
                           .labels = labels_from_background(a, b),
-                          .slight = a->bits == 8 ? SLIGHT : 257 * SLIGHT};
+                          .slight = SLIGHT * codes_per_level(a)};
     double sums[OUTLINE_SUMS] = {0};
     if (!may_be_outlines(&self, samples))
         return STATUS_OK;
@@ -430,7 +430,7 @@ static Status sum_light(const Picture *a, const Picture *b, LightSums *all, Err 
     *all = (LightSums){0};
     if (a->channels != 3)
         return STATUS_OK;
-    TRY(light_of_codes(a, &self.table, err));
+    TRY(linear_of_codes(a, &self.table, err));
     Status status =
         rows_sum(a->height, add_row_light, &self, (double *)all, sizeof *all / sizeof(double), err);
     plane_release(&self.table);

@@ -42,7 +42,7 @@ typedef struct Meaning {
 static Status meaning_init(Meaning *meaning, const Picture *picture, Err *err)
 {
     Plane linear;
-    TRY(light_of_codes(picture, &linear, err));
+    TRY(linear_of_codes(picture, &linear, err));
     const int n = linear.width;
     Status status =
         mem_calloc(&meaning->linear, (size_t)n * (3 + KINDS), sizeof(float), "codes", err);
@@ -170,14 +170,14 @@ typedef struct Codes {
 
 static Codes codes_of(const Picture *a, const Picture *b, const Samples *samples)
 {
-    return (Codes){a, b, samples, n_asked(a, samples) * (size_t)a->channels, {-1, -1, -1}};
+    return (Codes){a, b, samples, sampled_pixels(a, samples) * (size_t)a->channels, {-1, -1, -1}};
 }
 
 static void take(const Codes *codes, size_t i, int *in_a, int *in_b)
 {
     const size_t channels = (size_t)codes->a->channels;
     const size_t at =
-        codes->samples ? asked_code(codes->a, codes->samples, i / channels) + i % channels : i;
+        codes->samples ? sampled_code(codes->a, codes->samples, i / channels) + i % channels : i;
     *in_a = picture_code(codes->a, at);
     *in_b = picture_code(codes->b, at);
 }
@@ -285,9 +285,8 @@ static bool has_colors(const Picture *picture, const Samples *samples)
     enum { LEVELS = 32, ENOUGH = 12 };
     int colored = 0;
     for (int i = 0; i < samples->n && picture->channels == 3; i++) {
-        size_t first = first_code(picture, samples->at[i].x, samples->at[i].y);
-        int red = picture_code(picture, first), green = picture_code(picture, first + 1);
-        int blue = picture_code(picture, first + 2);
+        const int x = samples->at[i].x, y = samples->at[i].y, red = code_at(picture, x, y, 0);
+        const int green = code_at(picture, x, y, 1), blue = code_at(picture, x, y, 2);
         colored += abs(red - green) >= LEVELS || abs(green - blue) >= LEVELS;
     }
     return colored >= ENOUGH;

@@ -289,39 +289,18 @@ static void blur(Patches *patches, const float *side, double sigma)
                2 * REACH + 1);
 }
 
-static double off_when_blurred(Patches *patches, const float *side, const float *other,
-                               double sigma)
-{
-    blur(patches, side, sigma);
-    return squares(patches, patches->moved, other);
-}
+/* A side that is blurred, and the side that it is compared with. */
+typedef struct BlurSearch {
+    Patches *patches;
+    const float *side, *other;
+} BlurSearch;
 
-/* The standard deviation that brings `side` nearest to `other`, what is left in *after. */
-static double best_sigma(Patches *patches, const float *side, const float *other, double *after)
+/* Returns the sum of squares that is left when the side is blurred. */
+static double off_when_blurred(void *context, double sigma)
 {
-    enum { STEPS = 11 };
-    const double golden = 0.6180339887498949;
-    double low = 0.05, high = most_sigma;
-    double x[2] = {high - golden * (high - low), low + golden * (high - low)};
-    double off[2] = {off_when_blurred(patches, side, other, x[0]),
-                     off_when_blurred(patches, side, other, x[1])};
-    for (int i = 0; i < STEPS; i++) {
-        int worse = off[0] < off[1];
-        *(worse ? &high : &low) = x[worse];
-        x[worse] = x[!worse];
-        off[worse] = off[!worse];
-        x[!worse] = worse ? high - golden * (high - low) : low + golden * (high - low);
-        off[!worse] = off_when_blurred(patches, side, other, x[!worse]);
-    }
-    *after = fmin(off[0], off[1]);
-    return (low + high) / 2;
-}
-
-/* Smoothing goes the way of the differences: whether `other` is nearer to `side` when that is
- * blurred a little. */
-static bool is_blurrier(Patches *patches, const float *side, const float *other, double before)
-{
-    return 1.1 * off_when_blurred(patches, side, other, 0.5) < before;
+    const BlurSearch *search = context;
+    blur(search->patches, search->side, sigma);
+    return squares(search->patches, search->patches->moved, search->other);
 }
 
 /* ---- nothing but one displacement, or one blur, of the whole picture --------------------------
@@ -413,15 +392,6 @@ static bool is_one_displacement(const Patches *patches)
     return true;
 }
 
-/* Sum of the differences of two pixels over the channels, codes; 0 where there is no such pixel. */
-static int pixels_apart(const Picture *a, int x, int y, const Picture *b, int u, int v)
-{
-    int sum = 0;
-    for (int c = 0; c < a->channels && u >= 0 && u < b->width && v >= 0 && v < b->height; c++)
-        sum += abs(code_at(a, x, y, c) - code_at(b, u, v, c));
-    return sum;
-}
-
 enum { GRID = 8 };
 
 /* For each field of a grid over the picture, sums over its pixels. */
@@ -498,7 +468,7 @@ static int change_of_move(const Picture *a, int x, int y, double dx, double dy)
 static bool has_unmoved_part(const Patches *patches, double dx, double dy)
 {
     const Picture *a = patches->a;
-    const int clear = a->bits == 8 ? 48 : 48 * 257;
+    const int clear = 48 * codes_per_level(a);
     size_t moved = 0, equal = 0;
     for (int y = 0; y < a->height; y++)
         for (int x = 0; x < a->width; x++)
@@ -512,7 +482,7 @@ static bool has_unmoved_part(const Patches *patches, double dx, double dy)
 /* A blur leaves slopes as they are, and edges not. */
 static bool is_blurred_everywhere(const Patches *patches)
 {
-    const int edge = patches->a->bits == 8 ? 96 : 96 * 257;
+    const int edge = 96 * codes_per_level(patches->a);
     const Expected expected = {.steps = {{1, 0}, {0, 1}}, .n = 2, .least = edge, .part = 0.02};
     return is_everywhere(patches, &expected);
 }
@@ -520,7 +490,7 @@ static bool is_blurred_everywhere(const Patches *patches)
 /* Whether no code of a picture is off by more than a level from that at (x, y) so near. */
 static bool is_flat(const Picture *picture, int x, int y, int reach)
 {
-    int level = picture->bits == 8 ? 1 : 257;
+    const int level = codes_per_level(picture);
     for (int v = y - reach; v <= y + reach; v++)
         for (int u = x - reach; u <= x + reach; u++)
             if (pixels_apart(picture, x, y, picture, u, v) > level)
@@ -535,7 +505,7 @@ static bool keeps_flat_parts(const Patches *patches, int dx, int dy, int reach)
     enum { ASKED = 20000, ENOUGH = 50 };
     const Picture *a = patches->a, *b = patches->b;
     const size_t pixels = (size_t)a->width * (size_t)a->height, step = pixels / ASKED + 1;
-    const int level = a->bits == 8 ? 1 : 257;
+    const int level = codes_per_level(a);
     size_t flat = 0, changed = 0;
     for (size_t i = 0; i < pixels; i += step) {
         int x = (int)(i % (size_t)a->width), y = (int)(i / (size_t)a->width);
@@ -591,12 +561,14 @@ static void try_shift(Patches *patches, Sentence *out)
 
 static void try_blur(Patches *patches, Sentence *out)
 {
+    enum { STEPS = 11 };
     const float *sides[2] = {patches->before, patches->to};
     double before = squares(patches, sides[0], sides[1]), after;
     for (int sharper = 0; sharper < 2; sharper++) {
-        if (!is_blurrier(patches, sides[sharper], sides[!sharper], before))
-            continue;
-        double sigma = best_sigma(patches, sides[sharper], sides[!sharper], &after);
+        BlurSearch search = {patches, sides[sharper], sides[!sharper]};
+        if (1.1 * off_when_blurred(&search, 0.5) >= before)
+            continue; /* the other side is the blurred one: a little blur does not help */
+        double sigma = golden_section(off_when_blurred, &search, 0.05, most_sigma, STEPS, &after);
         const Warp found = {.sigma = sigma, .sharper = sharper};
         if (sigma < 0.98 * most_sigma && explains(patches, before, after) &&
             is_all(patches, &found))
@@ -606,15 +578,13 @@ static void try_blur(Patches *patches, Sentence *out)
     }
 }
 
-/* The level, in [0, 1], of every code of `bits` bits: linear light, or code / greatest code. */
-static Status list_levels(int bits, bool linear, float **levels, Err *err)
+/* Makes a table of the fraction code / largest code of each code of 8 or 16 bits. */
+static Status code_table(int bits, float **table, Err *err)
 {
     int n = 1 << bits;
-    TRY(mem_calloc(levels, (size_t)n, sizeof **levels, "codes", err));
-    for (int i = 0; i < n; i++) {
-        float level = (float)i / (float)(n - 1);
-        (*levels)[i] = linear ? srgb_decode(level) : level;
-    }
+    TRY(mem_calloc(table, (size_t)n, sizeof **table, "codes", err));
+    for (int i = 0; i < n; i++)
+        (*table)[i] = (float)i / (float)(n - 1);
     return STATUS_OK;
 }
 
@@ -623,7 +593,7 @@ static Status try_warp(Patches *patches, const Samples *samples, const Shift *st
                        Sentence *out, Err *err)
 {
     float *levels;
-    TRY(list_levels(patches->a->bits, linear, &levels, err));
+    TRY((linear ? srgb_table : code_table)(patches->a->bits, &levels, err));
     Status status = STATUS_OK;
     patches->start = *start;
     patches->levels = levels;

@@ -53,7 +53,7 @@ void settled_release(Settled *settled)
 
 void settled_note(Settled *settled, size_t index, const SettledPixel *pixel)
 {
-    settled->asked++;
+    settled->examined++;
     settled->count[pixel->cause]++;
     settled->marks[index] = (uint8_t)pixel->cause;
     if (pixel->cause != SETTLED_NOT && settled->n_first < SETTLED_LISTED)

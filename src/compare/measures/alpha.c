@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdio.h>
 
-Status alpha_take(Picture *alpha, const Image *image, Err *err)
+Status alpha_of_image(Picture *alpha, const Image *image, Err *err)
 {
     const Plane *plane = &image->plane;
     const Picture *picture = &image->picture;
@@ -24,7 +24,7 @@ Status alpha_take(Picture *alpha, const Image *image, Err *err)
     return STATUS_OK;
 }
 
-Status alpha_judge(const Picture *a, const Picture *b, CompareResult *result, Err *err)
+Status result_judge_alpha(const Picture *a, const Picture *b, CompareResult *result, Err *err)
 {
     CompareResult alpha;
     Tolerance tolerance = result->tolerance;

@@ -38,7 +38,7 @@ static void blacken(Plane *a, Plane *b, CompareResult *result)
             continue;
         result->values[MEASURE_JUDGED_PIXELS]--;
         if (result->places[PLACE_NAN].x < 0)
-            result->places[PLACE_NAN] = place_of(i, a->width);
+            result->places[PLACE_NAN] = pixel_place(i, a->width);
         memset(in_a, 0, channels * sizeof *in_a);
         memset(in_b, 0, channels * sizeof *in_b);
     }
@@ -101,7 +101,7 @@ static void measure(const Plane *a, const Plane *b, CompareResult *result)
         if (largest <= sums.worst && result->places[PLACE_WORST].x >= 0)
             continue;
         sums.worst = largest;
-        result->places[PLACE_WORST] = place_of(i, a->width);
+        result->places[PLACE_WORST] = pixel_place(i, a->width);
     }
     take_color_sums(&sums, a->channels, result);
 }

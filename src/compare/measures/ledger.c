@@ -236,7 +236,7 @@ static void keep_worst(CompareResult *result, const LedgerEntry *entry)
     kept[at] = *entry;
 }
 
-void ledger_summarise(const Ledger *ledger, CompareResult *result)
+void result_set_segments(const Ledger *ledger, CompareResult *result)
 {
     double *values = result->values;
     PixelPlace *places = result->places;

@@ -61,16 +61,9 @@ static void count_pixel(const Counting *counting, const PixelRow *row, int x, in
     sums->total.classes[pixel_class]++;
     if (counting->classes)
         counting->classes[pixel] = (uint8_t)pixel_class;
-    sums->total.counts[COUNT_COMMON] += common;
-    if (!in_a != !in_b && !settled) {
-        counting->coverage[pixel] = in_a ? COVERED_MISSING : COVERED_EXTRA;
-        sums->total.counts[COUNT_MISSING] += in_a != 0;
-        sums->total.counts[COUNT_EXTRA] += in_b != 0;
-    }
-    sums->total.counts[COUNT_BAND] += band;
-    sums->total.counts[COUNT_BAND_DIFFERS] += band && in_a != in_b;
+    count_label((LabelPair){in_a, in_b, band, settled}, pixel, counting->coverage,
+                sums->total.counts);
     sums->total.counts[COUNT_DIFFERING] += difference > 0;
-    sums->total.counts[COUNT_SETTLED] += settled;
     beyond = beyond && !settled;
     sums->total.counts[COUNT_BEYOND] += beyond && (common || !counting->common_only);
     sums->total.counts[COUNT_BAND_BEYOND] += beyond && band;

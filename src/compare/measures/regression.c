@@ -123,8 +123,8 @@ static double beyond_error(double distance, double error)
     return fmax(0, fabs(distance) - 2 * error);
 }
 
-Status regression_take(const Counting *counting, double code_levels, CompareResult *result,
-                       Err *err)
+Status result_set_regression(const Counting *counting, double code_levels, CompareResult *result,
+                             Err *err)
 {
     const PixelSums *sums = counting->sums;
     double n = (double)sums->total.line.n, a = (double)sums->total.line.a,
