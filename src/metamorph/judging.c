@@ -10,7 +10,7 @@ const char *const verdict_names[VERDICT_KINDS] = {[VERDICT_NONE] = "none",
                                                   [VERDICT_HOLDS] = "holds",
                                                   [VERDICT_EDGE] = "edge",
                                                   [VERDICT_SHADE] = "shade",
-                                                  [VERDICT_REFUSED] = "refused"};
+                                                  [VERDICT_UNDRAWN] = "undrawn"};
 
 /* ---- drawing --------------------------------------------------------------------------------- */
 
@@ -152,7 +152,7 @@ void pair_compare(const Relation *relation, const TrialDrawing drawings[2], Pair
     *verdict = (PairVerdict){0};
     for (int i = 0; i < 2; i++)
         if (!drawings[i].picture.codes8) {
-            verdict->kind = i == 0 ? VERDICT_NONE : VERDICT_REFUSED;
+            verdict->kind = i == 0 ? VERDICT_NONE : VERDICT_UNDRAWN;
             snprintf(verdict->reason, TRIAL_REASON, "%s", drawings[i].reason);
             return;
         }
