@@ -1,8 +1,11 @@
-/* What made B of A, where that can be said for certain: each guess is a map of one picture onto the
- * other, or a place, and it is named when it explains the pictures, not when it merely resembles
- * them. Guesses about places come before those about colors, exact ones before those that leave
- * something. All are tried on a few hundred of the pixels that differ, and only what fits those on
- * all. Two faults at once have no sentence, unless one of them is a fiftieth of the other. */
+/* Finds the change that turned A into B. The hypotheses are tested one after the other, until one
+ * explains the pictures: exact changes come before approximate ones, and changes of position before
+ * changes of color. A hypothesis must leave nearly no difference; a mere resemblance is not named,
+ * because a wrong cause misleads. So two changes at once have no cause, unless one makes less than
+ * a fiftieth of the differences. To save time, each hypothesis is first tested on a few hundred of
+ * the pixels that differ, and on all pixels only if it fits those.
+ *
+ * This file has the control, and the exact changes: mirrored, channels exchanged, translated. */
 #include "compare/cause/cause.h"
 
 #include "compare/cause/guesses.h"
@@ -11,9 +14,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+/* REACH: translations up to this many pixels in each direction are tried; the cost is O(REACH^2).
+ * BLOCK: pixels that are compared at once. Reasons for the numbers are not recorded. */
 enum { REACH = 48, BLOCK = 64 };
 
-/* Takes each `step`-th pixel that differs of a row. Blocks that are equal are skipped at once. */
+/* Adds every `step`-th differing pixel of a row to the samples. *seen counts the differing pixels
+ * of all rows so far. Equal blocks are skipped at once. */
 static void take_row(const Picture *a, const Picture *b, int y, size_t step, size_t *seen,
                      Samples *samples)
 {
@@ -54,7 +60,8 @@ static void choose_samples(const Picture *a, const Picture *b, size_t differing,
             take_row(a, b, y, step, &seen, samples);
 }
 
-/* Whether what is left of the differences is at most a part of them. */
+/* Returns true if the differences `after` a change are at most the fraction `part` of those before.
+ */
 static bool leaves(double before, double after, double part)
 {
     return before > 0 && after <= part * before;
@@ -63,12 +70,12 @@ static bool leaves(double before, double after, double part)
 /* ---- turned, or with other channels ---------------------------------------------------------- */
 
 typedef struct Turn {
-    bool mirrored, upended;
-    int from[3]; /* the channel of A that each of B is */
+    bool mirrored, upended; /* left and right, or top and bottom, are exchanged */
+    int from[3];            /* per channel of B: the channel of A that it shows */
     const char *sentence;
 } Turn;
 
-/* Adds the differences of a pixel of B without the turn, sums[0], and with it, sums[1]. */
+/* Adds the difference of pixel (x, y) of B from A to sums[0], and from the turned A to sums[1]. */
 static void add_turned(const Picture *a, const Picture *b, const Turn *turn, int x, int y,
                        double sums[2])
 {
@@ -89,7 +96,8 @@ static bool is_foreground(const Picture *picture, int x, int y)
 }
 
 /* Returns true if the turn leaves at most 2 % of the differences, in all pixels and in those of the
- * foreground. A large background of one color can hide that the foreground still differs. */
+ * foreground alone. A large background of one color could hide that the foreground still differs.
+ * The samples decide at 5 %, since they are few. */
 static bool is_turned(const Picture *a, const Picture *b, const Samples *samples, const Turn *turn)
 {
     double few[2] = {0}, all[2] = {0}, foreground[2] = {0};
@@ -127,10 +135,10 @@ static void find_turn(const Picture *a, const Picture *b, const Samples *samples
 
 /* ---- moved ----------------------------------------------------------------------------------- */
 
-/* A sample of A, with its codes. */
+/* A sampled pixel of A, with its codes. */
 typedef struct ShiftSample {
     int x, y, codes[3];
-    double off; /* from B, without a shift */
+    double off; /* pixels_apart from B without a shift */
 } ShiftSample;
 
 static int most_off_first(const void *left, const void *right)
@@ -151,8 +159,8 @@ static void take_samples(const Picture *a, const Picture *b, const Samples *samp
     qsort(out, (size_t)samples->n, sizeof *out, most_off_first);
 }
 
-/* The mean over the samples that stay within the picture, infinite where fewer than three in four
- * do, or as soon as the sum is as large as `limit`. */
+/* Returns the mean difference over the samples that a shift keeps within the picture. Returns
+ * infinity if it keeps fewer than three in four, and as soon as the sum exceeds `limit`. */
 static double off_when_shifted(const Picture *b, const ShiftSample *samples, int n, int dx, int dy,
                                double limit)
 {
@@ -184,9 +192,10 @@ static Shift search_shifts(const Picture *b, const ShiftSample *samples, int n)
     return best;
 }
 
-/* Returns the shift that leaves the smallest mean difference of the samples; none if it removes
- * less than 30 % of the difference. What differs most without a shift comes first: it tells soonest
- * that a shift is wrong. A few samples are asked before all, since most pictures are not moved. */
+/* Returns the shift that leaves the smallest mean difference of the samples; no shift if it removes
+ * less than 30 % of the difference. Samples that differ most come first, because they exceed the
+ * limit of a wrong shift soonest. A few samples are tried before all, since most pictures are not
+ * moved. */
 static Shift best_shift(const Picture *a, const Picture *b, const Samples *samples)
 {
     enum { FEW = 64 };
@@ -226,7 +235,7 @@ static ShiftTrial try_shift(const Picture *a, const Picture *b, const Shift *shi
 
 bool cause_is_same_saturation(double aa, double ab)
 {
-    const double enough = 1e4; /* the rounding of codes then moves the quotient by 0.5 % at most */
+    const double enough = 1e4; /* rounding of codes changes the quotient by at most 0.5 % then */
     return aa < enough || fabs(ab / aa - 1) <= 0.03;
 }
 
@@ -281,14 +290,6 @@ static bool find_shift(const Picture *a, const Picture *b, const Samples *sample
 }
 
 /* ---- functions that several guesses use ------------------------------------------------------ */
-
-int pixels_apart(const Picture *a, int x, int y, const Picture *b, int u, int v)
-{
-    int sum = 0;
-    for (int c = 0; c < a->channels && has_pixel(b, u, v); c++)
-        sum += abs(code_at(a, x, y, c) - code_at(b, u, v, c));
-    return sum;
-}
 
 double golden_section(double (*f)(void *context, double x), void *context, double low, double high,
                       int steps, double *least)

@@ -15,6 +15,7 @@
 #define CORCAST_COMPARE_CAUSE_GUESSES_H
 
 #include "compare/pixels.h"
+#include <stdlib.h>
 
 /* Capacity of Samples. 256 pixels cost little beside a pass over a picture; reason for this number
  * not recorded. */
@@ -71,7 +72,13 @@ static inline bool has_pixel(const Picture *picture, int x, int y)
 
 /* Returns the sum over the channels of |code of pixel (u, v) of B - code of pixel (x, y) of A|; 0
  * if B has no pixel (u, v). Pixel (x, y) of A must exist. */
-int pixels_apart(const Picture *a, int x, int y, const Picture *b, int u, int v);
+static inline int pixels_apart(const Picture *a, int x, int y, const Picture *b, int u, int v)
+{
+    int sum = 0;
+    for (int c = 0; c < a->channels && has_pixel(b, u, v); c++)
+        sum += abs(code_at(a, x, y, c) - code_at(b, u, v, c));
+    return sum;
+}
 
 /* Makes a table of the linear color of each code of a picture's depth and gamma: a plane of one
  * row. The caller releases it. Errors: STATUS_MEMORY. */
