@@ -1,22 +1,20 @@
-/* Where two pictures differ, when no map of one onto the other explains it: another background,
- * one thing missing or extra, outlines only, highlights only, shading only. What is said is what
- * the pixels show:
+/* Tests whether the differences are confined to one kind of pixels, when no map of one picture onto
+ * the other explains them: another background, one object missing or extra, outlines only,
+ * highlights only, shading only. The evidence is what the pixels show:
  *
- * - The background differs when nothing else does but outlines against it, with which it is mixed.
- * - One thing is missing when the background took its place: the pixels seen in A only are one
- *   region, which in A borders on background for three quarters of its rim (a cut end does, a worn
- *   outline borders on what is left), and next to nothing else differs. A region that touches three
- *   sides of the picture is a part of the picture.
- * - Outlines differ when the pixels that differ have neighbours of quite other colors in both
- *   pictures, and there are others within the outlines to tell, most of which have the
- *   same codes: of things a few pixels wide nothing can be said.
- * - Highlights differ when the light in which the pictures differ is nearly white (a highlight has
- *   the lamp's color, all else the surface's), and the same at all pixels, on surfaces that are
- *   not. Of grey surfaces nothing can be said.
- * - Shading differs when that light is more, or less, of the surface's own color and of white at
- *   each pixel, but for a hundredth and for the rounding of codes. More of one and less of the
- * other is another saturation, and anything else another hue: both are other colors, not other
- * light.
+ * - The background is the cause if nothing else differs, except outlines, which are mixed with it.
+ * - One object is missing if the background took its place. The pixels that show something only in
+ * A are one region. In A, three quarters of the rim of this region are next to background: a worn
+ *   outline would be next to the rest of its object. A region that touches three sides of the
+ * picture is a part of the picture, not an object.
+ * - Outlines are the cause if the pixels that differ have neighbours of very different colors in
+ * both pictures, and most pixels within the outlines have equal codes. If objects are only a few
+ * pixels wide, there are too few pixels within, and nothing is stated.
+ * - Highlights are the cause if the light that differs is nearly white, as lamps are, and has one
+ *   color at all pixels, on surfaces that are not white. On grey surfaces nothing is stated.
+ * - Shading is the cause if the light that differs is more, or less, of the surface's own color and
+ * of white, except for a hundredth and for the rounding of codes. More of one and less of the other
+ * is another saturation, and anything else is another hue.
  */
 #include "compare/cause/guesses.h"
 #include "compare/measures/labels.h"
@@ -26,6 +24,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Returns true if the pixel (x, y) of a side shows something else than the background. */
 static bool is_seen(const Labels *labels, const Picture *picture, int side, int x, int y)
 {
     for (int c = 0; c < picture->channels; c++)
@@ -74,7 +73,7 @@ static void count_background(const void *context, int y, double *sums)
         count_background_at(self, x, y, sums);
 }
 
-/* Whether it is worth while to ask all pixels. */
+/* Returns true if the samples do not exclude the background: then all pixels are counted. */
 static bool may_be_background(const Backgrounds *self, const Samples *samples)
 {
     double sums[BACKGROUND_SUMS] = {0};
@@ -128,7 +127,9 @@ Status cause_background(const Picture *a, const Picture *b, const Samples *sampl
 
 /* ---- one thing missing ----------------------------------------------------------------------- */
 
-/* Pixels seen on one side only, and what side-neighbours that are not such pixels show there. */
+/* The pixels that show something on one side only: their number and bounding box. `rim` counts
+ * their neighbours (above, below, left, right) that are no such pixels, `background` those of them
+ * that show the background. */
 typedef struct Lack {
     size_t pixels, rim, background;
     int left, top, right, bottom;
@@ -154,7 +155,7 @@ static void add_lack(const Labels *labels, const Picture *const pictures[2], int
     }
 }
 
-/* What side `side` shows and the other does not. */
+/* Finds the pixels that show something on side `side` only. */
 static Lack find_lack(const Labels *labels, const Picture *const pictures[2], int side)
 {
     Lack lack = {.left = labels->width, .top = labels->height};
@@ -189,7 +190,8 @@ static void say_lack(const Picture *a, const Picture *b, const CompareResult *re
     }
 }
 
-/* Likewise where ids tell the segments: one is missing, and it covers what differs. */
+/* Names a segment that is missing or extra, if ids are known and it covers nearly all that differs.
+ */
 static void say_missing_segment(const CompareResult *result, Sentence *out)
 {
     const size_t differing = result_count(result, MEASURE_DIFFERING_PIXELS);
@@ -208,7 +210,7 @@ static void say_missing_segment(const CompareResult *result, Sentence *out)
 
 /* ---- outlines -------------------------------------------------------------------------------- */
 
-/* The largest difference of a channel among a pixel and its neighbours, levels. */
+/* Returns the largest range of a channel over a pixel and its 8 neighbours, in levels. */
 static int contrast(const Picture *picture, int x, int y)
 {
     int largest = 0;
@@ -225,17 +227,21 @@ static int contrast(const Picture *picture, int x, int y)
     return largest / codes_per_level(picture);
 }
 
+/* LEVELS: contrast from which on a pixel is at an outline. SLIGHT: differences up to this many
+ * levels do not count. BLOCK: pixels that are compared at once. Reasons for the numbers are not
+ * recorded. */
 enum { LEVELS = 32, SLIGHT = 2, BLOCK = 64 };
 
-/* Pixels that differ by more than SLIGHT, at edges and off them, and others off edges and the
- * background, of which CHANGED_PIXELS differ at all. */
+/* Counts of pixels. AT_EDGES and OFF_EDGES differ by more than SLIGHT, at outlines and elsewhere.
+ * INNER_PIXELS are all other pixels that are neither at outlines nor background; CHANGED_PIXELS are
+ * those of them that differ at all. */
 enum { AT_EDGES, OFF_EDGES, INNER_PIXELS, CHANGED_PIXELS, OUTLINE_SUMS };
 
 typedef struct OutlineCounts {
     const Picture *a, *b;
     Labels labels;
     int slight;    /* codes */
-    double enough; /* when a row has this many inner pixels the rest of it is not looked at */
+    double enough; /* a row is not read further once it has this many inner pixels */
 } OutlineCounts;
 
 static bool is_edge(const OutlineCounts *self, int x, int y)
@@ -280,7 +286,7 @@ static void count_inner(const void *context, int y, double *sums)
     }
 }
 
-/* Whether it is worth while to ask all pixels. */
+/* Returns true if the samples do not exclude outlines: then all pixels are counted. */
 static bool may_be_outlines(const OutlineCounts *self, const Samples *samples)
 {
     int at_edges = 0, off = 0;
@@ -316,20 +322,21 @@ static Status say_outlines(const Picture *a, const Picture *b, const Samples *sa
 
 /* ---- shading --------------------------------------------------------------------------------- */
 
-/* Of the light that B has more of than A, pixel by pixel: the squares, the part of them that lies
- * along white and along the color of the pixel in A, what no more, or no less, of both makes, and
- * what the rounding of codes makes. */
+/* Sums over pixels of the light that B has in addition to A: its square; the parts of the square
+ * along white and along the pixel's color in A; the rest beside both [rest_of]; the part that
+ * rounding of codes explains. */
 typedef struct LightSums {
     double squares, white, own, rest, rounding;
-    /* Of colored pixels that differ by more than rounding: */
+    /* Over colored pixels that differ by more than rounding: */
     double moments[3][3];    /* products of the channels' light, summed */
-    double colored_rounding; /* what the rounding of their codes makes */
-    /* Of those so colored that light midway between white and their own is neither: */
+    double colored_rounding; /* the part of their squares that rounding explains */
+    /* Over pixels that are so colored that white light and light of their own color can be told
+     * apart: */
     double telling;       /* squares */
-    double pixels, plain; /* counts: all; in white or own light alone */
+    double pixels, plain; /* numbers: all; those with light of only one of the two colors */
 } LightSums;              /* of doubles alone, so that rows_sum adds them up */
 
-/* The square of what is left of `more` beside `along`. */
+/* Returns the square of the component of `more` that is perpendicular to `along`. */
 static double beside(const double more[3], const double along[3])
 {
     double squares = 0, product = 0, length = 0;
@@ -341,8 +348,9 @@ static double beside(const double more[3], const double along[3])
     return length > 0 ? squares - product * product / length : squares;
 }
 
-/* The square of what is left of `more` beside white and `color`, both of which count with the same
- * sign: within the angle between them, or against it, only what is square to both is left. */
+/* Returns the square of the part of `more` that is no sum of white and `color` with factors of
+ * equal sign. Such sums fill the angle between both and its opposite. Within it, the rest is
+ * perpendicular to their plane; elsewhere, it is the distance to the nearer of the two lines. */
 static double rest_of(const double more[3], const double color[3])
 {
     static const double white[3] = {1, 1, 1};
@@ -362,7 +370,7 @@ static double rest_of(const double more[3], const double color[3])
     return fmin(beside(more, white), beside(more, color));
 }
 
-/* The variance of the light of a code that was rounded. */
+/* Returns the variance of the light of a code due to rounding: that of a uniform distribution. */
 static double variance_of_code(const Plane *table, int code)
 {
     int low = code > 0 ? code - 1 : 0, high = code + 1 < table->width ? code + 1 : code;
@@ -444,9 +452,9 @@ static bool has_equal_outlines(const CompareResult *result)
            result->classes[PIXEL_WRONG_SEGMENT] == 0;
 }
 
-/* Whether the light of colored pixels is most of it and has one color, the lamp's, but for a
- * two-hundredth and for rounding. The light that another curve of tones takes from surfaces that
- * are nearly grey is nearly white, too, but its color is another at each brightness. */
+/* Returns true if the light that differs has one color, that of the lamp, except for 1/200 and for
+ * rounding, and most of it is at colored pixels. Another tone curve on nearly grey surfaces also
+ * changes nearly white light, but its color varies with the brightness. */
 static bool has_one_color(const LightSums *light)
 {
     enum { STEPS = 8 };
@@ -469,22 +477,23 @@ static bool has_one_color(const LightSums *light)
     return all - largest <= 0.005 * all + light->colored_rounding;
 }
 
-/* Whether most of the light is of pixels that tell white from their own color, and two in three of
- * them have light of one or the other. */
+/* Returns true if most of the light is at pixels that tell white from their own color, and two
+ * thirds of these pixels have light of only one of the two. */
 static bool is_plain(const LightSums *light)
 {
     return 2 * light->telling >= light->squares && 3 * light->plain >= 2 * light->pixels;
 }
 
-/* Highlights are what white light explains, and more light of the surfaces' own colors does not.
- */
+/* States highlights if white light explains the difference and light of the surfaces' own colors
+ * does not; else shading. */
 static void say_shading(const CompareResult *result, const LightSums *light, Sentence *out)
 {
     bool highlights = light->white > 0.95 * light->squares && light->own < 0.95 * light->squares;
     bool certain = highlights ? has_one_color(light) : is_plain(light);
     if (!certain)
         return;
-    double all = sqrt(result->values[MEASURE_DIFFERING_PIXELS]); /* sigmas, if all go one way */
+    double all =
+        sqrt(result->values[MEASURE_DIFFERING_PIXELS]); /* the sigmas if all pixels get brighter */
     snprintf(out->text, out->size,
              "only %s, by up to %.4g levels on %.3g %% of the pixels (B is %s); the outlines %s",
              highlights ? "highlights differ" : "shading differs", result->values[MEASURE_MAX_ABS],

@@ -1,5 +1,6 @@
-/* Alpha of two pictures that were laid on one background before their colors were compared. What
- * is laid on a background may agree although another part of the background shows through. */
+/* Compares the alpha channels of two pictures whose colors were compared over one background. Two
+ * such composites may agree although their alpha differs, if the vessel has the background's color.
+ */
 #include "compare/measures/planes.h"
 
 #include <math.h>

@@ -1,6 +1,7 @@
-/* Linear colors in floats: every difference counts, however bright or small, so they are not
- * turned into codes; a level is 1/255 of the sRGB encoding, continued beyond white. What is not
- * finite is made black in copies of both, which the measures of perception then see as equal. */
+/* Compares linear colors in floats. They are not converted to codes, so that each difference
+ * counts, however bright or small. A level is 1/255 of the sRGB curve, continued above white. A
+ * pixel that is not finite in either image becomes black in copies of both, so all other measures
+ * see it as equal. */
 #include "compare/measures/labels.h"
 #include "compare/measures/perception.h"
 #include "compare/measures/planes.h"

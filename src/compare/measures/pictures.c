@@ -1,4 +1,5 @@
-/* Two pictures: the sums over all pixels (pixel_counts.c) become measures and a verdict. */
+/* Computes the measures of two pictures from the sums over all pixels (pixel_counts.c), and judges
+ * them. */
 #include "compare/measure.h"
 #include "compare/measures/perception.h"
 #include "compare/measures/pixel_counts.h"
@@ -49,7 +50,7 @@ static Status check_views(const Rendering *a, const Rendering *b, Err *err)
     return labels_check_ids(in_a->width, in_a->height, a->ids, b->ids, err);
 }
 
-/* What the sums say. */
+/* Sets all measures that follow from the sums. */
 static Status take_counts(const Counting *counting, CompareResult *result, Ledger *ledger, Err *err)
 {
     double code_levels = counting->a->picture->bits == 8 ? 1 : 1 / 257.0;

@@ -1,4 +1,5 @@
-/* Depth, normal and id planes. The values of a pixel say what it shows. */
+/* Compares depth, normal and id planes. The value of a pixel itself states whether it shows a
+ * surface, so coverage needs no id planes. */
 #include "compare/measures/planes.h"
 
 #include "compare/measures/labels.h"

@@ -1,6 +1,6 @@
-/* Regions of pixels that only one of the two images shows. They are filled with an explicit stack;
- * a pixel leaves the map when it is pushed, so that it is pushed once. Missing and extra pixels
- * make separate regions: a shifted edge is missing on one side and extra on the other. */
+/* Finds regions of pixels that only one of the two images shows, by flood fill with a stack. A
+ * pixel is cleared from the map when it is pushed, so it is pushed once. Missing and extra pixels
+ * make separate regions, because a shifted edge is missing on one side and extra on the other. */
 #include "compare/measures/labels.h"
 #include "compare/pixels.h"
 

@@ -60,7 +60,7 @@ static bool has_same_codes(const Picture *picture, int x, int y, int u, int v)
                   codes + ((size_t)v * width + (size_t)u) * size, size) == 0;
 }
 
-/* Whether the common pixel (u, v) goes on with the run of (x, y). */
+/* Returns true if pixel (u, v) shows a vessel in both and has the codes of pixel (x, y). */
 static bool repeats(const Runs *runs, int x, int y, int u, int v)
 {
     return is_common(runs, u, v) && has_same_codes(runs->a->picture, x, y, u, v) &&

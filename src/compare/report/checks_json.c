@@ -1,4 +1,4 @@
-/* Further checks of a scene in JSON. */
+/* Writes the checks of a scene as JSON: surface, settled pixels and witness. */
 #include "compare/report/check.h"
 #include "compare/report/page.h"
 

@@ -1,11 +1,11 @@
-/* The keys of compare --json: those of the table of measures, null where a number has no meaning or
- * could not be measured. */
+/* Writes the JSON of `compare --json`. Its keys are those of the table of measures. A number that
+ * is not defined or was not measured is null. */
 #include "compare/measure.h"
 #include "compare/report/page.h"
 
 #include <math.h>
 
-/* Whole numbers as integers, what is not finite as null. */
+/* Returns an integer for an integral value, and null for one that is not finite. */
 static json_t *number(double value)
 {
     if (!isfinite(value))

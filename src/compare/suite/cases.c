@@ -12,7 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Links between folders can repeat a picture any number of times. */
+/* Links between folders can repeat a picture without limit, so the number of cases has one. */
 enum { MOST_CASES = 1000000 };
 
 static bool ends_with(const char *name, const char *suffix)

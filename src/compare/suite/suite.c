@@ -63,7 +63,7 @@ done:
     return status;
 }
 
-/* As a picture, floats as sRGB's codes of 16 bits. */
+/* Reads an image as a picture; floats become sRGB codes of 16 bits. */
 static Status read_image(Image *image, Picture *alpha, const char *path, const float background[3],
                          Err *err)
 {
