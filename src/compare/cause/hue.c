@@ -24,7 +24,7 @@ typedef enum ColorMap {
     COLOR_MAPS
 } ColorMap;
 
-/* A map with its number, in codes or in light. */
+/* A map with its number. It acts on codes or on linear light. */
 typedef struct MapOf {
     ColorMap map;
     bool in_light;
@@ -36,6 +36,13 @@ static double encode(double level)
     return 255 * (double)srgb_encode((float)fmin(fmax(level, 0), 1));
 }
 
+/* Returns the chroma of HSV: the largest channel minus the smallest one. */
+static double chroma_of(const double c[3])
+{
+    return fmax(c[0], fmax(c[1], c[2])) - fmin(c[0], fmin(c[1], c[2]));
+}
+
+/* Returns the grey from which a saturation moves a color away. */
 static double grey_of(ColorMap map, const double c[3])
 {
     double high = fmax(c[0], fmax(c[1], c[2])), low = fmin(c[0], fmin(c[1], c[2]));
@@ -102,12 +109,15 @@ static void apply_map(const MapOf *map, const double c[3], double out[3])
 
 /* ---- fits ------------------------------------------------------------------------------------ */
 
+/* Numbers of pixels: with a difference above slack_of before the map, with one after it, and with a
+ * chroma above 16 levels; sum of squared differences after the map, levels^2. */
 typedef struct ColorFit {
     size_t beyond, misfits, colored;
     double squares;
 } ColorFit;
 
-/* Levels that a map may leave: programs round hues of HSV to 8 bits. */
+/* Returns the levels that a map may leave: rounding, and more for programs that round hues of HSV
+ * to 8 bits. */
 static double slack_of(const MapOf *map)
 {
     return map->map == HEXAGON ? 4.01 : 2.01;
@@ -127,8 +137,7 @@ static void add_pixel(const MapOf *map, const Picture *a, const Picture *b, size
     const double slack = slack_of(map);
     levels_at(a, code, from);
     levels_at(b, code, to);
-    const double chroma =
-        fmax(from[0], fmax(from[1], from[2])) - fmin(from[0], fmin(from[1], from[2]));
+    const double chroma = chroma_of(from);
     double in[3] = {from[0], from[1], from[2]};
     for (int c = 0; map->in_light && c < 3; c++)
         in[c] = (double)srgb_decode((float)from[c]);
@@ -145,7 +154,7 @@ static void add_pixel(const MapOf *map, const Picture *a, const Picture *b, size
     fit->misfits += worst > slack;
 }
 
-/* Of the samples, or of all pixels if `samples` is NULL. */
+/* Fits a map to the samples, or to all pixels if `samples` is NULL. */
 static ColorFit fit_of(const MapOf *map, const Picture *a, const Picture *b, const Samples *samples)
 {
     ColorFit fit = {0};
@@ -214,7 +223,7 @@ static bool changes_greys(const Picture *a, const Samples *samples)
     for (int i = 0; i < samples->n; i++) {
         double c[3];
         levels_at(a, sampled_code(a, samples, (size_t)i), c);
-        grey += fmax(c[0], fmax(c[1], c[2])) - fmin(c[0], fmin(c[1], c[2])) <= 2 / 255.0;
+        grey += chroma_of(c) <= 2 / 255.0;
     }
     return 10 * grey > samples->n;
 }

@@ -1,8 +1,8 @@
-/* Compressed as JPEG: the cosine transform of each 8 x 8 block of A, rounded to multiples of the
- * steps of a quality, gives B. The steps are those of the table of the standard [ITU-T T.81, annex
- * K], scaled as libjpeg scales it by a quality from 1 to 100. The luma is compared alone, because
- * colors may be subsampled, and only where no channel of B is black or white, where it may be
- * clipped. */
+/* Tests whether B is A compressed as JPEG, by compressing blocks of A. The cosine transform of each
+ * 8 x 8 block is rounded to multiples of the quantisation steps of a quality. The steps are those
+ * of the standard [ITU-T T.81, annex K], scaled as libjpeg scales them by a quality from 1 to 100.
+ * Only the luma is compared, because colors may be subsampled, and only pixels of which no channel
+ * of B is black or white, because those may be clipped. */
 #include "compare/cause/guesses.h"
 
 #include <math.h>
@@ -19,14 +19,15 @@ static const unsigned char luma_steps[CELLS] = {
 
 /* A block of both pictures, in levels of luma. */
 typedef struct Block {
-    double a[CELLS], b[CELLS], coefficients[CELLS]; /* the last: the cosine transform of `a` */
+    double a[CELLS], b[CELLS];
+    double coefficients[CELLS]; /* cosine transform of `a` */
     bool clipped[CELLS];
 } Block;
 
 typedef struct JpegBlocks {
     Block *blocks; /* owned */
     size_t n;
-    double cosines[SIDE][SIDE]; /* [frequency][place] */
+    double cosines[SIDE][SIDE]; /* [frequency][position] */
 } JpegBlocks;
 
 static double step_of(int quality, int i)

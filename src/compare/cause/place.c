@@ -25,8 +25,9 @@
 #include <string.h>
 
 /* Returns true if the pixel (x, y) of a side shows something else than the background. */
-static bool is_seen(const Labels *labels, const Picture *picture, int side, int x, int y)
+static bool is_seen(const Labels *labels, int side, int x, int y)
 {
+    const Picture *picture = labels->pictures[side];
     for (int c = 0; c < picture->channels; c++)
         if (code_at(picture, x, y, c) != labels->background[side][c])
             return true;
@@ -39,67 +40,61 @@ static bool is_seen(const Labels *labels, const Picture *picture, int side, int 
  * to background, whose colors are mixed with it; other differing pixels. */
 enum { EQUAL_PIXELS, RIM_PIXELS, OTHER_PIXELS, BACKGROUND_SUMS };
 
-typedef struct Backgrounds {
-    const Picture *pictures[2];
-    Labels labels;
-} Backgrounds;
-
-static bool touches_background(const Backgrounds *self, int x, int y)
+static bool touches_background(const Labels *labels, int x, int y)
 {
-    int right = x + 1 < self->labels.width ? x + 1 : x;
-    int bottom = y + 1 < self->labels.height ? y + 1 : y;
+    int right = x + 1 < labels->width ? x + 1 : x;
+    int bottom = y + 1 < labels->height ? y + 1 : y;
     for (int v = y > 0 ? y - 1 : 0; v <= bottom; v++)
         for (int u = x > 0 ? x - 1 : 0; u <= right; u++)
-            for (int side = 0; side < 2; side++)
-                if (!is_seen(&self->labels, self->pictures[side], side, u, v))
-                    return true;
+            if (!is_seen(labels, 0, u, v) || !is_seen(labels, 1, u, v))
+                return true;
     return false;
 }
 
-static void count_background_at(const Backgrounds *self, int x, int y, double *sums)
+static void count_background_at(const Labels *labels, int x, int y, double *sums)
 {
-    const Picture *a = self->pictures[0], *b = self->pictures[1];
-    if (!is_seen(&self->labels, a, 0, x, y) && !is_seen(&self->labels, b, 1, x, y))
+    const Picture *const *pictures = labels->pictures;
+    if (!is_seen(labels, 0, x, y) && !is_seen(labels, 1, x, y))
         return;
-    sums[picture_rows_equal(a, b, y, x, 1) ? EQUAL_PIXELS
-         : touches_background(self, x, y)  ? RIM_PIXELS
-                                           : OTHER_PIXELS]++;
+    sums[picture_rows_equal(pictures[0], pictures[1], y, x, 1) ? EQUAL_PIXELS
+         : touches_background(labels, x, y)                    ? RIM_PIXELS
+                                                               : OTHER_PIXELS]++;
 }
 
 static void count_background(const void *context, int y, double *sums)
 {
-    const Backgrounds *self = context;
-    for (int x = 0; x < self->labels.width; x++)
-        count_background_at(self, x, y, sums);
+    const Labels *labels = context;
+    for (int x = 0; x < labels->width; x++)
+        count_background_at(labels, x, y, sums);
 }
 
 /* Returns true if the samples do not exclude the background: then all pixels are counted. */
-static bool may_be_background(const Backgrounds *self, const Samples *samples)
+static bool may_be_background(const Labels *labels, const Samples *samples)
 {
     double sums[BACKGROUND_SUMS] = {0};
     for (int i = 0; i < samples->n; i++)
-        count_background_at(self, samples->at[i].x, samples->at[i].y, sums);
+        count_background_at(labels, samples->at[i].x, samples->at[i].y, sums);
     return sums[OTHER_PIXELS] <= 2 + samples->n / 50;
 }
 
 /* "(12, 30, 41)" */
-static void describe_background(const Labels *labels, int side, int channels, char out[32])
+static void describe_background(const Labels *labels, int side, char out[32])
 {
     const uint16_t *codes = labels->background[side];
-    if (channels == 1)
+    if (labels->pictures[side]->channels == 1)
         snprintf(out, 32, "%u", codes[0]);
     else
         snprintf(out, 32, "(%u, %u, %u)", codes[0], codes[1], codes[2]);
 }
 
-static void say_background(const Backgrounds *self, const double *sums, Sentence *out)
+static void say_background(const Labels *labels, const double *sums, Sentence *out)
 {
     char colors[2][32];
     if (sums[EQUAL_PIXELS] == 0 || 4 * sums[EQUAL_PIXELS] < sums[RIM_PIXELS] ||
         50 * sums[OTHER_PIXELS] > sums[EQUAL_PIXELS])
         return;
     for (int side = 0; side < 2; side++)
-        describe_background(&self->labels, side, self->pictures[side]->channels, colors[side]);
+        describe_background(labels, side, colors[side]);
     snprintf(out->text, out->size,
              "only the background color differs (and pixels that blend with it at outlines): %s in "
              "A, %s in B",
@@ -116,12 +111,12 @@ static bool have_backgrounds_unlike(const Labels *labels, int channels)
 Status cause_background(const Picture *a, const Picture *b, const Samples *samples, Sentence *out,
                         Err *err)
 {
-    Backgrounds self = {.pictures = {a, b}, .labels = labels_from_background(a, b)};
+    const Labels labels = labels_from_background(a, b);
     double sums[BACKGROUND_SUMS] = {0};
-    if (!have_backgrounds_unlike(&self.labels, a->channels) || !may_be_background(&self, samples))
+    if (!have_backgrounds_unlike(&labels, a->channels) || !may_be_background(&labels, samples))
         return STATUS_OK;
-    TRY(rows_sum(a->height, count_background, &self, sums, BACKGROUND_SUMS, err));
-    say_background(&self, sums, out);
+    TRY(rows_sum(a->height, count_background, &labels, sums, BACKGROUND_SUMS, err));
+    say_background(&labels, sums, out);
     return STATUS_OK;
 }
 
@@ -135,8 +130,7 @@ typedef struct Lack {
     int left, top, right, bottom;
 } Lack;
 
-static void add_lack(const Labels *labels, const Picture *const pictures[2], int side, int x, int y,
-                     Lack *lack)
+static void add_lack(const Labels *labels, int side, int x, int y, Lack *lack)
 {
     static const int steps[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
     lack->pixels++;
@@ -146,37 +140,35 @@ static void add_lack(const Labels *labels, const Picture *const pictures[2], int
     lack->bottom = y;
     for (int i = 0; i < 4; i++) {
         int u = x + steps[i][0], v = y + steps[i][1];
-        if (!has_pixel(pictures[side], u, v))
+        if (!has_pixel(labels->pictures[side], u, v))
             continue;
-        bool here = is_seen(labels, pictures[side], side, u, v);
-        bool lacking = here && !is_seen(labels, pictures[!side], !side, u, v);
+        bool here = is_seen(labels, side, u, v);
+        bool lacking = here && !is_seen(labels, !side, u, v);
         lack->rim += !lacking;
         lack->background += !here;
     }
 }
 
 /* Finds the pixels that show something on side `side` only. */
-static Lack find_lack(const Labels *labels, const Picture *const pictures[2], int side)
+static Lack find_lack(const Labels *labels, int side)
 {
     Lack lack = {.left = labels->width, .top = labels->height};
     for (int y = 0; y < labels->height; y++)
         for (int x = 0; x < labels->width; x++)
-            if (is_seen(labels, pictures[side], side, x, y) &&
-                !is_seen(labels, pictures[!side], !side, x, y))
-                add_lack(labels, pictures, side, x, y, &lack);
+            if (is_seen(labels, side, x, y) && !is_seen(labels, !side, x, y))
+                add_lack(labels, side, x, y, &lack);
     return lack;
 }
 
 static void say_lack(const Picture *a, const Picture *b, const CompareResult *result, Sentence *out)
 {
-    const Picture *const pictures[2] = {a, b};
     const Labels labels = labels_from_background(a, b);
     const size_t differing = result_count(result, MEASURE_DIFFERING_PIXELS);
     if (20 * (result->values[MEASURE_UNCOMMON_PIXELS] + result->values[MEASURE_SETTLED_PIXELS]) <
         19 * (double)differing)
         return; /* most of what differs is in both */
     for (int side = 0; side < 2 && labels.source == LABELS_BACKGROUND && !*out->text; side++) {
-        Lack lack = find_lack(&labels, pictures, side);
+        Lack lack = find_lack(&labels, side);
         bool one = 20 * result->values[MEASURE_LARGEST_REGION] >= 19 * (double)lack.pixels;
         bool only = 20 * lack.pixels >= 19 * differing;
         int sides = (lack.left == 0) + (lack.top == 0) + (lack.right == labels.width - 1) +
@@ -279,8 +271,8 @@ static void count_inner(const void *context, int y, double *sums)
     const OutlineCounts *self = context;
     bool known = self->labels.source == LABELS_BACKGROUND;
     for (int x = 0; x < self->a->width && sums[INNER_PIXELS] < self->enough; x++) {
-        bool inner = (!known || is_seen(&self->labels, self->a, 0, x, y)) &&
-                     is_slight(self, x, y) && !is_edge(self, x, y);
+        bool inner = (!known || is_seen(&self->labels, 0, x, y)) && is_slight(self, x, y) &&
+                     !is_edge(self, x, y);
         sums[INNER_PIXELS] += inner;
         sums[CHANGED_PIXELS] += inner && codes_off(self, x, y) > 0;
     }
