@@ -38,7 +38,7 @@ static bool is_clipped(int code, int most)
 
 /* Sets *d to the difference in levels. Returns false for a clipped code and outside of the picture.
  */
-static bool difference_at(const NoiseImages *self, int x, int y, int c, double *d)
+static inline bool difference_at(const NoiseImages *self, int x, int y, int c, double *d)
 {
     const Picture *a = self->a;
     if (!has_pixel(a, x, y))
