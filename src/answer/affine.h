@@ -27,7 +27,7 @@ typedef struct Form {
     double c, x, y, e; /* e >= 0 */
 } Form;
 
-/* A vector of forms. */
+/* A vector whose components are forms. */
 typedef struct Form3 {
     Form x, y, z;
 } Form3;
@@ -68,8 +68,8 @@ static inline double form_most(Form f)
     return (form_span(f) + f.e) * (1 + 8 * FORM_U) + FORM_TINY;
 }
 
-/* Adds rounding errors to e. `rounded` is a bound of the summed magnitudes of the rounded numbers.
- */
+/* Returns f with rounding errors added to e. `rounded` is a bound of the sum of the magnitudes of
+ * all numbers that were rounded. */
 static inline Form form_rounded(Form f, double rounded)
 {
     f.e = (f.e + FORM_U * rounded + FORM_TINY) * (1 + 64 * FORM_U);
@@ -183,9 +183,9 @@ static inline Form form_positive(Form f)
     return form_rounded(form_line(f, slope, 0, -low * slope), 8 * (high - low));
 }
 
-/* Narrows f to [low, high], for a quantity that is known to lie there. If f
- * lies in [low, high], the result is f. If e is not finite, or e > |x| + |y|, the result is a
- * constant. Otherwise the result is f, not narrowed, because a constant would lose the slopes. */
+/* Returns an enclosure of a quantity that f encloses, and that is known to be in [low, high]. If f
+ * is in [low, high], the result is f. If e is not finite, or e > |x| + |y|, the result is a
+ * constant in [low, high]. Otherwise the result is f: a constant would lose the slopes. */
 static inline Form form_known(Form f, double low, double high)
 {
     if (form_low(f) >= low && form_high(f) <= high)

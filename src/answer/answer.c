@@ -7,6 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Pixels along a side of a tile. All pixels of a tile search one list of faces. */
+enum { TILE_SIDE = 16 };
+
 typedef struct AnswerJob {
     AnswerPlan plan;
     AnswerWorkspace *works; /* per thread; owned */

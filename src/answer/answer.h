@@ -7,6 +7,10 @@
  * answer bounds the mean over the pixel's square. docs/ANSWERS.md defines the true color and proves
  * the bounds.
  *
+ * The files, each of which uses only those before it: affine.h (numbers with proven errors),
+ * faces.h (surfaces and hits of rays), answerplan.h, light.h (shading and shadows), interval.h,
+ * workspace.h (pixels), region.h (integrals), certificate.h.
+ *
  *     Answer answer;
  *     TRY(answer_make(&scene, &params, &answer, err));
  *     answer_release(&answer); */
@@ -41,8 +45,8 @@ typedef enum AnswerState {
     ANSWER_DECIDED,    /* the interval is at most AnswerParams.width wide */
     ANSWER_UNDECIDED,  /* pattern answers: the interval is wider. Usually a ray passes an edge
                         * within its rounding errors */
-    ANSWER_OVER_BUDGET /* area answers: the interval is wider, but AnswerParams.leaves was reached
-                        */
+    ANSWER_OVER_BUDGET /* area answers: the interval is wider, and the pixel has
+                        * AnswerParams.leaves leaves */
 } AnswerState;
 
 /* The channels of an answer's plane. Bounds are rounded outwards to floats. */

@@ -1,5 +1,6 @@
-/* Data that all pixels of an answer share: the faces, their bounding volume hierarchy, the lights,
- * and the frames of walls. */
+/* The plan of an answer: the data that all its pixels share. These are the faces, their bounding
+ * volume hierarchy, the lights, and the frames of walls. A plan is immutable after
+ * answerplan_make. */
 #ifndef CORCAST_ANSWER_ANSWERPLAN_H
 #define CORCAST_ANSWER_ANSWERPLAN_H
 
@@ -24,7 +25,7 @@ typedef struct LightRays {
 typedef struct AnswerPlan {
     const Scene *scene; /* borrowed */
     AnswerParams params;
-    Face *faces;
+    Face *faces;       /* owned, like all arrays below */
     size_t n;          /* number of faces, without the ground */
     bool has_ground;   /* faces[n] is the ground */
     BoxTree tree;      /* hierarchy of the faces' bounding boxes, without the ground */

@@ -53,13 +53,12 @@ static bool unknown_hit(FaceHit *hit)
 
 /* A wall that is seen along its axis, to rounding errors: its slope moves rays across it by at most
  * `drift` mm, so only rays within `drift` of its outline can hit it. All others enter its disc. */
-static bool hit_wall_end_on(const Face *face, const Beam *beam, Form3 from, FaceHit *hit)
+static bool hit_wall_end_on(const Face *face, Form3 from, FaceHit *hit)
 {
     const Form3 across = form3_sub(from, form3_mul(face->axis, form3_dot(from, face->axis)));
     const double drift = 1e-11 * (form_high(face->length) + form_most(form3_length(from)));
     const Form distance2 = form3_dot(across, across);
     const double inner = face->radius - drift, outer = face->radius + drift;
-    (void)beam;
     if (form_high(distance2) < inner * inner * (1 - 4 * FORM_U) ||
         form_low(distance2) > outer * outer * (1 + 4 * FORM_U))
         return false;
@@ -75,7 +74,7 @@ static bool hit_wall(const Face *face, size_t index, const Beam *beam, FaceHit *
     hit->frame = frame;
     if (!(form_most(frame->inverse) < 1e12 * form_most(beam->inverse)))
         return form_high(form3_length(form3_cross(beam->unit, face->axis))) < 1e-11
-                   ? hit_wall_end_on(face, beam, from, hit)
+                   ? hit_wall_end_on(face, from, hit)
                    : unknown_hit(hit);
     const Form radius = form_of(face->radius, 0);
     hit->w = form3_dot(from, frame->m);

@@ -5,11 +5,10 @@ static const Form one = {1, 0, 0, 0};
 
 /* ---- surfaces -------------------------------------------------------------------------------- */
 
-/* The fraction of the background's color: a line over depth, cut to [0, 1] of its part. */
+/* Returns the fraction of the background's color in a surface: linear in depth between near_mm and
+ * far_mm, and constant outside. The fade must be on. */
 static Form fade_of(const Fade *fade, Form depth)
 {
-    if (!fade_is_on(fade))
-        return form_of(0, 0);
     const Form near = form_of(fade->near_mm, 0);
     const Form reach = form_sub(form_of(fade->far_mm, 0), near);
     const Form part = form_mul(form_sub(depth, near), form_inverse(reach));

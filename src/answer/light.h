@@ -10,7 +10,7 @@ typedef struct FormColor {
     Form channels[3]; /* red, green, blue */
 } FormColor;
 
-/* The surface at a hit. Pointers are borrowed. */
+/* The surface at a hit. All pointers are borrowed; the hit must not move. */
 typedef struct FormSurface {
     const FaceHit *hit;
     const Finish *finish;
@@ -37,23 +37,24 @@ typedef struct LightTerm {
  * the light and its absence. Diffuse light is at most this bright there. */
 #define LIGHT_GRAZES 2e-5
 
-/* Returns the color that the light with this index adds to a surface. An area light shades as a
- * point light at its location. */
+/* Returns the color that the light with this index adds to a surface if nothing blocks it. An area
+ * light shades as a point light at its location. */
 LightTerm light_term(const AnswerPlan *plan, const FormSurface *surface, size_t light);
 
 /* Returns the beam of shadow rays from a surface to point `point` of a light, 0 <= point <
- * max(LightRays.points, 1). Depth 1 is the light, except for a parallel light. */
+ * max(LightRays.points, 1). The light is at depth 1; a parallel light is at infinity. */
 Beam light_beam(const AnswerPlan *plan, const FormSurface *surface, size_t light, int point);
 
-/* Returns the largest difference of a coordinate of the surface from the middle of its form, mm. */
+/* Returns the largest difference, in mm, between a coordinate of a surface point and the constant
+ * term of its form. */
 double surface_reach(const FormSurface *surface);
 /* Lists the faces that may block a beam of light_beam, for surface points up to `reach` mm from the
- * middle of the surface's form. */
+ * constant terms of FormSurface.point. `list` must have space for all faces. */
 void light_blockers(const AnswerPlan *plan, const FormSurface *surface, const Beam *beam,
                     size_t light, double reach, FaceList *list);
 
 /* A face that may block the shadow rays of a beam. A ray is blocked if the edges of `hit` and those
- * in `between` are >= 0. */
+ * in `between` are >= 0. `blocker->hit.frame` may point into the blocker itself. */
 typedef struct LightBlocker {
     FaceHit hit;
     Form between[2]; /* edges that are >= 0 where the hit is between the surface and the light */

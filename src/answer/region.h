@@ -1,4 +1,5 @@
-/* The integral of a scene's color over a part of the picture, with proven bounds.
+/* Integrates the color of a scene over a part of the picture, with proven bounds: region_integrate
+ * over any convex polygon, arealeaf_measure over a leaf of a pixel.
  *
  * The part is a convex polygon in the rectangle of a beam. It is cut along the edges of the faces
  * that the beam may hit, until each piece shows one face, or until the limit of cuts is reached.
@@ -7,7 +8,7 @@
 #ifndef CORCAST_ANSWER_REGION_H
 #define CORCAST_ANSWER_REGION_H
 
-#include "answer/answertile.h"
+#include "answer/workspace.h"
 
 /* Maximum number of corners: a rectangle clipped to a square has up to 8, and each cut adds one. A
  * piece is cut up to 10 times for visibility and up to 10 times for shadows. */
@@ -20,8 +21,8 @@ typedef struct LeafPolygon {
 } LeafPolygon;
 
 /* Returns the part of the polygon in which f.c + f.x ex + f.y ey >= `from`. Ignores f.e. The result
- * is empty if it would have fewer than 3 corners, or more than POLYGON_MAX - 2. The callers count
- * an area that is lost so among the undecided. */
+ * is empty if it would have fewer than 3 corners, or more than POLYGON_MAX - 2. Callers count the
+ * area that is lost in this way as undecided. */
 LeafPolygon polygon_cut(const LeafPolygon *polygon, Form f, double from);
 
 /* The integral of the color over a region. Areas are in units of ex and ey, so the area of the
@@ -40,11 +41,32 @@ typedef struct RegionSum {
 RegionSum region_integrate(AnswerWorkspace *work, const Beam *beam, const FaceList *list,
                            const LeafPolygon *polygon);
 
+/* A leaf: a part of a pixel, which is a rectangle. It may be turned; then it is clipped to an
+ * upright square. All positions are in pixels from the center of the pixel. */
+typedef struct AreaLeaf {
+    /* Center of the rectangle, and its half sides. In the forms of the leaf's beam, ex grows along
+     * `along`, and ey along `across`. */
+    double x, y, across[2], along[2];
+    bool turned;    /* `across` is across a vessel in the picture, and `along` along it */
+    double clip[4]; /* the square: left, right, top, bottom; unused unless `turned` */
+    /* Results of arealeaf_measure: */
+    double low[3], high[3]; /* per channel: bounds of the integral of the color over the leaf, in
+                             * color times square pixels */
+    /* A square leaf that shows only the wall of one vessel is later replaced by a turned leaf,
+     * because color varies across a vessel and hardly along it. `turn` is the unit vector in the
+     * picture across this vessel; (0, 0): the leaf is not replaced. */
+    double turn[2];
+    /* Why the interval of the leaf is wide. false: shading varies over one wall. true: the leaf
+     * shows several faces, or a face that is no wall, or strips along undecided edges cause more
+     * than half of the width. */
+    bool is_mixed;
+} AreaLeaf;
+
 /* Returns the leaf as a polygon in the coordinates of its rectangle; empty if nothing is left. */
 LeafPolygon arealeaf_polygon(const AreaLeaf *leaf);
-/* Integrates the color over a leaf of the pixel in column i and row j. Sets leaf->low and
- * leaf->high, and leaf->turn and leaf->is_mixed, which decide how the leaf is divided. Only the
- * faces of work->pixel may be visible. */
+/* Integrates the color over a leaf of the pixel in column i and row j. Sets low, high,
+ * turn and is_mixed of the leaf. Only the faces of work->pixel may be visible. Overwrites
+ * work->hits, and adds 1 to work->beams. */
 void arealeaf_measure(AnswerWorkspace *work, int i, int j, AreaLeaf *leaf);
 
 #endif

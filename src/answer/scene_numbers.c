@@ -3,14 +3,13 @@
 
 /* ---- digest ---------------------------------------------------------------------------------- */
 
-static void add_numbers(Hash *hash, const double *numbers, size_t n)
-{
-    hash_add(hash, numbers, n * sizeof *numbers);
-}
+/* Adds doubles to the digest. */
+#define ADD_NUMBERS(hash, ...)                                                                     \
+    hash_add(hash, (const double[]){__VA_ARGS__}, sizeof((const double[]){__VA_ARGS__}))
 
 static void add_vector(Hash *hash, Vec3 v)
 {
-    add_numbers(hash, (const double[]){v.x, v.y, v.z}, 3);
+    ADD_NUMBERS(hash, v.x, v.y, v.z);
 }
 
 static void add_rgb(Hash *hash, Rgb color)
@@ -20,17 +19,14 @@ static void add_rgb(Hash *hash, Rgb color)
 
 static void add_finish(Hash *hash, const Finish *f)
 {
-    const double numbers[] = {(double)f->ambient,  (double)f->diffuse,    (double)f->brilliance,
-                              (double)f->phong,    (double)f->phong_size, (double)f->specular,
-                              (double)f->roughness};
-    add_numbers(hash, numbers, sizeof numbers / sizeof *numbers);
+    ADD_NUMBERS(hash, (double)f->ambient, (double)f->diffuse, (double)f->brilliance,
+                (double)f->phong, (double)f->phong_size, (double)f->specular, (double)f->roughness);
 }
 
 static void add_view(Hash *hash, const View *view, bool shadows)
 {
     const Camera *camera = &view->camera;
-    add_numbers(hash, (const double[]){camera->projection, camera->width, camera->height, shadows},
-                4);
+    ADD_NUMBERS(hash, camera->projection, camera->width, camera->height, shadows);
     const Vec3 vectors[] = {camera->location, camera->right, camera->up, camera->direction,
                             view->ground.normal};
     for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++)
@@ -42,17 +38,14 @@ static void add_view(Hash *hash, const View *view, bool shadows)
         add_vector(hash, light->sides[0]);
         add_vector(hash, light->sides[1]);
         add_rgb(hash, light->color);
-        add_numbers(hash, (const double[]){light->parallel, light->casts_shadows, light->samples},
-                    3);
+        ADD_NUMBERS(hash, light->parallel, light->casts_shadows, light->samples);
     }
-    add_numbers(hash, (const double[]){view->ground.present, view->ground.offset_mm}, 2);
+    ADD_NUMBERS(hash, view->ground.present, view->ground.offset_mm);
     add_rgb(hash, view->ground.color);
     add_finish(hash, &view->ground.finish);
     add_rgb(hash, view->background);
-    add_numbers(hash,
-                (const double[]){view->fade.nearest, view->fade.farthest, view->fade.near_mm,
-                                 view->fade.far_mm},
-                4);
+    ADD_NUMBERS(hash, view->fade.nearest, view->fade.farthest, view->fade.near_mm,
+                view->fade.far_mm);
 }
 
 HashText answer_scene_hash(const Scene *scene, bool shadows)
@@ -65,14 +58,14 @@ HashText answer_scene_hash(const Scene *scene, bool shadows)
         const Primitive *primitive = &geometry->primitives[i];
         add_vector(&hash, primitive->a);
         add_vector(&hash, primitive->b);
-        add_numbers(&hash, (const double[]){primitive->kind, primitive->radius_mm}, 2);
+        ADD_NUMBERS(&hash, primitive->kind, primitive->radius_mm);
         add_rgb(&hash, appearance_color(&scene->appearance, primitive->segment));
     }
     for (size_t i = 0; i < geometry->n_segments; i++) {
         const FieldSegment *segment = &geometry->segments[i];
         add_vector(&hash, segment->a);
         add_vector(&hash, segment->b);
-        add_numbers(&hash, &segment->radius_mm, 1);
+        ADD_NUMBERS(&hash, segment->radius_mm);
         add_rgb(&hash, appearance_color(&scene->appearance, segment->segment));
     }
     add_finish(&hash, &scene->appearance.finish);

@@ -1,20 +1,29 @@
-/* The public header of the module compare: two images -> measures, verdict, cause, report.
+/* The public header of the module compare: compares two images of one scene, and judges whether
+ * they agree.
  *
- * A comparison begins with two pictures or planes of one size. A is the reference, B is judged.
- * compare_pictures and its neighbours fill in a CompareResult: numbers by MeasureId, the rules of a
- * Tolerance that were judged, and a sentence about the first broken rule. compare_cause adds a
- * sentence about what made B of A. compare_json, compare_text and report_write show the result.
+ * Both images have one size. A is the reference, B is judged. compare_pictures, compare_colors,
+ * compare_planes and compare_ids fill in a CompareResult: measures such as the largest difference,
+ * the rules of a Tolerance, and a sentence about the first rule that is not met. compare_cause then
+ * adds a sentence about the change that turned A into B. compare_json, compare_text and
+ * report_write write the result.
  *
- * result.h     what a comparison finds, and tolerances
- * measures/    find the numbers
- * rules/       tiers of agreement; judge the numbers
- * checks/      of a scene: settled pixels, the place of a surface, a third program as witness
- * cause/       guess the cause; plant faults in pictures, to see what a tolerance finds
+ *     CompareResult result;
+ *     const Tolerance tolerance = tolerance_tolerant(0);
+ *     TRY(compare_pictures(&a, &b, &tolerance, &result, NULL, err));
+ *     if (!result.agrees)
+ *         TRY(compare_cause(a.picture, b.picture, &result, err));
+ *     compare_text(&result, &out);
+ *
+ * result.h     the result of a comparison, tolerances, and the terms of the module
+ * measures/    compute the measures
+ * rules/       the built-in tolerances; judge the measures
+ * checks/      checks of a rendered scene: settled pixels, the position of a surface, a third
+ * program cause/       find the cause of a difference; measure which faults a tolerance detects
  * grade/       grade a picture by proven intervals of its pixels
  * suite/       compare a folder of pictures with a folder of references
  * report/      write JSON, text, JUnit XML, pictures and pages
  *
- * No function prints or keeps state. Results do not depend on the number of threads. */
+ * No function prints or has global state. Results do not depend on the number of threads. */
 #ifndef CORCAST_COMPARE_COMPARE_H
 #define CORCAST_COMPARE_COMPARE_H
 

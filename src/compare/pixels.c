@@ -32,7 +32,7 @@ bool pictures_alike(const Picture *a, const Picture *b)
            a->bits == b->bits;
 }
 
-PixelPlace place_of(size_t pixel, int width)
+PixelPlace pixel_place(size_t pixel, int width)
 {
     return (PixelPlace){.x = (int)(pixel % (size_t)width), .y = (int)(pixel / (size_t)width)};
 }
@@ -83,6 +83,15 @@ double angle_deg(const float *a, const float *b)
     double bx = (double)b[0], by = (double)b[1], bz = (double)b[2];
     double x = ay * bz - az * by, y = az * bx - ax * bz, z = ax * by - ay * bx;
     return elementary_atan2(sqrt(x * x + y * y + z * z), ax * bx + ay * by + az * bz) * 180 / PI;
+}
+
+Status srgb_table(int bits, float **table, Err *err)
+{
+    const size_t n = (size_t)1 << bits;
+    TRY(mem_calloc(table, n, sizeof **table, "decoded levels", err));
+    for (size_t i = 0; i < n; i++)
+        (*table)[i] = srgb_decode((float)i / (float)(n - 1));
+    return STATUS_OK;
 }
 
 void add_integers(void *to, const void *from, size_t bytes)

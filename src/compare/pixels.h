@@ -1,47 +1,52 @@
-/* What comparisons of all kinds begin with, and what they ask of single pixels. Private to the
+/* Functions about single pixels and rows that several parts of the module share. Private to the
  * module compare. */
 #ifndef CORCAST_COMPARE_PIXELS_H
 #define CORCAST_COMPARE_PIXELS_H
 
 #include "compare/result.h"
 
-/* Returns a result with nothing measured: counts of pixels are 0, other measures NAN, places
- * nowhere. `ids` is the id plane of one of the images, or NULL. */
+/* Returns a result before anything is measured: counts of pixels are 0, other measures NAN, and
+ * there are no places. `ids` is the id plane of either image; NULL: no ids. The result borrows what
+ * `tolerance` borrows. */
 CompareResult result_start(PlaneKind kind, int width, int height, const IdPlane *ids,
                            const Tolerance *tolerance);
 
-/* Errors: STATUS_INPUT unless both sides are equal. */
+/* Checks that two images have equal size. Errors: STATUS_INPUT. */
 MUST_CHECK Status check_sizes(int width_a, int height_a, int width_b, int height_b, Err *err);
-
 /* Returns true if both pictures have the same size, channels and bits. */
 bool pictures_alike(const Picture *a, const Picture *b);
 
-/* Returns the place of a pixel, counted row by row; without ids. */
-PixelPlace place_of(size_t pixel, int width);
+/* Returns column and row of the pixel with this index, which counts row by row. Its ids are 0. */
+PixelPlace pixel_place(size_t pixel, int width);
 
-/* Returns the largest difference over the channels of a pixel, in codes. */
+/* Returns the largest |difference| over the channels of a pixel of two alike pictures, in codes. */
 int largest_difference(const Picture *a, const Picture *b, size_t pixel);
-/* Returns how many codes of such a picture the tolerance lets a pixel be off. */
+/* Returns the maximum difference of a pixel that counts as equal, LIMIT_COLOR_LEVELS, rounded down
+ * to codes of the picture's depth. */
 int allowed_codes(const Tolerance *tolerance, const Picture *picture);
-/* Returns true if depths or normals of a pixel differ by more than `mm` or `deg`. Both renderings
- * have these planes and show something there. */
+/* Returns true if the depths of a pixel differ by more than `mm` mm, or its normals by more than
+ * `deg` degrees. Both renderings must have depths and normals, and show a surface at the pixel. */
 bool geometry_differs(const Rendering *a, const Rendering *b, size_t pixel, double mm, double deg);
+/* Returns the angle between two vectors in degrees. Small angles are accurate, too. */
+double angle_deg(const float *a, const float *b);
 
-/* Returns the percentile by nearest rank: the smallest of n >= 1 values that at least `fraction` of
- * all do not exceed. Reorders the values. Cost O(n). */
+/* Returns a percentile by nearest rank: the smallest of n >= 1 values such that at least `fraction`
+ * of all values do not exceed it. Reorders the values. Cost: O(n). */
 double percentile(double *values, size_t n, double fraction);
 
-/* Adds structs that consist of 64-bit integers alone, member by member. */
+/* Makes a table of the linear colors of the sRGB codes of 8 or 16 bits, in [0, 1]. The caller frees
+ * *table. Errors: STATUS_MEMORY. */
+MUST_CHECK Status srgb_table(int bits, float **table, Err *err);
+
+/* Adds the struct *from to the struct *to, member by member. Both consist of `bytes` / 8 integers
+ * of 64 bits. */
 void add_integers(void *to, const void *from, size_t bytes);
 
-/* Adds up numbers over the rows of a picture, which several threads compute: `n` sums, of which
- * `row` adds those of row y to `sums`. The order of adding does not depend on the threads. Errors:
- * STATUS_MEMORY. */
+/* Adds the numbers of row `y` to the n numbers `sums`. Several threads call it at the same time. */
 typedef void RowSums(const void *context, int y, double *sums);
+/* Adds the `n` sums over all rows of a picture to `sums`. Rows are computed by all processors, and
+ * added in order, so the result does not depend on their number. Errors: STATUS_MEMORY. */
 MUST_CHECK Status rows_sum(int height, RowSums *row, const void *context, double *sums, size_t n,
                            Err *err);
-
-/* Returns the angle between two vectors in degrees. It is exact for small angles, too. */
-double angle_deg(const float *a, const float *b);
 
 #endif

@@ -176,10 +176,9 @@ typedef struct PixelPlace {
     uint32_t id_a, id_b; /* the segments that the pixel shows in A and in B; 0: none */
 } PixelPlace;
 
-/* A rectangle of pixels. */
-typedef struct PixelBox {
-    int x, y, width, height; /* (x, y) is the top left pixel; width 0: unknown */
-} PixelBox;
+/* Extends a rectangle so that it contains the pixel in column x and row y. A rectangle of width 0
+ * is empty. */
+void pixelrect_include(PixelRect *rect, int x, int y);
 
 /* The pixels that a result points to, as examples of the largest differences. */
 typedef enum PlaceId {
@@ -261,7 +260,8 @@ typedef struct CompareResult {
     bool agrees;
     char reason[400]; /* a sentence about the first rule that is not met; "" if the planes agree */
     char cause[200];  /* compare_cause's sentence about what changed A into B; "" if unknown */
-    PixelBox box;     /* set by compare_cause: the box of all pixels that differ */
+    PixelRect box;    /* bounding box of all pixels that differ, set by compare_cause; width 0:
+                       * compare_cause was not called, or no pixel differs */
     Rule rules[RULES_MAX];
     int n_rules;
     bool has_ids;                  /* id planes were compared: `places` contain ids */

@@ -1,5 +1,5 @@
-/* A format is a row of the table at the end: what it can hold, and a function that writes a scene.
- * All numbers are written with as many digits as they need to be read back exactly. */
+/* Each format is a row of the table at the end of the file: its limits, and the function that
+ * writes a scene. All numbers are written with so many digits that they are read back exactly. */
 #include "metamorph/adapters.h"
 
 static const double palette[TRIAL_COLORS][3] = {
@@ -59,20 +59,18 @@ static void pov_light(const TrialScene *scene, const TrialLight *light, Text *ou
     text_puts(out, scene->shadows ? " }\n" : " shadowless }\n");
 }
 
-/* A torus of POV-Ray turns about y; the rows of the matrix are the images of x, y and z. */
+/* The axis of a torus in POV-Ray is y. The rows of the matrix are the images of x, y and z, and the
+ * center. */
 static void pov_torus(const TrialShape *shape, Text *out)
 {
     const Vec3 axis = shape->at[1], next = vec3(axis.z, axis.x, axis.y);
+    const Vec3 rows[] = {next, axis, vec3_cross(next, axis), shape->at[0]};
     pov_number(out, "torus { ", shape->radius[0]);
     pov_number(out, ", ", shape->radius[1]);
-    text_puts(out, " matrix <");
-    put_point(out, next, ", ");
-    text_puts(out, ", ");
-    put_point(out, axis, ", ");
-    text_puts(out, ", ");
-    put_point(out, vec3_cross(next, axis), ", ");
-    text_puts(out, ", ");
-    put_point(out, shape->at[0], ", ");
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        text_puts(out, i == 0 ? " matrix <" : ", ");
+        put_point(out, rows[i], ", ");
+    }
     text_puts(out, ">");
 }
 
@@ -220,21 +218,19 @@ static void tachyon_light(const TrialLight *light, Text *out)
 /* Cylinders are open. */
 static void tachyon_shape(const TrialShape *shape, Text *out)
 {
-    static const char *const names[3] = {" V0", " V1", " V2"};
+    static const char *const names[3] = {"TRI V0", " V1", " V2"};
+    for (int i = 0; i < 3 && shape->kind == SHAPE_TRIANGLE; i++)
+        tachyon_vector(out, names[i], shape->at[i]);
     if (shape->kind == SHAPE_SPHERE)
         tachyon_vector(out, "SPHERE CENTER", shape->at[0]);
     if (shape->kind == SHAPE_CYLINDER) {
         tachyon_vector(out, "FCYLINDER BASE", shape->at[0]);
         tachyon_vector(out, " APEX", shape->at[1]);
     }
-    if (shape->kind == SHAPE_TRIANGLE)
-        text_puts(out, "TRI");
-    else
+    if (shape->kind != SHAPE_TRIANGLE) {
         text_puts(out, " RAD ");
-    for (int i = 0; i < 3 && shape->kind == SHAPE_TRIANGLE; i++)
-        tachyon_vector(out, names[i], shape->at[i]);
-    if (shape->kind != SHAPE_TRIANGLE)
         text_number(out, shape->radius[0]);
+    }
     text_printf(out, " c%d\n", shape->color);
 }
 

@@ -19,9 +19,12 @@ typedef struct TrialAdapter {
 /* Per TrialFormat. */
 extern const TrialAdapter trial_adapters[TRIAL_FORMATS];
 
-/* Appends the shell command that draws a scene, with the paths of scene and picture
- * [drawing_command]. The camera is stated by options of `corcast render`, as are the size and the
- * shadows; a file of the format swc does not hold them. */
+/* Appends the shell command that draws a scene.
+ *
+ * command         the user's command, with marks such as {scene} [drawing_command].
+ * path, picture   the paths that replace {scene} and {picture}.
+ * scene           its camera, size and shadows replace {camera}, as options of `corcast render`: a
+ *                 file of the format swc does not contain them. */
 void trial_command(const char *command, TrialFormat format, const TrialScene *scene,
                    const char *path, const char *picture, Text *out);
 

@@ -1,6 +1,7 @@
 /* A drawing without a picture is a finding, not an error: the pair decides what it means. */
 #include "metamorph/judging.h"
 
+#include "compare/compare.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,7 +10,7 @@ const char *const verdict_names[VERDICT_KINDS] = {[VERDICT_NONE] = "none",
                                                   [VERDICT_HOLDS] = "holds",
                                                   [VERDICT_EDGE] = "edge",
                                                   [VERDICT_SHADE] = "shade",
-                                                  [VERDICT_REFUSED] = "refused"};
+                                                  [VERDICT_UNDRAWN] = "undrawn"};
 
 /* ---- drawing --------------------------------------------------------------------------------- */
 
@@ -122,19 +123,6 @@ static const uint8_t *background_of(const Picture *picture)
     return best;
 }
 
-static void grow_box(PixelRect *box, int x, int y)
-{
-    const int right = box->left + box->width, bottom = box->top + box->height;
-    if (box->width == 0) {
-        *box = (PixelRect){x, y, 1, 1};
-        return;
-    }
-    box->left = x < box->left ? x : box->left;
-    box->top = y < box->top ? y : box->top;
-    box->width = (x + 1 > right ? x + 1 : right) - box->left;
-    box->height = (y + 1 > bottom ? y + 1 : bottom) - box->top;
-}
-
 static void compare_pictures_of(const Relation *relation, const Picture *a, const Picture *b,
                                 PairVerdict *verdict)
 {
@@ -153,7 +141,7 @@ static void compare_pictures_of(const Relation *relation, const Picture *a, cons
                 continue;
             is_edge = is_edge || pixel_difference(p, background) == 0 ||
                       pixel_difference(q, background) == 0;
-            grow_box(&verdict->box, x, y);
+            pixelrect_include(&verdict->box, x, y);
             verdict->pixels++;
         }
     verdict->kind = verdict->pixels == 0 ? VERDICT_HOLDS : is_edge ? VERDICT_EDGE : VERDICT_SHADE;
@@ -164,7 +152,7 @@ void pair_compare(const Relation *relation, const TrialDrawing drawings[2], Pair
     *verdict = (PairVerdict){0};
     for (int i = 0; i < 2; i++)
         if (!drawings[i].picture.codes8) {
-            verdict->kind = i == 0 ? VERDICT_NONE : VERDICT_REFUSED;
+            verdict->kind = i == 0 ? VERDICT_NONE : VERDICT_UNDRAWN;
             snprintf(verdict->reason, TRIAL_REASON, "%s", drawings[i].reason);
             return;
         }

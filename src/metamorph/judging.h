@@ -1,5 +1,5 @@
-/* Draws pairs of scenes with the renderer under test, several at a time, and compares the pictures
- * of each pair. */
+/* Judges pairs of scenes: draws both scenes with the renderer that is tested, several at a time,
+ * and compares the pictures. */
 #ifndef CORCAST_METAMORPH_JUDGING_H
 #define CORCAST_METAMORPH_JUDGING_H
 
@@ -8,9 +8,10 @@
 
 /* The renderer that is tested. */
 typedef struct TrialRenderer {
-    ShellRenderer shell;
-    TrialFormat format;
-    const char *folder; /* an existing folder for scenes and pictures; absolute; borrowed */
+    ShellRenderer shell; /* the shell command that draws a scene, and its timeout */
+    TrialFormat format;  /* the format of scenes that the command reads */
+    const char *folder;  /* an existing folder that receives scenes and pictures; an absolute path;
+                          * borrowed */
 } TrialRenderer;
 
 /* Size of a reason in bytes. */
@@ -20,16 +21,17 @@ enum { TRIAL_REASON = 400 };
 typedef struct TrialDrawing {
     Picture picture;           /* 8-bit sRGB of three channels; zeroed if the renderer drew none;
                                 * owned */
-    char reason[TRIAL_REASON]; /* why it drew none: ShellDrawing.reason */
+    char reason[TRIAL_REASON]; /* why there is no picture, such as "it did not end within 20 s"
+                                * [ShellDrawing.reason]; "" if there is one */
 } TrialDrawing;
 
 /* Releases the pictures of `n` drawings, not the array. */
 void drawings_release(TrialDrawing *drawings, size_t n);
 
-/* Draws `n` scenes. If the renderer does not draw a scene, this is not an error: the drawing has a
+/* Draws `n` scenes. A scene that the renderer does not draw is not an error: its drawing has a
  * reason instead of a picture.
  *
- * drawings  array of n, zeroed before; release it with drawings_release even after an error.
+ * drawings  array of n, zeroed before. The caller calls drawings_release even after an error.
  * Errors    STATUS_TOOL if no process can be started; STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status trials_draw(const TrialRenderer *renderer, const TrialScene *scenes, size_t n,
                               TrialDrawing *drawings, Err *err);
@@ -40,7 +42,8 @@ typedef enum VerdictKind {
     VERDICT_HOLDS,   /* no pixel differs by more than the relation allows */
     VERDICT_EDGE,    /* some pixel shows the background in one picture and not in the other */
     VERDICT_SHADE,   /* pixels differ, but none of them shows the background */
-    VERDICT_REFUSED, /* the renderer drew the first scene but not the second one */
+    VERDICT_UNDRAWN, /* the renderer drew the first scene but not the second one: it failed, wrote
+                      * no picture, or reached its timeout. PairVerdict.reason states which */
     VERDICT_KINDS
 } VerdictKind;
 
@@ -50,25 +53,27 @@ extern const char *const verdict_names[VERDICT_KINDS];
 /* The result of comparing a pair. */
 typedef struct PairVerdict {
     VerdictKind kind;
-    int pixels;                /* number of pixels that differ by more than Relation.codes */
-    int codes;                 /* largest difference of two 8-bit codes */
-    PixelRect box;             /* bounding box of these pixels in the first picture */
-    bool is_empty;             /* all pixels of the first picture are equal */
+    int pixels;    /* number of pixels that differ by more than Relation.codes */
+    int codes;     /* largest difference of two 8-bit codes, of all pixels */
+    PixelRect box; /* bounding box of the `pixels` pixels, in the first picture; width 0:
+                    * none */
+    bool is_empty; /* all pixels of the first picture are equal */
     char reason[TRIAL_REASON]; /* why a scene was not drawn; "" if both were drawn, or the relation
                                 * does not apply */
 } PairVerdict;
 
-/* Returns true if the renderer breaks the relation: VERDICT_EDGE, VERDICT_SHADE or VERDICT_REFUSED.
+/* Returns true if the renderer breaks the relation: VERDICT_EDGE, VERDICT_SHADE or VERDICT_UNDRAWN.
  */
 static inline bool verdict_fails(const PairVerdict *verdict)
 {
     return verdict->kind >= VERDICT_EDGE;
 }
 
-/* Compares the drawings of the first and of the second scene of a pair. */
+/* Compares the drawings of a pair, those of the first and of the second scene. Sets *verdict. */
 void pair_compare(const Relation *relation, const TrialDrawing drawings[2], PairVerdict *verdict);
 
-/* Draws and compares `n` pairs. Sets verdicts[i] for pair i. Errors: those of trials_draw. */
+/* Draws and compares `n` pairs. Sets verdicts[i] for pair i; after an error the verdicts must not
+ * be used. Errors: those of trials_draw. */
 MUST_CHECK Status pairs_judge(const TrialRenderer *renderer, const TrialPair *pairs, size_t n,
                               PairVerdict *verdicts, Err *err);
 

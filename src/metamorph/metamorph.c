@@ -28,53 +28,53 @@ void metamorph_release(Metamorph *result)
 
 /* ---- relations ------------------------------------------------------------------------------- */
 
-/* Returns true if `name` is one of the words of `list`, separated by commas. */
-static bool is_listed(const char *list, const char *name)
+static bool has_format(const Relation *relation, TrialFormat format)
 {
-    const size_t length = strlen(name);
-    for (const char *at = list; at; at = strchr(at, ',')) {
-        at += *at == ',';
-        if (strncmp(at, name, length) == 0 && (at[length] == ',' || at[length] == '\0'))
-            return true;
-    }
-    return false;
+    return relation->formats >> format & 1;
 }
 
-/* Returns true if the first word of a list separated by commas names a relation of the format. */
-static bool is_relation(const char *list, TrialFormat format)
+/* Returns the index of the relation of the format whose name is the `length` characters at `name`;
+ * -1 if there is none. */
+static int find_relation(const char *name, size_t length, TrialFormat format)
 {
-    const size_t length = strcspn(list, ",");
     for (int i = 0; relations[i].name; i++)
-        if (relations[i].formats >> format & 1 && strlen(relations[i].name) == length &&
-            strncmp(relations[i].name, list, length) == 0)
-            return true;
-    return false;
+        if (has_format(&relations[i], format) && strlen(relations[i].name) == length &&
+            strncmp(relations[i].name, name, length) == 0)
+            return i;
+    return -1;
 }
 
-static Status choose_relations(Search *search, Err *err)
+static Status refuse_relation(const char *name, size_t length, TrialFormat format, Err *err)
 {
-    const MetamorphParams *params = search->params;
-    const char *wanted = params->relations;
-    for (int i = 0; relations[i].name; i++)
-        if (relations[i].formats >> params->renderer.format & 1 &&
-            (!wanted || is_listed(wanted, relations[i].name)))
-            search->chosen[search->n_chosen++] = i;
-    const char *wrong = wanted;
-    while (wrong && is_relation(wrong, params->renderer.format))
-        wrong = strchr(wrong, ',') ? strchr(wrong, ',') + 1 : NULL;
-    if (!wrong)
-        return STATUS_OK;
     Text names = TEXT_INIT;
     for (int i = 0; relations[i].name; i++)
-        if (relations[i].formats >> params->renderer.format & 1)
+        if (has_format(&relations[i], format))
             text_printf(&names, "%s%s", names.length ? ", " : "", relations[i].name);
     const char *list = text_chars(&names);
     const Status status =
         err_set(err, STATUS_USAGE, "`relations`: \"%.*s\" is not a relation of %s, which has %s",
-                (int)strcspn(wrong, ","), wrong, trial_adapters[params->renderer.format].name,
-                list ? list : "");
+                (int)length, name, trial_adapters[format].name, list ? list : "");
     text_release(&names);
     return status;
+}
+
+static Status choose_relations(Search *search, Err *err)
+{
+    const TrialFormat format = search->params->renderer.format;
+    bool is_wanted[MAX_RELATIONS] = {false};
+    size_t length;
+    for (const char *name = search->params->relations; name;
+         name = name[length] ? name + length + 1 : NULL) {
+        length = strcspn(name, ",");
+        const int found = find_relation(name, length, format);
+        if (found < 0)
+            return refuse_relation(name, length, format, err);
+        is_wanted[found] = true;
+    }
+    for (int i = 0; relations[i].name; i++)
+        if (has_format(&relations[i], format) && (!search->params->relations || is_wanted[i]))
+            search->chosen[search->n_chosen++] = i;
+    return STATUS_OK;
 }
 
 /* ---- causes ---------------------------------------------------------------------------------- */

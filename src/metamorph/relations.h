@@ -1,4 +1,5 @@
-/* Metamorphic relations: changes of a scene whose effect on the picture is known. */
+/* Metamorphic relations: changes of a scene whose effect on the picture is known. The first scene
+ * of a pair is random [trial.h]; the relation changes a copy of it, which is the second scene. */
 #ifndef CORCAST_METAMORPH_RELATIONS_H
 #define CORCAST_METAMORPH_RELATIONS_H
 

@@ -135,7 +135,7 @@ static void put_commands(const MetamorphParams *params, const TrialScene scenes[
 static void put_finding(const MetamorphCause *cause, Text *out)
 {
     const PairVerdict *verdict = &cause->verdict;
-    if (verdict->kind == VERDICT_REFUSED)
+    if (verdict->kind == VERDICT_UNDRAWN)
         text_printf(out, "The second scene is not drawn: %s.\n", verdict->reason);
     else
         text_printf(out, "%d of %d pixels differ by more than %d of 255 codes, by up to %d; %s.\n",

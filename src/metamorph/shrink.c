@@ -8,11 +8,14 @@
 
 enum { CANDIDATES = 160, AT_A_TIME = 8, MAX_PASSES = 8, MIN_PIXELS = 8 };
 
+/* Candidates for a smaller scene. */
 typedef struct SmallerScenes {
     TrialScene at[CANDIDATES];
     int n;
+    PixelRect box; /* bounding box of the differences of the present pair */
 } SmallerScenes;
 
+/* Shifts of the three cameras, in pixels. The reason for these numbers is not recorded. */
 static const double shifts[3][2] = {
     {3.0 / 256, 5.0 / 256}, {-21.0 / 256, 11.0 / 256}, {23.0 / 256, -37.0 / 256}};
 
@@ -47,9 +50,8 @@ static TrialScene *add(SmallerScenes *list, const TrialScene *scene)
 }
 
 /* Leaves out halves of the shapes, quarters, and so on. */
-static void leave_out(SmallerScenes *list, const TrialScene *scene, const PixelRect *box)
+static void leave_out(SmallerScenes *list, const TrialScene *scene)
 {
-    (void)box;
     for (int size = (scene->n_shapes + 1) / 2, last = 0; !last && scene->n_shapes > 1;
          last = size == 1, size = (size + 1) / 2)
         for (int first = 0; first < scene->n_shapes; first += size) {
@@ -58,9 +60,8 @@ static void leave_out(SmallerScenes *list, const TrialScene *scene, const PixelR
         }
 }
 
-static void simplify_light(SmallerScenes *list, const TrialScene *scene, const PixelRect *box)
+static void simplify_light(SmallerScenes *list, const TrialScene *scene)
 {
-    (void)box;
     if (scene->shadows)
         add(list, scene)->shadows = false;
     if (scene->n_lights == 2) {
@@ -77,10 +78,10 @@ static void simplify_light(SmallerScenes *list, const TrialScene *scene, const P
 }
 
 /* Cuts an orthographic picture to half its size, around its middle or around the differences. */
-static void cut_picture(SmallerScenes *list, const TrialScene *scene, const PixelRect *box)
+static void cut_picture(SmallerScenes *list, const TrialScene *scene)
 {
-    const double right = box->left + box->width / 2 - scene->width_px / 2;
-    const double down = box->top + box->height / 2 - scene->height_px / 2;
+    const double right = list->box.left + list->box.width / 2 - scene->width_px / 2;
+    const double down = list->box.top + list->box.height / 2 - scene->height_px / 2;
     if (scene->perspective)
         return;
     for (int k = 0; k < 4; k++) {
@@ -118,10 +119,9 @@ static bool round_shape(TrialShape *shape, double step)
 }
 
 /* Rounds all shapes at once. */
-static void round_scene(SmallerScenes *list, const TrialScene *scene, const PixelRect *box)
+static void round_scene(SmallerScenes *list, const TrialScene *scene)
 {
     static const double steps[] = {1, 0.25};
-    (void)box;
     for (size_t k = 0; k < sizeof steps / sizeof *steps; k++) {
         TrialScene *round = add(list, scene);
         bool changes = false;
@@ -131,9 +131,8 @@ static void round_scene(SmallerScenes *list, const TrialScene *scene, const Pixe
     }
 }
 
-static void round_numbers(SmallerScenes *list, const TrialScene *scene, const PixelRect *box)
+static void round_numbers(SmallerScenes *list, const TrialScene *scene)
 {
-    (void)box;
     static const double steps[] = {1, 0.25};
     for (size_t k = 0; k < sizeof steps / sizeof *steps; k++)
         for (int i = 0; i < scene->n_shapes; i++)
@@ -142,9 +141,8 @@ static void round_numbers(SmallerScenes *list, const TrialScene *scene, const Pi
 }
 
 /* Puts a shape's first point at the origin. */
-static void center_shapes(SmallerScenes *list, const TrialScene *scene, const PixelRect *box)
+static void center_shapes(SmallerScenes *list, const TrialScene *scene)
 {
-    (void)box;
     for (int i = 0; i < scene->n_shapes; i++) {
         TrialShape *shape = &add(list, scene)->shapes[i];
         const Vec3 by = shape->at[0];
@@ -156,7 +154,7 @@ static void center_shapes(SmallerScenes *list, const TrialScene *scene, const Pi
     }
 }
 
-typedef void Stage(SmallerScenes *list, const TrialScene *scene, const PixelRect *box);
+typedef void Stage(SmallerScenes *list, const TrialScene *scene);
 
 static Stage *const stages[] = {leave_out,     simplify_light, cut_picture,
                                 center_shapes, round_scene,    round_numbers};
@@ -207,7 +205,8 @@ static Status run_stage(Shrinking *shrinking, Stage *stage, Err *err)
         SmallerScenes *list = shrinking->list;
         taken = false;
         list->n = 0;
-        stage(list, &shrinking->pair->first, &shrinking->verdict->box);
+        list->box = shrinking->verdict->box;
+        stage(list, &shrinking->pair->first);
         for (int next = 0; next < list->n && !taken; next += AT_A_TIME) {
             const int n = list->n - next < AT_A_TIME ? list->n - next : AT_A_TIME;
             TRY(try_some(shrinking, next, n, &taken, err));

@@ -198,21 +198,17 @@ unsigned trial_kinds(const TrialScene *scene)
     return kinds;
 }
 
-static void remove_one(TrialScene *scene, int index)
-{
-    const TrialShape gone = scene->shapes[index];
-    scene->n_shapes--;
-    for (int i = index; i < scene->n_shapes; i++)
-        scene->shapes[i] = scene->shapes[i + 1];
-    for (int i = 0; i < scene->n_shapes; i++)
-        if (gone.kind == SHAPE_NODE && scene->shapes[i].parent == gone.id)
-            scene->shapes[i].parent = gone.parent;
-}
-
 void trial_remove(TrialScene *scene, int first, int end)
 {
-    for (int i = first; i < end; i++)
-        remove_one(scene, first);
+    for (; end > first; end--) {
+        const TrialShape gone = scene->shapes[first];
+        scene->n_shapes--;
+        for (int i = first; i < scene->n_shapes; i++)
+            scene->shapes[i] = scene->shapes[i + 1];
+        for (int i = 0; i < scene->n_shapes; i++)
+            if (gone.kind == SHAPE_NODE && scene->shapes[i].parent == gone.id)
+                scene->shapes[i].parent = gone.parent;
+    }
 }
 
 /* Returns the power of two that is at least as large as all coordinates. */

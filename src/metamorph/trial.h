@@ -35,19 +35,23 @@ typedef struct TrialShape {
     ShapeKind kind;
     Vec3 at[3];
     double radius[2];
-    int color;      /* in [0, TRIAL_COLORS) */
+    int color;      /* index of a color, in [0, TRIAL_COLORS) */
     int id, parent; /* SHAPE_NODE: SWC ids; parent -1: a root */
     unsigned form;  /* bits of ShapeForm */
 } TrialShape;
 
 typedef struct TrialLight {
     Vec3 at, target;
-    bool parallel; /* all rays have the direction from `at` to `target`; false: a point light */
-    double brightness;
+    bool parallel;     /* all rays have the direction from `at` to `target`; false: a point light */
+    double brightness; /* of each channel; 1: full */
 } TrialLight;
 
+/* Capacities for shapes and lights, number of colors, and width and height of a new scene in
+ * pixels.
+ */
 enum { TRIAL_MAX_SHAPES = 20, TRIAL_MAX_LIGHTS = 2, TRIAL_COLORS = 4, TRIAL_PIXELS = 64 };
 
+/* A scene. Lengths have no unit, except in trees: mm. */
 typedef struct TrialScene {
     TrialShape shapes[TRIAL_MAX_SHAPES];
     int n_shapes;
@@ -84,9 +88,9 @@ unsigned trial_kinds(const TrialScene *scene);
  * of the parent's parent. */
 void trial_remove(TrialScene *scene, int first, int end);
 
-/* Moves the camera of an orthographic view by about `x` pixels to the right and `y` pixels up. One
- * pixel is a length of 1/4 in perspective. The lengths are multiplied by a factor between 0.5
- * and 1.8 that depends on the camera, so that the sum is exact in binary. */
+/* Moves the camera by about `x` pixels to the right and `y` pixels up. In perspective, a pixel
+ * counts as a length of 1/4. The distances are multiplied by a factor between 0.5 and 1.8 that
+ * depends on the camera, so that the new position is exact in binary. */
 void trial_shift_camera(TrialScene *scene, double x, double y);
 
 #endif

@@ -605,8 +605,8 @@ Status explain_pixels(const ExplainCase *input, Settled *settled, Err *err)
         unsigned beyond = pixel_beyond(input->a, input->b, i, input->tolerance);
         if (!beyond)
             continue;
-        if (made.asked == MAX_EXAMINED) {
-            made.unasked++;
+        if (made.examined == MAX_EXAMINED) {
+            made.unexamined++;
             continue;
         }
         if (!examiner.input)

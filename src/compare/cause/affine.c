@@ -1,8 +1,9 @@
-/* Rotated, enlarged, or cropped and enlarged: one linear map takes each pixel of B to a place in A.
- * Its six numbers are found by Gauss-Newton [Lucas and Kanade 1981], first on copies of the
- * pictures that are reduced to few pixels, where the displacements are small, then on larger
- * ones. The map is named if it leaves less than a twenty-fifth of the squares in the whole picture
- * and less than an eighth in each of its quarters, and if what is flat keeps its codes. */
+/* Tests whether B is A rotated, enlarged or cropped: whether one affine map takes each pixel of B
+ * to its position in A. The six numbers of the map are found by Gauss-Newton iterations [Lucas and
+ * Kanade 1981]. They start on copies of the pictures that are reduced to few pixels, where all
+ * displacements are small, and go on with larger copies. The map is the cause if it leaves less
+ * than 1/25 of the sum of squared differences in the whole picture and less than 1/8 in each
+ * quarter, and if flat parts keep their codes. Cost: O(pixels). */
 #include "compare/cause/guesses.h"
 
 #include <math.h>
@@ -10,10 +11,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* NUMBERS of the map; most STEPS per level; COARSEST: a level is halved while both sides are at
+ * least twice this; FINEST: wider levels are not fitted, because the map is accurate enough by
+ * then; MARGIN: pixels at the edge of a picture that are not compared. Reasons for the numbers are
+ * not recorded. */
 enum { NUMBERS = 6, STEPS = 10, COARSEST = 20, FINEST = 700, LEVELS_MAX = 12, MARGIN = 4 };
 
-/* The place in A of pixel (x, y) of B: a linear map of the distances from the middle of the
- * picture, plus the middle and a shift. */
+/* An affine map from B to A: position in A = m (position in B - middle) + middle + shift. Positions
+ * are in pixels of the whole picture. */
 typedef struct Affine {
     double m[2][2], shift[2];
 } Affine;
@@ -24,32 +29,52 @@ static float *value_at(const Plane *plane, int x, int y, int c)
            ((size_t)y * (size_t)plane->width + (size_t)x) * (size_t)plane->channels + c;
 }
 
-/* Smooths by the binomial filter 1 4 6 4 1 along both axes. */
+/* Adds `weight` times each of `n` values to the values `to`. */
+static void add_weighted(const float *restrict from, float weight, size_t n, float *restrict to)
+{
+    for (size_t i = 0; i < n; i++)
+        to[i] += weight * from[i];
+}
+
+static int clamp_index(int i, int n)
+{
+    return i < 0 ? 0 : i < n ? i : n - 1;
+}
+
+/* Smooths by the binomial filter 1 4 6 4 1 along rows, then along columns. Pixels beyond an edge
+ * are those at the edge. Whole rows are added at once, which costs a fifth of adding pixel by
+ * pixel. */
 static Status smooth(Plane *plane, Err *err)
 {
-    static const float taps[5] = {0.0625F, 0.25F, 0.375F, 0.25F, 0.0625F};
+    enum { REACH = 2 };
+    static const float taps[2 * REACH + 1] = {0.0625F, 0.25F, 0.375F, 0.25F, 0.0625F};
     const int width = plane->width, height = plane->height, channels = plane->channels;
-    for (int axis = 0; axis < 2; axis++) {
-        Plane out;
-        TRY(plane_init(&out, width, height, channels, err));
-        for (int y = 0; y < height; y++)
-            for (int x = 0; x < width; x++)
-                for (int k = -2; k <= 2; k++) {
-                    int u = axis ? x : x + k, v = axis ? y + k : y;
-                    u = u < 0 ? 0 : u < width ? u : width - 1;
-                    v = v < 0 ? 0 : v < height ? v : height - 1;
-                    for (int c = 0; c < channels; c++)
-                        *value_at(&out, x, y, c) += taps[k + 2] * *value_at(plane, u, v, c);
-                }
-        plane_release(plane);
-        *plane = out;
+    const size_t stride = (size_t)width * (size_t)channels;
+    Plane rows = {0}, padded = {0};
+    Status status = STATUS_OK;
+    TRY_GOTO(plane_init(&rows, width, height, channels, err));
+    TRY_GOTO(plane_init(&padded, width + 2 * REACH, 1, channels, err));
+    for (int y = 0; y < height; y++) {
+        for (int x = 0; x < padded.width; x++)
+            memcpy(value_at(&padded, x, 0, 0), value_at(plane, clamp_index(x - REACH, width), y, 0),
+                   (size_t)channels * sizeof(float));
+        for (int k = 0; k <= 2 * REACH; k++)
+            add_weighted(value_at(&padded, k, 0, 0), taps[k], stride, value_at(&rows, 0, y, 0));
     }
-    return STATUS_OK;
+    memset(plane->values, 0, (size_t)height * stride * sizeof(float));
+    for (int y = 0; y < height; y++)
+        for (int k = 0; k <= 2 * REACH; k++)
+            add_weighted(value_at(&rows, 0, clamp_index(y + k - REACH, height), 0), taps[k], stride,
+                         value_at(plane, 0, y, 0));
+done:
+    plane_release(&rows);
+    plane_release(&padded);
+    return status;
 }
 
 static Status take_plane(Plane *plane, const Picture *picture, bool is_mean, Err *err)
 {
-    const float level = picture->bits == 8 ? 1 : 1 / 257.0F;
+    const float level = 1.0F / (float)codes_per_level(picture);
     const int channels = picture->channels;
     TRY(plane_init(plane, picture->width, picture->height, is_mean ? 1 : channels, err));
     size_t n = (size_t)picture->width * (size_t)picture->height;
@@ -64,7 +89,7 @@ static Status take_plane(Plane *plane, const Picture *picture, bool is_mean, Err
     return STATUS_OK;
 }
 
-/* Halves both sides: a pixel is the mean of four. */
+/* Makes a plane of half the width and height. Each pixel is the mean of four. */
 static Status halve(const Plane *from, Plane *to, Err *err)
 {
     TRY(plane_init(to, from->width / 2, from->height / 2, 1, err));
@@ -79,13 +104,14 @@ static Status halve(const Plane *from, Plane *to, Err *err)
 
 /* ---- the map --------------------------------------------------------------------------------- */
 
-/* The size of the whole picture, and how many of its pixels a pixel of the level is wide. */
+/* A level: the middle of the whole picture in its pixels, and the width of a pixel of the level in
+ * pixels of the whole picture. */
 typedef struct LevelFrame {
     double middle[2], scale;
 } LevelFrame;
 
-/* Sets the distances of a pixel of B from the middle, and its place in A, in pixels of the level.
- */
+/* Sets `from` to the position of a pixel of B relative to the middle, in pixels of the whole
+ * picture, and `to` to its position in A, in pixels of the level. */
 static void place_in_a(const Affine *map, const LevelFrame *frame, int x, int y, double from[2],
                        double to[2])
 {
@@ -97,7 +123,8 @@ static void place_in_a(const Affine *map, const LevelFrame *frame, int x, int y,
     }
 }
 
-/* The value between pixels, linearly, and its slopes; false outside of the picture. */
+/* Interpolates a channel of a plane linearly. Sets out to the value and its derivatives along x and
+ * y. Returns false outside of the plane. */
 static bool sample(const Plane *planes, const double at[2], int c, double out[3])
 {
     int x = (int)floor(at[0]), y = (int)floor(at[1]);
@@ -113,7 +140,8 @@ static bool sample(const Plane *planes, const double at[2], int c, double out[3]
     return true;
 }
 
-/* Solves the normal equations in place by elimination. Returns false if they are singular. */
+/* Solves the normal equations by Gaussian elimination, in place. Returns false if they are
+ * singular. */
 static bool solve(double matrix[NUMBERS][NUMBERS + 1], double out[NUMBERS])
 {
     for (int i = 0; i < NUMBERS; i++) {
@@ -134,8 +162,8 @@ static bool solve(double matrix[NUMBERS][NUMBERS + 1], double out[NUMBERS])
     return true;
 }
 
-/* Improves the map by one step. Returns the largest change at an end of the picture, in pixels of
- * the level; -1 if there is no step. */
+/* Improves the map by one Gauss-Newton step. Returns the largest change of a position in the
+ * picture, in pixels of the level; -1 if the normal equations are singular. */
 static double improve(const Plane *a, const Plane *b, const LevelFrame *frame, Affine *map)
 {
     double normal[NUMBERS][NUMBERS + 1] = {{0}}, step[NUMBERS], from[2], to[2], value[3];
@@ -165,14 +193,15 @@ static double improve(const Plane *a, const Plane *b, const LevelFrame *frame, A
                fmax(frame->middle[0], frame->middle[1]);
 }
 
-/* ---- what the map leaves --------------------------------------------------------------------- */
+/* ---- differences that remain after the map --------------------------------------------------- */
 
-/* Squares of B - A before and after the map, of each quarter of the picture; of pixels in flat
- * parts after the map. */
+/* Sums over pixels before and after A is mapped. */
 typedef struct Leavings {
-    double before[2][2], after[2][2], flat, flat_n, pixels;
-    double rest[3], shown[3]; /* per channel: the sum of B - A after the map, and the number of
-                               * pixels at which A is neither black nor white */
+    double before[2][2], after[2][2]; /* per quarter of the picture: sums of (B - A)^2 */
+    double flat, flat_n;      /* after the map: sum of (B - A)^2 where both are flat, and count */
+    double pixels;            /* number of pixels */
+    double rest[3], shown[3]; /* per channel: sum of B - A after the map, and number of pixels
+                               * at which A is neither black nor white */
 } Leavings;
 
 static void add_leavings(const Plane planes[2], const LevelFrame *frame, const Affine *map, int x,
@@ -201,8 +230,9 @@ static void add_leavings(const Plane planes[2], const LevelFrame *frame, const A
     sums->pixels++;
 }
 
-/* Returns true if no channel is brighter or darker by 3 levels, on the mean of what is
- * shown. Interpolation that rings and is clipped changes it by up to 2. */
+/* Returns true if no channel is brighter or darker by more than 3 levels, in the mean over pixels
+ * that are neither black nor white. Interpolation that rings and is clipped changes this mean by up
+ * to 2 levels. */
 static bool keeps_tones(const Leavings *sums)
 {
     for (int c = 0; c < 3; c++)
@@ -234,36 +264,37 @@ static bool explains(const Plane planes[2], const LevelFrame *frame, const Affin
     return sums->flat <= 0.5 * fmax(sums->flat_n, 1) && keeps_tones(sums);
 }
 
-/* ---- the search --------------------------------------------------------------------------------
- */
+/* ---- the search ------------------------------------------------------------------------------ */
 
+/* Returns true if the map changes areas by less than a factor of 4. Excludes iterations that
+ * diverged. */
 static bool is_sane(const Affine *map)
 {
     double determinant = map->m[0][0] * map->m[1][1] - map->m[0][1] * map->m[1][0];
     return determinant > 0.25 && determinant < 4;
 }
 
-/* Finds the map from reduced pictures to larger ones. */
+/* Finds the map on reduced pictures, from the smallest to larger ones. *found receives false if
+ * there is none. The means of the channels are fitted, which costs a third of fitting all channels.
+ */
 static Status find_map(const Picture *a, const Picture *b, Affine *map, bool *found, Err *err)
 {
     Plane levels[2][LEVELS_MAX] = {{{0}}};
-    int n = 1, last = 0;
+    int n = 0, last = 0;
     const LevelFrame whole = {{a->width / 2.0, a->height / 2.0}, 1};
     Status status = STATUS_OK;
     *map = (Affine){.m = {{1, 0}, {0, 1}}};
     *found = true;
-    for (int side = 0; side < 2; side++) {
-        TRY_GOTO(take_plane(&levels[side][0], side ? b : a, true, err));
-        TRY_GOTO(smooth(&levels[side][0], err));
-    }
-    while (n < LEVELS_MAX && levels[0][n - 1].width >= 2 * COARSEST &&
-           levels[0][n - 1].height >= 2 * COARSEST) {
+    do {
         for (int side = 0; side < 2; side++) {
-            TRY_GOTO(halve(&levels[side][n - 1], &levels[side][n], err));
-            TRY_GOTO(smooth(&levels[side][n], err));
+            Plane *level = &levels[side][n];
+            TRY_GOTO(n == 0 ? take_plane(level, side ? b : a, true, err)
+                            : halve(level - 1, level, err));
+            TRY_GOTO(smooth(level, err));
         }
         n++;
-    }
+    } while (n < LEVELS_MAX && levels[0][n - 1].width >= 2 * COARSEST &&
+             levels[0][n - 1].height >= 2 * COARSEST);
     for (int level = n; level-- > 0 && *found;) {
         LevelFrame frame = whole;
         frame.scale = (double)(1 << level);
@@ -275,7 +306,7 @@ static Status find_map(const Picture *a, const Picture *b, Affine *map, bool *fo
         *found = change >= 0 && is_sane(map);
         last = level;
     }
-    if (*found) { /* before the channels are looked at */
+    if (*found) { /* a first check, before try_map looks at all channels */
         LevelFrame frame = whole;
         frame.scale = (double)(1 << last);
         const Plane both[2] = {levels[0][last], levels[1][last]};
@@ -289,6 +320,7 @@ done:
     return status;
 }
 
+/* Tests the map on all channels of the whole pictures. */
 static Status try_map(const Picture *a, const Picture *b, const Affine *map, bool *fits, Err *err)
 {
     Plane planes[2] = {{0}, {0}};
@@ -305,8 +337,10 @@ done:
     return status;
 }
 
-/* ---- words ----------------------------------------------------------------------------------- */
+/* ---- sentences ------------------------------------------------------------------------------- */
 
+/* Describes a map without rotation: a crop if the part of A lies inside A, else a change of size.
+ */
 static void say_scaled(const Affine *map, const Picture *a, Sentence *out)
 {
     const double size[2] = {map->m[0][0] * a->width, map->m[1][1] * a->height};
@@ -327,7 +361,8 @@ static void say_scaled(const Affine *map, const Picture *a, Sentence *out)
                  centered ? ", about its middle" : ", and moved");
 }
 
-/* Names a map whose rotation, or whose change of size, moves the corners by SEEN pixels. */
+/* Describes a map whose rotation or change of size moves the corners by at least 0.3 pixels. Writes
+ * nothing for a map that shears or stretches. */
 static void say_map(const Affine *map, const Picture *a, Sentence *out)
 {
     const double seen = 0.3 / (elementary_hypot(a->width, a->height) / 2);

@@ -1,8 +1,11 @@
-/* What made B of A, where that can be said for certain: each guess is a map of one picture onto the
- * other, or a place, and it is named when it explains the pictures, not when it merely resembles
- * them. Guesses about places come before those about colors, exact ones before those that leave
- * something. All are tried on a few hundred of the pixels that differ, and only what fits those on
- * all. Two faults at once have no sentence, unless one of them is a fiftieth of the other. */
+/* Finds the change that turned A into B. The hypotheses are tested one after the other, until one
+ * explains the pictures: exact changes come before approximate ones, and changes of position before
+ * changes of color. A hypothesis must leave nearly no difference; a mere resemblance is not named,
+ * because a wrong cause misleads. So two changes at once have no cause, unless one makes less than
+ * a fiftieth of the differences. To save time, each hypothesis is first tested on a few hundred of
+ * the pixels that differ, and on all pixels only if it fits those.
+ *
+ * This file has the control, and the exact changes: mirrored, channels exchanged, translated. */
 #include "compare/cause/cause.h"
 
 #include "compare/cause/guesses.h"
@@ -11,9 +14,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+/* REACH: translations up to this many pixels in each direction are tried; the cost is O(REACH^2).
+ * BLOCK: pixels that are compared at once. Reasons for the numbers are not recorded. */
 enum { REACH = 48, BLOCK = 64 };
 
-/* Takes each `step`-th pixel that differs of a row. Blocks that are equal are skipped at once. */
+/* Adds every `step`-th differing pixel of a row to the samples. *seen counts the differing pixels
+ * of all rows so far. Equal blocks are skipped at once. */
 static void take_row(const Picture *a, const Picture *b, int y, size_t step, size_t *seen,
                      Samples *samples)
 {
@@ -27,30 +33,22 @@ static void take_row(const Picture *a, const Picture *b, int y, size_t step, siz
     }
 }
 
-/* Widens the box by the pixels of row y that differ. */
-static void add_row_to_box(const Picture *a, const Picture *b, int y, PixelBox *box)
+/* Finds the bounding box of all pixels that differ. */
+static PixelRect find_box(const Picture *a, const Picture *b)
 {
-    int left = 0, right = a->width - 1;
-    while (picture_rows_equal(a, b, y, left, 1))
-        left++;
-    while (picture_rows_equal(a, b, y, right, 1))
-        right--;
-    if (box->width == 0) {
-        *box = (PixelBox){left, y, right - left + 1, 1};
-        return;
+    PixelRect box = {0};
+    for (int y = 0; y < a->height; y++) {
+        int left = 0, right = a->width - 1;
+        if (picture_rows_equal(a, b, y, 0, a->width))
+            continue;
+        while (picture_rows_equal(a, b, y, left, 1))
+            left++;
+        while (picture_rows_equal(a, b, y, right, 1))
+            right--;
+        pixelrect_include(&box, left, y);
+        pixelrect_include(&box, right, y);
     }
-    int end = box->x + box->width > right + 1 ? box->x + box->width : right + 1;
-    box->x = left < box->x ? left : box->x;
-    box->width = end - box->x;
-    box->height = y + 1 - box->y;
-}
-
-static void find_box(const Picture *a, const Picture *b, PixelBox *box)
-{
-    *box = (PixelBox){0};
-    for (int y = 0; y < a->height; y++)
-        if (!picture_rows_equal(a, b, y, 0, a->width))
-            add_row_to_box(a, b, y, box);
+    return box;
 }
 
 static void choose_samples(const Picture *a, const Picture *b, size_t differing, Samples *samples)
@@ -62,7 +60,8 @@ static void choose_samples(const Picture *a, const Picture *b, size_t differing,
             take_row(a, b, y, step, &seen, samples);
 }
 
-/* Whether what is left of the differences is at most a part of them. */
+/* Returns true if the differences `after` a change are at most the fraction `part` of those before.
+ */
 static bool leaves(double before, double after, double part)
 {
     return before > 0 && after <= part * before;
@@ -71,21 +70,19 @@ static bool leaves(double before, double after, double part)
 /* ---- turned, or with other channels ---------------------------------------------------------- */
 
 typedef struct Turn {
-    bool mirrored, upended;
-    int from[3]; /* the channel of A that each of B is */
+    bool mirrored, upended; /* left and right, or top and bottom, are exchanged */
+    int from[3];            /* per channel of B: the channel of A that it shows */
     const char *sentence;
 } Turn;
 
-/* Adds the differences of a pixel of B without the turn, sums[0], and with it, sums[1]. */
+/* Adds the difference of pixel (x, y) of B from A to sums[0], and from the turned A to sums[1]. */
 static void add_turned(const Picture *a, const Picture *b, const Turn *turn, int x, int y,
                        double sums[2])
 {
     int u = turn->mirrored ? a->width - 1 - x : x, v = turn->upended ? a->height - 1 - y : y;
-    for (int c = 0; c < a->channels; c++) {
-        int code = code_at(b, x, y, c);
-        sums[0] += abs(code - code_at(a, x, y, c));
-        sums[1] += abs(code - code_at(a, u, v, turn->from[c]));
-    }
+    sums[0] += pixels_apart(a, x, y, b, x, y);
+    for (int c = 0; c < a->channels; c++)
+        sums[1] += abs(code_at(b, x, y, c) - code_at(a, u, v, turn->from[c]));
 }
 
 /* Returns true if pixel (x, y) has another color than pixel (0, 0), which usually shows the
@@ -99,7 +96,8 @@ static bool is_foreground(const Picture *picture, int x, int y)
 }
 
 /* Returns true if the turn leaves at most 2 % of the differences, in all pixels and in those of the
- * foreground. A large background of one color can hide that the foreground still differs. */
+ * foreground alone. A large background of one color could hide that the foreground still differs.
+ * The samples decide at 5 %, since they are few. */
 static bool is_turned(const Picture *a, const Picture *b, const Samples *samples, const Turn *turn)
 {
     double few[2] = {0}, all[2] = {0}, foreground[2] = {0};
@@ -137,22 +135,10 @@ static void find_turn(const Picture *a, const Picture *b, const Samples *samples
 
 /* ---- moved ----------------------------------------------------------------------------------- */
 
-/* Sum of |b - a| of one pixel of A; false where B has no such pixel. */
-static bool differs_by(const Picture *a, const Picture *b, int x, int y, const Shift *shift,
-                       double *sum)
-{
-    int u = x + shift->dx, v = y + shift->dy;
-    if (u < 0 || u >= b->width || v < 0 || v >= b->height)
-        return false;
-    for (int c = 0; c < a->channels; c++)
-        *sum += abs(code_at(b, u, v, c) - code_at(a, x, y, c));
-    return true;
-}
-
-/* A sample of A, with its codes. */
+/* A sampled pixel of A, with its codes. */
 typedef struct ShiftSample {
     int x, y, codes[3];
-    double off; /* from B, without a shift */
+    double off; /* pixels_apart from B without a shift */
 } ShiftSample;
 
 static int most_off_first(const void *left, const void *right)
@@ -164,19 +150,17 @@ static int most_off_first(const void *left, const void *right)
 static void take_samples(const Picture *a, const Picture *b, const Samples *samples,
                          ShiftSample *out)
 {
-    static const Shift none = {0};
     for (int i = 0; i < samples->n; i++) {
         int x = samples->at[i].x, y = samples->at[i].y;
-        out[i] = (ShiftSample){.x = x, .y = y};
+        out[i] = (ShiftSample){.x = x, .y = y, .off = pixels_apart(a, x, y, b, x, y)};
         for (int c = 0; c < a->channels; c++)
             out[i].codes[c] = code_at(a, x, y, c);
-        differs_by(a, b, x, y, &none, &out[i].off);
     }
     qsort(out, (size_t)samples->n, sizeof *out, most_off_first);
 }
 
-/* The mean over the samples that stay within the picture, infinite where fewer than three in four
- * do, or as soon as the sum is as large as `limit`. */
+/* Returns the mean difference over the samples that a shift keeps within the picture. Returns
+ * infinity if it keeps fewer than three in four, and as soon as the sum exceeds `limit`. */
 static double off_when_shifted(const Picture *b, const ShiftSample *samples, int n, int dx, int dy,
                                double limit)
 {
@@ -184,7 +168,7 @@ static double off_when_shifted(const Picture *b, const ShiftSample *samples, int
     int inside = 0;
     for (int i = 0; i < n; i++) {
         int u = samples[i].x + dx, v = samples[i].y + dy;
-        if (u < 0 || u >= b->width || v < 0 || v >= b->height)
+        if (!has_pixel(b, u, v))
             continue;
         for (int c = 0; c < b->channels; c++)
             sum += abs(code_at(b, u, v, c) - samples[i].codes[c]);
@@ -208,9 +192,10 @@ static Shift search_shifts(const Picture *b, const ShiftSample *samples, int n)
     return best;
 }
 
-/* Returns the shift that leaves the smallest mean difference of the samples; none if it removes
- * less than 30 % of the difference. What differs most without a shift comes first: it tells soonest
- * that a shift is wrong. A few samples are asked before all, since most pictures are not moved. */
+/* Returns the shift that leaves the smallest mean difference of the samples; no shift if it removes
+ * less than 30 % of the difference. Samples that differ most come first, because they exceed the
+ * limit of a wrong shift soonest. A few samples are tried before all, since most pictures are not
+ * moved. */
 static Shift best_shift(const Picture *a, const Picture *b, const Samples *samples)
 {
     enum { FEW = 64 };
@@ -234,35 +219,34 @@ typedef struct ShiftTrial {
 
 static ShiftTrial try_shift(const Picture *a, const Picture *b, const Shift *shift)
 {
-    static const Shift none = {0};
     ShiftTrial trial = {0};
     for (int y = 0; y < a->height; y++)
         for (int x = 0; x < a->width; x++) {
-            double after = 0, there = 0;
-            if (!differs_by(a, b, x, y, shift, &after))
+            const int u = x + shift->dx, v = y + shift->dy;
+            if (!has_pixel(b, u, v))
                 continue;
-            differs_by(a, b, x, y, &none, &trial.before);
-            differs_by(a, b, x + shift->dx, y + shift->dy, &none, &there);
+            const int after = pixels_apart(a, x, y, b, u, v);
+            trial.before += pixels_apart(a, x, y, b, x, y);
             trial.after += after;
-            trial.made += there == 0 ? after : 0;
+            trial.made += pixels_apart(a, u, v, b, u, v) == 0 ? after : 0;
         }
     return trial;
 }
 
 bool cause_is_same_saturation(double aa, double ab)
 {
-    const double enough = 1e4; /* the rounding of codes then moves the quotient by 0.5 % at most */
+    const double enough = 1e4; /* rounding of codes changes the quotient by at most 0.5 % then */
     return aa < enough || fabs(ab / aa - 1) <= 0.03;
 }
 
 static bool has_shifted_saturation(const Picture *a, const Picture *b, const Shift *shift)
 {
-    const double level = a->bits == 8 ? 1 : 257;
+    const double level = codes_per_level(a);
     double aa = 0, ab = 0;
     for (int y = 0; y < a->height; y++)
         for (int x = 0; x < a->width; x++) {
             int u = x + shift->dx, v = y + shift->dy, sum_a = 0, sum_b = 0;
-            if (u < 0 || u >= b->width || v < 0 || v >= b->height)
+            if (!has_pixel(b, u, v))
                 continue;
             for (int c = 0; c < a->channels; c++) {
                 int in_a = code_at(a, x, y, c), in_b = code_at(b, u, v, c);
@@ -286,10 +270,11 @@ static bool has_shifted_saturation(const Picture *a, const Picture *b, const Shi
 static bool find_shift(const Picture *a, const Picture *b, const Samples *samples,
                        const Shift *shift, Sentence *out)
 {
-    static const Shift none = {0};
     double before = 0;
-    for (int i = 0; i < samples->n; i++)
-        differs_by(a, b, samples->at[i].x, samples->at[i].y, &none, &before);
+    for (int i = 0; i < samples->n; i++) {
+        const PixelPlace *at = &samples->at[i];
+        before += pixels_apart(a, at->x, at->y, b, at->x, at->y);
+    }
     if (!leaves(before, shift->off * samples->n, 0.05))
         return false;
     const ShiftTrial trial = try_shift(a, b, shift);
@@ -304,9 +289,27 @@ static bool find_shift(const Picture *a, const Picture *b, const Samples *sample
     return false;
 }
 
-/* ---- kit of all guesses ---------------------------------------------------------------------- */
+/* ---- functions that several guesses use ------------------------------------------------------ */
 
-Status light_of_codes(const Picture *picture, Plane *lights, Err *err)
+double golden_section(double (*f)(void *context, double x), void *context, double low, double high,
+                      int steps, double *least)
+{
+    const double golden = 0.6180339887498949;
+    double x[2] = {high - golden * (high - low), low + golden * (high - low)};
+    double value[2] = {f(context, x[0]), f(context, x[1])};
+    for (int i = 0; i < steps; i++) {
+        const int worse = value[0] < value[1];
+        *(worse ? &high : &low) = x[worse];
+        x[worse] = x[!worse];
+        value[worse] = value[!worse];
+        x[!worse] = worse ? high - golden * (high - low) : low + golden * (high - low);
+        value[!worse] = f(context, x[!worse]);
+    }
+    *least = fmin(value[0], value[1]);
+    return (low + high) / 2;
+}
+
+Status linear_of_codes(const Picture *picture, Plane *lights, Err *err)
 {
     Picture codes;
     TRY(picture_init(&codes, 1 << picture->bits, 1, 1, picture->bits, err));
@@ -326,7 +329,7 @@ Status compare_cause(const Picture *a, const Picture *b, CompareResult *result, 
     if (result->values[MEASURE_DIFFERING_PIXELS] == 0)
         return STATUS_OK;
     Samples samples;
-    find_box(a, b, &result->box);
+    result->box = find_box(a, b);
     choose_samples(a, b, result_count(result, MEASURE_DIFFERING_PIXELS), &samples);
     find_turn(a, b, &samples, &out);
     if (!*out.text)

@@ -8,13 +8,15 @@
 /* Finds the box of all pixels that differ, and the change that turns A into B. Sets result->box,
  * and sets result->cause to a sentence about the change if the change is certain.
  *
- * Changes are: mirrored or channels exchanged; moved, rotated, enlarged or cropped; blurred;
+ * The changes are: mirrored or channels exchanged; moved, rotated, enlarged or cropped; blurred;
  * brighter or darker everywhere; another hue or saturation; compressed as JPEG; noise; one vessel
- * missing; different outlines, highlights or shading only. The sentence
- * stays "" if no single change explains the difference.
+ * missing; different outlines, highlights or shading only. The sentence stays "" if no single
+ * change explains the difference.
  *
- * a, b     the pictures of the result, of one shape, depth and gamma.
- * Errors   STATUS_MEMORY. */
+ * a, b     the pictures that were compared, of equal size, channels, bit depth and gamma.
+ * result   the comparison of a and b, by compare_pictures. The cause stays "" after an error.
+ * Errors   STATUS_MEMORY.
+ * Cost     O(pixels). */
 MUST_CHECK Status compare_cause(const Picture *a, const Picture *b, CompareResult *result,
                                 Err *err);
 

@@ -1,6 +1,6 @@
-/* All that a rule can see of a picture are the counts of pixels beyond each level. They are counted
- * once for each repeat and each planted fault; all rules, also those without one repeat, are then
- * judged by comparing numbers. */
+/* A rule depends on a picture only through the numbers of pixels beyond each level. These are
+ * counted once per repeat and per planted fault. All rules, also those chosen without one of the
+ * repeats, are then applied by comparing numbers. */
 #include "compare/cause/choose.h"
 
 #include "compare/pixels.h"
@@ -10,6 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+/* Number of levels that a rule may have, 0 to 255. */
 enum { LEVELS = 256 };
 
 /* Counts of pixels that differ from the reference by more than 0, 1, ... levels. */
@@ -118,7 +119,7 @@ static void choose_rule(const Choosing *self, size_t rank, size_t left_out, Choi
     }
 }
 
-/* Counts the repeats that the rule rejects which is chosen without them. */
+/* Counts the repeats that are rejected by the rule that is chosen without them. */
 static size_t leave_out(const Choosing *self, double rate)
 {
     size_t alarms = 0;

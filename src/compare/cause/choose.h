@@ -17,13 +17,15 @@ typedef struct Choice {
     double ppm;    /* the limit of the tolerance: admits m of the pixels, and not m + 1 */
     size_t n;      /* number of repeats besides the reference */
     size_t rank;   /* k: m is the k-th smallest of the n counts */
-    /* If the repeats and a further rendering are exchangeable, the further rendering is rejected
-     * with a probability of at most `rate` = 1 - k / (n + 1). This is the mean over all sets of
-     * repeats. With 95 % confidence, these n repeats are such that at most a fraction `bound` of
-     * further renderings is rejected (one-sided tolerance limit, Beta(k, n - k + 1)). Both hold for
-     * each level L. The choice of L uses the same repeats, which `alarms` accounts for. */
+    /* rate = 1 - k / (n + 1) bounds the probability that the rule rejects a further rendering, as a
+     * mean over all sets of n repeats. It holds if the repeats and the further rendering are
+     * exchangeable. With 95 % confidence in these n repeats, the rule rejects at most the fraction
+     * `bound` of all further renderings (one-sided tolerance limit, Beta(k, n - k + 1)). Both hold
+     * for each level L. L is chosen by the same repeats; `alarms` shows the effect of this choice.
+     */
     double rate, bound;
-    size_t alarms;          /* of n trials: the rule chosen without a repeat rejects this repeat */
+    size_t alarms; /* leave-one-out count: the repeats that are rejected by the rule that is chosen
+                    * from the other n - 1 repeats */
     size_t planted, missed; /* counts: planted faults, and faults that the rule does not detect */
 } Choice;
 
@@ -31,7 +33,9 @@ typedef struct Choice {
  *
  * pictures   the reference, then n >= 2 repeats, in sRGB, of one size, depth and number of
  *            channels.
- * rate       highest accepted `rate`; 0: the lowest that n repeats can guarantee, 1 / (n + 1).
+ * rate       highest accepted Choice.rate; 0: the lowest that n repeats can guarantee, 1 / (n + 1).
+ * threads    0: all processors. The choice does not depend on their number.
+ * choice     set on success only.
  * Errors     STATUS_INPUT if the pictures differ in form, or n repeats cannot guarantee `rate`;
  *            STATUS_MEMORY. */
 MUST_CHECK Status choose_tolerance(const Picture *pictures, size_t n_pictures, double rate,
@@ -39,8 +43,9 @@ MUST_CHECK Status choose_tolerance(const Picture *pictures, size_t n_pictures, d
 
 /* Returns the tolerance of the rule; its name is "chosen". */
 Tolerance choice_tolerance(const Choice *choice);
-/* Append the lines of a tolerance file, or sentences about the choice. */
+/* Appends the choice as a tolerance file [tolerance_read]. */
 void choice_ini(const Choice *choice, Text *out);
+/* Appends sentences about the choice. */
 void choice_text(const Choice *choice, Text *out);
 /* Returns the choice as JSON: a new reference, NULL if memory runs out. */
 json_t *choice_json(const Choice *choice);

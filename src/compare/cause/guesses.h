@@ -1,50 +1,96 @@
-/* Tests hypotheses ("guesses") about what changed picture A into picture B.
+/* Tests hypotheses about the single change that turned picture A into picture B.
  *
- * Each cause_* function below tests one kind of cause. If this cause explains the difference of the
- * pictures, the function writes a sentence to out->text. Otherwise out->text does not change. The
- * pictures A and B have equal size, channels, bit depth and gamma. Private to the module compare.
- */
+ * Each cause_* function tests one kind of change: it fits the parameters of the change to a few
+ * samples, then checks the fit on the whole pictures. compare_cause calls the functions one after
+ * the other until one of them finds a cause. Private to the module compare.
+ *
+ * All cause_* functions have these rules in common:
+ *
+ * a, b      of equal size, channels (1 or 3), bit depth and gamma.
+ * samples   some of the pixels that differ [Samples].
+ * out       If the change explains the difference, out->text receives a sentence about it.
+ *           Otherwise out->text is unchanged, also after an error.
+ * Errors    STATUS_MEMORY. */
 #ifndef CORCAST_COMPARE_CAUSE_GUESSES_H
 #define CORCAST_COMPARE_CAUSE_GUESSES_H
 
 #include "compare/pixels.h"
+#include <stdlib.h>
 
+/* Capacity of Samples. 256 pixels cost little beside a pass over a picture; reason for this number
+ * not recorded. */
 enum { CAUSE_SAMPLES = 256 };
 
-/* Up to CAUSE_SAMPLES of the pixels that differ: every k-th of them in scan order. */
+/* Up to CAUSE_SAMPLES of the pixels that differ: every k-th of them, row by row. */
 typedef struct Samples {
     PixelPlace at[CAUSE_SAMPLES];
     int n;
 } Samples;
 
-/* Returns the index of the first code of pixel (x, y). */
+/* Returns the index of the first code of the pixel in column x and row y. */
 static inline size_t first_code(const Picture *picture, int x, int y)
 {
     return ((size_t)y * (size_t)picture->width + (size_t)x) * (size_t)picture->channels;
 }
 
-/* Returns the code of pixel (x, y) in channel c. */
+/* Returns the code of the pixel in column x and row y, in channel c. */
 static inline int code_at(const Picture *picture, int x, int y, int c)
 {
     return picture_code(picture, first_code(picture, x, y) + (size_t)c);
 }
 
-/* Returns the number of pixels in question: those of the samples, or all if `samples` is NULL. */
-static inline size_t n_asked(const Picture *picture, const Samples *samples)
+/* Returns the number of samples; if `samples` is NULL, the number of pixels of the picture. */
+static inline size_t sampled_pixels(const Picture *picture, const Samples *samples)
 {
     return samples ? (size_t)samples->n : (size_t)picture->width * (size_t)picture->height;
 }
 
-/* Returns the index of the first code of pixel i of those in question. */
-static inline size_t asked_code(const Picture *picture, const Samples *samples, size_t i)
+/* Returns the index of the first code of sample i; if `samples` is NULL, of pixel i. */
+static inline size_t sampled_code(const Picture *picture, const Samples *samples, size_t i)
 {
     return samples ? first_code(picture, samples->at[i].x, samples->at[i].y)
                    : i * (size_t)picture->channels;
 }
 
-/* Makes a plane of one row with the linear light of each code of such a picture. The caller
- * releases it. Errors: STATUS_MEMORY. */
-MUST_CHECK Status light_of_codes(const Picture *picture, Plane *lights, Err *err);
+/* Returns the number of codes in a level: 1 for 8 bits, 257 for 16 bits. */
+static inline int codes_per_level(const Picture *picture)
+{
+    return picture->bits == 8 ? 1 : 257;
+}
+
+/* Returns the largest code of the picture's bit depth. */
+static inline int largest_code(const Picture *picture)
+{
+    return picture->bits == 8 ? 255 : 65535;
+}
+
+/* Returns true if the picture has a pixel in column x and row y. */
+static inline bool has_pixel(const Picture *picture, int x, int y)
+{
+    return x >= 0 && x < picture->width && y >= 0 && y < picture->height;
+}
+
+/* Returns the sum over the channels of |code of pixel (u, v) of B - code of pixel (x, y) of A|; 0
+ * if B has no pixel (u, v). Pixel (x, y) of A must exist. */
+static inline int pixels_apart(const Picture *a, int x, int y, const Picture *b, int u, int v)
+{
+    int sum = 0;
+    for (int c = 0; c < a->channels && has_pixel(b, u, v); c++)
+        sum += abs(code_at(a, x, y, c) - code_at(b, u, v, c));
+    return sum;
+}
+
+/* Makes a table of the linear color of each code of a picture's depth and gamma: a plane of one
+ * row. The caller releases it. Errors: STATUS_MEMORY. */
+MUST_CHECK Status linear_of_codes(const Picture *picture, Plane *table, Err *err);
+
+/* The minimum of a function by golden section search. `f` has one minimum in [low, high]. Evaluates
+ * f `steps` + 2 times.
+ *
+ * least     receives the smallest value of f that was found.
+ * Returns   the middle of the last interval. */
+double golden_section(double (*f)(void *context, double x), void *context, double low, double high,
+                      int steps, double *least);
 
 /* A sentence about the cause. */
 typedef struct Sentence {
@@ -56,51 +102,42 @@ typedef struct Sentence {
  * (x + dx, y + dy) of B. dx = dy = 0: no translation. */
 typedef struct Shift {
     int dx, dy;
-    double off; /* mean over the samples of the difference that remains after this translation: sum
-                 * over the channels of the absolute difference of codes */
+    double off; /* mean over the samples of the difference that is left after this translation:
+                 * pixels_apart, in codes */
 } Shift;
 
 /* Returns true if both pictures have the same saturation: the distances of their colors from grey
  * agree within 3 %. Also returns true if A has too little color to decide.
  *
  * aa   sum of the squares of (A's channel - mean of the pixel's channels), in levels.
- * ab   sum of the products of these deviations in A and in B. */
+ * ab   sum of the products of these deviations in A and in B, in levels. */
 bool cause_is_same_saturation(double aa, double ab);
 
 /* Tests whether B is A translated by fractions of a pixel, blurred or sharpened.
  *
- * start    the translation by whole pixels that leaves the smallest difference.
- * Errors   STATUS_MEMORY.
- * Cost     O(1). */
+ * start   the translation by whole pixels that leaves the smallest difference.
+ * Cost    O(pixels) if a change fits the samples, else O(1). */
 MUST_CHECK Status cause_warp(const Picture *a, const Picture *b, const Samples *samples,
                              const Shift *start, Sentence *out, Err *err);
 /* Tests whether one curve maps each code of A to the code of B: a gain, an offset, a gamma, or an
- * sRGB encoding that was applied once too often or not at all.
- *
- * Errors   STATUS_MEMORY. */
+ * sRGB encoding that was applied once too often or not at all. */
 MUST_CHECK Status cause_tone(const Picture *a, const Picture *b, const Samples *samples,
                              Sentence *out, Err *err);
-/* Tests whether B is A with another saturation, or with all hues turned by one angle. */
+/* Tests whether B is A with another saturation, or with all hues rotated by one angle. */
 void cause_hue(const Picture *a, const Picture *b, const Samples *samples, Sentence *out);
-/* Tests whether B is A rotated, enlarged or reduced, or cropped and enlarged.
- *
- * Errors   STATUS_MEMORY.
- * Cost     O(pixels). */
+/* Tests whether B is A rotated, enlarged or reduced, or cropped and enlarged. Cost: O(pixels). */
 MUST_CHECK Status cause_affine(const Picture *a, const Picture *b, Sentence *out, Err *err);
-/* Tests whether B is A compressed as JPEG with the tables of libjpeg. Errors: STATUS_MEMORY. */
+/* Tests whether B is A compressed as JPEG with the quantisation tables of libjpeg. */
 MUST_CHECK Status cause_jpeg(const Picture *a, const Picture *b, Sentence *out, Err *err);
 /* Tests whether B is A plus noise that is independent in each pixel. */
 void cause_noise(const Picture *a, const Picture *b, Sentence *out);
-/* Tests whether only the color of the background differs.
- *
- * Errors   STATUS_MEMORY. */
+/* Tests whether only the color of the background differs. */
 MUST_CHECK Status cause_background(const Picture *a, const Picture *b, const Samples *samples,
                                    Sentence *out, Err *err);
 /* Tests whether the differences are confined to one kind of pixels: one object that is missing or
  * extra, outlines, highlights, or shading.
  *
- * result   the comparison of A and B.
- * Errors   STATUS_MEMORY. */
+ * result   the comparison of A and B. */
 MUST_CHECK Status cause_place(const Picture *a, const Picture *b, const Samples *samples,
                               const CompareResult *result, Sentence *out, Err *err);
 

@@ -24,7 +24,7 @@ typedef enum ColorMap {
     COLOR_MAPS
 } ColorMap;
 
-/* A map with its number, in codes or in light. */
+/* A map with its number. It acts on codes or on linear light. */
 typedef struct MapOf {
     ColorMap map;
     bool in_light;
@@ -36,6 +36,13 @@ static double encode(double level)
     return 255 * (double)srgb_encode((float)fmin(fmax(level, 0), 1));
 }
 
+/* Returns the chroma of HSV: the largest channel minus the smallest one. */
+static double chroma_of(const double c[3])
+{
+    return fmax(c[0], fmax(c[1], c[2])) - fmin(c[0], fmin(c[1], c[2]));
+}
+
+/* Returns the grey from which a saturation moves a color away. */
 static double grey_of(ColorMap map, const double c[3])
 {
     double high = fmax(c[0], fmax(c[1], c[2])), low = fmin(c[0], fmin(c[1], c[2]));
@@ -102,12 +109,15 @@ static void apply_map(const MapOf *map, const double c[3], double out[3])
 
 /* ---- fits ------------------------------------------------------------------------------------ */
 
+/* Numbers of pixels: with a difference above slack_of before the map, with one after it, and with a
+ * chroma above 16 levels; sum of squared differences after the map, levels^2. */
 typedef struct ColorFit {
     size_t beyond, misfits, colored;
     double squares;
 } ColorFit;
 
-/* Levels that a map may leave: programs round hues of HSV to 8 bits. */
+/* Returns the levels that a map may leave: rounding, and more for programs that round hues of HSV
+ * to 8 bits. */
 static double slack_of(const MapOf *map)
 {
     return map->map == HEXAGON ? 4.01 : 2.01;
@@ -116,7 +126,7 @@ static double slack_of(const MapOf *map)
 static void levels_at(const Picture *picture, size_t code, double out[3])
 {
     for (size_t c = 0; c < 3; c++)
-        out[c] = picture_code(picture, code + c) / (picture->bits == 8 ? 255.0 : 65535.0);
+        out[c] = picture_code(picture, code + c) / (double)largest_code(picture);
 }
 
 /* Adds the pixel whose first code has the index `code`. */
@@ -127,8 +137,7 @@ static void add_pixel(const MapOf *map, const Picture *a, const Picture *b, size
     const double slack = slack_of(map);
     levels_at(a, code, from);
     levels_at(b, code, to);
-    const double chroma =
-        fmax(from[0], fmax(from[1], from[2])) - fmin(from[0], fmin(from[1], from[2]));
+    const double chroma = chroma_of(from);
     double in[3] = {from[0], from[1], from[2]};
     for (int c = 0; map->in_light && c < 3; c++)
         in[c] = (double)srgb_decode((float)from[c]);
@@ -145,13 +154,13 @@ static void add_pixel(const MapOf *map, const Picture *a, const Picture *b, size
     fit->misfits += worst > slack;
 }
 
-/* Of the samples, or of all pixels if `samples` is NULL. */
+/* Fits a map to the samples, or to all pixels if `samples` is NULL. */
 static ColorFit fit_of(const MapOf *map, const Picture *a, const Picture *b, const Samples *samples)
 {
     ColorFit fit = {0};
-    const size_t n = n_asked(a, samples);
+    const size_t n = sampled_pixels(a, samples);
     for (size_t i = 0; i < n; i++)
-        add_pixel(map, a, b, asked_code(a, samples, i), &fit);
+        add_pixel(map, a, b, sampled_code(a, samples, i), &fit);
     return fit;
 }
 
@@ -162,35 +171,37 @@ static bool fits(const ColorFit *fit)
 
 /* ---- the number of a map --------------------------------------------------------------------- */
 
-static double squares_of(MapOf *map, double number, const Picture *a, const Picture *b,
-                         const Samples *samples)
+/* A map whose number is sought, and the samples that it is fitted to. */
+typedef struct NumberSearch {
+    MapOf *map;
+    const Picture *a, *b;
+    const Samples *samples;
+} NumberSearch;
+
+static double squares_of(void *context, double number)
 {
-    map->number = number;
-    return fit_of(map, a, b, samples).squares;
+    const NumberSearch *search = context;
+    search->map->number = number;
+    return fit_of(search->map, search->a, search->b, search->samples).squares;
 }
 
-/* Finds the number that leaves the least squares: on a grid, then by golden section. */
+/* Finds the number with the least sum of squares: first on a grid, because there may be several
+ * minima, then by golden section. */
 static void find_number(MapOf *map, const Picture *a, const Picture *b, const Samples *samples)
 {
+    enum { STEPS = 16 };
     const bool is_hue = map->map >= SATURATIONS;
-    const double from = is_hue ? -180 : 0, step = is_hue ? 6 : 0.1, golden = 0.6180339887498949;
-    double best = from, least = squares_of(map, from, a, b, samples);
+    const double from = is_hue ? -180 : 0, step = is_hue ? 6 : 0.1;
+    NumberSearch search = {map, a, b, samples};
+    double best = from, least = squares_of(&search, from);
     for (int i = 1; i < (is_hue ? 60 : 31); i++) {
-        double squares = squares_of(map, from + i * step, a, b, samples);
+        double squares = squares_of(&search, from + i * step);
         if (squares < least) {
             least = squares;
             best = from + i * step;
         }
     }
-    double low = best - step, high = best + step;
-    for (int i = 0; i < 16; i++) {
-        double inner = high - golden * (high - low), outer = low + golden * (high - low);
-        if (squares_of(map, inner, a, b, samples) < squares_of(map, outer, a, b, samples))
-            high = outer;
-        else
-            low = inner;
-    }
-    map->number = (low + high) / 2;
+    map->number = golden_section(squares_of, &search, best - step, best + step, STEPS, &least);
 }
 
 static void say(const MapOf *map, Sentence *out)
@@ -211,8 +222,8 @@ static bool changes_greys(const Picture *a, const Samples *samples)
     int grey = 0;
     for (int i = 0; i < samples->n; i++) {
         double c[3];
-        levels_at(a, asked_code(a, samples, (size_t)i), c);
-        grey += fmax(c[0], fmax(c[1], c[2])) - fmin(c[0], fmin(c[1], c[2])) <= 2 / 255.0;
+        levels_at(a, sampled_code(a, samples, (size_t)i), c);
+        grey += chroma_of(c) <= 2 / 255.0;
     }
     return 10 * grey > samples->n;
 }

@@ -1,8 +1,8 @@
-/* Compressed as JPEG: the cosine transform of each 8 x 8 block of A, rounded to multiples of the
- * steps of a quality, gives B. The steps are those of the table of the standard [ITU-T T.81, annex
- * K], scaled as libjpeg scales it by a quality from 1 to 100. The luma is compared alone, because
- * colors may be subsampled, and only where no channel of B is black or white, where it may be
- * clipped. */
+/* Tests whether B is A compressed as JPEG, by compressing blocks of A. The cosine transform of each
+ * 8 x 8 block is rounded to multiples of the quantisation steps of a quality. The steps are those
+ * of the standard [ITU-T T.81, annex K], scaled as libjpeg scales them by a quality from 1 to 100.
+ * Only the luma is compared, because colors may be subsampled, and only pixels of which no channel
+ * of B is black or white, because those may be clipped. */
 #include "compare/cause/guesses.h"
 
 #include <math.h>
@@ -19,14 +19,15 @@ static const unsigned char luma_steps[CELLS] = {
 
 /* A block of both pictures, in levels of luma. */
 typedef struct Block {
-    double a[CELLS], b[CELLS], coefficients[CELLS]; /* the last: the cosine transform of `a` */
+    double a[CELLS], b[CELLS];
+    double coefficients[CELLS]; /* cosine transform of `a` */
     bool clipped[CELLS];
 } Block;
 
 typedef struct JpegBlocks {
     Block *blocks; /* owned */
     size_t n;
-    double cosines[SIDE][SIDE]; /* [frequency][place] */
+    double cosines[SIDE][SIDE]; /* [frequency][position] */
 } JpegBlocks;
 
 static double step_of(int quality, int i)
@@ -36,22 +37,20 @@ static double step_of(int quality, int i)
     return step < 1 ? 1 : step > 255 ? 255 : step;
 }
 
-static double luma_at(const Picture *picture, size_t pixel)
+static double luma_at(const Picture *picture, int x, int y)
 {
-    const size_t at = pixel * (size_t)picture->channels;
-    const double level = picture->bits == 8 ? 1 : 1 / 257.0;
+    const double level = 1.0 / codes_per_level(picture);
     if (picture->channels == 1)
-        return level * picture_code(picture, at);
-    return level * (0.299 * picture_code(picture, at) + 0.587 * picture_code(picture, at + 1) +
-                    0.114 * picture_code(picture, at + 2));
+        return level * code_at(picture, x, y, 0);
+    return level * (0.299 * code_at(picture, x, y, 0) + 0.587 * code_at(picture, x, y, 1) +
+                    0.114 * code_at(picture, x, y, 2));
 }
 
-static bool is_clipped(const Picture *picture, size_t pixel)
+static bool is_clipped(const Picture *picture, int x, int y)
 {
-    const int most = picture->bits == 8 ? 255 : 65535;
-    for (size_t c = 0; c < (size_t)picture->channels; c++) {
-        int code = picture_code(picture, pixel * (size_t)picture->channels + c);
-        if (code == 0 || code == most)
+    for (int c = 0; c < picture->channels; c++) {
+        int code = code_at(picture, x, y, c);
+        if (code == 0 || code == largest_code(picture))
             return true;
     }
     return false;
@@ -76,18 +75,12 @@ static void transform(const JpegBlocks *self, const double in[CELLS], bool inver
         }
 }
 
-/* Returns true if A changes in a block: a flat one tells nothing. */
+/* Returns true if the codes of A vary in a block. A flat block is the same for all qualities. */
 static bool has_detail(const Picture *a, int left, int top)
 {
-    const size_t channels = (size_t)a->channels,
-                 first = (size_t)top * (size_t)a->width + (size_t)left;
-    for (int y = 0; y < SIDE; y++)
-        for (int x = 0; x < SIDE; x++) {
-            size_t at = (first + (size_t)y * (size_t)a->width + (size_t)x) * channels;
-            for (size_t c = 0; c < channels; c++)
-                if (picture_code(a, at + c) != picture_code(a, first * channels + c))
-                    return true;
-        }
+    for (int i = 0; i < CELLS; i++)
+        if (pixels_apart(a, left, top, a, left + i % SIDE, top + i / SIDE) > 0)
+            return true;
     return false;
 }
 
@@ -95,10 +88,10 @@ static void take_block(JpegBlocks *self, const Picture *a, const Picture *b, int
 {
     Block *block = &self->blocks[self->n++];
     for (int i = 0; i < CELLS; i++) {
-        size_t pixel = (size_t)(top + i / SIDE) * (size_t)a->width + (size_t)(left + i % SIDE);
-        block->a[i] = round(luma_at(a, pixel)) - 128; /* libjpeg transforms integers */
-        block->b[i] = luma_at(b, pixel) - 128;
-        block->clipped[i] = is_clipped(b, pixel);
+        const int x = left + i % SIDE, y = top + i / SIDE;
+        block->a[i] = round(luma_at(a, x, y)) - 128; /* libjpeg transforms integers */
+        block->b[i] = luma_at(b, x, y) - 128;
+        block->clipped[i] = is_clipped(b, x, y);
     }
     transform(self, block->a, false, block->coefficients);
 }

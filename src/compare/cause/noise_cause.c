@@ -1,26 +1,29 @@
-/* Noise: the differences of neighbours, and of pixels and what they show, are independent. Codes
- * that are or become black or white may be clipped, and are left out. */
+/* Tests whether the difference B - A is noise: independent in each pixel. It must not correlate
+ * with the differences of neighbours, nor with the slopes and the curvature of A, nor vary much
+ * over the picture. Nearly black and nearly white codes may be clipped, so they are left out. */
 #include "compare/cause/guesses.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
+/* LAGS: number of neighbours; GRID x GRID parts of the picture; CELL x CELL pixels in a block;
+ * ENOUGH: minimum number of codes for a verdict. Reasons for the numbers are not recorded. */
 enum { LAGS = 6, GRID = 4, CELL = 8, ENOUGH = 400 };
 static const int lags[LAGS][2] = {{1, 0}, {0, 1}, {1, 1}, {1, -1}, {2, 0}, {0, 2}};
 
-/* Sums over the channels of all pixels that are not clipped; d is B - A in levels. */
+/* Sums over all codes that are not clipped; d is B - A in levels. */
 typedef struct WhitenessSums {
     double n, d, dd;
     double differing;        /* codes that differ */
     double clipped, changed; /* codes of A that are black or white; how many of them differ in B */
-    double lagged[LAGS], lagged_n[LAGS]; /* products of neighbours */
-    double slope[3], slopes[3]; /* products of d with the slope of A across, the slope of A down,
-                                 * and with the sum of the neighbours less A; their squares */
-    double edge_dd, edge_n;     /* where A changes by more than EDGE levels */
-    double cell_dd[GRID][GRID], cell_n[GRID][GRID]; /* of parts of the picture */
+    double lagged[LAGS], lagged_n[LAGS]; /* products of d and d of a neighbour, and their number */
+    double slope[3], slopes[3]; /* products of d with the slopes of A along x and y and with the
+                                 * Laplacian of A; squares of these three */
+    double edge_dd, edge_n;     /* d^2 and number, where the slopes of A exceed 32 levels */
+    double cell_dd[GRID][GRID], cell_n[GRID][GRID]; /* d^2 and number, per part of the picture */
     double blocks,
-        blocks_of; /* squares of the sums of whole blocks; what independence makes them */
+        blocks_of; /* sums over blocks: (sum of d)^2, and its mean if the noise is independent */
 } WhitenessSums;
 
 typedef struct NoiseImages {
@@ -33,19 +36,19 @@ static bool is_clipped(int code, int most)
     return code <= most / 128 || code >= most - most / 128;
 }
 
-/* Sets *d to the difference in levels; false for a clipped code and outside of the picture. */
-static bool difference_at(const NoiseImages *self, int x, int y, int c, double *d)
+/* Sets *d to the difference in levels. Returns false for a clipped code and outside of the picture.
+ */
+static inline bool difference_at(const NoiseImages *self, int x, int y, int c, double *d)
 {
     const Picture *a = self->a;
-    if (x < 0 || y < 0 || x >= a->width || y >= a->height)
+    if (!has_pixel(a, x, y))
         return false;
-    int most = a->bits == 8 ? 255 : 65535, from = code_at(a, x, y, c),
-        to = code_at(self->b, x, y, c);
+    const int most = largest_code(a), from = code_at(a, x, y, c), to = code_at(self->b, x, y, c);
     *d = (to - from) * self->levels;
     return !is_clipped(from, most) && !is_clipped(to, most);
 }
 
-/* Adds what the difference has to do with the slopes and the curvature of A. */
+/* Adds the products of the difference with the slopes and the Laplacian of A. */
 static void add_slopes(const NoiseImages *self, int x, int y, int c, double d, WhitenessSums *sums)
 {
     const Picture *a = self->a;
@@ -68,7 +71,7 @@ static void add_slopes(const NoiseImages *self, int x, int y, int c, double d, W
 static void add_channel(const NoiseImages *self, int x, int y, int c, WhitenessSums *sums)
 {
     double d, other;
-    int from = code_at(self->a, x, y, c), most = self->a->bits == 8 ? 255 : 65535;
+    int from = code_at(self->a, x, y, c), most = largest_code(self->a);
     sums->clipped += from == 0 || from == most;
     sums->changed += (from == 0 || from == most) && from != code_at(self->b, x, y, c);
     if (!difference_at(self, x, y, c, &d))
@@ -107,7 +110,7 @@ static void add_block(const NoiseImages *self, int left, int top, int c, Whitene
     sums->blocks_of += squares;
 }
 
-/* Returns true if no part of the picture has much more or less of it than the whole. */
+/* Returns true if the variance in each part of the picture is within a factor of 4 of the whole. */
 static bool is_even(const WhitenessSums *sums, double variance)
 {
     for (int row = 0; row < GRID; row++)
@@ -140,9 +143,9 @@ static bool is_noise(const WhitenessSums *sums)
 
 void cause_noise(const Picture *a, const Picture *b, Sentence *out)
 {
-    const NoiseImages self = {a, b, a->bits == 8 ? 1 : 1 / 257.0};
+    const NoiseImages self = {a, b, 1.0 / codes_per_level(a)};
     WhitenessSums sums = {0};
-    /* Of a large picture, bands of whole blocks. */
+    /* About a million pixels suffice: of a larger picture, only some bands of blocks are read. */
     const int bands = 1 + (int)((double)a->width * a->height / 1e6);
     for (int y = 0; y < a->height; y++) {
         if (y / CELL % bands != 0)

@@ -1,6 +1,7 @@
-/* A fault says what the faulty picture has at a place, from the whole one: so one loop plants all.
- * What renderers do in light is done in light: codes are decoded, changed and encoded. Faults of a
- * part are planted where the codes vary most, because what is flat shows little. */
+/* A fault is a function that computes a code of the faulty picture from the whole original picture,
+ * so one loop plants all faults. Renderers compute in linear light; faults of light therefore
+ * decode codes, change them, and encode them. Faults of a part are planted where the codes vary
+ * most, because a flat part shows little. */
 #include "compare/cause/picture_fault.h"
 
 #include <math.h>
@@ -11,7 +12,8 @@ static double clamp(double x, double low, double high)
     return x < low ? low : x > high ? high : x;
 }
 
-/* The code at a place, of the nearest pixel beyond the rim. */
+/* Returns the code of a pixel as a fraction of the largest; beyond an edge, that of the nearest
+ * pixel. */
 static double at(const Picture *picture, int x, int y, int c)
 {
     x = x < 0 ? 0 : x < picture->width ? x : picture->width - 1;
@@ -21,7 +23,7 @@ static double at(const Picture *picture, int x, int y, int c)
            (picture->bits == 8 ? 255.0 : 65535.0);
 }
 
-/* Between pixels, linearly. */
+/* Interpolates linearly between pixels. */
 static double between(const Picture *picture, double x, double y, int c)
 {
     int i = (int)floor(x), j = (int)floor(y);
@@ -45,27 +47,31 @@ static bool in_part(const Planting *p, int x, int y)
     return x >= p->left && x < p->left + p->side && y >= p->top && y < p->top + p->side;
 }
 
-/* ---- places ---------------------------------------------------------------------------------- */
+/* ---- positions ------------------------------------------------------------------------------- */
 
 static double shifted(const Planting *p, int x, int y, int c)
 {
     return between(p->from, x - p->size, y, c);
 }
 
-static double turned(const Planting *p, int x, int y, int c)
+/* Rotates about the middle by an angle with this cosine and sine, times a factor. */
+static double mapped(const Planting *p, int x, int y, int c, double cosine, double sine)
 {
     double middle_x = (p->from->width - 1) / 2.0, middle_y = (p->from->height - 1) / 2.0;
-    double angle = p->size * DEGREE, dx = x - middle_x, dy = y - middle_y;
-    return between(p->from, middle_x + elementary_cos(angle) * dx + elementary_sin(angle) * dy,
-                   middle_y - elementary_sin(angle) * dx + elementary_cos(angle) * dy, c);
+    double dx = x - middle_x, dy = y - middle_y;
+    return between(p->from, middle_x + cosine * dx + sine * dy, middle_y - sine * dx + cosine * dy,
+                   c);
+}
+
+static double turned(const Planting *p, int x, int y, int c)
+{
+    double angle = p->size * DEGREE;
+    return mapped(p, x, y, c, elementary_cos(angle), elementary_sin(angle));
 }
 
 static double larger(const Planting *p, int x, int y, int c)
 {
-    double middle_x = (p->from->width - 1) / 2.0, middle_y = (p->from->height - 1) / 2.0;
-    double scale = 1 / (1 + p->size / 100);
-    return between(p->from, middle_x + scale * (x - middle_x), middle_y + scale * (y - middle_y),
-                   c);
+    return mapped(p, x, y, c, 1 / (1 + p->size / 100), 0);
 }
 
 static double blurred(const Planting *p, int x, int y, int c)
@@ -103,14 +109,15 @@ static double gamma_off(const Planting *p, int x, int y, int c)
     return elementary_pow(at(p->from, x, y, c), 1 + p->size / 100);
 }
 
-/* The highlights are what is brighter than 0.8 of white, in light. */
+/* Light brighter than 0.8 of white counts as a highlight; reason for this number not recorded. */
 static double highlights_dimmer(const Planting *p, int x, int y, int c)
 {
     double linear = light(at(p->from, x, y, c)), beyond = linear - 0.8;
     return beyond > 0 ? code_of(linear - beyond * p->size / 100) : at(p->from, x, y, c);
 }
 
-/* Normal noise, of a place always the same. */
+/* Adds normal noise that depends only on the pixel and the channel, so that a fault can be
+ * repeated. */
 static double noisy(const Planting *p, int x, int y, int c)
 {
     Random random;
@@ -160,7 +167,7 @@ static double mirrored(const Planting *p, int x, int y, int c)
     return at(p->from, p->from->width - 1 - x, y, c);
 }
 
-/* The picture as read with rows of `stride` pixels. */
+/* Returns the code that a program reads if it takes rows to be `stride` pixels long. */
 static double with_stride(const Planting *p, int stride, int x, int y, int c)
 {
     int64_t place = ((int64_t)y * stride + x) % ((int64_t)p->from->width * p->from->height);
@@ -218,7 +225,7 @@ const PictureFault *picture_fault_named(const char *name)
 
 /* ---- planting -------------------------------------------------------------------------------- */
 
-/* The sum of differences between neighbours in a square. */
+/* Returns the sum of differences between neighbours in a square. */
 static double detail(const Picture *picture, int left, int top, int side)
 {
     double sum = 0;

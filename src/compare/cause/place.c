@@ -1,22 +1,20 @@
-/* Where two pictures differ, when no map of one onto the other explains it: another background,
- * one thing missing or extra, outlines only, highlights only, shading only. What is said is what
- * the pixels show:
+/* Tests whether the differences are confined to one kind of pixels, when no map of one picture onto
+ * the other explains them: another background, one object missing or extra, outlines only,
+ * highlights only, shading only. The evidence is what the pixels show:
  *
- * - The background differs when nothing else does but outlines against it, with which it is mixed.
- * - One thing is missing when the background took its place: the pixels seen in A only are one
- *   region, which in A borders on background for three quarters of its rim (a cut end does, a worn
- *   outline borders on what is left), and next to nothing else differs. A region that touches three
- *   sides of the picture is a part of the picture.
- * - Outlines differ when the pixels that differ have neighbours of quite other colors in both
- *   pictures, and there are others within the outlines to tell, most of which have the
- *   same codes: of things a few pixels wide nothing can be said.
- * - Highlights differ when the light in which the pictures differ is nearly white (a highlight has
- *   the lamp's color, all else the surface's), and the same at all pixels, on surfaces that are
- *   not. Of grey surfaces nothing can be said.
- * - Shading differs when that light is more, or less, of the surface's own color and of white at
- *   each pixel, but for a hundredth and for the rounding of codes. More of one and less of the
- * other is another saturation, and anything else another hue: both are other colors, not other
- * light.
+ * - The background is the cause if nothing else differs, except outlines, which are mixed with it.
+ * - One object is missing if the background took its place. The pixels that show something only in
+ * A are one region. In A, three quarters of the rim of this region are next to background: a worn
+ *   outline would be next to the rest of its object. A region that touches three sides of the
+ * picture is a part of the picture, not an object.
+ * - Outlines are the cause if the pixels that differ have neighbours of very different colors in
+ * both pictures, and most pixels within the outlines have equal codes. If objects are only a few
+ * pixels wide, there are too few pixels within, and nothing is stated.
+ * - Highlights are the cause if the light that differs is nearly white, as lamps are, and has one
+ *   color at all pixels, on surfaces that are not white. On grey surfaces nothing is stated.
+ * - Shading is the cause if the light that differs is more, or less, of the surface's own color and
+ * of white, except for a hundredth and for the rounding of codes. More of one and less of the other
+ * is another saturation, and anything else is another hue.
  */
 #include "compare/cause/guesses.h"
 #include "compare/measures/labels.h"
@@ -26,8 +24,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool is_seen(const Labels *labels, const Picture *picture, int side, int x, int y)
+/* Returns true if the pixel (x, y) of a side shows something else than the background. */
+static bool is_seen(const Labels *labels, int side, int x, int y)
 {
+    const Picture *picture = labels->pictures[side];
     for (int c = 0; c < picture->channels; c++)
         if (code_at(picture, x, y, c) != labels->background[side][c])
             return true;
@@ -40,67 +40,61 @@ static bool is_seen(const Labels *labels, const Picture *picture, int side, int 
  * to background, whose colors are mixed with it; other differing pixels. */
 enum { EQUAL_PIXELS, RIM_PIXELS, OTHER_PIXELS, BACKGROUND_SUMS };
 
-typedef struct Backgrounds {
-    const Picture *pictures[2];
-    Labels labels;
-} Backgrounds;
-
-static bool touches_background(const Backgrounds *self, int x, int y)
+static bool touches_background(const Labels *labels, int x, int y)
 {
-    int right = x + 1 < self->labels.width ? x + 1 : x;
-    int bottom = y + 1 < self->labels.height ? y + 1 : y;
+    int right = x + 1 < labels->width ? x + 1 : x;
+    int bottom = y + 1 < labels->height ? y + 1 : y;
     for (int v = y > 0 ? y - 1 : 0; v <= bottom; v++)
         for (int u = x > 0 ? x - 1 : 0; u <= right; u++)
-            for (int side = 0; side < 2; side++)
-                if (!is_seen(&self->labels, self->pictures[side], side, u, v))
-                    return true;
+            if (!is_seen(labels, 0, u, v) || !is_seen(labels, 1, u, v))
+                return true;
     return false;
 }
 
-static void count_background_at(const Backgrounds *self, int x, int y, double *sums)
+static void count_background_at(const Labels *labels, int x, int y, double *sums)
 {
-    const Picture *a = self->pictures[0], *b = self->pictures[1];
-    if (!is_seen(&self->labels, a, 0, x, y) && !is_seen(&self->labels, b, 1, x, y))
+    const Picture *const *pictures = labels->pictures;
+    if (!is_seen(labels, 0, x, y) && !is_seen(labels, 1, x, y))
         return;
-    sums[picture_rows_equal(a, b, y, x, 1) ? EQUAL_PIXELS
-         : touches_background(self, x, y)  ? RIM_PIXELS
-                                           : OTHER_PIXELS]++;
+    sums[picture_rows_equal(pictures[0], pictures[1], y, x, 1) ? EQUAL_PIXELS
+         : touches_background(labels, x, y)                    ? RIM_PIXELS
+                                                               : OTHER_PIXELS]++;
 }
 
 static void count_background(const void *context, int y, double *sums)
 {
-    const Backgrounds *self = context;
-    for (int x = 0; x < self->labels.width; x++)
-        count_background_at(self, x, y, sums);
+    const Labels *labels = context;
+    for (int x = 0; x < labels->width; x++)
+        count_background_at(labels, x, y, sums);
 }
 
-/* Whether it is worth while to ask all pixels. */
-static bool may_be_background(const Backgrounds *self, const Samples *samples)
+/* Returns true if the samples do not exclude the background: then all pixels are counted. */
+static bool may_be_background(const Labels *labels, const Samples *samples)
 {
     double sums[BACKGROUND_SUMS] = {0};
     for (int i = 0; i < samples->n; i++)
-        count_background_at(self, samples->at[i].x, samples->at[i].y, sums);
+        count_background_at(labels, samples->at[i].x, samples->at[i].y, sums);
     return sums[OTHER_PIXELS] <= 2 + samples->n / 50;
 }
 
 /* "(12, 30, 41)" */
-static void describe_background(const Labels *labels, int side, int channels, char out[32])
+static void describe_background(const Labels *labels, int side, char out[32])
 {
     const uint16_t *codes = labels->background[side];
-    if (channels == 1)
+    if (labels->pictures[side]->channels == 1)
         snprintf(out, 32, "%u", codes[0]);
     else
         snprintf(out, 32, "(%u, %u, %u)", codes[0], codes[1], codes[2]);
 }
 
-static void say_background(const Backgrounds *self, const double *sums, Sentence *out)
+static void say_background(const Labels *labels, const double *sums, Sentence *out)
 {
     char colors[2][32];
     if (sums[EQUAL_PIXELS] == 0 || 4 * sums[EQUAL_PIXELS] < sums[RIM_PIXELS] ||
         50 * sums[OTHER_PIXELS] > sums[EQUAL_PIXELS])
         return;
     for (int side = 0; side < 2; side++)
-        describe_background(&self->labels, side, self->pictures[side]->channels, colors[side]);
+        describe_background(labels, side, colors[side]);
     snprintf(out->text, out->size,
              "only the background color differs (and pixels that blend with it at outlines): %s in "
              "A, %s in B",
@@ -117,25 +111,26 @@ static bool have_backgrounds_unlike(const Labels *labels, int channels)
 Status cause_background(const Picture *a, const Picture *b, const Samples *samples, Sentence *out,
                         Err *err)
 {
-    Backgrounds self = {.pictures = {a, b}, .labels = labels_from_background(a, b)};
+    const Labels labels = labels_from_background(a, b);
     double sums[BACKGROUND_SUMS] = {0};
-    if (!have_backgrounds_unlike(&self.labels, a->channels) || !may_be_background(&self, samples))
+    if (!have_backgrounds_unlike(&labels, a->channels) || !may_be_background(&labels, samples))
         return STATUS_OK;
-    TRY(rows_sum(a->height, count_background, &self, sums, BACKGROUND_SUMS, err));
-    say_background(&self, sums, out);
+    TRY(rows_sum(a->height, count_background, &labels, sums, BACKGROUND_SUMS, err));
+    say_background(&labels, sums, out);
     return STATUS_OK;
 }
 
 /* ---- one thing missing ----------------------------------------------------------------------- */
 
-/* Pixels seen on one side only, and what side-neighbours that are not such pixels show there. */
+/* The pixels that show something on one side only: their number and bounding box. `rim` counts
+ * their neighbours (above, below, left, right) that are no such pixels, `background` those of them
+ * that show the background. */
 typedef struct Lack {
     size_t pixels, rim, background;
     int left, top, right, bottom;
 } Lack;
 
-static void add_lack(const Labels *labels, const Picture *const pictures[2], int side, int x, int y,
-                     Lack *lack)
+static void add_lack(const Labels *labels, int side, int x, int y, Lack *lack)
 {
     static const int steps[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
     lack->pixels++;
@@ -145,37 +140,35 @@ static void add_lack(const Labels *labels, const Picture *const pictures[2], int
     lack->bottom = y;
     for (int i = 0; i < 4; i++) {
         int u = x + steps[i][0], v = y + steps[i][1];
-        if (u < 0 || v < 0 || u >= labels->width || v >= labels->height)
+        if (!has_pixel(labels->pictures[side], u, v))
             continue;
-        bool here = is_seen(labels, pictures[side], side, u, v);
-        bool lacking = here && !is_seen(labels, pictures[!side], !side, u, v);
+        bool here = is_seen(labels, side, u, v);
+        bool lacking = here && !is_seen(labels, !side, u, v);
         lack->rim += !lacking;
         lack->background += !here;
     }
 }
 
-/* What side `side` shows and the other does not. */
-static Lack find_lack(const Labels *labels, const Picture *const pictures[2], int side)
+/* Finds the pixels that show something on side `side` only. */
+static Lack find_lack(const Labels *labels, int side)
 {
     Lack lack = {.left = labels->width, .top = labels->height};
     for (int y = 0; y < labels->height; y++)
         for (int x = 0; x < labels->width; x++)
-            if (is_seen(labels, pictures[side], side, x, y) &&
-                !is_seen(labels, pictures[!side], !side, x, y))
-                add_lack(labels, pictures, side, x, y, &lack);
+            if (is_seen(labels, side, x, y) && !is_seen(labels, !side, x, y))
+                add_lack(labels, side, x, y, &lack);
     return lack;
 }
 
 static void say_lack(const Picture *a, const Picture *b, const CompareResult *result, Sentence *out)
 {
-    const Picture *const pictures[2] = {a, b};
     const Labels labels = labels_from_background(a, b);
     const size_t differing = result_count(result, MEASURE_DIFFERING_PIXELS);
     if (20 * (result->values[MEASURE_UNCOMMON_PIXELS] + result->values[MEASURE_SETTLED_PIXELS]) <
         19 * (double)differing)
         return; /* most of what differs is in both */
     for (int side = 0; side < 2 && labels.source == LABELS_BACKGROUND && !*out->text; side++) {
-        Lack lack = find_lack(&labels, pictures, side);
+        Lack lack = find_lack(&labels, side);
         bool one = 20 * result->values[MEASURE_LARGEST_REGION] >= 19 * (double)lack.pixels;
         bool only = 20 * lack.pixels >= 19 * differing;
         int sides = (lack.left == 0) + (lack.top == 0) + (lack.right == labels.width - 1) +
@@ -189,7 +182,8 @@ static void say_lack(const Picture *a, const Picture *b, const CompareResult *re
     }
 }
 
-/* Likewise where ids tell the segments: one is missing, and it covers what differs. */
+/* Names a segment that is missing or extra, if ids are known and it covers nearly all that differs.
+ */
 static void say_missing_segment(const CompareResult *result, Sentence *out)
 {
     const size_t differing = result_count(result, MEASURE_DIFFERING_PIXELS);
@@ -208,7 +202,7 @@ static void say_missing_segment(const CompareResult *result, Sentence *out)
 
 /* ---- outlines -------------------------------------------------------------------------------- */
 
-/* The largest difference of a channel among a pixel and its neighbours, levels. */
+/* Returns the largest range of a channel over a pixel and its 8 neighbours, in levels. */
 static int contrast(const Picture *picture, int x, int y)
 {
     int largest = 0;
@@ -222,20 +216,24 @@ static int contrast(const Picture *picture, int x, int y)
             }
         largest = high - low > largest ? high - low : largest;
     }
-    return picture->bits == 8 ? largest : largest / 257;
+    return largest / codes_per_level(picture);
 }
 
+/* LEVELS: contrast from which on a pixel is at an outline. SLIGHT: differences up to this many
+ * levels do not count. BLOCK: pixels that are compared at once. Reasons for the numbers are not
+ * recorded. */
 enum { LEVELS = 32, SLIGHT = 2, BLOCK = 64 };
 
-/* Pixels that differ by more than SLIGHT, at edges and off them, and others off edges and the
- * background, of which CHANGED_PIXELS differ at all. */
+/* Counts of pixels. AT_EDGES and OFF_EDGES differ by more than SLIGHT, at outlines and elsewhere.
+ * INNER_PIXELS are all other pixels that are neither at outlines nor background; CHANGED_PIXELS are
+ * those of them that differ at all. */
 enum { AT_EDGES, OFF_EDGES, INNER_PIXELS, CHANGED_PIXELS, OUTLINE_SUMS };
 
 typedef struct OutlineCounts {
     const Picture *a, *b;
     Labels labels;
     int slight;    /* codes */
-    double enough; /* when a row has this many inner pixels the rest of it is not looked at */
+    double enough; /* a row is not read further once it has this many inner pixels */
 } OutlineCounts;
 
 static bool is_edge(const OutlineCounts *self, int x, int y)
@@ -273,14 +271,14 @@ static void count_inner(const void *context, int y, double *sums)
     const OutlineCounts *self = context;
     bool known = self->labels.source == LABELS_BACKGROUND;
     for (int x = 0; x < self->a->width && sums[INNER_PIXELS] < self->enough; x++) {
-        bool inner = (!known || is_seen(&self->labels, self->a, 0, x, y)) &&
-                     is_slight(self, x, y) && !is_edge(self, x, y);
+        bool inner = (!known || is_seen(&self->labels, 0, x, y)) && is_slight(self, x, y) &&
+                     !is_edge(self, x, y);
         sums[INNER_PIXELS] += inner;
         sums[CHANGED_PIXELS] += inner && codes_off(self, x, y) > 0;
     }
 }
 
-/* Whether it is worth while to ask all pixels. */
+/* Returns true if the samples do not exclude outlines: then all pixels are counted. */
 static bool may_be_outlines(const OutlineCounts *self, const Samples *samples)
 {
     int at_edges = 0, off = 0;
@@ -296,7 +294,7 @@ static Status say_outlines(const Picture *a, const Picture *b, const Samples *sa
     OutlineCounts self = {.a = a,
                           .b = b,
                           .labels = labels_from_background(a, b),
-                          .slight = a->bits == 8 ? SLIGHT : 257 * SLIGHT};
+                          .slight = SLIGHT * codes_per_level(a)};
     double sums[OUTLINE_SUMS] = {0};
     if (!may_be_outlines(&self, samples))
         return STATUS_OK;
@@ -316,20 +314,21 @@ static Status say_outlines(const Picture *a, const Picture *b, const Samples *sa
 
 /* ---- shading --------------------------------------------------------------------------------- */
 
-/* Of the light that B has more of than A, pixel by pixel: the squares, the part of them that lies
- * along white and along the color of the pixel in A, what no more, or no less, of both makes, and
- * what the rounding of codes makes. */
+/* Sums over pixels of the light that B has in addition to A: its square; the parts of the square
+ * along white and along the pixel's color in A; the rest beside both [rest_of]; the part that
+ * rounding of codes explains. */
 typedef struct LightSums {
     double squares, white, own, rest, rounding;
-    /* Of colored pixels that differ by more than rounding: */
+    /* Over colored pixels that differ by more than rounding: */
     double moments[3][3];    /* products of the channels' light, summed */
-    double colored_rounding; /* what the rounding of their codes makes */
-    /* Of those so colored that light midway between white and their own is neither: */
+    double colored_rounding; /* the part of their squares that rounding explains */
+    /* Over pixels that are so colored that white light and light of their own color can be told
+     * apart: */
     double telling;       /* squares */
-    double pixels, plain; /* counts: all; in white or own light alone */
+    double pixels, plain; /* numbers: all; those with light of only one of the two colors */
 } LightSums;              /* of doubles alone, so that rows_sum adds them up */
 
-/* The square of what is left of `more` beside `along`. */
+/* Returns the square of the component of `more` that is perpendicular to `along`. */
 static double beside(const double more[3], const double along[3])
 {
     double squares = 0, product = 0, length = 0;
@@ -341,8 +340,9 @@ static double beside(const double more[3], const double along[3])
     return length > 0 ? squares - product * product / length : squares;
 }
 
-/* The square of what is left of `more` beside white and `color`, both of which count with the same
- * sign: within the angle between them, or against it, only what is square to both is left. */
+/* Returns the square of the part of `more` that is no sum of white and `color` with factors of
+ * equal sign. Such sums fill the angle between both and its opposite. Within it, the rest is
+ * perpendicular to their plane; elsewhere, it is the distance to the nearer of the two lines. */
 static double rest_of(const double more[3], const double color[3])
 {
     static const double white[3] = {1, 1, 1};
@@ -362,7 +362,7 @@ static double rest_of(const double more[3], const double color[3])
     return fmin(beside(more, white), beside(more, color));
 }
 
-/* The variance of the light of a code that was rounded. */
+/* Returns the variance of the light of a code due to rounding: that of a uniform distribution. */
 static double variance_of_code(const Plane *table, int code)
 {
     int low = code > 0 ? code - 1 : 0, high = code + 1 < table->width ? code + 1 : code;
@@ -430,7 +430,7 @@ static Status sum_light(const Picture *a, const Picture *b, LightSums *all, Err 
     *all = (LightSums){0};
     if (a->channels != 3)
         return STATUS_OK;
-    TRY(light_of_codes(a, &self.table, err));
+    TRY(linear_of_codes(a, &self.table, err));
     Status status =
         rows_sum(a->height, add_row_light, &self, (double *)all, sizeof *all / sizeof(double), err);
     plane_release(&self.table);
@@ -444,9 +444,9 @@ static bool has_equal_outlines(const CompareResult *result)
            result->classes[PIXEL_WRONG_SEGMENT] == 0;
 }
 
-/* Whether the light of colored pixels is most of it and has one color, the lamp's, but for a
- * two-hundredth and for rounding. The light that another curve of tones takes from surfaces that
- * are nearly grey is nearly white, too, but its color is another at each brightness. */
+/* Returns true if the light that differs has one color, that of the lamp, except for 1/200 and for
+ * rounding, and most of it is at colored pixels. Another tone curve on nearly grey surfaces also
+ * changes nearly white light, but its color varies with the brightness. */
 static bool has_one_color(const LightSums *light)
 {
     enum { STEPS = 8 };
@@ -469,22 +469,23 @@ static bool has_one_color(const LightSums *light)
     return all - largest <= 0.005 * all + light->colored_rounding;
 }
 
-/* Whether most of the light is of pixels that tell white from their own color, and two in three of
- * them have light of one or the other. */
+/* Returns true if most of the light is at pixels that tell white from their own color, and two
+ * thirds of these pixels have light of only one of the two. */
 static bool is_plain(const LightSums *light)
 {
     return 2 * light->telling >= light->squares && 3 * light->plain >= 2 * light->pixels;
 }
 
-/* Highlights are what white light explains, and more light of the surfaces' own colors does not.
- */
+/* States highlights if white light explains the difference and light of the surfaces' own colors
+ * does not; else shading. */
 static void say_shading(const CompareResult *result, const LightSums *light, Sentence *out)
 {
     bool highlights = light->white > 0.95 * light->squares && light->own < 0.95 * light->squares;
     bool certain = highlights ? has_one_color(light) : is_plain(light);
     if (!certain)
         return;
-    double all = sqrt(result->values[MEASURE_DIFFERING_PIXELS]); /* sigmas, if all go one way */
+    double all =
+        sqrt(result->values[MEASURE_DIFFERING_PIXELS]); /* the sigmas if all pixels get brighter */
     snprintf(out->text, out->size,
              "only %s, by up to %.4g levels on %.3g %% of the pixels (B is %s); the outlines %s",
              highlights ? "highlights differ" : "shading differs", result->values[MEASURE_MAX_ABS],

@@ -1,5 +1,6 @@
-/* Each case is a picture of its own, so that processors share them. A fault that changes no code,
- * as a shift of a hundredth of a pixel in flat color, is none, and is counted nowhere. */
+/* Each case, one fault of one size, is planted in a picture of its own, so threads compute the
+ * cases independently. A fault that changes no code, such as a small shift of a flat picture, is
+ * not a case that exists, and is not counted. */
 #include "compare/cause/power.h"
 
 #include "compare/measures/perception.h"
@@ -15,7 +16,7 @@
  * pixelmatch marks, or the pixels whose difference exceeds `levels`. */
 typedef struct PublishedRule {
     const char *name;   /* name of the project: "Blender" */
-    const char *says;   /* the rule in words */
+    const char *says;   /* a sentence that states the rule, for JSON */
     double pixelmatch;  /* threshold of pixelmatch, which may mark no pixel; NAN: the members below
                          * define the rule */
     double levels, ppm; /* at most `ppm` parts per million of the pixels may differ by more than
@@ -172,7 +173,7 @@ static const char *rule_name(const Power *power, int rule)
     return rule ? published_rules[rule - 1].name : power->name;
 }
 
-/* The cases of one fault follow each other. */
+/* Returns the end of the cases of one fault, which are adjacent. */
 static size_t end_of(const Power *power, size_t first)
 {
     size_t end = first;
@@ -181,7 +182,7 @@ static size_t end_of(const Power *power, size_t first)
     return end;
 }
 
-/* From which size on a rule finds the fault. */
+/* Appends the cell of power_text for a rule and a fault. */
 static void put_found(const Power *power, size_t first, size_t end, int rule, Text *out)
 {
     char cell[32] = "-";

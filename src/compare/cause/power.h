@@ -9,7 +9,8 @@
 #include "compare/cause/picture_fault.h"
 #include <jansson.h>
 
-/* The rules that other projects publish for their own tests, and the one that is measured. */
+/* Numbers of rules: those that other projects publish for their own tests, and all rules with the
+ * measured one. */
 enum { PUBLISHED_RULES = 5, POWER_RULES = 1 + PUBLISHED_RULES };
 
 /* The rule whose power is measured. */

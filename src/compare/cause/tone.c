@@ -1,8 +1,10 @@
-/* Brighter, darker, of another gamma: one curve that takes every code of A to the code of B,
- * whatever its pixel. Each curve but the last, which is measured, has at most one number, which
- * sums over the pixels give; of those that fit the samples the best is named, if it fits all
- * pixels: 49 of 50 codes that are off by more than a level come within one, and no more are driven
- * away. What is white in either picture may be clipped, and is not asked. */
+/* Tests whether one tone curve maps every code of A to the code of B: brighter, darker, another
+ * gamma.
+ *
+ * Each kind of curve except the last has at most one number, which follows from sums over the
+ * pixels. The last kind is measured: the mean code in B of each code in A. The curve that fits the
+ * samples best is the cause if it fits all pixels: for 50 codes that differ by more than a level,
+ * it leaves at most one such code. White codes may be clipped, so they are left out. */
 #include "compare/cause/guesses.h"
 
 #include <math.h>
@@ -24,25 +26,25 @@ typedef enum CurveKind {
     KINDS
 } CurveKind;
 
-/* Of codes that are neither black nor white, where they may be clipped, in either picture. Levels
- * are parts of 1 here. */
+/* Sums over the codes that are neither black nor white, and so not clipped, in either picture.
+ * Index 0 is A, index 1 is B. Levels are in [0, 1] in this file. */
 typedef struct ToneSums {
-    double n, linear[2], level[2], log_ab, log_aa; /* of A, of B */
+    double n, linear[2], level[2], log_ab, log_aa;
 } ToneSums;
 
-/* Of each code of a picture, what it means. */
+/* Tables over the codes of a picture. All arrays are one block, which `linear` owns. */
 typedef struct Meaning {
     int n;
-    float *linear;           /* owned, with all others; parts of 1 */
-    float *level;            /* sRGB's code over its largest */
-    float *log;              /* of the level */
-    float *predicted[KINDS]; /* the level that each curve gives */
+    float *linear;           /* linear color */
+    float *level;            /* level in sRGB */
+    float *log;              /* logarithm of the level */
+    float *predicted[KINDS]; /* the level that each kind of curve gives */
 } Meaning;
 
 static Status meaning_init(Meaning *meaning, const Picture *picture, Err *err)
 {
     Plane linear;
-    TRY(light_of_codes(picture, &linear, err));
+    TRY(linear_of_codes(picture, &linear, err));
     const int n = linear.width;
     Status status =
         mem_calloc(&meaning->linear, (size_t)n * (3 + KINDS), sizeof(float), "codes", err);
@@ -64,7 +66,7 @@ static Status meaning_init(Meaning *meaning, const Picture *picture, Err *err)
 
 /* ---- curves ---------------------------------------------------------------------------------- */
 
-/* Returns the number of a curve that fits sums over pixels best; of a curve without a number, 1. */
+/* Returns the number of a curve that fits the sums best; 1 for a curve without a number. */
 static double number_of(CurveKind kind, const ToneSums *sums)
 {
     switch (kind) {
@@ -86,7 +88,7 @@ static double number_of(CurveKind kind, const ToneSums *sums)
     }
 }
 
-/* Returns the level that a curve with the number `p` makes of a code of A. */
+/* Returns the level that a curve with the number `p` gives for a code of A. */
 static float level_of(CurveKind kind, float linear, float level, float p)
 {
     switch (kind) {
@@ -115,6 +117,7 @@ static float level_of(CurveKind kind, float linear, float level, float p)
     }
 }
 
+/* How the number of a curve appears in its sentence. */
 typedef enum Relation { ALONE, TIMES, PLUS, POWER } Relation;
 
 /* "B is A `how`", of curves with a number "made brighter: its `what` are 1.2 times those of A". */
@@ -160,24 +163,24 @@ static void say(const Curve *curve, double number, Sentence *out)
 
 /* ---- fit ------------------------------------------------------------------------------------- */
 
-/* Codes in question: those of samples, or all. */
+/* The codes that are compared: those of the samples, or all. */
 typedef struct Codes {
     const Picture *a, *b;
     const Samples *samples; /* NULL: all */
     size_t n;
-    int skipped[3]; /* a code of A of each channel that is not asked; -1: none */
+    int skipped[3]; /* per channel: a code of A that is left out; -1: none */
 } Codes;
 
 static Codes codes_of(const Picture *a, const Picture *b, const Samples *samples)
 {
-    return (Codes){a, b, samples, n_asked(a, samples) * (size_t)a->channels, {-1, -1, -1}};
+    return (Codes){a, b, samples, sampled_pixels(a, samples) * (size_t)a->channels, {-1, -1, -1}};
 }
 
 static void take(const Codes *codes, size_t i, int *in_a, int *in_b)
 {
     const size_t channels = (size_t)codes->a->channels;
     const size_t at =
-        codes->samples ? asked_code(codes->a, codes->samples, i / channels) + i % channels : i;
+        codes->samples ? sampled_code(codes->a, codes->samples, i / channels) + i % channels : i;
     *in_a = picture_code(codes->a, at);
     *in_b = picture_code(codes->b, at);
 }
@@ -195,7 +198,7 @@ static ToneSums sum_codes(const Meaning *meaning, const Codes *codes)
         sums.linear[1] += (double)meaning->linear[b];
         sums.level[0] += (double)meaning->level[a];
         sums.level[1] += (double)meaning->level[b];
-        /* The rounding of a code moves its logarithm by the less, the larger the code is. */
+        /* Rounding changes the logarithm of a small code most. */
         double weight = (double)(meaning->level[a] * meaning->level[a]);
         sums.log_ab += weight * (double)(meaning->log[a] * meaning->log[b]);
         sums.log_aa += weight * (double)(meaning->log[a] * meaning->log[a]);
@@ -213,7 +216,8 @@ static double predict(Meaning *meaning, CurveKind kind, const ToneSums *sums)
     return number;
 }
 
-/* Codes that are off by more than a level, before and after a curve, and what is left, squared. */
+/* Numbers of codes that differ by more than a level before and after a curve; sum of squared
+ * differences after it. */
 typedef struct Fit {
     size_t beyond, misfits;
     double squares;
@@ -242,7 +246,8 @@ static bool fits(const Fit *fit)
     return fit->beyond > 0 && 50 * fit->misfits <= fit->beyond;
 }
 
-/* The curve that fits the samples best, without those in `tried`; -1 when none fits. */
+/* Returns the kind of curve that fits the samples best, of those not in `tried`; -1 if none fits.
+ */
 static int best_curve(Meaning *meaning, const Codes *samples, const bool tried[KINDS])
 {
     const ToneSums sums = sum_codes(meaning, samples);
@@ -260,7 +265,7 @@ static int best_curve(Meaning *meaning, const Codes *samples, const bool tried[K
     return best;
 }
 
-/* The curve of the means that codes of A have in B. */
+/* Measures the last curve: per code of A, the mean level in B. */
 static Status measure_curve(Meaning *meaning, const Codes *all, Err *err)
 {
     double *sum;
@@ -278,22 +283,21 @@ static Status measure_curve(Meaning *meaning, const Codes *all, Err *err)
     return STATUS_OK;
 }
 
-/* Whether one curve can be told from surfaces that are lit otherwise: those of other colors then
- * have other curves in each channel. */
+/* Returns true if enough samples are colored. In a grey picture, another lighting of the surfaces
+ * looks like a tone curve. On colored surfaces, it has another curve in each channel. */
 static bool has_colors(const Picture *picture, const Samples *samples)
 {
     enum { LEVELS = 32, ENOUGH = 12 };
     int colored = 0;
     for (int i = 0; i < samples->n && picture->channels == 3; i++) {
-        size_t first = first_code(picture, samples->at[i].x, samples->at[i].y);
-        int red = picture_code(picture, first), green = picture_code(picture, first + 1);
-        int blue = picture_code(picture, first + 2);
+        const int x = samples->at[i].x, y = samples->at[i].y, red = code_at(picture, x, y, 0);
+        const int green = code_at(picture, x, y, 1), blue = code_at(picture, x, y, 2);
         colored += abs(red - green) >= LEVELS || abs(green - blue) >= LEVELS;
     }
     return colored >= ENOUGH;
 }
 
-/* Whether samples of one code in A have nearly one code in B. */
+/* Returns true if samples with equal codes in A have nearly equal codes in B. */
 static bool may_be_curve(const Codes *few)
 {
     enum { CODES = 256, APART = 4 };
@@ -315,8 +319,9 @@ static bool may_be_curve(const Codes *few)
     return 10 * apart <= few->n;
 }
 
-/* Any curve, of codes of 8 bits, of which a picture has enough of each; the first pixel's, as of a
- * background, which would outvote all others, are left out. */
+/* Tests the measured curve. Only pictures of 8 bits have enough pixels of each code. The codes of
+ * the first pixel are left out: they are those of a background, which may be most of the picture.
+ */
 static Status find_any_curve(Meaning *meaning, Codes *few, Codes *all, Sentence *out, Err *err)
 {
     if (meaning->n > 256 || !has_colors(all->a, few->samples) ||

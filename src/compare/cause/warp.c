@@ -1,14 +1,15 @@
-/* Moved by parts of pixels, or blurred: questions about the signal that the pixels sample, asked of
- * patches about pixels that differ, so that they cost the same for pictures of any size. Both sides
- * are smoothed first (a binomial filter of standard deviation 1.4 pixels), since what two renderers
- * make of an outline within a pixel says nothing about where it lies.
+/* Tests whether B is A translated by fractions of a pixel, or blurred.
  *
- * A shift is found by Gauss-Newton on the squares of what is left of B when A, moved by it, is
- * taken away [Lucas and Kanade 1981]; A is moved by cubic interpolation. A blur is one number,
- * found by golden section. Either is named when it leaves less than a twenty-fifth of the squares,
- * so that a fifth of the difference at most is something else, and when nothing contradicts it: the
- * halves of the picture have one displacement, each channel keeps its tones, what is flat keeps its
- * codes, and no part of the picture that should have changed is as it was. */
+ * Both changes are fitted to patches around pixels that differ, so the fit costs the same for
+ * pictures of any size. Both pictures are first smoothed by a binomial filter of standard deviation
+ * 1.4 pixels, because renderers filter an outline within a pixel in different ways.
+ *
+ * A translation is found by Gauss-Newton iterations that minimise the sum of squares of
+ * B - (A translated by cubic interpolation) [Lucas and Kanade 1981]. A blur has one number, its
+ * standard deviation, which golden section search finds. A change is the cause if it leaves less
+ * than 1/25 of the sum of squares, and if nothing contradicts it: halves of the picture have the
+ * same displacement, each channel keeps its tones, flat parts keep their codes, and every part of
+ * the picture that the change affects has changed. */
 #include "compare/cause/guesses.h"
 
 #include <limits.h>
@@ -17,26 +18,33 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Up to PATCHES squares of SIDE x SIDE pixels. Only the CORE x CORE pixels in the middle are
+ * compared; the MARGIN holds the pixels that filters need. Reasons for the numbers are not
+ * recorded. */
 enum { PATCHES = 64, CORE = 32, MARGIN = 12, SIDE = CORE + 2 * MARGIN, CELLS = SIDE * SIDE };
-/* What of a pixel is looked at: the mean of its channels, a channel, or, from CHROMA on, what a
- * channel has beside that mean. */
+/* The value of a pixel that is compared: the mean of its channels, a channel, or, from CHROMA on,
+ * the channel minus this mean. */
 enum { ALL_CHANNELS = -1, CHROMA = 3 };
-/* Pixels so near to an edge of the picture are mixed with what was made up beyond it. */
+/* Pixels this near to an edge of the picture are not compared, because filters mix them with values
+ * beyond the edge. */
 enum { RIM = 6 };
 
-/* The patches of both pictures, those of A moved by whole pixels. */
+/* The patches of both pictures. Those of A are translated by `start`. */
 typedef struct Patches {
     const Picture *a, *b;
     Shift start;
-    const float *levels; /* of each code, parts of 1: of light, or of the code itself */
-    int channel;         /* what is looked at: ALL_CHANNELS, a channel, CHROMA + a channel */
+    const float *levels; /* per code: its value in [0, 1], linear light or code / largest code */
+    int channel; /* the value that is compared: ALL_CHANNELS, a channel, CHROMA + a channel */
     int n;
-    double left;                       /* the least part of the squares that a guess has left */
-    PixelPlace at[PATCHES];            /* pixels of B; the first of each patch */
-    float *before, *from, *to, *moved; /* owned; A in its place, A moved, B, work: CELLS a patch */
+    double left;            /* smallest fraction of the sum of squares that a change has left */
+    PixelPlace at[PATCHES]; /* position in B of the first pixel of each patch */
+    /* CELLS values per patch: A, A translated by `start`, B, and A or B after a change. `before` is
+     * owned, the others point into it. */
+    float *before, *from, *to, *moved;
 } Patches;
 
-/* A channel of a pixel, or the mean of all, from 0 to 255, or the difference of both. */
+/* Returns the value of a pixel that is compared, in levels. Pixels beyond an edge are those at it.
+ */
 static float level_at(const Picture *picture, int x, int y, int channel, const float *levels)
 {
     x = x < 0 ? 0 : x < picture->width ? x : picture->width - 1;
@@ -53,8 +61,8 @@ static float level_at(const Picture *picture, int x, int y, int channel, const f
     return 255 * (levels[picture_code(picture, i + (size_t)(channel - CHROMA))] - mean);
 }
 
-/* Filters rows, then columns; `taps` are the weights of cells `first`, first + 1, ... from each;
- * cells that reach over the edge of the patch keep their values. */
+/* Filters the rows of a patch, then the columns. taps[k] is the weight of the cell at distance
+ * first + k. Cells whose filter would reach beyond the patch keep their values. */
 static void filter(const float *in, float *out, const float *taps, int first, int n)
 {
     float rows[CELLS];
@@ -91,7 +99,7 @@ static void load(const Patches *patches, const Picture *picture, int left, int t
     filter(levels, out, binomial, -4, 9);
 }
 
-/* Fills the patches with what their channel shows. */
+/* Fills all patches with the smoothed values of patches->channel. */
 static void load_patches(Patches *patches)
 {
     const Shift *start = &patches->start;
@@ -122,7 +130,8 @@ static Status patches_init(Patches *patches, const Samples *samples, Err *err)
     return STATUS_OK;
 }
 
-/* Whether a cell counts: in the core, and in both pictures, away from their edges. */
+/* Returns true if a cell is compared: it is in the core, and away from the edges of both pictures.
+ */
 static bool counts(const Patches *patches, int patch, int x, int y)
 {
     if (x < MARGIN || x >= SIDE - MARGIN || y < MARGIN || y >= SIDE - MARGIN)
@@ -134,7 +143,7 @@ static bool counts(const Patches *patches, int patch, int x, int y)
            t < bottom;
 }
 
-/* Steps through all cells that count, patch after patch; false behind the last. Begin with
+/* Moves *cell to the next cell that is compared. Returns false after the last one. Begin with
  * NO_CELL. */
 enum { NO_CELL = -1 };
 
@@ -148,7 +157,7 @@ static bool next_cell(const Patches *patches, int *cell)
     return false;
 }
 
-/* The sum of squares between two sides. */
+/* Returns the sum of squared differences of two sets of patches. */
 static double squares(const Patches *patches, const float *side, const float *other)
 {
     double sum = 0;
@@ -161,7 +170,8 @@ static double squares(const Patches *patches, const float *side, const float *ot
 
 /* ---- moved ----------------------------------------------------------------------------------- */
 
-/* A, moved by (dx, dy), each in (-MARGIN / 2, MARGIN / 2): cubic interpolation [Keys 1981]. */
+/* Sets the four weights of cubic interpolation [Keys 1981] for a translation by d pixels, and the
+ * distance of the first of them. d is in (-MARGIN / 2, MARGIN / 2). */
 static void weigh_cubic(double d, float taps[4], int *first)
 {
     double whole = floor(d), t = 1 - (d - whole);
@@ -196,7 +206,7 @@ static void move(Patches *patches, const double d[2])
                         across, x_first, down, y_first);
 }
 
-/* Parts of the picture that a displacement is asked of. */
+/* The parts of the picture whose displacements are compared. */
 typedef enum Part { PART_ALL, PART_LEFT, PART_RIGHT, PART_TOP, PART_BOTTOM, PARTS } Part;
 
 static bool is_in_part(const Patches *patches, int cell, Part part)
@@ -208,8 +218,8 @@ static bool is_in_part(const Patches *patches, int cell, Part part)
            (part == PART_TOP && top) || (part == PART_BOTTOM && !top);
 }
 
-/* The step of Gauss-Newton from where the patches are moved to, by the cells of a part; false where
- * they have no gradients. */
+/* Computes a Gauss-Newton step for patches->moved, from the cells in a part of the picture. Returns
+ * false if these cells have no gradients. */
 static bool find_step(const Patches *patches, Part part, double step[2])
 {
     double xx = 0, xy = 0, yy = 0, xr = 0, yr = 0;
@@ -249,8 +259,9 @@ static bool explains(Patches *patches, double before, double after)
     return before > 0 && 25 * after < before;
 }
 
-/* What is left of the squares when what a slight blur does, a multiple of the second derivatives,
- * is taken away from the rest, too; the multiple in *blurred. */
+/* Returns the sum of squares that is left if the translated patches may also be blurred slightly. A
+ * slight blur adds a multiple of the Laplacian. *blurred receives the best multiple; it is negative
+ * if B is sharper. */
 static double left_by_blur(const Patches *patches, double *blurred)
 {
     double rest_rest = 0, rest_bend = 0, bend_bend = 0;
@@ -266,7 +277,7 @@ static double left_by_blur(const Patches *patches, double *blurred)
     return rest_rest - *blurred * rest_bend;
 }
 
-/* Never minus zero. */
+/* Rounds to multiples of 1 / unit. Adding 0 turns -0 into 0. */
 static double round_to(double value, double unit)
 {
     return round(value * unit) / unit + 0.0;
@@ -274,6 +285,7 @@ static double round_to(double value, double unit)
 
 /* ---- blurred --------------------------------------------------------------------------------- */
 
+/* Largest standard deviation of a blur, pixels: MARGIN holds three of them, and the smoothing. */
 static const double most_sigma = 2.5;
 
 static void blur(Patches *patches, const float *side, double sigma)
@@ -289,50 +301,28 @@ static void blur(Patches *patches, const float *side, double sigma)
                2 * REACH + 1);
 }
 
-static double off_when_blurred(Patches *patches, const float *side, const float *other,
-                               double sigma)
+/* A side that is blurred, and the side that it is compared with. */
+typedef struct BlurSearch {
+    Patches *patches;
+    const float *side, *other;
+} BlurSearch;
+
+/* Returns the sum of squares that is left when the side is blurred. */
+static double off_when_blurred(void *context, double sigma)
 {
-    blur(patches, side, sigma);
-    return squares(patches, patches->moved, other);
+    const BlurSearch *search = context;
+    blur(search->patches, search->side, sigma);
+    return squares(search->patches, search->patches->moved, search->other);
 }
 
-/* The standard deviation that brings `side` nearest to `other`, what is left in *after. */
-static double best_sigma(Patches *patches, const float *side, const float *other, double *after)
-{
-    enum { STEPS = 11 };
-    const double golden = 0.6180339887498949;
-    double low = 0.05, high = most_sigma;
-    double x[2] = {high - golden * (high - low), low + golden * (high - low)};
-    double off[2] = {off_when_blurred(patches, side, other, x[0]),
-                     off_when_blurred(patches, side, other, x[1])};
-    for (int i = 0; i < STEPS; i++) {
-        int worse = off[0] < off[1];
-        *(worse ? &high : &low) = x[worse];
-        x[worse] = x[!worse];
-        off[worse] = off[!worse];
-        x[!worse] = worse ? high - golden * (high - low) : low + golden * (high - low);
-        off[!worse] = off_when_blurred(patches, side, other, x[!worse]);
-    }
-    *after = fmin(off[0], off[1]);
-    return (low + high) / 2;
-}
+/* ---- is the change the only one, and of the whole picture? ----------------------------------- */
 
-/* Smoothing goes the way of the differences: whether `other` is nearer to `side` when that is
- * blurred a little. */
-static bool is_blurrier(Patches *patches, const float *side, const float *other, double before)
-{
-    return 1.1 * off_when_blurred(patches, side, other, 0.5) < before;
-}
-
-/* ---- nothing but one displacement, or one blur, of the whole picture --------------------------
- */
-
-/* What may have made B of A. */
+/* A change that may have turned A into B. */
 typedef struct Warp {
-    double d[2];   /* displacement of the patches, beside their start, px */
+    double d[2];   /* displacement in addition to Patches.start, px */
     double dx, dy; /* displacement of the picture, px */
     double sigma;  /* standard deviation of a blur, px; 0: a displacement */
-    bool sharper;  /* A is B blurred */
+    bool sharper;  /* the blur turns B into A */
 } Warp;
 
 static void warp(Patches *patches, const Warp *what)
@@ -343,10 +333,11 @@ static void warp(Patches *patches, const Warp *what)
         move(patches, what->d);
 }
 
-/* Whether the straight line B = gain A + offset through the warped patches changes nothing much. */
+/* Returns true if the least squares fit B = gain A + offset of the changed patches is nearly the
+ * identity. */
 static bool has_same_tones(const Patches *patches, const float *other, double slack_gain)
 {
-    const double slack_levels = 0.75; /* of the mean: fractions move it by up to 0.5 */
+    const double slack_levels = 0.75; /* of the mean; rounding changes it by up to 0.5 */
     double n = 0, a = 0, b = 0, aa = 0, ab = 0;
     for (int cell = NO_CELL; next_cell(patches, &cell);) {
         double in_a = (double)patches->moved[cell], in_b = (double)other[cell];
@@ -361,7 +352,7 @@ static bool has_same_tones(const Patches *patches, const float *other, double sl
     return fabs(gain - 1) <= slack_gain && fabs(b - a) <= slack_levels * n;
 }
 
-/* Loads what is to be looked at, and warps it; the side that the warped one is held against. */
+/* Loads the patches of a channel, and applies the change. Returns the patches to compare with. */
 static const float *look_at(Patches *patches, int channel, const Warp *what)
 {
     patches->channel = channel;
@@ -370,8 +361,8 @@ static const float *look_at(Patches *patches, int channel, const Warp *what)
     return what->sharper ? patches->before : patches->to;
 }
 
-/* Whether the colors are as far from grey as they were, all channels together. The tones of a
- * channel do not tell: where things are nearly grey they hide another saturation. */
+/* Returns true if the saturation is the same. The tones of single channels do not show this: in
+ * nearly grey pictures, they hide another saturation. */
 static bool has_same_saturation(Patches *patches, const Warp *what)
 {
     double aa = 0, ab = 0;
@@ -385,8 +376,8 @@ static bool has_same_saturation(Patches *patches, const Warp *what)
     return cause_is_same_saturation(aa, ab);
 }
 
-/* Whether each channel has the same tones. Cubic interpolation of what another interpolation has
- * moved changes the contrast by up to 2 %; a blur is not quite a Gaussian. */
+/* Returns true if each channel keeps its tones. The slack of the gain covers two interpolations,
+ * which change the contrast by up to 2 %, and blurs that are not exactly Gaussian. */
 static bool keeps_tones(Patches *patches, const Warp *what)
 {
     bool whole = what->sigma == 0 && fabs(what->d[0]) < 0.02 && fabs(what->d[1]) < 0.02;
@@ -400,8 +391,8 @@ static bool keeps_tones(Patches *patches, const Warp *what)
     return same;
 }
 
-/* Whether halves of the picture have the same displacement. A picture that is scaled or turned has
- * another in each. */
+/* Returns true if the halves of the picture have the same displacement. A picture that is scaled or
+ * rotated has different ones. */
 static bool is_one_displacement(const Patches *patches)
 {
     const double slack_px = 0.1;
@@ -413,25 +404,17 @@ static bool is_one_displacement(const Patches *patches)
     return true;
 }
 
-/* Sum of the differences of two pixels over the channels, codes; 0 where there is no such pixel. */
-static int pixels_apart(const Picture *a, int x, int y, const Picture *b, int u, int v)
-{
-    int sum = 0;
-    for (int c = 0; c < a->channels && u >= 0 && u < b->width && v >= 0 && v < b->height; c++)
-        sum += abs(code_at(a, x, y, c) - code_at(b, u, v, c));
-    return sum;
-}
-
 enum { GRID = 8 };
 
-/* For each field of a grid over the picture, sums over its pixels. */
+/* Sums over the pixels of each field of a grid over the picture. */
 typedef struct Fields {
     double expected[GRID * GRID]; /* how much A changes over one pixel */
     double found[GRID * GRID];    /* how much B differs from A */
 } Fields;
 
-/* What B should differ by: that of A by n steps, which counts where it is at least `least`, codes
- * summed over the channels, and the part of it that is enough. */
+/* By how much B must differ from A where A changes: at least the fraction `part` of the difference
+ * of A from A translated by n steps. Differences below `least`, codes summed over the channels, do
+ * not count. */
 typedef struct Expected {
     int steps[2][2], n, least;
     double part;
@@ -453,7 +436,8 @@ static void sum_fields(const Patches *patches, const Expected *expected, Fields 
         }
 }
 
-/* Whether B differs from A wherever A changes: a part that stayed as it was contradicts. */
+/* Returns true if B differs from A in every field in which A changes. An unchanged field
+ * contradicts a change of the whole picture. */
 static bool is_everywhere(const Patches *patches, const Expected *expected)
 {
     const double enough = 0.25; /* of the mean, so that a few pixels of a field do not decide */
@@ -498,7 +482,7 @@ static int change_of_move(const Picture *a, int x, int y, double dx, double dy)
 static bool has_unmoved_part(const Patches *patches, double dx, double dy)
 {
     const Picture *a = patches->a;
-    const int clear = a->bits == 8 ? 48 : 48 * 257;
+    const int clear = 48 * codes_per_level(a);
     size_t moved = 0, equal = 0;
     for (int y = 0; y < a->height; y++)
         for (int x = 0; x < a->width; x++)
@@ -509,18 +493,19 @@ static bool has_unmoved_part(const Patches *patches, double dx, double dy)
     return (double)equal > 0.005 * (double)moved;
 }
 
-/* A blur leaves slopes as they are, and edges not. */
+/* Returns true if the blur changed every field. Only edges count: a blur changes edges, not slopes.
+ */
 static bool is_blurred_everywhere(const Patches *patches)
 {
-    const int edge = patches->a->bits == 8 ? 96 : 96 * 257;
+    const int edge = 96 * codes_per_level(patches->a);
     const Expected expected = {.steps = {{1, 0}, {0, 1}}, .n = 2, .least = edge, .part = 0.02};
     return is_everywhere(patches, &expected);
 }
 
-/* Whether no code of a picture is off by more than a level from that at (x, y) so near. */
+/* Returns true if all pixels up to `reach` from (x, y) differ from it by at most a level. */
 static bool is_flat(const Picture *picture, int x, int y, int reach)
 {
-    int level = picture->bits == 8 ? 1 : 257;
+    const int level = codes_per_level(picture);
     for (int v = y - reach; v <= y + reach; v++)
         for (int u = x - reach; u <= x + reach; u++)
             if (pixels_apart(picture, x, y, picture, u, v) > level)
@@ -528,14 +513,14 @@ static bool is_flat(const Picture *picture, int x, int y, int reach)
     return true;
 }
 
-/* Whether B has A's codes where A is flat as far as `reach`: neither a displacement by (dx, dy) nor
- * a blur changes them, but noise and other tones do. */
+/* Returns true if B has the codes of A where A is flat. Neither a displacement by (dx, dy) nor a
+ * blur changes them, but noise and other tones do. */
 static bool keeps_flat_parts(const Patches *patches, int dx, int dy, int reach)
 {
     enum { ASKED = 20000, ENOUGH = 50 };
     const Picture *a = patches->a, *b = patches->b;
     const size_t pixels = (size_t)a->width * (size_t)a->height, step = pixels / ASKED + 1;
-    const int level = a->bits == 8 ? 1 : 257;
+    const int level = codes_per_level(a);
     size_t flat = 0, changed = 0;
     for (size_t i = 0; i < pixels; i += step) {
         int x = (int)(i % (size_t)a->width), y = (int)(i / (size_t)a->width);
@@ -548,7 +533,7 @@ static bool keeps_flat_parts(const Patches *patches, int dx, int dy, int reach)
     return flat < ENOUGH || 20 * changed <= flat;
 }
 
-/* Whether a warp that explains the patches is all that was done, and to the whole picture. */
+/* Returns true if nothing contradicts a change that explains the patches. */
 static bool is_all(Patches *patches, const Warp *what)
 {
     if (what->sigma > 0)
@@ -560,7 +545,7 @@ static bool is_all(Patches *patches, const Warp *what)
            keeps_flat_parts(patches, (int)lround(what->dx), (int)lround(what->dy), 2);
 }
 
-/* ---- guesses --------------------------------------------------------------------------------- */
+/* ---- the two changes ------------------------------------------------------------------------- */
 
 static void try_shift(Patches *patches, Sentence *out)
 {
@@ -591,12 +576,14 @@ static void try_shift(Patches *patches, Sentence *out)
 
 static void try_blur(Patches *patches, Sentence *out)
 {
+    enum { STEPS = 11 };
     const float *sides[2] = {patches->before, patches->to};
     double before = squares(patches, sides[0], sides[1]), after;
     for (int sharper = 0; sharper < 2; sharper++) {
-        if (!is_blurrier(patches, sides[sharper], sides[!sharper], before))
-            continue;
-        double sigma = best_sigma(patches, sides[sharper], sides[!sharper], &after);
+        BlurSearch search = {patches, sides[sharper], sides[!sharper]};
+        if (1.1 * off_when_blurred(&search, 0.5) >= before)
+            continue; /* the other side is the blurred one: a little blur does not help */
+        double sigma = golden_section(off_when_blurred, &search, 0.05, most_sigma, STEPS, &after);
         const Warp found = {.sigma = sigma, .sharper = sharper};
         if (sigma < 0.98 * most_sigma && explains(patches, before, after) &&
             is_all(patches, &found))
@@ -606,24 +593,22 @@ static void try_blur(Patches *patches, Sentence *out)
     }
 }
 
-/* The level, in [0, 1], of every code of `bits` bits: linear light, or code / greatest code. */
-static Status list_levels(int bits, bool linear, float **levels, Err *err)
+/* Makes a table of the fraction code / largest code of each code of 8 or 16 bits. */
+static Status code_table(int bits, float **table, Err *err)
 {
     int n = 1 << bits;
-    TRY(mem_calloc(levels, (size_t)n, sizeof **levels, "codes", err));
-    for (int i = 0; i < n; i++) {
-        float level = (float)i / (float)(n - 1);
-        (*levels)[i] = linear ? srgb_decode(level) : level;
-    }
+    TRY(mem_calloc(table, (size_t)n, sizeof **table, "codes", err));
+    for (int i = 0; i < n; i++)
+        (*table)[i] = (float)i / (float)(n - 1);
     return STATUS_OK;
 }
 
-/* Tries both guesses, in light or in codes. patches->left is what they have left. */
+/* Tests both changes, in linear light or in codes. */
 static Status try_warp(Patches *patches, const Samples *samples, const Shift *start, bool linear,
                        Sentence *out, Err *err)
 {
     float *levels;
-    TRY(list_levels(patches->a->bits, linear, &levels, err));
+    TRY((linear ? srgb_table : code_table)(patches->a->bits, &levels, err));
     Status status = STATUS_OK;
     patches->start = *start;
     patches->levels = levels;
@@ -639,7 +624,8 @@ done:
     return status;
 }
 
-/* In light only where the same in codes leaves no more than half: the two are not so different. */
+/* Linear light is tried only if the change in codes leaves at most half of the sum of squares: the
+ * two do not differ by more. */
 Status cause_warp(const Picture *a, const Picture *b, const Samples *samples, const Shift *start,
                   Sentence *out, Err *err)
 {

@@ -1,6 +1,5 @@
-/* The causes, and how many pixels of each a picture may have, are one table. A limit is the larger
- * of a number of parts in a million and a number of pixels, because in a small picture a million's
- * part is less than one. */
+/* One table has the causes, and how many pixels of each a picture may have: parts per million, but
+ * at least a few pixels, because in a small picture a millionth is less than one pixel. */
 #include "compare/checks/settled.h"
 
 #include "compare/pixels.h"
@@ -8,8 +7,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* What a picture may have of each cause: `ppm` of its pixels, or `few` pixels if that is more; and
- * the words for reasons and tables. */
+/* Per cause: its names, and the number of pixels that may have it: `ppm` parts per million, or
+ * `few` if that is more. How the numbers were chosen is not recorded. */
 static const struct {
     const char *name, *sentence;
     double ppm;
@@ -53,7 +52,7 @@ void settled_release(Settled *settled)
 
 void settled_note(Settled *settled, size_t index, const SettledPixel *pixel)
 {
-    settled->asked++;
+    settled->examined++;
     settled->count[pixel->cause]++;
     settled->marks[index] = (uint8_t)pixel->cause;
     if (pixel->cause != SETTLED_NOT && settled->n_first < SETTLED_LISTED)
@@ -105,7 +104,7 @@ void settled_describe(const SettledPixel *pixel, const char *name_a, const char 
         text_printf(out, ", the light is blocked %.6g mm away", pixel->distance_mm);
 }
 
-/* ---- which pixels ask for it ----------------------------------------------------------------- */
+/* ---- which pixels are examined --------------------------------------------------------------- */
 
 static bool geometry_beyond(const Rendering *a, const Rendering *b, size_t pixel,
                             const Tolerance *tolerance)

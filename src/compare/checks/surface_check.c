@@ -1,5 +1,5 @@
-/* One pass over the pixels: which side sees a surface, and by how much of what is allowed the two
- * depths differ. */
+/* One pass over the pixels counts which side shows a surface, and relates the difference of the
+ * depths to the allowed one. */
 #include "compare/checks/surface_check.h"
 
 #include "compare/pixels.h"
@@ -12,7 +12,7 @@ typedef struct SurfaceCheckPlanes {
     const Plane *a, *b, *allowed;
 } SurfaceCheckPlanes;
 
-/* Classes one pixel; its error is appended to `errors` when it is common. */
+/* Counts one pixel. Appends its error to `errors` if it is common. */
 static void count_pixel(const SurfaceCheckPlanes *planes, size_t i, SurfaceCheck *check,
                         double *errors)
 {

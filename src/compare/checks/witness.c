@@ -1,6 +1,6 @@
-/* The tolerance is tier A's except for what single precision does: a coordinate of 100 mm is off by
- * up to 4e-6 mm. That moves an edge by about 10^-5 of a pixel, and takes a pixel or two of a
- * million to its other side. */
+/* The tolerance is that of tier A, plus the errors of single precision, in which witnesses compute.
+ * A coordinate of 100 mm has an error of up to 4e-6 mm. It moves an edge by about 10^-5 of a pixel,
+ * so that one or two pixels of a million change sides. */
 #include "compare/checks/witness.h"
 
 #include "compare/measures/planes.h"
@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* 20 of a million pixels, or 2 of fewer. */
+/* Returns 20 ppm, or 2.5 pixels if that is more. */
 static double ppm_of(size_t pixels)
 {
     return fmax(20, 2.5e6 / (double)pixels);
@@ -43,13 +43,13 @@ static Status compare_pair(const Testimony *a, const Testimony *b, double depth_
     snprintf(witness->pairs[pair].title, sizeof witness->pairs[pair].title, "%s and %s", a->name,
              b->name);
     TRY(compare_ids(a->ids, b->ids, &tolerance, *ids, err));
-    tolerance.limits[LIMIT_REGION_PIXELS] = (double)INFINITY; /* as judged of the ids */
+    tolerance.limits[LIMIT_REGION_PIXELS] = (double)INFINITY; /* the ids were judged by it */
     TRY(compare_planes(PLANE_DEPTH, &of_a, &of_b, &tolerance, *depth, err));
     witness->pairs[pair].agrees = (*ids)->agrees && (*depth)->agrees;
     return STATUS_OK;
 }
 
-/* The program that is in neither side of the only pair that agrees stands alone. */
+/* If only one pair agrees, the program that is not in it differs from both others. */
 static void judge_three(const Testimony three[3], Witness *witness)
 {
     static const int other[WITNESS_PAIRS] = {[PAIR_SIDES] = 2, [PAIR_A] = 1, [PAIR_B] = 0};

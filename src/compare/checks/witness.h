@@ -13,27 +13,31 @@ typedef struct Testimony {
     const Plane *depth;
 } Testimony;
 
-/* The pairs of the three: the two sides A and B, and each side with the witness. */
+/* The pairs of the three programs: A and B, A and the witness, B and the witness. */
 typedef enum WitnessPair { PAIR_SIDES, PAIR_A, PAIR_B, WITNESS_PAIRS } WitnessPair;
 
+/* The result. The caller sets version and seconds. */
 typedef struct Witness {
-    const char *name; /* borrowed */
-    char version[16];
-    double seconds; /* time to draw both planes */
+    const char *name; /* name of the witness; borrowed */
+    char version[16]; /* version of the witness */
+    double seconds;   /* time to draw both planes */
     struct {
-        char title[64]; /* "POV-Ray and Tachyon" */
-        bool agrees;
+        char title[64];             /* "POV-Ray and Tachyon" */
+        bool agrees;                /* ids and depths agree */
         CompareResult *ids, *depth; /* owned */
     } pairs[WITNESS_PAIRS];
     bool agrees;        /* all three agree */
     char sentence[160]; /* which programs agree, and which one differs from both others */
 } Witness;
 
-/* Compares A, B and the witness, in this order.
+/* Compares the three pairs.
  *
- * depth_step_mm   smallest difference of two stored depths, mm.
- * witness         version and seconds are set by the caller; release it with witness_release.
- * Errors          STATUS_INPUT if sizes differ; STATUS_MEMORY. */
+ * three           A, B and the witness, in this order; planes of one size.
+ * depth_step_mm   depths that differ by at most this are equal, mm: files store depths in such
+ *                 steps.
+ * witness         zeroed except version and seconds. Release it with witness_release. After an
+ *                 error nothing is left to release.
+ * Errors          STATUS_INPUT if the sizes differ; STATUS_MEMORY. */
 MUST_CHECK Status witness_compare(const Testimony three[3], double depth_step_mm, Witness *witness,
                                   Err *err);
 void witness_release(Witness *witness);

@@ -73,16 +73,11 @@ static Levels levels_of_image(const Image *image, size_t pixel, int channel)
     return (Levels){level - step / 2, level + step / 2};
 }
 
-/* Returns the levels of an answer; those of codes are cut to what codes can be. */
-static Levels levels_of_answer(const AnswerFile *answer, const Image *image, size_t at)
+/* Returns the levels of a channel of an answer, in sRGB or another gamma. */
+static Levels levels_of_answer(const AnswerFile *answer, size_t at, double gamma)
 {
-    Levels levels = {level_of((double)answer->low.values[at], image->picture.gamma),
-                     level_of((double)answer->high.values[at], image->picture.gamma)};
-    if (image->plane.values)
-        return levels;
-    levels.low = fmin(levels.low, 255);
-    levels.high = fmin(levels.high, 255);
-    return levels;
+    return (Levels){level_of((double)answer->low.values[at], gamma),
+                    level_of((double)answer->high.values[at], gamma)};
 }
 
 /* Returns the distance of two intervals; positive if `found` is above. NaN is infinitely far. */
@@ -96,12 +91,14 @@ static double distance_of(Levels found, Levels answer)
 
 /* ---- grading --------------------------------------------------------------------------------- */
 
-/* Adds a pixel, whose channels have these distances. Returns the worst of them. */
-static double add_pixel(AnswerGrade *grade, const double distances[3], int x, int y)
+/* Adds a pixel. found[c] and proven[c] are the levels of channel c in the picture and in the
+ * answer. Returns the distance of the worst channel. */
+static double add_pixel(AnswerGrade *grade, const Levels found[3], const Levels proven[3],
+                        size_t pixel, int width)
 {
     double worst = 0, sum = 0;
     for (int c = 0; c < 3; c++) {
-        const double distance = distances[c];
+        const double distance = distance_of(found[c], proven[c]);
         if (fabs(distance) <= ANSWERGRADE_SLACK)
             continue;
         sum += distance;
@@ -110,8 +107,8 @@ static double add_pixel(AnswerGrade *grade, const double distances[3], int x, in
             worst = distance;
         if (fabs(distance) > fabs(grade->worst)) {
             grade->worst = distance;
-            grade->x = x;
-            grade->y = y;
+            grade->x = (int)(pixel % (size_t)width);
+            grade->y = (int)(pixel / (size_t)width);
             grade->channel = c;
         }
     }
@@ -148,12 +145,14 @@ Status answergrade_image(const AnswerFile *answer, const Image *image, AnswerGra
         TRY(plane_init(distances, width, height, 1, err));
     AnswerGrade made = {.pixels = (size_t)width * (size_t)height};
     for (size_t pixel = 0; pixel < made.pixels; pixel++) {
-        double apart[3];
-        for (int c = 0; c < 3; c++)
-            apart[c] = distance_of(levels_of_image(image, pixel, c),
-                                   levels_of_answer(answer, image, 3 * pixel + (size_t)c));
-        const double worst =
-            add_pixel(&made, apart, (int)(pixel % (size_t)width), (int)(pixel / (size_t)width));
+        Levels found[3], proven[3];
+        for (int c = 0; c < 3; c++) {
+            found[c] = levels_of_image(image, pixel, c);
+            proven[c] = levels_of_answer(answer, 3 * pixel + (size_t)c, image->picture.gamma);
+            if (!floats) /* no code stands for a brighter color */
+                proven[c] = (Levels){fmin(proven[c].low, 255), fmin(proven[c].high, 255)};
+        }
+        const double worst = add_pixel(&made, found, proven, pixel, width);
         made.undecided += answer->state.values[pixel] != 0;
         if (distances)
             distances->values[pixel] = (float)worst;
@@ -174,17 +173,12 @@ Status answergrade_answers(const AnswerFile *a, const AnswerFile *b, AnswerGrade
                        a->pattern, b->pattern);
     AnswerGrade made = {.pixels = (size_t)a->low.width * (size_t)a->low.height};
     for (size_t pixel = 0; pixel < made.pixels; pixel++) {
-        double apart[3];
+        Levels of_a[3], of_b[3];
         for (int c = 0; c < 3; c++) {
-            const size_t at = 3 * pixel + (size_t)c;
-            const Levels of_a = {level_of((double)a->low.values[at], 0),
-                                 level_of((double)a->high.values[at], 0)};
-            const Levels of_b = {level_of((double)b->low.values[at], 0),
-                                 level_of((double)b->high.values[at], 0)};
-            apart[c] = distance_of(of_b, of_a);
+            of_a[c] = levels_of_answer(a, 3 * pixel + (size_t)c, 0);
+            of_b[c] = levels_of_answer(b, 3 * pixel + (size_t)c, 0);
         }
-        (void)add_pixel(&made, apart, (int)(pixel % (size_t)a->low.width),
-                        (int)(pixel / (size_t)a->low.width));
+        (void)add_pixel(&made, of_b, of_a, pixel, a->low.width);
         made.undecided += a->state.values[pixel] != 0 || b->state.values[pixel] != 0;
     }
     finish(&made);

@@ -1,11 +1,12 @@
-/* Alpha of two pictures that were laid on one background before their colors were compared. What
- * is laid on a background may agree although another part of the background shows through. */
+/* Compares the alpha channels of two pictures whose colors were compared over one background. Two
+ * such composites may agree although their alpha differs, if the vessel has the background's color.
+ */
 #include "compare/measures/planes.h"
 
 #include <math.h>
 #include <stdio.h>
 
-Status alpha_take(Picture *alpha, const Image *image, Err *err)
+Status alpha_of_image(Picture *alpha, const Image *image, Err *err)
 {
     const Plane *plane = &image->plane;
     const Picture *picture = &image->picture;
@@ -24,7 +25,7 @@ Status alpha_take(Picture *alpha, const Image *image, Err *err)
     return STATUS_OK;
 }
 
-Status alpha_judge(const Picture *a, const Picture *b, CompareResult *result, Err *err)
+Status result_judge_alpha(const Picture *a, const Picture *b, CompareResult *result, Err *err)
 {
     CompareResult alpha;
     Tolerance tolerance = result->tolerance;

@@ -1,9 +1,9 @@
-/* CIEDE2000 [Sharma, Wu, Dalal 2005] in single precision, and CIELAB of sRGB pictures under D65 as
- * scikit-image has it, so that differences are right to 1e-4. Equal pixels are 0 without computing.
+/* CIEDE2000 [Sharma, Wu, Dalal 2005] in single precision, with errors below 1e-4. CIELAB of sRGB
+ * under D65 is computed as in scikit-image. Equal pixels are skipped.
  *
- * Hues are unit vectors here, not angles: sums and multiples of angles then need no more than
- * products, but for one distance of hues that is squared under an exponential. So no step branches
- * or calls a function, and stretches of a row become vectors. */
+ * Hues are unit vectors here, not angles: sums and multiples of angles then need only products. The
+ * one exception is a distance of hues that is squared under an exponential, which has a series. So
+ * no step branches or calls a function, and the compiler vectorises stretches of a row. */
 #include "compare/measures/perception.h"
 
 #include "compare/measures/wide.h"
@@ -16,7 +16,7 @@ typedef struct Lab {
     float l, a, b;
 } Lab;
 
-/* Of length 1; 0 for grey. */
+/* A hue as a vector of length 1; (0, 0): grey. */
 typedef struct Hue {
     float x, y;
 } Hue;
@@ -27,14 +27,15 @@ static inline Hue hue_of(float x, float y)
     return (Hue){x * scale, y * scale};
 }
 
-/* The hue at the sum of two angles. */
+/* Returns the hue whose angle is the sum of two angles. */
 static inline Hue hue_turned(Hue a, Hue b)
 {
     return (Hue){a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x};
 }
 
-/* The hue in the middle; of opposite ones, a quarter behind that of less than 180 degrees. The sum
- * of both has its direction, or, where that is short, what stands upright on their difference. */
+/* Returns the hue in the middle of two hues. For opposite hues, it is 90 degrees behind the one of
+ * less than 180 degrees. The sum of the vectors has its direction; if the sum is short, a vector
+ * perpendicular to their difference is more accurate. */
 static inline Hue hue_between(Hue a, Hue b)
 {
     float dot = a.x * b.x + a.y * b.y, cross = a.x * b.y - a.y * b.x, low = a.y == 0 ? a.x : a.y;
@@ -44,15 +45,16 @@ static inline Hue hue_between(Hue a, Hue b)
     return hue_of(x, y);
 }
 
-/* c^7 / (c^7 + 25^7), rooted. */
+/* Returns sqrt(c^7 / (c^7 + 25^7)). */
 static inline float chroma_root(float c)
 {
     float part = c * (1 / 25.0f), cube = part * part * part, seventh = cube * cube * part;
     return sqrtf(seventh / (seventh + 1));
 }
 
-/* exp(-((h - 275) / 25)^2), h in degrees. The distance of two hues is twice the arcsine of half
- * their chord; of that, the series. It errs where the exponential is next to nothing. */
+/* Returns exp(-((h - 275) / 25)^2), h in degrees. The distance of two hues is twice the arcsine of
+ * half their chord; the code has its series, which is inaccurate only where the exponential is
+ * nearly 0. */
 static inline float near_blue(Hue hue)
 {
     float x = hue.x - 0.0871557427f, y = hue.y + 0.996194698f, square = (x * x + y * y) / 4;
@@ -63,7 +65,7 @@ static inline float near_blue(Hue hue)
     return exp_2(-1.44269504f * square * distance * distance);
 }
 
-/* Of an angle in [0, 2.1]. */
+/* Returns the sine of an angle in [0, 2.1]. */
 static inline float sine(float x)
 {
     float x2 = x * x;
@@ -72,7 +74,7 @@ static inline float sine(float x)
                                  (1 - x2 / 42 * (1 - x2 / 72 * (1 - x2 / 110 * (1 - x2 / 156))))));
 }
 
-/* T of the paper. */
+/* Returns the weight T of the paper. */
 static inline float hue_weight(Hue h)
 {
     Hue h2 = hue_turned(h, h), h3 = hue_turned(h2, h), h4 = hue_turned(h2, h2);
@@ -110,7 +112,7 @@ double de2000(const double lab_a[3], const double lab_b[3])
 
 enum { STRETCH = 64 };
 
-/* Linear colors of a stretch of both pictures. */
+/* Linear colors of a stretch of a row. */
 typedef struct LinearStretch {
     float red[STRETCH], green[STRETCH], blue[STRETCH];
 } LinearStretch;
@@ -127,7 +129,7 @@ static inline float lab_curve(float t)
     return t > 0.008856f ? root : 7.787f * t + 16 / 116.0f;
 }
 
-/* Of linear RGB of sRGB's primaries. */
+/* Converts linear RGB with the primaries of sRGB. */
 static inline Lab lab_of(float red, float green, float blue)
 {
     float x = lab_curve((0.412453f * red + 0.357580f * green + 0.180423f * blue) / 0.95047f);

@@ -1,6 +1,7 @@
-/* Linear colors in floats: every difference counts, however bright or small, so they are not
- * turned into codes; a level is 1/255 of the sRGB encoding, continued beyond white. What is not
- * finite is made black in copies of both, which the measures of perception then see as equal. */
+/* Compares linear colors in floats. They are not converted to codes, so that each difference
+ * counts, however bright or small. A level is 1/255 of the sRGB curve, continued above white. A
+ * pixel that is not finite in either image becomes black in copies of both, so all other measures
+ * see it as equal. */
 #include "compare/measures/labels.h"
 #include "compare/measures/perception.h"
 #include "compare/measures/planes.h"
@@ -38,7 +39,7 @@ static void blacken(Plane *a, Plane *b, CompareResult *result)
             continue;
         result->values[MEASURE_JUDGED_PIXELS]--;
         if (result->places[PLACE_NAN].x < 0)
-            result->places[PLACE_NAN] = place_of(i, a->width);
+            result->places[PLACE_NAN] = pixel_place(i, a->width);
         memset(in_a, 0, channels * sizeof *in_a);
         memset(in_b, 0, channels * sizeof *in_b);
     }
@@ -101,7 +102,7 @@ static void measure(const Plane *a, const Plane *b, CompareResult *result)
         if (largest <= sums.worst && result->places[PLACE_WORST].x >= 0)
             continue;
         sums.worst = largest;
-        result->places[PLACE_WORST] = place_of(i, a->width);
+        result->places[PLACE_WORST] = pixel_place(i, a->width);
     }
     take_color_sums(&sums, a->channels, result);
 }

@@ -15,6 +15,7 @@
 #include "compare/measures/flip.h"
 
 #include "compare/measures/wide.h"
+#include "compare/pixels.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -414,10 +415,7 @@ static bool pictures_equal(const FlipPair *pair, int x, int y, int n)
 Status flip_compute(const Picture *a, const Picture *b, Plane *map, FlipSummary *summary, Err *err)
 {
     Pictures self = {.pictures = {a, b}};
-    size_t levels = (size_t)1 << a->bits;
-    TRY(mem_calloc(&self.linear, levels, sizeof *self.linear, "decoded levels", err));
-    for (size_t i = 0; i < levels; i++)
-        self.linear[i] = srgb_decode((float)i / (float)(levels - 1));
+    TRY(srgb_table(a->bits, &self.linear, err));
     const FlipPair pair = {.width = a->width,
                            .height = a->height,
                            .colors = picture_colors,

@@ -1,12 +1,12 @@
-/* HDR-FLIP: LDR-FLIP of both images under a range of exposures, tone mapped by ACES' fit; of each
- * pixel the largest error. The exposures run from where the reference's brightest pixel is tone
- * mapped to 0.85 to where its median one is, one about every stop. */
+/* HDR-FLIP: the error of a pixel is its largest LDR-FLIP error over a range of exposures, after
+ * tone mapping by a fit of ACES. The exposures are about one stop apart. The first maps the
+ * brightest pixel of the reference to 0.85, and the last maps its median pixel to 0.85. */
 #include "compare/measures/flip.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-/* (x (a x + b) + c) / (x (d x + e) + f), as FLIP 1.6 has it. */
+/* The coefficients a to f of the tone map (x (a x + b) + c) / (x (d x + e) + f) of FLIP 1.6. */
 static const float aces[6] = {0.6f * 0.6f * 2.51f, 0.6f * 0.03f, 0,
                               0.6f * 0.6f * 2.43f, 0.6f * 0.59f, 0.14f};
 
@@ -55,7 +55,8 @@ static int ascending(const void *left, const void *right)
     return (a > b) - (a < b);
 }
 
-/* What is tone mapped to 0.85: the positive root of (a - t d) x^2 + (b - t e) x + c - t f. */
+/* Returns the value that is tone mapped to t = 0.85: the positive root of
+ * (a - t d) x^2 + (b - t e) x + c - t f. */
 static double bright_of_tone_map(void)
 {
     const double t = 0.85;

@@ -6,8 +6,9 @@
 
 static const float pixels_per_degree = 67.0206451f; /* a 0.7 m wide 4K screen seen from 0.7 m */
 
-/* a sqrt(pi / b) exp(-pi^2 x^2 / b) with x in degrees; of a sum of two such, each is applied along
- * both axes and therefore takes the root of its amplitude. */
+/* Sets the weights a sqrt(pi / b) exp(-pi^2 x^2 / b), x in degrees. `root` takes the root of the
+ * amplitude, for one of two summed Gaussians, which is applied along both axes. Returns their sum.
+ */
 static float csf_fill(FlipKernel *kernel, float a, float b, bool root)
 {
     const float pi = 3.14159265358979f;

@@ -1,6 +1,7 @@
-/* A pixel is off the band when the nine labels about it are equal on both sides: when three rows
- * are uniform beside it and the one in the middle equals the others at its column. Both are
- * elementwise over rows, so a window needs no more than three rows of each side. */
+/* A pixel is not at an edge if the nine labels around it are equal, in both images. This holds if
+ * each of the three rows is uniform at the pixel, and the middle label equals those above and
+ * below. Both tests are elementwise over rows, so the compiler vectorises them, and a window needs
+ * three rows. */
 #include "compare/measures/labels.h"
 
 #include <stdlib.h>
@@ -27,7 +28,8 @@ Labels labels_from_ids(const IdPlane *a, const IdPlane *b)
     return (Labels){.source = LABELS_IDS, .width = a->width, .height = a->height, .ids = {a, b}};
 }
 
-/* Whether three corners share a color; *background is the number of its first code. */
+/* Returns true if at least three corners share a color. *background receives the index of its first
+ * code. */
 static bool find_background(const Picture *picture, size_t *background)
 {
     size_t channels = (size_t)picture->channels, row = picture_stride(picture);
@@ -79,8 +81,8 @@ void labels_release(Labels *labels)
     *labels = (Labels){0};
 }
 
-/* 1 where the codes of a pixel are not those of the background. The number of channels is a
- * constant for the compiler, which then takes several pixels at once. */
+/* Sets out[x] to 1 if the codes of a pixel differ from those of the background. The number of
+ * channels is a constant in each use, so that the compiler vectorises the loop. */
 #define FILL_FOREGROUND(codes, channels)                                                           \
     for (size_t x = 0; x < width; x++, codes += (channels)) {                                      \
         unsigned differs = 0;                                                                      \
@@ -142,7 +144,7 @@ size_t label_window_size(int width)
     return (bytes + 3) / 4 * 4;
 }
 
-/* 1 for the pixels beside which neither side changes. */
+/* Sets uniform[x] to 1 if the label is equal to those at the left and the right, in both images. */
 static void fill_uniform(const uint32_t *restrict a, const uint32_t *restrict b,
                          uint8_t *restrict uniform, size_t width)
 {
@@ -154,7 +156,8 @@ static void fill_uniform(const uint32_t *restrict a, const uint32_t *restrict b,
     uniform[last] = a[before] == a[last] && b[before] == b[last];
 }
 
-/* Loads row y, or its nearest, into slot 0, 1 or 2. A row that both pictures share is made once. */
+/* Loads row y, or the nearest one of the image, into slot 0, 1 or 2. A row that is equal in both
+ * pictures is computed once. */
 static void load_row(LabelWindow *window, int slot, int y)
 {
     const Labels *labels = window->labels;

@@ -1,91 +1,129 @@
-/* What each pixel of two images shows, and where that differs. Private to the module compare. */
+/* Labels: what each pixel of two images shows. A pixel's label is the id of the visible segment, or
+ * 0 for the background. From labels follow the coverage (which pixels show a vessel in which image)
+ * and the edges [result.h]. Private to the module compare.
+ *
+ * Make Labels, open a LabelWindow at a row, and move it down; it has the labels of three rows and
+ * the edges of the middle row. Count the pixels, then pass the counts to result_set_counts, and the
+ * coverage to result_set_region. */
 #ifndef CORCAST_COMPARE_MEASURES_LABELS_H
 #define CORCAST_COMPARE_MEASURES_LABELS_H
 
 #include "compare/result.h"
 
-/* Length of an outline in pixels for each side of a pixel on it: pi / 4, the mean over all
+/* Length of an outline in pixels, per pixel side on the outline: pi / 4, the mean over all
  * directions [Cauchy-Crofton]. */
 #define PX_PER_EDGE (PI / 4)
 
 typedef enum LabelSource {
-    LABELS_UNKNOWN,
+    LABELS_UNKNOWN,    /* all labels are 0 */
     LABELS_IDS,        /* the ids of id planes */
     LABELS_BACKGROUND, /* 0 for the color of a picture's background, else 1 */
     LABELS_SEEN        /* 0 or 1, set by the caller */
 } LabelSource;
 
-/* Labels of the pixels of both images: the id of what a pixel shows, 0 for nothing. Index 0 is A,
- * index 1 is B. Rows are computed when they are used, so that a mask takes no memory. */
+/* The labels of two images of one size. Index 0 is A, index 1 is B. Rows are computed when they are
+ * used, so the labels of a picture take no memory. */
 typedef struct Labels {
     LabelSource source;
     int width, height;
-    const IdPlane *ids[2];      /* borrowed */
-    const Picture *pictures[2]; /* borrowed */
-    uint16_t background[2][3];
-    uint8_t *seen[2]; /* owned; per pixel, filled by the caller */
+    const IdPlane *ids[2];      /* LABELS_IDS; borrowed */
+    const Picture *pictures[2]; /* LABELS_BACKGROUND; borrowed */
+    uint16_t background[2][3];  /* LABELS_BACKGROUND: codes of the background */
+    uint8_t *seen[2];           /* LABELS_SEEN: per pixel, 0 or 1; owned */
 } Labels;
 
-/* Errors: STATUS_INPUT unless both or neither plane is given, and both have width x height pixels.
- */
+/* Checks that both or neither id plane is given, and that both have width x height pixels. Errors:
+ * STATUS_INPUT. */
 MUST_CHECK Status labels_check_ids(int width, int height, const IdPlane *a, const IdPlane *b,
                                    Err *err);
+/* Returns the labels of two id planes of one size. */
 Labels labels_from_ids(const IdPlane *a, const IdPlane *b);
-/* A pixel shows something if it has another color than three corners of its picture share. The
- * labels are unknown if either picture has no such color. */
+/* Returns the labels of two pictures of equal size, channels (1 or 3) and bits. The background is
+ * the color that at least three corners of a picture share. The labels are LABELS_UNKNOWN if either
+ * picture has no such color. */
 Labels labels_from_background(const Picture *a, const Picture *b);
-/* No pixel shows anything; the caller changes `seen`. Release with labels_release. Errors:
- * STATUS_MEMORY. */
+/* Makes labels of the source LABELS_SEEN that are all 0; the caller changes labels->seen. Release
+ * them with labels_release. `labels` is set on success only. Errors: STATUS_MEMORY. */
 MUST_CHECK Status labels_init_seen(Labels *labels, int width, int height, Err *err);
 void labels_release(Labels *labels);
-/* Three rows of both sides, which move down the images. The band are the pixels at edges: they
- * touch (8-neighbours), in either image, a pixel with another label. */
+
+/* Three rows of labels of both images, and the edges of the middle row. All pointers point into the
+ * scratch memory or the ids. */
 typedef struct LabelWindow {
-    const Labels *labels;
-    int y;
-    const uint32_t *rows[2][3]; /* rows y - 1, y, y + 1; beyond the image the nearest row */
-    uint8_t *uniform[3];        /* per row: not 0 if the neighbours left and right are equal */
-    uint8_t *band;              /* of row y: 1 in the band, else 0 */
+    const Labels *labels; /* borrowed */
+    int y;                /* the middle row */
+    /* rows[image][k]: the labels of row y - 1 + k; outside of the image, of the nearest row */
+    const uint32_t *rows[2][3];
+    uint8_t *uniform[3]; /* uniform[k][x]: 1 if pixel x of row y - 1 + k has the same label as its
+                          * left and its right neighbour, in both images; else 0 */
+    uint8_t *band;       /* band[x]: 1 if pixel x of row y is at an edge [result.h]; else 0 */
     uint32_t *scratch[2][3];
 } LabelWindow;
 
-/* Returns the size of the scratch memory that a window over images of this width needs: bytes, a
- * multiple of 4. The memory is 4-byte aligned. */
+/* Returns the size of the scratch memory of a window over images of this width: bytes, a multiple
+ * of
+ * 4. The memory must be 4-byte aligned. */
 size_t label_window_size(int width);
-/* Opens the window at row `y`; `scratch` is borrowed. */
+/* Opens the window at row `y`. `scratch` is borrowed until the last use of the window. */
 void label_window_open(LabelWindow *window, const Labels *labels, int y, void *scratch);
-/* Moves it down by one row, which must exist. */
+/* Moves the window down to row y + 1, which must exist. */
 void label_window_next(LabelWindow *window);
 
-/* Returns the class of a pixel whose labels differ. `band` is true in the band. */
+/* Returns the class of a pixel whose labels differ. `band`: the pixel is at an edge. */
 PixelClass labels_class(uint32_t a, uint32_t b, bool band);
 
-/* Whether one image alone shows something at a pixel: A (missing) or B (extra). */
+/* Which images show a vessel at a pixel: both or neither, only A, only B. */
 typedef enum Coverage { COVERED_ALIKE, COVERED_MISSING, COVERED_EXTRA } Coverage;
 
-/* Pixels that all comparisons count. Those from COUNT_COMMON on need labels. */
+/* Counts of pixels. The counts from COUNT_COMMON on need labels. "Beyond" means: the pixel is not
+ * settled, and differs by more than the tolerance allows for one pixel. */
 typedef enum PixelCount {
     COUNT_DIFFERING,
     COUNT_BEYOND,
     COUNT_SETTLED,
-    COUNT_COMMON,
-    COUNT_MISSING,
-    COUNT_EXTRA,
-    COUNT_BAND,
-    COUNT_BAND_DIFFERS, /* in the band, with different labels */
+    COUNT_COMMON,       /* show a vessel in both images */
+    COUNT_MISSING,      /* show a vessel in A only, and are not settled */
+    COUNT_EXTRA,        /* show a vessel in B only, and are not settled */
+    COUNT_BAND,         /* at edges */
+    COUNT_BAND_DIFFERS, /* at edges, with different labels */
     COUNT_BAND_BEYOND,
-    COUNT_INTERIOR_BEYOND,
+    COUNT_INTERIOR_BEYOND, /* not at edges */
     PIXEL_COUNTS
 } PixelCount;
 
-/* Sets the measures that are counts, and those of edges. `labelled` is false if the labels are
- * unknown. */
-void counts_take(const uint64_t counts[PIXEL_COUNTS], bool labelled, CompareResult *result);
+/* The labels of a pixel, for count_label. */
+typedef struct LabelPair {
+    uint32_t a, b;
+    bool band, settled;
+} LabelPair;
 
-/* Adds to the result the largest 8-connected region of missing, or of extra, pixels, and the sum of
- * both; the result has their counts. `coverage`, one Coverage per pixel, is cleared. Errors:
- * STATUS_MEMORY. */
-MUST_CHECK Status region_take(uint8_t *coverage, const Labels *labels, CompareResult *result,
-                              Err *err);
+/* Counts a pixel by its labels: COUNT_SETTLED, COUNT_COMMON, COUNT_MISSING, COUNT_EXTRA, COUNT_BAND
+ * and COUNT_BAND_DIFFERS. Sets coverage[pixel]. */
+static inline void count_label(LabelPair labels, size_t pixel, uint8_t *coverage,
+                               uint64_t counts[PIXEL_COUNTS])
+{
+    const bool in_a = labels.a != 0, in_b = labels.b != 0;
+    if (in_a != in_b && !labels.settled) {
+        coverage[pixel] = in_a ? COVERED_MISSING : COVERED_EXTRA;
+        counts[COUNT_MISSING] += in_a;
+        counts[COUNT_EXTRA] += in_b;
+    }
+    counts[COUNT_SETTLED] += labels.settled;
+    counts[COUNT_COMMON] += in_a && in_b;
+    counts[COUNT_BAND] += labels.band;
+    counts[COUNT_BAND_DIFFERS] += labels.band && labels.a != labels.b;
+}
+
+/* Sets the measures of a result that are counts, and those of edges. If `labelled` is false, the
+ * labels are unknown, and only the counts before COUNT_COMMON are used. */
+void result_set_counts(const uint64_t counts[PIXEL_COUNTS], bool labelled, CompareResult *result);
+
+/* Sets MEASURE_UNCOMMON_PIXELS, MEASURE_LARGEST_REGION and PLACE_REGION. Regions are 8-connected,
+ * and of missing or of extra pixels only. Call result_set_counts first.
+ *
+ * coverage   per pixel: a Coverage. Afterwards all pixels are COVERED_ALIKE.
+ * Errors     STATUS_MEMORY. */
+MUST_CHECK Status result_set_region(uint8_t *coverage, const Labels *labels, CompareResult *result,
+                                    Err *err);
 
 #endif

@@ -1,5 +1,6 @@
-/* Rows are added by runs of pixels that show one segment in A and one in B; a run that is equal
- * in both pictures adds to the sum of squares alone. */
+/* Rows are added run by run. A run is a sequence of pixels that show one segment in A and one
+ * segment in B, so each sum is found once per run, not once per pixel. If the row is equal in both
+ * pictures, a run only adds to the area and to the sum of squares. */
 #include "compare/measures/ledger.h"
 
 #include "compare/pixels.h"
@@ -7,6 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Smaller segments are not judged, because rounding and edges dominate them: fewer common pixels
+ * for a mean difference, a shorter outline for a shift, fewer pixels for a missing segment. Reasons
+ * for the numbers are not recorded. */
 enum { LEVELS_MIN_PIXELS = 64, OUTLINE_MIN_PX = 8, MISSING_MIN_PIXELS = 3 };
 
 static uint32_t max_of(uint32_t a, uint32_t b)
@@ -74,7 +78,7 @@ static void widen(SegmentSums *segment, int left, int right, int y)
     segment->bottom = y > segment->bottom ? y : segment->bottom;
 }
 
-/* The sides of one image's segments that lie between row y and the next, and along row y. */
+/* Counts the pixel sides between labels in a row, and between the row and the one below. */
 static void add_edges(SegmentSums *segments, const SegmentIndex *index, const uint32_t *row,
                       const uint32_t *below, int side, int width)
 {
@@ -98,7 +102,7 @@ static void add_squares(SegmentSums *segment, const uint16_t *a, size_t n)
     segment->total.squares += squares;
 }
 
-/* The pixels that show one segment in both pictures. */
+/* Adds `n` pixels that show one segment in both pictures. */
 static void add_common(SegmentSums *segment, const uint16_t *a, const uint16_t *b, int n,
                        int channels)
 {
@@ -219,7 +223,7 @@ static PixelPlace middle_of(const LedgerEntry *entry)
                         .id_b = entry->area_b ? entry->id : 0};
 }
 
-/* Keeps the entries with most differing pixels, sorted; of equals the first. */
+/* Inserts an entry into the sorted list of the segments with most differing pixels. */
 static void keep_worst(CompareResult *result, const LedgerEntry *entry)
 {
     if (entry->differing == 0)
@@ -236,7 +240,7 @@ static void keep_worst(CompareResult *result, const LedgerEntry *entry)
     kept[at] = *entry;
 }
 
-void ledger_summarise(const Ledger *ledger, CompareResult *result)
+void result_set_segments(const Ledger *ledger, CompareResult *result)
 {
     double *values = result->values;
     PixelPlace *places = result->places;

@@ -1,11 +1,12 @@
-/* Two renderings with noise have one mean, or not: a test with a known rate of false alarms. With
- * one variance v a pixel for both, the difference d = B - A has the variance 2 v and the mean
- * m = (A + B) / 2 is independent of it (of normal noise; otherwise uncorrelated). So
- * T = sum(m d) / sqrt(sum(2 m^2 v)) is normal with variance 1 when nothing but noise differs, and
- * g = sum(m d) / sum(m^2) estimates the gain of B less 1. Weights without v keep T right when v is
- * itself an estimate of few renderings: its errors average out. T is asked of each channel and of
- * all, of the whole picture and of tiles of 32 x 32 pixels, the rate shared by halves and then
- * evenly [Bonferroni]. */
+/* Tests with a known false alarm rate whether two noisy renderings have one mean.
+ *
+ * Both have the same variance v per value. The difference d = B - A then has the variance 2 v. It
+ * is independent of the mean m = (A + B) / 2 if the noise is normal, and otherwise uncorrelated. So
+ * T = sum(m d) / sqrt(sum(2 m^2 v)) is normal with variance 1 if A and B differ by noise only, and
+ * sum(m d) / sum(m^2) estimates the gain of B, minus 1. The weights m do not contain v: v may be an
+ * estimate from few renderings, whose errors then average out. T is computed per channel and for
+ * all channels, over the whole picture and over tiles of 32 x 32 pixels. Half of the rate is for
+ * the whole picture and half for the tiles, each divided evenly among its tests [Bonferroni]. */
 #include "compare/measures/noise.h"
 
 #include <math.h>
@@ -17,7 +18,7 @@ typedef struct NoiseSums {
     double md, mm, mmv;
 } NoiseSums;
 
-/* The number that a normal one exceeds, up or down, at this rate. */
+/* Returns the x such that a standard normal variable exceeds x in magnitude at this rate. */
 static double two_sided_limit(double rate)
 {
     double low = 0, high = 40;
@@ -28,7 +29,7 @@ static double two_sided_limit(double rate)
     return high;
 }
 
-/* Of one channel, or, where `channel` is their number, of all. */
+/* Sums over a square of one channel; if `channel` is the number of channels, over all channels. */
 static NoiseSums sum_box(const Plane *const planes[3], int channel, int left, int top, int side)
 {
     const Plane *a = planes[0], *b = planes[1], *v = planes[2];
@@ -49,7 +50,7 @@ static NoiseSums sum_box(const Plane *const planes[3], int channel, int left, in
     return sums;
 }
 
-/* Where there is no noise, any difference is infinitely many sigmas. */
+/* Returns T. Without noise, any difference is infinitely many sigmas. */
 static double sigmas_of(const NoiseSums *sums)
 {
     return sums->mmv > 0   ? sums->md / sqrt(sums->mmv)

@@ -1,4 +1,5 @@
-/* Two pictures: the sums over all pixels (pixel_counts.c) become measures and a verdict. */
+/* Computes the measures of two pictures from the sums over all pixels (pixel_counts.c), and judges
+ * them. */
 #include "compare/measure.h"
 #include "compare/measures/perception.h"
 #include "compare/measures/pixel_counts.h"
@@ -49,7 +50,7 @@ static Status check_views(const Rendering *a, const Rendering *b, Err *err)
     return labels_check_ids(in_a->width, in_a->height, a->ids, b->ids, err);
 }
 
-/* What the sums say. */
+/* Sets all measures that follow from the sums. */
 static Status take_counts(const Counting *counting, CompareResult *result, Ledger *ledger, Err *err)
 {
     double code_levels = counting->a->picture->bits == 8 ? 1 : 1 / 257.0;
@@ -58,7 +59,7 @@ static Status take_counts(const Counting *counting, CompareResult *result, Ledge
     double *values = result->values;
     bool labelled = counting->labels->source != LABELS_UNKNOWN;
     take_color(sums, code_levels, channels, result);
-    counts_take(sums->total.counts, labelled, result);
+    result_set_counts(sums->total.counts, labelled, result);
     if (!labelled)
         return STATUS_OK;
     double moved = values[MEASURE_EXTRA_PIXELS] - values[MEASURE_MISSING_PIXELS];
@@ -67,12 +68,12 @@ static Status take_counts(const Counting *counting, CompareResult *result, Ledge
         sums->total.silhouette ? moved / (PX_PER_EDGE * (double)sums->total.silhouette) : 0;
     if (counting->common_only)
         values[MEASURE_JUDGED_PIXELS] = values[MEASURE_COMMON_PIXELS];
-    TRY(region_take(counting->coverage, counting->labels, result, err));
+    TRY(result_set_region(counting->coverage, counting->labels, result, err));
     if (!counting->index)
         return STATUS_OK;
-    TRY(regression_take(counting, code_levels, result, err));
+    TRY(result_set_regression(counting, code_levels, result, err));
     TRY(ledger_from_sums(ledger, counting->index, counting->segments, channels, code_levels, err));
-    ledger_summarise(ledger, result);
+    result_set_segments(ledger, result);
     return STATUS_OK;
 }
 

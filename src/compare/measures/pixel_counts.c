@@ -1,6 +1,7 @@
-/* Bands of rows are counted by threads; each gathers whole numbers into sums of its own, which are
- * added in order, so that no result depends on the number of threads. Rows that are equal in both
- * pictures and both labels take a short path, because equal pictures are what is hoped for. */
+/* Threads count blocks of rows. Each block has its own sums, all of integers, which are added in
+ * order, so the result does not depend on the number of threads. Rows and blocks of pixels that are
+ * equal in both pictures take a short path, because most pictures that are compared are nearly
+ * equal. */
 #include "compare/measures/pixel_counts.h"
 
 #include "compare/measures/wide.h"
@@ -9,19 +10,22 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Rows in a block of rows, and pixels in a block of a row. BLOCK bounds the sums of
+ * take_differences.
+ */
 enum { BAND_ROWS = 32, BLOCK = 32 };
 
-/* One row being looked at. */
+/* The row that is counted. */
 typedef struct PixelRow {
     const LabelWindow *window;
-    const uint16_t *a, *b; /* codes; when the rows are equal the same pointer, perhaps to what has
-                            * not been read */
+    const uint16_t *a, *b; /* codes; the same pointer if the rows are equal. Then the codes may be
+                            * undefined, because nothing reads them */
     int y;
 } PixelRow;
 
 /* ------------------------------------------------------------------------------------- classes */
 
-/* Of a pixel whose labels agree. */
+/* Returns the class of a pixel whose labels agree. */
 static PixelClass class_of_shading(const Counting *counting, const PixelRow *row, int x, bool seen,
                                    int difference)
 {
@@ -61,16 +65,9 @@ static void count_pixel(const Counting *counting, const PixelRow *row, int x, in
     sums->total.classes[pixel_class]++;
     if (counting->classes)
         counting->classes[pixel] = (uint8_t)pixel_class;
-    sums->total.counts[COUNT_COMMON] += common;
-    if (!in_a != !in_b && !settled) {
-        counting->coverage[pixel] = in_a ? COVERED_MISSING : COVERED_EXTRA;
-        sums->total.counts[COUNT_MISSING] += in_a != 0;
-        sums->total.counts[COUNT_EXTRA] += in_b != 0;
-    }
-    sums->total.counts[COUNT_BAND] += band;
-    sums->total.counts[COUNT_BAND_DIFFERS] += band && in_a != in_b;
+    count_label((LabelPair){in_a, in_b, band, settled}, pixel, counting->coverage,
+                sums->total.counts);
     sums->total.counts[COUNT_DIFFERING] += difference > 0;
-    sums->total.counts[COUNT_SETTLED] += settled;
     beyond = beyond && !settled;
     sums->total.counts[COUNT_BEYOND] += beyond && (common || !counting->common_only);
     sums->total.counts[COUNT_BAND_BEYOND] += beyond && band;
@@ -81,8 +78,8 @@ static void count_pixel(const Counting *counting, const PixelRow *row, int x, in
         sums->unsettled_max = difference;
 }
 
-/* Pixels [from, to) of a row that are equal in color and label, and whose geometry nobody asked
- * about. */
+/* Counts the pixels [from, to) of a row, which are equal in color and label, and whose geometry is
+ * not compared. */
 static void count_equal(const LabelWindow *window, int from, int to, PixelSums *sums)
 {
     const uint32_t *label = window->rows[0][1];
@@ -96,12 +93,13 @@ static void count_equal(const LabelWindow *window, int from, int to, PixelSums *
     sums->total.classes[PIXEL_IDENTICAL] += (size_t)(to - from);
 }
 
-/* The largest difference over the channels and the sum of all, of each pixel of a block. */
+/* Per pixel of a block: the largest |difference| over the channels, and the sum of differences. */
 typedef struct Differences {
     int largest[BLOCK], sum[BLOCK];
 } Differences;
 
-/* Of n pixels; adds to the sums. No sum of a block exceeds 64 bits, and but squares 32. */
+/* Computes the differences of n pixels, and adds them to the sums. In a block, squares fit in 64
+ * bits, and all other sums in 32. */
 static inline void take_differences(const uint16_t *a, const uint16_t *b, int n, int channels,
                                     Differences *out, PixelSums *sums)
 {
@@ -151,8 +149,8 @@ static void count_differences(const PixelRow *row, int from, int to, int channel
         }
 }
 
-/* Pixels [from, to) of a row whose labels agree, of which nobody asks more than their colors: as
- * count_pixel counts them. */
+/* Counts the pixels [from, to) of a row as count_pixel does, without branches. Their labels agree,
+ * and neither settled pixels, classes nor geometry are wanted. */
 static void count_colors(const Counting *counting, const PixelRow *row, int from, int to,
                          const Differences *differences, PixelSums *sums)
 {
@@ -241,7 +239,7 @@ static void count_silhouette(const uint32_t *row, const uint32_t *below, int wid
     sums->total.silhouette += edges;
 }
 
-/* What the straight line through the colors seen in both needs. */
+/* Adds the pixels that show a vessel in both to the sums of the least squares fit. */
 static void add_regression(const PixelRow *row, int width, int channels, PixelSums *sums)
 {
     const uint32_t *in_a = row->window->rows[0][1], *in_b = row->window->rows[1][1];

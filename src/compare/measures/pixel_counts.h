@@ -1,61 +1,73 @@
-/* The one pass over two pictures that counts all pixels and takes all sums. Private to the module
- * compare. */
+/* Counts the pixels of two pictures and sums their differences, in one pass over all rows. Private
+ * to the module compare.
+ *
+ * Fill in the borrowed members of a Counting, call count_pixels, read sums[0] and `segments`, then
+ * call counting_release. */
 #ifndef CORCAST_COMPARE_MEASURES_PIXEL_COUNTS_H
 #define CORCAST_COMPARE_MEASURES_PIXEL_COUNTS_H
 
 #include "compare/measures/ledger.h"
 
-/* Sums over the samples seen in both, for the straight line through them; d = b - a. */
+/* Sums for the least squares fit B = gain A + offset. They are over all channels of the pixels that
+ * show a vessel in both images. a and b are codes of A and B; d = b - a. */
 typedef struct LineSums {
     uint64_t n, a, aa, dd;
     int64_t d, ad;
 } LineSums;
 
-/* Sums over pixels: integers of 64 bits alone, so that they are added as an array. */
+/* Sums over pixels. All members are integers of 64 bits, so that add_integers can add them as an
+ * array. */
 typedef struct PixelTotals {
-    uint64_t abs, squares; /* codes, codes^2 */
-    int64_t signed_codes[3];
+    uint64_t abs, squares;   /* sums of |b - a| and of (b - a)^2, all channels; codes, codes^2 */
+    int64_t signed_codes[3]; /* per channel: sum of b - a, codes */
     uint64_t counts[PIXEL_COUNTS];
-    uint64_t brighter, darker; /* pixels, by the sum of their channels */
+    uint64_t brighter, darker; /* numbers of pixels by the sign of their sum of b - a */
     uint64_t classes[PIXEL_CLASSES];
-    uint64_t silhouette; /* sides of A's pixels that part something from nothing */
+    uint64_t silhouette; /* number of pixel sides in A between a vessel and the background */
     LineSums line;
 } PixelTotals;
 
-/* What is known about the pixels of a band of rows. */
+/* Everything that is summed over a block of rows. */
 typedef struct PixelSums {
     PixelTotals total;
-    int max, interior_max, unsettled_max; /* codes; unsettled_max leaves settled pixels out */
-    PixelPlace worst;
+    /* Largest |b - a| over the channels, in codes: of all pixels; of unsettled pixels not at edges;
+     * of unsettled pixels. */
+    int max, interior_max, unsettled_max;
+    PixelPlace worst; /* the first pixel with the difference `max` */
 } PixelSums;
 
-/* What is counted, and where to. */
+/* The input, the result and the workspace of count_pixels. */
 typedef struct Counting {
     const Rendering *a, *b;
     const Labels *labels;
-    const SegmentIndex *index; /* NULL without ids */
-    int beyond;                /* codes a pixel may be off */
-    bool common_only;
-    const uint8_t *settled;           /* as in Tolerance */
-    double geometry_mm, geometry_deg; /* beyond which geometry differs */
-    uint8_t *classes;                 /* borrowed; takes the PixelClass of each pixel; or NULL */
-    uint8_t *coverage;                /* owned; a Coverage for each pixel */
-    PixelSums *sums;                  /* owned; one for each band */
-    SegmentSums *segments;            /* owned; index->n for each worker */
-    uint8_t *scratch;                 /* owned; scratch_size for each worker */
+    const SegmentIndex *index; /* NULL: no ids */
+    int beyond;                /* maximum |b - a| of a pixel that counts as equal, codes */
+    bool common_only;          /* COUNT_BEYOND counts only pixels that show a vessel in both */
+    const uint8_t *settled;    /* as Tolerance.settled */
+    /* Maximum difference of depths, mm, and angle between normals, degrees, up to which the
+     * geometry of a pixel is equal. */
+    double geometry_mm, geometry_deg;
+    uint8_t *classes;      /* receives the PixelClass of each pixel; NULL: not wanted; borrowed */
+    uint8_t *coverage;     /* per pixel: a Coverage; owned */
+    PixelSums *sums;       /* per block of rows; owned */
+    SegmentSums *segments; /* per thread: index->n sums; owned */
+    uint8_t *scratch;      /* per thread: scratch_size bytes; owned */
     size_t scratch_size;
 } Counting;
 
-/* Counts the pixels of all rows, by as many threads as there are; sums[0] and `segments` hold the
- * whole then. The caller has filled in what is not owned, and releases with counting_release, also
- * on failure. */
+/* Counts the pixels of all rows, with all processors. Then sums[0] and the first index->n of
+ * `segments` are the sums over the whole picture. The caller calls counting_release even after an
+ * error. Errors: STATUS_MEMORY. */
 MUST_CHECK Status count_pixels(Counting *counting, Err *err);
 void counting_release(Counting *counting);
 
-/* Adds gain and offset of the least squares fit B = gain A + offset over the samples that were
- * counted, their standard errors, and what is left of them beyond two errors. A code is
- * `code_levels` levels. Errors: STATUS_MEMORY. */
-MUST_CHECK Status regression_take(const Counting *counting, double code_levels,
-                                  CompareResult *result, Err *err);
+/* Sets the measures of the least squares fit B = gain A + offset: gain, offset, their standard
+ * errors and MEASURE_..._EXCESS. Leaves them unchanged if A has a single color. The counting must
+ * have ids.
+ *
+ * code_levels   levels per code: 1 or 1/257.
+ * Errors        STATUS_MEMORY. */
+MUST_CHECK Status result_set_regression(const Counting *counting, double code_levels,
+                                        CompareResult *result, Err *err);
 
 #endif

@@ -81,7 +81,8 @@ static bool on_border(const Picture *picture, int x, int y)
     return x == 0 || x == picture->width - 1 || y == 0 || y == picture->height - 1;
 }
 
-/* Whether at least three of the neighbours have the pixel's color; the border counts as one. */
+/* Returns true if at least three neighbours have the color of the pixel; the border counts as one.
+ */
 static bool has_siblings(const Picture *picture, int x, int y)
 {
     int equal = on_border(picture, x, y);
@@ -94,7 +95,7 @@ static bool has_siblings(const Picture *picture, int x, int y)
     return equal > 2;
 }
 
-/* Whether the pixel of `picture` lies on an edge that antialiasing has smoothed: its darkest or its
+/* Returns true if the pixel is on an edge that antialiasing has smoothed: its darkest or its
  * brightest neighbour has siblings in both pictures. */
 static bool is_antialiased(const Picture *picture, const Picture *partner, int x, int y)
 {

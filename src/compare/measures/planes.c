@@ -1,4 +1,5 @@
-/* Depth, normal and id planes. The values of a pixel say what it shows. */
+/* Compares depth, normal and id planes. The value of a pixel itself states whether it shows a
+ * surface, so coverage needs no id planes. */
 #include "compare/measures/planes.h"
 
 #include "compare/measures/labels.h"
@@ -41,7 +42,7 @@ static void label_seen(PlaneKind kind, const Plane *a, const Plane *b, Labels *l
         bool is_nan = in_a == SEEN_NAN || in_b == SEEN_NAN;
         result->values[MEASURE_NAN_PIXELS] += (in_a == SEEN_NAN) + (in_b == SEEN_NAN);
         if (is_nan && result->places[PLACE_NAN].x < 0)
-            result->places[PLACE_NAN] = place_of(i, a->width);
+            result->places[PLACE_NAN] = pixel_place(i, a->width);
         labels->seen[0][i] = !is_nan && in_a == SEEN_SURFACE;
         labels->seen[1][i] = !is_nan && in_b == SEEN_SURFACE;
     }
@@ -68,7 +69,7 @@ static void measure_errors(PlaneKind kind, const Plane *a, const Plane *b, const
         beyond += error > limit;
         if (error > worst) {
             worst = error;
-            result->places[PLACE_WORST] = place_of(i, a->width);
+            result->places[PLACE_WORST] = pixel_place(i, a->width);
         }
     }
     values[MEASURE_DIFFERING_PIXELS] = (double)differing;
@@ -94,26 +95,20 @@ static void measure_parts(const Plane *a, const Plane *b, const Labels *labels, 
         result->values[MEASURE_P99_PART] = percentile(errors, found, 0.99);
 }
 
-static void count_label(const LabelWindow *window, int x, uint8_t *coverage,
+/* Counts a pixel of the middle row. */
+static void count_pixel(const LabelWindow *window, int x, uint8_t *coverage,
                         uint64_t counts[PIXEL_COUNTS], CompareResult *result)
 {
-    size_t pixel = (size_t)window->y * (size_t)window->labels->width + (size_t)x;
-    uint32_t a = window->rows[0][1][x], b = window->rows[1][1][x];
-    bool band = window->band[x], differs = a != b;
-    bool settled = differs && is_settled(&result->tolerance, pixel), beyond = differs && !settled;
-    if (!a != !b && !settled) {
-        coverage[pixel] = a ? COVERED_MISSING : COVERED_EXTRA;
-        counts[COUNT_MISSING] += a != 0;
-        counts[COUNT_EXTRA] += b != 0;
-    }
+    const size_t pixel = (size_t)window->y * (size_t)window->labels->width + (size_t)x;
+    const uint32_t a = window->rows[0][1][x], b = window->rows[1][1][x];
+    const bool band = window->band[x], differs = a != b;
+    const bool settled = differs && is_settled(&result->tolerance, pixel);
+    const bool beyond = differs && !settled;
+    count_label((LabelPair){a, b, band, settled}, pixel, coverage, counts);
     if (differs && result->kind == PLANE_ID && counts[COUNT_DIFFERING] == 0)
         result->places[PLACE_WORST] = (PixelPlace){.x = x, .y = window->y};
     counts[COUNT_DIFFERING] += differs;
     counts[COUNT_BEYOND] += beyond;
-    counts[COUNT_SETTLED] += settled;
-    counts[COUNT_COMMON] += a && b;
-    counts[COUNT_BAND] += band;
-    counts[COUNT_BAND_DIFFERS] += band && differs;
     counts[COUNT_BAND_BEYOND] += band && beyond;
     counts[COUNT_INTERIOR_BEYOND] += !band && beyond;
     result->classes[settled   ? PIXEL_SETTLED
@@ -133,12 +128,12 @@ static Status measure_labels(const Labels *labels, CompareResult *result, Err *e
     label_window_open(&window, labels, 0, scratch);
     for (int y = 0; y < labels->height; y++) {
         for (int x = 0; x < labels->width; x++)
-            count_label(&window, x, coverage, counts, result);
+            count_pixel(&window, x, coverage, counts, result);
         if (y + 1 < labels->height)
             label_window_next(&window);
     }
-    counts_take(counts, true, result);
-    status = region_take(coverage, labels, result, err);
+    result_set_counts(counts, true, result);
+    status = result_set_region(coverage, labels, result, err);
 done:
     free(scratch);
     free(coverage);

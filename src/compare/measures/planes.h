@@ -1,42 +1,46 @@
-/* Comparisons of two pictures, or of two planes of one kind. Each fills in a whole CompareResult
- * and judges it by the tolerance. */
+/* Compares two pictures, or two planes of one kind. Each compare_* function that has a Tolerance
+ * measures the differences and judges them: it sets the whole *result, on success only. *result
+ * borrows what the tolerance borrows. */
 #ifndef CORCAST_COMPARE_MEASURES_PLANES_H
 #define CORCAST_COMPARE_MEASURES_PLANES_H
 
 #include "compare/result.h"
 
-/* Compares two pictures. Does not measure perception.
+/* Compares the pictures of two renderings. If both have ids, depths and normals, these classify the
+ * pixels. Does not compute the perceptual measures.
  *
- * ledger   receives a row for each segment; release it with ledger_release. Empty without ids. May
- *          be NULL.
+ * ledger   receives an entry per segment, none without ids; release it with ledger_release. NULL:
+ *          not wanted.
  * Errors   STATUS_INPUT if sizes, channels or bits differ; STATUS_MEMORY. */
 MUST_CHECK Status compare_pictures(const Rendering *a, const Rendering *b,
                                    const Tolerance *tolerance, CompareResult *result,
                                    Ledger *ledger, Err *err);
 
-/* Finds the class of every pixel. *out is a grey picture of 8 bits whose codes are PixelClass; the
- * caller releases it. Errors as compare_pictures. */
+/* Makes a picture of the classes of all pixels: grey, 8 bits, each code a PixelClass.
+ *
+ * out      the caller releases it; set on success only.
+ * Errors   those of compare_pictures. */
 MUST_CHECK Status class_picture(Picture *out, const Rendering *a, const Rendering *b,
                                 const Tolerance *tolerance, Err *err);
 
-/* Adds the perceptual measures of two pictures of one shape to their result. They are taken as
- * sRGB. Errors: STATUS_MEMORY. */
+/* Adds the perceptual measures of two pictures to their result. The pictures have equal size,
+ * channels and bits, and are taken as sRGB. Errors: STATUS_MEMORY. */
 MUST_CHECK Status compare_perception(const Picture *a, const Picture *b, CompareResult *result,
                                      Err *err);
 
-/* Compares the planes `color` of two renderings. Levels are those of the sRGB encoding, continued
- * above white and mirrored below black. Pixels with a value that is not finite are counted, and
- * enter no other measure. `ids` only name segments.
+/* Compares the planes `color` of two renderings: linear floats, 1 or 3 channels. Differences are in
+ * levels of the sRGB curve, continued above white and mirrored below black. Pixels with a value
+ * that is not finite are counted, and enter no other measure. The ids only name segments.
  *
- * perception   adds HDR-FLIP of the colors, and the other perceptual measures of the colors
- *              clipped to white.
+ * perception   true: also computes HDR-FLIP of the colors, and the other perceptual measures of the
+ *              colors clipped to white.
  * Errors       STATUS_INPUT if shapes differ; STATUS_MEMORY. */
 MUST_CHECK Status compare_colors(const Rendering *a, const Rendering *b, const Tolerance *tolerance,
                                  bool perception, CompareResult *result, Err *err);
 
 /* Compares the planes `depth` (1 channel, INFINITY where nothing is seen) or `normal` (3 channels,
  * 0 0 0 where nothing is seen) of two renderings. NaN, and for a depth minus infinity, is counted
- * and enters no other measure. `ids` only name segments.
+ * and enters no other measure. The ids only name segments.
  *
  * kind         PLANE_DEPTH or PLANE_NORMAL.
  * Errors       STATUS_INPUT if shapes differ; STATUS_MEMORY. */
@@ -49,17 +53,21 @@ MUST_CHECK Status compare_ids(const IdPlane *a, const IdPlane *b, const Toleranc
 
 /* ---- alpha ----------------------------------------------------------------------------------- */
 
-/* Takes alpha of an image that was read with ALPHA_KEPT. *alpha becomes a grey picture of 16
- * bits, which the caller releases; it is not changed if the image is opaque. Errors:
- * STATUS_MEMORY. */
-MUST_CHECK Status alpha_take(Picture *alpha, const Image *image, Err *err);
-
-/* Judges alpha of two transparent pictures by the tolerance of their colors. If the colors agree
- * and alpha does not, the result differs, with a reason and a cause.
+/* Copies the alpha channel of an image that was read with ALPHA_KEPT.
  *
- * a, b     as alpha_take made them. If either is empty, alpha is not judged: an opaque picture is
- *          compared with one that was composited over a background.
- * Errors   STATUS_INPUT if sizes differ; STATUS_MEMORY. */
-MUST_CHECK Status alpha_judge(const Picture *a, const Picture *b, CompareResult *result, Err *err);
+ * alpha    receives a grey picture of 16 bits, which the caller releases; unchanged if the image
+ *          has no alpha channel.
+ * Errors   STATUS_MEMORY. */
+MUST_CHECK Status alpha_of_image(Picture *alpha, const Image *image, Err *err);
+
+/* Compares the alpha channels of two transparent pictures by the tolerance of their colors. If the
+ * colors agree and alpha does not, sets agrees, reason and cause of *result.
+ *
+ * a, b     made by alpha_of_image. If either has no codes, alpha is not compared: one picture is
+ *          opaque, and the other one was composited over a background.
+ * result   the comparison of the colors.
+ * Errors   STATUS_INPUT if the sizes differ; STATUS_MEMORY. */
+MUST_CHECK Status result_judge_alpha(const Picture *a, const Picture *b, CompareResult *result,
+                                     Err *err);
 
 #endif

@@ -1,6 +1,6 @@
-/* Regions of pixels that only one of the two images shows. They are filled with an explicit stack;
- * a pixel leaves the map when it is pushed, so that it is pushed once. Missing and extra pixels
- * make separate regions: a shifted edge is missing on one side and extra on the other. */
+/* Finds regions of pixels that only one of the two images shows, by flood fill with a stack. A
+ * pixel is cleared from the map when it is pushed, so it is pushed once. Missing and extra pixels
+ * make separate regions, because a shifted edge is missing on one side and extra on the other. */
 #include "compare/measures/labels.h"
 #include "compare/pixels.h"
 
@@ -46,7 +46,7 @@ static Status region_size(Fill *fill, size_t start, size_t *size, Err *err)
     return STATUS_OK;
 }
 
-Status region_take(uint8_t *coverage, const Labels *labels, CompareResult *result, Err *err)
+Status result_set_region(uint8_t *coverage, const Labels *labels, CompareResult *result, Err *err)
 {
     double *values = result->values;
     size_t n = (size_t)labels->width * (size_t)labels->height, found = 0, largest = 0;
@@ -60,7 +60,7 @@ Status region_take(uint8_t *coverage, const Labels *labels, CompareResult *resul
         if (found <= largest)
             continue;
         largest = found;
-        result->places[PLACE_REGION] = place_of(i, labels->width);
+        result->places[PLACE_REGION] = pixel_place(i, labels->width);
     }
     values[MEASURE_LARGEST_REGION] = (double)largest;
 done:
@@ -68,7 +68,7 @@ done:
     return status;
 }
 
-void counts_take(const uint64_t counts[PIXEL_COUNTS], bool labelled, CompareResult *result)
+void result_set_counts(const uint64_t counts[PIXEL_COUNTS], bool labelled, CompareResult *result)
 {
     static const MeasureId ids[PIXEL_COUNTS] = {[COUNT_DIFFERING] = MEASURE_DIFFERING_PIXELS,
                                                 [COUNT_BEYOND] = MEASURE_BEYOND_PIXELS,

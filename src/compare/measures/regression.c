@@ -60,7 +60,7 @@ static bool has_same_codes(const Picture *picture, int x, int y, int u, int v)
                   codes + ((size_t)v * width + (size_t)u) * size, size) == 0;
 }
 
-/* Whether the common pixel (u, v) goes on with the run of (x, y). */
+/* Returns true if pixel (u, v) shows a vessel in both and has the codes of pixel (x, y). */
 static bool repeats(const Runs *runs, int x, int y, int u, int v)
 {
     return is_common(runs, u, v) && has_same_codes(runs->a->picture, x, y, u, v) &&
@@ -123,8 +123,8 @@ static double beyond_error(double distance, double error)
     return fmax(0, fabs(distance) - 2 * error);
 }
 
-Status regression_take(const Counting *counting, double code_levels, CompareResult *result,
-                       Err *err)
+Status result_set_regression(const Counting *counting, double code_levels, CompareResult *result,
+                             Err *err)
 {
     const PixelSums *sums = counting->sums;
     double n = (double)sums->total.line.n, a = (double)sums->total.line.a,

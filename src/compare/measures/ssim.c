@@ -1,8 +1,8 @@
-/* Mean structural similarity. Five moments (a, b, aa, bb, ab) are blurred, first down the columns
- * of the eleven rows about an output row, then along it. Pictures are measured in bands of output
- * rows, so that the luma of no more than a band is held; the sums of rows are added in order. A
- * window that is equal in both pictures is 1 by its definition, so only stretches of a row about
- * pixels that differ are blurred. */
+/* Mean structural similarity (SSIM). The five moments a, b, aa, bb and ab are blurred by a
+ * separable Gaussian: first down the columns of the 11 rows around an output row, then along the
+ * row. Threads compute bands of output rows, so each holds the luma of one band only. The sums of
+ * rows are added in order. A window that is equal in both pictures has similarity 1, so only the
+ * windows around pixels that differ are blurred. */
 #include "compare/measures/perception.h"
 
 #include "compare/measures/wide.h"
@@ -23,7 +23,8 @@ typedef struct Ssim {
     size_t workspace_size;
 } Ssim;
 
-/* Luma of ITU-R BT.601, rounded to whole codes as image libraries do, in 8-bit levels. */
+/* Computes the luma of ITU-R BT.601 of a row in 8-bit levels, rounded to codes as image libraries
+ * do. */
 static void fill_luma(const Picture *picture, int y, double *luma)
 {
     double scale = picture->bits == 8 ? 1 : 1 / 257.0;
@@ -38,7 +39,7 @@ static void fill_luma(const Picture *picture, int y, double *luma)
     }
 }
 
-/* Blurs eleven rows, from `a` and `b` on, down the columns from..to - 1. */
+/* Blurs the columns [from, to) of the 11 rows that begin at `a` and `b`. */
 static void blur_columns(const Ssim *ssim, const double *restrict a, const double *restrict b,
                          size_t from, size_t to, double *restrict moments)
 {
@@ -57,7 +58,7 @@ static void blur_columns(const Ssim *ssim, const double *restrict a, const doubl
     }
 }
 
-/* The similarities of the windows that begin in STRETCH columns from `moments` on. */
+/* Computes the similarities of the STRETCH windows that begin at the columns from `moments` on. */
 static void compare_windows(const Ssim *ssim, const double *restrict moments,
                             double *restrict similarities)
 {
@@ -78,7 +79,7 @@ static void compare_windows(const Ssim *ssim, const double *restrict moments,
     }
 }
 
-/* The sum over the windows from..to - 1 of a row. The last stretch may go on behind them. */
+/* Returns the sum over the windows [from, to) of a row. The last stretch may compute more. */
 static double sum_windows(const Ssim *ssim, const double *moments, int from, int to)
 {
     double sum = 0, similarities[STRETCH];
@@ -90,7 +91,7 @@ static double sum_windows(const Ssim *ssim, const double *moments, int from, int
     return sum;
 }
 
-/* Counts for each column how many of the last rows are equal in it, TAPS at most. */
+/* Counts per column how many of the last rows are equal in both pictures, up to TAPS. */
 static void count_equal(const Picture *a, const Picture *b, int y, uint8_t *equal)
 {
     bool all = picture_rows_equal(a, b, y, 0, a->width);
@@ -104,8 +105,8 @@ static void count_equal(const Picture *a, const Picture *b, int y, uint8_t *equa
     }
 }
 
-/* The first window from `x` on that is equal in both pictures, or is not; the number of windows
- * where there is none. */
+/* Returns the first window from `x` on that is equal in both pictures (is_equal) or differs; the
+ * number of windows if there is none. */
 static int next_window(const Ssim *ssim, const uint8_t *equal, int x, bool is_equal)
 {
     int run = 0; /* equal columns before the window's last */
@@ -119,7 +120,7 @@ static int next_window(const Ssim *ssim, const uint8_t *equal, int x, bool is_eq
     return x;
 }
 
-/* The sum over a row of windows, whose rows of luma begin at `a` and `b`. */
+/* Returns the sum over a row of windows. `a` and `b` are the first of its 11 rows of luma. */
 static double row_sum(const Ssim *ssim, const double *a, const double *b, const uint8_t *equal,
                       double *moments)
 {

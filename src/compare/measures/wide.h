@@ -1,4 +1,9 @@
-/* Loops over pixels as vectors. Private to the module compare. */
+/* Lets the compiler turn loops over pixels into AVX2 instructions: attributes for functions, and
+ * roots, logarithms and powers of floats without branches or calls. Private to the module compare.
+ *
+ *     FLAT static void do_row(...) { ... }
+ *     WIDE static void do_row_wide(...) { do_row(...); }
+ *     threads_for(rows, 0, wide_usable() ? do_row_wide : do_row, &context); */
 #ifndef CORCAST_COMPARE_MEASURES_WIDE_H
 #define CORCAST_COMPARE_MEASURES_WIDE_H
 
@@ -6,9 +11,10 @@
 #include <stdint.h>
 #include <string.h>
 
-/* All functions that a FLAT function calls are inlined, so that a loop over pixels has no calls. A
- * WIDE function is a FLAT function compiled for AVX2, to be used if wide_usable returns true.
- * Nothing is reordered and no product is fused with a sum, so both give the same bits. */
+/* The compiler inlines all calls in a FLAT function, so that its loops over pixels have no calls. A
+ * WIDE function is a FLAT function that is compiled for AVX2. It may be called only if wide_usable
+ * returns true. The compiler neither reorders sums nor fuses a product with a sum, so both give the
+ * same bits. */
 #define FLAT __attribute__((flatten))
 #ifdef __x86_64__
 #define WIDE __attribute__((target("avx2"), flatten))
@@ -25,9 +31,9 @@ static inline bool wide_usable(void)
 #endif
 
 /* ---- roots and powers ------------------------------------------------------------------------
- * They have no branches or calls. In the ranges of FLIP and CIEDE2000 they are right to a few units
- * in the last place. */
+ * In the ranges that FLIP and CIEDE2000 use, their errors are a few units in the last place. */
 
+/* Return the float with these bits, and the bits of a float. */
 static inline float float_of(uint32_t bits)
 {
     float value;
@@ -42,7 +48,8 @@ static inline uint32_t bits_of(float value)
     return bits;
 }
 
-/* Of a positive number: a third of its logarithm, read off its bits, then two of Halley's steps. */
+/* Returns the cube root of x > 0. The bits of x divided by 3 give a third of its logarithm, and so
+ * a first value. Two steps of Halley's method correct it. */
 static inline float cube_root(float x)
 {
     float y = float_of(bits_of(x) / 3 + 0x2a5137a0u);
@@ -53,7 +60,8 @@ static inline float cube_root(float x)
     return y;
 }
 
-/* Of a positive number m 2^e, m in [sqrt(1/2), sqrt(2)): e + 2 artanh((m - 1) / (m + 1)) / ln 2. */
+/* Returns the binary logarithm of x > 0. With x = m 2^e and m in [sqrt(1/2), sqrt(2)), it is
+ * e + 2 artanh((m - 1) / (m + 1)) / ln 2. */
 static inline float log_2(float x)
 {
     uint32_t bits = bits_of(x) - 0x3f3504f3u;
@@ -64,7 +72,8 @@ static inline float log_2(float x)
     return (float)exponent + 2.88539008f * s * series;
 }
 
-/* Of a number in [-126, 126]: 2^n by its bits, and the rest, of at most 1/2, by its series. */
+/* Returns 2^x for x in [-126, 126]. The nearest integer to x sets the bits of the exponent. The
+ * rest, at most 1/2, goes into the series. */
 static inline float exp_2(float x)
 {
     int n = (int)(x + (x < 0 ? -0.5f : 0.5f));
@@ -75,7 +84,7 @@ static inline float exp_2(float x)
     return series * float_of((uint32_t)(n + 127) << 23);
 }
 
-/* x^y for x of at least 0 and y in [0, 1]; 0 where x is less than 1e-30. */
+/* Returns x^y for x >= 0 and y in [0, 1]; 0 if x < 1e-30. */
 static inline float power(float x, float y)
 {
     float positive = x < 1e-30f ? 1e-30f : x;

@@ -1,4 +1,4 @@
-/* Further checks of a scene in JSON. */
+/* Writes the checks of a scene as JSON: surface, settled pixels and witness. */
 #include "compare/report/check.h"
 #include "compare/report/page.h"
 
@@ -37,8 +37,8 @@ json_t *settled_json(const Settled *settled)
     return json_pack("{s:s, s:s?, s:I, s:I, s:o, s:o}", "verdict",
                      settled->agrees ? "agree" : "differ", "reason",
                      settled->reason[0] ? settled->reason : NULL, "asked_pixels",
-                     (json_int_t)settled->asked, "unexplained_pixels",
-                     (json_int_t)(settled->count[SETTLED_NOT] + settled->unasked), "rules",
+                     (json_int_t)settled->examined, "unexplained_pixels",
+                     (json_int_t)(settled->count[SETTLED_NOT] + settled->unexamined), "rules",
                      rules_json(check.rules, check.n_rules), "pixels", pixels_json(settled));
 }
 

@@ -1,32 +1,42 @@
-/* The parts of a report. Private to the module compare. */
+/* The parts of a report: JSON of its checks, the HTML page, and the pictures of the page. Private
+ * to the module compare.
+ *
+ * A page is made from the inside out: report_parts makes the table row and the section of each
+ * case, and report_write_frame puts rows and sections into the page. report_merge finds the rows
+ * and sections of finished pages by marks, and puts them into a new page. `templates` is always the
+ * folder of the HTML templates. Unless stated, errors are STATUS_INPUT for a template [tmpl.h],
+ * STATUS_IO and STATUS_MEMORY. */
 #ifndef CORCAST_COMPARE_REPORT_PAGE_H
 #define CORCAST_COMPARE_REPORT_PAGE_H
 
 #include "compare/report/report.h"
 
-/* Appends the report as JUnit XML, a test case for each check. */
+/* Appends the report as JUnit XML: a test suite with a test case per check. */
 void report_junit(const ReportCase *report, Text *out);
 
-/* Return parts of a report as JSON, a new reference each; NULL if memory runs out. The worst
- * segments are the same as in compare_json. */
+/* Return parts of a report as JSON: new references, which the caller releases; NULL if memory runs
+ * out. worst_segments_json returns the list of compare_json. */
 json_t *rules_json(const Rule *rules, int n);
 json_t *worst_segments_json(const CompareResult *result);
 json_t *settled_json(const Settled *settled);
 json_t *surface_check_json(const SurfaceCheck *check);
 json_t *witness_json(const Witness *witness);
 
-/* Appends a number with three significant digits, integers with all digits, and its unit. After the
- * number 1 the unit loses its last "s". */
+/* Appends a number and its unit. Integers, and numbers from 1000 on, have all digits before the
+ * point; other numbers have three significant digits. After the number 1, the unit loses its last
+ * "s". */
 void text_rounded(Text *out, double value, const char *unit);
-/* Appends the rows of the page's table of rules, and its tables of measures. */
+/* Appends the rows of the table of rules to `rules`, and the tables of measures to `measures`, as
+ * HTML. Errors: STATUS_INPUT for a template, STATUS_MEMORY. */
 MUST_CHECK Status report_tables(const ReportCase *report, const char *templates, Text *rules,
                                 Text *measures, Err *err);
 
-/* Pictures of depths and normals for the page's script, 8 bits per channel.
+/* Pictures that store depths and normals for the script of the page, 8 bits per channel.
  *
- * Depths are numbers of two bytes in red and green: 0 where nothing is seen, else 1 to 65534 over
- * the range of depths. Normals are 128 + 127 n. Angles between normals are in 0.001 degrees, in red
- * and green. Pictures of B hold B - A, modulo the range of the codes. */
+ * A depth is a 16-bit number, whose high byte is red and whose low byte is green: 0 if no surface
+ * is visible, else 1 to 65534 over the range of depths. A normal is 128 + 127 n per component; 0 0
+ * 0 if no surface is visible. The angle between the normals of A and B is a 16-bit number in 0.001
+ * degrees. Pictures of B contain B - A, modulo the range of the numbers, so that they are small. */
 typedef enum ReportPlane {
     REPORT_DEPTH_A,
     REPORT_DEPTH_B,
@@ -35,16 +45,20 @@ typedef enum ReportPlane {
     REPORT_ANGLES,
     REPORT_PLANES
 } ReportPlane;
-/* Appends these pictures as data: URIs, "data:," for planes that are unknown or larger than 4
- * million pixels. Sets the range of depths. Errors: STATUS_MEMORY. */
+/* Appends each of these pictures to its text, as a data: URI. Appends "data:," instead for planes
+ * that are NULL or have more than 2^22 pixels.
+ *
+ * range_mm   receives the smallest and the largest depth, also after an error; 0 0: no depth.
+ * Errors     STATUS_MEMORY. */
 MUST_CHECK Status report_planes(const Rendering *a, const Rendering *b, Text *parts[REPORT_PLANES],
                                 double range_mm[2], Err *err);
-/* Makes a copy at most 96 pixels wide, each pixel of which is the mean of a square. The caller
- * releases it. Errors: STATUS_MEMORY. */
+/* Makes a copy of 8 bits that is at most 96 pixels wide. Each of its pixels is the mean of a square
+ * of pixels. The caller releases *out. Errors: STATUS_MEMORY. */
 MUST_CHECK Status report_thumbnail(Picture *out, const Picture *picture, Err *err);
 
-/* The name of the case in the templates case.html and row.html, the mark that report_merge replaces
- * by the folder of the case, and the marks between which report_merge finds the parts of a page. */
+/* Marks in pages. REPORT_FIRST_CASE is the name of the case in the templates case.html and
+ * row.html; report_put_part replaces it by "case-N". It replaces REPORT_FOLDER by the folder of the
+ * case. report_merge finds row and section between the marks BEGIN and END. */
 #define REPORT_FIRST_CASE "case-1"
 #define REPORT_FOLDER "<!-- folder -->"
 #define REPORT_ROW_BEGIN "<!-- row: begin -->\n"
@@ -52,27 +66,30 @@ MUST_CHECK Status report_thumbnail(Picture *out, const Picture *picture, Err *er
 #define REPORT_CASE_BEGIN "<!-- case: begin -->\n"
 #define REPORT_CASE_END "<!-- case: end -->\n"
 
-/* A page about cases. All members are borrowed. `title`, `heading` and `sentence` are text; `rows`,
- * `cases`, `power` and `others`, a list of cases without pictures, are markup. */
+/* The content of a page about one or more cases. All members are borrowed. */
 typedef struct ReportFrame {
-    const char *title, *heading, *sentence;
-    const Text *rows, *cases, *power, *others;
-    size_t n_cases;
-    bool agrees;
+    const char *title, *heading, *sentence; /* plain text */
+    const Text *rows, *cases; /* HTML: the rows of the table of cases, and the sections */
+    const Text *power;        /* HTML: the table of planted faults; empty: none */
+    const Text *others;       /* HTML: a list of cases without pictures; empty: none */
+    size_t n_cases;           /* number of sections */
+    bool agrees;              /* the verdict in the head of the page */
 } ReportFrame;
 
-/* Writes the page to `path`; `templates` is the folder with report.html and the templates of its
- * parts. */
+/* Writes the page to the file `path`. */
 MUST_CHECK Status report_write_frame(const ReportFrame *frame, const char *templates,
                                      const char *path, Err *err);
-/* Appends the row of a case and its section, with the marks above. `heat` is the difference
- * picture. */
+/* Appends the table row of a case and its section, with the marks above. `heat` is the picture of
+ * the difference [heat_picture]. Errors: STATUS_INPUT for a template, STATUS_MEMORY. */
 MUST_CHECK Status report_parts(const ReportCase *report, const Picture *heat, const char *templates,
                                Text *row, Text *section, Err *err);
-/* Appends a row or a section as that of the case with this number, from 1. `folder` is the folder
- * of the case; NULL: none is shown. */
+/* Appends a row or a section, and replaces its marks.
+ *
+ * part, size   the row or section as report_parts made it, and its length in bytes.
+ * number       the number N of the case on the new page, from 1.
+ * folder       the folder of the case; NULL: none is shown. */
 void report_put_part(Text *out, const char *part, size_t size, size_t number, const char *folder);
-/* Writes the page to `path`; `heat` is the difference picture. */
+/* Writes a page about one case to the file `path`. `heat` as for report_parts. */
 MUST_CHECK Status report_page(const ReportCase *report, const Picture *heat, const char *templates,
                               const char *path, Err *err);
 

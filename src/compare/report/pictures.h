@@ -1,12 +1,14 @@
-/* Pictures of a difference. */
+/* Makes pictures that show the difference of two pictures: a heat map, the signed difference, and
+ * an animation. */
 #ifndef CORCAST_COMPARE_REPORT_PICTURES_H
 #define CORCAST_COMPARE_REPORT_PICTURES_H
 
 #include "base/base.h"
 #include "image/image.h"
 
-/* The levels at which the heat map changes color: 0, 1, 2, 4, 8, 16 and more. They do not depend
- * on the picture, so that two heat maps can be compared. */
+/* The colors of the heat map. A color is for differences from `from_level` to the next step: 0, 1,
+ * 2, 4, 8, 16 and more levels. The steps do not depend on the pictures, so two heat maps can be
+ * compared. */
 enum { HEAT_STEPS = 6 };
 typedef struct HeatStep {
     int from_level; /* largest difference over the channels, in 8-bit levels */
@@ -14,8 +16,8 @@ typedef struct HeatStep {
 } HeatStep;
 extern const HeatStep heat_steps[HEAT_STEPS];
 
-/* The pictures below are of two pictures of one shape. The caller releases *out, or the text.
- * Errors: STATUS_MEMORY. */
+/* Both pictures must have equal size, channels and bits. The caller releases *out. Errors:
+ * STATUS_MEMORY. */
 
 /* Makes the heat map of the difference, an 8-bit RGB picture. Only equal pixels have the color of
  * level 0. A difference of 16-bit codes below one level has the color of level 1. */

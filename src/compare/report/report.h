@@ -1,4 +1,9 @@
-/* What was found, as JSON, text, JUnit XML, and as a page with the pictures. */
+/* Writes the results of comparisons as JSON, text, JUnit XML and HTML pages with the pictures.
+ *
+ * compare_json, compare_text and compare_junit write one CompareResult. A ReportCase describes two
+ * renderings of a scene with all their comparisons; report_write writes a folder with a page about
+ * it. report_merge makes one page of several such folders. suite_write_page writes a page about a
+ * folder of pictures. A function that appends to a Text reports lack of memory by text_check. */
 #ifndef CORCAST_COMPARE_REPORT_REPORT_H
 #define CORCAST_COMPARE_REPORT_REPORT_H
 
@@ -15,10 +20,11 @@
 json_t *compare_json(const CompareResult *result);
 /* Appends the result as text: verdict, rules, measures, worst segments, one per line. */
 void compare_text(const CompareResult *result, Text *out);
-/* Appends the result as JUnit XML, a test case for each rule. They share the time.
+/* Appends the result as JUnit XML: a test suite with a test case per rule. The time is divided
+ * evenly among the test cases.
  *
- * name      of the test suite.
- * seconds   that the comparison took. */
+ * name      name of the test suite.
+ * seconds   duration of the comparison. */
 void compare_junit(const CompareResult *result, const char *name, double seconds, Text *out);
 
 /* ---- reports of one scene -------------------------------------------------------------------- */
@@ -26,68 +32,72 @@ void compare_junit(const CompareResult *result, const char *name, double seconds
 /* One of the two programs that rendered a scene, or one of two files. All members are borrowed. */
 typedef struct ReportSide {
     const char *name;    /* "POV-Ray" */
-    const char *key;     /* in JSON: "povray", "native", "a", "b" */
+    const char *key;     /* its key in JSON: "povray", "native", "a", "b" */
     const char *version; /* "3.7.0.10"; "": none */
     double seconds;      /* wall-clock time of the color picture, sum over tiles; NAN: unknown */
     size_t tiles;        /* tiles that the picture was drawn in; 0: unknown */
-    Rendering shown;     /* its picture, and ids, depth and normal, each of which is NULL in both
-                          * sides if it is unknown */
+    Rendering shown;     /* picture, ids, depth and normal; ids, depth and normal are NULL in both
+                          * sides if they are unknown */
 } ReportSide;
 
-/* One scene as A, the reference, and B have it. All members are borrowed. */
+/* Two renderings of one scene, A and B, and the comparisons of them. All members are borrowed. */
 typedef struct ReportCase {
-    const char *name;  /* of the scene: "demo"; one line */
-    const char *model; /* "rounded"; "": none */
+    const char *name;  /* name of the scene: "demo"; one line */
+    const char *model; /* vessel geometry: "rounded"; "": none */
     ReportSide a, b;
     const char *sentence;        /* replaces the sentence about the verdict; NULL: none does */
     const char *accept;          /* shell command that accepts B as the reference; NULL: none */
-    const char *const *commands; /* how to repeat the report, one per line */
+    const char *const *commands; /* shell commands that repeat the report */
     size_t n_commands;
     const CompareResult *planes[PLANE_KINDS]; /* NULL: not compared; PLANE_COLOR is required */
-    const SurfaceCheck *surface;              /* of an implicit model; NULL: of another model */
-    const CompareResult *alpha;               /* of a transparent picture; NULL: it is opaque */
-    /* Colors of an implicit surface where it is, compared with A's. NULL: of another model. */
+    const SurfaceCheck *surface;              /* NULL: the model is no implicit surface */
+    const CompareResult *alpha;               /* NULL: the pictures are opaque */
+    /* A compared with the colors at the exact position of the surface. NULL: the model is no
+     * implicit surface. */
     const CompareResult *exact;
     const Settled *settled; /* NULL: no pixel was examined */
-    const Witness *witness; /* NULL: there is none */
+    const Witness *witness; /* NULL: no third program drew the scene */
 } ReportCase;
 
-/* Returns true if all planes, the surface and the witness agree, and not too much is settled. */
+/* Returns true if all comparisons and checks of the case agree. */
 bool report_agrees(const ReportCase *report);
 /* Returns the report with the keys of `verify --json`. The caller releases it. Returns NULL if
  * memory runs out. */
 json_t *report_json(const ReportCase *report);
 
-/* Writes report.html, report.json, junit.xml and diff.png into `folder`, which exists. The page
- * holds its pictures and needs no network.
+/* Writes report.html, report.json, junit.xml and diff.png into `folder`, which must exist. The page
+ * contains its pictures and needs no network. After an error some files may be missing.
  *
- * templates   the folder with the templates of the page.
+ * templates   the folder with the HTML templates.
  * Errors      STATUS_INPUT for a template; STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status report_write(const ReportCase *report, const char *templates, const char *folder,
                                Err *err);
-/* Writes the page alone, to `path`. */
+/* Writes the page only, to the file `path`. Errors: those of report_write. */
 MUST_CHECK Status report_write_page(const ReportCase *report, const char *templates,
                                     const char *path, Err *err);
 
-/* What report_merge makes a page of. All members are borrowed. */
+/* The input of report_merge. All members are borrowed. */
 typedef struct ReportMerge {
-    const char *const *folders; /* of report_write */
+    const char *const *folders; /* n folders that report_write has written */
     size_t n;
     const char *power;     /* the file that `make power` writes; NULL: none */
-    const char *templates; /* the folder with the templates of the page */
+    const char *templates; /* the folder with the HTML templates */
 } ReportMerge;
 
-/* Writes one page about all cases of the folders, worst first, to `path`. *all_agree becomes true
- * if all cases agree. Errors: STATUS_INPUT if a folder has no report of this version; STATUS_IO;
- * STATUS_MEMORY. */
+/* Writes one page about the cases of all folders to the file `path`, the largest report_severity
+ * first.
+ *
+ * all_agree   receives true if all cases agree; set on success only.
+ * Errors      STATUS_INPUT if a folder has no report of this version of corcast; STATUS_IO;
+ *             STATUS_MEMORY. */
 MUST_CHECK Status report_merge(const ReportMerge *merge, const char *path, bool *all_agree,
                                Err *err);
 
 /* ---- a folder of pictures -------------------------------------------------------------------- */
 
-/* Writes one page about a suite that was judged: all cases that fail, each with the command that
- * accepts it, and the unused files. Pictures are read and compared again. Errors: STATUS_INPUT;
- * STATUS_IO; STATUS_MEMORY. */
+/* Writes one page about the result of suite_judge to the file `path`. It shows each case that
+ * fails, with the command that accepts it, and lists the unused files. Reads and compares the
+ * pictures again. Errors: STATUS_INPUT for a template or a picture; STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status suite_write_page(const Suite *suite, const SuiteFolders *folders,
                                    const char *templates, const char *path, Err *err);
 

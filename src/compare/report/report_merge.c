@@ -1,12 +1,12 @@
-/* One page from the pages of several cases: each holds its row of the table and its section between
- * marks, and report.json its verdict, so that nothing is drawn or measured again. */
+/* Merges the pages of several cases into one. Each page has its table row and its section between
+ * marks, and report.json has the verdict, so nothing is drawn or measured again. */
 #include "compare/report/page.h"
 #include "tmpl/tmpl.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* A part of a page, without a zero at its end. */
+/* A part of a page; not zero-terminated. */
 typedef struct PagePart {
     const char *start; /* borrowed */
     size_t size;
@@ -20,7 +20,7 @@ typedef struct MergedCase {
     size_t number;         /* in the order given, from 1 */
 } MergedCase;
 
-/* A page holds its pictures. */
+/* A page contains its pictures, so it may be large. */
 static const FileForm page_file = {.name = "a report", .most_bytes = 4e9, .is_text = true};
 static const FileForm json_file = {.name = "JSON", .most_bytes = 1e9, .is_text = true};
 
@@ -42,7 +42,7 @@ static Status read_json(json_t **out, const char *path, Err *err)
     return STATUS_OK;
 }
 
-/* Finds what stands between two marks of a page. */
+/* Finds the part of a page between two marks. */
 static Status find_part(const char *page, const char *path, const char *const marks_of[2],
                         PagePart *part, Err *err)
 {
@@ -90,7 +90,7 @@ static int worst_first(const void *left, const void *right)
     return (a->number > b->number) - (a->number < b->number);
 }
 
-/* What a part has in place of the number of its case, and of its folder. */
+/* The marks in a part for the name of its case, a link to it, and its folder. */
 enum { MARK_CASE, MARK_LINK, MARK_FOLDER, MARKS };
 static const char *const marks[MARKS] = {[MARK_CASE] = "\"" REPORT_FIRST_CASE "\"",
                                          [MARK_LINK] = "\"#" REPORT_FIRST_CASE "\"",
@@ -184,7 +184,8 @@ static Status put_rows(json_t *rows, Status (*put)(json_t *, const char *, Text 
     return STATUS_OK;
 }
 
-/* The faults that `make power` planted and which rule found them, and the smallest it found. */
+/* Appends the tables of the faults that `make power` planted: which rules detected them, and the
+ * smallest fault that each rule detects. */
 static Status put_power(const char *path, const char *templates, Text *out, Err *err)
 {
     json_t *json = NULL;

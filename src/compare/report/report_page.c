@@ -1,6 +1,7 @@
-/* The page for people. The templates have the markup, the look and the viewer; what repeats or
- * depends on the case is filled in here, from the inside out: rows, the case, the page. Pictures go
- * in as data: URIs, because a page opened from disk may not read the pixels of a file beside it. */
+/* Writes the HTML page of a report. The templates have markup, style and the viewer. This file
+ * fills them in, from the inside out: rows, the section of the case, the page. Pictures are data:
+ * URIs, because the script of a page that was opened from disk cannot read the pixels of other
+ * files. */
 #include "compare/measures/planes.h"
 #include "compare/report/check.h"
 #include "compare/report/page.h"
@@ -25,7 +26,7 @@ static const char *verdict_of(bool agrees)
 
 /* ------------------------------------------------------------------------------------- verdict */
 
-/* Who is right where the sides differ, cause by cause. */
+/* Appends the numbers of settled pixels per cause. */
 static void put_settled(const ReportCase *report, Text *sentence)
 {
     const Settled *settled = report->settled;
@@ -82,7 +83,7 @@ static void put_sentence(const ReportCase *report, Text *sentence)
     text_printf(sentence, "%c%s.", alone ? toupper((unsigned char)*reason) : *reason, reason + 1);
 }
 
-/* What tells the case from others of the same tree and model: the options of its command. */
+/* Returns the options of the case's command, which distinguish it from other cases of one tree. */
 static const char *options_of(const ReportCase *report)
 {
     const char *command = report->n_commands ? report->commands[0] : "";
@@ -254,7 +255,7 @@ done:
 
 /* ---------------------------------------------------------------------------- row of the case */
 
-/* A number to sort by, -1 where it is not known, and as it is shown. */
+/* Fills a cell: the number to sort by, -1 if it is NAN, and the number as it is shown. */
 static void put_cell(Markup *parts, const char *sorted, const char *shown, double value)
 {
     Text *text = markup_text(parts, shown);

@@ -1,5 +1,5 @@
-/* Planes as pictures of a page, of eight bits a channel; the page's script makes numbers of them
- * again. B holds only what it adds to A, so that it is nearly empty. */
+/* Stores planes in pictures of 8 bits, which the script of the page decodes. The pictures of B
+ * contain B - A, which is mostly 0, so that they compress well. */
 #include "compare/pixels.h"
 #include "compare/report/page.h"
 
@@ -24,7 +24,7 @@ static void widen_range(const Plane *depth, double range_mm[2])
         }
 }
 
-/* 0 where nothing is seen, else from 1 for the nearest to DEPTH_CODES + 1. */
+/* Returns 0 if no surface is visible, else 1 (nearest) to DEPTH_CODES + 1 (farthest). */
 static unsigned depth_code(float depth, const double range_mm[2])
 {
     double extent = range_mm[1] - range_mm[0];
@@ -44,7 +44,7 @@ static void fill_depths(const Plane *a, const Plane *b, const double range_mm[2]
     }
 }
 
-/* From -1 to 1 as codes from 1 to 255; a pixel that shows nothing has codes of 0. */
+/* Returns 1 to 255 for a component from -1 to 1; 0 if no surface is visible. */
 static unsigned normal_code(const float *normal, int axis)
 {
     bool seen = normal[0] != 0 || normal[1] != 0 || normal[2] != 0;

@@ -1,5 +1,6 @@
-/* The tables of a case on the page: a row for each rule; and for each check its measures, a table
- * for each heading, under a line with the first of them. Checks that differ are open. */
+/* The tables of a case: a row per rule, and per check a foldable list of its measures with a table
+ * per heading. The line that is always visible shows the first measures. Checks that differ are
+ * open. */
 #include "compare/report/check.h"
 #include "compare/report/page.h"
 #include "tmpl/tmpl.h"
@@ -7,7 +8,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Three digits are what a reader takes in; counts are exact. */
+/* Readers compare three digits at most; counts are exact. */
 void text_rounded(Text *out, double value, const char *unit)
 {
     bool whole = (value == floor(value) && fabs(value) < 1e15) || fabs(value) >= 1000;
@@ -58,7 +59,7 @@ static Status put_table(const char *caption, Text *rows, const char *templates, 
     return markup_put(&parts, templates, "measures.html", out, err);
 }
 
-/* The tables of a check's measures, those of one heading in each. */
+/* Appends the measures of a check, one table per heading. */
 static Status put_measures(const Check *check, const char *templates, Text *out, Err *err)
 {
     Text rows = TEXT_INIT;
@@ -98,7 +99,7 @@ done:
     return status;
 }
 
-/* All that was measured for one check. */
+/* Appends everything that was measured for one check. */
 static Status put_measured(const ReportCase *report, const Check *check, const char *templates,
                            Text *out, Err *err)
 {

@@ -1,11 +1,11 @@
-/* The keys of compare --json: those of the table of measures, null where a number has no meaning or
- * could not be measured. */
+/* Writes the JSON of `compare --json`. Its keys are those of the table of measures. A number that
+ * is not defined or was not measured is null. */
 #include "compare/measure.h"
 #include "compare/report/page.h"
 
 #include <math.h>
 
-/* Whole numbers as integers, what is not finite as null. */
+/* Returns an integer for an integral value, and null for one that is not finite. */
 static json_t *number(double value)
 {
     if (!isfinite(value))
@@ -84,14 +84,15 @@ static json_t *value_json(const CompareResult *result, const Measure *measure)
 
 json_t *compare_json(const CompareResult *result)
 {
-    const PixelBox *box = &result->box;
-    json_t *json = JSON_OBJECT(
-        {"verdict", json_text(result->agrees ? "agree" : "differ")},
-        {"reason", json_text_or_null(*result->reason ? result->reason : NULL)},
-        {"cause", json_text_or_null(*result->cause ? result->cause : NULL)},
-        {"box", box->width > 0 ? json_pack("[i, i, i, i]", box->x, box->y, box->width, box->height)
-                               : json_null()},
-        {"tier", json_text(result->tolerance.tier)});
+    const PixelRect *box = &result->box;
+    json_t *json =
+        JSON_OBJECT({"verdict", json_text(result->agrees ? "agree" : "differ")},
+                    {"reason", json_text_or_null(*result->reason ? result->reason : NULL)},
+                    {"cause", json_text_or_null(*result->cause ? result->cause : NULL)},
+                    {"box", box->width > 0 ? json_pack("[i, i, i, i]", box->left, box->top,
+                                                       box->width, box->height)
+                                           : json_null()},
+                    {"tier", json_text(result->tolerance.tier)});
     for (size_t i = 0; i < n_measures; i++)
         if (measures[i].key && measure_is_for(&measures[i], result))
             json = json_with(json, measures[i].key, value_json(result, &measures[i]));

@@ -1,5 +1,5 @@
-/* A comparison in words, for people at a terminal: the verdict, the rules, then the measures of the
- * check, each table under its heading. */
+/* Writes a comparison as text for a terminal: the verdict, the rules, then the measures, each table
+ * under its heading. */
 #include "compare/report/check.h"
 
 static void put_segments(const CompareResult *result, Text *out)

@@ -14,7 +14,7 @@ static double ppm(double count, double of)
     return of > 0 ? 1e6 * count / of : 0;
 }
 
-/* A limit, except that a tolerance may let the only pixel that is off pass. */
+/* Returns a limit. Tolerance.spare_levels may raise it so that a single pixel passes. */
 static double allowed_of(const CompareResult *result, Limit limit)
 {
     const Tolerance *tolerance = &result->tolerance;
@@ -89,7 +89,7 @@ static void describe_place(const CompareResult *result, const PixelPlace *place,
         snprintf(out, size, "at (%d, %d), %s", place->x, place->y, place->id_a ? a : "background");
 }
 
-/* To three digits, as people read it, or to as many as tell it from what is allowed. */
+/* Writes a number with three digits, or with six if three do not distinguish it from the limit. */
 static void describe_measured(double value, double allowed, char out[32])
 {
     bool whole = (value == floor(value) || fabs(value) >= 1000) && fabs(value) < 1e15;

@@ -133,29 +133,40 @@ done:
 
 /* ---- selection ------------------------------------------------------------------------------- */
 
-/* Returns true if a part of the list is exactly this name. */
+/* Bytes of a part of a pattern, which suite_selects cuts as well. */
+enum { PART_SIZE = 4096 };
+
+/* Takes the next part of a list that is separated by commas, and moves *list behind it. Returns
+ * false after the last part. */
+static bool next_part(const char **list, char *part, size_t size)
+{
+    if (!*list)
+        return false;
+    const size_t length = strcspn(*list, ",");
+    snprintf(part, size, "%.*s", (int)length, *list);
+    *list = (*list)[length] ? *list + length + 1 : NULL;
+    return true;
+}
+
+/* Returns true if the list, or a part of it, is exactly this name. Names may contain commas. */
 static bool names_case(const char *list, const char *name)
 {
-    size_t length = strlen(name);
-    if (strcmp(list, name) == 0)
-        return true;
-    for (const char *at = list; *at; at += strcspn(at, ","), at += *at == ',')
-        if (strcspn(at, ",") == length && strncmp(at, name, length) == 0)
-            return true;
-    return false;
+    char part[PART_SIZE];
+    bool found = strcmp(list, name) == 0;
+    for (const char *rest = list; !found && next_part(&rest, part, sizeof part);)
+        found = strcmp(part, name) == 0;
+    return found;
 }
 
 /* Checks that each part of the list selects a case. */
 static Status check_parts(const Suite *suite, const SuiteFolders *folders, const char *list,
                           Err *err)
 {
-    char part[4096];
-    bool found = false;
-    for (size_t i = 0; i < suite->n && !found; i++)
-        found = strcmp(suite->cases[i].name, list) == 0;
-    for (const char *at = list, *end = list; !found && end; at = end + 1) {
-        end = strchr(at, ',');
-        snprintf(part, sizeof part, "%.*s", end ? (int)(end - at) : (int)strlen(at), at);
+    char part[PART_SIZE];
+    for (size_t i = 0; i < suite->n; i++)
+        if (strcmp(suite->cases[i].name, list) == 0)
+            return STATUS_OK;
+    for (const char *rest = list; next_part(&rest, part, sizeof part);) {
         bool selects = false;
         for (size_t i = 0; i < suite->n && !selects; i++)
             selects = suite_selects(part, suite->cases[i].name);
@@ -164,8 +175,6 @@ static Status check_parts(const Suite *suite, const SuiteFolders *folders, const
                            "no picture '%s' in %s or %s; `corcast compare` without --accept lists "
                            "the names",
                            part, folders->pictures, folders->reference);
-        if (!end)
-            break;
     }
     return STATUS_OK;
 }

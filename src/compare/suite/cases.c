@@ -12,7 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Links between folders can repeat a picture any number of times. */
+/* Links between folders can repeat a picture without limit, so the number of cases has one. */
 enum { MOST_CASES = 1000000 };
 
 static bool ends_with(const char *name, const char *suffix)
@@ -101,34 +101,27 @@ static bool is_listed(const Level *level, const struct stat *facts)
 static Status list_folder(Suite *suite, const Top *top, const char *below, const Level *parent,
                           Err *err);
 
-/* `below` is the path of a file or folder below the top folder. A link to a folder that contains
- * the link counts as another file. */
-static Status list_entry(Suite *suite, const Top *top, const char *below, const Level *level,
-                         Err *err)
-{
-    char *path = NULL;
-    struct stat facts;
-    TRY(file_join(top->path, below, &path, err));
-    bool is_folder = stat(path, &facts) == 0 && S_ISDIR(facts.st_mode);
-    free(path);
-    if (is_folder && !is_listed(level, &facts))
-        return list_folder(suite, top, below, level, err);
-    if (companion_mark(below))
-        return top->is_reference ? add_companion(suite, below, err) : STATUS_OK;
-    if (!is_folder && is_picture_name(below))
-        return suite_selects(top->only, below) ? add_case(suite, below, top->is_reference, err)
-                                               : STATUS_OK;
-    suite->others += strcmp(below, "accepted.tsv") != 0;
-    return STATUS_OK;
-}
-
-/* Lists the entry `name` of the folder `below`. */
-static Status list_named(Suite *suite, const Top *top, const char *below, const char *name,
+/* Lists the entry `name` of the folder `folder`, a path below the top folder. A link to a folder
+ * that contains the link counts as another file. */
+static Status list_entry(Suite *suite, const Top *top, const char *folder, const char *name,
                          const Level *level, Err *err)
 {
-    char *path = NULL;
-    TRY(*below ? file_join(below, name, &path, err) : mem_strdup(&path, name, err));
-    Status status = list_entry(suite, top, path, level, err);
+    char *below = NULL, *path = NULL;
+    struct stat facts;
+    Status status = STATUS_OK;
+    TRY_GOTO(*folder ? file_join(folder, name, &below, err) : mem_strdup(&below, name, err));
+    TRY_GOTO(file_join(top->path, below, &path, err));
+    const bool is_folder = stat(path, &facts) == 0 && S_ISDIR(facts.st_mode);
+    if (is_folder && !is_listed(level, &facts))
+        status = list_folder(suite, top, below, level, err);
+    else if (companion_mark(below))
+        status = top->is_reference ? add_companion(suite, below, err) : STATUS_OK;
+    else if (is_folder || !is_picture_name(below))
+        suite->others += strcmp(below, "accepted.tsv") != 0;
+    else if (suite_selects(top->only, below))
+        status = add_case(suite, below, top->is_reference, err);
+done:
+    free(below);
     free(path);
     return status;
 }
@@ -147,7 +140,7 @@ static Status list_folder(Suite *suite, const Top *top, const char *below, const
     const Level level = {parent, facts.st_dev, facts.st_ino};
     for (struct dirent *entry; status == STATUS_OK && (entry = readdir(folder));)
         if (*entry->d_name != '.')
-            status = list_named(suite, top, below, entry->d_name, &level, err);
+            status = list_entry(suite, top, below, entry->d_name, &level, err);
     if (folder)
         closedir(folder);
     free(path);

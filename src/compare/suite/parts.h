@@ -1,5 +1,5 @@
-/* The steps of a suite: listing its cases, comparing them and finding unused files. Private to the
- * module compare. */
+/* The steps of suite_judge and suite_accept: list the cases, compare them, find unused files; and
+ * the files and pictures of one case. Private to the module compare. */
 #ifndef CORCAST_COMPARE_SUITE_PARTS_H
 #define CORCAST_COMPARE_SUITE_PARTS_H
 
@@ -16,11 +16,12 @@ bool suite_selects(const char *pattern, const char *name);
  * Errors   STATUS_IO if a folder cannot be read; STATUS_INPUT for more than 1,000,000 pictures;
  *          STATUS_MEMORY. */
 MUST_CHECK Status suite_list(Suite *suite, const SuiteFolders *folders, Err *err);
-/* Removes the files from suite->companions that a case of this run needed, and says of the others
- * why no case did. `only` is the pattern of the cases that were listed: unless it is NULL, files of
+/* Removes the files that a case of this run needed from suite->companions. Sets Companion.why of
+ * the other files. `only` is the pattern of the cases that were listed: unless it is NULL, files of
  * cases that were not listed are removed as well. */
 void suite_find_unused(Suite *suite, const char *only);
-/* Compares the cases that have is_selected, and sets their states. `threads`: 0: all processors. */
+/* Compares the cases that have is_selected, and sets their states and sentences. A file that cannot
+ * be read makes its case SUITE_BROKEN. `threads`: 0: all processors. */
 void suite_judge_selected(Suite *suite, const SuiteFolders *folders, int threads);
 
 /* A reference (index 0) and a picture (index 1) in memory. Zero before suite_pair_read. */
@@ -53,13 +54,13 @@ typedef struct SuiteFiles {
     char *tolerance_name;             /* borrowed by `tolerance`; owned */
 } SuiteFiles;
 
-/* Names the files of a case. Release *files with suite_files_release even after an error. Errors:
- * STATUS_MEMORY. */
+/* Sets the paths of the files of a case, which need not exist. Release *files with
+ * suite_files_release even after an error. Errors: STATUS_MEMORY. */
 MUST_CHECK Status suite_files_find(const SuiteFolders *folders, const SuiteCase *entry,
                                    SuiteFiles *files, Err *err);
-/* Finds the tolerance of a case. If there is a tolerance file beside the reference, its limits
- * replace those of folders->case_tolerance. Otherwise the result is folders->tolerance. Errors:
- * those of tolerance_read: STATUS_INPUT, STATUS_IO, STATUS_MEMORY. */
+/* Sets files->tolerance and files->tolerance_name. If there is a tolerance file beside the
+ * reference, its limits replace those of folders->case_tolerance. Otherwise the result is
+ * folders->tolerance. Errors: those of tolerance_read: STATUS_INPUT, STATUS_IO, STATUS_MEMORY. */
 MUST_CHECK Status suite_files_tolerance(const SuiteFolders *folders, SuiteFiles *files, Err *err);
 void suite_files_release(SuiteFiles *files);
 

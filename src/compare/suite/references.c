@@ -2,6 +2,7 @@
  * one, so that all comments outside of this section stay. */
 #include "compare/suite/references.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -23,32 +24,18 @@ static Status add_reference(References *references, const char *name, Err *err)
 
 /* ---- dates ----------------------------------------------------------------------------------- */
 
-static bool is_leap(long long year)
-{
-    return (year % 4 == 0 && year % 100 != 0) || year % 400 == 0;
-}
-
-/* Reads `n` digits. Returns -1 for any other character. */
-static int digits_at(const char *text, int n)
-{
-    int value = 0;
-    for (int i = 0; i < n; i++) {
-        if (text[i] < '0' || text[i] > '9')
-            return -1;
-        value = 10 * value + text[i] - '0';
-    }
-    return value;
-}
-
+/* Returns true for a date of the calendar. timegm changes a day that does not exist, such as
+ * February 30, to one that does; then the text that is written differs. */
 static bool is_date(const char *text)
 {
-    static const int days[] = {31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
-    if (strlen(text) != DATE_SIZE - 1 || text[4] != '-' || text[7] != '-')
+    struct tm day = {0};
+    char written[32];
+    const char *end = strptime(text, "%Y-%m-%d", &day);
+    if (!end || *end != '\0' || timegm(&day) == -1)
         return false;
-    int year = digits_at(text, 4), month = digits_at(text + 5, 2), day = digits_at(text + 8, 2);
-    if (year < 0 || month < 1 || month > 12)
-        return false;
-    return day >= 1 && day <= days[month - 1] + (month == 2 && is_leap(year));
+    snprintf(written, sizeof written, "%04d-%02d-%02d", day.tm_year + 1900, day.tm_mon + 1,
+             day.tm_mday);
+    return strcmp(written, text) == 0;
 }
 
 Status reference_check_date(const char *date, Err *err)

@@ -63,12 +63,12 @@ done:
     return status;
 }
 
-/* As a picture, floats as sRGB's codes of 16 bits. */
+/* Reads an image as a picture; floats become sRGB codes of 16 bits. */
 static Status read_image(Image *image, Picture *alpha, const char *path, const float background[3],
                          Err *err)
 {
     TRY(image_read(image, path, ALPHA_KEPT, NULL, err));
-    TRY(alpha_take(alpha, image, err));
+    TRY(alpha_of_image(alpha, image, err));
     TRY(image_composite(image, background, err));
     if (!image->plane.values)
         return STATUS_OK;
@@ -134,7 +134,7 @@ Status suite_pair_compare(const SuitePair *pair, const Tolerance *tolerance, Com
     const Rendering a = {.picture = &images[0].picture, .transparent = &images[0].transparent};
     const Rendering b = {.picture = &images[1].picture, .transparent = &images[1].transparent};
     TRY(compare_pictures(&a, &b, tolerance, result, NULL, err));
-    TRY(alpha_judge(&pair->alphas[0], &pair->alphas[1], result, err));
+    TRY(result_judge_alpha(&pair->alphas[0], &pair->alphas[1], result, err));
     return result->agrees || *result->cause ? STATUS_OK
                                             : compare_cause(a.picture, b.picture, result, err);
 }

@@ -136,7 +136,7 @@ static Status compare_codes(const CompareOptions *options, const Tolerance *tole
     CompareResult *result = &made->result;
     const bool perception = options->metrics || options->page || options->report;
     TRY(compare_pictures(&a, &b, tolerance, result, &made->ledger, err));
-    TRY(alpha_judge(&sides[0].alpha, &sides[1].alpha, result, err));
+    TRY(result_judge_alpha(&sides[0].alpha, &sides[1].alpha, result, err));
     if (!result->agrees && !*result->cause)
         TRY(compare_cause(a.picture, b.picture, result, err));
     for (int i = 0; i < 2 && a.picture->gamma != 0; i++)
@@ -164,7 +164,7 @@ static Status compare_linear(const CompareOptions *options, const Tolerance *tol
     const Rendering a = values_of(made, 0), b = values_of(made, 1);
     TRY(compare_colors(&a, &b, tolerance, options->metrics || options->page || options->report,
                        result, err));
-    TRY(alpha_judge(&sides[0].alpha, &sides[1].alpha, result, err));
+    TRY(result_judge_alpha(&sides[0].alpha, &sides[1].alpha, result, err));
     const bool asks_cause =
         !result->agrees && !*result->cause && result->values[MEASURE_NAN_PIXELS] == 0;
     for (int i = 0; i < 2 && (asks_cause || wants_pictures(options)); i++)

@@ -114,7 +114,7 @@ static Status get_image(const SidesReading *reading, size_t index, Err *err)
         return STATUS_OK;
     if (!color)
         return STATUS_OK;
-    TRY(alpha_take(&side->alpha, &side->image, err));
+    TRY(alpha_of_image(&side->alpha, &side->image, err));
     TRY(image_composite(&side->image, background, err));
     return bits ? set_bits(&side->image, bits, err) : STATUS_OK;
 }
