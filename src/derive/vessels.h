@@ -10,11 +10,11 @@
 enum { NO_VESSEL = -1 };
 
 typedef struct Vessel {
-    int32_t parent; /* index of the parent vessel; NO_VESSEL if it starts at a root */
-    int32_t start;  /* the node at which it starts */
-    int32_t end;    /* the place at which it ends */
-    int32_t level;
-    int32_t strahler; /* 0 in a network with links */
+    int32_t parent;   /* index of the parent vessel; NO_VESSEL if it starts at a root */
+    int32_t start;    /* the node at which it starts */
+    int32_t end;      /* the place at which it ends */
+    int32_t level;    /* bifurcation level [derive.h] */
+    int32_t strahler; /* Strahler order; 0 in a network with links */
     double radius_mm; /* mean of its segments' radii, weighted by length; if all lengths are 0, the
                        * first segment's radius */
     double length_mm;

@@ -1,6 +1,6 @@
-/* The hull of vessels: all points within a given distance of at least one vessel. A grid of cells
- * tells quickly which points are inside; only for cells at the hull's edge are distances to vessels
- * computed. Private to the module domain. */
+/* The hull of vessels: all points within a given distance of at least one vessel. The state of a
+ * grid cell decides for most points whether they are inside. Distances to vessels are computed only
+ * in cells at the hull's edge. Private to the module domain. */
 #ifndef CORCAST_DOMAIN_HULL_H
 #define CORCAST_DOMAIN_HULL_H
 

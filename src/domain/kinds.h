@@ -15,7 +15,7 @@ typedef struct DomainOps {
      * does not name the option, which the caller adds. The caller releases the domain, also after
      * an error. */
     Status (*load)(Domain *domain, const char *values, Err *err);
-    /* Returns true if the point is in the domain, or outside by at most the tolerance. */
+    /* Returns true if the point is in the domain, or outside it by at most the tolerance, >= 0. */
     bool (*inside)(const Domain *domain, Vec3 point, double tolerance_mm);
     /* Returns true if the whole segment, which is longer than slack_mm, is in the domain. NULL for
      * convex kinds, where the two ends decide. */

@@ -5,8 +5,9 @@
 
 #include "grow/refine/refine_joint.h"
 
-/* Moves every node from its start the share `whole` of the path to its goal, or as near to that
- * point as the domain and the rules of clearance allow. Makes reservations again.
+/* Moves every node from its start along the straight path to its goal, by the fraction `whole` of
+ * the path, or as near to that point as the domain and the rules of clearance allow. Updates sums
+ * and reserved radii.
  *
  * arrived  receives true if no segment that kept the rules breaks a rule. Otherwise the caller must
  *          restore the tree.

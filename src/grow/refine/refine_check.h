@@ -4,8 +4,9 @@
 
 #include "grow/grow.h"
 
-/* Checks parameters, tree and domain as refine_tree requires. Errors: STATUS_USAGE or STATUS_INPUT,
- * with a sentence that states what is not accepted; STATUS_MEMORY. */
+/* Checks that parameters, tree and domain are as refine_tree [grow.h] requires. `domain` may be
+ * NULL: vessels may be anywhere. Errors: STATUS_USAGE for parameters, STATUS_INPUT for a tree that
+ * cannot be refined; STATUS_MEMORY. */
 MUST_CHECK Status refine_check(const RefineParams *params, const Domain *domain, const Tree *tree,
                                Err *err);
 

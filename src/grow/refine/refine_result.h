@@ -5,8 +5,9 @@
 #include "grow/refine/refine_arbor.h"
 #include "tree/tree.h"
 
-/* Makes a tree of the arbor, with the radii that follow from the law. It has all that stays of
- * `was`, the tree that the arbor was made of, except the metadata.
+/* Makes a tree of the arbor, with the radii that follow from the law of radii [law.h]. Copies the
+ * node types, flow shares and pairs of terminals of `was`, the tree that the arbor was made from.
+ * Does not copy its metadata and its other columns.
  *
  * tree     receives the tree; release it with tree_release.
  * Errors   STATUS_INFEASIBLE if a radius is beyond the range of a double; STATUS_MEMORY. */
