@@ -17,13 +17,13 @@ typedef enum HullCell {
 struct Hull {
     DomainTube *tube; /* the vessels, with the radii of the hull around them, mm; owned */
     size_t n;
-    BoxTree tree;   /* over the tubes; owned */
-    Vec3 low;       /* low corner of the grid, mm */
-    double edge;    /* edge of a cell, mm */
-    int count[3];   /* cells along each axis; 1 along z in two dimensions */
-    uint8_t *cell;  /* per cell: a HullCell; x runs fastest; owned */
-    uint32_t *some; /* the indices of cells that are not HULL_OUTSIDE, rising; owned */
-    size_t n_some;
+    BoxTree tree;       /* over the tubes; owned */
+    Vec3 low;           /* low corner of the grid, mm */
+    double edge;        /* edge of a cell, mm */
+    int count[3];       /* cells along each axis; 1 along z in two dimensions */
+    uint8_t *cell;      /* per cell: a HullCell; x runs fastest; owned */
+    uint32_t *occupied; /* the indices of cells that are not HULL_OUTSIDE, rising; owned */
+    size_t n_occupied;
 };
 
 /* Builds the hull of `n` > 0 tubes: sets dimension, hull, bounds, volume and inlet of the domain.
