@@ -181,13 +181,6 @@ static inline Reduced network_reduce(const Network *net, int32_t i)
     return law_extend(&law, network_burden(net, i, segment->terminals), segment->length, &below);
 }
 
-/* Returns segment i as a capsule. Needs its radius. */
-static inline Capsule network_capsule(const Network *net, int32_t i)
-{
-    const Segment *segment = &net->segment[i];
-    return (Capsule){net->position[segment->parent], net->position[i], (double)segment->radius};
-}
-
 /* Appends a node that is a child of `parent`, or an inlet if `parent` is -1. There must be capacity
  * for it. Returns its index. Sums are out of date until network_resum. */
 int32_t network_append(Network *net, int32_t parent, Vec3 position);

@@ -10,7 +10,7 @@ typedef struct TerritoryParams {
     const Domain *domain;
     const Demand *demand; /* demand of a point [demand_at]; NULL: every point has the demand 1 */
     double points;        /* number of lattice points per terminal */
-    int threads;
+    int threads;          /* 0: all processors */
 } TerritoryParams;
 
 /* Measures the territory of each terminal by the points of a square or cubic lattice over the

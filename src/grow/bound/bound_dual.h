@@ -27,8 +27,4 @@ void dual_release(Dual *dual);
  * smoothing, mm. Cost: O(n). */
 void dual_take(Dual *dual, const Problem *problem, const Newton *newton, double smoothing);
 
-/* Returns the least cost of 1 mm of a segment that carries `flow` and pays `charge` per unit of
- * pressure drop: the minimum over g of charge g + flow^a g^-a. */
-double dual_mm(double a, double flow, double charge);
-
 #endif

@@ -122,9 +122,9 @@ GridItem grid_item(const Grid *grid, Capsule capsule, double radius);
 /* Adds a segment, which is not in the grid, to every cell that may meet its item's capsule, and
  * stores its item.
  *
- * worker    below the number of workers; differs between threads that add segments at the same
- * time. terminal  whether the segment is a terminal's. Errors    STATUS_MEMORY; the segment is then
- * in some of its cells. */
+ * worker    below the number of workers. Threads that add segments at the same time differ in it.
+ * terminal  true if the segment is a terminal's.
+ * Errors    STATUS_MEMORY; the segment is then in some of its cells. */
 MUST_CHECK Status grid_add(Grid *grid, int worker, int32_t segment, bool terminal, GridItem item,
                            Err *err);
 /* Removes a segment, which is in the grid. */

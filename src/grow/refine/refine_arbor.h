@@ -24,6 +24,7 @@
 #include "base/base.h"
 #include "geom/geom.h"
 #include "grow/cco/law.h"
+#include "grow/grow.h"
 #include "tree/tree.h"
 
 /* What the walk to the root reads of one segment, in one cache line of 64 bytes.
@@ -104,7 +105,13 @@ typedef struct Arbor {
     Local saved_local;
 } Arbor;
 
-/* Makes an arbor from a tree that refine_check [refine_check.h] accepts. Its sums are exact, and
+/* Checks that parameters, tree and domain are as refine_tree [grow.h] requires. `domain` may be
+ * NULL: vessels may be anywhere. Errors: STATUS_USAGE for parameters, STATUS_INPUT for a tree that
+ * cannot be refined; STATUS_MEMORY. */
+MUST_CHECK Status refine_check(const RefineParams *params, const Domain *domain, const Tree *tree,
+                               Err *err);
+
+/* Makes an arbor from a tree that refine_check accepts. Its sums are exact, and
  * viscosities and exponents agree with the radii. Release *arbor with arbor_release. Errors:
  * STATUS_INFEASIBLE as arbor_agree; STATUS_MEMORY. */
 MUST_CHECK Status arbor_init(Arbor *arbor, const Tree *tree, Err *err);
@@ -237,5 +244,13 @@ void arbor_graft(Arbor *arbor, int32_t i, int32_t host, Vec3 place);
 void arbor_reserve(Arbor *arbor, int32_t i, double reserved_radius, double inverse_limit);
 /* Computes the sums of segment i and of all segments above it. Cost: O(depth). */
 void arbor_sum_from(Arbor *arbor, int32_t i);
+
+/* Makes a tree of the arbor, with the radii that follow from the law of radii [law.h]. Copies the
+ * node types, flow shares and pairs of terminals of `was`, the tree that the arbor was made from.
+ * Does not copy its metadata and its other columns.
+ *
+ * tree     receives the tree; release it with tree_release.
+ * Errors   STATUS_INFEASIBLE if a radius is beyond the range of a double; STATUS_MEMORY. */
+MUST_CHECK Status result_make(const Arbor *arbor, const Tree *was, Tree *tree, Err *err);
 
 #endif

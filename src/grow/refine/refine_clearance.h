@@ -27,6 +27,7 @@ typedef struct Clearance {
     Grid grid;
     double *radius; /* per segment, mm, of the last clearance_reserve or clearance_waive; owned */
     double *share;  /* workspace of clearance_reserve; owned */
+    double kept;    /* share of the segments that kept the rules at the last clearance_reserve */
 } Clearance;
 
 /* Finds the greatest level (1, 1/2, ... 1/64, 0) at which nine in ten segments of the tree keep the
@@ -71,9 +72,14 @@ static inline bool clearance_is_kept(const Clearance *clearance, const Arbor *ar
     return arbor->shape[i].reserved_radius >= clearance->level * clearance->radius[i];
 }
 
-/* Suspends the rules: reserves `reserved` times `level` times its radius for every segment, whether
- * there is room or not, and removes the limits of radii. Errors: STATUS_MEMORY. Cost: O(n). */
-MUST_CHECK Status clearance_waive(Clearance *clearance, Arbor *arbor, double reserved, Err *err);
+/* Ratio of reserved radii to radii while the rules are suspended: radii grow slightly until they
+ * are reserved again. Reason for 1.05 not recorded. */
+#define WAIVED_RESERVE 1.05
+
+/* Suspends the rules: reserves WAIVED_RESERVE times `level` times its radius for every segment,
+ * whether there is room or not, and removes the limits of radii. Penalties [refine_penalty.h] are
+ * computed from these reserved radii. Errors: STATUS_MEMORY. Cost: O(n). */
+MUST_CHECK Status clearance_waive(Clearance *clearance, Arbor *arbor, Err *err);
 
 /* Returns true if segment i is inside the domain and not shorter than least_length. */
 bool clearance_is_held(const Clearance *clearance, const Arbor *arbor, int32_t i);

@@ -31,10 +31,6 @@ void penalties_release(Penalties *penalties);
  * segment and of a mm of all vessels; but not less than `rate` times the latter. */
 void penalties_begin(Penalties *penalties, const Arbor *arbor, double rate);
 
-/* Sets the reserved radii, by which penalties are counted, to 1.05 times the present radii, whether
- * there is room or not. Errors: STATUS_MEMORY. Cost: O(n). */
-MUST_CHECK Status penalties_reserve(Clearance *clearance, Arbor *arbor, Err *err);
-
 /* Multiplies the rates of segments that break a rule, as of the last clearance_reserve, by 2.2, and
  * all other rates by 1.1. Lists the segments that break a rule in `broken`. */
 void penalties_raise(Penalties *penalties, const Clearance *clearance, const Arbor *arbor);
