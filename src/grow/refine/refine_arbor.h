@@ -111,9 +111,9 @@ typedef struct Arbor {
 MUST_CHECK Status refine_check(const RefineParams *params, const Domain *domain, const Tree *tree,
                                Err *err);
 
-/* Makes an arbor from a tree that refine_check accepts. Its sums are exact, and
- * viscosities and exponents agree with the radii. Release *arbor with arbor_release. Errors:
- * STATUS_INFEASIBLE as arbor_agree; STATUS_MEMORY. */
+/* Makes an arbor from a tree that refine_check accepts. Its sums are exact, and viscosities and
+ * exponents agree with the radii. Release *arbor with arbor_release. Errors: STATUS_INFEASIBLE as
+ * arbor_agree; STATUS_MEMORY. */
 MUST_CHECK Status arbor_init(Arbor *arbor, const Tree *tree, Err *err);
 /* Frees the arrays and zeroes *arbor, which may be zeroed before. */
 void arbor_release(Arbor *arbor);

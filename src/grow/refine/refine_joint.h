@@ -1,15 +1,14 @@
 /* The joint move: moves all bifurcations of an arbor [refine_arbor.h] at the same time. The goals
  * of the move are the positions with the lowest target for the present topology. approach_goals
- * then moves the nodes towards the goals. Joint moves are needed where
- * bifurcations would merge: if they are moved one by one, each waits for the other. */
+ * then moves the nodes towards the goals. Joint moves are needed where bifurcations would merge: if
+ * they are moved one by one, each waits for the other. */
 #ifndef CORCAST_GROW_REFINE_REFINE_JOINT_H
 #define CORCAST_GROW_REFINE_REFINE_JOINT_H
 
 #include "grow/refine/refine_arbor.h"
 #include "grow/refine/refine_clearance.h"
 
-/* The workspace of Newton's method at a node: sums over the subtree below the node, and the step.
- */
+/* The workspace of Newton's method at a node: sums over the subtree below it, and the step. */
 typedef struct JointSpring {
     double matrix[6]; /* second derivatives of S_root, a symmetric matrix: 00, 10, 11, 20, 21, 22 */
     Vec3 load;        /* first derivatives */
