@@ -59,7 +59,7 @@ static const FieldRule rules[] = {
 
 enum { N_RULES = sizeof rules / sizeof *rules };
 
-/* NULL when there is none. */
+/* Returns the rule of the field, in small letters or capitals; NULL if there is none. */
 static const FieldRule *find_rule(const char *name)
 {
     for (size_t i = 0; i < N_RULES; i++)
@@ -118,23 +118,6 @@ static Status unknown_field(const Tree *tree, const char *name, Err *err)
     return status;
 }
 
-/* Fills the field with the values of the row. */
-static Status fill(const FieldRule *rule, const Tree *tree, const TreeMeta *overrides, Field *field,
-                   Err *err)
-{
-    double *value = NULL;
-    TRY(mem_calloc(&value, tree->n, sizeof *value, "field values", err));
-    Status status = rule->fill(tree, overrides, value, err);
-    if (status == STATUS_INPUT) /* a need(), whose sentence goes on from here */
-        err_prefix(err, "the field %s ", rule->name);
-    if (status != STATUS_OK) {
-        free(value);
-        return status;
-    }
-    *field = (Field){rule->name, rule->unit, value, tree->n};
-    return STATUS_OK;
-}
-
 static void clear_roots(const Tree *tree, Field *field)
 {
     for (size_t i = 0; i < tree->n; i++)
@@ -148,7 +131,16 @@ Status derive_rule(const Tree *tree, const TreeMeta *overrides, const char *name
     const FieldRule *rule = find_rule(name);
     if (!rule)
         return unknown_field(tree, name, err);
-    TRY(fill(rule, tree, overrides, field, err));
+    double *value = NULL;
+    TRY(mem_calloc(&value, tree->n, sizeof *value, "field values", err));
+    Status status = rule->fill(tree, overrides, value, err);
+    if (status == STATUS_INPUT) /* the sentence of needed_value continues "the field NAME " */
+        err_prefix(err, "the field %s ", rule->name);
+    if (status != STATUS_OK) {
+        free(value);
+        return status;
+    }
+    *field = (Field){rule->name, rule->unit, value, tree->n};
     clear_roots(tree, field);
     return STATUS_OK;
 }
@@ -183,7 +175,7 @@ Status derive_field(const Tree *tree, const TreeMeta *overrides, const char *nam
                   : derive_rule(tree, overrides, name, field, err);
 }
 
-/* The frames of a series one behind the other. */
+/* Copies the columns of all frames of a series, one after another, into one field. */
 static Status join_frames(const Tree *tree, const Series *frames, const char *name,
                           FieldSeries *series, Err *err)
 {
@@ -197,7 +189,7 @@ static Status join_frames(const Tree *tree, const Series *frames, const char *na
     }
     for (size_t k = 0; k < frames->n; k++) {
         const TreeColumn *column = &tree->column[frames->frame[k].column];
-        Field frame = {name, column->unit, value + k * tree->n, tree->n};
+        Field frame = {name, column->unit, value + k * tree->n, tree->n}; /* part of made.field */
         memcpy(frame.value, column->value, tree->n * sizeof *frame.value);
         clear_roots(tree, &frame);
         made.time[k] = frames->frame[k].time;

@@ -96,6 +96,22 @@ const char *derive_field_description(size_t i);
  * is not in the list, such as a column of the tree, is its name. */
 const char *derive_field_title(const char *name);
 
+/* Segments or vessels with their parents and radii, as the rules of orders read them. Borrowed. */
+typedef struct Lineage {
+    const int32_t *parent; /* a lower index; below 0: none */
+    const double *radius_mm;
+    size_t n;
+} Lineage;
+
+/* Sets order[i] to 1 plus the number of the `n` bounds that are below the diameter of i, or to the
+ * largest order of the daughters of i if that is higher. Cost: O(n entries * n bounds). */
+void lineage_bounded_orders(const Lineage *lineage, const double *bound_mm, size_t n,
+                            int32_t *order);
+
+/* Sets heir[i] to the thickest daughter of i that has the order of i, the first of several equally
+ * thick ones; -1 if there is none. `order` NULL: all orders are equal. */
+void lineage_heirs(const Lineage *lineage, const int32_t *order, int32_t *heir);
+
 typedef struct TreeSummary {
     struct {
         bool target, lambda;

@@ -13,28 +13,30 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Rounds after which vessels_diameter_orders gives up. Reason for 100 not recorded. */
 enum { MAX_ROUNDS = 100 };
 
-/* Of one order. */
+/* The diameters of the vessels of one order. */
 typedef struct OrderBin {
     size_t count;
     double mean, sd; /* of the diameters, mm; sd 0 for a single vessel */
     double bound;    /* between this order and the next; infinite for the last */
 } OrderBin;
 
-/* Two passes, so that the spread of nearly equal diameters is not lost in their squares. */
+/* Computes the bins from the orders. Uses two passes, because the difference of sums of squares
+ * would lose the spread of nearly equal diameters to rounding. */
 static void measure_bins(const Vessels *vessels, const int32_t *order, OrderBin *bin, int n_bins)
 {
     for (int b = 0; b < n_bins; b++)
         bin[b] = (OrderBin){.bound = HUGE_VAL};
     for (size_t v = 0; v < vessels->n; v++) {
         bin[order[v] - 1].count++;
-        bin[order[v] - 1].mean += 2 * vessels->vessel[v].radius_mm;
+        bin[order[v] - 1].mean += 2 * vessels->radius_mm[v];
     }
     for (int b = 0; b < n_bins && bin[b].count; b++)
         bin[b].mean /= (double)bin[b].count;
     for (size_t v = 0; v < vessels->n; v++) {
-        double deviation = 2 * vessels->vessel[v].radius_mm - bin[order[v] - 1].mean;
+        double deviation = 2 * vessels->radius_mm[v] - bin[order[v] - 1].mean;
         bin[order[v] - 1].sd += deviation * deviation;
     }
     for (int b = 0; b < n_bins; b++)
@@ -50,14 +52,13 @@ static size_t assign(const Vessels *vessels, const OrderBin *bin, int32_t *large
     size_t changed = 0;
     memset(largest, 0, vessels->n * sizeof *largest);
     for (size_t v = vessels->n; v-- > 0;) {
-        const Vessel *vessel = &vessels->vessel[v];
-        int32_t below = largest[v];
-        bool rises = below == 0 || 2 * vessel->radius_mm > bin[below - 1].bound;
+        int32_t below = largest[v], parent = vessels->parent[v];
+        bool rises = below == 0 || 2 * vessels->radius_mm[v] > bin[below - 1].bound;
         int32_t next = below + rises;
         changed += next != order[v];
         order[v] = next;
-        if (vessel->parent != NO_VESSEL && next > largest[vessel->parent])
-            largest[vessel->parent] = next;
+        if (parent != NO_VESSEL && next > largest[parent])
+            largest[parent] = next;
     }
     return changed;
 }
@@ -66,8 +67,8 @@ static int largest_strahler(const Vessels *vessels)
 {
     int32_t largest = 0;
     for (size_t v = 0; v < vessels->n; v++)
-        if (vessels->vessel[v].strahler > largest)
-            largest = vessels->vessel[v].strahler;
+        if (vessels->strahler[v] > largest)
+            largest = vessels->strahler[v];
     return largest;
 }
 
@@ -82,7 +83,7 @@ Status vessels_diameter_orders(const Vessels *vessels, int32_t **order, Diameter
     TRY_GOTO(mem_calloc(&largest, vessels->n, sizeof *largest, "orders", err));
     TRY_GOTO(mem_calloc(&bin, (size_t)n_bins, sizeof *bin, "orders", err));
     for (size_t v = 0; v < vessels->n; v++)
-        made[v] = vessels->vessel[v].strahler;
+        made[v] = vessels->strahler[v];
     *result = (DiameterOrders){0};
     while (!result->converged && result->rounds < MAX_ROUNDS) {
         measure_bins(vessels, made, bin, n_bins);
@@ -96,24 +97,6 @@ done:
     free(largest);
     free(bin);
     return status;
-}
-
-Status vessels_bounded_orders(const Vessels *vessels, const double *bound_mm, size_t n,
-                              int32_t **order, Err *err)
-{
-    int32_t *made;
-    TRY(mem_calloc(&made, vessels->n, sizeof *made, "orders", err));
-    for (size_t v = vessels->n; v-- > 0;) {
-        /* made[v] is the largest order among the daughters so far. */
-        int32_t own = 1, parent = vessels->vessel[v].parent;
-        for (size_t k = 0; k < n; k++)
-            own += 2 * vessels->vessel[v].radius_mm > bound_mm[k];
-        made[v] = own > made[v] ? own : made[v];
-        if (parent != NO_VESSEL && made[v] > made[parent])
-            made[parent] = made[v];
-    }
-    *order = made;
-    return STATUS_OK;
 }
 
 Status field_diameter_strahler(const Tree *tree, const TreeMeta *overrides, double *value, Err *err)

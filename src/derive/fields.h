@@ -4,22 +4,23 @@
 
 #include "derive/derive.h"
 
-/* Computes a field in `value`, an entry per node, which the caller zeroes before. The caller
- * replaces the values at roots. `overrides` has the values that the user specified. Errors:
- * STATUS_INPUT if a value is missing, with a sentence that continues the field's name;
- * STATUS_MEMORY. */
+/* Computes a field in `value`, which has an entry per node and is zeroed before the call. The
+ * caller replaces the values at roots. `overrides` has the values that the user specified. Errors:
+ * STATUS_INPUT if a value is missing, with a sentence that continues "the field NAME ";
+ * STATUS_MEMORY. `value` is undefined after an error. */
 typedef Status FieldFunction(const Tree *tree, const TreeMeta *overrides, double *value, Err *err);
 
 FieldFunction field_flow, field_velocity, field_pressure, field_wss, field_reynolds;
 FieldFunction field_level, field_strahler, field_diameter_strahler, field_tree, field_branch;
 
-/* Returns the source of a value: the user, if specified, else the tree. Either may lack it. */
+/* Returns the metadata that hold the value of `key`: `overrides` if the user specified the value,
+ * otherwise those of the tree, which may lack it. */
 static inline const TreeMeta *value_source(const Tree *tree, const TreeMeta *overrides, MetaKey key)
 {
     return overrides->known[key] ? overrides : &tree->meta;
 }
 
-/* Sets `value` to NAN: a network with links has no orders. */
+/* Sets `value` of every node to NAN: a network with links has no orders. */
 void clear_orders(const Tree *tree, double *value);
 
 /* Finds a value that a field needs. Errors: STATUS_INPUT if neither the overrides nor the tree have
@@ -27,9 +28,13 @@ void clear_orders(const Tree *tree, double *value);
 MUST_CHECK Status needed_value(const Tree *tree, const TreeMeta *overrides, MetaKey key,
                                double *value, Err *err);
 
-/* Solves a network with links [treenetwork_set_terminals]: the size of the flow in each segment,
- * mm^3/s, and the inflow of each root; the pressure at each node, Pa. Either array may be NULL.
- * Errors: as those of a FieldFunction and of flownetwork_solve. */
+/* Solves the flow in a network with links, with the boundary conditions of
+ * treenetwork_set_terminals.
+ *
+ * flow      receives, per node: the absolute value of the flow in its segment, or the inflow of a
+ *           root, mm^3/s. NULL: not wanted.
+ * pressure  receives, per node: the pressure, Pa. NULL: not wanted.
+ * Errors    those of a FieldFunction and of flownetwork_solve. */
 MUST_CHECK Status solve_links(const Tree *tree, const TreeMeta *overrides, double *flow,
                               double *pressure, Err *err);
 

@@ -19,7 +19,7 @@ Status needed_value(const Tree *tree, const TreeMeta *overrides, MetaKey key, do
                    row->meaning, row->name, row->name);
 }
 
-/* What viscosity follows from. */
+/* The values from which the viscosity of the blood in a segment follows. */
 typedef struct Blood {
     ViscosityLaw law;
     double viscosity_pa_s; /* of the blood; by Pries's law of the plasma */
@@ -74,7 +74,8 @@ bool pressure_is_known(const Tree *tree, const TreeMeta *overrides)
            blood_of(tree, overrides, &blood, NULL) == STATUS_OK;
 }
 
-/* Fills `value` with the flow shares at and below every node; *total is that of all roots. */
+/* Sets value[i] to the sum of the flow shares at and below node i, and *total to the sum of all
+ * shares. */
 static Status gather_shares(const Tree *tree, double *value, double *total, Err *err)
 {
     double *share = NULL;
@@ -91,7 +92,8 @@ static Status gather_shares(const Tree *tree, double *value, double *total, Err 
     return STATUS_OK;
 }
 
-/* mm^3/s; a root has the sum of what leaves it. All 0 in a tree without shares above 0. */
+/* Computes the flow of each segment, mm^3/s. A root gets the sum of the flows of its children. All
+ * flows are 0 in a tree whose shares are all 0. */
 static Status flow_mm3_s(const Tree *tree, const TreeMeta *overrides, double *value, Err *err)
 {
     double q_perf_ml_min, total;
@@ -148,12 +150,6 @@ Status field_reynolds(const Tree *tree, const TreeMeta *overrides, double *value
     return STATUS_OK;
 }
 
-static double poiseuille_drop_pa(double viscosity, double length, double flow, double radius)
-{
-    double radius2 = radius * radius;
-    return radius > 0 ? 8 * viscosity * length * flow / (PI * radius2 * radius2) : (double)NAN;
-}
-
 Status field_pressure(const Tree *tree, const TreeMeta *overrides, double *value, Err *err)
 {
     double p_perf_mmhg;
@@ -172,10 +168,12 @@ Status field_pressure(const Tree *tree, const TreeMeta *overrides, double *value
             value[i] = p_perf_mmhg;
             continue;
         }
-        double radius = tree->radius_mm[i];
-        double drop_pa = poiseuille_drop_pa(viscosity_pa_s(&blood, radius),
-                                            tree_segment_length(tree, i), value[i], radius);
-        value[i] = value[tree->parent[i]] - mmhg_from_pa(drop_pa);
+        /* poiseuille_resistance times the flow would round the last bit differently, and the bits
+         * of fields must not change. */
+        double radius = tree->radius_mm[i], radius2 = radius * radius;
+        double drop_pa = 8 * viscosity_pa_s(&blood, radius) * tree_segment_length(tree, i) *
+                         value[i] / (PI * radius2 * radius2);
+        value[i] = value[tree->parent[i]] - (radius > 0 ? mmhg_from_pa(drop_pa) : (double)NAN);
     }
     return STATUS_OK;
 }

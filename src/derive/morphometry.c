@@ -34,7 +34,7 @@ void morphometry_release(Morphometry *table)
     *table = (Morphometry){0};
 }
 
-/* What follows `word` and a blank; NULL when the line does not begin so. */
+/* Returns the text after `word` and a blank; NULL if the line does not begin with them. */
 static const char *after_word(const char *line, const char *word)
 {
     size_t length = strlen(word);
@@ -84,7 +84,7 @@ static bool take_daughters(Morphometry *table, const char *text)
     return false;
 }
 
-/* Returns true if the text is an order for each ratio, which are then the table's. */
+/* Returns true if the text is an order for each ratio, and then sets table->fitted_from. */
 static bool take_fitted_from(Morphometry *table, const char *text)
 {
     double order[RATIO_NUMBERS];
@@ -160,11 +160,11 @@ double morphometry_bound_mm(const Morphometry *table, int order)
 typedef struct ComparedOrders {
     const StatisticsTable *elements;
     const double *daughters;
-    int shift; /* order k stands beside the published order k + shift */
+    int shift; /* order k of the tree is compared with the published order k + shift */
 } ComparedOrders;
 
-/* Returns the tree's mean number of daughters k orders below those of a row, NAN if the tree has no
- * orders that low. */
+/* Returns the mean number of daughters k orders lower than the row's order, off one element of that
+ * order; NAN if the tree has no orders that low. */
 static double daughters_of(const ComparedOrders *orders, const StatisticsRow *row, int k)
 {
     const StatisticsTable *elements = orders->elements;
@@ -189,14 +189,15 @@ static void set_values(const ComparedOrders *orders, const StatisticsRow *own,
         pair->value = (double)own->vessels / (double)own->elements;
         pair->published = published->vessels_per_element;
     } else {
-        /* The counts of a single element have no error that could be compared with. */
+        /* The daughters of a single element have no standard error to compare with. */
         pair->value = published->elements > 1 ? daughters_of(orders, own, k) : (double)NAN;
         pair->published = (Spread){published->daughters[k].mean, (double)NAN};
         pair->se = published->daughters[k].se;
     }
 }
 
-/* Mean of the squared logarithms of the diameters' ratios; infinite where no order has both. */
+/* Returns the mean squared logarithm of the ratios of diameters; infinity if no order has both
+ * diameters. */
 static double misfit(const StatisticsTable *elements, const Morphometry *table, int shift)
 {
     double sum = 0, count = 0;
@@ -223,7 +224,7 @@ static int best_shift(const StatisticsTable *elements, const Morphometry *table)
     return best;
 }
 
-/* Appends a pair, which there is room for, when both have a value. */
+/* Appends a pair if both of its numbers are known. The array has room for it. */
 static void add_pair(MorphometryComparison *comparison, MorphometryPair pair)
 {
     if (!isfinite(pair.value) || !isfinite(pair.published.mean))
@@ -239,7 +240,7 @@ static void add_pair(MorphometryComparison *comparison, MorphometryPair pair)
     comparison->pair[comparison->n++] = pair;
 }
 
-/* Appends the tree's ratios, each over the orders that gave the published one. */
+/* Appends the tree's ratios. Each is computed from the orders that gave the published ratio. */
 static void add_ratios(MorphometryComparison *comparison, const ComparedOrders *orders,
                        const Morphometry *table)
 {

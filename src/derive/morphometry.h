@@ -12,7 +12,7 @@ enum {
     DAUGHTER_ORDERS = 4       /* daughters that are 0 to 3 orders lower are compared */
 };
 
-/* A published mean and its standard error. */
+/* A published mean and its standard error. NAN: not published. */
 typedef struct Estimate {
     double mean, se;
 } Estimate;
@@ -21,8 +21,8 @@ typedef struct Estimate {
  * and so is the standard deviation of a single element. */
 typedef struct MorphometryRow {
     Spread diameter_mm, length_mm; /* of the elements */
-    double elements;
-    Spread vessels_per_element;
+    double elements;               /* number of elements */
+    Spread vessels_per_element; /* number of vessels (segments of the literature) of one element */
     Estimate daughters[PUBLISHED_DAUGHTERS]; /* [k]: elements k orders lower off one element */
 } MorphometryRow;
 
@@ -50,7 +50,7 @@ typedef struct Morphometry {
  * 0, 1, 2 and 3 orders lower, without errors.
  *
  * Release *table with morphometry_release. Errors: STATUS_INPUT for any other line, naming file and
- * line; STATUS_IO, STATUS_MEMORY. */
+ * line, and for a table without a source or without order 1; STATUS_IO, STATUS_MEMORY. */
 MUST_CHECK Status morphometry_read(Morphometry *table, const char *path, Err *err);
 void morphometry_release(Morphometry *table);
 
@@ -91,8 +91,8 @@ typedef struct MorphometryPair {
     bool agrees_strictly;       /* agrees with the room that the number has without `se` */
 } MorphometryPair;
 
-/* The pairs, by measure and then by rising order. Quantities that only one of the two has are left
- * out, and daughters of an order of which only one element was published. */
+/* The pairs, by measure and then by rising order. A quantity that only the tree or only the table
+ * has is left out. So are the daughters of an order of which only one element was published. */
 typedef struct MorphometryComparison {
     MorphometryPair *pair; /* owned; free */
     size_t n;

@@ -93,6 +93,34 @@ Status field_strahler(const Tree *tree, const TreeMeta *overrides, double *value
     return STATUS_OK;
 }
 
+void lineage_bounded_orders(const Lineage *lineage, const double *bound_mm, size_t n,
+                            int32_t *order)
+{
+    memset(order, 0, lineage->n * sizeof *order);
+    for (size_t i = lineage->n; i-- > 0;) {
+        /* order[i] is the largest order among the daughters so far. */
+        int32_t own = 1, parent = lineage->parent[i];
+        for (size_t k = 0; k < n; k++)
+            own += 2 * lineage->radius_mm[i] > bound_mm[k];
+        order[i] = own > order[i] ? own : order[i];
+        if (parent >= 0 && order[i] > order[parent])
+            order[parent] = order[i];
+    }
+}
+
+void lineage_heirs(const Lineage *lineage, const int32_t *order, int32_t *heir)
+{
+    const double *radius = lineage->radius_mm;
+    for (size_t i = 0; i < lineage->n; i++) {
+        heir[i] = -1;
+        int32_t parent = lineage->parent[i];
+        if (parent < 0 || (order && order[parent] != order[i]))
+            continue;
+        if (heir[parent] < 0 || radius[i] > radius[heir[parent]])
+            heir[parent] = (int32_t)i;
+    }
+}
+
 Status field_tree(const Tree *tree, const TreeMeta *overrides, double *value, Err *err)
 {
     (void)overrides;
@@ -108,16 +136,9 @@ Status field_tree(const Tree *tree, const TreeMeta *overrides, double *value, Er
 Status field_branch(const Tree *tree, const TreeMeta *overrides, double *value, Err *err)
 {
     (void)overrides;
-    enum { NONE = 0 }; /* index 0 is a root, and no node's daughter */
     int32_t *thickest = NULL;
     TRY(mem_calloc(&thickest, tree->n, sizeof *thickest, "thickest daughters", err));
-    for (size_t i = 0; i < tree->n; i++) {
-        if (!tree_is_segment(tree, i))
-            continue;
-        int32_t *best = &thickest[tree->parent[i]];
-        if (*best == NONE || tree->radius_mm[i] > tree->radius_mm[*best])
-            *best = (int32_t)i;
-    }
+    lineage_heirs(&(Lineage){tree->parent, tree->radius_mm, tree->n}, NULL, thickest);
     double branches = 0;
     for (size_t i = 0; i < tree->n; i++) {
         if (!tree_is_segment(tree, i))

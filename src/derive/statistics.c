@@ -7,33 +7,36 @@
 #include <limits.h>
 #include <stdlib.h>
 
-/* Vessels of the same group in series; at levels, single vessels. */
+/* An element: vessels of the same group (an order) in series. At levels, the group is the level,
+ * and each vessel is an element. */
 typedef struct VesselElement {
     int32_t group;
     size_t vessels;
     double radius_mm, length_mm; /* mean and sum */
 } VesselElement;
 
-/* `element` has room for as many as there are vessels. `heir` tells which vessel continues which;
- * NULL when none does. */
+/* Merges vessels into elements, and returns their number. `element` has room for one per vessel,
+ * and is zeroed. heir[v] is the vessel that continues vessel v [lineage_heirs]; NULL: none is
+ * continued. */
 static size_t merge_vessels(const Vessels *vessels, const int32_t *group, const int32_t *heir,
                             int32_t *element_of, VesselElement *element)
 {
     size_t n = 0;
     for (size_t v = 0; v < vessels->n; v++) {
-        const Vessel *vessel = &vessels->vessel[v];
-        bool continues = heir && vessel->parent != NO_VESSEL && heir[vessel->parent] == (int32_t)v;
-        element_of[v] = continues ? element_of[vessel->parent] : (int32_t)n++;
+        int32_t parent = vessels->parent[v];
+        bool continues = heir && parent != NO_VESSEL && heir[parent] == (int32_t)v;
+        element_of[v] = continues ? element_of[parent] : (int32_t)n++;
         VesselElement *own = &element[element_of[v]];
         own->group = group[v];
         own->vessels++;
-        own->radius_mm += (vessel->radius_mm - own->radius_mm) / (double)own->vessels;
-        own->length_mm += vessel->length_mm;
+        own->radius_mm += (vessels->radius_mm[v] - own->radius_mm) / (double)own->vessels;
+        own->length_mm += vessels->row[v].length_mm;
     }
     return n;
 }
 
-/* Rows for the groups 0 .. n_groups - 1, empty ones included, from `n` elements. */
+/* Fills the rows of the groups 0 to n_groups - 1 from `n` elements. A row without elements gets NAN
+ * as means. */
 static void fill_rows(const VesselElement *element, size_t n, StatisticsRow *row, int n_groups)
 {
     for (size_t e = 0; e < n; e++) {
@@ -62,14 +65,14 @@ static void fill_rows(const VesselElement *element, size_t n, StatisticsRow *row
     }
 }
 
-/* The mean number of elements of order k that spring from an element of order m in entry
- * (m - 1) n + k - 1; `row` has one for each order and for 0. */
+/* Sets entry (m - 1) n + k - 1 of `daughters` to the mean number of elements of order k that branch
+ * off an element of order m. `row` has a row for each order and for 0. */
 static void count_daughters(const Vessels *vessels, const int32_t *element_of,
                             const VesselElement *element, const StatisticsRow *row, int n,
                             double *daughters)
 {
     for (size_t v = 0; v < vessels->n; v++) {
-        int32_t parent = vessels->vessel[v].parent;
+        int32_t parent = vessels->parent[v];
         if (parent == NO_VESSEL || element_of[parent] == element_of[v])
             continue;
         int32_t from = element[element_of[parent]].group, to = element[element_of[v]].group;
@@ -77,7 +80,8 @@ static void count_daughters(const Vessels *vessels, const int32_t *element_of,
     }
 }
 
-/* Sets *daughters (owned) if `daughters` is not NULL; groups are then orders, from 1. */
+/* Makes the table of all groups that have elements. If `daughters` is not NULL, groups are orders,
+ * from 1, and *daughters receives an array that the caller frees. */
 static Status make_table(const Vessels *vessels, const int32_t *group, const int32_t *heir,
                          StatisticsTable *table, double **daughters, Err *err)
 {
@@ -127,7 +131,7 @@ static double element_length(const StatisticsRow *row)
     return row->length_mm.mean;
 }
 
-/* exp of the slope of the straight line through log(quantity) against the order. */
+/* Returns exp(slope) of the least-squares line through log(quantity) over the order. */
 static double growth_ratio(const StatisticsRow *row, size_t rows,
                            double (*quantity)(const StatisticsRow *row))
 {
@@ -166,7 +170,7 @@ OrderRatios statistics_ratios(const StatisticsTable *table, int first, int last)
                          growth_ratio(row, rows, element_length)};
 }
 
-/* Sorts `value`. */
+/* Returns the statistics of n values, and sorts them. */
 static BifurcationSpread spread_of(double *value, size_t n)
 {
     const double none = (double)NAN;
@@ -183,19 +187,19 @@ static BifurcationSpread spread_of(double *value, size_t n)
     return (BifurcationSpread){n, mean, sd, (value[(n - 1) / 2] + value[n / 2]) / 2};
 }
 
-/* What the vessels that start at a node have in common. */
+/* The vessels that start at a node. */
 typedef struct VesselFork {
     int32_t daughters, parent; /* vessels; parent NO_VESSEL at a root */
-    double thinnest, thickest, squares;
+    double thinnest, thickest; /* radii, mm */
+    double squares;            /* sum of the squared radii, mm^2 */
 } VesselFork;
 
 static void find_forks(const Vessels *vessels, VesselFork *fork)
 {
     for (size_t v = 0; v < vessels->n; v++) {
-        const Vessel *vessel = &vessels->vessel[v];
-        VesselFork *own = &fork[vessel->start];
-        double radius = vessel->radius_mm;
-        own->parent = vessel->parent;
+        VesselFork *own = &fork[vessels->row[v].start];
+        double radius = vessels->radius_mm[v];
+        own->parent = vessels->parent[v];
         own->thinnest = own->daughters ? fmin(own->thinnest, radius) : radius;
         own->thickest = fmax(own->thickest, radius);
         own->squares += radius * radius;
@@ -219,7 +223,7 @@ static Status measure_forks(const Tree *tree, const Vessels *vessels, TreeStatis
             continue;
         if (fork[i].thickest > 0)
             symmetry[n_symmetry++] = fork[i].thinnest / fork[i].thickest;
-        double parent = fork[i].parent == NO_VESSEL ? 0 : vessels->vessel[fork[i].parent].radius_mm;
+        double parent = fork[i].parent == NO_VESSEL ? 0 : vessels->radius_mm[fork[i].parent];
         if (parent > 0)
             area[n_area++] = fork[i].squares / (parent * parent);
     }
@@ -232,16 +236,15 @@ done:
     return status;
 }
 
-/* The table of elements that are series of vessels of the same order. */
+/* Makes the table of the elements of all orders. */
 static Status make_order_table(const Vessels *vessels, const int32_t *order, StatisticsTable *table,
-                               OrderRatios *ratios, double **daughters, Err *err)
+                               double **daughters, Err *err)
 {
     int32_t *heir = NULL;
-    Status status;
-    TRY_GOTO(vessels_heirs(vessels, order, &heir, err));
-    TRY_GOTO(make_table(vessels, order, heir, table, daughters, err));
-    *ratios = statistics_ratios(table, 0, INT_MAX);
-done:
+    const Lineage lineage = vessels_lineage(vessels);
+    TRY(mem_calloc(&heir, vessels->n, sizeof *heir, "continued vessels", err));
+    lineage_heirs(&lineage, order, heir);
+    Status status = make_table(vessels, order, heir, table, daughters, err);
     free(heir);
     return status;
 }
@@ -251,11 +254,12 @@ Status statistics_by_bounds(const Tree *tree, const double *bound_mm, size_t n,
 {
     Vessels vessels;
     int32_t *order = NULL;
-    OrderRatios ratios;
     TRY(vessels_init(&vessels, tree, err));
     Status status = STATUS_OK;
-    TRY_GOTO(vessels_bounded_orders(&vessels, bound_mm, n, &order, err));
-    TRY_GOTO(make_order_table(&vessels, order, elements, &ratios, daughters, err));
+    const Lineage lineage = vessels_lineage(&vessels);
+    TRY_GOTO(mem_calloc(&order, vessels.n, sizeof *order, "orders", err));
+    lineage_bounded_orders(&lineage, bound_mm, n, order);
+    TRY_GOTO(make_order_table(&vessels, order, elements, daughters, err));
 done:
     free(order);
     vessels_release(&vessels);
@@ -273,36 +277,33 @@ static double volume_mm3(const Tree *tree)
 /* Computes what a tree without links has: orders, symmetry and area ratio. */
 static Status make_orders(const Tree *tree, const Vessels *vessels, TreeStatistics *made, Err *err)
 {
-    int32_t *strahler = NULL, *diameter_order = NULL;
+    int32_t *diameter_order = NULL;
     DiameterOrders result;
     Status status;
-    TRY_GOTO(mem_calloc(&strahler, vessels->n, sizeof *strahler, "orders", err));
-    for (size_t v = 0; v < vessels->n; v++)
-        strahler[v] = vessels->vessel[v].strahler;
-    TRY_GOTO(
-        make_order_table(vessels, strahler, &made->by_strahler, &made->strahler_ratios, NULL, err));
+    TRY_GOTO(make_order_table(vessels, vessels->strahler, &made->by_strahler, NULL, err));
+    made->strahler_ratios = statistics_ratios(&made->by_strahler, 0, INT_MAX);
     TRY_GOTO(vessels_diameter_orders(vessels, &diameter_order, &result, err));
     made->diameter_rounds = result.rounds;
     made->diameter_orders_converged = result.converged;
     TRY_GOTO(make_order_table(vessels, diameter_order, &made->by_diameter_strahler,
-                              &made->diameter_strahler_ratios, &made->daughters, err));
+                              &made->daughters, err));
+    made->diameter_strahler_ratios = statistics_ratios(&made->by_diameter_strahler, 0, INT_MAX);
     TRY_GOTO(measure_forks(tree, vessels, made, err));
 done:
-    free(strahler);
     free(diameter_order);
     return status;
 }
 
-static Status list_vessels(const Tree *tree, const Vessels *vessels, TreeStatistics *made, Err *err)
+/* Completes the rows of the vessels, and hands them over to the statistics. */
+static void take_vessels(const Tree *tree, Vessels *vessels, TreeStatistics *made)
 {
-    TRY(mem_calloc(&made->vessel, vessels->n, sizeof *made->vessel, "vessels", err));
     for (size_t v = 0; v < vessels->n; v++) {
-        const Vessel *vessel = &vessels->vessel[v];
-        double chord = vec3_distance(tree->position[vessel->start], tree->position[vessel->end]);
-        made->vessel[v] =
-            (VesselRow){vessel->start, vessel->end, vessel->radius_mm, vessel->length_mm, chord};
+        VesselRow *row = &vessels->row[v];
+        row->radius_mm = vessels->radius_mm[v];
+        row->chord_mm = vec3_distance(tree->position[row->start], tree->position[row->end]);
     }
-    return STATUS_OK;
+    made->vessel = vessels->row;
+    vessels->row = NULL;
 }
 
 static Status count_degrees(const Tree *tree, TreeStatistics *made, Err *err)
@@ -325,23 +326,18 @@ Status derive_statistics(const Tree *tree, TreeStatistics *statistics, Err *err)
 {
     TreeStatistics made = {.volume_mm3 = volume_mm3(tree), .has_orders = !tree->link};
     Vessels vessels;
-    int32_t *group = NULL;
     TRY(vessels_init(&vessels, tree, err));
     made.vessels = vessels.n;
     Status status = STATUS_OK;
-    TRY_GOTO(mem_calloc(&group, vessels.n, sizeof *group, "levels", err));
-    for (size_t v = 0; v < vessels.n; v++)
-        group[v] = vessels.vessel[v].level;
-    TRY_GOTO(make_table(&vessels, group, NULL, &made.by_level, NULL, err));
-    TRY_GOTO(list_vessels(tree, &vessels, &made, err));
+    TRY_GOTO(make_table(&vessels, vessels.level, NULL, &made.by_level, NULL, err));
     TRY_GOTO(count_degrees(tree, &made, err));
     if (made.has_orders)
         TRY_GOTO(make_orders(tree, &vessels, &made, err));
+    take_vessels(tree, &vessels, &made);
     *statistics = made;
     made = (TreeStatistics){0};
 done:
     statistics_release(&made);
-    free(group);
     vessels_release(&vessels);
     return status;
 }

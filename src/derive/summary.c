@@ -4,7 +4,7 @@
 
 #include <stdlib.h>
 
-/* Everything that one sweep over the segments gives. */
+/* Computes the members that are sums or extremes over the segments. */
 static void sum_segments(const Tree *tree, TreeSummary *summary)
 {
     summary->nodes = tree->n;
@@ -42,7 +42,7 @@ static Status count_components(const Tree *tree, TreeSummary *summary, Err *err)
     return tree_loop_count(tree, &summary->loops, err);
 }
 
-/* The largest value of a field that is a count; 0 when there is no segment. */
+/* Sets *out to the largest value of a field of integers; 0 if there is no segment. */
 static Status largest(const Tree *tree, const TreeMeta *overrides, const char *name, int *out,
                       Err *err)
 {

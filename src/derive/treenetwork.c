@@ -1,4 +1,5 @@
-/* Networks with links get the fields of flow from their solution; trees do not need one. */
+/* A network with links gets its fields of flow and pressure from the solution of Kirchhoff's laws.
+ * A tree does not need a solver, because flows add up from the terminals [flow.c]. */
 #include "derive/treenetwork.h"
 
 #include "derive/fields.h"

@@ -12,11 +12,15 @@
 #include "flownetwork/flownetwork.h"
 #include "tree/tree.h"
 
-/* The arrays of `network`, all with an entry per node of the tree. Owned. */
+/* A network and the arrays that it borrows. All arrays have an entry per node of the tree and are
+ * owned. */
 typedef struct TreeNetwork {
     FlowNetwork network;
-    uint32_t (*ends)[2];
-    double *resistance, *pressure, *inflow, *length_mm;
+    uint32_t (*ends)[2]; /* the proximal and the distal node of the segment */
+    double *resistance;  /* Pa s / mm^3; HUGE_VAL: closed */
+    double *pressure;    /* known pressure at the node, Pa; NAN: not known */
+    double *inflow;      /* flow into the network at the node, mm^3/s; below 0: flow out */
+    double *length_mm;   /* of the segment */
 } TreeNetwork;
 
 /* Makes the network of a tree. No pressure is known, and all inflows are 0. Segments of radius 0
@@ -29,9 +33,9 @@ MUST_CHECK Status treenetwork_make(const Tree *tree, const double *viscosity, Tr
                                    Err *err);
 void treenetwork_release(TreeNetwork *network);
 
-/* Sets the boundary conditions of trees. The pressure at each root is p_perf, or 0 if p_perf is not
- * known. At each node flows out the part of q_perf that the node's flow share is of the sum of all
- * flow shares [tree_flow_shares].
+/* Sets the boundary conditions of a tree. The pressure at each root is p_perf, or 0 if p_perf is
+ * not known. The flow out of a node is q_perf times the node's flow share divided by the sum of all
+ * flow shares [tree_flow_shares]; it is 0 if the sum is 0.
  *
  * overrides  values that the user specified; they take precedence over those of the tree.
  * Errors     STATUS_INPUT if q_perf is missing, with a sentence that continues "the field NAME ";

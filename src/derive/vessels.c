@@ -6,11 +6,11 @@
 #include "derive/fields.h"
 #include <stdlib.h>
 
-static void extend(Vessel *vessel, double radius, double length)
+static void extend(Vessels *made, int32_t v, double radius, double length)
 {
-    vessel->length_mm += length;
+    made->row[v].length_mm += length;
     if (length > 0)
-        vessel->radius_mm += (radius - vessel->radius_mm) * (length / vessel->length_mm);
+        made->radius_mm[v] += (radius - made->radius_mm[v]) * (length / made->row[v].length_mm);
 }
 
 /* `made` has room for as many vessels as there are nodes. */
@@ -24,15 +24,17 @@ static void find_vessels(const Tree *tree, const int32_t *children, const double
         }
         int32_t start = tree->parent[i], above = made->of_node[start];
         bool begins = above == NO_VESSEL || children[start] >= 2;
-        if (begins)
-            made->vessel[made->n] = (Vessel){.parent = above,
-                                             .start = start,
-                                             .level = (int32_t)level[i],
-                                             .strahler = (int32_t)strahler[i],
-                                             .radius_mm = tree->radius_mm[i]};
-        made->of_node[i] = begins ? (int32_t)made->n++ : above;
-        made->vessel[made->of_node[i]].end = (int32_t)tree_place(tree, i);
-        extend(&made->vessel[made->of_node[i]], tree->radius_mm[i], tree_segment_length(tree, i));
+        int32_t v = begins ? (int32_t)made->n++ : above;
+        if (begins) {
+            made->row[v].start = start;
+            made->parent[v] = above;
+            made->level[v] = (int32_t)level[i];
+            made->strahler[v] = (int32_t)strahler[i];
+            made->radius_mm[v] = tree->radius_mm[i];
+        }
+        made->of_node[i] = v;
+        made->row[v].end = (int32_t)tree_place(tree, i);
+        extend(made, v, tree->radius_mm[i], tree_segment_length(tree, i));
     }
 }
 
@@ -43,7 +45,11 @@ Status vessels_init(Vessels *vessels, const Tree *tree, Err *err)
     int32_t *children = NULL;
     double *level = NULL, *strahler = NULL;
     Status status = STATUS_OK;
-    TRY_GOTO(mem_calloc(&made.vessel, tree->n, sizeof *made.vessel, "vessels", err));
+    TRY_GOTO(mem_calloc(&made.row, tree->n, sizeof *made.row, "vessels", err));
+    TRY_GOTO(mem_calloc(&made.parent, tree->n, sizeof *made.parent, "vessels", err));
+    TRY_GOTO(mem_calloc(&made.level, tree->n, sizeof *made.level, "vessels", err));
+    TRY_GOTO(mem_calloc(&made.strahler, tree->n, sizeof *made.strahler, "vessels", err));
+    TRY_GOTO(mem_calloc(&made.radius_mm, tree->n, sizeof *made.radius_mm, "vessels", err));
     TRY_GOTO(mem_calloc(&made.of_node, tree->n, sizeof *made.of_node, "vessels of nodes", err));
     TRY_GOTO(mem_calloc(&level, tree->n, sizeof *level, "levels", err));
     TRY_GOTO(mem_calloc(&strahler, tree->n, sizeof *strahler, "Strahler orders", err));
@@ -64,24 +70,11 @@ done:
 
 void vessels_release(Vessels *vessels)
 {
-    free(vessels->vessel);
+    free(vessels->row);
+    free(vessels->parent);
+    free(vessels->level);
+    free(vessels->strahler);
+    free(vessels->radius_mm);
     free(vessels->of_node);
     *vessels = (Vessels){0};
-}
-
-Status vessels_heirs(const Vessels *vessels, const int32_t *order, int32_t **heir, Err *err)
-{
-    int32_t *made = NULL;
-    TRY(mem_calloc(&made, vessels->n, sizeof *made, "continued vessels", err));
-    for (size_t v = 0; v < vessels->n; v++) {
-        made[v] = NO_VESSEL;
-        int32_t parent = vessels->vessel[v].parent;
-        if (parent == NO_VESSEL || order[parent] != order[v])
-            continue;
-        int32_t *best = &made[parent];
-        if (*best == NO_VESSEL || vessels->vessel[v].radius_mm > vessels->vessel[*best].radius_mm)
-            *best = (int32_t)v;
-    }
-    *heir = made;
-    return STATUS_OK;
 }

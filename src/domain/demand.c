@@ -2,17 +2,18 @@
  * between them. */
 #include "domain/domain.h"
 
+#include "domain/kinds.h"
 #include "domain/mask.h"
 #include <stdlib.h>
-#include <string.h>
 
 struct Demand {
     char *file; /* owned */
     Mask mask;
-    double most; /* value */
+    double most; /* the largest value of the map */
 };
 
-/* Number of random points of the domain at which the demand is tested, and its minimum mean. */
+/* Number of random points of the domain at which demand_check tests the demand, and the minimum
+ * mean there. Reasons not recorded. */
 enum { LOOKS = 20000 };
 static const double least_mean = 1e-4;
 
@@ -35,10 +36,7 @@ static Status load(Demand *demand, const char *spec, Err *err)
 {
     double mm = 0, volume;
     TRY(mem_strdup(&demand->file, spec, err));
-    char *comma = strrchr(demand->file, ',');
-    bool has_mm = comma && number_parse(comma + 1, &mm);
-    if (has_mm)
-        *comma = '\0';
+    bool has_mm = domain_cut_number(demand->file, &mm);
     if (has_mm && !(mm >= DOMAIN_MIN_MM && mm <= DOMAIN_MAX_MM))
         return err_set(err, STATUS_USAGE, "`demand` %s: a pixel must be from %g to %g mm wide",
                        spec, DOMAIN_MIN_MM, DOMAIN_MAX_MM);

@@ -11,32 +11,24 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const DomainOps *const kinds[] = {&disc_ops,      &ball_ops,  &rect_ops,    &box_ops,
-                                         &ellipsoid_ops, &shell_ops, &polygon_ops, &mask_ops,
-                                         &mesh_ops,      &hull_ops,  &surface_ops};
+static const DomainOps *const kinds[] = {
+    &simple_ops[0], &simple_ops[1], &simple_ops[2], &simple_ops[3], &simple_ops[4], &shell_ops,
+    &polygon_ops,   &mask_ops,      &mesh_ops,      &hull_ops,      &surface_ops};
 
 enum { KINDS = sizeof kinds / sizeof *kinds };
 
-static const double slack = 1e-6; /* of the diagonal of the bounds */
-/* The least part of its bounds that a domain must fill, or rejection would take too long. */
+/* Domain.slack_mm relative to the diagonal of the bounds. Reason for 1e-6 not recorded. */
+static const double slack = 1e-6;
+/* The minimum share of its bounds that a domain must fill. With less, rejection would take too
+ * long. */
 static const double least_filled = 1e-3;
-/* Points that are drawn, at most, until one is inside. A domain that fills the least part of its
- * bounds is missed by all of them once in e^100 times. */
+/* Maximum number of points that are drawn until one is inside. A domain that fills the minimum
+ * share of its bounds is missed by all of them with the probability e^-100. */
 enum { MOST_DRAWS = 100000 };
 
-const char *domain_shape_name(size_t i)
+const DomainShape *domain_shape(size_t i)
 {
-    return i < KINDS ? kinds[i]->name : NULL;
-}
-
-const char *domain_shape_parameters(size_t i)
-{
-    return i < KINDS ? kinds[i]->parameters : NULL;
-}
-
-const char *domain_shape_description(size_t i)
-{
-    return i < KINDS ? kinds[i]->description : NULL;
+    return i < KINDS ? &kinds[i]->shape : NULL;
 }
 
 static Status refuse_shape(const char *spec, Err *err)
@@ -47,7 +39,7 @@ static Status refuse_shape(const char *spec, Err *err)
                     kind == 0           ? ""
                     : kind == KINDS - 1 ? " or "
                                         : ", ",
-                    kinds[kind]->name, kinds[kind]->parameters);
+                    kinds[kind]->shape.name, kinds[kind]->shape.parameters);
     Status status = STATUS_OK;
     TRY_GOTO(text_check(&shapes, err));
     status =
@@ -77,7 +69,7 @@ static Status check_filling(const Domain *domain, Err *err)
 
 static bool try_sample(const Domain *domain, Random *random, Vec3 *point);
 
-/* Finds a point of the domain, or refuses one that has none where points are drawn. */
+/* Finds domain->inner, or fails if none of the points that are drawn is in the domain. */
 static Status find_inner(Domain *domain, Err *err)
 {
     Random random;
@@ -90,7 +82,7 @@ static Status find_inner(Domain *domain, Err *err)
                    domain->surface ? "; the mesh may be thinner than twice its OFFSET" : "");
 }
 
-/* What every kind has in common once it is loaded. */
+/* Sets the members that all kinds have in common, after ops->load. */
 static Status complete(Domain *domain, Vec3 at, Err *err)
 {
     TRY(check_filling(domain, err));
@@ -186,7 +178,8 @@ Status domain_parse(Domain *domain, const char *spec, Err *err)
     size_t length = strcspn(spec, ":");
     const char *values = spec + length + (spec[length] == ':');
     for (int kind = 0; kind < KINDS; kind++) {
-        if (strlen(kinds[kind]->name) != length || memcmp(spec, kinds[kind]->name, length) != 0)
+        const char *name = kinds[kind]->shape.name;
+        if (strlen(name) != length || memcmp(spec, name, length) != 0)
             continue;
         Status status = parse_kind(kinds[kind], values, domain, err);
         if (status == STATUS_USAGE)
@@ -206,7 +199,7 @@ void domain_release(Domain *domain)
 
 void domain_text(const Domain *domain, Text *text)
 {
-    text_printf(text, "%s:", domain->ops->name);
+    text_printf(text, "%s:", domain->ops->shape.name);
     if (domain->file)
         text_puts(text, domain->file);
     for (int i = 0; i < domain->n_sizes; i++) {
@@ -228,7 +221,7 @@ bool domain_is_convex(const Domain *domain)
     return domain->ops->is_convex;
 }
 
-/* The point in the domain's own coordinates. */
+/* Returns a point, mm, in the domain's own coordinates. */
 static Vec3 to_own(const Domain *domain, Vec3 point)
 {
     return domain->is_placed ? vec3_sub(point, domain->at) : point;
@@ -279,7 +272,8 @@ double domain_distance(const Domain *domain, Vec3 point, double most)
     return far;
 }
 
-/* Uniform in the bounds; draws x, y and, in three dimensions, z. */
+/* Returns a random point, uniformly distributed in the bounds. Draws x, y and, in three dimensions,
+ * z. */
 static Vec3 sample_bounds(const Domain *domain, Random *random)
 {
     Vec3 center = box_center(domain->own_bounds);

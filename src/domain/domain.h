@@ -139,10 +139,14 @@ double domain_distance(const Domain *domain, Vec3 point, double most);
  * probability is e^-100. */
 Vec3 domain_sample(const Domain *domain, Random *random);
 
-/* Return the name of shape `i`, "disc", the parameters after its colon, "R", and its description;
- * NULL if `i` is the number of shapes or larger. */
-const char *domain_shape_name(size_t i);
-const char *domain_shape_parameters(size_t i);
-const char *domain_shape_description(size_t i);
+/* A kind of domain, as lists and messages name it. */
+typedef struct DomainShape {
+    const char *name;        /* "disc" */
+    const char *parameters;  /* the text after the colon: "R" */
+    const char *description; /* "flat disc of radius R mm around the origin" */
+} DomainShape;
+
+/* Returns shape `i`, borrowed; NULL if `i` is the number of shapes or larger. */
+const DomainShape *domain_shape(size_t i);
 
 #endif

@@ -5,22 +5,28 @@
 #include <stdio.h>
 #include <string.h>
 
+bool domain_cut_number(char *text, double *number)
+{
+    char *comma = strrchr(text, ',');
+    if (!comma || !number_parse(comma + 1, number))
+        return false;
+    *comma = '\0';
+    return true;
+}
+
 Status domain_load_file_name(Domain *domain, const char *values, Err *err)
 {
-    const char *comma = strrchr(values, ',');
     double mm = 1;
-    bool has_mm = comma && number_parse(comma + 1, &mm);
-    size_t length = has_mm ? (size_t)(comma - values) : strlen(values);
-    if (length == 0)
+    TRY(mem_strdup(&domain->file, values, err));
+    bool has_mm = domain_cut_number(domain->file, &mm);
+    if (*domain->file == '\0')
         return err_set(err, STATUS_USAGE, "the name of a file is missing; use %s:%s",
-                       domain->ops->name, domain->ops->parameters);
+                       domain->ops->shape.name, domain->ops->shape.parameters);
     if (has_mm && !(mm >= DOMAIN_MIN_MM && mm <= DOMAIN_MAX_MM))
         return err_set(err, STATUS_USAGE,
                        "the unit of the file must be a number of mm from %g to %g", DOMAIN_MIN_MM,
                        DOMAIN_MAX_MM);
-    TRY(mem_calloc(&domain->file, length + 1, 1, "bytes of text", err));
-    memcpy(domain->file, values, length);
-    domain->size[0] = has_mm ? mm : 1;
+    domain->size[0] = mm;
     domain->n_sizes = has_mm;
     domain->unit_is_guessed = !has_mm;
     return STATUS_OK;

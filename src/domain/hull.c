@@ -11,14 +11,20 @@
 #include "domain/kinds.h"
 #include <stdlib.h>
 
-/* Number of cells along the reach, and the maximum number of cells. Reasons not recorded. */
+/* Number of grid cells along the reach, and the maximum number of cells. Reasons not recorded. */
 static const double cells_per_reach = 4, most_cells = 1 << 22;
-/* A segment looks at no more cells than this along each axis before it looks at the tubes. */
+/* Maximum number of cells along each axis that is_deep looks at. Longer segments are tested against
+ * the tubes at once. Reason for 3 not recorded. */
 enum { FEW_CELLS = 3 };
 
 static double tube_distance2(const DomainTube *tube, Vec3 point)
 {
     return vec3_distance2_along(vec3_sub(point, tube->a), vec3_sub(tube->b, tube->a));
+}
+
+static Box tube_box(const DomainTube *tube)
+{
+    return box_with_ball(box_with_ball(box_empty(), tube->a, tube->radius), tube->b, tube->radius);
 }
 
 static bool is_near(const Hull *hull, Vec3 point, double tolerance_mm)
@@ -33,7 +39,7 @@ static bool is_near(const Hull *hull, Vec3 point, double tolerance_mm)
     return false;
 }
 
-/* The cell of a point along each axis; false when it is off the grid. */
+/* Finds the cell of a point. Returns false if the point is outside the grid. */
 static bool find_cell(const Hull *hull, Vec3 point, int cell[3])
 {
     for (int axis = 0; axis < 3; axis++) {
@@ -48,6 +54,14 @@ static bool find_cell(const Hull *hull, Vec3 point, int cell[3])
 static size_t index_of(const Hull *hull, int x, int y, int z)
 {
     return ((size_t)z * (size_t)hull->count[1] + (size_t)y) * (size_t)hull->count[0] + (size_t)x;
+}
+
+/* Returns the position of a cell along each axis, counted in cells. */
+static Vec3 cell_at(const Hull *hull, size_t index)
+{
+    size_t x = index % (size_t)hull->count[0], rest = index / (size_t)hull->count[0];
+    size_t y = rest % (size_t)hull->count[1], z = rest / (size_t)hull->count[1];
+    return vec3((double)x, (double)y, (double)z);
 }
 
 static bool hull_inside(const Domain *domain, Vec3 point, double tolerance_mm)
@@ -84,7 +98,8 @@ static bool is_deep(const Hull *hull, Vec3 a, Vec3 b)
     return true;
 }
 
-/* Widens [out[0], out[1]] by where the line a + t d is within `radius` of the point c. */
+/* Extends the interval [out[0], out[1]] by the t at which the line a + t d is within `radius` of
+ * the point c. */
 static void add_ball(Vec3 a, Vec3 d, Vec3 c, double radius, double out[2])
 {
     Vec3 from = vec3_sub(a, c);
@@ -96,8 +111,8 @@ static void add_ball(Vec3 a, Vec3 d, Vec3 c, double radius, double out[2])
     out[1] = fmax(out[1], -half + sqrt(root));
 }
 
-/* Extends the stretch by the part of the segment in the cylinder around the tube's axis, between
- * the two ends of the axis. */
+/* Extends the interval by the t at which the line a + t d is in the cylinder around the tube's
+ * axis, between the two ends of the axis. */
 static void add_cylinder(Vec3 a, Vec3 d, const DomainTube *tube, double radius, double out[2])
 {
     Vec3 axis = vec3_sub(tube->b, tube->a), from = vec3_sub(a, tube->a);
@@ -127,7 +142,8 @@ static void add_cylinder(Vec3 a, Vec3 d, const DomainTube *tube, double radius, 
     out[1] = fmax(out[1], high);
 }
 
-/* The stretch of the line a + t d in the tube; empty, INFINITY to -INFINITY, where it misses it. */
+/* Sets `out` to the interval of t in which the line a + t d is in the tube; INFINITY to -INFINITY
+ * if the line misses the tube. */
 static void stretch_in(Vec3 a, Vec3 d, const DomainTube *tube, double out[2])
 {
     out[0] = INFINITY;
@@ -161,14 +177,12 @@ static bool hull_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
 static Vec3 hull_sample(const Domain *domain, Random *random)
 {
     const Hull *hull = domain->hull;
-    size_t index = hull->some[(size_t)(random_uniform(random) * (double)hull->n_some)];
-    size_t x = index % (size_t)hull->count[0], rest = index / (size_t)hull->count[0];
-    size_t y = rest % (size_t)hull->count[1], z = rest / (size_t)hull->count[1];
-    Vec3 point = hull->low;
-    point.x += ((double)x + random_uniform(random)) * hull->edge;
-    point.y += ((double)y + random_uniform(random)) * hull->edge;
+    size_t index = hull->occupied[(size_t)(random_uniform(random) * (double)hull->n_occupied)];
+    Vec3 point = hull->low, cell = cell_at(hull, index);
+    point.x += (cell.x + random_uniform(random)) * hull->edge;
+    point.y += (cell.y + random_uniform(random)) * hull->edge;
     if (domain->dimension == 3)
-        point.z += ((double)z + random_uniform(random)) * hull->edge;
+        point.z += (cell.z + random_uniform(random)) * hull->edge;
     return point;
 }
 
@@ -189,8 +203,7 @@ static Status set_tubes(Domain *domain, const DomainTube *tubes, size_t n, Err *
         tube->radius += domain->size[0];
         if (tube->a.z != 0 || tube->b.z != 0)
             domain->dimension = 3;
-        boxes[i] =
-            box_with_ball(box_with_ball(box_empty(), tube->a, tube->radius), tube->b, tube->radius);
+        boxes[i] = tube_box(tube);
         domain->bounds = box_union(domain->bounds, boxes[i]);
     }
     if (domain->dimension == 2)
@@ -227,8 +240,7 @@ static void mark(Hull *hull, const DomainTube *tube, bool flat)
 {
     double half = hull->edge / 2 * sqrt(flat ? 2 : 3);
     double outer = tube->radius + half, inner = fmax(tube->radius - half, 0);
-    Box box =
-        box_with_ball(box_with_ball(box_empty(), tube->a, tube->radius), tube->b, tube->radius);
+    Box box = tube_box(tube);
     int low[3], high[3];
     for (int axis = 0; axis < 3; axis++) {
         double from = vec3_component(box.low, axis) - vec3_component(hull->low, axis);
@@ -249,32 +261,31 @@ static void mark(Hull *hull, const DomainTube *tube, bool flat)
             }
 }
 
-/* Lists the cells that are not outside, and sums up the volume: of those at the edge, by the share
- * of a few points that is inside. */
+/* Lists the cells that are not outside, and computes the volume from STEPS points per axis in each
+ * of them. Reason for 2 not recorded. */
 static Status list_cells(Domain *domain, Err *err)
 {
     enum { STEPS = 2 };
     Hull *hull = domain->hull;
     bool flat = domain->dimension == 2;
     size_t cells = index_of(hull, 0, 0, hull->count[2]);
-    TRY(mem_calloc(&hull->some, cells, sizeof *hull->some, "cells", err));
+    TRY(mem_calloc(&hull->occupied, cells, sizeof *hull->occupied, "cells", err));
     size_t inside = 0, of = 0;
     for (size_t i = 0; i < cells; i++) {
         if (hull->cell[i] == HULL_OUTSIDE)
             continue;
-        hull->some[hull->n_some++] = (uint32_t)i;
-        size_t x = i % (size_t)hull->count[0], rest = i / (size_t)hull->count[0];
-        size_t y = rest % (size_t)hull->count[1], z = rest / (size_t)hull->count[1];
+        hull->occupied[hull->n_occupied++] = (uint32_t)i;
+        const Vec3 corner = cell_at(hull, i);
         for (int k = 0; k < (flat ? STEPS * STEPS : STEPS * STEPS * STEPS); k++, of++) {
-            Vec3 at = vec3((double)x + (k % STEPS + 0.5) / STEPS,
-                           (double)y + (k / STEPS % STEPS + 0.5) / STEPS,
-                           flat ? 0 : (double)z + (k / STEPS / STEPS + 0.5) / STEPS);
+            Vec3 at = vec3(corner.x + (k % STEPS + 0.5) / STEPS,
+                           corner.y + (k / STEPS % STEPS + 0.5) / STEPS,
+                           flat ? 0 : corner.z + (k / STEPS / STEPS + 0.5) / STEPS);
             inside += hull->cell[i] == HULL_INSIDE ||
                       is_near(hull, vec3_add_scaled(hull->low, at, hull->edge), 0);
         }
     }
     double cell = elementary_pow(hull->edge, domain->dimension);
-    domain->volume = cell * (double)hull->n_some * (double)inside / (double)of;
+    domain->volume = cell * (double)hull->n_occupied * (double)inside / (double)of;
     return STATUS_OK;
 }
 
@@ -301,7 +312,7 @@ static void hull_release(Domain *domain)
     boxtree_release(&domain->hull->tree);
     free(domain->hull->tube);
     free(domain->hull->cell);
-    free(domain->hull->some);
+    free(domain->hull->occupied);
     free(domain->hull);
 }
 
@@ -313,9 +324,8 @@ static Status hull_load(Domain *domain, const char *values, Err *err)
 }
 
 const DomainOps hull_ops = {
-    .name = "hull",
-    .parameters = "[FILE,]MM",
-    .description = "everything within MM mm of the tree of --from, or of the tree in a file",
+    .shape = {"hull", "[FILE,]MM",
+              "everything within MM mm of the tree of --from, or of the tree in a file"},
     .load = hull_load,
     .inside = hull_inside,
     .holds_segment = hull_holds_segment,

@@ -1,6 +1,6 @@
-/* The hull of vessels: all points within a given distance of at least one vessel. A grid of cells
- * tells quickly which points are inside; only for cells at the hull's edge are distances to vessels
- * computed. Private to the module domain. */
+/* The hull of vessels: all points within a given distance of at least one vessel. The state of a
+ * grid cell decides for most points whether they are inside. Distances to vessels are computed only
+ * in cells at the hull's edge. Private to the module domain. */
 #ifndef CORCAST_DOMAIN_HULL_H
 #define CORCAST_DOMAIN_HULL_H
 
@@ -17,13 +17,13 @@ typedef enum HullCell {
 struct Hull {
     DomainTube *tube; /* the vessels, with the radii of the hull around them, mm; owned */
     size_t n;
-    BoxTree tree;   /* over the tubes; owned */
-    Vec3 low;       /* low corner of the grid, mm */
-    double edge;    /* edge of a cell, mm */
-    int count[3];   /* cells along each axis; 1 along z in two dimensions */
-    uint8_t *cell;  /* per cell: a HullCell; x runs fastest; owned */
-    uint32_t *some; /* the indices of cells that are not HULL_OUTSIDE, rising; owned */
-    size_t n_some;
+    BoxTree tree;       /* over the tubes; owned */
+    Vec3 low;           /* low corner of the grid, mm */
+    double edge;        /* edge of a cell, mm */
+    int count[3];       /* cells along each axis; 1 along z in two dimensions */
+    uint8_t *cell;      /* per cell: a HullCell; x runs fastest; owned */
+    uint32_t *occupied; /* the indices of cells that are not HULL_OUTSIDE, rising; owned */
+    size_t n_occupied;
 };
 
 /* Builds the hull of `n` > 0 tubes: sets dimension, hull, bounds, volume and inlet of the domain.

@@ -6,16 +6,14 @@
 #include "domain/domain.h"
 
 typedef struct DomainOps {
-    const char *name;        /* "disc" */
-    const char *parameters;  /* "R" */
-    const char *description; /* "ball of radius R mm around the origin" */
+    DomainShape shape;
     bool is_convex;
     /* Reads the text after the colon. Before the call only domain->ops is set, and all else is
      * zero. Sets sizes, file, dimension, bounds, volume and inlet. The sentence of a STATUS_USAGE
      * does not name the option, which the caller adds. The caller releases the domain, also after
      * an error. */
     Status (*load)(Domain *domain, const char *values, Err *err);
-    /* Returns true if the point is in the domain, or outside by at most the tolerance. */
+    /* Returns true if the point is in the domain, or outside it by at most the tolerance, >= 0. */
     bool (*inside)(const Domain *domain, Vec3 point, double tolerance_mm);
     /* Returns true if the whole segment, which is longer than slack_mm, is in the domain. NULL for
      * convex kinds, where the two ends decide. */
@@ -29,8 +27,15 @@ typedef struct DomainOps {
     void (*release)(Domain *domain);
 } DomainOps;
 
-extern const DomainOps disc_ops, ball_ops, rect_ops, box_ops, ellipsoid_ops, shell_ops;
+/* Disc, ball, rectangle, box and ellipsoid. */
+enum { SIMPLE_SHAPES = 5 };
+extern const DomainOps simple_ops[SIMPLE_SHAPES];
+extern const DomainOps shell_ops;
 extern const DomainOps polygon_ops, mask_ops, mesh_ops, hull_ops, surface_ops;
+
+/* Cuts the number after the last comma off a text, with the comma. Returns false, and leaves both
+ * arguments unchanged, if the text does not end so. */
+bool domain_cut_number(char *text, double *number);
 
 /* Reads FILE[,MM] into file, size and n_sizes. size[0] is the mm per unit of the file, 1 if MM is
  * not given. Errors: STATUS_USAGE, STATUS_MEMORY. */

@@ -41,7 +41,7 @@ static void voxel_of(const Mask *mask, uint32_t number, int64_t voxel[3])
     voxel[2] = number / mask->n[0] / mask->n[1];
 }
 
-/* The middle of a voxel; in two dimensions in the plane. */
+/* Returns the middle of a voxel; in two dimensions, its projection to the plane z = 0. */
 static Vec3 middle_of(const Domain *domain, uint32_t number)
 {
     int64_t voxel[3];
@@ -94,7 +94,8 @@ typedef struct VoxelWalk {
     int64_t voxel[3], last[3];
 } VoxelWalk;
 
-/* Where the line leaves the voxel, and along which axis; 1 and -1 in its last voxel. */
+/* Returns the t at which the line leaves its present voxel, and sets *axis to the axis across which
+ * it does. In the last voxel, returns 1 and sets *axis to -1. */
 static double leave(const VoxelWalk *walk, int *axis)
 {
     double first = 1;
@@ -138,8 +139,8 @@ static bool mask_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
     return true;
 }
 
-/* Returns the voxel of tissue that `pick` others precede: the last word that fewer precede, then
- * bit by bit. */
+/* Returns the voxel of tissue with the rank `pick`, from 0: finds its word by bisection, and then
+ * its bit. */
 static uint32_t tissue_voxel(const Mask *mask, size_t pick)
 {
     size_t low = 0, high = mask_words(mask) - 1;
@@ -168,7 +169,8 @@ static Vec3 mask_sample(const Domain *domain, Random *random)
     return point_at(mask, index);
 }
 
-/* The volume of a voxel is at least this share of that of a brick with the same edges. */
+/* Minimum volume of a voxel relative to a brick with the same edges; less means that the axes lie
+ * in a plane. Reason for 1e-6 not recorded. */
 static const double least_upright = 1e-6;
 
 Status mask_invert_axes(Mask *mask, const char *file, double *volume, Err *err)
@@ -230,7 +232,7 @@ static bool next_tissue(const Mask *mask, TissueWalk *walk, uint32_t *voxel)
     return true;
 }
 
-/* Bounds of the voxels of tissue, and the middle one of those whose middle is highest. */
+/* Sets the bounds of the tissue, and the inlet: the middle of the voxels whose y is largest. */
 static void find_extent(Domain *domain)
 {
     const Mask *mask = domain->mask;
@@ -324,9 +326,8 @@ static void mask_release(Domain *domain)
 }
 
 const DomainOps mask_ops = {
-    .name = "mask",
-    .parameters = "FILE[,MM]",
-    .description = "image whose pixels that are not black are tissue, MM mm wide; or a NIfTI file",
+    .shape = {"mask", "FILE[,MM]",
+              "image whose pixels that are not black are tissue, MM mm wide; or a NIfTI file"},
     .load = mask_load,
     .inside = mask_inside,
     .holds_segment = mask_holds_segment,

@@ -1,5 +1,5 @@
-/* A mask: the voxels that are tissue. A picture is a mask with a single layer. Private to the
- * module domain. */
+/* A mask: the domain of all voxels of an image that are tissue. A picture is a mask with a single
+ * layer of voxels. Private to the module domain. */
 #ifndef CORCAST_DOMAIN_MASK_H
 #define CORCAST_DOMAIN_MASK_H
 

@@ -51,7 +51,7 @@ static Status check_count(const Mask *mask, const char *path, const int64_t n[3]
     return STATUS_OK;
 }
 
-/* Makes the mask n[0] x n[1] x n[2] voxels, none of them tissue. */
+/* Sets up a mask of n[0] x n[1] x n[2] voxels, none of which is tissue. */
 static Status init(Mask *mask, const char *path, const int64_t n[3], Err *err)
 {
     TRY(check_count(mask, path, n, err));
@@ -215,7 +215,7 @@ static Status read_voxels(Mask *mask, const char *path, nifti_image *image, Err 
     return STATUS_OK;
 }
 
-/* What is checked of a header. */
+/* The parts of a NIfTI header that are checked. */
 typedef struct Header {
     int version;
     int datatype;

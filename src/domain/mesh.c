@@ -143,8 +143,9 @@ static Vec3 middle_of(const Triangle *triangle)
     return vec3_add_scaled(triangle->a, vec3_add(triangle->ab, triangle->ac), 1.0 / 3);
 }
 
-/* Below the middle of the triangle whose middle is highest, along its normal: a thousandth of the
- * mesh's height, or half the way to the other side where that is less. */
+/* Returns a point below the middle of the triangle whose middle is highest. The point is a
+ * thousandth of the mesh's height away along the normal, or half the distance to the other side if
+ * that is less. */
 static Vec3 find_inlet(const Mesh *mesh, const Box *bounds)
 {
     size_t top = 0;
@@ -172,7 +173,7 @@ static double volume6(const Triangle *triangle, Vec3 origin)
     return vec3_dot(vec3_sub(triangle->a, origin), vec3_cross(triangle->ab, triangle->ac));
 }
 
-/* Triangles without area bound nothing. */
+/* Copies the triangles of the soup, except those without area, which bound nothing. */
 static Status set_triangles(Mesh *mesh, const Soup *soup, Err *err)
 {
     TRY(mem_calloc(&mesh->triangles, soup->n / 3, sizeof *mesh->triangles, "triangles", err));
@@ -237,9 +238,9 @@ static int winding_before(const Mesh *mesh, const Box *bounds, const Triangle *t
     return mesh_winding(mesh, bounds, vec3_add_scaled(middle_of(triangle), normal, off));
 }
 
-/* Sums up the volumes of the shells that bound the inside: in front of them the surface does not
- * wind round a point, behind them it does. A shell within another that is turned the same way
- * bounds nothing. One that has inside neither before nor behind it is turned to the wrong side. */
+/* Sums the volumes of the shells that bound the inside: the winding number is 0 in front of them,
+ * and above 0 behind them. A shell within another shell of the same orientation bounds nothing. A
+ * shell with a winding number below 0 in front of it, and a volume below 0, is inside out. */
 static Status sum_shells(Domain *domain, const Shell *shells, size_t n, Err *err)
 {
     size_t turned = 0;
@@ -323,9 +324,7 @@ void mesh_release(Domain *domain)
 }
 
 const DomainOps mesh_ops = {
-    .name = "mesh",
-    .parameters = "FILE[,MM]",
-    .description = "inside of a closed surface (.stl, .obj), in units of MM mm",
+    .shape = {"mesh", "FILE[,MM]", "inside of a closed surface (.stl, .obj), in units of MM mm"},
     .load = mesh_load,
     .inside = mesh_inside,
     .holds_segment = mesh_holds_segment,

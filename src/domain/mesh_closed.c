@@ -122,7 +122,7 @@ static int compare_triangles(const void *a, const void *b)
     return by_number ? by_number : (c->triangle > d->triangle) - (c->triangle < d->triangle);
 }
 
-/* Leaves out all but the first of equal triangles, and keeps the order of the others. */
+/* Removes triangles that repeat an earlier triangle, and keeps the order of the others. */
 static Status drop_repeated(Soup *soup, uint32_t *numbers, Err *err)
 {
     size_t n = soup->n / 3, kept = 0;
@@ -150,16 +150,8 @@ done:
     return status;
 }
 
-/* Replaces the representatives of the sets, which are their lowest triangles, by numbers from
- * 0 on. */
-static size_t number_sets(uint32_t *parent, size_t n)
-{
-    uint32_t shells = 0;
-    for (size_t i = 0; i < n; i++)
-        parent[i] = parent[i] == i ? shells++ : parent[parent[i]];
-    return shells;
-}
-
+/* Sets the shell of every triangle. The representative of a set is its lowest triangle, so that one
+ * rising loop replaces representatives by numbers from 0 on. Returns the number of shells. */
 static size_t find_shells(const SoupEdge *edges, size_t n_edges, uint32_t *shell, size_t n)
 {
     sets_begin(shell, n);
@@ -168,7 +160,10 @@ static size_t find_shells(const SoupEdge *edges, size_t n_edges, uint32_t *shell
             sets_join(shell, edges[i - 1].triangle, edges[i].triangle);
     for (size_t i = 0; i < n; i++)
         shell[i] = sets_find(shell, (uint32_t)i);
-    return number_sets(shell, n);
+    uint32_t shells = 0;
+    for (size_t i = 0; i < n; i++)
+        shell[i] = shell[i] == i ? shells++ : shell[shell[i]];
+    return shells;
 }
 
 Status soup_find_shells(Soup *soup, const char *path, size_t *n_shells, Err *err)

@@ -71,7 +71,8 @@ static bool polygon_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
     return contacts_hold_segment(&contacts, domain, a, b);
 }
 
-/* The middle of the widest stretch inside, a thousandth of the height below the top. */
+/* Sets the inlet to the middle of the widest stretch inside the polygon at a thousandth of the
+ * height below the top. */
 static Status find_inlet(Domain *domain, Err *err)
 {
     const Polygon *polygon = domain->polygon;
@@ -162,9 +163,7 @@ static void polygon_release(Domain *domain)
 }
 
 const DomainOps polygon_ops = {
-    .name = "polygon",
-    .parameters = "FILE[,MM]",
-    .description = "inside of the rings in a text file, in units of MM mm",
+    .shape = {"polygon", "FILE[,MM]", "inside of the rings in a text file, in units of MM mm"},
     .load = polygon_load,
     .inside = polygon_inside,
     .holds_segment = polygon_holds_segment,

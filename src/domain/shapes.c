@@ -32,15 +32,16 @@ static Status load_sizes(Domain *domain, int n_positive, int n_optional, const c
         if (!number_parse(number, &value) || !(value >= least && value <= DOMAIN_MAX_MM))
             return err_set(err, STATUS_USAGE,
                            "'%.*s' is not a number of mm from %g to %g; %s:%s, as in %s:%s",
-                           (int)length, at, least, DOMAIN_MAX_MM, ops->name, ops->parameters,
-                           ops->name, example);
+                           (int)length, at, least, DOMAIN_MAX_MM, ops->shape.name,
+                           ops->shape.parameters, ops->shape.name, example);
         if (n < most)
             domain->size[n] = value;
         at = at[length] ? at + length + 1 : NULL;
     }
     if (n < n_positive || n > most)
         return err_set(err, STATUS_USAGE, "%d number%s, but the shape is %s:%s, as in %s:%s", n,
-                       n == 1 ? "" : "s", ops->name, ops->parameters, ops->name, example);
+                       n == 1 ? "" : "s", ops->shape.name, ops->shape.parameters, ops->shape.name,
+                       example);
     domain->n_sizes = n;
     return STATUS_OK;
 }
@@ -50,94 +51,16 @@ static Vec3 size_vector(const Domain *domain)
     return vec3(domain->size[0], domain->size[1], domain->size[2]);
 }
 
-static void set_centered(Domain *domain, int dimension, Vec3 half, double volume)
-{
-    domain->dimension = dimension;
-    domain->bounds = (Box){vec3_sub(vec3(0, 0, 0), half), half};
-    domain->volume = volume;
-    domain->inlet = vec3(0, half.y, 0);
-}
-
 static bool round_inside(const Domain *domain, Vec3 point, double tolerance_mm)
 {
     double reach = domain->size[0] + tolerance_mm;
     return vec3_dot(point, point) <= reach * reach;
 }
 
-static Status disc_load(Domain *domain, const char *values, Err *err)
-{
-    TRY(load_sizes(domain, 1, 0, "50", values, err));
-    double r = domain->size[0];
-    set_centered(domain, 2, vec3(r, r, 0), PI * r * r);
-    return STATUS_OK;
-}
-
-const DomainOps disc_ops = {
-    .name = "disc",
-    .parameters = "R",
-    .description = "flat disc of radius R mm around the origin",
-    .is_convex = true,
-    .load = disc_load,
-    .inside = round_inside,
-};
-
-static Status ball_load(Domain *domain, const char *values, Err *err)
-{
-    TRY(load_sizes(domain, 1, 0, "30", values, err));
-    double r = domain->size[0];
-    set_centered(domain, 3, vec3(r, r, r), 4.0 / 3 * PI * r * r * r);
-    return STATUS_OK;
-}
-
-const DomainOps ball_ops = {
-    .name = "ball",
-    .parameters = "R",
-    .description = "ball of radius R mm around the origin",
-    .is_convex = true,
-    .load = ball_load,
-    .inside = round_inside,
-};
-
 static bool box_inside(const Domain *domain, Vec3 point, double tolerance_mm)
 {
-    Vec3 half = domain->own_bounds.high;
-    return fabs(point.x) <= half.x + tolerance_mm && fabs(point.y) <= half.y + tolerance_mm &&
-           fabs(point.z) <= half.z + tolerance_mm;
+    return box_holds(domain->own_bounds, point, tolerance_mm);
 }
-
-static Status rect_load(Domain *domain, const char *values, Err *err)
-{
-    TRY(load_sizes(domain, 2, 0, "60,40", values, err));
-    Vec3 size = size_vector(domain);
-    set_centered(domain, 2, vec3_scale(size, 0.5), size.x * size.y);
-    return STATUS_OK;
-}
-
-const DomainOps rect_ops = {
-    .name = "rect",
-    .parameters = "W,H",
-    .description = "flat rectangle, sides W and H mm, centered on the origin",
-    .is_convex = true,
-    .load = rect_load,
-    .inside = box_inside,
-};
-
-static Status box_load(Domain *domain, const char *values, Err *err)
-{
-    TRY(load_sizes(domain, 3, 0, "40,30,20", values, err));
-    Vec3 size = size_vector(domain);
-    set_centered(domain, 3, vec3_scale(size, 0.5), size.x * size.y * size.z);
-    return STATUS_OK;
-}
-
-const DomainOps box_ops = {
-    .name = "box",
-    .parameters = "A,B,C",
-    .description = "box, sides A, B and C mm, centered on the origin",
-    .is_convex = true,
-    .load = box_load,
-    .inside = box_inside,
-};
 
 /* The point where the ellipsoid of semi-axes axis_i + widening is the unit ball. */
 static Vec3 in_unit_ball(Vec3 point, Vec3 axes, double widening)
@@ -152,21 +75,56 @@ static bool ellipsoid_inside(const Domain *domain, Vec3 point, double tolerance_
     return vec3_dot(unit, unit) <= 1;
 }
 
-static Status ellipsoid_load(Domain *domain, const char *values, Err *err)
+/* How the numbers of a simple shape give its bounds and its volume. */
+typedef struct SimpleShape {
+    int dimension, n_sizes; /* one size is the size along all axes */
+    double half;            /* half of the extent along an axis, over the size along it */
+    double volume;          /* volume or area over the product of the sizes along all axes */
+    const char *example;
+} SimpleShape;
+
+static const SimpleShape simple[SIMPLE_SHAPES] = {{2, 1, 1, PI, "50"},
+                                                  {3, 1, 1, 4.0 / 3 * PI, "30"},
+                                                  {2, 2, 0.5, 1, "60,40"},
+                                                  {3, 3, 0.5, 1, "40,30,20"},
+                                                  {3, 3, 1, 4.0 / 3 * PI, "40,50,30"}};
+
+static Status simple_load(Domain *domain, const char *values, Err *err)
 {
-    TRY(load_sizes(domain, 3, 0, "40,50,30", values, err));
-    Vec3 axes = size_vector(domain);
-    set_centered(domain, 3, axes, 4.0 / 3 * PI * axes.x * axes.y * axes.z);
+    const SimpleShape *shape = &simple[domain->ops - simple_ops];
+    TRY(load_sizes(domain, shape->n_sizes, 0, shape->example, values, err));
+    const double *size = domain->size;
+    bool one = shape->n_sizes == 1, flat = shape->dimension == 2;
+    Vec3 along = vec3(size[0], size[!one], flat ? 0 : size[one ? 0 : 2]);
+    Vec3 half = vec3_scale(along, shape->half);
+    domain->dimension = shape->dimension;
+    domain->bounds = (Box){vec3_sub(vec3(0, 0, 0), half), half};
+    domain->volume = shape->volume * along.x * along.y * (flat ? 1 : along.z);
+    domain->inlet = vec3(0, half.y, 0);
     return STATUS_OK;
 }
 
-const DomainOps ellipsoid_ops = {
-    .name = "ellipsoid",
-    .parameters = "A,B,C",
-    .description = "ellipsoid, semi-axes A, B and C mm, centered on the origin",
-    .is_convex = true,
-    .load = ellipsoid_load,
-    .inside = ellipsoid_inside,
+const DomainOps simple_ops[SIMPLE_SHAPES] = {
+    {.shape = {"disc", "R", "flat disc of radius R mm around the origin"},
+     .is_convex = true,
+     .load = simple_load,
+     .inside = round_inside},
+    {.shape = {"ball", "R", "ball of radius R mm around the origin"},
+     .is_convex = true,
+     .load = simple_load,
+     .inside = round_inside},
+    {.shape = {"rect", "W,H", "flat rectangle, sides W and H mm, centered on the origin"},
+     .is_convex = true,
+     .load = simple_load,
+     .inside = box_inside},
+    {.shape = {"box", "A,B,C", "box, sides A, B and C mm, centered on the origin"},
+     .is_convex = true,
+     .load = simple_load,
+     .inside = box_inside},
+    {.shape = {"ellipsoid", "A,B,C", "ellipsoid, semi-axes A, B and C mm, centered on the origin"},
+     .is_convex = true,
+     .load = simple_load,
+     .inside = ellipsoid_inside},
 };
 
 /* Indices of the shell's numbers. They are: the semi-axes of the outer ellipsoid, how much shorter
@@ -218,7 +176,8 @@ static Status shell_load(Domain *domain, const char *values, Err *err)
     return STATUS_OK;
 }
 
-/* The outer ellipsoid below the base is convex, so only the cavity is to be kept clear of. */
+/* Returns true if the segment from a to b is in the shell. The outer ellipsoid below the base is
+ * convex, so that its ends decide there; only the cavity needs a test of the whole segment. */
 static bool shell_holds(const Domain *domain, Vec3 a, Vec3 b, double tolerance_mm)
 {
     Vec3 outer = size_vector(domain), cavity = cavity_axes(domain);
@@ -245,9 +204,8 @@ static bool shell_holds_segment(const Domain *domain, Vec3 a, Vec3 b)
 }
 
 const DomainOps shell_ops = {
-    .name = "shell",
-    .parameters = "A,B,C,THICKNESS[,BASE]",
-    .description = "wall of a left ventricle: ellipsoid with a cavity, cut off at the height BASE",
+    .shape = {"shell", "A,B,C,THICKNESS[,BASE]",
+              "wall of a left ventricle: ellipsoid with a cavity, cut off at the height BASE"},
     .load = shell_load,
     .inside = shell_inside,
     .holds_segment = shell_holds_segment,

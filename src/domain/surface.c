@@ -9,10 +9,10 @@
 #include "domain/kinds.h"
 #include "domain/mesh.h"
 #include <stdlib.h>
-#include <string.h>
 
-static const double half_share = 0.005;
-static const double least_step = 1.0 / 64;
+/* `half` relative to the diagonal of the bounds, and the minimum step relative to `half`. Reasons
+ * not recorded. */
+static const double half_share = 0.005, least_step = 1.0 / 64;
 /* Number of moves towards the surface when a point is projected. Reason for 4 not recorded. */
 enum { PROJECTION_STEPS = 4 };
 
@@ -116,29 +116,19 @@ static Vec3 surface_sample(const Domain *domain, Random *random)
 
 /* ---- reading ---- */
 
-/* Takes the number behind the last comma off the text. */
-static bool take_last(char *text, double *number)
-{
-    char *comma = strrchr(text, ',');
-    if (!comma || !number_parse(comma + 1, number))
-        return false;
-    *comma = '\0';
-    return true;
-}
-
 /* Reads FILE[,OFFSET[,MM]] into file, size and n_sizes. */
 static Status read_values(Domain *domain, const char *values, Err *err)
 {
     double number[2] = {0, 1};
     TRY(mem_strdup(&domain->file, values, err));
-    while (domain->n_sizes < 2 && take_last(domain->file, &number[domain->n_sizes]))
+    while (domain->n_sizes < 2 && domain_cut_number(domain->file, &number[domain->n_sizes]))
         domain->n_sizes++;
     domain->size[0] = domain->n_sizes == 2 ? number[1] : number[0];
     domain->size[1] = domain->n_sizes == 2 ? number[0] : 1;
     domain->unit_is_guessed = domain->n_sizes < 2;
     if (*domain->file == '\0')
         return err_set(err, STATUS_USAGE, "the name of a file is missing; use surface:%s",
-                       domain->ops->parameters);
+                       domain->ops->shape.parameters);
     return STATUS_OK;
 }
 
@@ -154,7 +144,7 @@ static Status sum_areas(const Mesh *mesh, struct Surface *surface, double *sum, 
     return STATUS_OK;
 }
 
-/* Fills in what is known beside the mesh. */
+/* Sets the members of the domain that do not follow from the mesh alone. */
 static Status build(Domain *domain, Err *err)
 {
     struct Surface *surface = domain->surface;
@@ -196,9 +186,8 @@ static void surface_release(Domain *domain)
 }
 
 const DomainOps surface_ops = {
-    .name = "surface",
-    .parameters = "FILE[,OFFSET[,MM]]",
-    .description = "layer along a closed surface (.stl, .obj), OFFSET mm inside it",
+    .shape = {"surface", "FILE[,OFFSET[,MM]]",
+              "layer along a closed surface (.stl, .obj), OFFSET mm inside it"},
     .load = surface_load,
     .inside = surface_inside,
     .holds_segment = surface_holds_segment,

@@ -9,18 +9,18 @@
 
 #include <string.h>
 
-/* Vessels widen as the tree below them grows: the rules hold for radii this much greater, and so at
- * the end of growth for nearly all vessels at their final radii. For length, and for keeping clear
- * of others. */
+/* Vessels widen as the tree below them grows. The rules of length and of clearance are therefore
+ * tested with radii multiplied by these factors, so that at the end of growth nearly all vessels
+ * keep the rules with their final radii. Reasons for the values not recorded. */
 static const double length_reserve = 1.15, clearance_reserve = 1.1;
-/* Bifurcations keep this many times the least length from the ends, as radii change a
- * little too. */
+/* Bifurcations keep this many times the minimum length from the ends, because radii also change a
+ * little with the position. Reason for 1.02 not recorded. */
 static const double margin = 1.02;
 /* Rounds of the optimiser for a connection that may be used. */
 enum { ROUNDS = 2 };
 
-/* A piece of a vessel may be split into parts a little shorter than a quarter of it, however wide
- * it is. */
+/* Minimum length of the parts of a split piece of a vessel, relative to the piece, for any radius:
+ * a little less than a quarter. */
 static const double least_part_of_piece = 0.24;
 
 /* Returns the problem of the bifurcation at which segment i would be split for `terminal`. */
@@ -162,7 +162,7 @@ bool connection_project(const Site *site, Connection *connection)
     return isfinite(state.price) && bifurcation_is_long_enough(&problem, &state);
 }
 
-/* Returns a segment of the connection, as wide as it will be. */
+/* Returns a segment of the connection, with the radius that it will have. */
 static Capsule capsule_of(const Network *net, const Connection *connection, int part)
 {
     int32_t host = connection->segment;

@@ -19,7 +19,8 @@ enum { DISTAL = LEFT, FRESH = RIGHT };
 typedef struct Connection {
     Vec3 terminal; /* mm */
     int32_t segment;
-    double price; /* first-order estimate of the increase of S_root [law.h], the tree's target */
+    double price; /* first-order estimate of the increase of S_root, the tree's target without the
+                   * factor q^lambda [law.h] */
     Vec3 bifurcation;    /* mm */
     double radius[ENDS]; /* of PROXIMAL, DISTAL and FRESH, mm; set by connection_optimise */
 } Connection;
@@ -29,17 +30,17 @@ typedef struct Connection {
  * keeps its radius, may always be split. */
 bool connection_may_split(const Site *site, int32_t segment);
 
-/* Guesses a good bifurcation for the connection of `terminal`, mm, to `segment`, and its price.
- * Needs the segment's sums, gauge and sensitivity of the last refresh.
+/* Estimates a good bifurcation for the connection of `terminal`, mm, to `segment`, and its price.
+ * Requires the segment's sums, gauge and sensitivity of the last network_refresh.
  *
  * out      receives the connection, without radii.
- * Returns  false if a number is not finite.
+ * Returns  false if a number is not finite; *out is then undefined.
  * Cost     O(1). */
 bool connection_estimate(const Site *site, int32_t segment, Vec3 terminal, Connection *out);
 
-/* Finds the best bifurcation of an estimated connection, its price and the three radii. Needs what
- * connection_estimate needs. Returns false if one of the three segments would be shorter than the
- * rules allow. Cost: O(1). */
+/* Finds the best bifurcation of an estimated connection, its price and the three radii. Requires
+ * what connection_estimate requires. Returns false if one of the three segments would be shorter
+ * than the rules [Rules] allow; the connection may then not be used. Cost: O(1). */
 bool connection_optimise(const Site *site, Connection *connection);
 
 /* Moves the bifurcation of an optimised connection onto the surface in the middle of the domain,
@@ -48,13 +49,14 @@ bool connection_optimise(const Site *site, Connection *connection);
 bool connection_project(const Site *site, Connection *connection);
 
 /* Returns true if the three segments of an optimised connection are in the domain. In a convex
- * domain they are if the bifurcation is. The two parts of a given segment may be anywhere. */
+ * domain this is so if the bifurcation is in the domain. The two parts of a given segment
+ * [network.h] may be outside. */
 bool connection_is_inside(const Site *site, const Connection *connection);
 
 typedef enum ConnectionClearance {
     CONNECTION_CLEAR,
     CONNECTION_BLOCKED, /* another segment is in the way */
-    CONNECTION_BEYOND   /* undecided: cells outside the zone would have to be searched */
+    CONNECTION_BEYOND   /* undecided, because cells outside the zone would have to be searched */
 } ConnectionClearance;
 
 /* Tests whether the three segments of an optimised connection keep clear of all other segments in

@@ -163,7 +163,7 @@ static Status restore_nodes(const Tree *from, const Network *net, Tree *out, Err
     return STATUS_OK;
 }
 
-/* New nodes have no value. */
+/* Adds the columns of `from`. New nodes have NAN there. */
 static Status restore_columns(const Tree *from, const Network *net, Tree *out, Err *err)
 {
     for (size_t k = 0; k < from->n_columns; k++) {

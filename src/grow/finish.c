@@ -19,7 +19,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Node i, whose gauge is known, and the gauges of its daughters. */
+/* Computes the radius of segment i, whose gauge is known, and the gauges of its daughters. */
 static void sweep_node(const Network *net, size_t i, double *gauge, Tree *tree)
 {
     const Segment *segment = &net->segment[i];
@@ -37,6 +37,8 @@ static void sweep_node(const Network *net, size_t i, double *gauge, Tree *tree)
         gauge[segment->child[slot]] = below;
 }
 
+/* Computes all radii from the sums. A root gets the largest radius of the segments that leave it.
+ */
 static Status sweep_down(const Network *net, Tree *tree, Err *err)
 {
     double *gauge = NULL;
@@ -60,8 +62,9 @@ static Status sweep_down(const Network *net, Tree *tree, Err *err)
     return status;
 }
 
-/* The relative change of viscosities, and the change of exponents, below which they agree with the
- * radii; and the most rounds until they do. */
+/* Viscosities and exponents agree with the radii once a round changes them by no more than this:
+ * viscosities relatively, exponents absolutely. After MAX_ROUNDS the search fails. Reasons not
+ * recorded. */
 static const double agreement = 1e-13;
 enum { MAX_ROUNDS = 200 };
 
@@ -111,7 +114,7 @@ static Status check_trunk(const Network *net, const GrowParams *params, Err *err
                    params->blood.q_perf_ml_min * TRUNK_MOST_SPENT / most);
 }
 
-/* Radii, and flow shares where terminals have their own. */
+/* Sets the radii of the tree, and its flow shares if they are not equal. */
 static Status write_radii(Network *net, const GrowParams *params, Tree *tree, Err *err)
 {
     if (!weights_are_needed(params))
@@ -130,7 +133,8 @@ done:
     return status;
 }
 
-/* Of a domain that was read from a file, the metadata has the file's name, not its folder. */
+/* Sets the key of the domain to the text of the domain, in which a file is named without its
+ * folder. */
 static Status describe_domain(const Domain *domain, TreeMeta *meta, Err *err)
 {
     Text spec = TEXT_INIT, bare = TEXT_INIT;

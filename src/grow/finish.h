@@ -8,17 +8,18 @@
 /* Makes a Tree of the network: sorts its segments so that parents come first, computes all radii
  * from the positions and flows, and adds metadata.
  *
- * net      its terminals have their final flow shares. It is renumbered; the caller releases it.
+ * net      its terminals have their final flow shares. The function renumbers its nodes and frees
+ *          what only growth needs, also before an error; the caller releases it.
  * params   for the metadata and the laws of flow and radius.
  * domain   for the metadata.
  * out      receives the tree; release it with tree_release.
- * Errors   STATUS_INFEASIBLE if a radius is beyond the range of a double, radii do not converge or
- *          a trunk that is kept uses up the pressure; STATUS_MEMORY. */
+ * Errors   STATUS_INFEASIBLE if a radius is beyond the range of a double, if radii do not converge,
+ *          or if a trunk [network.h] uses up the pressure drop; STATUS_MEMORY. */
 MUST_CHECK Status finish_tree(Network *net, const GrowParams *params, const Domain *domain,
                               Tree *out, Err *err);
 
-/* Sets the keys that describe a tree grown with these parameters in this domain, without lines for
- * them. Errors: STATUS_MEMORY. */
+/* Sets the keys of *meta that describe a tree grown with these parameters in this domain. Does not
+ * add the lines that state them in a file [meta_add_lines]. Errors: STATUS_MEMORY. */
 MUST_CHECK Status finish_describe(const GrowParams *params, const Domain *domain, TreeMeta *meta,
                                   Err *err);
 

@@ -14,15 +14,11 @@ static const double notch = 0.1;
  * trees grow. */
 static const double reserve = 1.3;
 
-/* A root segment, or a candidate for one. */
-typedef struct FirstSegment {
-    Vec3 from, to;
-    double radius; /* mm; at least what it will have while it is alone */
-} FirstSegment;
-
-static FirstSegment first_segment(const Network *net, Vec3 from, Vec3 to)
+/* Returns a root segment, or a candidate for one, with at least the radius that the segment has
+ * while it is the only one of its tree. */
+static Capsule root_segment(const Network *net, Vec3 from, Vec3 to)
 {
-    return (FirstSegment){from, to, net->radius_scale * sqrt(sqrt(vec3_distance(from, to)))};
+    return (Capsule){from, to, net->radius_scale * sqrt(sqrt(vec3_distance(from, to)))};
 }
 
 static bool is_nearest(const Network *net, size_t tree, Vec3 point)
@@ -35,17 +31,17 @@ static bool is_nearest(const Network *net, size_t tree, Vec3 point)
 }
 
 /* Returns true if the fresh segment keeps clear of the root segments of the trees before `tree`. */
-static bool is_clear(const Site *site, size_t tree, const FirstSegment *fresh)
+static bool is_clear(const Site *site, size_t tree, const Capsule *fresh)
 {
     const Network *net = &site->net;
     for (size_t k = 0; k < tree; k++) {
         int32_t inlet = net->inlet[k];
-        FirstSegment other =
-            first_segment(net, net->position[inlet], net->position[net->segment[inlet].child[0]]);
+        Capsule other =
+            root_segment(net, net->position[inlet], net->position[net->segment[inlet].child[0]]);
         double clear = reserve * (fresh->radius + other.radius) + site->rules.apart;
         if (site->rules.pair > 0)
             clear = clear_of_mate(&site->rules, clear);
-        if (segment_distance2(fresh->from, fresh->to, other.from, other.to) < clear * clear)
+        if (segment_distance2(fresh->a, fresh->b, other.a, other.b) < clear * clear)
             return false;
     }
     return true;
@@ -68,12 +64,12 @@ static Vec3 sample(const Site *site, size_t tree, Random *random)
 }
 
 /* Returns true if the tree's root segment may be the fresh one. */
-static bool is_allowed(const Site *site, size_t tree, const FirstSegment *fresh)
+static bool is_allowed(const Site *site, size_t tree, const Capsule *fresh)
 {
     const Domain *domain = site->domain;
-    return (site->rules.pair > 0 ? domain_inside(domain, fresh->to, 0)
-                                 : is_nearest(&site->net, tree, fresh->to)) &&
-           (domain_is_convex(domain) || domain_holds_segment(domain, fresh->from, fresh->to)) &&
+    return (site->rules.pair > 0 ? domain_inside(domain, fresh->b, 0)
+                                 : is_nearest(&site->net, tree, fresh->b)) &&
+           (domain_is_convex(domain) || domain_holds_segment(domain, fresh->a, fresh->b)) &&
            is_clear(site, tree, fresh);
 }
 
@@ -84,10 +80,10 @@ static Status add_first_segment(Site *site, size_t tree, FirstTosses *tosses, do
     int32_t inlet = net->inlet[tree];
     Vec3 from = net->position[inlet];
     for (int tries = 1; tries <= MAX_TRIES; tries++) {
-        FirstSegment fresh = first_segment(net, from, sample(site, tree, tosses->random));
+        Capsule fresh = root_segment(net, from, sample(site, tree, tosses->random));
         tosses->count++;
-        if (vec3_distance(fresh.to, from) >= *distance && is_allowed(site, tree, &fresh)) {
-            int32_t end = network_append(net, inlet, fresh.to);
+        if (vec3_distance(fresh.b, from) >= *distance && is_allowed(site, tree, &fresh)) {
+            int32_t end = network_append(net, inlet, fresh.b);
             if (tree == 1 && site->rules.pair > 0)
                 network_pair(net, first_terminal(net), end);
             return STATUS_OK;

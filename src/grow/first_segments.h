@@ -11,17 +11,18 @@ typedef struct FirstTosses {
     uint64_t count;  /* number of points drawn */
 } FirstTosses;
 
-/* Gives each inlet its root segment; the network holds nothing but inlets.
+/* Adds a root segment at each inlet. The network holds only inlets before the call.
  *
  * A root segment is in the domain and leads to a random point that is nearer to this inlet than to
- * any other, and about as far from it as points of the domain are. Root segments keep clear of each
- * other, and trees apart as the rules say. If terminals are paired, the second tree's point is a
- * mate of the first tree's, and neither has to be nearer to its inlet.
+ * any other inlet. The point is about as far from the inlet as points of the domain can be. Root
+ * segments keep clear of each other, and root segments of different trees keep rules.apart
+ * [site.h]. If terminals are paired, the point of the second tree is a mate [mates.h] of the first
+ * tree's point, and no point has to be nearest to its inlet.
  *
- * Leaves right sums, and no radii.
+ * Leaves exact sums [network.h], and no radii.
  *
  * tosses   `distance` becomes the minimum distance that was required in the end; `count` increases.
- * Errors   STATUS_INFEASIBLE if there is no such point. */
+ * Errors   STATUS_INFEASIBLE if no such point was found in 20,000 attempts for an inlet. */
 MUST_CHECK Status first_segments_add(Site *site, FirstTosses *tosses, Err *err);
 
 #endif

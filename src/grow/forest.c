@@ -12,8 +12,9 @@
 static const double lead = 1.0 / 16;
 enum { LEAD_AT_LEAST = 2 };
 
-/* The tree whose share exceeds its quota the most (sign 1); or the least (sign -1), of those that
- * can spare a terminal. */
+/* Returns the tree whose share of the terminals exceeds its quota the most, if sign is 1. If sign
+ * is -1, returns the tree whose share exceeds its quota the least, among trees with a quota
+ * above 1. */
 static size_t most_owed(const Forest *forest, const double *share, double sum, double sign)
 {
     size_t best = 0;

@@ -34,8 +34,9 @@
 /* Number of grid cells per terminal when a grid is made. A new grid is made whenever the number of
  * terminals has doubled. */
 static const double cells_per_terminal = 1;
-/* Growth of the number of terminals after which radii and sensitivities are computed again. Larger
- * factors save time, but candidates are chosen by older values. */
+/* Factor by which the number of terminals grows until radii and sensitivities are computed again.
+ * Larger factors save time, but candidates are then chosen by older values. Reason for 1.2 not
+ * recorded. */
 static const double refresh_growth = 1.2;
 static const double fine_growth = 1.03; /* with min_radius_mm */
 /* Vessels of different trees keep this many times clearance_mm apart, because they still widen. */
@@ -115,13 +116,7 @@ static Status refresh(Growth *growth, WeightsPrecision precision, Err *err)
     return STATUS_OK;
 }
 
-/* With min_radius_mm, radii are refreshed more often, so that growth ends near it. */
-static double growth_until_refresh(const Growth *growth)
-{
-    return growth->params->min_radius_mm > 0 ? fine_growth : refresh_growth;
-}
-
-/* Of the terminals whose radii follow; 0 where there is none. */
+/* Returns the mean radius of the terminals whose radii follow the law, mm; 0 if there are none. */
 static double mean_end_radius(const Network *net)
 {
     double sum = 0;
@@ -146,7 +141,7 @@ static Status relax(Growth *growth, Err *err)
     return site_widen(&growth->site, err);
 }
 
-/* Brings what ages with growth up to date when it is due. */
+/* Updates sums, radii, weights, relaxed bifurcations and the grid, each when it is due. */
 static Status keep_up(Growth *growth, Err *err)
 {
     Network *net = &growth->site.net;
@@ -159,7 +154,9 @@ static Status keep_up(Growth *growth, Err *err)
             TRY(relax(growth, err));
         if (growth->params->min_radius_mm > 0)
             growth->end_radius = mean_end_radius(net);
-        growth->refresh_until = (size_t)(growth_until_refresh(growth) * (double)terminals) + 1;
+        /* With min_radius_mm, radii are refreshed more often, so that growth ends near it. */
+        double factor = growth->params->min_radius_mm > 0 ? fine_growth : refresh_growth;
+        growth->refresh_until = (size_t)(factor * (double)terminals) + 1;
     }
     return terminals >= growth->grid_until ? make_grid(growth, err) : STATUS_OK;
 }
@@ -310,7 +307,7 @@ static Status add_terminals(Growth *growth, Err *err)
     return be_patient(growth, err);
 }
 
-/* New trees at the inlets. */
+/* Begins a new tree at each inlet. */
 static Status start_trees(Growth *growth, Err *err)
 {
     const GrowParams *params = growth->params;
@@ -328,7 +325,7 @@ static Status start_trees(Growth *growth, Err *err)
     return STATUS_OK;
 }
 
-/* Shares the terminals among the trees that there are. */
+/* Shares the terminals among the trees of the network. */
 static Status start_forest(Growth *growth, Err *err)
 {
     const GrowParams *params = growth->params;
@@ -364,7 +361,8 @@ static Status start(Growth *growth, Err *err)
                                  .widest = growth->size};
     set_toss_distance(growth, growth->size);
     growth->refresh_until = growth->grid_until = 1;
-    /* Other points than those that made the tree, if that was by the same seed. */
+    /* A tree that is continued was often grown with the same seed. Its length changes the seed, so
+     * that the random points differ from those that made the tree. */
     uint64_t turn = params->from ? 0x9e3779b97f4a7c15 * (uint64_t)params->from->n : 0;
     random_seed(&growth->random, params->seed ^ turn);
     int threads = params->threads > 0 ? params->threads : threads_available();
@@ -438,6 +436,7 @@ Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out, Grow
     TRY(mem_check(bytes_per_terminal * (double)params->terminals, "the tree", err));
     double begun = clock_seconds();
     Growth growth = {.params = params, .site.domain = domain};
+    Tree made = {0};
     Status status = STATUS_OK;
     TRY_GOTO(start(&growth, err));
     size_t terminals;
@@ -457,28 +456,27 @@ Status grow_tree(const GrowParams *params, const Domain *domain, Tree *out, Grow
     if (growth.site.grid.item)
         TRY_GOTO(repair_network(&growth.site, growth.round.threads, &broken, err));
     grid_release(&growth.site.grid);
-    TRY_GOTO(finish_tree(&growth.site.net, params, domain, out, err));
+    TRY_GOTO(finish_tree(&growth.site.net, params, domain, &made, err));
     double apart;
-    status = check_apart(params, out, &apart, err);
-    if (status != STATUS_OK)
-        tree_release(out);
-    if (!report || status != STATUS_OK)
-        goto done;
-    *report = (GrowReport){.seconds = clock_seconds() - begun,
-                           .terminals = growth.site.net.terminals,
-                           .target = target_of(out),
-                           .root_radius_mm = tree_root_radius(out),
-                           .tosses = growth.tosses,
-                           .rejected = growth.rejected,
-                           .thickness = growth.site.rules.thickness,
-                           .broken = broken,
-                           .apart_mm = apart,
-                           .complete = complete};
-    if (params->from)
-        status = continue_changes(params->from, out, report, err);
-    if (status != STATUS_OK)
-        tree_release(out);
+    TRY_GOTO(check_apart(params, &made, &apart, err));
+    GrowReport found = {.seconds = clock_seconds() - begun,
+                        .terminals = growth.site.net.terminals,
+                        .target = target_of(&made),
+                        .root_radius_mm = tree_root_radius(&made),
+                        .tosses = growth.tosses,
+                        .rejected = growth.rejected,
+                        .thickness = growth.site.rules.thickness,
+                        .broken = broken,
+                        .apart_mm = apart,
+                        .complete = complete};
+    if (report && params->from)
+        TRY_GOTO(continue_changes(params->from, &made, &found, err));
+    if (report)
+        *report = found;
+    *out = made;
+    made = (Tree){0};
 done:
+    tree_release(&made);
     round_release(&growth.round);
     grid_release(&growth.site.grid);
     forest_release(&growth.forest);

@@ -20,7 +20,7 @@
 #include <float.h>
 #include <stdlib.h>
 
-/* The ancestors that a split updates at once. */
+/* Number of ancestors that a split updates at once. Reason for 8 not recorded. */
 enum { LEVELS = 8 };
 /* A subtree that one thread refreshes has less than 1 / SUBTREES of the terminals. */
 enum { SUBTREES = 128 };
@@ -102,7 +102,8 @@ double network_cost(const Network *net)
     return cost;
 }
 
-/* As a float. Radii that a float cannot hold are wider than any domain all the same. */
+/* Returns the value as a float. A radius that a float cannot hold becomes FLT_MAX, which is also
+ * wider than any domain. */
 static float narrow(double value)
 {
     return (float)fmin(value, (double)FLT_MAX);
@@ -159,17 +160,21 @@ static void set_root_from_parent(Network *net, int32_t root, const Reduced *redu
     net->sensitivity[root] = (Sensitivity){0, 0};
 }
 
+/* The trait of a segment that is not part of the tree that is continued. */
+static Trait new_trait(const Network *net, int32_t tree, double gamma)
+{
+    return (Trait){
+        .weight = net->fresh_weight, .gamma = gamma, .mate = -1, .tree = tree, .origin = -1};
+}
+
 int32_t network_append(Network *net, int32_t parent, Vec3 position)
 {
     int32_t i = (int32_t)net->n++;
     net->position[i] = position;
     net->segment[i] = (Segment){.child = {-1, -1}, .parent = parent};
     if (net->trait)
-        net->trait[i] = (Trait){.weight = net->fresh_weight,
-                                .gamma = net->law.gamma,
-                                .mate = -1,
-                                .tree = parent < 0 ? (int32_t)net->inlets : net->trait[parent].tree,
-                                .origin = -1};
+        net->trait[i] = new_trait(net, parent < 0 ? (int32_t)net->inlets : net->trait[parent].tree,
+                                  net->law.gamma);
     if (parent < 0) {
         net->inlet[net->inlets++] = i;
     } else {
@@ -234,11 +239,7 @@ void network_split(Network *net, const NetworkSplit *split, Box zone)
     if (net->trait) {
         net->trait[proximal] = net->trait[segment];
         net->trait[proximal].origin = net->trait[proximal].mate = -1;
-        net->trait[fresh] = (Trait){.weight = net->fresh_weight,
-                                    .gamma = net->trait[segment].gamma,
-                                    .mate = -1,
-                                    .tree = net->trait[segment].tree,
-                                    .origin = -1};
+        net->trait[fresh] = new_trait(net, net->trait[segment].tree, net->trait[segment].gamma);
     }
     if (net->trunk) {
         net->trunk->radius[proximal] = net->trunk->radius[segment];
@@ -289,10 +290,12 @@ static int32_t next_below(const Network *net, int32_t i, int32_t top, int32_t te
     return -1;
 }
 
-/* Replaces items[k] by items[order[k]] for all k. */
+/* Replaces items[k] by items[order[k]] for all k. Does nothing if `items` is NULL. */
 static Status permute(void *items, size_t size, const int32_t *order, size_t n, Err *err)
 {
     char *scratch = NULL, *bytes = items;
+    if (!items)
+        return STATUS_OK;
     TRY(mem_calloc(&scratch, n, size, "nodes to renumber", err));
     for (size_t k = 0; k < n; k++)
         memcpy(scratch + k * size, bytes + (size_t)order[k] * size, size);
@@ -449,15 +452,13 @@ Status network_reorder(Network *net, Err *err)
     for (size_t k = 0; k < net->inlets; k++)
         net->inlet[k] = place[net->inlet[k]];
     TRY_GOTO(permute(net->segment, sizeof *net->segment, order, n, err));
-    if (net->sensitivity)
-        TRY_GOTO(permute(net->sensitivity, sizeof *net->sensitivity, order, n, err));
-    if (net->trait)
-        TRY_GOTO(permute(net->trait, sizeof *net->trait, order, n, err));
+    TRY_GOTO(permute(net->sensitivity, sizeof *net->sensitivity, order, n, err));
+    TRY_GOTO(permute(net->trait, sizeof *net->trait, order, n, err));
+    TRY_GOTO(permute(net->position, sizeof *net->position, order, n, err));
     if (net->trunk) {
         TRY_GOTO(permute(net->trunk->radius, sizeof *net->trunk->radius, order, n, err));
         TRY_GOTO(permute(net->trunk->stake, sizeof *net->trunk->stake, order, n, err));
     }
-    TRY_GOTO(permute(net->position, sizeof *net->position, order, n, err));
     net->n = n;
     net->spares = 0;
     for (size_t k = 0; k < n; k++) {

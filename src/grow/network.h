@@ -11,7 +11,7 @@
  * A segment has three groups of values. Each function states which values it needs and which it
  * leaves valid.
  *
- * - Structure (positions, parents, children, tree, origin, given, piece): always valid.
+ * - Structure (positions, parents, children, tree, mate, origin, given, piece): always valid.
  * - Sums (length, terminals, rho_gamma, cost): exact after network_resum, which computes all of
  *   them, and after network_refresh, which computes all except the lengths. They are out of date
  *   after network_append and after a change of weights. network_split updates some of them.
@@ -51,10 +51,10 @@ typedef struct Sensitivity {
 /* What segments need in addition where terminals are unequal, viscosities or exponents differ,
  * several trees grow, or a tree is continued. */
 typedef struct Trait {
-    double weight; /* flow through the segment relative to that of as many mean terminals, times its
-                    * viscosity relative to that in radius_scale; of the last weights_update, or of
-                    * when the segment was made */
-    double gamma;  /* exponent of the fork at the distal end; as old as the weight */
+    double weight; /* flow through the segment, divided by the flow of as many mean terminals, times
+                    * its viscosity, divided by the viscosity in radius_scale; from the last
+                    * weights_update, or from when the segment was made */
+    double gamma;  /* Murray exponent of the fork at the distal end; as old as the weight */
     double share;  /* of a terminal: its flow relative to the other terminals'; 0 elsewhere */
     int32_t mate;  /* of a terminal: the terminal it is paired with; -1: none */
     int32_t tree;  /* index of the inlet of the segment's tree */
@@ -63,13 +63,14 @@ typedef struct Trait {
     bool piece;     /* a given segment that makes up a vessel together with others */
 } Trait;
 
-/* A trunk: segments that keep the radii they had. What flows through them drops pressure by
- * Poiseuille's law. A subtree that leaves the trunk has the rest of the drop, so its gauge [law.h]
- * is (share of the drop that is left)^(-1/4). A trunk begins at an inlet and is connected. Arrays
- * are owned. */
+/* A trunk: the segments that keep the radii they had in the tree that is continued. Pressure drops
+ * along them by Poiseuille's law. A subtree that leaves the trunk has the rest of the pressure
+ * drop, so its gauge [law.h] is (share of the drop that is left)^(-1/4). A trunk begins at an inlet
+ * and is connected. Arrays are owned. */
 typedef struct Trunk {
     double *radius; /* per segment, mm; 0: the radius follows the law */
-    double *stake;  /* per kept segment: dS_root / d share of the drop of pressure spent on it */
+    double *stake;  /* per kept segment: derivative of S_root with respect to the share of the
+                     * pressure drop that is spent on the segment */
     int32_t *order; /* workspace of trunk_refresh */
 } Trunk;
 
@@ -180,18 +181,11 @@ static inline Reduced network_reduce(const Network *net, int32_t i)
     return law_extend(&law, network_burden(net, i, segment->terminals), segment->length, &below);
 }
 
-/* Returns segment i as a solid. Needs its radius. */
-static inline Capsule network_capsule(const Network *net, int32_t i)
-{
-    const Segment *segment = &net->segment[i];
-    return (Capsule){net->position[segment->parent], net->position[i], (double)segment->radius};
-}
-
 /* Appends a node that is a child of `parent`, or an inlet if `parent` is -1. There must be capacity
  * for it. Returns its index. Sums are out of date until network_resum. */
 int32_t network_append(Network *net, int32_t parent, Vec3 position);
 
-/* Adds spare nodes until there are at least `nodes`. */
+/* Adds spare nodes until there are at least `nodes`. There must be capacity for them. */
 void network_spare(Network *net, size_t nodes);
 
 /* The connection of a new terminal: `segment` is split at `bifurcation`, and a new segment leads
@@ -219,12 +213,13 @@ void network_split(Network *net, const NetworkSplit *split, Box zone);
 /* Adds to the number of terminals. They share the same flow, so radius_unit changes. */
 void network_grown(Network *net, size_t terminals);
 
-/* Moves the bifurcation `node`. Updates the sums of the three segments that meet there and of all
- * segments above, exactly. Needs right sums; leaves radii as they are. Cost: O(depth). */
+/* Moves the bifurcation `node` to `place`, mm. Updates the sums of the three segments that meet
+ * there and of all segments above, exactly. Requires exact sums; leaves radii as they are. Cost:
+ * O(depth). */
 void network_move(Network *net, int32_t node, Vec3 place);
 
-/* Returns S_root [law.h], the sum over all trees; 0 or not finite if the radii span more than a
- * double can hold. Needs right sums, or is that of the last refresh. */
+/* Returns S_root [law.h], summed over all trees; 0 or not finite if the radii span more than a
+ * double can hold. The result is as exact as the sums. */
 double network_cost(const Network *net);
 
 /* Updates the sums of all segments, except lengths; then their radii, gauges and sensitivities. The
@@ -274,12 +269,13 @@ double trunk_gauge(double gauge, double spent);
  * the kept segment `parent`. Part of network_refresh and network_split. */
 void trunk_set_daughter(Network *net, int32_t i, const Reduced *reduced, int32_t parent);
 
-/* Updates gauges and stakes of all kept segments. Part of network_refresh. Needs right sums. Cost:
- * O(kept segments). */
+/* Updates gauges and stakes of all kept segments. Part of network_refresh. Requires exact sums.
+ * Cost: O(kept segments). */
 void trunk_refresh(Network *net);
 
-/* Returns the largest share of the drop that is spent up to the end of a kept segment, which is
- * *where. `spent` is a workspace of one number per node. Nodes are in depth-first order. */
+/* Returns the largest share of the pressure drop that is spent on the path from an inlet to the end
+ * of a kept segment; 0 if there is none. *where receives that segment; unchanged if there is none.
+ * `spent` is a workspace of one number per node. Nodes must be in depth-first order. */
 double trunk_most_spent(const Network *net, double *spent, size_t *where);
 
 #endif

@@ -63,8 +63,8 @@ static double width_there(const Repair *repair, int32_t i)
     return repair->site->rules.thickness * (double)repair->site->grid.item[i].radius;
 }
 
-/* Returns the distance, mm, that the centrelines of segments i and j must keep at a thickness.
- * Pieces of a vessel only have to keep their centrelines apart. */
+/* Returns the distance, mm, that the centrelines of segments i and j must keep if their radii add
+ * up to `thickness`, mm. Pieces of a vessel only have to keep their centrelines apart. */
 static double needed(const Repair *repair, int32_t i, int32_t j, double thickness)
 {
     const Network *net = &repair->site->net;
@@ -140,7 +140,8 @@ static bool is_inside(const Repair *repair, int32_t node)
              domain_holds_segment(repair->site->domain, place, net->position[child[1]])));
 }
 
-/* Tries the positions one step away from the bifurcation's own, up to the first without fault. */
+/* Tries the positions `step` mm away from the bifurcation along the axes and diagonals, up to the
+ * first position without fault. */
 static void try_step(const Repair *repair, int32_t node, Vec3 from, double step, Vec3 *best,
                      double *least)
 {
@@ -196,7 +197,8 @@ static Status move(const Repair *repair, int32_t node, Err *err)
                                                          : STATUS_OK;
 }
 
-/* Marks the segments that break the rules or are next to doing so. Of a pair the later finds it. */
+/* Marks the segments that break a rule, or are within `spare` of breaking one. Of two segments that
+ * are too near to each other, only the one with the higher index is marked. */
 static void look_at_chunk(size_t index, int worker, void *context)
 {
     (void)worker;
@@ -228,7 +230,8 @@ static size_t find_broken(const Repair *repair, int32_t *broken)
     return count;
 }
 
-/* Moves the ends of a broken segment, and if need be of what it is too near to. */
+/* Moves the ends of a broken segment, and if that does not repair it, also the ends of the segment
+ * that it is too near to. */
 static Status repair_segment(const Repair *repair, int32_t i, Err *err)
 {
     int32_t with = -1;
@@ -264,7 +267,7 @@ done:
     return status;
 }
 
-/* The bifurcation at a node as it is. */
+/* Returns the optimisation problem of the bifurcation at a node. */
 static Bifurcation bifurcation_at_node(const Repair *repair, int32_t node)
 {
     const Network *net = &repair->site->net;
@@ -300,7 +303,7 @@ static bool find_better_place(const Repair *repair, int32_t node, Vec3 *place)
     return found && best.price < now.price - least_gain * network_cost(net);
 }
 
-/* Given segments stay. */
+/* Returns true if the node is a bifurcation of segments none of which is given. */
 static bool may_relax(const Network *net, int32_t node)
 {
     const Segment *segment = &net->segment[node];

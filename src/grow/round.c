@@ -106,7 +106,7 @@ static size_t terminals_of_point(const PlanCommon *common)
     return common->site->rules.pair > 0 ? 2 : 1;
 }
 
-/* What threads are working on. */
+/* What the threads of a turn share. */
 typedef struct Running {
     Round *round;
     const PlanCommon *common;
@@ -241,13 +241,15 @@ static Status run_turn(size_t index, int worker, void *context, Err *err)
     return run_tile(running, worker, &running->round->tile[running->turn[index]], err);
 }
 
-/* How the grid is cut into tiles for one round. */
+/* The cut of the grid into tiles for one round: edge of a tile in cells, shift of the seams along
+ * each axis in cells, and number of tiles along each axis. */
 typedef struct TileCut {
     int edge, shift[3], count[3];
     size_t tiles;
 } TileCut;
 
-/* Every round moves the seams on by the golden section of a tile, along each axis. */
+/* Cuts the grid. Every round shifts the seams by a further golden section of a tile along each
+ * axis, which spreads the seams of successive rounds evenly. */
 static TileCut make_cut(const Round *round, const Grid *grid)
 {
     const double golden = 0.618033988749895;
@@ -271,7 +273,8 @@ static size_t tile_at(const TileCut *cut, const Grid *grid, Vec3 point)
     return index;
 }
 
-/* A tile's cells and `margin` more on all sides, also where the grid has none. */
+/* Returns the cells of a tile and of a margin of `margin` cells on all sides. The box may extend
+ * beyond the grid. */
 static GridBox box_of(const TileCut *cut, size_t index, int margin)
 {
     GridBox box;
@@ -311,14 +314,14 @@ static void sort(Round *round, const TileCut *cut, const Grid *grid)
         round->order[round->tile[round->tile_of[i]].end++] = (uint32_t)i;
 }
 
-/* A tile's part of a whole, by its points. */
+/* Returns the part of `whole` that a tile gets, in proportion to its points. */
 static size_t part_of(const Round *round, const Tile *tile, size_t whole)
 {
     return whole * (tile->end - tile->first) / round->n;
 }
 
-/* Gives every tile its zone, and in proportion to its points spare nodes and its part of the
- * terminals that may be connected, of all trees and of each. */
+/* Gives every tile its zone and, in proportion to its points, spare nodes and its part of the
+ * terminals that may be connected, in all and per tree. */
 static void endow(Round *round, const PlanCommon *common, const TileCut *cut, size_t most)
 {
     Site *site = common->site;
@@ -357,7 +360,7 @@ static void settle_nodes(const Round *round, Network *net, size_t tiles)
     net->spares = kept;
 }
 
-/* Subtracts from the limits what trees got in tiles. */
+/* Subtracts from the limits the number of terminals that each tree got in tiles. */
 static void settle_limits(const Round *round, const PlanCommon *common, size_t tiles)
 {
     for (size_t k = 0; k < round->trees; k++) {
@@ -370,7 +373,7 @@ static void settle_limits(const Round *round, const PlanCommon *common, size_t t
     }
 }
 
-/* Adds up what became of the points. Lists the points that are left over at the beginning of
+/* Adds up the results of the tiles. Lists the points that are left over at the beginning of
  * `order`, and returns their number. */
 static size_t gather(Round *round, Network *net, size_t tiles)
 {

@@ -18,26 +18,29 @@ typedef struct Tile Tile;
 /* All arrays are owned. */
 typedef struct Round {
     Vec3 *point;        /* mm; the caller sets them */
-    size_t n, capacity; /* of points */
+    size_t n, capacity; /* number of points, and number that the arrays have room for */
     uint32_t *tile_of;  /* per point: its tile */
     uint32_t *order;    /* indices of the points, tile by tile */
     Tile *tile;
     int tile_edge;       /* in cells of the grid */
     size_t tiles;        /* maximum number of tiles in the grid, wherever their seams are */
     bool is_tiled;       /* there are enough tiles to work on several at a time */
-    size_t trees, *left; /* per tile and tree: how many terminals it may still get there */
+    size_t trees, *left; /* left, per tile and tree: how many terminals the tree may still get in
+                          * the tile */
     Planner *planner;    /* per thread */
     int threads;
-    uint32_t number; /* of rounds so far */
-    double reach;    /* mm; what planners begin with [plan.h] */
-    uint8_t *misses; /* per cell: crowded points in it since one was connected, up to ROUND_FULL */
+    uint32_t number; /* number of rounds so far */
+    double reach;    /* mm; the first value of Planner.reach [plan.h] */
+    uint8_t *misses; /* per grid cell: number of its points that were PLAN_CROWDED since one of its
+                      * points was connected, at most ROUND_FULL */
     /* Results of the last round: */
     size_t made;                   /* number of terminals that were connected */
-    size_t count[PLAN_STATES + 1]; /* number of points by what became of them; the last: points that
-                                    * were skipped because they are in full cells */
+    size_t count[PLAN_STATES + 1]; /* number of points by their PlanState; the last entry counts
+                                    * points that were skipped because they are in full cells */
 } Round;
 
-/* A cell with this many crowded points in succession counts as full: its points are skipped. */
+/* A cell with this many crowded points in succession counts as full: its points are skipped. Reason
+ * for 2 not recorded. */
 enum { ROUND_FULL = 2 };
 
 /* Sets up *round, which may hold anything, for a forest of `trees`, `candidates` candidates
@@ -61,7 +64,8 @@ typedef struct RoundLimits {
 
 /* Connects points, for each tree at most common->limit, which is counted down. Needs the radii and
  * sensitivities of the last refresh. Afterwards the sums do not include new terminals except near
- * them [network_split], and the caller must call network_grown.
+ * them [network_split], and the caller must call network_grown. The connected segments are in the
+ * grid.
  *
  * Errors   STATUS_MEMORY; the network is then only fit for network_release.
  * Threads  The result does not depend on the number of threads. */

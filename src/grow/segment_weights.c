@@ -39,18 +39,13 @@ static double relative_viscosity(const GrowParams *params, double radius)
     return viscosity_pries_pa_s(radius, params->blood.hematocrit, 1);
 }
 
-static int threads_of(const GrowParams *params)
-{
-    return params->threads > 0 ? params->threads : threads_available();
-}
-
 /* Gives all terminals their shares of the flow. `share` is a workspace of one number per node. */
 static Status set_shares(Network *net, const GrowParams *params, const Domain *domain,
                          WeightsPrecision precision, double *share, Err *err)
 {
     bool equal = params->blood.terminal_flow == TERMINAL_FLOW_EQUAL;
-    TerritoryParams territory = {.domain = domain, .points = rough_points};
-    territory.threads = threads_of(params);
+    TerritoryParams territory = {
+        .domain = domain, .points = rough_points, .threads = params->threads};
     if (params->blood.terminal_flow == TERMINAL_FLOW_DEMAND)
         territory.demand = params->demand;
     if (precision == WEIGHTS_FINE)
@@ -116,7 +111,7 @@ static Status follow_radii(Network *net, const GrowParams *params, const double 
     for (size_t i = 0; i < net->n; i++)
         radius[i] = (double)net->segment[i].radius;
     TRY(weights_update(net, params, (WeightsAt){flow, radius, 1}, &change, err));
-    network_refresh(net, threads_of(params));
+    network_refresh(net, params->threads);
     return STATUS_OK;
 }
 
@@ -129,7 +124,7 @@ Status weights_refresh(Network *net, const GrowParams *params, const Domain *dom
     TRY_GOTO(mem_calloc(&radius, net->n, sizeof *radius, "radii", err));
     TRY_GOTO(set_shares(net, params, domain, precision, flow, err));
     weights_flows(net, flow);
-    network_refresh(net, threads_of(params));
+    network_refresh(net, params->threads);
     for (int round = 0; round < (precision == WEIGHTS_FINE ? FINE_ROUNDS : 1); round++)
         TRY_GOTO(follow_radii(net, params, flow, radius, err));
 done:

@@ -12,13 +12,14 @@ static bool has_length(const GridItem *item)
 
 Status site_enter(Site *site, int32_t segment, Err *err)
 {
-    Capsule capsule = network_capsule(&site->net, segment);
-    double radius = capsule.radius;
-    capsule.radius = site_reach(&site->rules, radius);
+    const Network *net = &site->net;
+    const Segment *own = &net->segment[segment];
+    double radius = (double)own->radius;
+    Capsule capsule = {net->position[own->parent], net->position[segment],
+                       site_reach(&site->rules, radius)};
     GridItem item = grid_item(&site->grid, capsule, radius);
-    bool is_end = site->net.segment[segment].child[0] < 0;
     if (has_length(&item))
-        return grid_add(&site->grid, 0, segment, is_end, item, err);
+        return grid_add(&site->grid, 0, segment, own->child[0] < 0, item, err);
     site->grid.item[segment] = item;
     return STATUS_OK;
 }

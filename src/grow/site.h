@@ -21,7 +21,7 @@ typedef struct Rules {
     double widest;       /* mm; the largest radius that the grid takes for a vessel */
 } Rules;
 
-/* A site; growth owns it and releases its network and grid. */
+/* A site. The caller releases its network and its grid. */
 typedef struct Site {
     Network net;
     Grid grid;            /* the segments of `net`; zeroed before the first segment is added */

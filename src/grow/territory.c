@@ -19,9 +19,8 @@ enum { WHOLE = 1 << 20 };
 static const double cells_per_terminal = 1;
 
 typedef struct TerritorySurvey {
-    const Domain *domain;
-    const Demand *demand; /* NULL: the same everywhere */
-    Grid grid;
+    const TerritoryParams *params;
+    Grid grid;       /* of the terminals */
     Vec3 low, step;  /* of the lattice, mm */
     size_t count[3]; /* its points along each axis */
     size_t nodes;
@@ -34,12 +33,14 @@ static size_t lattice_count(double size, double spacing)
 }
 
 /* Spreads the lattice evenly over the domain's box. */
-static void lay_lattice(TerritorySurvey *survey, double points)
+static void lay_lattice(TerritorySurvey *survey, size_t terminals)
 {
-    Box box = survey->domain->bounds;
+    const Domain *domain = survey->params->domain;
+    Box box = domain->bounds;
     Vec3 size = vec3_sub(box.high, box.low);
-    double share = survey->domain->volume / points; /* of a point */
-    bool flat = survey->domain->dimension == 2;
+    /* The volume or area of a lattice point. */
+    double share = domain->volume / (survey->params->points * (double)terminals);
+    bool flat = domain->dimension == 2;
     double spacing = flat ? sqrt(share) : elementary_cbrt(share);
     double most = LEAST_POINTS + POINTS_PER_ASKED * size.x * size.y * (flat ? 1 : size.z) / share;
     while ((size.x / spacing + 1) * (size.y / spacing + 1) * (size.z / spacing + 1) > most)
@@ -54,7 +55,7 @@ static void lay_lattice(TerritorySurvey *survey, double points)
 
 static Status enter_terminals(TerritorySurvey *survey, const Network *net, Err *err)
 {
-    TRY(grid_reset(&survey->grid, survey->domain->bounds,
+    TRY(grid_reset(&survey->grid, survey->params->domain->bounds,
                    cells_per_terminal * (double)net->terminals, net->n, 1, err));
     for (size_t i = 0; i < net->n; i++) {
         if (!network_is_end(net, (int32_t)i))
@@ -68,6 +69,8 @@ static Status enter_terminals(TerritorySurvey *survey, const Network *net, Err *
 static void survey_row(size_t index, int worker, void *context)
 {
     const TerritorySurvey *survey = context;
+    const Domain *domain = survey->params->domain;
+    const Demand *demand = survey->params->demand;
     uint64_t *points = survey->points + (size_t)worker * survey->nodes;
     size_t y = index % survey->count[1], z = index / survey->count[1];
     Vec3 step = survey->step;
@@ -76,23 +79,24 @@ static void survey_row(size_t index, int worker, void *context)
     for (size_t x = 0; x < survey->count[0]; x++) {
         Near nearest;
         at.x = survey->low.x + ((double)x + 0.5) * step.x;
-        if (domain_inside(survey->domain, at, 0) &&
+        if (domain_inside(domain, at, 0) &&
             grid_nearest(&survey->grid, at, INFINITY, 1, &nearest) == 1)
             points[nearest.segment] +=
-                survey->demand ? (uint64_t)(WHOLE * demand_at(survey->demand, at) + 0.5) : WHOLE;
+                demand ? (uint64_t)(WHOLE * demand_at(demand, at) + 0.5) : WHOLE;
     }
 }
 
 Status territory_count(const Network *net, const TerritoryParams *params, double *share, Err *err)
 {
-    TerritorySurvey survey = {.domain = params->domain, .demand = params->demand, .nodes = net->n};
+    TerritorySurvey survey = {.params = params, .nodes = net->n};
     Status status = STATUS_OK;
-    size_t threads = (size_t)params->threads;
-    lay_lattice(&survey, params->points * (double)net->terminals);
+    int most = params->threads > 0 ? params->threads : threads_available();
+    size_t threads = (size_t)most;
+    lay_lattice(&survey, net->terminals);
     TRY_GOTO(enter_terminals(&survey, net, err));
     TRY_GOTO(
         mem_calloc(&survey.points, threads * net->n, sizeof *survey.points, "territories", err));
-    threads_for(survey.count[1] * survey.count[2], params->threads, survey_row, &survey);
+    threads_for(survey.count[1] * survey.count[2], most, survey_row, &survey);
     for (size_t i = 0; i < net->n; i++) {
         uint64_t sum = 0;
         for (size_t worker = 0; worker < threads; worker++)

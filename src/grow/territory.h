@@ -10,13 +10,14 @@ typedef struct TerritoryParams {
     const Domain *domain;
     const Demand *demand; /* demand of a point [demand_at]; NULL: every point has the demand 1 */
     double points;        /* number of lattice points per terminal */
-    int threads;
+    int threads;          /* 0: all processors */
 } TerritoryParams;
 
-/* Counts the points of a square or cubic lattice over the domain that are nearer to a terminal than
- * to any other terminal, or adds up the demands of these points. Needs no sums.
+/* Measures the territory of each terminal by the points of a square or cubic lattice over the
+ * domain. Without a demand map, the measure is the number of lattice points in the territory. With
+ * a map, it is the sum of the demands at these points. Requires no sums of the network.
  *
- * share    receives, per node, the result for a terminal, but at least 1/2; 0 for other nodes.
+ * share    receives, per node: the measure of a terminal, at least 1/2; 0 for any other node.
  * Errors   STATUS_MEMORY.
  * Threads  The result does not depend on the number of threads. */
 MUST_CHECK Status territory_count(const Network *net, const TerritoryParams *params, double *share,

@@ -16,8 +16,8 @@ static double end_distance2(Vec3 end, Vec3 a, Vec3 b)
     return vec3_dot(off, off);
 }
 
-/* The squared distance of the lines through both segments; INFINITY when they are not nearest to
- * each other within both. */
+/* Returns the squared distance of the lines through both segments, mm^2; INFINITY if the nearest
+ * points of the lines are not on both segments. */
 static double inner_distance2(Vec3 a, Vec3 b, Vec3 c, Vec3 d)
 {
     Vec3 u = vec3_sub(b, a), v = vec3_sub(d, c), w = vec3_sub(c, a), normal = vec3_cross(u, v);

@@ -54,7 +54,8 @@ static size_t list_trunk(const Network *net)
     return n;
 }
 
-/* What it costs the free daughter, if it is one, when more of the drop is spent above it. */
+/* Returns the derivative of the cost of segment i, which has the gauge `gauge`, with respect to the
+ * share of the pressure drop that is spent above it; 0 if there is no segment or if it is kept. */
 static double stake_of(const Network *net, int32_t i, double gauge)
 {
     if (i < 0 || is_kept(net, i))

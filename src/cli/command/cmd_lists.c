@@ -40,9 +40,9 @@ static Status list_fields(Text *lines, Err *err)
 
 static Status list_domains(Text *lines, Err *err)
 {
-    for (size_t i = 0; domain_shape_name(i); i++)
-        text_printf(lines, "%s:%s\t%s\n", domain_shape_name(i), domain_shape_parameters(i),
-                    domain_shape_description(i));
+    const DomainShape *shape;
+    for (size_t i = 0; (shape = domain_shape(i)); i++)
+        text_printf(lines, "%s:%s\t%s\n", shape->name, shape->parameters, shape->description);
     return text_check(lines, err);
 }
 

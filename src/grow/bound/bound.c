@@ -36,13 +36,6 @@ typedef struct BoundSearch {
     int steps;
 } BoundSearch;
 
-static void search_release(BoundSearch *search)
-{
-    problem_release(&search->problem);
-    newton_release(&search->newton);
-    dual_release(&search->dual);
-}
-
 /* Returns the relative gap between target and bound; INFINITY while no bound is proved. */
 static double gap(const BoundSearch *search)
 {
@@ -67,8 +60,9 @@ static void settle(BoundSearch *search)
     }
 }
 
-/* The target of the geometry with the radii that Murray's law gives, lengths smoothed, as a
- * terminal of no length has no radius. `law` has the exponents. */
+/* Computes the target of the present geometry with the radii of Murray's law; NAN if outlets have
+ * different pressures. Lengths are smoothed, because a terminal of length 0 would have no radius.
+ */
 static Status murray_target(const BoundSearch *search, const Law *law, double *target, Err *err)
 {
     const Problem *problem = &search->problem;
@@ -149,16 +143,17 @@ Status bound_tree(const Tree *tree, double lambda, Bound *out, Err *err)
                        range_text(BOUND_LAMBDA_RANGE, range));
     BoundSearch search = {0};
     Bound made = {.lambda = lambda};
-    Status status = problem_init(&search.problem, tree, lambda, err);
-    if (status == STATUS_OK)
-        status = run(&search, err);
-    if (status == STATUS_OK)
-        status = report(&search, tree, &made, err);
-    search_release(&search);
-    if (status == STATUS_OK)
-        *out = made;
-    else
-        bound_release(&made);
+    Status status;
+    TRY_GOTO(problem_init(&search.problem, tree, lambda, err));
+    TRY_GOTO(run(&search, err));
+    TRY_GOTO(report(&search, tree, &made, err));
+    *out = made;
+    made = (Bound){0};
+done:
+    problem_release(&search.problem);
+    newton_release(&search.newton);
+    dual_release(&search.dual);
+    bound_release(&made);
     return status;
 }
 

@@ -1,12 +1,19 @@
 /* A proved lower bound of the target of all trees of one topology, and a geometry that comes near
  * it.
  *
- * Outlets are the nodes at which blood leaves the tree. Fixed are: which outlets are below which
- * segment, the positions and flows of outlets, the positions of inlets, and for each outlet the
- * drop of pressure from its inlet, which follows from the tree's own radii by Poiseuille's law with
- * one viscosity. Free are the radii, and the positions and pressures of bifurcations. The bound is
- * below the target of any such tree, for any Murray exponent and any rules of length and clearance,
- * and also if less pressure drops on the path to an outlet. */
+ * The target is the sum of l r^lambda over the segments of length l and radius r. Outlets are the
+ * nodes at which blood leaves the tree. Some properties of the tree are fixed: which outlets are
+ * below which segment, the positions and flows of the outlets, the positions of the inlets, and for
+ * each outlet the pressure drop from its inlet. The pressure drop follows from the tree's own radii
+ * by Poiseuille's law with one viscosity. Other properties are free: all radii, and the positions
+ * and pressures of the bifurcations.
+ *
+ * No tree with the same fixed properties has a target below the bound. This holds for any Murray
+ * exponent, for any rules of length and clearance, and also if less pressure drops on the path to
+ * an outlet.
+ *
+ *     TRY(bound_tree(&tree, 2, &bound, err));
+ *     bound_put_certificate(&bound, &tree, &text);    (then bound_release) */
 #ifndef CORCAST_GROW_BOUND_BOUND_H
 #define CORCAST_GROW_BOUND_BOUND_H
 
@@ -14,33 +21,34 @@
 #include "geom/geom.h"
 #include "tree/tree.h"
 
-/* The exponents of the target that a bound is computed for. */
+/* The exponents lambda that bound_tree accepts, both ends included. Reason for the ends not
+ * recorded. */
 #define BOUND_LAMBDA_RANGE ((Range){0.5, 4})
 
-/* The least cost of the flow through an outlet: the multipliers of its position and of its pressure
- * drop [METHODS 1.5]. */
+/* An outlet and its dual variables, which prove the bound [METHODS 1.5]: the Lagrange multipliers
+ * of the outlet's position and of its pressure drop. */
 typedef struct Outlet {
     int32_t node;  /* node of the tree */
-    double flow;   /* flow share */
-    Vec3 pull;     /* mm^lambda */
-    double charge; /* mm^(1 + lambda) for each unit of drop: 8 mu / pi times one unit of share, over
-                      mm^3 */
+    double flow;   /* flow share, above 0 */
+    Vec3 pull;     /* multiplier of the position, mm^lambda */
+    double charge; /* multiplier of the pressure drop, mm^(1 + lambda) per unit of drop, >= 0. The
+                    * unit of drop is 8 mu / pi times one unit of flow share, per mm^3 */
 } Outlet;
 
 typedef struct Bound {
     double lambda;
     double target; /* sum of l r^lambda over the segments that blood flows through, mm^(1+lambda) */
-    double best;   /* target of the best geometry found, with free radii */
+    double best;   /* target of the best geometry found, with free radii; at most `target` */
     double murray; /* target of that geometry with radii by Murray's law; NAN if the tree states no
                     * Murray exponent, or its outlets have different pressures */
-    double bound;  /* proved lower bound of the target */
-    int steps;     /* of Newton's method */
+    double bound;  /* proved lower bound of the target; 0 if no better bound was proved */
+    int steps;     /* number of steps of Newton's method */
     Outlet *outlet; /* owned; in the order of the nodes */
     size_t outlets;
 } Bound;
 
-/* Computes a lower bound of the target with the exponent `lambda`. The same tree gives the same
- * bits.
+/* Computes a lower bound of the target with the exponent `lambda`. Does not change the tree. The
+ * same tree gives the same bits.
  *
  * out      receives the bound; release it with bound_release.
  * Errors   STATUS_USAGE if `lambda` is out of BOUND_LAMBDA_RANGE. STATUS_INPUT if no blood flows,
@@ -48,10 +56,12 @@ typedef struct Bound {
  *          outlet. STATUS_MEMORY.
  * Cost     O(n) for each of 15 to 30 steps: 20 s for 10^6 outlets, and 300 bytes per node. */
 MUST_CHECK Status bound_tree(const Tree *tree, double lambda, Bound *out, Err *err);
+/* Frees the outlets and zeroes *bound, which may be zeroed before. */
 void bound_release(Bound *bound);
 
 /* Appends the proof of bound->bound as text [FORMATS, Certificates]. It refers to nodes by their
- * ids in the tree's SWC. */
+ * ids in the tree's SWC file. `tree` is the tree of bound_tree. If memory runs out, text_check
+ * [base/text.h] reports it. */
 void bound_put_certificate(const Bound *bound, const Tree *tree, Text *text);
 
 #endif

@@ -1,7 +1,7 @@
 /* Let each outlet have a force y and a charge z, and let Y and Z be their sums at and below a
  * segment. They prove the bound B = sum over the segments of Y . v - Z d, with v the vector from
  * end to end of the segment and d its pressure drop, for any positions of its ends. The condition
- * is that no |Y| is above the cost of a mm of the segment, dual_mm [METHODS 1.5].
+ * is that no |Y| is above the cost of a mm of the segment, cost_of_mm [METHODS 1.5].
  *
  * At the optimum, |Y| equals that cost, except that smoothed lengths make |Y| smaller. Newton's
  * linearised forces balance exactly, so little is missing for a proof. From the outlets upwards,
@@ -15,6 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Share of the bound that is given up to cover rounding. Reason for 1e-9 not recorded. */
 static const double margin = 1e-9;
 
 Status dual_init(Dual *dual, const Problem *problem, Err *err)
@@ -32,7 +33,9 @@ void dual_release(Dual *dual)
     *dual = (Dual){0};
 }
 
-double dual_mm(double a, double flow, double charge)
+/* Returns the least cost of 1 mm of a segment that carries `flow` and pays `charge` per unit of
+ * pressure drop: the minimum over g of charge g + flow^a g^-a. */
+static double cost_of_mm(double a, double flow, double charge)
 {
     return (1 + a) * elementary_pow(flow * charge / a, a / (1 + a));
 }
@@ -42,9 +45,9 @@ static double length_of(const State force)
     return sqrt(force[0] * force[0] + force[1] * force[1] + force[2] * force[2]);
 }
 
-/* The forces of all outlets, summed, made smaller where a segment cannot bear them. An outlet
- * that would rather have less drop pays nothing. Returns the factor, at least 1, by which all
- * pulls may grow. */
+/* Sums the forces of all outlets, and reduces the pulls below a segment that cannot bear them. An
+ * outlet whose charge would be below 0 gets the charge 0. Returns the factor, at least 1, by which
+ * all pulls may grow. */
 static double sum_forces(Dual *dual, const Problem *problem, const Newton *newton, double smoothing)
 {
     double room = INFINITY;
@@ -59,7 +62,8 @@ static double sum_forces(Dual *dual, const Problem *problem, const Newton *newto
             newton_force(problem, newton, smoothing, i, sum);
             sum[DROP] = fmax(0, -sum[DROP]);
         }
-        double borne = dual_mm(problem->a, joint->flow, sum[DROP]) * (1 - margin) / length_of(sum);
+        double borne =
+            cost_of_mm(problem->a, joint->flow, sum[DROP]) * (1 - margin) / length_of(sum);
         dual->kept[i] = fmin(1, borne);
         room = fmin(room, borne);
         for (int k = 0; k < PLACE_AXES; k++)
@@ -69,13 +73,13 @@ static double sum_forces(Dual *dual, const Problem *problem, const Newton *newto
     return fmax(1, room);
 }
 
-/* What the proof is made of: the sums of Y . v and of Z d. */
+/* The two sums of the bound, over all segments: of Y . v and of Z d. */
 typedef struct Sums {
     double pull, charge;
 } Sums;
 
-/* From here on `kept` is what pulls are multiplied by: `grown` times the shares that the segments
- * from the inlet to the joint let pass. */
+/* Computes the two sums. Sets `kept` of each joint to the factor of its pulls: `grown` times the
+ * factors of all segments from the inlet to the joint. */
 static Sums add_up(Dual *dual, const Problem *problem, double grown)
 {
     Sums sums = {0};
@@ -94,7 +98,7 @@ static Sums add_up(Dual *dual, const Problem *problem, double grown)
     return sums;
 }
 
-/* Keeps the proof, charges multiplied by `scale`. */
+/* Stores the forces of the proof, with charges multiplied by `scale`. */
 static void keep(Dual *dual, const Problem *problem, double scale)
 {
     const double pull_scale = elementary_pow(scale, problem->a / (1 + problem->a));

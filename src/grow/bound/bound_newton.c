@@ -12,8 +12,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The most of the way to where a drop would be 0 that a step goes; and the least part of the fall
- * that the slope promises for which a step is taken [Armijo's rule]. */
+/* A step goes at most this share of the distance to where a pressure drop would be 0. A step is
+ * taken if the target falls by at least `least_gain` of the fall that the slope promises (Armijo's
+ * rule). Reasons not recorded. */
 static const double most_of_drop = 0.95, least_gain = 1e-4;
 enum { MAX_HALVINGS = 40 };
 
@@ -56,7 +57,8 @@ double newton_cost(const Problem *problem, const Newton *newton, double smoothin
     return sum;
 }
 
-/* First and second derivatives of what segment i costs, by the state of its joint. */
+/* Computes the first and second derivatives of the cost of segment i with respect to the state of
+ * its joint. */
 static void derive(const Problem *problem, size_t i, double smoothing, State gradient,
                    Symmetric curvature)
 {
@@ -83,7 +85,8 @@ static void multiply(const Symmetric matrix, const State vector, State out)
     }
 }
 
-/* Cholesky: the lower triangle L of L L' = matrix, whose diagonal is kept inverted. */
+/* Computes the Cholesky factor L of a matrix, L L' = matrix. The diagonal of `lower` has the
+ * inverses of the diagonal of L. */
 static void factorise(const Symmetric matrix, Symmetric lower)
 {
     for (int row = 0; row < STATE; row++)
@@ -98,6 +101,7 @@ static void factorise(const Symmetric matrix, Symmetric lower)
         }
 }
 
+/* Solves L L' out = right. */
 static void solve(const Symmetric lower, const State right, State out)
 {
     for (int row = 0; row < STATE; row++) {
@@ -206,7 +210,8 @@ void newton_force(const Problem *problem, const Newton *newton, double smoothing
         force[k] += gradient[k];
 }
 
-/* The part of the step at which the first drop would be 0. */
+/* Returns the part of the step at which the first pressure drop would be 0; INFINITY if none falls.
+ */
 static double end_of_drops(const Problem *problem, const Newton *newton)
 {
     double end = INFINITY;

@@ -14,28 +14,24 @@
 #include "grow/bound/bound.h"
 #include <stdlib.h>
 
-/* Data of the tree per node; the arrays are owned. */
-typedef struct ProblemSurvey {
-    double *share; /* what leaves there */
-    double *flow;  /* the shares at and below it */
-    double *drop;  /* from the inlet */
-    int32_t *ways; /* children with flow, and one more at an outlet */
-    int32_t *joint;
-} ProblemSurvey;
+/* A node of the tree. */
+typedef struct SurveyedNode {
+    double flow;   /* sum of the flow shares at and below it */
+    double drop;   /* pressure drop from the inlet */
+    int32_t ways;  /* number of children with flow, plus 1 at an outlet */
+    int32_t joint; /* index of its joint, or of the joint that its flow comes from; -1: none */
+} SurveyedNode;
 
-static void survey_release(ProblemSurvey *survey)
-{
-    free(survey->share);
-    free(survey->flow);
-    free(survey->drop);
-    free(survey->ways);
-    free(survey->joint);
-}
+/* The nodes of the tree. Both arrays have an entry per node and are owned. */
+typedef struct ProblemSurvey {
+    double *share; /* flow shares */
+    SurveyedNode *node;
+} ProblemSurvey;
 
 /* Returns true if blood flows through segment i. */
 static bool is_open(const Tree *tree, const ProblemSurvey *survey, size_t i)
 {
-    return tree_is_segment(tree, i) && survey->flow[i] > 0;
+    return tree_is_segment(tree, i) && survey->node[i].flow > 0;
 }
 
 static bool is_outlet(const Tree *tree, const ProblemSurvey *survey, size_t i)
@@ -52,13 +48,13 @@ static Status survey_node(const Tree *tree, ProblemSurvey *survey, size_t i, Pro
                        "node %d: blood flows to it through a radius of 0, where all pressure drops",
                        tree->id[i]);
     double radius2 = radius * radius;
-    survey->drop[i] =
-        survey->drop[tree->parent[i]] + survey->flow[i] * length / (radius2 * radius2);
-    if (is_outlet(tree, survey, i) && !(survey->drop[i] > 0))
+    survey->node[i].drop =
+        survey->node[tree->parent[i]].drop + survey->node[i].flow * length / (radius2 * radius2);
+    if (is_outlet(tree, survey, i) && !(survey->node[i].drop > 0))
         return err_set(err, STATUS_INPUT,
                        "node %d: blood leaves the tree where its root is, without a path to it",
                        tree->id[i]);
-    if (!isfinite(survey->drop[i]))
+    if (!isfinite(survey->node[i].drop))
         return err_set(err, STATUS_INPUT, "node %d: radius %g mm lets too little blood through",
                        tree->id[i], radius);
     problem->target += length * elementary_pow(radius, 4 * problem->a);
@@ -70,17 +66,14 @@ static Status survey_init(ProblemSurvey *survey, const Tree *tree, Problem *prob
 {
     size_t n = tree->n;
     TRY(tree_flow_shares(tree, &survey->share, err));
-    TRY(mem_calloc(&survey->flow, n, sizeof *survey->flow, "flows", err));
-    TRY(mem_calloc(&survey->drop, n, sizeof *survey->drop, "drops of pressure", err));
-    TRY(mem_calloc(&survey->ways, n, sizeof *survey->ways, "counts", err));
-    TRY(mem_calloc(&survey->joint, n, sizeof *survey->joint, "numbers of nodes", err));
+    TRY(mem_calloc(&survey->node, n, sizeof *survey->node, "nodes", err));
     for (size_t i = n; i-- > 0;) {
-        survey->flow[i] += survey->share[i];
-        survey->ways[i] += is_outlet(tree, survey, i);
+        survey->node[i].flow += survey->share[i];
+        survey->node[i].ways += is_outlet(tree, survey, i);
         if (!is_open(tree, survey, i))
             continue;
-        survey->flow[tree->parent[i]] += survey->flow[i];
-        survey->ways[tree->parent[i]]++;
+        survey->node[tree->parent[i]].flow += survey->node[i].flow;
+        survey->node[tree->parent[i]].ways++;
     }
     for (size_t i = 0; i < n; i++)
         if (is_open(tree, survey, i))
@@ -91,7 +84,7 @@ static Status survey_init(ProblemSurvey *survey, const Tree *tree, Problem *prob
 /* Returns true if node i becomes a joint, and false if it is left out. */
 static bool is_joint(const Tree *tree, const ProblemSurvey *survey, size_t i)
 {
-    return !tree_is_segment(tree, i) || (survey->flow[i] > 0 && survey->ways[i] > 1) ||
+    return !tree_is_segment(tree, i) || (survey->node[i].flow > 0 && survey->node[i].ways > 1) ||
            is_outlet(tree, survey, i);
 }
 
@@ -108,21 +101,21 @@ static Joint *add_joint(Problem *problem, const Tree *tree, size_t i, int32_t pa
     return joint;
 }
 
-/* Numbers node i, which leads on where its parent's number leads if it is no joint. */
+/* Sets the joint of node i: a new joint, or the joint of its parent if node i is left out. */
 static void add_node(Problem *problem, const Tree *tree, ProblemSurvey *survey, size_t i)
 {
-    int32_t parent = tree_is_segment(tree, i) ? survey->joint[tree->parent[i]] : -1;
-    survey->joint[i] = parent;
+    int32_t parent = tree_is_segment(tree, i) ? survey->node[tree->parent[i]].joint : -1;
+    survey->node[i].joint = parent;
     if (!is_joint(tree, survey, i))
         return;
-    survey->joint[i] = (int32_t)problem->n;
-    Joint *joint = add_joint(problem, tree, i, parent, survey->flow[i]);
-    joint->is_free = parent >= 0 && survey->ways[i] > 1;
+    survey->node[i].joint = (int32_t)problem->n;
+    Joint *joint = add_joint(problem, tree, i, parent, survey->node[i].flow);
+    joint->is_free = parent >= 0 && survey->node[i].ways > 1;
     if (!is_outlet(tree, survey, i))
         return;
     if (joint->is_free)
-        joint = add_joint(problem, tree, i, survey->joint[i], survey->share[i]);
-    joint->at[DROP] = survey->drop[i];
+        joint = add_joint(problem, tree, i, survey->node[i].joint, survey->share[i]);
+    joint->at[DROP] = survey->node[i].drop;
     joint->outlet = (int32_t)problem->outlets;
     problem->node[problem->outlets++] = (int32_t)i;
 }
@@ -155,7 +148,7 @@ static void gather(const Problem *problem, Hanging *hanging)
     }
 }
 
-/* Parts drops among the segments. */
+/* Sets the pressure drops of the free joints, from the inlets to the outlets. */
 static void start(Problem *problem, const Hanging *hanging)
 {
     for (size_t i = 0; i < problem->n; i++) {
@@ -196,7 +189,8 @@ Status problem_init(Problem *problem, const Tree *tree, double lambda, Err *err)
     Problem made = {.a = lambda / 4};
     ProblemSurvey survey = {0};
     Status status = build(&made, tree, &survey, err);
-    survey_release(&survey);
+    free(survey.share);
+    free(survey.node);
     if (status == STATUS_OK)
         *problem = made;
     else

@@ -12,12 +12,6 @@
 
 #include "grow/cco/fermat.h"
 
-/* fmax, without a call */
-static double greater(double a, double b)
-{
-    return a > b ? a : b;
-}
-
 void bifurcation_at(const Law *law, const Bifurcation *problem, Vec3 place, BifurcationState *out)
 {
     const double *burden = problem->burden;
@@ -44,10 +38,10 @@ void bifurcation_at(const Law *law, const Bifurcation *problem, Vec3 place, Bifu
     out->radius[RIGHT] = unit * proximal.widening * right.rho;
 }
 
-/* The shortest that a segment may be. */
+/* The minimum length of segment i, mm. */
 static double shortest(const Bifurcation *problem, int i, double radius)
 {
-    double least = greater(2 * problem->least_widths * radius, problem->least_length);
+    double least = box_max(2 * problem->least_widths * radius, problem->least_length);
     return i == RIGHT || least < problem->least_part ? least : problem->least_part;
 }
 
@@ -59,7 +53,7 @@ bool bifurcation_is_long_enough(const Bifurcation *problem, const BifurcationSta
     return true;
 }
 
-/* Keeps the Fermat point off the three ends. */
+/* Returns the Fermat point, moved away from the three ends to the minimum lengths. */
 static Vec3 push_off(const Bifurcation *problem, const BifurcationState *state,
                      const Fermat *fermat)
 {
@@ -77,11 +71,11 @@ static Vec3 push_off(const Bifurcation *problem, const BifurcationState *state,
     return place;
 }
 
-/* The greatest weight; 0 when a figure is not finite. */
+/* Returns the greatest weight; 0 if the price or a weight is not finite. */
 static double scale_of(const BifurcationState *state)
 {
     const double *weight = state->weight;
-    double greatest = greater(weight[0], greater(weight[1], weight[2]));
+    double greatest = box_max(weight[0], box_max(weight[1], weight[2]));
     return isfinite(state->price) && isfinite(greatest) && greatest > 0 ? greatest : 0;
 }
 
@@ -90,8 +84,8 @@ bool bifurcation_next(const Bifurcation *problem, const BifurcationState *state,
     double weight[ENDS], scale = scale_of(state);
     if (scale == 0)
         return false;
-    for (int i = 0; i < ENDS; i++) /* none pushes: Fermat's point wants weights above 0 */
-        weight[i] = greater(state->weight[i] / scale, 1e-9);
+    for (int i = 0; i < ENDS; i++) /* fermat_point needs weights above 0 */
+        weight[i] = box_max(state->weight[i] / scale, 1e-9);
     if (problem->straight) {
         double margin[2];
         for (int i = 0; i < 2; i++)

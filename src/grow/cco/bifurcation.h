@@ -28,29 +28,33 @@ typedef struct Bifurcation {
     double load_before, cost_before, extra;
     double least_length; /* mm; segments are no shorter than this */
     double least_widths; /* and no shorter than this many diameters */
-    double least_part;   /* mm; PROXIMAL and LEFT may always be this short */
-    double margin; /* the bifurcation stays this many times the least length off the ends; >= 1 */
-    bool straight; /* PROXIMAL and LEFT must stay in line */
+    double least_part;   /* mm; PROXIMAL and LEFT may be this short in spite of these two rules;
+                          * INFINITY: no exception */
+    double margin; /* bifurcation_next keeps the bifurcation this many times the least length from
+                    * the ends; >= 1 */
+    bool straight; /* the bifurcation stays on the line from the end of PROXIMAL to that of LEFT */
 } Bifurcation;
 
 /* The bifurcation at one position. */
 typedef struct BifurcationState {
-    Vec3 place; /* mm */
-    double price;
+    Vec3 place;          /* mm */
+    double price;        /* change of S_root [Bifurcation] */
     double length[ENDS]; /* mm */
     double radius[ENDS]; /* mm */
     double weight[ENDS]; /* d price / d length */
 } BifurcationState;
 
-/* Computes the state of the bifurcation at `place`, mm. Numbers of the state are not finite if they
- * are beyond what a double can hold. */
+/* Computes the state of the bifurcation at `place`, mm. `law` is the law at the bifurcation. A
+ * number of the state that a double cannot hold is not finite. Cost: O(1). */
 void bifurcation_at(const Law *law, const Bifurcation *problem, Vec3 place, BifurcationState *out);
 
-/* Returns true if all three segments are as long as they must be. */
+/* Returns true if all three segments have the length that least_length, least_widths and least_part
+ * require. */
 bool bifurcation_is_long_enough(const Bifurcation *problem, const BifurcationState *state);
 
-/* Sets *place to the Fermat point for the state's weights, moved away from the ends by at least the
- * minimum lengths. Returns false if the state is not finite. */
+/* Sets *place to the Fermat point [fermat.h] for the state's weights, moved away from the ends by
+ * at least `margin` times the required lengths. Returns false, and leaves *place, if the state's
+ * price or weights are not finite. */
 bool bifurcation_next(const Bifurcation *problem, const BifurcationState *state, Vec3 *place);
 
 /* Moves *state, which bifurcation_at computed, `rounds` times to its bifurcation_next. Does not

@@ -23,20 +23,10 @@
 enum { BLOCK_SIZES = 56, SLAB_TAGS = 1 << 14, SMALL_BOX = 4 };
 
 struct GridArena {
-    Slabs slabs; /* of blocks */
-    int32_t
-        *free[BLOCK_SIZES]; /* a free block of each size; it begins with the next one's address */
+    Slabs slabs;                /* of blocks */
+    int32_t *free[BLOCK_SIZES]; /* per size: the first free block, which begins with the address of
+                                 * the next one */
 };
-
-static double least(double a, double b)
-{
-    return a < b ? a : b;
-}
-
-static double greatest(double a, double b)
-{
-    return a > b ? a : b;
-}
 
 static double clamp01(double t)
 {
@@ -46,8 +36,8 @@ static double clamp01(double t)
 /* A grid has at most CELLS_PER_ASKED times the requested number of cells, plus LEAST_CELLS. */
 enum { CELLS_PER_ASKED = 8, LEAST_CELLS = 512 };
 
-/* The edge of the cells: cubes, unless the box is so thin for its length that these would be far
- * too many. */
+/* Returns the edge of the cells, mm: that of `cells` cubes, or more if the box is so thin relative
+ * to its length that there would be far more cells. */
 static double edge_for(Vec3 size, double cells)
 {
     double edge = size.z > 0 ? elementary_cbrt(size.x * size.y * size.z / cells)
@@ -94,7 +84,8 @@ size_t grid_cells(const Grid *grid)
     return (size_t)grid->count[0] * grid->count[1] * grid->count[2];
 }
 
-/* The cell coordinate of a distance from the low corner along `axis`, moved into the grid. */
+/* Returns the cell coordinate at the distance `value` mm from the low corner along `axis`, clamped
+ * to the grid. */
 static int cell_of(const Grid *grid, double value, int axis)
 {
     double at = value * grid->inverse;
@@ -116,7 +107,7 @@ Box grid_zone(const Grid *grid, GridBox box)
 double grid_clearance(Box zone, Vec3 point)
 {
     Vec3 low = vec3_sub(point, zone.low), high = vec3_sub(zone.high, point);
-    return least(least(least(low.x, high.x), least(low.y, high.y)), least(low.z, high.z));
+    return box_min(box_min(box_min(low.x, high.x), box_min(low.y, high.y)), box_min(low.z, high.z));
 }
 
 bool grid_zone_holds(const Grid *grid, Box zone, const GridItem *item)
@@ -124,8 +115,8 @@ bool grid_zone_holds(const Grid *grid, Box zone, const GridItem *item)
     for (int axis = 0; axis < 3; axis++) {
         double from = vec3_component(grid->low, axis), reach = (double)item->reach;
         double a = from + (double)item->proximal[axis], b = from + (double)item->distal[axis];
-        if (least(a, b) - reach < vec3_component(zone.low, axis) ||
-            greatest(a, b) + reach > vec3_component(zone.high, axis))
+        if (box_min(a, b) - reach < vec3_component(zone.low, axis) ||
+            box_max(a, b) + reach > vec3_component(zone.high, axis))
             return false;
     }
     return true;
@@ -139,8 +130,8 @@ GridItem grid_item(const Grid *grid, Capsule capsule, double radius)
     return item;
 }
 
-/* Goes to the cells of the slab that may meet the capsule: those of the box around the part of the
- * centreline within the radius of the slab. */
+/* Sets the walk to the cells of its slab that may meet the capsule. These are the cells of the
+ * bounding box of the part of the centreline that is within the radius of the slab. */
 static void enter_slab(GridWalk *walk)
 {
     const Grid *grid = walk->grid;
@@ -150,28 +141,29 @@ static void enter_slab(GridWalk *walk)
     if (walk->span[axis] != 0) {
         double ta = (near - walk->radius) / walk->span[axis];
         double tb = (near + grid->edge + walk->radius) / walk->span[axis];
-        t0 = clamp01(least(ta, tb));
-        t1 = clamp01(greatest(ta, tb));
+        t0 = clamp01(box_min(ta, tb));
+        t1 = clamp01(box_max(ta, tb));
     }
     for (int i = 0; i < 3; i++) {
         double first = walk->from[i] + t0 * walk->span[i];
         double last = walk->from[i] + t1 * walk->span[i];
-        walk->box.low[i] = cell_of(grid, least(first, last) - walk->radius, i);
-        walk->box.high[i] = cell_of(grid, greatest(first, last) + walk->radius, i);
+        walk->box.low[i] = cell_of(grid, box_min(first, last) - walk->radius, i);
+        walk->box.high[i] = cell_of(grid, box_max(first, last) + walk->radius, i);
     }
     walk->box.low[axis] = walk->box.high[axis] = walk->slab;
     for (int i = 0; i < 3; i++)
         walk->at[i] = walk->box.low[i];
 }
 
-/* Most capsules are so short that the box around them is as good as slabs. */
+/* Sets the walk to the bounding box of the capsule, if that has few cells. Most capsules are so
+ * short that the box is as good as slabs. Returns false if there are more cells. */
 static bool enter_small_box(GridWalk *walk)
 {
     int cells = 1;
     for (int i = 0; i < 3; i++) {
         double a = walk->from[i], b = a + walk->span[i];
-        walk->box.low[i] = walk->at[i] = cell_of(walk->grid, least(a, b) - walk->radius, i);
-        walk->box.high[i] = cell_of(walk->grid, greatest(a, b) + walk->radius, i);
+        walk->box.low[i] = walk->at[i] = cell_of(walk->grid, box_min(a, b) - walk->radius, i);
+        walk->box.high[i] = cell_of(walk->grid, box_max(a, b) + walk->radius, i);
         cells *= walk->box.high[i] - walk->box.low[i] + 1;
         if (cells > SMALL_BOX)
             return false;
@@ -193,8 +185,8 @@ GridWalk grid_walk(const Grid *grid, const GridItem *item)
         if (fabs(walk.span[i]) > fabs(walk.span[walk.axis]))
             walk.axis = i;
     double a = walk.from[walk.axis], b = a + walk.span[walk.axis];
-    walk.slab = cell_of(grid, least(a, b) - walk.radius, walk.axis);
-    walk.last_slab = cell_of(grid, greatest(a, b) + walk.radius, walk.axis);
+    walk.slab = cell_of(grid, box_min(a, b) - walk.radius, walk.axis);
+    walk.last_slab = cell_of(grid, box_max(a, b) + walk.radius, walk.axis);
     enter_slab(&walk);
     return walk;
 }
@@ -217,13 +209,13 @@ bool grid_walk_next(GridWalk *walk, size_t *cell)
     return true;
 }
 
-/* Tags in a block of a size from 1: 4, 6, 8, 12, 16, 24, ... */
+/* Returns the number of tags in a block of a size from 1: 4, 6, 8, 12, 16, 24, ... */
 static size_t block_tags(uint32_t size)
 {
     return (size_t)(2 + (size - 1) % 2) << ((size - 1) / 2 + 1);
 }
 
-/* A block of a size, off the arena. */
+/* Takes a block of a size from the arena. */
 static Status take_block(GridArena *arena, uint32_t size, int32_t **out, Err *err)
 {
     int32_t *block = arena->free[size - 1];
@@ -238,6 +230,7 @@ static Status take_block(GridArena *arena, uint32_t size, int32_t **out, Err *er
     return STATUS_OK;
 }
 
+/* Returns a block to the arena. */
 static void give_block(GridArena *arena, uint32_t size, int32_t *block)
 {
     memcpy(block, &arena->free[size - 1], sizeof arena->free[size - 1]);

@@ -38,8 +38,9 @@ typedef struct GridCell {
 
 typedef struct GridArena GridArena;
 
+/* A grid. Arrays are owned. Threads may query a grid at the same time while none changes it. */
 typedef struct Grid {
-    Vec3 low;
+    Vec3 low;         /* low corner, mm */
     double edge;      /* of a cell, mm */
     double inverse;   /* 1 / edge */
     double rounding;  /* mm; bounds the rounding of coordinates to floats */
@@ -61,11 +62,11 @@ typedef struct Near {
     int32_t segment;
 } Near;
 
-/* What is around a point. */
+/* The result of grid_vicinity. */
 typedef enum GridVicinity {
-    GRID_FREE,
-    GRID_IN_VESSEL,
-    GRID_TOO_NEAR, /* to the tree */
+    GRID_FREE,      /* neither of the two below */
+    GRID_IN_VESSEL, /* the point is inside a vessel */
+    GRID_TOO_NEAR,  /* a segment is nearer than the required distance */
 } GridVicinity;
 
 /* Makes an empty grid over `box` with about `cells` cells, for segments with indices below
@@ -118,9 +119,12 @@ bool grid_zone_holds(const Grid *grid, Box zone, const GridItem *item);
  * is capsule.radius. */
 GridItem grid_item(const Grid *grid, Capsule capsule, double radius);
 
-/* Adds a segment, which is not in the grid, to every cell that may meet its item's capsule.
- * `worker` is below the number of workers, and differs between threads that add segments at the
- * same time. Errors: STATUS_MEMORY. */
+/* Adds a segment, which is not in the grid, to every cell that may meet its item's capsule, and
+ * stores its item.
+ *
+ * worker    below the number of workers. Threads that add segments at the same time differ in it.
+ * terminal  true if the segment is a terminal's.
+ * Errors    STATUS_MEMORY; the segment is then in some of its cells. */
 MUST_CHECK Status grid_add(Grid *grid, int worker, int32_t segment, bool terminal, GridItem item,
                            Err *err);
 /* Removes a segment, which is in the grid. */
@@ -141,9 +145,10 @@ int grid_nearest(const Grid *grid, Vec3 point, double within, int limit, Near *o
  * segments within `reach` mm, or very many more. */
 bool grid_nearest_quick(const Grid *grid, Vec3 point, double reach, int limit, Near *out);
 
-/* As grid_nearest, but faster for one point after another: searches first within *reach mm, which
- * was sufficient for the last points, and adapts *reach. Start with a guess, or 0. Also returns -1
- * if the last of `limit` segments is less than two cells nearer than `within`. */
+/* As grid_nearest, but faster for many points one after another: searches first within *reach mm,
+ * which was sufficient for the last points, and then adapts *reach. Begin with an estimate, or with
+ * 0. Also returns -1 if the last of `limit` segments is not at least two cell edges nearer than
+ * `within`, so that the result is the same whichever search found it. */
 int grid_nearest_guessed(const Grid *grid, Vec3 point, double within, int limit, double *reach,
                          Near *out);
 

@@ -14,41 +14,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Segments that the quick search holds. */
+/* Maximum number of segments that the quick search finds. Reason for 64 not recorded. */
 enum { CATCH = 64 };
-
-static double greatest(double a, double b)
-{
-    return a > b ? a : b;
-}
-
-static inline float point_distance2(const GridItem *item, const float point[3])
-{
-    const float *a = item->proximal, *b = item->distal;
-    float ux = b[0] - a[0], uy = b[1] - a[1], uz = b[2] - a[2];
-    float wx = point[0] - a[0], wy = point[1] - a[1], wz = point[2] - a[2];
-    float dot = ux * wx + uy * wy + uz * wz;
-    float length2 = ux * ux + uy * uy + uz * uz;
-    float along = dot > 0 ? dot : 0;
-    along = along < length2 ? along : length2;
-    float t = along / (length2 > FLT_MIN ? length2 : FLT_MIN);
-    float dx = wx - t * ux, dy = wy - t * uy, dz = wz - t * uz;
-    return dx * dx + dy * dy + dz * dz;
-}
-
-static inline float end_distance2(const GridItem *item, const float point[3])
-{
-    const float *end = item->distal;
-    float dx = point[0] - end[0], dy = point[1] - end[1], dz = point[2] - end[2];
-    return dx * dx + dy * dy + dz * dz;
-}
 
 /* Vectors of the compiler's own kind, which gcc and clang compile for any machine. */
 enum { LANES = GRID_LANES };
 typedef float Floats __attribute__((vector_size(16)));
 typedef int32_t Ints __attribute__((vector_size(16)));
 
-/* The points of segments next to a point. */
+/* The points of four segments that are nearest to a given point. */
 typedef struct GridFoot {
     Ints segment;
     Floats at[3], distance2, radius;
@@ -88,7 +62,7 @@ static inline void load_items(const Grid *grid, const GridCell *cell, uint32_t k
     transpose(out + LANES);
 }
 
-/* As point_distance2, of such segments. */
+/* Finds the points of the k-th and the next segments of a cell that are nearest to `point`. */
 static inline GridFoot foot_of(const Grid *grid, const GridCell *cell, uint32_t k,
                                const float point[3])
 {
@@ -149,43 +123,39 @@ unsigned grid_boxes_near(const Grid *grid, const GridCell *cell, uint32_t k,
     return bits;
 }
 
-/* What grid_vicinity looks for. */
+/* The arguments of grid_vicinity. */
 typedef struct Query {
     float at[3]; /* the point */
     float distance2, thickness;
     bool terminals_only;
 } Query;
 
-/* As cell_vicinity, with distances from segments. */
-static GridVicinity cell_vicinity_along(const Grid *grid, const GridCell *cell, const Query *query)
+/* Returns true if the k-th or one of the next segments of a cell is a terminal whose end is too
+ * near to the point. */
+static bool is_end_near(const Grid *grid, const GridCell *cell, uint32_t k, const Query *query)
 {
-    Ints in = {0};
-    for (uint32_t k = 0; k < cell->count; k += LANES) {
-        GridFoot foot = foot_of(grid, cell, k, query->at);
-        if (any(foot.distance2 < query->distance2))
-            return GRID_TOO_NEAR;
-        Floats radius = query->thickness * foot.radius;
-        in |= foot.distance2 < radius * radius;
+    for (uint32_t i = k; i < k + LANES && i < cell->count; i++) {
+        const float *end = grid->item[cell->tag[i] >> 1].distal, *at = query->at;
+        float dx = at[0] - end[0], dy = at[1] - end[1], dz = at[2] - end[2];
+        if ((cell->tag[i] & 1) && dx * dx + dy * dy + dz * dz < query->distance2)
+            return true;
     }
-    return any(in) ? GRID_IN_VESSEL : GRID_FREE;
+    return false;
 }
 
 static GridVicinity cell_vicinity(const Grid *grid, size_t index, const Query *query)
 {
     const GridCell *cell = &grid->cell[index];
-    if (!query->terminals_only)
-        return cell_vicinity_along(grid, cell, query);
-    GridVicinity room = GRID_FREE;
-    for (uint32_t i = 0; i < cell->count; i++) {
-        const GridItem *item = &grid->item[cell->tag[i] >> 1];
-        float distance2 = point_distance2(item, query->at);
-        if ((cell->tag[i] & 1) && end_distance2(item, query->at) < query->distance2)
+    Ints in = {0};
+    for (uint32_t k = 0; k < cell->count; k += LANES) {
+        GridFoot foot = foot_of(grid, cell, k, query->at);
+        if (query->terminals_only ? is_end_near(grid, cell, k, query)
+                                  : any(foot.distance2 < query->distance2))
             return GRID_TOO_NEAR;
-        float radius = query->thickness * item->radius;
-        if (distance2 < radius * radius)
-            room = GRID_IN_VESSEL;
+        Floats radius = query->thickness * foot.radius;
+        in |= foot.distance2 < radius * radius;
     }
-    return room;
+    return any(in) ? GRID_IN_VESSEL : GRID_FREE;
 }
 
 GridVicinity grid_vicinity(const Grid *grid, Vec3 point, double distance, bool terminals_only,
@@ -195,7 +165,8 @@ GridVicinity grid_vicinity(const Grid *grid, Vec3 point, double distance, bool t
                    .thickness = (float)thickness,
                    .terminals_only = terminals_only};
     grid_store(grid, point, query.at);
-    /* Its own cell has every vessel that may hold the point, and most that are too near. */
+    /* The point's own cell lists every vessel that may contain the point, and most segments that
+     * are too near. */
     size_t home = grid_cell_at(grid, point);
     GridVicinity room = cell_vicinity(grid, home, &query);
     if (room == GRID_TOO_NEAR)
@@ -225,24 +196,28 @@ typedef struct NearestSearch {
     Near *list;
 } NearestSearch;
 
-static void gather_cell(NearestSearch *search, size_t index)
+/* Inserts a segment into the list if it is among the nearest and not yet there. */
+static void insert(NearestSearch *search, Near found)
 {
     Near *list = search->list;
+    if (search->count == search->limit && !nearer(found, list[search->count - 1]))
+        return;
+    for (int i = 0; i < search->count; i++)
+        if (list[i].segment == found.segment)
+            return;
+    int place = search->count < search->limit ? search->count++ : search->count - 1;
+    for (; place > 0 && nearer(found, list[place - 1]); place--)
+        list[place] = list[place - 1];
+    list[place] = found;
+}
+
+static void gather_cell(NearestSearch *search, size_t index)
+{
     const GridCell *cell = &search->grid->cell[index];
-    for (uint32_t k = 0; k < cell->count; k++) {
-        int32_t segment = cell->tag[k] >> 1;
-        Near found = {point_distance2(&search->grid->item[segment], search->at), segment};
-        if (search->count == search->limit && !nearer(found, list[search->count - 1]))
-            continue;
-        bool known = false;
-        for (int i = 0; i < search->count && !known; i++)
-            known = list[i].segment == segment;
-        if (known)
-            continue;
-        int place = search->count < search->limit ? search->count++ : search->count - 1;
-        for (; place > 0 && nearer(found, list[place - 1]); place--)
-            list[place] = list[place - 1];
-        list[place] = found;
+    for (uint32_t k = 0; k < cell->count; k += LANES) {
+        GridFoot foot = foot_of(search->grid, cell, k, search->at);
+        for (uint32_t lane = 0; lane < LANES && k + lane < cell->count; lane++)
+            insert(search, (Near){foot.distance2[lane], foot.segment[lane]});
     }
 }
 
@@ -251,17 +226,18 @@ static void gather_cell(NearestSearch *search, size_t index)
 static double excess2(const NearestSearch *search, int cell, int axis)
 {
     double low = cell * search->grid->edge, at = (double)search->at[axis];
-    double excess = greatest(0, greatest(low - at, at - low - search->grid->edge));
+    double excess = box_max(0, box_max(low - at, at - low - search->grid->edge));
     return excess * excess;
 }
 
-/* The first of `low`, `low` + `step`, ... that is in the grid. */
+/* Returns the first of `low`, `low` + `step`, ... that is not below 0. */
 static int first_from(int low, int step)
 {
     return low >= 0 ? low : low + (step - 1 - low) / step * step;
 }
 
-/* Gathers every `step`-th cell of a row, except what is further than all that is wanted. */
+/* Gathers every `step`-th cell of a row, except cells that are further away than the last segment
+ * of a full list. */
 static void gather_row(NearestSearch *search, int ring, int step, int y, int z)
 {
     const Grid *grid = search->grid;
@@ -332,15 +308,15 @@ typedef struct Catch {
     size_t n;
 } Catch;
 
-/* The bounds of a cell along an axis; the outermost ones have none. */
+/* Sets the bounds of a cell along an axis; outer faces of the grid have no bound. */
 static void bounds_of(const Grid *grid, int cell, int axis, float out[2])
 {
     out[0] = cell > 0 ? (float)(cell * grid->edge) : -FLT_MAX;
     out[1] = cell < grid->count[axis] - 1 ? (float)((cell + 1) * grid->edge) : FLT_MAX;
 }
 
-/* Catches those segments of a cell whose point next to `point` is in this very cell, so
- * each once. */
+/* Adds the segments of a cell whose nearest point to `point` is in this cell, so that each segment
+ * is added once. */
 static void catch_cell(const Grid *grid, const GridCell *cell, float bounds[3][2],
                        const float point[3], float reach2, Catch *out)
 {
@@ -359,7 +335,7 @@ static void catch_cell(const Grid *grid, const GridCell *cell, float bounds[3][2
     out->n = n;
 }
 
-/* Sorts by counting how many are less, which needs no branches. */
+/* Sorts by counting how many keys are lower, which needs no branches. */
 static void sort_catch(const Catch *found, int limit, Near *out)
 {
     for (size_t i = 0; i < found->n; i++) {

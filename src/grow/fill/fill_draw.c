@@ -7,11 +7,14 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Daughters of one element: more than any published mean plus one in each order. */
+/* Maximum number of daughters of one element: more than the sum over all orders of the published
+ * means, each rounded up. */
 enum { MOST_DAUGHTERS = 64 };
-/* Attempts to draw a diameter within its bounds, and to find a partner for an exchange. */
+/* Maximum number of attempts to draw a diameter within its bounds, and to find an element for an
+ * exchange of lengths. Reason for 64 not recorded. */
 enum { DRAWS = 64 };
-/* An element has this many times the length that its segments need at least. */
+/* Ratio of the length of an element to the minimum length of its segments, at least. Reason
+ * for 1.02 not recorded. */
 static const double spare_length = 1.02;
 /* The first segment of an element is this many times as long as the sum of its radius and that of
  * its parent: leave_thin for a thin daughter, leave_thin + leave_wide for one as wide as its parent
@@ -73,14 +76,15 @@ static int random_count(Random *random, double mean)
     return (int)whole + (random_uniform(random) < mean - whole);
 }
 
-/* A number with the standard normal distribution [Box & Muller, Ann. Math. Stat. 29 (1958) 610]. */
+/* Returns a number with the standard normal distribution [Box & Muller, Ann. Math. Stat. 29 (1958)
+ * 610]. */
 static double random_normal(Random *random)
 {
     double radius = sqrt(-2 * elementary_log(1 - random_uniform(random)));
     return radius * elementary_cos(FULL_TURN * random_uniform(random));
 }
 
-/* A standard deviation that is not published counts as 0. */
+/* Returns the standard deviation; 0 if none is published. */
 static double sd_of(Spread spread)
 {
     return spread.sd > 0 ? spread.sd : 0;
@@ -99,8 +103,8 @@ static double random_diameter(Filling *filling, int order)
     return spread.mean;
 }
 
-/* The parameters of the normal distribution of the logarithm are those that give the published mean
- * and standard deviation. */
+/* Returns a length with a lognormal distribution that has the published mean and standard
+ * deviation. */
 static double random_length(Filling *filling, int order)
 {
     Spread spread = row_of(filling, order)->length_mm;
@@ -129,7 +133,7 @@ static void swap_orders(Daughters *daughters, int i, int j)
     daughters->order[j] = order;
 }
 
-/* Puts daughters of lower orders, of which there are two, last. */
+/* Moves two daughters of lower orders, which must exist, to the end of the list. */
 static void close_element(Daughters *daughters, int order)
 {
     for (int last = daughters->n - 1, i = last; last >= daughters->n - 2; last--) {
@@ -186,9 +190,9 @@ static Status draw_daughters(Filling *filling, int32_t parent, Err *err)
 
 /* ---- lengths --------------------------------------------------------------------------------- */
 
-/* Length that the first segment of an element needs, mm. A drawn one has to leave its parent, which
- * takes more than the sum of the radii because the angle between them is not a right one, and is
- * smaller for wide daughters. */
+/* Returns the minimum length of the first segment of an element, mm. The first segment of a drawn
+ * element must leave its parent. That takes more than the sum of the two radii, because the angle
+ * between them is below 90 degrees, and smaller for wide daughters. */
 static double least_first(const Filling *filling, const FillElement *element)
 {
     double radius = element->radius_mm;
@@ -198,7 +202,7 @@ static double least_first(const Filling *filling, const FillElement *element)
     return (radius + parent) * (leave_thin + leave_wide * fmin(1, radius / parent));
 }
 
-/* Length that the segments of an element need, mm. */
+/* Returns the sum of the minimum lengths of an element's segments, mm. */
 static double least_length(const Filling *filling, const FillElement *element)
 {
     return least_first(filling, element) + 2 * element->radius_mm * (element->segments - 1);
@@ -214,8 +218,8 @@ static void draw_sizes(Filling *filling, FillElement *element)
         element->length_mm = 0;
 }
 
-/* Exchanges the length of an element for a sufficient one of a random other element, to which its
- * own length is sufficient. Otherwise makes it sufficient. */
+/* If an element is too short, exchanges its length with a random other element, if both are then
+ * long enough. If no such element is found, lengthens it to the length that it needs. */
 static void exchange_length(Filling *filling, FillElement *element, const int32_t *drawn, size_t n)
 {
     double needed = spare_length * least_length(filling, element);

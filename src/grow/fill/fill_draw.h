@@ -1,9 +1,19 @@
-/* Draws the elements of a filling from a published table: their orders, daughters, radii and
- * lengths, without positions.
+/* Draws the small vessels of a filling [fill_tree] from a published table of morphometry. The
+ * result is a list of elements with orders, daughters, radii and lengths, but without positions.
+ * fill_place.h then gives the elements positions.
+ *
+ * An element is a chain of segments of the same diameter-defined order [derive.h]. Order 1 is the
+ * thinnest. The tree that is filled has the orders rules.from and above. Its elements are called
+ * grown. The filling adds elements of the orders rules.from - 1 down to rules.to. These elements
+ * are called drawn, because random numbers determine their radii, lengths and daughters. The number
+ * of daughters of an element follows the connectivity matrix of the table.
  *
  *     TRY(filling_init(&filling, &rules, seed, err));
  *     TRY(filling_add(&filling, grown_element, err));    (once for each grown element)
  *     TRY(filling_draw(&filling, err));                  (then filling_release)
+ *
+ * The same rules, grown elements and seed give the same elements. No function may be called by two
+ * threads on one filling at the same time.
  *
  * Source: Kaimovitz, Lanir & Kassab, Ann. Biomed. Eng. 33 (2005) 1517-1535. */
 #ifndef CORCAST_GROW_FILL_FILL_DRAW_H
@@ -12,75 +22,95 @@
 #include "derive/derive.h"
 #include "grow/grow.h"
 
+/* The index of no element. */
 enum { NO_ELEMENT = -1 };
 
-/* An element: a chain of segments of one order. A grown element belongs to the tree that is filled.
- * All other elements are drawn: random numbers determine them. The filling may extend a grown
- * element at its distal end. */
+/* One element, grown or drawn. Elements refer to each other by their indices in Filling.element.
+ *
+ * The caller sets order, parent, grown, is_open, present and, for a grown element, radius_mm,
+ * widest_mm and grown_mm. filling_add and filling_draw set the other fields.
+ *
+ * A grown element that is open may get an extension: a chain of new segments at its distal end, so
+ * that the length of the whole element agrees with the table. */
 typedef struct FillElement {
-    int32_t order;    /* from 1 */
-    int32_t parent;   /* drawn: the element that it branches off; grown: NO_ELEMENT */
-    int32_t daughter; /* first drawn daughter; NO_ELEMENT: none */
-    int32_t sister;   /* next drawn daughter of the same parent, along the parent from its proximal
-                       * to its distal end; NO_ELEMENT: none */
-    int32_t peer;     /* the element of the same order that was added next; NO_ELEMENT: none */
-    int32_t segments; /* drawn: number of its segments; grown: number of segments of its extension,
-                       * from places_fill on */
+    int32_t order;    /* from 1, the thinnest, to the highest order of the table */
+    int32_t parent;   /* the element that a drawn element branches off; NO_ELEMENT if grown */
+    int32_t daughter; /* head of the list of drawn daughters; NO_ELEMENT: no daughter */
+    int32_t sister;   /* next element in the parent's list of daughters, which is ordered from the
+                       * parent's proximal to its distal end; NO_ELEMENT: the last */
+    int32_t peer;     /* next element in the list of all elements of this order, in the order in
+                       * which they were added; NO_ELEMENT: the last */
+    int32_t segments; /* drawn: number of its segments. grown: number of segments of its extension;
+                       * valid once places_fill [fill_place.h] has begun */
     bool grown;
-    bool is_open; /* grown, and its most distal segment is a terminal, so that it can be extended */
+    bool is_open; /* the element is grown and ends in a terminal, so that it can be extended */
     uint16_t present[PUBLISHED_DAUGHTERS]; /* [k]: number of grown daughters k orders lower */
-    double radius_mm; /* drawn: radius of all its segments; grown: radius of its most distal one */
+    double radius_mm; /* drawn: radius of all its segments. grown: radius of its last segment */
     double widest_mm; /* largest radius of its segments */
-    double grown_mm;  /* grown: length without the extension; drawn: 0 */
-    double length_mm; /* drawn: its length; grown: length of its extension, 0: none */
+    double grown_mm;  /* grown: length without the extension. drawn: 0 */
+    double length_mm; /* drawn: its length. grown: length of its extension; 0: no extension */
 } FillElement;
 
-/* The elements of a filling. A drawn element comes after its parent. */
+/* The elements of a filling. A drawn element has a larger index than its parent. */
 typedef struct Filling {
     FillRules rules;
     Random random;
-    FillElement *element; /* owned */
-    size_t n, capacity;
-    int32_t *first, *last; /* per order, from 0: its first and last element; owned */
+    FillElement *element;  /* owned */
+    size_t n, capacity;    /* number of elements, and number that `element` has room for */
+    int32_t *first, *last; /* [k]: first and last element of order k, or NO_ELEMENT; owned */
 } Filling;
 
-/* Begins a filling. `rules` are valid [fill_tree]. Release *filling with filling_release, also
- * after an error. Errors: STATUS_MEMORY. */
+/* Begins a filling without elements.
+ *
+ * filling  is overwritten; release it with filling_release, also after an error.
+ * rules    must be valid [fill_tree]. Copied; the table and its name are borrowed.
+ * seed     of the random numbers; any number.
+ * Errors   STATUS_MEMORY. */
 MUST_CHECK Status filling_init(Filling *filling, const FillRules *rules, uint64_t seed, Err *err);
+/* Frees the arrays and zeroes *filling, which may be zeroed before. */
 void filling_release(Filling *filling);
 
-/* Adds an element, with the index filling->n - 1. Sets `daughter`, `sister` and `peer`. Errors:
- * STATUS_INFEASIBLE if there are more than TREE_MAX_ID elements; STATUS_MEMORY. */
+/* Appends a copy of an element, which gets the index filling->n - 1. Sets `daughter`, `sister` and
+ * `peer` of the copy to NO_ELEMENT, and appends the copy to the list of its order. Does not append
+ * it to the parent's list of daughters.
+ *
+ * Errors   STATUS_INFEASIBLE if there are more than TREE_MAX_ID elements; STATUS_MEMORY. The
+ *          filling is then as before. */
 MUST_CHECK Status filling_add(Filling *filling, FillElement element, Err *err);
 
-/* Draws the daughters of all elements, of the daughters, and so on, down to the order rules.to.
+/* Draws the daughters of all grown elements, the daughters of these daughters, and so on, down to
+ * the order rules.to. Call it once, after all grown elements were added.
  *
- * An element gets floor(C) or ceil(C) daughters of each order, where C is the mean number of the
- * table. The probability of ceil(C) is such that the mean is C. The daughters that a grown element
- * has already are subtracted. A grown element of order rules.from or above gets daughters below
- * rules.from only.
+ * Number of daughters: an element gets floor(C) or ceil(C) daughters of each order, where C is the
+ * mean number of the table. The probability of ceil(C) is such that the mean is C. The daughters
+ * that a grown element has already (`present`) are subtracted. A grown element of order rules.from
+ * or above gets only daughters below rules.from.
  *
- * The last two daughters of a drawn or open element start at its distal end and are of lower orders
- * than the element. If fewer than two lower daughters were drawn, daughters of the highest lower
- * order are added, so that the mean number of these daughters exceeds C. The other daughters start
- * along the element, in random order. Elements of the lowest order, rules.to, have daughters along
- * them but none at the distal end.
+ * Start of daughters: the last two daughters of a drawn or open element start at its distal end and
+ * are of lower orders than the element. If fewer than two lower daughters were drawn, daughters of
+ * the highest lower order are added, so that the mean number of these daughters exceeds C. The
+ * other daughters start along the element, in random order. Elements of the order rules.to have
+ * daughters along them but no daughters at the distal end.
  *
- * The diameter is normally distributed within the bounds of the order. The length has a lognormal
- * distribution. An open grown element is extended to the length that was drawn for it, unless the
- * extension were shorter than wide. A drawn element that is too short for its segments exchanges
- * its length with another one of its order; if none is found, it gets the length that it needs.
+ * Sizes: the diameter is normally distributed within the bounds of the order
+ * [morphometry_bound_mm]. The length has a lognormal distribution. An open grown element is
+ * extended to the length that was drawn for it, unless the extension were shorter than wide. A
+ * drawn element that is too short for its segments exchanges its length with another drawn element
+ * of its order. If no such element is found, it gets the length that it needs.
  *
- * Errors   as filling_add. */
+ * Errors   as filling_add. The filling is then only fit for filling_release. */
 MUST_CHECK Status filling_draw(Filling *filling, Err *err);
 
-/* Divides element->length_mm among element->segments segments, whose lengths are set in `length`.
+/* Divides element->length_mm, mm, among element->segments segments by random numbers.
  *
- * Each segment gets a minimum length and a random share of the remaining length, from an
- * exponential distribution. The minimum is the diameter 2 radius_mm. For the first segment of a
- * drawn element, it is 1.1 to 1.5 times the sum of the element's radius and the parent's largest
- * radius, because this segment must leave its parent. Requires a length of at least the sum of
- * these minima: filling_draw and places_fill see to it. */
+ * Each segment gets a minimum length and a random share of the remaining length. The shares come
+ * from an exponential distribution. The minimum length is the diameter, 2 radius_mm. For the first
+ * segment of a drawn element, it is 1.1 to 1.5 times the sum of the element's radius and the
+ * parent's largest radius, because this segment must leave its parent.
+ *
+ * element  one of filling->element, with a length of at least the sum of these minima. Elements
+ *          after filling_draw, and grown elements in places_fill, have such a length.
+ * length   receives element->segments lengths, mm, from the proximal to the distal end. */
 void filling_cut(Filling *filling, const FillElement *element, double *length);
 
 #endif

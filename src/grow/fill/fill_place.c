@@ -10,20 +10,25 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Number of directions per ring, number of rings (pairs of cones), and how often a segment may be
+ * halved where no straight segment fits. Reasons not recorded. */
 enum { DIRECTIONS = 12, RINGS = 3, MOST_BENDS = 5 };
-/* Attempts to find a place on a grown element with room for a daughter. */
+/* Maximum number of places on a grown element that are tried for a daughter. Reason for 32 not
+ * recorded. */
 enum { ATTEMPTS = 32 };
-/* A gap beyond this share of the segment's length, and this many radii, counts as no larger. */
+/* Gaps above enough_gap times the segment's length plus enough_radii times its radius count as
+ * equal. Reasons not recorded. */
 static const double enough_gap = 0.4, enough_radii = 2;
-/* Number of grid cells per segment. Vessels are crowded, so that most cells are empty. */
+/* Number of grid cells per segment. Reason for 4 not recorded. */
 static const double cells_per_segment = 4;
-/* Number of nodes that bends may add, relative to all nodes. */
+/* Number of nodes that bends may add, relative to all nodes. Reason for 0.25 not recorded. */
 static const double spare_nodes = 0.25;
-/* A daughter leaves at the first angle if it is as wide as its parent, at the second if it is thin.
- * The angle varies by `spread`, and is larger on wider cones. */
+/* Angles, in degrees, between a daughter and its parent: wide_angle if the daughter is as wide as
+ * its parent, thin_angle if it is thin. The two cones of the first ring differ from this angle by
+ * `spread`. The other rings have the angles in `wider`. Reasons not recorded. */
 static const double wide_angle = 40, thin_angle = 75, spread = 12;
 static const double wider[RINGS][2] = {{-1, 1}, {90, 115}, {140, 165}};
-/* Angles of a segment that continues a segment of the same element. */
+/* The same for a segment that continues a segment of the same element. */
 static const double onward[RINGS][2] = {{8, 22}, {45, 75}, {110, 150}};
 enum { ELEMENTS_PER_REPORT = 1024 };
 
@@ -124,7 +129,8 @@ static double distance2_to(Vec3 point, Vec3 a, Vec3 b)
     return vec3_distance2_along(vec3_sub(point, a), vec3_sub(b, a));
 }
 
-/* Of segments that share a node, only the other ends must be far from the other segment. */
+/* Returns the gap between the walls of the course and of another segment, mm. If the two share a
+ * node, only their other ends are measured. */
 static double gap_beside(const Places *places, const FillCourse *course, Vec3 end, int32_t other)
 {
     const FillNode *node = &places->node[other];
@@ -159,7 +165,8 @@ static bool stays_inside(const Domain *domain, Vec3 a, Vec3 b)
                                     : domain_holds_segment(domain, a, b);
 }
 
-/* Moves the candidate with the largest gap, the first of several, to the end. */
+/* Moves the candidate with the largest gap (the first of several) to the end of the list, and
+ * returns it. */
 static Candidate *take_widest(Candidate *candidate, int n)
 {
     int best = 0;
@@ -207,8 +214,8 @@ static Status add_node(Places *places, FillNode node, int32_t *index, Err *err)
     return places_enter(places, *index, err);
 }
 
-/* Places a segment of several straight parts at most, the shortest of them 2^-bends of the length.
- * *end receives the distal node; NO_NODE if there is no place in the domain. */
+/* Places a segment: straight, or as two halves, which may be halved again up to `bends` times. *end
+ * receives the distal node; NO_NODE if there is no place in the domain. */
 static Status place_segment(Places *places, FillCourse course, int bends, int32_t *end, Err *err)
 {
     double enough = enough_gap * course.length + enough_radii * course.radius;
@@ -297,15 +304,16 @@ static Status place_drawn(Places *places, int32_t e, Err *err)
     return STATUS_OK;
 }
 
-/* A place where a grown segment may be split. */
+/* A point at which a grown segment may be split. */
 typedef struct FillSplit {
     int32_t segment; /* NO_NODE: none */
     Vec3 at;
-    double room; /* mm; below 0 if it is in another vessel, or nearer to a node than a width */
+    double room; /* mm; below 0 if the point is in another vessel, or nearer to a node than a
+                    diameter */
 } FillSplit;
 
-/* Replaces *best by the place `from_end` mm from the distal end of a grown element, if that has
- * more room and is in the domain. */
+/* Replaces *best by the point `from_end` mm from the distal end of a grown element, if the point
+ * has more room and is in the domain. */
 static Status look_at_place(Places *places, int32_t last, double from_end, FillSplit *best,
                             Err *err)
 {
@@ -332,8 +340,8 @@ static Status look_at_place(Places *places, int32_t last, double from_end, FillS
     return STATUS_OK;
 }
 
-/* Starts a daughter at a random place on a grown element: the first that has room, or the one with
- * the most room. */
+/* Starts a daughter at a random point of a grown element: the first point that has room, or else
+ * the one with the most room. */
 static Status start_daughter(Places *places, int32_t e, int32_t daughter, Err *err)
 {
     const FillElement *element = &places->filling->element[e];
@@ -353,8 +361,10 @@ static Status start_daughter(Places *places, int32_t e, int32_t daughter, Err *e
     return places_enter(places, best.segment, err);
 }
 
-/* Starts the daughters of a grown element. Those on the length that is still to be placed stay in
- * the list of daughters, as element->segments. */
+/* Starts the daughters of a grown element. A daughter belongs to the grown part or to the
+ * extension, with probabilities in proportion to their lengths. Removes the daughters of the grown
+ * part from the list of daughters. Sets element->segments to the number of segments of the
+ * extension. */
 static Status split_grown(Places *places, int32_t e, Err *err)
 {
     FillElement *all = places->filling->element, *element = &all[e];
@@ -387,7 +397,7 @@ static Status place_grown(Places *places, int32_t e, Err *err)
     return STATUS_OK;
 }
 
-/* Makes room for all nodes, and a grid around the grown tree. */
+/* Allocates the nodes and a grid around the grown tree. */
 static Status make_grid(Places *places, Err *err)
 {
     const Filling *filling = places->filling;

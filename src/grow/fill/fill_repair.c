@@ -6,18 +6,22 @@
 #include <math.h>
 #include <stdlib.h>
 
+/* Maximum number of rounds, each of which tries to move the ends of all broken segments. Reason for
+ * 4 not recorded. */
 enum { ROUNDS = 4 };
-/* Distances that nodes are moved, in radii of the segment that ends there. */
+/* Distances by which a node is moved, in radii of the segment that ends there. Reasons not
+ * recorded. */
 static const double steps[] = {0.1, 0.3, 1, 2};
 /* Segments that a repair moves keep this fraction of their width in addition. */
 static const double spare = 1e-3;
 
+/* The state of a repair. */
 typedef struct Mending {
     Places *places;
     IndexLists children; /* per node */
 } Mending;
 
-/* The children of node i, and the end behind them. */
+/* Returns the children of node i, and sets *end to the end of the array. */
 static const uint32_t *children_of(const Mending *mending, int32_t i, const uint32_t **end)
 {
     const IndexLists *children = &mending->children;
@@ -30,8 +34,9 @@ static bool are_joined(const FillNode *node, int32_t i, int32_t j)
     return i == j || node[i].parent == node[j].parent || node[i].parent == j || node[j].parent == i;
 }
 
-/* By how many mm segment i is too short, or too near to another segment with an index below
- * `below`, whichever is more. 0 for a grown segment. */
+/* Sets *fault to the length, mm, by which segment i is too short, or too near to another segment:
+ * the larger of the two, and 0 for a grown segment. Of drawn segments, looks only at those with an
+ * index below `below`. */
 static Status fault_of(Places *places, int32_t i, int32_t below, double *fault, Err *err)
 {
     const FillNode *node = places->node, *own = &node[i];
@@ -51,7 +56,8 @@ static Status fault_of(Places *places, int32_t i, int32_t below, double *fault, 
     return STATUS_OK;
 }
 
-/* The sum of the faults of the segments that meet at a node; more than `enough` if above it. */
+/* Sets *sum to the sum of the faults of the segments that meet at node i, mm. Stops adding once the
+ * sum is at least `enough`. */
 static Status fault_at(Mending *mending, int32_t i, double enough, double *sum, Err *err)
 {
     double fault;

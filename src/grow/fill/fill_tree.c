@@ -6,7 +6,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* The random numbers of a filling differ from those of growth with the same seed. */
+/* Changes the seed, so that a filling does not draw the random numbers of growth with the same
+ * seed. The bytes are the word "fill". */
 static const uint64_t own_seed = 0x66696c6c;
 
 static Status check(const GrowParams *params, const FillRules *rules, const Domain *domain,
@@ -36,32 +37,6 @@ static Status check(const GrowParams *params, const FillRules *rules, const Doma
 
 /* ---- the grown elements ---------------------------------------------------------------------- */
 
-/* Sets the order of each segment: by its diameter, and at least the orders of its daughters. */
-static void find_orders(const Tree *tree, const Morphometry *table, int32_t *order)
-{
-    for (size_t i = tree->n; i-- > 0;) {
-        int own = 1;
-        while (own < (int)table->n && 2 * tree->radius_mm[i] > morphometry_bound_mm(table, own))
-            own++;
-        order[i] = order[i] > own ? order[i] : own;
-        int32_t parent = tree->parent[i];
-        if (parent != TREE_NO_PARENT && order[parent] < order[i])
-            order[parent] = order[i];
-    }
-}
-
-/* Sets, per node, its thickest child of the same order, the first of several; NO_NODE: none. */
-static void find_heirs(const Tree *tree, const int32_t *order, int32_t *heir)
-{
-    for (size_t i = 0; i < tree->n; i++) {
-        int32_t parent = tree->parent[i];
-        heir[i] = NO_NODE;
-        if (parent != TREE_NO_PARENT && order[parent] == order[i] &&
-            (heir[parent] == NO_NODE || tree->radius_mm[heir[parent]] < tree->radius_mm[i]))
-            heir[parent] = (int32_t)i;
-    }
-}
-
 /* Adds the element that segment i begins, as a daughter of element `above`, which may be none. */
 static Status begin_element(Filling *filling, int32_t order, int32_t above, Err *err)
 {
@@ -74,15 +49,21 @@ static Status begin_element(Filling *filling, int32_t order, int32_t above, Err 
                        err);
 }
 
-/* Adds the elements of the grown tree, and sets `last` to the element of each segment. */
+/* Adds the elements of the grown tree, and sets `of_node` to the element of each segment. */
 static Status add_grown(const Tree *tree, Filling *filling, int32_t *of_node, Err *err)
 {
+    const Lineage lineage = {tree->parent, tree->radius_mm, tree->n};
+    const Morphometry *table = filling->rules.table;
+    double *bound = NULL;
     int32_t *order = NULL, *heir = NULL;
     Status status;
+    TRY_GOTO(mem_calloc(&bound, table->n, sizeof *bound, "orders", err));
     TRY_GOTO(mem_calloc(&order, tree->n, sizeof *order, "orders", err));
     TRY_GOTO(mem_calloc(&heir, tree->n, sizeof *heir, "orders", err));
-    find_orders(tree, filling->rules.table, order);
-    find_heirs(tree, order, heir);
+    for (size_t k = 0; k < table->n; k++)
+        bound[k] = morphometry_bound_mm(table, (int)k + 1);
+    lineage_bounded_orders(&lineage, bound, table->n, order);
+    lineage_heirs(&lineage, order, heir);
     for (size_t i = 0; i < tree->n; i++) {
         int32_t parent = tree->parent[i];
         of_node[i] = NO_ELEMENT;
@@ -99,6 +80,7 @@ static Status add_grown(const Tree *tree, Filling *filling, int32_t *of_node, Er
         element->grown_mm += tree_segment_length(tree, i);
     }
 done:
+    free(bound);
     free(order);
     free(heir);
     return status;
@@ -157,14 +139,16 @@ done:
 
 /* ---- the tree -------------------------------------------------------------------------------- */
 
-/* New nodes have ids beyond those of `from`, whose nodes come first. */
+/* Returns the id of node i. Nodes of `from`, which come first, keep their ids; new nodes have
+ * larger ids. */
 static int64_t id_of(const Places *places, const Tree *from, int32_t i)
 {
     int32_t origin = places->node[i].origin;
     return origin == NO_NODE ? places->last_id + 1 + i - (int32_t)from->n : from->id[origin];
 }
 
-/* Adds a node, with the values of its columns, which have the indices that they have in `from`. */
+/* Adds a node to the builder. A node of `from` keeps its values in the columns, which have the same
+ * indices as in `from`. */
 static Status add_node(const Places *places, const Tree *from, int32_t i, TreeBuilder *builder,
                        Err *err)
 {

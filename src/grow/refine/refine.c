@@ -27,12 +27,10 @@
 #include "grow/grow.h"
 
 #include "grow/refine/refine_arbor.h"
-#include "grow/refine/refine_check.h"
 #include "grow/refine/refine_clearance.h"
 #include "grow/refine/refine_joint.h"
 #include "grow/refine/refine_move.h"
 #include "grow/refine/refine_penalty.h"
-#include "grow/refine/refine_result.h"
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
@@ -40,8 +38,8 @@
 /* Temperatures in units of S_root per segment: at the beginning and at the end of annealing, and of
  * repairs. Reasons for these and the next numbers, where not stated, not recorded. */
 static const double hot = 1, cold = 0.02, warm = 0.05;
-/* Penalty per mm during annealing, relative to S_root per mm of vessels: at the beginning and at
- * the end. */
+/* Penalty per mm of a broken rule, relative to S_root per mm of vessels: at the beginning and at
+ * the end of annealing. */
 static const double first_rate = 0.1, last_rate = 2;
 /* Share of the budget that is left after annealing: that of last_moves moves per terminal, but at
  * least least_left and at most most_left. */
@@ -57,14 +55,21 @@ enum { ROUNDS_OF_MENDING = 120 };
 static const double moves_per_square = 20, most_per_terminal = 2000;
 /* Maximum number of cycles, for small trees and long times. */
 static const double most_cycles = 1 << 20;
-/* Number of segments that are moved around each end of a segment that breaks a rule. */
+/* Number of segments near each end of a broken segment that repair moves. Reason not recorded. */
 enum { NEIGHBOURS = 8 };
-/* Rounds after which reserved radii are computed again. */
+/* Number of rounds of descend after which reserved radii are computed again. */
 enum { ROUNDS_PER_RESERVATION = 4 };
-/* Moves after which the clock is read. */
+/* Number of moves after which the clock is read and progress reported. */
 enum { MOVES_PER_LOOK = 16 };
-/* Trees of more terminals have their geometry refined without sweeps. */
+/* The geometry of trees with more terminals is refined without sweeps [is_large]. */
 enum { LARGE = 250000 };
+
+/* A tree that a search can go back to. The arrays are owned. */
+typedef struct Remembered {
+    double cost;     /* its S_root */
+    int32_t *parent; /* per node */
+    Vec3 *place;     /* per node, mm */
+} Remembered;
 
 typedef struct Refinement {
     const RefineParams *params;
@@ -78,10 +83,7 @@ typedef struct Refinement {
     Joints joints;
     size_t unclear; /* segments that broke a rule at first */
     int32_t *order; /* in which subtrees move, from 1 */
-    /* The tree that is remembered: */
-    double best_cost;
-    int32_t *best_parent;
-    Vec3 *best_place;
+    Remembered best;
 } Refinement;
 
 /* Where a cycle began. */
@@ -127,6 +129,7 @@ static bool is_over(Refinement *refinement)
     return refinement->stopped || fraction >= 1;
 }
 
+/* Tries all bifurcations, in depth-first order. */
 static Status sweep(Refinement *refinement, bool *over, Err *err)
 {
     const Arbor *arbor = &refinement->search.arbor;
@@ -165,7 +168,7 @@ static bool is_large(const Refinement *refinement)
            refinement->search.arbor.terminals > LARGE;
 }
 
-/* S_root over the segments. */
+/* Returns S_root divided by the number of segments: the unit of temperatures. */
 static double cost_of_segment(const Arbor *arbor)
 {
     return arbor_cost(arbor) / (double)arbor->n;
@@ -190,31 +193,33 @@ static Status shuffle(Refinement *refinement, double temperature, bool *over, Er
     return STATUS_OK;
 }
 
+/* Stores the present tree in refinement->best. */
 static void remember(Refinement *refinement)
 {
     const Arbor *arbor = &refinement->search.arbor;
-    refinement->best_cost = arbor_cost(arbor);
+    refinement->best.cost = arbor_cost(arbor);
     for (size_t i = 0; i < arbor->n; i++) {
-        refinement->best_parent[i] = arbor->branch[i].parent;
-        refinement->best_place[i] = arbor->shape[i].to;
+        refinement->best.parent[i] = arbor->branch[i].parent;
+        refinement->best.place[i] = arbor->shape[i].to;
     }
 }
 
-/* Brings what follows the radii, and reservations, to the present radii. */
+/* Computes viscosities, exponents and reserved radii from the present radii. */
 static Status settle(LocalSearch *search, Err *err)
 {
     TRY(arbor_agree(&search->arbor, err));
     return clearance_reserve(&search->clearance, &search->arbor, err);
 }
 
-/* Reserved radii may age for some rounds, what follows the radii for one. */
+/* Settles if it is due: reserved radii may be some rounds old, viscosities and exponents one round.
+ */
 static Status settle_for_round(LocalSearch *search, int round, Err *err)
 {
     bool is_due = round % ROUNDS_PER_RESERVATION == 0 || search->arbor.local;
     return is_due ? settle(search, err) : STATUS_OK;
 }
 
-/* Returns the number of segments break a rule, as of the last clearance_reserve. */
+/* Returns the number of segments that break a rule, as of the last clearance_reserve. */
 static size_t count_unclear(const LocalSearch *search)
 {
     size_t count = 0;
@@ -223,15 +228,16 @@ static size_t count_unclear(const LocalSearch *search)
     return count;
 }
 
-/* Goes back to the tree that is remembered. */
+/* Restores the tree in refinement->best. */
 static Status recall(Refinement *refinement, Err *err)
 {
     LocalSearch *search = &refinement->search;
-    arbor_arrange(&search->arbor, refinement->best_parent, refinement->best_place);
+    arbor_arrange(&search->arbor, refinement->best.parent, refinement->best.place);
     return settle(search, err);
 }
 
-/* Settles; where what follows the radii brings vessels together, goes back. */
+/* Settles. If the new viscosities and exponents make more segments break a rule than at first,
+ * restores the tree in refinement->best. */
 static Status settle_for_good(Refinement *refinement, Err *err)
 {
     LocalSearch *search = &refinement->search;
@@ -241,7 +247,8 @@ static Status settle_for_good(Refinement *refinement, Err *err)
     return STATUS_OK;
 }
 
-/* Rounds within the rules until one gains less than `least_gain` of S_root. */
+/* Makes rounds that keep the rules, until a round gains less than the fraction `least_gain` of
+ * S_root. */
 static Status descend(Refinement *refinement, double least_gain, bool *over, Err *err)
 {
     LocalSearch *search = &refinement->search;
@@ -250,7 +257,7 @@ static Status descend(Refinement *refinement, double least_gain, bool *over, Err
     for (int round = 1; !*over && cost < before * (1 - least_gain); round++) {
         before = cost;
         TRY(settle_for_round(search, round, err));
-        if (search->arbor.local && arbor_cost(&search->arbor) < refinement->best_cost &&
+        if (search->arbor.local && arbor_cost(&search->arbor) < refinement->best.cost &&
             count_unclear(search) <= refinement->unclear)
             remember(refinement);
         if (refinement->params->level != GROW_REFINE_GEOMETRY)
@@ -264,7 +271,7 @@ static Status descend(Refinement *refinement, double least_gain, bool *over, Err
     return STATUS_OK;
 }
 
-/* Moves segment i in all ways, its subtree at a temperature of `heat`. */
+/* Tries both moves of segment i; its subtree moves at the temperature `heat`. */
 static Status move(Refinement *refinement, int32_t i, double heat, bool *over, Err *err)
 {
     LocalSearch *search = &refinement->search;
@@ -277,7 +284,8 @@ static Status move(Refinement *refinement, int32_t i, double heat, bool *over, E
     return STATUS_OK;
 }
 
-/* Moves all segments that break a rule, and what is near them, warm enough to make room. */
+/* Moves all segments that break a rule, and the segments near them, at a temperature at which they
+ * make room. */
 static Status repair(Refinement *refinement, bool *over, Err *err)
 {
     const LocalSearch *search = &refinement->search;
@@ -296,9 +304,9 @@ static Status repair(Refinement *refinement, bool *over, Err *err)
     return STATUS_OK;
 }
 
-/* The moves of a cycle: of annealing, mending and the descent after it. Several cycles find
- * more in a small tree than one long one: where bifurcations would merge, T is right only after
- * a descent. */
+/* Returns the number of moves of a cycle, which is annealing, mending and the descent after it. In
+ * a small tree several cycles find a lower target than one long cycle, because S_root during
+ * annealing is not that of the tree after a descent. */
 static double cycle_moves(const Refinement *refinement)
 {
     double terminals = (double)refinement->search.arbor.terminals;
@@ -317,17 +325,18 @@ static double part_done(const Refinement *refinement, const Cycle *cycle)
     return done / (1 - fmin(fmax(left, least_left), most_left));
 }
 
-/* Has segments break rules for a penalty of `rate`; centrelines alone may not cross at any. */
+/* Allows segments to break rules for a penalty of `rate`. At level 0, where only centrelines count,
+ * no rule may be broken. */
 static Status allow_faults(LocalSearch *search, double rate, Err *err)
 {
     TRY(settle(search, err));
     if (search->clearance.level == 0)
         return STATUS_OK;
     penalties_begin(&search->penalties, &search->arbor, rate);
-    return penalties_reserve(&search->clearance, &search->arbor, err);
+    return clearance_waive(&search->clearance, &search->arbor, err);
 }
 
-/* Rounds in which rules may be broken and T may rise, less and less. */
+/* Makes rounds in which rules may be broken and S_root may rise, both less and less. */
 static Status anneal(Refinement *refinement, bool *over, Err *err)
 {
     LocalSearch *search = &refinement->search;
@@ -353,7 +362,7 @@ static Status mend(Refinement *refinement, bool *done, bool *over, Err *err)
     *done = !penalties->active;
     for (int round = 0; round < ROUNDS_OF_MENDING && !*done && !*over; round++) {
         double before = arbor_cost(arbor);
-        TRY(penalties_reserve(&search->clearance, arbor, err));
+        TRY(clearance_waive(&search->clearance, arbor, err));
         if (gains) {
             TRY(shuffle(refinement, 0, over, err));
             TRY(sweep(refinement, over, err));
@@ -368,7 +377,8 @@ static Status mend(Refinement *refinement, bool *done, bool *over, Err *err)
     return STATUS_OK;
 }
 
-/* Finds a better tree behind trees that break rules; if there is none, all is as it was. */
+/* Searches for a better tree by way of trees that break rules. If it finds none, restores the
+ * present tree. */
 static Status improve_topology(Refinement *refinement, bool *over, Err *err)
 {
     LocalSearch *search = &refinement->search;
@@ -379,31 +389,26 @@ static Status improve_topology(Refinement *refinement, bool *over, Err *err)
     search->penalties.active = false;
     if (!done)
         TRY(recall(refinement, err));
-    double best = refinement->best_cost;
+    double best = refinement->best.cost;
     TRY(descend(refinement, least_gain_after, over, err));
     return arbor_cost(&search->arbor) < best ? STATUS_OK : recall(refinement, err);
 }
 
-/* Sets *mm to the distance of the terminals of a pair, mm; 0 if the tree has no pairs. */
-static Status pair_distance(const Tree *tree, double *mm, Err *err)
+/* Sets *mm to the distance within which the proof compares vessels of different trees, mm: that of
+ * the terminals of a pair, or twice the clearance if that is more. 0: the tree has neither a
+ * clearance nor pairs, and needs no proof. */
+static Status proof_distance(const Tree *tree, double *mm, Err *err)
 {
     TreePair *pair = NULL;
     size_t n = 0;
-    *mm = 0;
+    *mm = 2 * fmax(meta_number(&tree->meta, META_CLEARANCE), 0);
     if (!tree_column(tree, tree_pairs_name))
         return STATUS_OK;
     TRY(tree_pairs(tree, &pair, &n, err));
     if (n > 0)
-        *mm = vec3_distance(tree->position[pair[0].node[0]], tree->position[pair[0].node[1]]);
+        *mm = fmax(*mm,
+                   vec3_distance(tree->position[pair[0].node[0]], tree->position[pair[0].node[1]]));
     free(pair);
-    return STATUS_OK;
-}
-
-/* How near vessels of different trees are looked for, mm; 0: nothing keeps the trees apart. */
-static Status proof_distance(const Tree *tree, double *mm, Err *err)
-{
-    TRY(pair_distance(tree, mm, err));
-    *mm = fmax(*mm, 2 * fmax(meta_number(&tree->meta, META_CLEARANCE), 0));
     return STATUS_OK;
 }
 
@@ -418,7 +423,7 @@ static Status prove_apart(const Tree *made, const Tree *was, double *apart, Err 
     return trees_prove_apart(made, clearance > 0 ? clearance : -HUGE_VAL, within, "", apart, err);
 }
 
-/* Proves it of the arbor as it is, before anything moves. */
+/* Proves the same of the arbor before anything moves. */
 static Status prove_start(const Arbor *arbor, const Tree *tree, Err *err)
 {
     Tree made;
@@ -434,7 +439,7 @@ static Status prove_start(const Arbor *arbor, const Tree *tree, Err *err)
     return status;
 }
 
-/* Gives *tree, which keeps its meta, what was made of it. */
+/* Moves *made to *tree, which keeps its metadata. */
 static void take_result(Tree *made, Tree *tree)
 {
     made->meta = tree->meta;
@@ -471,8 +476,9 @@ static Status start(Refinement *refinement, const Domain *domain, const Tree *tr
                        &search->arbor, err));
     refinement->unclear = count_unclear(search);
     TRY(joints_init(&refinement->joints, n, err));
-    TRY(mem_calloc(&refinement->best_parent, n, sizeof *refinement->best_parent, "nodes", err));
-    TRY(mem_calloc(&refinement->best_place, n, sizeof *refinement->best_place, "nodes", err));
+    Remembered *best = &refinement->best;
+    TRY(mem_calloc(&best->parent, n, sizeof *best->parent, "nodes", err));
+    TRY(mem_calloc(&best->place, n, sizeof *best->place, "nodes", err));
     remember(refinement);
     if (params->level == GROW_REFINE_GEOMETRY)
         return STATUS_OK;
@@ -490,19 +496,17 @@ static void release(Refinement *refinement)
     LocalSearch *search = &refinement->search;
     joints_release(&refinement->joints);
     free(refinement->order);
-    free(refinement->best_parent);
-    free(refinement->best_place);
+    free(refinement->best.parent);
+    free(refinement->best.place);
     penalties_release(&search->penalties);
     clearance_release(&search->clearance);
     arbor_release(&search->arbor);
 }
 
-/* What a worker's cycles have found. */
+/* The results of the cycles that one worker has run. */
 typedef struct Found {
-    double cost;     /* of the best tree */
-    size_t cycle;    /* that found it */
-    int32_t *parent; /* of its nodes; owned, as is place; NULL: no cycle has ended */
-    Vec3 *place;
+    Remembered best;      /* the best tree; its arrays are NULL while no cycle has ended */
+    size_t cycle;         /* the cycle that found it */
     uint64_t tried, kept; /* moves of all cycles */
     double seconds;       /* that the longest cycle took */
     bool stopped;
@@ -518,10 +522,11 @@ typedef struct Cycles {
     Found *found;   /* of each worker */
 } Cycles;
 
-static bool is_better(const Refinement *cycle, size_t number, const Found *than)
+/* Returns true if the tree of `cost` that the cycle `number` has found is better than another. */
+static bool is_better(double cost, size_t number, const Found *than)
 {
-    double cost = cycle->best_cost;
-    return !than->place || cost < than->cost || (cost == than->cost && number < than->cycle);
+    return !than->best.place || cost < than->best.cost ||
+           (cost == than->best.cost && number < than->cycle);
 }
 
 static Status run_cycle(const Cycles *cycles, size_t number, const RefineParams *params,
@@ -538,9 +543,9 @@ static Status run_cycle(const Cycles *cycles, size_t number, const RefineParams 
     }
     TRY_GOTO(start(&cycle, cycles->domain, cycles->tree, err));
     cycle.moves = cycles->moves;
-    cycle.best_cost = from->best_cost;
-    memcpy(cycle.best_parent, from->best_parent, arbor->n * sizeof *cycle.best_parent);
-    memcpy(cycle.best_place, from->best_place, arbor->n * sizeof *cycle.best_place);
+    cycle.best.cost = from->best.cost;
+    memcpy(cycle.best.parent, from->best.parent, arbor->n * sizeof *cycle.best.parent);
+    memcpy(cycle.best.place, from->best.place, arbor->n * sizeof *cycle.best.place);
     TRY_GOTO(recall(&cycle, err));
     bool over = is_over(&cycle);
     TRY_GOTO(improve_topology(&cycle, &over, err));
@@ -549,15 +554,11 @@ static Status run_cycle(const Cycles *cycles, size_t number, const RefineParams 
     found->tried += cycle.search.tried;
     found->kept += cycle.search.kept;
     found->stopped = cycle.stopped;
-    if (is_better(&cycle, number, found)) {
-        int32_t *parent = found->parent;
-        Vec3 *place = found->place;
-        found->cost = cycle.best_cost;
+    if (is_better(cycle.best.cost, number, found)) {
+        const Remembered before = found->best;
+        found->best = cycle.best;
         found->cycle = number;
-        found->parent = cycle.best_parent;
-        found->place = cycle.best_place;
-        cycle.best_parent = parent;
-        cycle.best_place = place;
+        cycle.best = before;
     }
 done:
     release(&cycle);
@@ -570,7 +571,7 @@ static bool has_time(const Refinement *from, const Found *found)
     double end = clock_seconds() - from->begun + found->seconds;
     if (found->stopped)
         return false;
-    return !found->place || !(from->params->seconds > 0) || end <= from->params->seconds;
+    return !found->best.place || !(from->params->seconds > 0) || end <= from->params->seconds;
 }
 
 static Status run_in_turn(size_t number, int worker, void *context, Err *err)
@@ -589,7 +590,7 @@ static Status run_in_turn(size_t number, int worker, void *context, Err *err)
     return STATUS_OK;
 }
 
-/* Goes on to the best tree that was found. */
+/* Continues with the best tree that any worker has found. */
 static Status take_best(Refinement *refinement, const Found *found, int workers, Err *err)
 {
     LocalSearch *search = &refinement->search;
@@ -598,13 +599,12 @@ static Status take_best(Refinement *refinement, const Found *found, int workers,
         search->tried += found[i].tried;
         search->kept += found[i].kept;
         refinement->stopped = refinement->stopped || found[i].stopped;
-        if (found[i].place && (!best || found[i].cost < best->cost ||
-                               (found[i].cost == best->cost && found[i].cycle < best->cycle)))
+        if (found[i].best.place && (!best || is_better(found[i].best.cost, found[i].cycle, best)))
             best = &found[i];
     }
     if (!best)
         return STATUS_OK;
-    arbor_arrange(&search->arbor, best->parent, best->place);
+    arbor_arrange(&search->arbor, best->best.parent, best->best.place);
     TRY(settle(search, err));
     remember(refinement);
     return STATUS_OK;
@@ -623,8 +623,8 @@ static Status refine_in_cycles(Refinement *refinement, const Domain *domain, con
     TRY_GOTO(take_best(refinement, cycles.found, workers, err));
 done:
     for (int i = 0; i < workers; i++) {
-        free(cycles.found[i].parent);
-        free(cycles.found[i].place);
+        free(cycles.found[i].best.parent);
+        free(cycles.found[i].best.place);
     }
     free(cycles.found);
     return status;
@@ -637,7 +637,7 @@ static Status refine(Refinement *refinement, const Domain *domain, const Tree *t
     if (level == GROW_REFINE_GEOMETRY)
         return descend(refinement, is_large(refinement) ? least_large_gain : least_sweep_gain,
                        &over, err);
-    if (level == GROW_REFINE_ANNEAL) /* so that there is something if it is stopped */
+    if (level == GROW_REFINE_ANNEAL) /* a run that is stopped early then has a better tree, too */
         TRY(descend(refinement, least_gain_before, &over, err));
     uint64_t left = refinement->moves - refinement->search.tried;
     double count = fmin(round((double)left / cycle_moves(refinement)), most_cycles);

@@ -13,9 +13,7 @@
  * Radii change with every move, so that a segment may break a rule although it did not move; then
  * it is pushed, too. If many segments are in each other's way, giving way costs more than a move of
  * this length gains, and the approach fails (most_broken). */
-#include "grow/refine/refine_approach.h"
-
-#include <string.h>
+#include "grow/refine/refine_joint.h"
 
 /* PUSHES rounds push segments; there are at most ROUNDS rounds. A node that went back RETURNS times
  * half of the path is put to its start. Reasons for the numbers not recorded. */
@@ -32,14 +30,15 @@ static const double too_deep = 0.4;
  * must stay. */
 static bool go_back(Joints *joints, int32_t i)
 {
-    if (joints->fixed[i] || joints->returns[i] > RETURNS)
+    if (joints->mark[i].fixed || joints->mark[i].returns > RETURNS)
         return false;
     Vec3 half = vec3_scale(vec3_add(joints->place[i], joints->start[i]), 0.5);
-    joints->place[i] = joints->returns[i]++ < RETURNS ? half : joints->start[i];
+    joints->place[i] = joints->mark[i].returns++ < RETURNS ? half : joints->start[i];
     return true;
 }
 
-/* Has both ends of segment i go half of the way back. False where neither can. */
+/* Moves both ends of segment i half of the path back to their starts. Returns false if neither end
+ * can move. */
 static bool retreat(Joints *joints, const Arbor *arbor, int32_t i)
 {
     bool distal = go_back(joints, i), proximal = go_back(joints, arbor->branch[i].parent);
@@ -58,11 +57,11 @@ static void push(Joints *joints, const Pushed *pushed, int n, Vec3 along, double
 {
     double sum = 0;
     for (int k = 0; k < n; k++)
-        if (!joints->fixed[pushed[k].node])
+        if (!joints->mark[pushed[k].node].fixed)
             sum += pushed[k].ease * pushed[k].part * pushed[k].part;
     for (int k = 0; k < n; k++) {
         Vec3 *place = &joints->place[pushed[k].node];
-        if (!joints->fixed[pushed[k].node] && sum > 0)
+        if (!joints->mark[pushed[k].node].fixed && sum > 0)
             *place = vec3_add_scaled(*place, along, pushed[k].ease * pushed[k].part * by / sum);
     }
 }
@@ -99,7 +98,7 @@ static void separate(Joints *joints, const Arbor *arbor, const Clearance *cleara
         retreat(joints, arbor, ease_i > ease_j ? j : i);
 }
 
-/* Pushes segment i and all that it overlaps apart. */
+/* Pushes segment i and all segments that it overlaps apart. */
 static void make_room(Joints *joints, const Arbor *arbor, const Clearance *clearance, int32_t i)
 {
     const Shape *shape = &arbor->shape[i];
@@ -126,7 +125,7 @@ static size_t give_way(Joints *joints, const Arbor *arbor, const Clearance *clea
         int32_t i = joints->order[k], above = arbor->branch[i].parent;
         bool is_held = clearance_is_held(clearance, arbor, i) ||
                        !(is_away(joints, i) || is_away(joints, above));
-        if (!joints->was_clear[i] || (is_held && clearance_is_kept(clearance, arbor, i)))
+        if (!joints->mark[i].was_clear || (is_held && clearance_is_kept(clearance, arbor, i)))
             continue;
         broken++;
         if (pushes && is_held) {
@@ -139,24 +138,25 @@ static size_t give_way(Joints *joints, const Arbor *arbor, const Clearance *clea
     return broken;
 }
 
-/* Inlets and terminals stay, and the ends of segments that break a rule already. */
+/* Fixes inlets, terminals, and the ends of segments that broke a rule at the start. */
 static void fix_nodes(Joints *joints, const Arbor *arbor)
 {
     for (size_t i = 0; i < arbor->n; i++)
-        joints->fixed[i] = arbor_is_inlet(arbor, (int32_t)i) || arbor->branch[i].child[0] < 0;
+        joints->mark[i].fixed = arbor_is_inlet(arbor, (int32_t)i) || arbor->branch[i].child[0] < 0;
     for (size_t i = arbor->inlets; i < arbor->n; i++)
-        if (!joints->was_clear[i])
-            joints->fixed[i] = joints->fixed[arbor->branch[i].parent] = true;
+        if (!joints->mark[i].was_clear)
+            joints->mark[i].fixed = joints->mark[arbor->branch[i].parent].fixed = true;
 }
 
 Status approach_goals(Joints *joints, Arbor *arbor, Clearance *clearance, double whole,
                       bool *arrived, Err *err)
 {
     fix_nodes(joints, arbor);
-    memset(joints->returns, 0, arbor->n * sizeof *joints->returns);
     for (size_t i = 0; i < arbor->n; i++) {
         Vec3 way = vec3_sub(joints->goal[i], joints->start[i]);
-        joints->place[i] = vec3_add_scaled(joints->start[i], way, joints->fixed[i] ? 0 : whole);
+        joints->mark[i].returns = 0;
+        joints->place[i] =
+            vec3_add_scaled(joints->start[i], way, joints->mark[i].fixed ? 0 : whole);
     }
     *arrived = false;
     for (int round = 0; round < ROUNDS && !*arrived; round++) {

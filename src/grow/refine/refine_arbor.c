@@ -6,11 +6,12 @@
 
 #include <stdlib.h>
 
-/* A change of an exponent, or a relative one of a viscosity, that counts as none, and the most
- * rounds until there is no greater one. */
+/* Exponents and viscosities agree with the radii once a round changes them by no more than this:
+ * exponents absolutely, viscosities relatively. After MOST_ROUNDS arbor_agree fails. Reasons not
+ * recorded. */
 static const double settled = 1e-13;
 enum { MOST_ROUNDS = 100 };
-/* Segments above a pruned one that are summed up at once. */
+/* Number of ancestors whose sums arbor_prune updates. Reason for 4 not recorded. */
 enum { PRUNED_LEVELS = 4 };
 
 Reduced arbor_reduce(const Arbor *arbor, int32_t i)
@@ -46,7 +47,7 @@ static void sum(Arbor *arbor, int32_t i)
 static Status list_nodes(Arbor *arbor, const Tree *tree, const int32_t *children, int32_t *parent,
                          Err *err)
 {
-    int32_t *index = NULL; /* of each node of the tree, or of the one its blood comes from */
+    int32_t *index = NULL; /* per node of the tree: its node in the arbor, or the one above it */
     TRY(mem_calloc(&index, tree->n, sizeof *index, "nodes", err));
     for (size_t i = 0; i < tree->n; i++)
         if (!tree_is_segment(tree, i))
@@ -71,7 +72,7 @@ static Status list_nodes(Arbor *arbor, const Tree *tree, const int32_t *children
     return STATUS_OK;
 }
 
-/* Room for what there is of each node. */
+/* Allocates the arrays with an entry per node. */
 static Status allocate(Arbor *arbor, Err *err)
 {
     TRY(mem_calloc(&arbor->branch, arbor->n, sizeof *arbor->branch, "segments", err));
@@ -85,6 +86,7 @@ static Status allocate(Arbor *arbor, Err *err)
     return STATUS_OK;
 }
 
+/* Returns the viscosity and the Murray exponent at a radius, mm. */
 static Local local_at(const Arbor *arbor, double radius)
 {
     return (Local){arbor->pries ? viscosity_pries_pa_s(radius, arbor->hematocrit, 1) : 1,
@@ -160,7 +162,8 @@ void arbor_release(Arbor *arbor)
     *arbor = (Arbor){0};
 }
 
-/* The first of `i` and all below it in the order in which daughters come before their mother. */
+/* Returns the first of segment i and all segments below it in post-order (daughters before their
+ * mother). */
 static int32_t first_upward(const Arbor *arbor, int32_t i)
 {
     while (arbor->branch[i].child[0] >= 0)
@@ -168,13 +171,13 @@ static int32_t first_upward(const Arbor *arbor, int32_t i)
     return i;
 }
 
-/* The first segment of the tree after that of `inlet`; 0: there is none. */
+/* Returns the first segment of the tree after the tree of `inlet`; 0 if there is none. */
 static int32_t next_tree(const Arbor *arbor, int32_t inlet)
 {
     return (size_t)inlet + 1 < arbor->inlets ? arbor->branch[inlet + 1].child[0] : 0;
 }
 
-/* The segment after `i` in that order, tree after tree; 0 at last. */
+/* Returns the segment after `i` in post-order, tree after tree; 0 after the last. */
 static int32_t next_upward(const Arbor *arbor, int32_t i)
 {
     int32_t above = arbor->branch[i].parent, next;
@@ -280,7 +283,7 @@ double arbor_radius(const Arbor *arbor, int32_t i)
     return radius;
 }
 
-/* The root segment with the greatest utilisation. */
+/* Returns the root segment with the greatest utilisation. */
 static int32_t fullest_root(const Arbor *arbor)
 {
     int32_t fullest = arbor_first(arbor);
@@ -305,7 +308,7 @@ int32_t arbor_find_overuse(const Arbor *arbor, double *radius)
         const int32_t *child = arbor->branch[i].child;
         if (*radius * arbor->branch[i].inverse_limit > 1)
             return i;
-        if (child[0] < 0) /* only rounding made it look like one */
+        if (child[0] < 0) /* rounding alone made the utilisation of the root exceed 1 */
             return 0;
         scale *= reduced.widening;
         i = child[arbor->branch[child[1]].utilisation > arbor->branch[child[0]].utilisation];
@@ -320,7 +323,8 @@ void arbor_refresh(Arbor *arbor)
 
 bool arbor_is_below(const Arbor *arbor, int32_t i, int32_t top)
 {
-    /* Flow only grows towards the root. */
+    /* Flow grows towards the root, so that the walk can end where the flow exceeds that of `top`.
+     */
     while (i != top && !arbor_is_inlet(arbor, i) &&
            arbor->branch[i].flow <= arbor->branch[top].flow)
         i = arbor->branch[i].parent;
@@ -335,7 +339,7 @@ bool arbor_are_joined(const Arbor *arbor, int32_t i, int32_t j)
 
 void arbor_begin(Arbor *arbor)
 {
-    if (++arbor->move == 0) { /* the count has come round: forget what older moves saved */
+    if (++arbor->move == 0) { /* the number of the move has wrapped around */
         for (size_t i = 0; i < arbor->n; i++)
             arbor->branch[i].saved = arbor->shape[i].saved = 0;
         arbor->move = 1;
@@ -357,7 +361,7 @@ void arbor_undo(Arbor *arbor)
     arbor->pruned = 0;
 }
 
-/* The segment, now saved. */
+/* Saves the branch of segment i if the present move has not saved it yet, and returns it. */
 static Branch *branch_of(Arbor *arbor, int32_t i)
 {
     Branch *branch = &arbor->branch[i];
@@ -368,6 +372,7 @@ static Branch *branch_of(Arbor *arbor, int32_t i)
     return branch;
 }
 
+/* Does the same with the shape of segment i. */
 static Shape *shape_of(Arbor *arbor, int32_t i)
 {
     Shape *shape = &arbor->shape[i];
@@ -394,8 +399,9 @@ void arbor_sum_from(Arbor *arbor, int32_t i)
     }
 }
 
-/* Sums up from segments i and j to the root. The one with less flow comes first, which is below the
- * other if one is, until the ways meet. */
+/* Updates the sums of segments i and j and of all segments above them, each once. Takes the one
+ * with less flow first, which is the lower one if one is below the other, until the two paths meet.
+ */
 static void sum_from_both(Arbor *arbor, int32_t i, int32_t j)
 {
     const Branch *branch = arbor->branch;
@@ -428,7 +434,7 @@ void arbor_shift(Arbor *arbor, int32_t i, Vec3 place)
     pivot(arbor, i, arbor->shape[i].from, place, i);
 }
 
-/* Puts `with` where segment i begins. */
+/* Makes `with` a child of the node at which segment i begins, in the place of segment i. */
 static void replace(Arbor *arbor, int32_t i, int32_t with)
 {
     int32_t above = arbor->branch[i].parent;

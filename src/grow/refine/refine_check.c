@@ -2,7 +2,7 @@
  * none elsewhere after vessels are made straight, segments longer than 0, flow that leaves only at
  * terminals, all numbers of the law, and positions inside the domain. All of that is tested before
  * memory is allocated for the tree. */
-#include "grow/refine/refine_check.h"
+#include "grow/refine/refine_arbor.h"
 
 #include <stdlib.h>
 
@@ -14,9 +14,8 @@ static Status check_meta(const TreeMeta *meta, Err *err)
     return status;
 }
 
-/* Node i, which has so many children. */
-/* The node that the vessel which ends at node i comes from: the nearest above it that blood does
- * not only pass. */
+/* Returns the node at which the vessel that ends at node i begins: the nearest node above it that
+ * is a root or has two children. */
 static size_t proximal(const Tree *tree, const int32_t *children, size_t i)
 {
     do

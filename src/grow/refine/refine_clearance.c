@@ -13,17 +13,19 @@
 
 #include <stdlib.h>
 
-/* Segments that one thread finds room for at a time. */
+/* Number of segments per task of share_out. */
 enum { BATCH = 4096 };
-/* Cells of the grid a terminal. */
+/* Number of grid cells per terminal. Reason for 4 not recorded. */
 static const double cells_per_terminal = 4;
-/* Reserved radii over the radii: as a rule, and at least for a segment that moves. Vessels that
- * touch would make every other move impossible that widens them ever so little. */
+/* Ratio of reserved radii to radii: the wanted ratio, and the minimum for a segment that moves.
+ * With a ratio of 1, a vessel that touches another would forbid every move that widens it slightly.
+ */
 static const double reserve = 1.1, least_reserve = 1.04;
-/* The share of segments that must be clear at the level, and the least level but 0. */
+/* Share of the segments that must keep the rules at the level, and the smallest level above 0.
+ * Reasons not recorded. */
 static const double clear_share = 0.9;
 static const double least_level = 1.0 / 64;
-/* Room for the rounding of radii and lengths, over them. */
+/* Relative margin for the rounding of radii and lengths. */
 static const double slack = 1e-9;
 
 static Box box_of(const Domain *domain, const Arbor *arbor)
@@ -68,8 +70,9 @@ double clearance_reach(const Clearance *clearance, int32_t i, double reserved_ra
     return fmax(reserved_radius, wide) + clearance->gap + clearance->apart;
 }
 
-/* What a segment of `radius` reserves when it is given this share of its wish: at 0 the radius, at
- * 1 the reserve as well, at -1 nothing. Never more than its length allows. */
+/* Returns the reserved radius of a segment of `radius` mm if it gets this share of its request, in
+ * [-1, 1]. At 0 the reserved radius is the radius, at 1 it includes the full reserve, at -1 it is
+ * 0. It is never more than the segment's length allows. */
 static inline double reservation(const Clearance *clearance, const Branch *branch, double radius,
                                  double share)
 {
@@ -79,7 +82,7 @@ static inline double reservation(const Clearance *clearance, const Branch *branc
     return least + (fmin(reserve * clearance->level * radius, longest) - least) * share;
 }
 
-/* Returns the sum of what two segments reserve when both are given this share. */
+/* Returns the sum of the reserved radii of two segments that both get this share. */
 static inline double both_reserve(const Clearance *clearance, const Arbor *arbor, int32_t i,
                                   int32_t j, double share)
 {
@@ -87,7 +90,7 @@ static inline double both_reserve(const Clearance *clearance, const Arbor *arbor
            reservation(clearance, &arbor->branch[j], clearance->radius[j], share);
 }
 
-/* Returns the greatest share that two segments can both be given. */
+/* Returns the greatest share that two segments can both get without meeting. */
 static inline double common_share(const Clearance *clearance, const Arbor *arbor, int32_t i,
                                   int32_t j)
 {
@@ -105,7 +108,8 @@ double clearance_due(const Clearance *clearance, const Arbor *arbor, int32_t i, 
     return both_reserve(clearance, arbor, i, j, 0) + clearance_between(clearance, arbor, i, j);
 }
 
-/* The greatest share that segment i and all it meets leave to each other. */
+/* Returns the greatest share that segment i can get if every segment that it meets gets the same.
+ */
 static double fair_share(const Clearance *clearance, const Arbor *arbor, int32_t i)
 {
     const Shape *shape = &arbor->shape[i];
@@ -120,7 +124,7 @@ static double fair_share(const Clearance *clearance, const Arbor *arbor, int32_t
     return share;
 }
 
-/* Finds the radii of all segments and empties the grid. */
+/* Computes the radii of all segments, and empties the grid. */
 static Status measure(Clearance *clearance, Arbor *arbor, Err *err)
 {
     TRY(grid_reset(&clearance->grid, clearance->box, cells_per_terminal * (double)arbor->terminals,
@@ -131,7 +135,7 @@ static Status measure(Clearance *clearance, Arbor *arbor, Err *err)
     return STATUS_OK;
 }
 
-/* What share_out works on. */
+/* The context of share_out. */
 typedef struct Sharing {
     const Clearance *clearance;
     const Arbor *arbor;
@@ -149,9 +153,7 @@ static void share_out(size_t batch, int worker, void *context)
             clearance->share[i] = fair_share(clearance, sharing->arbor, (int32_t)i);
 }
 
-/* Reserves radii for all segments at the level; *clear: the share of segments that keep
- * the rules. */
-static Status reserve_all(Clearance *clearance, Arbor *arbor, double *clear, Err *err)
+Status clearance_reserve(Clearance *clearance, Arbor *arbor, Err *err)
 {
     TRY(measure(clearance, arbor, err));
     for (size_t i = arbor->inlets; i < arbor->n; i++) {
@@ -171,14 +173,14 @@ static Status reserve_all(Clearance *clearance, Arbor *arbor, double *clear, Err
             reserved_radius > 0 ? fmin(clearance->level / reserved_radius, 1 / radius) : 0;
     }
     arbor_sum(arbor);
-    *clear = (double)count / (double)(arbor->n - arbor->inlets);
+    clearance->kept = (double)count / (double)(arbor->n - arbor->inlets);
     return STATUS_OK;
 }
 
 Status clearance_init(Clearance *clearance, const Domain *domain, double apart, Arbor *arbor,
                       Err *err)
 {
-    double total = 0, clear;
+    double total = 0;
     for (size_t i = arbor->inlets; i < arbor->n; i++)
         total += arbor->branch[i].length;
     Box box = box_of(domain, arbor);
@@ -190,10 +192,10 @@ Status clearance_init(Clearance *clearance, const Domain *domain, double apart, 
                              .apart = apart};
     TRY(mem_calloc(&clearance->radius, arbor->n, sizeof *clearance->radius, "radii", err));
     TRY(mem_calloc(&clearance->share, arbor->n, sizeof *clearance->share, "reservations", err));
-    TRY(reserve_all(clearance, arbor, &clear, err));
-    while (clear < clear_share && clearance->level > 0) {
+    TRY(clearance_reserve(clearance, arbor, err));
+    while (clearance->kept < clear_share && clearance->level > 0) {
         clearance->level = clearance->level > least_level ? clearance->level / 2 : 0;
-        TRY(reserve_all(clearance, arbor, &clear, err));
+        TRY(clearance_reserve(clearance, arbor, err));
     }
     if (apart > 0 && clearance->level < 1)
         return err_set(err, STATUS_INFEASIBLE,
@@ -212,17 +214,11 @@ void clearance_release(Clearance *clearance)
     *clearance = (Clearance){0};
 }
 
-Status clearance_reserve(Clearance *clearance, Arbor *arbor, Err *err)
-{
-    double clear;
-    return reserve_all(clearance, arbor, &clear, err);
-}
-
-Status clearance_waive(Clearance *clearance, Arbor *arbor, double reserved, Err *err)
+Status clearance_waive(Clearance *clearance, Arbor *arbor, Err *err)
 {
     TRY(measure(clearance, arbor, err));
     for (size_t i = arbor->inlets; i < arbor->n; i++) {
-        arbor->shape[i].reserved_radius = reserved * clearance->level * clearance->radius[i];
+        arbor->shape[i].reserved_radius = WAIVED_RESERVE * clearance->level * clearance->radius[i];
         arbor->branch[i].inverse_limit = 0;
         TRY(enter(clearance, arbor, (int32_t)i, err));
     }
@@ -241,7 +237,8 @@ static double room_beside(const Clearance *clearance, const Arbor *arbor, int32_
            clearance_between(clearance, arbor, i, j);
 }
 
-/* The most that segment i can reserve, up to `wish`, beside the others' reservations. */
+/* Returns the largest radius, at most `wish`, that segment i can reserve beside the reserved radii
+ * of all other segments. */
 static double most_room(const Clearance *clearance, const Arbor *arbor, int32_t i, double wish)
 {
     const Shape *shape = &arbor->shape[i];
@@ -287,7 +284,8 @@ bool clearance_is_inside(const Clearance *clearance, const Arbor *arbor)
     return true;
 }
 
-/* Reserves radii for the segments that the present move has placed; false when one lacks room. */
+/* Reserves radii for the segments that the present move has placed. Returns false if one of them
+ * lacks room. */
 static bool reserve_moved(const Clearance *clearance, Arbor *arbor)
 {
     int moved = arbor->n_saved_shapes;

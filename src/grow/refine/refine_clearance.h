@@ -19,7 +19,7 @@
 typedef struct Clearance {
     const Domain *domain; /* NULL: all of space */
     Box box;
-    double level;        /* vessels count at their radii times this */
+    double level;        /* factor by which radii of vessels are multiplied, in [0, 1] */
     double least_length; /* mm; no segment is made shorter */
     double gap;          /* mm; minimum distance beyond the radii */
     double apart; /* mm; further distance between vessels of different trees; if it is above 0,
@@ -27,10 +27,11 @@ typedef struct Clearance {
     Grid grid;
     double *radius; /* per segment, mm, of the last clearance_reserve or clearance_waive; owned */
     double *share;  /* workspace of clearance_reserve; owned */
+    double kept;    /* share of the segments that kept the rules at the last clearance_reserve */
 } Clearance;
 
 /* Finds the greatest level (1, 1/2, ... 1/64, 0) at which nine in ten segments of the tree keep the
- * rules, and reserves radii at this level.
+ * rules, and reserves radii for all segments at this level.
  *
  * clearance  must be zeroed. Release it with clearance_release, also after an error.
  * domain     is borrowed; NULL: vessels may be anywhere.
@@ -40,8 +41,9 @@ MUST_CHECK Status clearance_init(Clearance *clearance, const Domain *domain, dou
                                  Arbor *arbor, Err *err);
 void clearance_release(Clearance *clearance);
 
-/* Reserves radii for all segments again, a tenth above the present radii where there is room, and
- * sums up the arbor. Errors: STATUS_MEMORY. Cost: O(n). */
+/* Computes the reserved radii of all segments: `level` times 1.1 times the present radii where
+ * there is room, less elsewhere. Updates `radius`, the grid and all sums of the arbor. Errors:
+ * STATUS_MEMORY. Cost: O(n). */
 MUST_CHECK Status clearance_reserve(Clearance *clearance, Arbor *arbor, Err *err);
 
 /* Returns the minimum distance, mm, between the reserved capsules of segments i and j. Between
@@ -70,9 +72,14 @@ static inline bool clearance_is_kept(const Clearance *clearance, const Arbor *ar
     return arbor->shape[i].reserved_radius >= clearance->level * clearance->radius[i];
 }
 
-/* Suspends the rules: reserves `reserved` times its radius for every segment, whether there is room
- * or not, and sets no limit to radii. Errors: STATUS_MEMORY. Cost: O(n). */
-MUST_CHECK Status clearance_waive(Clearance *clearance, Arbor *arbor, double reserved, Err *err);
+/* Ratio of reserved radii to radii while the rules are suspended: radii grow slightly until they
+ * are reserved again. Reason for 1.05 not recorded. */
+#define WAIVED_RESERVE 1.05
+
+/* Suspends the rules: reserves WAIVED_RESERVE times `level` times its radius for every segment,
+ * whether there is room or not, and removes the limits of radii. Penalties [refine_penalty.h] are
+ * computed from these reserved radii. Errors: STATUS_MEMORY. Cost: O(n). */
+MUST_CHECK Status clearance_waive(Clearance *clearance, Arbor *arbor, Err *err);
 
 /* Returns true if segment i is inside the domain and not shorter than least_length. */
 bool clearance_is_held(const Clearance *clearance, const Arbor *arbor, int32_t i);
@@ -81,13 +88,14 @@ bool clearance_is_held(const Clearance *clearance, const Arbor *arbor, int32_t i
  * shorter than least_length. */
 bool clearance_is_inside(const Clearance *clearance, const Arbor *arbor);
 
-/* Returns true if the present move keeps the rules, and then reserves radii in the arbor: 1.04
- * to 1.1 times the radius for segments that moved, and enough for segments that have outgrown their
- * reservation because of the move. If it returns false, the caller must undo the move. */
+/* Returns true if the present move [arbor_begin] keeps the rules. Then it has reserved radii in the
+ * arbor: 1.04 to 1.1 times the radius for segments that moved, and enough for segments whose radii
+ * exceed their reservations because of the move. If it returns false, the caller must call
+ * arbor_undo. */
 bool clearance_allows(const Clearance *clearance, Arbor *arbor);
 
-/* Enters in the grid what a move changed. Call it for every move that is kept. Errors:
- * STATUS_MEMORY. */
+/* Updates the grid after a move: enters the segments that the move changed with their new
+ * positions. Call it for every move that is kept. Errors: STATUS_MEMORY. */
 MUST_CHECK Status clearance_follow(Clearance *clearance, const Arbor *arbor, Err *err);
 
 #endif

@@ -6,10 +6,8 @@
  * Segments that would be shorter than wide are pushed apart.
  *
  * Moving bifurcations one by one gets stuck far from the optimum where bifurcations would merge:
- * each waits for the other. On the path to the goals the rules are kept [refine_approach.h]. */
+ * each waits for the other. On the path to the goals the rules are kept [refine_approach.c]. */
 #include "grow/refine/refine_joint.h"
-
-#include "grow/refine/refine_approach.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -36,12 +34,8 @@ Status joints_init(Joints *joints, size_t nodes, Err *err)
     TRY(mem_calloc(&joints->start, nodes, sizeof *joints->start, "places", err));
     TRY(mem_calloc(&joints->goal, nodes, sizeof *joints->goal, "places", err));
     TRY(mem_calloc(&joints->place, nodes, sizeof *joints->place, "places", err));
-    TRY(mem_calloc(&joints->load, nodes, sizeof *joints->load, "loads", err));
-    TRY(mem_calloc(&joints->step, nodes, sizeof *joints->step, "steps", err));
     TRY(mem_calloc(&joints->spring, nodes, sizeof *joints->spring, "springs", err));
-    TRY(mem_calloc(&joints->returns, nodes, sizeof *joints->returns, "nodes", err));
-    TRY(mem_calloc(&joints->fixed, nodes, sizeof *joints->fixed, "nodes", err));
-    return mem_calloc(&joints->was_clear, nodes, sizeof *joints->was_clear, "segments", err);
+    return mem_calloc(&joints->mark, nodes, sizeof *joints->mark, "nodes", err);
 }
 
 void joints_release(Joints *joints)
@@ -51,16 +45,13 @@ void joints_release(Joints *joints)
     free(joints->start);
     free(joints->goal);
     free(joints->place);
-    free(joints->load);
-    free(joints->step);
     free(joints->spring);
-    free(joints->returns);
-    free(joints->fixed);
-    free(joints->was_clear);
+    free(joints->mark);
     *joints = (Joints){0};
 }
 
-/* Of a segment: the pull on its distal end, and its second derivatives. */
+/* Returns the first derivatives of the cost of segment i with respect to its distal end, and sets
+ * `curvature` to the second derivatives. */
 static Vec3 derive(const Joints *joints, const Arbor *arbor, int32_t i, double curvature[6])
 {
     const Shape *shape = &arbor->shape[i];
@@ -131,32 +122,31 @@ static void add_in_series(const double k[6], const double inverse[6], const doub
 static void eliminate(Joints *joints, const Arbor *arbor, int32_t i)
 {
     int32_t above = arbor->branch[i].parent;
-    double curvature[6], *spring = joints->spring[i], sum[6], inverse[6];
+    JointSpring *own = &joints->spring[i], *mother = &joints->spring[above];
+    double curvature[6], sum[6], inverse[6];
     Vec3 pull = derive(joints, arbor, i, curvature), handed = vec3(0, 0, 0);
     if (arbor->branch[i].child[0] < 0) {
         for (int k = 0; k < 6; k++)
-            joints->spring[above][k] += curvature[k];
+            mother->matrix[k] += curvature[k];
     } else {
         for (int k = 0; k < 6; k++)
-            sum[k] = spring[k] + curvature[k];
+            sum[k] = own->matrix[k] + curvature[k];
         invert(sum, inverse);
-        add_in_series(spring, inverse, curvature, joints->spring[above]);
-        joints->load[i] = vec3_add(joints->load[i], pull);
-        Vec3 alone = times(inverse, joints->load[i]);
-        joints->promise += vec3_dot(joints->load[i], alone);
+        add_in_series(own->matrix, inverse, curvature, mother->matrix);
+        own->load = vec3_add(own->load, pull);
+        Vec3 alone = times(inverse, own->load);
+        joints->promise += vec3_dot(own->load, alone);
         handed = times(curvature, alone);
-        memcpy(spring, inverse, sizeof inverse);
+        memcpy(own->matrix, inverse, sizeof inverse);
     }
-    joints->load[above] = vec3_add(joints->load[above], vec3_sub(handed, pull));
+    mother->load = vec3_add(mother->load, vec3_sub(handed, pull));
 }
 
-/* Finds the step of every bifurcation, and what it promises. */
+/* Computes the step of every bifurcation, and the gain that it promises. */
 static void find_step(Joints *joints, const Arbor *arbor)
 {
     joints->promise = 0;
     memset(joints->spring, 0, arbor->n * sizeof *joints->spring);
-    memset(joints->load, 0, arbor->n * sizeof *joints->load);
-    memset(joints->step, 0, arbor->n * sizeof *joints->step);
     for (size_t k = joints->n; k-- > 0;)
         eliminate(joints, arbor, joints->order[k]);
     for (size_t k = 0; k < joints->n; k++) {
@@ -165,26 +155,21 @@ static void find_step(Joints *joints, const Arbor *arbor)
         if (arbor->branch[i].child[0] < 0)
             continue;
         derive(joints, arbor, i, curvature);
-        Vec3 right = times(curvature, joints->step[arbor->branch[i].parent]);
-        joints->step[i] = times(joints->spring[i], vec3_sub(right, joints->load[i]));
+        JointSpring *own = &joints->spring[i];
+        Vec3 right = times(curvature, joints->spring[arbor->branch[i].parent].step);
+        own->step = times(own->matrix, vec3_sub(right, own->load));
     }
 }
 
-/* Moves every node a part of the path from one position to another. */
-static void arrange(const Joints *joints, Arbor *arbor, const Vec3 *from, const Vec3 *by,
-                    double part)
-{
-    for (size_t i = 0; i < arbor->n; i++)
-        joints->place[i] = vec3_add_scaled(from[i], by[i], part);
-    arbor_arrange(arbor, joints->parent, joints->place);
-}
-
-/* Takes the longest of a few parts of the step that lowers S_root by enough, into goal. */
+/* Moves the goals by the largest tried part of the step that lowers S_root by enough. Returns false
+ * if no part does, or if the gain is small. */
 static bool take_step(Joints *joints, Arbor *arbor)
 {
     double before = arbor_cost(arbor), part = 1;
     for (int k = 0; k < HALVINGS; k++, part /= 2) {
-        arrange(joints, arbor, joints->goal, joints->step, part);
+        for (size_t i = 0; i < arbor->n; i++)
+            joints->place[i] = vec3_add_scaled(joints->goal[i], joints->spring[i].step, part);
+        arbor_arrange(arbor, joints->parent, joints->place);
         double gain = before - arbor_cost(arbor);
         if (!(gain > least_share * part * joints->promise))
             continue;
@@ -195,6 +180,7 @@ static bool take_step(Joints *joints, Arbor *arbor)
     return false;
 }
 
+/* Records the arbor as it is before the move. */
 static void begin(Joints *joints, const Arbor *arbor, const Clearance *clearance)
 {
     joints->n = 0;
@@ -203,7 +189,7 @@ static void begin(Joints *joints, const Arbor *arbor, const Clearance *clearance
     for (size_t i = 0; i < arbor->n; i++) {
         joints->parent[i] = arbor->branch[i].parent;
         joints->start[i] = arbor->shape[i].to;
-        joints->was_clear[i] = clearance_is_kept(clearance, arbor, (int32_t)i);
+        joints->mark[i].was_clear = clearance_is_kept(clearance, arbor, (int32_t)i);
     }
     memcpy(joints->goal, joints->start, arbor->n * sizeof *joints->goal);
     double length = 0;
@@ -213,7 +199,7 @@ static void begin(Joints *joints, const Arbor *arbor, const Clearance *clearance
     joints->level = clearance->level;
 }
 
-/* Steps until one gains little. False when there is none. */
+/* Makes steps until one gains little. Returns false if S_root is not lower afterwards. */
 static bool find_goals(Joints *joints, Arbor *arbor)
 {
     double before = arbor_cost(arbor);

@@ -82,7 +82,7 @@ static void leave_end(const Law *law, const Bifurcation *problem, BifurcationSta
     }
 }
 
-/* Keeps the present move, which ends with a bifurcation at the end of segment i. */
+/* Keeps the present move, which has placed the bifurcation at the end of segment i. */
 static Status keep(LocalSearch *search, int32_t i, Err *err)
 {
     Arbor *arbor = &search->arbor;
@@ -94,8 +94,9 @@ static Status keep(LocalSearch *search, int32_t i, Err *err)
     return clearance_follow(&search->clearance, arbor, err);
 }
 
-/* What the bifurcation at the end of segment i, where the present move has put it, costs beside
- * S_root: penalties; while they are closed, nothing or more than any move can gain. */
+/* Returns what the bifurcation at the end of segment i costs besides S_root at the position of the
+ * present move: its penalties. While penalties are not active, returns 0 if the move keeps the
+ * rules and INFINITY if not. */
 static double surcharge(LocalSearch *search, int32_t i)
 {
     Arbor *arbor = &search->arbor;
@@ -173,7 +174,7 @@ Status move_bifurcation(LocalSearch *search, int32_t i, Err *err)
 
 typedef struct MoveCandidate {
     int32_t host;
-    double price; /* of connecting there, by the marginals */
+    double price; /* increase of S_root by the connection, estimated from the marginals */
     Bifurcation problem;
     BifurcationState state;
 } MoveCandidate;
@@ -188,7 +189,8 @@ static Marginal marginal_of(const Arbor *arbor, int32_t i)
     return is_near ? arbor_marginal(arbor, i) : arbor->marginal[i];
 }
 
-/* Prices the connection of `subtree`, which is pruned, to `host`. */
+/* Estimates the price of connecting `subtree`, which is pruned, to `host`. Returns false if a
+ * number is not finite. */
 static bool price(const LocalSearch *search, int32_t subtree, int32_t host, MoveCandidate *out)
 {
     const Arbor *arbor = &search->arbor;
@@ -213,6 +215,7 @@ typedef struct Candidates {
     MoveCandidate list[CANDIDATES]; /* the first is where the subtree came from */
 } Candidates;
 
+/* Adds a host to the candidates, unless it is one already or they are complete. */
 static void propose(const LocalSearch *search, int32_t subtree, int32_t host, Candidates *out)
 {
     for (int k = 0; k < out->count; k++)
@@ -222,8 +225,9 @@ static void propose(const LocalSearch *search, int32_t subtree, int32_t host, Ca
         out->count += price(search, subtree, host, &out->list[out->count]);
 }
 
-/* Finds connections of `subtree`, which is pruned: to the segment that it came from, to those that
- * this one shares a node with, and to the nearest. None when the first has no price. */
+/* Finds connections of `subtree`, which is pruned: to the segment `origin` that it came from, to
+ * the segments that share a node with `origin`, and to the nearest segments. Finds none if the
+ * first has no price. */
 static void find_candidates(LocalSearch *search, int32_t subtree, int32_t origin, Candidates *out)
 {
     const Arbor *arbor = &search->arbor;
@@ -248,6 +252,8 @@ static void find_candidates(LocalSearch *search, int32_t subtree, int32_t origin
             propose(search, subtree, near[k].segment, out);
 }
 
+/* Chooses the cheapest candidate or, at a temperature above 0, draws one from the Boltzmann
+ * distribution. */
 static int choose(LocalSearch *search, const MoveCandidate *candidate, int count,
                   double temperature)
 {

@@ -17,12 +17,14 @@ typedef struct LocalSearch {
     uint64_t tried, kept; /* numbers of moves */
 } LocalSearch;
 
-/* Moves the bifurcation at the end of segment i, which is not a terminal, to where S_root and
- * penalties are lower, if the rules allow it. Errors: STATUS_MEMORY. */
+/* Moves the bifurcation at the end of segment i, which is not a terminal, to a position with a
+ * lower sum of S_root [law.h] and penalties. Leaves the arbor as it was if no such position was
+ * found that the rules of clearance allow. Counts in `tried` and `kept`. Errors: STATUS_MEMORY. */
 MUST_CHECK Status move_bifurcation(LocalSearch *search, int32_t i, Err *err);
 
-/* Cuts segment i off, with all below it, and connects it to one of the nearest segments, or where
- * it was. Root segments stay, and every subtree stays in its tree.
+/* Cuts segment i off, with all segments below it, and connects it to one of the nearest segments,
+ * or again where it was. Root segments are not moved, and every subtree stays in its tree. Counts
+ * in `tried` and `kept`.
  *
  * temperature   0 chooses the connection with the lowest S_root and penalties. Above 0, in units of
  *               S_root: a connection that costs that much more than the best has 1 / e of the best

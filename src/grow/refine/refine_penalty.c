@@ -9,10 +9,9 @@
 
 #include <stdlib.h>
 
-/* How rates rise after a round: all, and those of segments that break a rule. */
+/* Factors by which rates rise after a round: of segments that keep the rules, and of segments that
+ * break a rule. Reasons not recorded. */
 static const double rise = 1.1, steep_rise = 2.2;
-/* Ratio of reserved radii to radii: radii grow slightly until they are reserved again. */
-static const double reserve = 1.05;
 
 Status penalties_init(Penalties *penalties, size_t segments, Err *err)
 {
@@ -42,11 +41,6 @@ void penalties_begin(Penalties *penalties, const Arbor *arbor, double rate)
     penalties->active = true;
 }
 
-Status penalties_reserve(Clearance *clearance, Arbor *arbor, Err *err)
-{
-    return clearance_waive(clearance, arbor, reserve, err);
-}
-
 void penalties_raise(Penalties *penalties, const Clearance *clearance, const Arbor *arbor)
 {
     penalties->n_broken = 0;
@@ -58,7 +52,7 @@ void penalties_raise(Penalties *penalties, const Clearance *clearance, const Arb
     }
 }
 
-/* What two segments pay together. */
+/* Returns the penalty that segments i and j pay for their overlap. */
 static inline double penalty_between(const Penalties *penalties, const Clearance *clearance,
                                      const Arbor *arbor, int32_t i, int32_t j)
 {
@@ -71,7 +65,8 @@ static inline double penalty_between(const Penalties *penalties, const Clearance
     return (reach - sqrt(distance2)) * fmin(penalties->rate[i], penalties->rate[j]);
 }
 
-/* What segment i pays for itself and with all that this count has not come across yet. */
+/* Returns the penalty of segment i: for its length, and for its overlaps with all segments that the
+ * present count has not seen yet. */
 static double penalty_of_segment(Penalties *penalties, const Clearance *clearance,
                                  const Arbor *arbor, int32_t i)
 {
@@ -115,7 +110,8 @@ double penalty_at_bifurcation(Penalties *penalties, const Clearance *clearance, 
 {
     const int32_t *child = arbor->branch[i].child;
     Reduced mother = arbor_reduce(arbor, i);
-    double unit = reserve * clearance->level * arbor->radius_unit * arbor_marginal(arbor, i).gauge;
+    double unit =
+        WAIVED_RESERVE * clearance->level * arbor->radius_unit * arbor_marginal(arbor, i).gauge;
     arbor_reserve(arbor, i, unit * mother.rho, 0);
     for (int side = 0; side < 2; side++)
         arbor_reserve(arbor, child[side],

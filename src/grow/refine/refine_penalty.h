@@ -10,7 +10,7 @@
 #include "grow/refine/refine_arbor.h"
 #include "grow/refine/refine_clearance.h"
 
-/* Arrays are owned. */
+/* The penalties of a search. The arrays are owned. Zeroed: penalties are not active. */
 typedef struct Penalties {
     bool active;     /* rules may be broken; otherwise no segment pays */
     double *rate;    /* per segment, S_root / mm */
@@ -23,16 +23,13 @@ typedef struct Penalties {
 /* Allocates the arrays of *penalties, which is zeroed. Release with penalties_release, also after
  * an error. Errors: STATUS_MEMORY. */
 MUST_CHECK Status penalties_init(Penalties *penalties, size_t segments, Err *err);
+/* Frees the arrays and zeroes *penalties, which may be zeroed before. */
 void penalties_release(Penalties *penalties);
 
-/* Activates penalties; the caller deactivates them by active = false. Needs fresh marginals. The
- * rate of a segment is `rate` times the geometric mean of two costs in S_root: of a mm of the
+/* Activates penalties; the caller deactivates them by active = false. Call it after arbor_refresh.
+ * The rate of a segment is `rate` times the geometric mean of two costs in S_root: of a mm of the
  * segment and of a mm of all vessels; but not less than `rate` times the latter. */
 void penalties_begin(Penalties *penalties, const Arbor *arbor, double rate);
-
-/* Sets the reserved radii, by which penalties are counted, to 1.05 times the present radii, whether
- * there is room or not. Errors: STATUS_MEMORY. Cost: O(n). */
-MUST_CHECK Status penalties_reserve(Clearance *clearance, Arbor *arbor, Err *err);
 
 /* Multiplies the rates of segments that break a rule, as of the last clearance_reserve, by 2.2, and
  * all other rates by 1.1. Lists the segments that break a rule in `broken`. */

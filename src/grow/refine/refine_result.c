@@ -1,7 +1,7 @@
 /* Radii are r = q g rho [law.h]: rho is in the arbor's sums, and g is multiplied from the root
  * down. Both only add and multiply positive numbers, so every radius is exact to a few units in the
  * last place. */
-#include "grow/refine/refine_result.h"
+#include "grow/refine/refine_arbor.h"
 
 #include <float.h>
 #include <stdlib.h>
