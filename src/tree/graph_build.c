@@ -36,9 +36,7 @@ typedef struct Building {
     GraphLink *link;
     size_t n_links;
     uint32_t *component; /* per point: the sets of connected points [base/sets.h] */
-    uint32_t *degree;    /* per kept point: count of its links */
-    uint32_t *first;     /* per point: where the list of its links starts in `at` */
-    uint32_t *at;        /* indices of links, the list of one point after another */
+    IndexLists links;    /* per kept point: its links */
     uint32_t *parent;    /* per kept point: its parent + 1; 0: none */
     uint32_t *above;     /* per kept point: the link to its parent */
     bool *used;          /* per link: it has been directed; `a` is then its proximal point */
@@ -52,9 +50,7 @@ static void release(Building *building)
     free(building->representative);
     free(building->link);
     free(building->component);
-    free(building->degree);
-    free(building->first);
-    free(building->at);
+    indexlists_release(&building->links);
     free(building->parent);
     free(building->above);
     free(building->used);
@@ -336,38 +332,39 @@ static Status treat_loops(Building *building, Err *err)
 
 /* ---- roots ---- */
 
+/* Returns the number of links of a kept point. */
+static uint32_t degree_of(const Building *building, size_t point)
+{
+    return indexlists_length(&building->links, point);
+}
+
 /* Returns true if a point becomes a node. A point without lines does so only if the file was
  * written from a tree. */
 static bool is_node(const Building *building, size_t point)
 {
     return building->representative[point] == point &&
-           (building->degree[point] > 0 || building->graph->is_tree);
+           (degree_of(building, point) > 0 || building->graph->is_tree);
 }
 
 static Status list_links(Building *building, Err *err)
 {
-    size_t n = building->graph->n_points;
-    TRY(mem_calloc(&building->degree, n, sizeof *building->degree, "degrees", err));
-    TRY(mem_calloc(&building->first, n, sizeof *building->first, "links of points", err));
-    TRY(mem_calloc(&building->at, 2 * building->n_links, sizeof *building->at, "links of points",
-                   err));
+    IndexLists *links = &building->links;
+    TRY(indexlists_begin(links, building->graph->n_points, "links of points", err));
     for (size_t i = 0; i < building->n_links; i++) {
-        building->degree[building->link[i].a]++;
-        building->degree[building->link[i].b]++;
+        indexlists_count(links, building->link[i].a);
+        indexlists_count(links, building->link[i].b);
     }
-    uint32_t end = 0;
-    for (size_t i = 0; i < n; i++)
-        building->first[i] = end += building->degree[i];
-    for (size_t i = building->n_links; i-- > 0;) {
-        building->at[--building->first[building->link[i].a]] = (uint32_t)i;
-        building->at[--building->first[building->link[i].b]] = (uint32_t)i;
+    TRY(indexlists_allot(links, "links of points", err));
+    for (uint32_t i = 0; i < building->n_links; i++) {
+        indexlists_put(links, building->link[i].a, i);
+        indexlists_put(links, building->link[i].b, i);
     }
     return STATUS_OK;
 }
 
 static const GraphLink *link_at(const Building *building, uint32_t point, uint32_t k)
 {
-    return &building->link[building->at[building->first[point] + k]];
+    return &building->link[building->links.items[building->links.first[point] + k]];
 }
 
 /* How good a root a point is for its component; the highest rank wins. */
@@ -384,15 +381,15 @@ static LinkCandidate judge(const Building *building, uint32_t point)
     const Graph *graph = building->graph;
     LinkCandidate made = {.point = point + 1};
     bool leads_away = true;
-    for (uint32_t k = 0; k < building->degree[point]; k++) {
+    for (uint32_t k = 0; k < degree_of(building, point); k++) {
         const GraphLink *link = link_at(building, point, k);
         leads_away = leads_away && graph->line[link->line].is_directed && link->a == point;
         made.thickness = fmax(made.thickness, link->thickness);
     }
-    made.rank = graph->point[point].is_inlet   ? RANK_INLET
-                : leads_away                   ? RANK_SOURCE
-                : building->degree[point] == 1 ? RANK_END
-                                               : RANK_ANY;
+    made.rank = graph->point[point].is_inlet      ? RANK_INLET
+                : leads_away                      ? RANK_SOURCE
+                : degree_of(building, point) == 1 ? RANK_END
+                                                  : RANK_ANY;
     return made;
 }
 
@@ -473,9 +470,9 @@ static uint32_t direct_vessel(Building *building, uint32_t from, uint32_t at, bo
         reached[to] = true;
         building->parent[to] = from + 1;
         building->above[to] = at;
-        if (building->degree[to] != 2)
+        if (degree_of(building, to) != 2)
             return to;
-        const uint32_t *both = &building->at[building->first[to]];
+        const uint32_t *both = building->links.items + building->links.first[to];
         at = both[both[0] == at];
         from = to;
     }
@@ -491,8 +488,8 @@ static void direct_from(Building *building, uint32_t root, uint32_t *queue, bool
     reached[root] = true;
     while (done < n) {
         uint32_t point = queue[done++];
-        for (uint32_t k = 0; k < building->degree[point]; k++) {
-            uint32_t at = building->at[building->first[point] + k];
+        for (uint32_t k = 0; k < degree_of(building, point); k++) {
+            uint32_t at = building->links.items[building->links.first[point] + k];
             uint32_t end = direct_vessel(building, point, at, reached);
             if (end != NO_POINT)
                 queue[n++] = end;
@@ -590,7 +587,7 @@ static Status radius_of_root(const Building *building, uint32_t kept, double *ra
         *radius = graph->point[kept].radius;
         return STATUS_OK;
     }
-    for (uint32_t k = 0; k < building->degree[kept]; k++) {
+    for (uint32_t k = 0; k < degree_of(building, kept); k++) {
         const GraphLink *link = link_at(building, kept, k);
         double of_link;
         TRY(radius_of_link(building, link, &of_link, err));
@@ -821,7 +818,7 @@ static Status find_near_ends(Building *building, Err *err)
     TRY_GOTO(mem_calloc(&component, graph->n_points, sizeof *component, "components", err));
     for (uint32_t i = 0; i < graph->n_points; i++) {
         component[i] = is_node(building, i) ? sets_find(building->component, i) + 1 : 0;
-        if (component[i] && building->degree[i] == 1)
+        if (component[i] && degree_of(building, i) == 1)
             reach[i] = fmin(median, reach_of(graph, link_at(building, i, 0)));
     }
     status = graph_near_ends(graph, component, reach, median, building->reading, err);

@@ -75,6 +75,14 @@ void tree_hash(const Tree *tree, Hash *hash)
             hash_add(hash, &meta->number[key], sizeof meta->number[key]);
 }
 
+bool tree_has_types(const Tree *tree)
+{
+    size_t i = 0;
+    while (i < tree->n && tree->type[i] == TREE_VESSEL_TYPE)
+        i++;
+    return i < tree->n;
+}
+
 int32_t tree_last_id(const Tree *tree)
 {
     int32_t last = 0;

@@ -169,12 +169,3 @@ size_t keyword_find(const char *word, const char *const *keywords, size_t n)
         i++;
     return i;
 }
-
-void keywords_put(const char *const *first, size_t n, size_t stride, Text *text)
-{
-    for (size_t i = 0; i < n; i++) {
-        const char *word = *(const char *const *)((const char *)first + i * stride);
-        if (word)
-            text_printf(text, "%s\n", word);
-    }
-}

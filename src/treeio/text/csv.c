@@ -155,12 +155,6 @@ Status csv_read(TreeBuilder *builder, char *bytes, size_t size, Err *err)
     return status;
 }
 
-void csv_keywords(Text *text)
-{
-    KEYWORDS_PUT(node_columns, , text);
-    table_keywords(text);
-}
-
 /* The first line that is no comment names a parent and coordinates in mm. */
 bool csv_detect(const char *start)
 {

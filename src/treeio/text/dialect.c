@@ -27,15 +27,11 @@ size_t dialect_find_section(const Dialect *dialect, const char *title)
     return i;
 }
 
-void dialect_put_keywords(const Dialect *dialect, Text *text)
-{
-    keywords_put(&dialect->section->title, dialect->n_sections, sizeof *dialect->section, text);
-    keywords_put(&dialect->field->name, dialect->n_fields, sizeof *dialect->field, text);
-}
-
 /* ---- fields ---------------------------------------------------------------------------------- */
 
-Status field_position(char *const field[3], Vec3 *position, Err *err)
+/* Reads three fields as a position: x, y, z. Errors: STATUS_INPUT, without file and line, unless
+ * all are finite numbers. */
+static Status field_position(char *const field[3], Vec3 *position, Err *err)
 {
     double *const coordinate[] = {&position->x, &position->y, &position->z};
     for (size_t i = 0; i < 3; i++)

@@ -133,11 +133,6 @@ static const Dialect dialect = {.section = cards,
                                 .comment = read_comment,
                                 .choose = choose_card};
 
-void oned_keywords(Text *text)
-{
-    dialect_put_keywords(&dialect, text);
-}
-
 /* The first word is the name of a card. */
 bool oned_detect(const char *start)
 {

@@ -359,10 +359,10 @@ Status swc_read(TreeBuilder *builder, char *bytes, size_t size, Err *err)
         TRY(read_plain_rows(&reader, end, err));
     if (reader.lowest_id == 1)
         return STATUS_OK;
-    if (builder->n_shares > 0 || builder->n_pairs > 0)
+    if (builder->shares.n > 0 || builder->pairs.n > 0)
         return err_set(err, STATUS_INPUT,
                        "%s: the ids start at 0, but a %s refers to nodes by ids from 1 on",
-                       builder->name, builder->n_shares > 0 ? share_key : tree_pairs_name);
+                       builder->name, builder->shares.n > 0 ? share_key : tree_pairs_name);
     return reading_note(builder->reading, err, "ids start at 0 in the file; 1 was added to each");
 }
 

@@ -172,11 +172,6 @@ static const Dialect dialect = {.section = sections,
                                 .comment = read_comment,
                                 .choose = choose_section};
 
-void vmv_keywords(Text *text)
-{
-    dialect_put_keywords(&dialect, text);
-}
-
 /* ---- checks ---------------------------------------------------------------------------------- */
 
 static Status check_count(const Graph *graph, const char *what, int32_t stated, size_t found,

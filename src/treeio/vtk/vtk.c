@@ -426,14 +426,6 @@ static Status add_all_cells(LegacyReader *reader, Err *err)
     return STATUS_OK;
 }
 
-void vtk_keywords(Text *text)
-{
-    KEYWORDS_PUT(blocks, .keyword, text);
-    KEYWORDS_PUT(attributes, .keyword, text);
-    KEYWORDS_PUT(vtk_cell_kinds, .legacy, text);
-    vtk_put_type_names(NAMING_LEGACY, text);
-}
-
 bool vtk_detect(const char *start)
 {
     static const char head[] = "# vtk DataFile Version";

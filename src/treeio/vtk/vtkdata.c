@@ -81,11 +81,6 @@ const char *vtk_type_name(VtkNaming naming, VtkType type)
     return type_names[i].name[naming];
 }
 
-void vtk_put_type_names(VtkNaming naming, Text *text)
-{
-    KEYWORDS_PUT(type_names, .name[naming], text);
-}
-
 size_t vtk_type_size(VtkType type)
 {
     return types[type].size;
@@ -212,7 +207,9 @@ VtkArray *vtk_find_array(const VtkArrays *arrays, const char *name)
     return NULL;
 }
 
-double *vtk_detach_values(VtkArrays *arrays, const char *name)
+/* Removes the array of this name and releases it. Returns its values (owned), or NULL if there is
+ * no such array. `name` may be NULL. */
+static double *vtk_detach_values(VtkArrays *arrays, const char *name)
 {
     VtkArray *array = name ? vtk_find_array(arrays, name) : NULL;
     if (!array)

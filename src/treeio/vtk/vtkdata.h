@@ -46,8 +46,6 @@ MUST_CHECK Status vtk_find_type(VtkNaming naming, const char *name, const char *
                                 VtkType *type, Err *err);
 /* Returns the first name of a type in a format. */
 const char *vtk_type_name(VtkNaming naming, VtkType type);
-/* Appends all names of types in a format, one per line. */
-void vtk_put_type_names(VtkNaming naming, Text *text);
 /* Returns the number of bytes of one value. Text has bytes of 1. */
 size_t vtk_type_size(VtkType type);
 
@@ -82,9 +80,6 @@ void vtk_release_array(VtkArray *array);
 MUST_CHECK Status vtk_add_array(VtkArrays *arrays, VtkArray *array, Err *err);
 /* Returns the first array of this name, or NULL. */
 VtkArray *vtk_find_array(const VtkArrays *arrays, const char *name);
-/* Removes the array of this name and releases it. Returns its values (owned), or NULL if there is
- * no such array. `name` may be NULL. */
-double *vtk_detach_values(VtkArrays *arrays, const char *name);
 
 /* Sets the value of one element in the array of this name, which is made if there is none. Earlier
  * elements without a value get NAN.

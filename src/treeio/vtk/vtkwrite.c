@@ -102,14 +102,6 @@ static Status list_points(VtkLines *lines, Err *err)
     return STATUS_OK;
 }
 
-static bool has_types(const Tree *tree)
-{
-    for (size_t i = 0; i < tree->n; i++)
-        if (tree->type[i] != TREE_VESSEL_TYPE)
-            return true;
-    return false;
-}
-
 /* Lists the arrays in the order of the file. */
 static Status list_arrays(VtkLines *lines, Err *err)
 {
@@ -117,7 +109,7 @@ static Status list_arrays(VtkLines *lines, Err *err)
     size_t points = lines->n_points, roots = lines->n_roots;
     const size_t n[KINDS] = {[RADIUS] = points,
                              [ID] = points,
-                             [TYPE] = has_types(tree) ? points : 0,
+                             [TYPE] = tree_has_types(tree) ? points : 0,
                              [SHARE] = tree->flow_share ? points : 0,
                              [LINK] = tree->link ? points : 0,
                              [POSITION] = 3 * points,

@@ -414,14 +414,6 @@ static Status join_pieces(VtpReader *reader, VtkData *data, Err *err)
     return STATUS_OK;
 }
 
-void vtp_keywords(Text *text)
-{
-    for (size_t section = 0; section < SECTIONS; section++)
-        text_printf(text, "<%s>\n", section_name(section));
-    KEYWORDS_PUT(packings, , text);
-    vtk_put_type_names(NAMING_XML, text);
-}
-
 bool vtp_detect(const char *start)
 {
     return xml_begins(start, "VTKFile");

@@ -306,12 +306,6 @@ done:
     return status;
 }
 
-void graphml_keywords(Text *text)
-{
-    for (int k = 0; k < 3; k++)
-        KEYWORDS_PUT(axis_names, [k], text);
-}
-
 bool graphml_detect(const char *start)
 {
     return xml_begins(start, "graphml");
