@@ -1,6 +1,6 @@
-/* The number of a line is counted only when a word is refused: the lines before it are then still
- * whole. A text that is read by lines counts them as they are cut, because cutting removes their
- * ends. */
+/* A text that is read by words counts its lines only for an error, because the line ends are still
+ * there. A text that is read by lines counts each line that it cuts, because cutting removes the
+ * line ends. */
 #include "treeio/cursor.h"
 
 #include "treeio/formats.h"
@@ -49,6 +49,7 @@ static bool is_among(const char *set, char c)
     return c && strchr(set, c);
 }
 
+/* Moves past separators, comments and, if the syntax permits them, zero bytes. */
 static void skip_between(Cursor *cursor)
 {
     const CursorSyntax *syntax = cursor->syntax;
@@ -81,8 +82,8 @@ static void copy_word(const char *from, size_t length, char word[CURSOR_WORD])
     word[kept] = '\0';
 }
 
-/* Reads a word up to the quote that closes it, or up to the end. The cursor is behind the first
- * quote. */
+/* Reads a quoted word up to its closing quote, or up to the end of the text. The cursor is after
+ * the opening quote. */
 static void take_quoted(Cursor *cursor, char word[CURSOR_WORD])
 {
     const char *quote = memchr(cursor->at, '"', cursor_left(cursor));

@@ -1,6 +1,6 @@
-/* A line is cut into fields, the format says to which section it belongs, and the table of fields
- * says what becomes of each. Segments keep the names of their points until the end, because points
- * may come later. */
+/* A line is cut into fields. The function `choose` of the format selects the section of the line,
+ * and the table of fields gives each field of the section its meaning. Segments keep the names of
+ * their points until the end of the file, because the points may come later. */
 #include "treeio/text/dialect.h"
 
 #include "treeio/cursor.h"
@@ -39,6 +39,7 @@ static Status field_position(char *const field[3], Vec3 *position, Err *err)
     return STATUS_OK;
 }
 
+/* Adds the column of field `k` to the graph if it is not there yet. */
 static Status open_column(DialectReader *reader, size_t k, Err *err)
 {
     const DialectField *field = &reader->dialect->field[k];
@@ -121,7 +122,7 @@ static Status read_field(DialectReader *reader, DialectRow *row, size_t k, Err *
 
 /* ---- rows ------------------------------------------------------------------------------------ */
 
-/* Adds the row's point, and keeps its segment. */
+/* Adds the row's point to the graph, and the row's segment to the pending segments. */
 static Status add_elements(DialectReader *reader, DialectRow *row, Err *err)
 {
     Graph *graph = reader->graph;

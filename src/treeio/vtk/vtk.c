@@ -1,7 +1,8 @@
-/* Reads legacy VTK: keywords as text, and after each keyword the numbers that it announces, as text
- * or as big-endian bytes. What is announced is compared with the bytes that are left before memory
- * is allocated. Cells come as counts and points in turns (before version 5), or as two arrays,
- * OFFSETS and CONNECTIVITY. */
+/* Reads legacy VTK. A keyword announces numbers, which follow as text or as big-endian bytes. The
+ * announced count is compared with the number of bytes that are left before memory is allocated.
+ *
+ * Cells have two forms. Before version 5 of the format, each cell is a count followed by that many
+ * point indices. From version 5 on, cells are two arrays, OFFSETS and CONNECTIVITY. */
 #include "treeio/cursor.h"
 #include "treeio/formats.h"
 #include "treeio/vtk/vtkdata.h"
@@ -90,7 +91,8 @@ static void decode(char *name)
     *to = '\0';
 }
 
-/* Reads the length of a binary string. Its first two bits say how many bytes the length takes. */
+/* Reads the length of a binary string. The first two bits of the length state its number of bytes.
+ */
 static Status read_length(Cursor *cursor, size_t *length, Err *err)
 {
     static const size_t sizes[] = {8, 4, 2, 1};
@@ -160,7 +162,7 @@ done:
     return status;
 }
 
-/* Passes over the description of an array, which ends at an empty line. */
+/* Skips the description of an array, which ends at an empty line. */
 static void skip_metadata(Cursor *cursor)
 {
     cursor_skip_line(cursor);
@@ -206,7 +208,7 @@ static Status read_scalars(LegacyReader *reader, Err *err)
     return read_array(reader, name, type, (size_t)components, reader->n, err);
 }
 
-/* Passes over "LOOKUP_TABLE name n" and its colors, which mean nothing here. */
+/* Skips "LOOKUP_TABLE name n" and its colors. */
 static Status skip_table(LegacyReader *reader, Err *err)
 {
     char word[CURSOR_WORD];
@@ -318,7 +320,8 @@ static Status read_offset_cells(LegacyReader *reader, size_t n_offsets, VtkCells
     return STATUS_OK;
 }
 
-/* Reads `n` cells that are counts and points in turns, `size` numbers together. */
+/* Reads `n` cells, each a count and as many point indices; `size` is the count of all numbers.
+ * Moves the point indices to the front of the array. */
 static Status read_counted_cells(LegacyReader *reader, size_t n, size_t size, VtkCells *cells,
                                  Err *err)
 {
