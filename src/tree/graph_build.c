@@ -59,6 +59,7 @@ static void release(Building *building)
 
 /* ---- lines ---- */
 
+/* Returns the radius of a line; if it has none, the smaller radius of its points, or 0. */
 static double thickness_of(const Graph *graph, const GraphLine *line)
 {
     if (!isnan(line->radius))
@@ -67,6 +68,7 @@ static double thickness_of(const Graph *graph, const GraphLine *line)
     return isnan(a) || isnan(b) ? 0 : fmin(a, b);
 }
 
+/* Makes the links of all lines whose points were not merged with each other. */
 static Status link_lines(Building *building, Err *err)
 {
     const Graph *graph = building->graph;
@@ -201,6 +203,7 @@ done:
 
 /* ---- loops ---- */
 
+/* Records a cut link in the report. */
 static Status note_cut(Building *building, const GraphLink *link, Err *err)
 {
     TreeReading *reading = building->reading;
@@ -217,8 +220,7 @@ static Status note_cut(Building *building, const GraphLink *link, Err *err)
 }
 
 /* Finds a spanning forest: takes the links in their order, and moves each link that closes a loop
- * to the end. *kept receives the count of links before the first
- * moved one. */
+ * to the end. *kept receives the number of links that close no loop. */
 static void span(Building *building, size_t *kept)
 {
     uint32_t *component = building->component;
@@ -346,6 +348,7 @@ static bool is_node(const Building *building, size_t point)
            (degree_of(building, point) > 0 || building->graph->is_tree);
 }
 
+/* Lists the links of each point. */
 static Status list_links(Building *building, Err *err)
 {
     IndexLists *links = &building->links;
@@ -370,16 +373,17 @@ static const GraphLink *link_at(const Building *building, uint32_t point, uint32
 /* How good a root a point is for its component; the highest rank wins. */
 typedef enum Rank { RANK_ANY, RANK_END, RANK_SOURCE, RANK_INLET } Rank;
 
-typedef struct LinkCandidate {
+typedef struct RootCandidate {
     uint32_t point; /* + 1; 0: none yet */
     Rank rank;
     double thickness;
-} LinkCandidate;
+} RootCandidate;
 
-static LinkCandidate judge(const Building *building, uint32_t point)
+/* Returns a point as a candidate for the root of its component. */
+static RootCandidate candidate_of(const Building *building, uint32_t point)
 {
     const Graph *graph = building->graph;
-    LinkCandidate made = {.point = point + 1};
+    RootCandidate made = {.point = point + 1};
     bool leads_away = true;
     for (uint32_t k = 0; k < degree_of(building, point); k++) {
         const GraphLink *link = link_at(building, point, k);
@@ -393,21 +397,21 @@ static LinkCandidate judge(const Building *building, uint32_t point)
     return made;
 }
 
-static bool is_better(const LinkCandidate *a, const LinkCandidate *b)
+static bool is_better(const RootCandidate *a, const RootCandidate *b)
 {
     return !b->point || a->rank > b->rank || (a->rank == b->rank && a->thickness > b->thickness);
 }
 
 /* Finds the root of each component. best[i] receives the best candidate of the component whose
  * first point is i. */
-static Status choose_roots(Building *building, LinkCandidate *best, Err *err)
+static Status choose_roots(Building *building, RootCandidate *best, Err *err)
 {
     TreeReading *reading = building->reading;
     const Graph *graph = building->graph;
     for (uint32_t i = 0; i < graph->n_points; i++) {
         if (!is_node(building, i))
             continue;
-        LinkCandidate candidate = judge(building, i),
+        RootCandidate candidate = candidate_of(building, i),
                       *of = &best[sets_find(building->component, i)];
         if (is_better(&candidate, of))
             *of = candidate;
@@ -500,7 +504,7 @@ static void direct_from(Building *building, uint32_t root, uint32_t *queue, bool
 static Status direct_links(Building *building, Err *err)
 {
     size_t n = building->graph->n_points;
-    LinkCandidate *best = NULL;
+    RootCandidate *best = NULL;
     uint32_t *queue = NULL;
     bool *reached = NULL;
     Status status = STATUS_OK;
@@ -563,6 +567,7 @@ static size_t distal_point(const Building *building, const GraphLink *link)
     return building->representative[line->b] == link->b ? line->b : line->a;
 }
 
+/* Finds the radius of the segment that a link becomes; NAN if the options replace missing radii. */
 static Status radius_of_link(const Building *building, const GraphLink *link, double *radius,
                              Err *err)
 {
@@ -579,6 +584,8 @@ static Status radius_of_link(const Building *building, const GraphLink *link, do
                        err);
 }
 
+/* Finds the radius of a root: that of the thickest segment that leaves it, or in a file that was
+ * written from a tree the radius of its point. */
 static Status radius_of_root(const Building *building, uint32_t kept, double *radius, Err *err)
 {
     const Graph *graph = building->graph;
@@ -740,7 +747,8 @@ static Status add_nodes(const Building *building, TreeBuilder *builder, const in
     return status;
 }
 
-static Status hand_over(Building *building, TreeBuilder *builder, Err *err)
+/* Moves the metadata, columns and nodes to the builder. */
+static Status fill_builder(Building *building, TreeBuilder *builder, Err *err)
 {
     const Graph *graph = building->graph;
     TreeReading *reading = building->reading;
@@ -863,7 +871,7 @@ static Status build(Building *building, TreeBuilder *builder, Err *err)
         TRY(find_near_ends(building, err));
     count_points(building);
     TRY(direct_links(building, err));
-    return hand_over(building, builder, err);
+    return fill_builder(building, builder, err);
 }
 
 Status graph_build(Graph *graph, TreeBuilder *builder, Err *err)
