@@ -435,23 +435,21 @@ static void put_takers(unsigned bit, Text *text)
         }
 }
 
-static Status refuse_option(const Format *format, const char *name, unsigned bit, Err *err)
-{
-    size_t k = 0;
-    while (option_fields[k].bit != bit)
-        k++;
-    Text sentence = TEXT_INIT;
-    text_printf(&sentence, "`%s` applies only to ", option_fields[k].field);
-    put_takers(bit, &sentence);
-    text_printf(&sentence, "; %s is read as %s", name, format->name);
-    return text_to_error(&sentence, STATUS_USAGE, err);
-}
-
+/* Refuses an option that the format does not accept. */
 static Status check_options(const Format *format, const char *name, const ReadOptions *options,
                             Err *err)
 {
     unsigned refused = options_set(options) & ~format->takes;
-    return refused ? refuse_option(format, name, refused & -refused, err) : STATUS_OK;
+    if (!refused)
+        return STATUS_OK;
+    size_t k = 0;
+    while (!(option_fields[k].bit & refused))
+        k++;
+    Text sentence = TEXT_INIT;
+    text_printf(&sentence, "`%s` applies only to ", option_fields[k].field);
+    put_takers(option_fields[k].bit, &sentence);
+    text_printf(&sentence, "; %s is read as %s", name, format->name);
+    return text_to_error(&sentence, STATUS_USAGE, err);
 }
 
 static Status refuse_format(const char *called, Err *err)
@@ -487,14 +485,8 @@ typedef struct TreeSource {
     size_t size;
 } TreeSource;
 
-/* Copies the bytes of `file`, or reads the file `path` if `file` is NULL. */
-static Status fill_source(TreeSource *source, const char *path, const MemoryFile *file, Err *err)
-{
-    const FileForm *form = source->format ? &source->format->form : &any_form;
-    return file ? file_read_memory(file, form, &source->bytes, &source->size, err)
-                : file_read(path, form, &source->bytes, &source->size, err);
-}
-
+/* Reads the file `path`, or copies the bytes of `file` unless it is NULL, and finds the format. The
+ * option `input_format` is `called`. */
 static Status open_source(TreeSource *source, const char *path, const MemoryFile *file,
                           const char *called, Err *err)
 {
@@ -507,7 +499,9 @@ static Status open_source(TreeSource *source, const char *path, const MemoryFile
     else if (count_formats(path) == 1)
         format = find_format(path, NULL);
     *source = (TreeSource){.name = is_standard(path) ? "standard input" : path, .format = format};
-    TRY(fill_source(source, path, file, err));
+    const FileForm *form = format ? &format->form : &any_form;
+    TRY(file ? file_read_memory(file, form, &source->bytes, &source->size, err)
+             : file_read(path, form, &source->bytes, &source->size, err));
     if (format)
         return STATUS_OK;
     source->format = find_format(called ? as : path, source->bytes);

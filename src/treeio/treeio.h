@@ -61,8 +61,8 @@ void tree_format_list(Text *text);
 
 /* Reads a tree.
  *
- * tree     receives the tree; release it with tree_release. Nodes are in the order of the file. One
- *          exception: a parent that comes later in the file moves to just before its first child.
+ * tree     receives the tree; release it with tree_release. Nodes are in the order of the file,
+ *          except that a parent that comes later moves to just before its first child.
  * path     the file. Its extension selects the format. "-" is standard input, whose format is
  *          recognized by its first bytes.
  * Errors   STATUS_USAGE for an unknown extension. STATUS_INPUT, with file and line, for a wrong
@@ -77,7 +77,7 @@ MUST_CHECK Status tree_read(Tree *tree, const char *path, Err *err);
  * options  such as the unit of the file. NULL: the defaults.
  * reading  receives the report; release it with reading_release. NULL: no report is wanted.
  * Errors   those of tree_read and graph_build; STATUS_USAGE for an option that does not apply to
- *          the file's format, and for an unknown options->input_format. */
+ *          the file's format, and for an unknown options->format. */
 MUST_CHECK Status tree_read_as(Tree *tree, const char *path, const ReadOptions *options,
                                TreeReading *reading, Err *err);
 

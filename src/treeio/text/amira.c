@@ -96,14 +96,6 @@ static void set_unit(Graph *graph, const char *name)
         }
 }
 
-static void set_content(AmiraReader *reader, const char *name)
-{
-    size_t content = keyword_find(name, content_names, CONTENTS);
-    snprintf(reader->content_name, sizeof reader->content_name, "%.39s", name);
-    if (content < CONTENTS)
-        reader->content = (AmiraContent)content;
-}
-
 /* Reads the words between braces after "Parameters" or another word that is not an element. */
 static Status read_parameters(AmiraReader *reader, Err *err)
 {
@@ -113,8 +105,12 @@ static Status read_parameters(AmiraReader *reader, Err *err)
             return err_set(err, STATUS_INPUT, "the header has a '{' without a '}'");
         depth += strcmp(word, "{") == 0;
         depth -= strcmp(word, "}") == 0;
-        if (strcasecmp(last, "ContentType") == 0)
-            set_content(reader, word);
+        if (strcasecmp(last, "ContentType") == 0) {
+            size_t content = keyword_find(word, content_names, CONTENTS);
+            if (content < CONTENTS)
+                reader->content = (AmiraContent)content;
+            snprintf(reader->content_name, sizeof reader->content_name, "%.39s", word);
+        }
         if (strcasecmp(last, "Coordinates") == 0)
             set_unit(reader->graph, word);
     }

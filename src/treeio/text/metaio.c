@@ -82,12 +82,10 @@ static bool is_true(const char *value)
 
 static Status read_numbers(const char *key, const char *value, size_t count, double *out, Err *err)
 {
-    double number[9];
-    if (!numbers_parse(value, count, number))
-        return err_set(err, STATUS_INPUT, "%s is '%.40s'; it must be %zu numbers", key, value,
-                       count);
-    memcpy(out, number, count * sizeof *out);
-    return STATUS_OK;
+    return numbers_parse(value, count, out)
+               ? STATUS_OK
+               : err_set(err, STATUS_INPUT, "%s is '%.40s'; it must be %zu numbers", key, value,
+                         count);
 }
 
 /* Reads a matrix with as many rows and columns as there are dimensions. */

@@ -67,21 +67,13 @@ static Status read_list(DialectReader *reader, DialectRow *row, Err *err)
     return STATUS_OK;
 }
 
-static Status begin_table(DialectReader *reader, DialectRow *row, Err *err)
-{
-    DeckState *deck = reader->own;
-    (void)row, (void)err;
-    deck->in_table = true;
-    return STATUS_OK;
-}
-
 static const DialectSection cards[CARDS] = {
     [NODE] = {"NODE", "a NODE card", 5, 5, GRAPH_POINTS, NULL},
     [SEGMENT] = {"SEGMENT", "a SEGMENT card", 9, 17, GRAPH_LINES, NULL},
     [JOINT] = {"JOINT", "a JOINT card", 5, 5, GRAPH_LINES, read_joint},
     [JOINT_INLET] = {"JOINTINLET", "a JOINTINLET card", 4, 0, GRAPH_LINES, read_list},
     [JOINT_OUTLET] = {"JOINTOUTLET", "a JOINTOUTLET card", 4, 0, GRAPH_LINES, read_list},
-    [DATA_TABLE] = {"DATATABLE", "a DATATABLE card", 2, 0, GRAPH_LINES, begin_table},
+    [DATA_TABLE] = {"DATATABLE", "a DATATABLE card", 2, 0, GRAPH_LINES, NULL},
     [OTHER_CARDS] = {.title = "MODEL"},
     {.title = "SOLVEROPTIONS"},
     {.title = "MATERIAL"},
@@ -113,7 +105,7 @@ static Status read_comment(Graph *graph, const char *comment, Err *err)
     return comment_read_key(&graph->meta, comment, err);
 }
 
-/* Finds the card, and passes over the lines of a DATATABLE. */
+/* Finds the card of a line, and skips the lines in a DATATABLE. */
 static Status choose_card(DialectReader *reader, DialectRow *row, bool *is_row, Err *err)
 {
     DeckState *deck = reader->own;
@@ -123,6 +115,7 @@ static Status choose_card(DialectReader *reader, DialectRow *row, bool *is_row, 
         return STATUS_OK;
     }
     reader->section = dialect_find_section(reader->dialect, row->field[0]);
+    deck->in_table = reader->section == DATA_TABLE;
     return reader->section < CARDS
                ? STATUS_OK
                : err_set(err, STATUS_INPUT, "'%.40s' is not a card of svOneDSolver", row->field[0]);

@@ -42,20 +42,13 @@ static int64_t id_of(const SwcReader *reader, int32_t number)
     return number < reader->lowest_id ? TREE_NO_PARENT : (int64_t)number + 1 - reader->lowest_id;
 }
 
-static Status read_id(const SwcReader *reader, const char *text, int64_t *id, Err *err)
+/* Reads the id of a node or of a parent, an integer of at least `minimum`. */
+static Status read_id(const SwcReader *reader, const char *what, const char *text, int32_t minimum,
+                      int64_t *id, Err *err)
 {
     int32_t number = 0;
-    TRY(field_integer("id", text, reader->lowest_id, TREE_MAX_ID - 1 + reader->lowest_id, &number,
-                      err));
+    TRY(field_integer(what, text, minimum, TREE_MAX_ID - 1 + reader->lowest_id, &number, err));
     *id = id_of(reader, number);
-    return STATUS_OK;
-}
-
-static Status read_parent(const SwcReader *reader, const char *text, int64_t *parent, Err *err)
-{
-    int32_t number = 0;
-    TRY(field_integer("parent", text, TREE_NO_PARENT, TREE_MAX_ID, &number, err));
-    *parent = id_of(reader, number);
     return STATUS_OK;
 }
 
@@ -64,13 +57,13 @@ static Status read_row(const SwcReader *reader, size_t line, char *const *field,
     const double any = -HUGE_VAL;
     TreeBuilder *builder = reader->builder;
     BuilderNode node = {.record = line};
-    TRY(read_id(reader, field[0], &node.id, err));
+    TRY(read_id(reader, "id", field[0], reader->lowest_id, &node.id, err));
     TRY(field_integer("type", field[1], INT32_MIN, INT32_MAX, &node.type, err));
     TRY(field_number("x coordinate", field[2], any, &node.position.x, err));
     TRY(field_number("y coordinate", field[3], any, &node.position.y, err));
     TRY(field_number("z coordinate", field[4], any, &node.position.z, err));
     TRY(field_radius(builder->options, "radius", field[5], &node.radius_mm, err));
-    TRY(read_parent(reader, field[6], &node.parent, err));
+    TRY(read_id(reader, "parent", field[6], TREE_NO_PARENT, &node.parent, err));
     TRY(builder_node(builder, &node, err));
     for (size_t k = 0; k + N_FIELDS < reader->n_fields; k++) {
         double value;
@@ -255,7 +248,7 @@ static bool take_row(const SwcReader *reader, char **rest, BuilderNode *node)
         at++;
     if ((*at && *at != '\n') || !is_whole(field[1], INT32_MIN, INT32_MAX) || !(field[5] >= 0) ||
         !is_whole(field[0], reader->lowest_id, TREE_MAX_ID - 1 + reader->lowest_id) ||
-        !is_whole(field[6], TREE_NO_PARENT, TREE_MAX_ID))
+        !is_whole(field[6], TREE_NO_PARENT, TREE_MAX_ID - 1 + reader->lowest_id))
         return false;
     *node = (BuilderNode){.id = id_of(reader, (int32_t)field[0]),
                           .parent = id_of(reader, (int32_t)field[6]),

@@ -243,18 +243,6 @@ static Status read_cell_types(LegacyReader *reader, Err *err)
     return read_numbers(reader, VTK_INT32, "CELL_TYPES", reader->n_types, types, err);
 }
 
-static Status begin_point_data(LegacyReader *reader, Err *err)
-{
-    reader->arrays = &reader->data.arrays[GRAPH_POINTS];
-    return read_count(reader, "values", &reader->n, err);
-}
-
-static Status begin_cell_data(LegacyReader *reader, Err *err)
-{
-    reader->arrays = &reader->data.arrays[GRAPH_LINES];
-    return read_count(reader, "values", &reader->n, err);
-}
-
 static Status skip_description(LegacyReader *reader, Err *err)
 {
     (void)err;
@@ -266,14 +254,8 @@ static const struct {
     const char *keyword;
     Status (*read)(LegacyReader *reader, Err *err);
 } blocks[] = {
-    {"POINTS", read_points},
-    {"CELL_TYPES", read_cell_types},
-    {"POINT_DATA", begin_point_data},
-    {"CELL_DATA", begin_cell_data},
-    {"FIELD", read_field},
-    {"SCALARS", read_scalars},
-    {"LOOKUP_TABLE", skip_table},
-    {"METADATA", skip_description},
+    {"POINTS", read_points},   {"CELL_TYPES", read_cell_types}, {"FIELD", read_field},
+    {"SCALARS", read_scalars}, {"LOOKUP_TABLE", skip_table},    {"METADATA", skip_description},
 };
 
 /* Attributes "KEYWORD name [components] [type]". */
@@ -363,6 +345,12 @@ static Status read_cells(LegacyReader *reader, VtkCells *cells, Err *err)
 
 static Status read_block(LegacyReader *reader, const char *keyword, Err *err)
 {
+    static const char *const data[] = {[GRAPH_POINTS] = "POINT_DATA", [GRAPH_LINES] = "CELL_DATA"};
+    size_t of = keyword_find(keyword, data, 2);
+    if (of < 2) {
+        reader->arrays = &reader->data.arrays[of];
+        return read_count(reader, "values", &reader->n, err);
+    }
     for (size_t k = 0; k < VTK_CELL_KINDS; k++)
         if (strcasecmp(keyword, vtk_cell_kinds[k].legacy) == 0)
             return read_cells(reader, &reader->cells[k], err);
