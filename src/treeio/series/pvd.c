@@ -176,9 +176,10 @@ static Status add_column(TreeBuilder *builder, const Moment *moment, size_t colu
     size_t number = 0;
     TRY(mem_printf(&name, err, constant ? "%s" : "%s_%s", from->name,
                    number_text(moment->time, time)));
-    Status status = builder_column(builder, name, from->unit, &number, err);
-    if (status == STATUS_OK)
-        source[number] = from->value;
+    Status status;
+    TRY_GOTO(builder_column(builder, name, from->unit, &number, err));
+    source[number] = from->value;
+done:
     free(name);
     return status;
 }

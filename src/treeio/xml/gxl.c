@@ -72,9 +72,10 @@ static Status take_remark(GxlReader *reader, const char *text, Err *err)
     Text comment = TEXT_INIT;
     text_printf(&comment, "%s: ", name);
     text_put_line(&comment, text);
-    Status status = text_check(&comment, err);
-    if (status == STATUS_OK)
-        status = comment_read(&reader->graph->meta, text_chars(&comment), err);
+    Status status;
+    TRY_GOTO(text_check(&comment, err));
+    status = comment_read(&reader->graph->meta, text_chars(&comment), err);
+done:
     text_release(&comment);
     return status;
 }
