@@ -400,7 +400,7 @@ static Status find_node(const PlacedRows *rows, const char *what, int32_t id, si
 /* Sets one flow share. A share is above 0, so a node whose share is not 0 was stated before. */
 static Status fill_share(const PlacedRows *rows, const BuilderShare *stated, Tree *tree, Err *err)
 {
-    size_t at;
+    size_t at = 0;
     TRY(find_node(rows, share_name, stated->id, &at, err));
     if (tree->flow_share[at] > 0)
         return err_set(err, STATUS_INPUT, "the flow share of node %d is stated twice", stated->id);
@@ -427,7 +427,7 @@ static Status fill_pair(const PlacedRows *rows, size_t k, double *number, Err *e
 {
     for (int side = 0; side < 2; side++) {
         int32_t id = rows->builder->pairs.items[k].id[side];
-        size_t at;
+        size_t at = 0;
         TRY(find_node(rows, tree_pairs_name, id, &at, err));
         if (!isnan(number[at]))
             return err_set(err, STATUS_INPUT, "node %d is of a pair twice", id);
@@ -451,7 +451,7 @@ static Status fill_pairs(const PlacedRows *rows, Tree *tree, Err *err)
 /* Sets the link of one node. */
 static Status fill_link(const PlacedRows *rows, const BuilderPair *link, Tree *tree, Err *err)
 {
-    size_t at[2];
+    size_t at[2] = {0};
     for (int side = 0; side < 2; side++)
         TRY(find_node(rows, link_name, link->id[side], &at[side], err));
     if (tree_is_link(tree, at[0]))
