@@ -1,5 +1,5 @@
-/* Clocks for measuring how long work takes, of which only differences of two readings have a
- * meaning; and the date that outputs state. */
+/* Two clocks that measure how long work takes, and the date that outputs state. Only the difference
+ * of two readings of a clock has a meaning. */
 #ifndef CORCAST_BASE_CLOCK_H
 #define CORCAST_BASE_CLOCK_H
 

@@ -42,6 +42,7 @@ Status file_remove_on_signal(char *name, Err *err)
     return err_set(err, STATUS_IO, "more than %d files are being written at once", MAX_TEMPORARIES);
 }
 
+/* Removes a name from the table of temporary names. */
 static void give_up(char *name)
 {
     for (int i = 0; i < MAX_TEMPORARIES; i++) {
@@ -125,8 +126,8 @@ void file_hold_standard_streams(void)
             return;
 }
 
-/* Turns every line end into LF. Drops a byte order mark, and the Control-Z that CP/M and DOS wrote
- * behind a text, with the blanks after it. */
+/* Converts every line end to LF. Removes a byte order mark, and the Control-Z that CP/M and DOS
+ * wrote at the end of a text, with the blanks after it. */
 static void tidy_lines(char *bytes, size_t *size)
 {
     enum { CONTROL_Z = 0x1a };
@@ -181,7 +182,7 @@ static Status check_size(const char *name, const FileForm *form, double bytes, E
 
 enum { BLOCK = 1 << 16 };
 
-/* Bytes of a stream, a zero behind them. */
+/* The bytes of a stream, with space for a zero after them. */
 typedef struct Bytes {
     char *at; /* owned */
     size_t n, capacity;
@@ -212,14 +213,14 @@ static Status reserve(Bytes *all, size_t n, const char *name, Err *err)
 
 enum { SLICE = 1 << 22 /* bytes at least */, MOST_SLICES = 256 };
 
-/* Bytes of a file that threads read. */
+/* Bytes of a file that threads read in slices of equal size. */
 typedef struct Slices {
     int handle;
-    char *bytes; /* the first of them; with room for all */
-    off_t from;  /* its offset in the file */
+    char *bytes; /* receives all bytes */
+    off_t from;  /* offset of the first byte in the file */
     size_t n, slice;
     bool is_text;
-    size_t sound[MOST_SLICES]; /* bytes of each that are read and may be what they are */
+    size_t sound[MOST_SLICES]; /* per slice: number of bytes read; 0 for a text with a zero byte */
 } Slices;
 
 static void read_slice(size_t index, int worker, void *context)
@@ -234,8 +235,8 @@ static void read_slice(size_t index, int worker, void *context)
     slices->sound[index] = slices->is_text && memchr(bytes, '\0', n) ? 0 : n;
 }
 
-/* Reads on to the end of a file of `size` bytes, and moves the stream there: as far as nothing
- * is amiss. */
+/* Reads the rest of a file of `size` bytes, up to the first slice that is incomplete or has a
+ * fault, and moves the stream there. */
 static void read_slices(FILE *stream, const FileForm *form, Bytes *all, size_t size)
 {
     off_t from = ftello(stream);
@@ -257,8 +258,9 @@ static void read_slices(FILE *stream, const FileForm *form, Bytes *all, size_t s
         all->n += sound;
 }
 
-/* What is no file of its kind is refused with the block that tells so; behind the first there is
- * room for all of the file, so that it need not be moved as it grows. */
+/* Reads a stream block by block, and refuses it at the first block that does not fit the form.
+ * After the first block, memory for the whole file is reserved, so that the bytes need not move
+ * when the buffer grows. */
 static Status read_blocks(FILE *stream, const char *name, const FileForm *form, Bytes *all,
                           Err *err)
 {
@@ -362,7 +364,7 @@ double file_bytes(const char *path)
     return stat(path, &about) == 0 ? (double)about.st_size : 0;
 }
 
-/* The name of a temporary file or folder: no longer than any name may be. */
+/* The name of a temporary file or folder. It is short, so it fits in any file system. */
 static const char temporary_name[] = ".corcast.XXXXXX";
 
 /* Frees `name` on failure. */
@@ -446,6 +448,7 @@ void file_forget(char *temporary)
     free(temporary);
 }
 
+/* Returns true if the path is written directly: a device or a pipe. */
 static bool is_direct(const char *path)
 {
     struct stat about;
@@ -545,7 +548,7 @@ done:
     return status;
 }
 
-/* Ends writing; whether all of it has arrived. */
+/* Closes the stream. Errors: STATUS_IO if some bytes were not written. */
 static Status close_stream(OutFile *file, Err *err)
 {
     bool broken = fflush(file->stream) != 0 || ferror(file->stream);

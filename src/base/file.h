@@ -67,11 +67,13 @@ typedef struct OutFile {
  * missing, permission is missing, `path` is a folder, or symbolic links form a circle. */
 MUST_CHECK Status outfile_check(const char *path, Err *err);
 
-/* Opens a file for writing. Follow with exactly one of outfile_commit, which gives the file its
- * final name, and outfile_discard, which removes it; both release `file`, also on failure. Errors:
- * those of outfile_check. */
+/* Opens a file for writing. End with exactly one of outfile_commit and outfile_discard. After an
+ * error *file is unchanged and needs neither. Errors: those of outfile_check; STATUS_MEMORY. */
 MUST_CHECK Status outfile_open(OutFile *file, const char *path, Err *err);
+/* Writes the rest of the stream, and gives the file its final name. Releases `file`, also on
+ * failure. Errors: STATUS_IO, naming the file. */
 MUST_CHECK Status outfile_commit(OutFile *file, Err *err);
+/* Removes the temporary file, and releases `file`. A zeroed OutFile is allowed. */
 void outfile_discard(OutFile *file);
 /* Commits n files, all or none: if a file cannot get its final name, the files that had the names
  * before are restored. On a file system without hard links they are restored only if the first file
@@ -135,8 +137,6 @@ void file_hold_standard_streams(void);
 const char *file_extension(const char *path);
 /* Replaces the extension of `path`, with its '.', by `suffix`. The caller frees *out. */
 MUST_CHECK Status file_with_suffix(const char *path, const char *suffix, char **out, Err *err);
-/* Makes a name as printf does. The caller frees *out. Errors: STATUS_MEMORY. */
-MUST_CHECK Status file_format_name(char **out, Err *err, const char *format, ...) PRINTF_LIKE(3, 4);
 /* Joins a folder and a name: "folder/name". The caller frees *out. */
 MUST_CHECK Status file_join(const char *folder, const char *name, char **out, Err *err);
 /* Sets *out to the path of `name` in the folder that `path` is in; with "", to that folder with its

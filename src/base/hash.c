@@ -1,4 +1,4 @@
-/* libmd comes with every Debian system: dpkg itself checks packages by it. */
+/* libmd computes the digests. It is part of every Debian system, because dpkg uses it. */
 #include "base/hash.h"
 
 #include <string.h>

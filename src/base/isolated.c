@@ -11,11 +11,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-/* What the child sends first. */
+/* The first message of the child. */
 typedef struct Report {
     Status status;
     Err err;
-    size_t length; /* of the bytes that follow */
+    size_t length; /* number of bytes that follow */
 } Report;
 
 static bool send_all(int handle, const void *from, size_t size)
@@ -40,7 +40,8 @@ static bool receive(int handle, void *to, size_t size)
     return true;
 }
 
-/* The parent's files are the parent's to remove: a signal just ends the child. */
+/* Restores the default actions of signals, because the parent removes its temporary files itself.
+ */
 static void restore_signals(void)
 {
     static const int signals[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGXCPU, SIGXFSZ};

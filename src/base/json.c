@@ -1,6 +1,6 @@
-/* On top of jansson, whose functions give NULL when memory runs out and take NULL for what failed
- * before. Values made here keep to that, so that a document is built without a test at each step
- * and tested once at the end. */
+/* The functions of jansson return NULL when memory runs out, and accept NULL from a step that
+ * failed before. The functions here do the same, so a document is built without a test at each
+ * step, and tested once at the end. */
 #include "base/json.h"
 
 #include "base/number.h"
@@ -43,7 +43,8 @@ json_t *json_text_or_null(const char *chars)
     return chars ? json_text(chars) : json_null();
 }
 
-/* `whole` when a part was taken; jansson has then let go of the part if it was not. */
+/* Returns `whole` if a part was added to it. Otherwise releases `whole`; jansson has released the
+ * part already. */
 static json_t *whole_or_nothing(json_t *whole, bool taken)
 {
     if (taken)
@@ -160,7 +161,7 @@ void text_json(Text *text, json_t *json, int indent)
 
 /* ---- reading --------------------------------------------------------------------------------- */
 
-static _Thread_local bool refused; /* jansson was, memory */
+static _Thread_local bool refused; /* an allocation by jansson failed in this thread */
 
 static void *allocate(size_t size)
 {

@@ -27,7 +27,7 @@ typedef struct IndexLists {
 
 void indexlists_release(IndexLists *lists);
 
-/* Begins `n` lists, all of them empty. `what` names the items in the message of STATUS_MEMORY. */
+/* Begins `n` empty lists. `what` names the items in the error sentence. Errors: STATUS_MEMORY. */
 MUST_CHECK Status indexlists_begin(IndexLists *lists, size_t n, const char *what, Err *err);
 
 /* Counts one item of list `key`, which is below lists->n. The count of list i is kept at first[i +

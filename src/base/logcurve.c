@@ -28,7 +28,8 @@ bool logcurve_is_same(const LogCurve *a, const LogCurve *b)
     return same;
 }
 
-bool logcurve_is_within(const LogCurve *curve, Range range)
+/* Returns true if all values of the curve are in `range`. */
+static bool logcurve_is_within(const LogCurve *curve, Range range)
 {
     bool within = true;
     for (size_t k = 0; within && k < curve->n; k++)

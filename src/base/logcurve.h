@@ -32,8 +32,6 @@ double logcurve_at(const LogCurve *curve, double place);
 
 /* Returns true if both curves have the same points. */
 bool logcurve_is_same(const LogCurve *a, const LogCurve *b);
-/* Returns true if all values of the curve are in `range`. */
-bool logcurve_is_within(const LogCurve *curve, Range range);
 
 /* Parses the whole string `chars` as a curve with values in `range`. Returns false, and leaves *out
  * unchanged, if the string is not such a curve. */

@@ -103,3 +103,12 @@ Status mem_vprintf(char **out, const char *subject, Err *err, const char *format
     *out = text;
     return STATUS_OK;
 }
+
+Status mem_printf(char **out, Err *err, const char *format, ...)
+{
+    va_list values;
+    va_start(values, format);
+    Status status = mem_vprintf(out, "a text", err, format, values);
+    va_end(values);
+    return status;
+}

@@ -46,6 +46,9 @@ MUST_CHECK Status mem_out_of(const char *purpose, const char *subject, Err *err)
 /* Copies `text` to *out, which the caller frees with free(). Errors: STATUS_MEMORY. */
 MUST_CHECK Status mem_strdup(char **out, const char *text, Err *err);
 
+/* Formats a text like snprintf, of any length, in *out, which the caller frees with free(). Errors:
+ * STATUS_MEMORY. */
+MUST_CHECK Status mem_printf(char **out, Err *err, const char *format, ...) PRINTF_LIKE(3, 4);
 /* Formats a text like vsnprintf, of any length, in *out, which the caller frees with free().
  * `subject` names the text in the error sentence: "a file's name". Errors: STATUS_MEMORY. */
 MUST_CHECK Status mem_vprintf(char **out, const char *subject, Err *err, const char *format,

@@ -25,8 +25,8 @@ __extension__ typedef unsigned __int128 Wide;
 
 typedef struct Decimal {
     uint64_t digits; /* without a point */
-    int count;       /* of them */
-    int exponent;    /* of ten, of the first */
+    int count;       /* number of digits */
+    int exponent;    /* power of ten that the first digit stands for */
 } Decimal;
 
 /* 5^k for k from 0 to 26. */
@@ -38,8 +38,8 @@ static uint64_t power_of_5(int k)
     return (uint64_t)low[k / 2] * low[k - k / 2];
 }
 
-/* Rounds m 2^e to `count` digits, the first of which stands for 10^exponent; whether they
- * read back. */
+/* Rounds m 2^e to `count` digits, the first of which stands for 10^exponent. Returns true if the
+ * digits read back as the same double. */
 static bool round_decimal(uint64_t m, int e, int count, int exponent, Decimal *out)
 {
     int k = count - 1 - exponent, shift = -(e + k);
@@ -155,14 +155,15 @@ const char *bytes_text(double bytes, char out[BYTES_TEXT_SIZE])
     return out;
 }
 
-/* A decimal number as it is written: sign, digits times ten to the exponent. */
+/* A decimal number as text states it: sign, digits, power of ten. */
 typedef struct Written {
     bool negative;
     uint64_t digits;
     int exponent;
 } Written;
 
-/* Reads the digits at *at; false when all of them are more than 19 without zeros in front. */
+/* Reads the digits at *at and appends them to *digits. Returns false if these are more than 19
+ * digits, not counting zeros at the front. */
 static bool scan_digits(const char **at, uint64_t *digits)
 {
     const uint64_t most = UINT64_C(999999999999999999);
@@ -174,7 +175,8 @@ static bool scan_digits(const char **at, uint64_t *digits)
     return true;
 }
 
-/* An exponent of up to three digits at *at, or none. */
+/* Reads an exponent of up to three digits at *at; 0 if there is none. Returns false for a longer or
+ * incomplete one. */
 static bool scan_exponent(const char **at, int *exponent)
 {
     uint64_t digits = 0;
@@ -190,7 +192,7 @@ static bool scan_exponent(const char **at, int *exponent)
     return true;
 }
 
-/* False for whatever is not a number of few digits, or no number at all. */
+/* Reads a number at *at. Returns false if there is no number, or it has too many digits. */
 static bool scan_number(const char **at, Written *out)
 {
     int exponent;
@@ -217,7 +219,7 @@ static int bits_of(Wide n)
     return high ? 128 - __builtin_clzll(high) : 64 - __builtin_clzll((uint64_t)n);
 }
 
-/* 2^e, of those that are normal doubles. */
+/* Returns 2^e, which must be a normal double. */
 static double power_of_2(int e)
 {
     uint64_t bits = (uint64_t)(e + DBL_MAX_EXP - 1) << (DBL_MANT_DIG - 1);
@@ -226,7 +228,8 @@ static double power_of_2(int e)
     return power;
 }
 
-/* The double nearest to (n + a rest below 1) 2^e, of two the even one. With a rest, n > 2^54. */
+/* Returns the double nearest to n 2^e or, with `rest`, to (n + r) 2^e for an r between 0 and 1; on
+ * a tie, the double whose last bit is 0. With `rest`, n must be above 2^54. */
 static double nearest_double(Wide n, bool rest, int e)
 {
     int spare = bits_of(n) - DBL_MANT_DIG;
@@ -240,7 +243,8 @@ static double nearest_double(Wide n, bool rest, int e)
 
 enum { MOST_FIVES = 26 };
 
-/* The magnitude; false when the exponent is out of the range of power_of_5. */
+/* Sets *out to the magnitude of the number. Returns false if its exponent is out of the range of
+ * power_of_5. */
 static bool written_value(const Written *written, double *out)
 {
     uint64_t m = written->digits;
@@ -281,7 +285,7 @@ bool number_parse(const char *chars, double *out)
     }
     if (!*chars || isspace((unsigned char)*chars))
         return false;
-    /* Hexadecimal numbers are C's, not the field's. */
+    /* strtod accepts hexadecimal numbers of C, which files and options must not have. */
     if (strpbrk(chars, "xX"))
         return false;
     char *end;

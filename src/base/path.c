@@ -17,30 +17,21 @@ const char *file_extension(const char *path)
     return dot && dot != name ? dot + 1 : "";
 }
 
-Status file_format_name(char **out, Err *err, const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    Status status = mem_vprintf(out, "a file's name", err, format, arguments);
-    va_end(arguments);
-    return status;
-}
-
 Status file_with_suffix(const char *path, const char *suffix, char **out, Err *err)
 {
     const char *extension = file_extension(path);
     size_t stem = *extension ? (size_t)(extension - 1 - path) : strlen(path);
-    return file_format_name(out, err, "%.*s%s", (int)stem, path, suffix);
+    return mem_printf(out, err, "%.*s%s", (int)stem, path, suffix);
 }
 
 Status file_beside(const char *path, const char *name, char **out, Err *err)
 {
-    return file_format_name(out, err, "%.*s%s", (int)(file_name(path) - path), path, name);
+    return mem_printf(out, err, "%.*s%s", (int)(file_name(path) - path), path, name);
 }
 
 Status file_join(const char *folder, const char *name, char **out, Err *err)
 {
     size_t length = strlen(folder);
     const char *slash = length && folder[length - 1] == '/' ? "" : "/";
-    return file_format_name(out, err, "%s%s%s", folder, slash, name);
+    return mem_printf(out, err, "%s%s%s", folder, slash, name);
 }

@@ -1,5 +1,5 @@
-/* A range that 0 is not in begins at the least number above 0, and one without end ends at the
- * greatest number: so all ranges are closed, and only their text knows the difference. */
+/* A range that excludes 0 begins at the smallest double above 0, and a range without an end ends at
+ * the largest double. All ranges are therefore closed; only their text shows the difference. */
 #include "base/range.h"
 
 #include "base/number.h"

@@ -1,5 +1,6 @@
-/* The slabs are a linked list, newest first; pieces are cut off the newest one, front to back. What
- * is left of a slab when the next is taken is not used any more. */
+/* The slabs are a linked list, newest first. Blocks are cut off the newest slab, from front to
+ * back. When a block does not fit, a new slab is allocated, and the rest of the old one stays
+ * unused. */
 #include "base/slab.h"
 
 #include <stdlib.h>

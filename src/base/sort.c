@@ -1,5 +1,5 @@
-/* Sorting is libc's; selection is Hoare's FIND [CACM 4 (1961), 321], which goes on in the one part
- * that holds the rank. */
+/* Sorting uses qsort. Selection is Hoare's FIND [CACM 4 (1961), 321]: it partitions the array by a
+ * pivot, and continues in the part that holds the rank. */
 #include "base/sort.h"
 
 #include <stdlib.h>

@@ -1,6 +1,7 @@
-/* What POSIX does not give, or gives no good form of: every use of an interface of Linux or of the
- * GNU C library that has another form, or none, elsewhere is in system.c. A port to another system
- * begins there. What is only advice to the system has no effect where the system lacks it. */
+/* The system interfaces that are not the same everywhere: paths of programs, processors, memory,
+ * pipes, streams. system.c is the only file that calls interfaces of Linux or of the GNU C library
+ * which other systems lack or have in another form, so a port to another system begins there. Where
+ * a system cannot follow an advice about memory or processors, the function has no effect. */
 #ifndef CORCAST_BASE_SYSTEM_H
 #define CORCAST_BASE_SYSTEM_H
 
@@ -37,9 +38,9 @@ typedef struct ProcessorSet {
  * least 1. */
 int system_processors(ProcessorSet *allowed);
 
-/* Starts a thread that runs `run(argument)`, on the processor that is `number` allowed ones after
- * the caller's, cyclically, where threads can be bound to processors. Returns false if no thread
- * can be started. */
+/* Starts a thread that runs `run(argument)`. Where threads can be bound to processors, the thread
+ * starts on the processor that comes `number` places after the caller's in the cyclic order of the
+ * allowed processors. Returns false if no thread can be started. */
 bool system_start_thread(pthread_t *thread, const ProcessorSet *allowed, int number,
                          void *(*run)(void *), void *argument);
 /* Waits until a thread that system_start_thread has started has ended. */

@@ -223,6 +223,15 @@ const char *text_chars(const Text *text)
     return text->failed ? NULL : text->chars ? text->chars : "";
 }
 
+Status text_to_error(Text *sentence, Status status, Err *err)
+{
+    Status failure = text_check(sentence, err);
+    if (failure == STATUS_OK)
+        failure = err_set(err, status, "%s", text_chars(sentence));
+    text_release(sentence);
+    return failure;
+}
+
 Status text_take(Text *text, char **out, Err *err)
 {
     text_append(text, "", 0);

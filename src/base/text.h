@@ -54,6 +54,10 @@ MUST_CHECK Status text_flush(Text *text, Err *err);
 /* Returns the string, "" if it is empty; NULL if an append has failed. The string is valid until
  * `text` changes. */
 const char *text_chars(const Text *text);
+/* Sets the error to the sentence that `sentence` holds, and releases `sentence`. Returns `status`,
+ * or STATUS_MEMORY if an append has failed. For sentences with lists of unknown length. `err` may
+ * be NULL. */
+Status text_to_error(Text *sentence, Status status, Err *err);
 /* Moves the string to *out, which the caller frees with free(), and leaves `text` empty. Errors:
  * STATUS_MEMORY if an append has failed; the caller still releases `text`. */
 MUST_CHECK Status text_take(Text *text, char **out, Err *err);

@@ -1,9 +1,9 @@
 /* Threads are started for each loop and take indices off a shared counter, so that a slow index
  * delays no others. The calling thread is worker 0.
  *
- * Each thread is started on a processor of its own and then allowed on all: some kernels put a new
- * thread on the processor of the one that started it, where it would wait for milliseconds until
- * that one is preempted, longer than many loops take. */
+ * Each thread is started on a processor of its own, and may then run on all. Some kernels put a new
+ * thread on the processor of the thread that started it. It would wait there for milliseconds until
+ * that thread is preempted, which is longer than many loops take. */
 #include "base/threads.h"
 
 #include "base/system.h"
@@ -25,7 +25,7 @@ typedef struct Loop {
     size_t count;
     void (*body)(size_t index, int worker, void *context);
     void *context;
-    locale_t locale; /* of the calling thread, for all */
+    locale_t locale; /* the locale of the calling thread, which all threads use */
     /* Threads start on different processors; then they may run on any of these. */
     ProcessorSet allowed;
 } Loop;

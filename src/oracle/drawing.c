@@ -28,9 +28,9 @@ void drawing_command(const char *command, const DrawingMarks *marks, Text *out)
 Status drawing_name(ShellDrawing *drawing, const char *folder, const char *name,
                     const char *scene_extension, const char *picture_extension, Err *err)
 {
-    TRY(file_format_name(&drawing->scene, err, "%s/%s.%s", folder, name, scene_extension));
-    TRY(file_format_name(&drawing->picture, err, "%s/%s.%s", folder, name, picture_extension));
-    return file_format_name(&drawing->log, err, "%s/%s.log", folder, name);
+    TRY(mem_printf(&drawing->scene, err, "%s/%s.%s", folder, name, scene_extension));
+    TRY(mem_printf(&drawing->picture, err, "%s/%s.%s", folder, name, picture_extension));
+    return mem_printf(&drawing->log, err, "%s/%s.log", folder, name);
 }
 
 void drawing_release(ShellDrawing *drawing)

@@ -57,9 +57,7 @@ typedef struct StudyRuns {
     char **path;          /* per run: its file; owned */
     pthread_mutex_t lock; /* protects the members below */
     size_t done, kept, failed;
-    size_t first_failed; /* index of the first run that failed, if failed > 0 */
-    Status status;       /* of that run */
-    Err err;             /* of that run */
+    FirstFail fail; /* the error of the failed run with the lowest index */
     Progress progress;
 } StudyRuns;
 
@@ -77,11 +75,8 @@ static void count(StudyRuns *runs, size_t index, bool kept, Status status, const
 {
     runs->done++;
     runs->kept += kept;
-    if (status != STATUS_OK && (runs->failed++ == 0 || index < runs->first_failed)) {
-        runs->first_failed = index;
-        runs->status = status;
-        runs->err = *err;
-    }
+    runs->failed += status != STATUS_OK;
+    firstfail_note(&runs->fail, index, status, err);
     progress_show(&runs->progress, (double)runs->done / (double)runs->n);
 }
 
@@ -116,7 +111,7 @@ static Status grow_runs(StudyRuns *runs, const Common *common, Err *err)
     if (runs->progress.stopped)
         return err_cancelled(err);
     if (runs->failed > 0)
-        return err_set(err, runs->status, "%s%s", runs->err.text,
+        return err_set(err, runs->fail.status, "%s%s", runs->fail.err.text,
                        runs->failed > 1 ? "; other runs failed as well" : "");
     talk_note(common->talk, "%zu run%s: %zu grown, %zu found from before", runs->n,
               runs->n == 1 ? "" : "s", runs->n - runs->kept, runs->kept);

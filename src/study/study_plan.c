@@ -67,13 +67,6 @@ done:
     return status;
 }
 
-static Status add_value(StudyKey *key, const char *value, Err *err)
-{
-    char *written = NULL;
-    TRY(rewrite(key->name, value, &written, err));
-    return add_written(key, written, err);
-}
-
 /* Returns true if the value is a range A..B and the option takes integers. */
 static bool is_range(const Option *option, const char *value, long long *from, long long *to)
 {
@@ -112,8 +105,11 @@ static Status add_range(StudyKey *key, const char *range, long long from, long l
 static Status add_values(StudyKey *key, const Option *option, const char *value, Err *err)
 {
     long long from, to;
-    return is_range(option, value, &from, &to) ? add_range(key, value, from, to, err)
-                                               : add_value(key, value, err);
+    char *written = NULL;
+    if (is_range(option, value, &from, &to))
+        return add_range(key, value, from, to, err);
+    TRY(rewrite(key->name, value, &written, err));
+    return add_written(key, written, err);
 }
 
 /* Returns the comma that ends the first value of a list: the first comma before a blank or before

@@ -1,5 +1,6 @@
-/* Counts children, and stores each only child at its parent. A branch then follows only children
- * from each segment that is not the only child of a segment. */
+/* A branch begins at each segment that is not the only child of a segment, and follows only
+ * children. So the children of each node are counted, and each only child is stored at its parent.
+ */
 #include "tree/tree.h"
 
 #include <stdlib.h>
@@ -13,10 +14,11 @@ void branches_release(Branches *branches)
 
 enum { NONE = -1 };
 
+/* Finds, per node, its only child, or NONE if it has no child or several. The caller frees *out. */
 static Status only_children(const Tree *tree, const int32_t *children, int32_t **out, Err *err)
 {
     int32_t *made = NULL;
-    TRY(mem_calloc(&made, tree->n, sizeof *made, "children", err));
+    TRY(mem_alloc(&made, tree->n, sizeof *made, "children", err));
     for (size_t i = 0; i < tree->n; i++)
         made[i] = NONE;
     for (size_t i = 0; i < tree->n; i++)

@@ -1,11 +1,13 @@
-/* Rows are stored as they are added until the file is complete. Then an index of ids gives the
- * parents, and rows are placed. For each row that is not placed yet, the walk towards the root
- * collects the ancestors that are not placed either; they are placed before it. Rows whose
- * parents come first keep their order. Every row is visited at most twice. A walk that meets
- * itself is a cycle.
+/* Rows, the nodes in the order of the file, are stored until the file is complete. An index of ids
+ * then resolves the parents, and each row gets an index in the tree, with parents first.
  *
- * Two shortcuts: rows that are already in order become the tree without a copy. Rows with the ids
- * 1, 2, ... and parents first, as in most large files, need no index of ids. */
+ * To place a row, a walk towards the root marks the ancestors that have no index yet. The topmost
+ * of them gets the next index, then the one below it, and so on down to the row itself. Rows whose
+ * parents come first therefore keep their order. A walk that meets its own mark has found a cycle.
+ * The walks visit each row at most twice.
+ *
+ * Two shortcuts save memory: rows that are already in order become the tree without a copy, and
+ * rows with the ids 1, 2, ... and parents first, as in most large files, need no index of ids. */
 #include "tree/builder.h"
 
 #include "tree/idindex.h"
@@ -16,7 +18,7 @@
 
 typedef struct BuilderColumn {
     char *name, *unit;
-    double *value; /* of the first `n` rows */
+    double *value; /* values of the first `n` rows */
     size_t n, capacity;
 } BuilderColumn;
 
@@ -49,9 +51,9 @@ void builder_release(TreeBuilder *builder)
     free(builder->radius_mm);
     free(builder->row_record);
     free(builder->column);
-    free(builder->share);
-    free(builder->pair);
-    free(builder->link);
+    ARRAY_RELEASE(&builder->shares);
+    ARRAY_RELEASE(&builder->pairs);
+    ARRAY_RELEASE(&builder->links);
     meta_release(&builder->meta);
     *builder = (TreeBuilder){0};
 }
@@ -79,7 +81,7 @@ static Status unknown_parent(int64_t id, Err *err)
         (long long)id, TREE_NO_PARENT);
 }
 
-/* Refuses a node that `what`, a pair, a link or a share, names. */
+/* Refuses an id that `what` (a pair, a link or a flow share) refers to. */
 static Status unknown_node(const char *what, int64_t id, Err *err)
 {
     return err_set(err, STATUS_INPUT, "%s names the node %lld, which is not the id of a node", what,
@@ -99,7 +101,7 @@ static Status check_node(const BuilderNode *node, Err *err)
     return STATUS_OK;
 }
 
-/* A node has a radius, or NAN where the options replace it afterwards. */
+/* Accepts a missing radius, NAN, only if the options replace it after the tree was built. */
 static Status check_radius(const ReadOptions *options, double *radius_mm, Err *err)
 {
     bool is_filled = options && (options->repair_radii || options->radius_mm > 0);
@@ -108,7 +110,7 @@ static Status check_radius(const ReadOptions *options, double *radius_mm, Err *e
     return reading_radius(options, radius_mm, err);
 }
 
-/* Makes room for one row more in every array. */
+/* Reserves one more row in every array. */
 static Status reserve_row(TreeBuilder *builder, Err *err)
 {
     const struct {
@@ -172,7 +174,7 @@ done:
     return status;
 }
 
-/* Sets the values of the column that are not set, of the first `n` rows, to NAN. */
+/* Sets the values of a column that are missing in the first `n` rows to NAN. */
 static Status fill_column(const TreeBuilder *builder, BuilderColumn *column, size_t n, Err *err)
 {
     TRY(mem_reserve(&column->value, &column->capacity, builder->n, sizeof *column->value,
@@ -199,33 +201,24 @@ Status builder_share(TreeBuilder *builder, int64_t id, double share, size_t reco
                        number_text(share, number));
     if (!is_id(id))
         return unknown_node(share_name, id, err);
-    TRY(mem_reserve(&builder->share, &builder->shares_capacity, builder->n_shares + 1,
-                    sizeof *builder->share, "flow shares", err));
-    builder->share[builder->n_shares++] =
-        (BuilderShare){.id = (int32_t)id, .share = share, .record = record};
-    return STATUS_OK;
+    return ARRAY_PUSH(&builder->shares, "flow shares", err,
+                      (BuilderShare){(int32_t)id, share, record});
 }
 
 Status builder_pair(TreeBuilder *builder, int64_t id, int64_t other, size_t record, Err *err)
 {
     if (!is_id(id) || !is_id(other))
         return unknown_node(tree_pairs_name, is_id(id) ? other : id, err);
-    TRY(mem_reserve(&builder->pair, &builder->pairs_capacity, builder->n_pairs + 1,
-                    sizeof *builder->pair, "pairs", err));
-    builder->pair[builder->n_pairs++] =
-        (BuilderPair){.id = {(int32_t)id, (int32_t)other}, .record = record};
-    return STATUS_OK;
+    return ARRAY_PUSH(&builder->pairs, "pairs", err,
+                      (BuilderPair){{(int32_t)id, (int32_t)other}, record});
 }
 
 Status builder_link(TreeBuilder *builder, int64_t id, int64_t other, size_t record, Err *err)
 {
     if (!is_id(id) || !is_id(other))
         return unknown_node(link_name, is_id(id) ? other : id, err);
-    TRY(mem_reserve(&builder->link, &builder->links_capacity, builder->n_links + 1,
-                    sizeof *builder->link, "links", err));
-    builder->link[builder->n_links++] =
-        (BuilderPair){.id = {(int32_t)id, (int32_t)other}, .record = record};
-    return STATUS_OK;
+    return ARRAY_PUSH(&builder->links, "links", err,
+                      (BuilderPair){{(int32_t)id, (int32_t)other}, record});
 }
 
 /* Indexes the rows by their ids, which must differ. */
@@ -246,7 +239,7 @@ static Status index_ids(const TreeBuilder *builder, IdIndex *index, Err *err)
     return STATUS_OK;
 }
 
-/* Without an index, ids are 1, 2, ... NO_ROW where there is none. */
+/* Returns the row of an id, or NO_ROW. An empty index means that the ids are 1, 2, ... in order. */
 static int32_t row_of(const TreeBuilder *builder, const IdIndex *index, int32_t id)
 {
     if (index->n > 0)
@@ -263,7 +256,7 @@ static bool are_numbered(const TreeBuilder *builder)
     return true;
 }
 
-/* Makes the rows' parents, which are ids, indices. */
+/* Replaces the id of each row's parent by the parent's row. */
 static Status find_parents(TreeBuilder *builder, const IdIndex *index, Err *err)
 {
     for (size_t i = 0; i < builder->n; i++) {
@@ -376,48 +369,66 @@ static Status fill_columns(const TreeBuilder *builder, const int32_t *place, Tre
     return STATUS_OK;
 }
 
-/* The key terminal_flow must go with the shares. */
-static Status check_rule(const TreeBuilder *builder, Err *err)
+/* Checks that the key terminal_flow agrees with the flow shares. */
+static Status check_terminal_flow(const TreeBuilder *builder, Err *err)
 {
     bool known = builder->meta.known[META_TERMINAL_FLOW];
     TerminalFlow flow = (TerminalFlow)builder->meta.number[META_TERMINAL_FLOW];
-    if (!known || (flow != TERMINAL_FLOW_EQUAL) == (builder->n_shares > 0))
+    if (!known || (flow != TERMINAL_FLOW_EQUAL) == (builder->shares.n > 0))
         return STATUS_OK;
     return err_set(err, STATUS_INPUT, "%s: terminal_flow is %s, but there are %sflow shares",
-                   builder->name, terminal_flow_names[flow], builder->n_shares > 0 ? "" : "no ");
+                   builder->name, terminal_flow_names[flow], builder->shares.n > 0 ? "" : "no ");
 }
 
-/* A share is above 0, so a node that has one is a node that was named. */
-static Status fill_shares(const TreeBuilder *builder, const IdIndex *index, const int32_t *place,
-                          Tree *tree, Err *err)
+/* The rows, and how their nodes are found in the tree. */
+typedef struct PlacedRows {
+    const TreeBuilder *builder;
+    IdIndex index;  /* of the ids; empty: the ids are 1, 2, ... in order */
+    int32_t *place; /* per row: its index in the tree; NULL: rows keep their order. Owned */
+} PlacedRows;
+
+/* Finds the index in the tree of the node with this id. `what` refers to the node. */
+static Status find_node(const PlacedRows *rows, const char *what, int32_t id, size_t *at, Err *err)
 {
-    TRY(check_rule(builder, err));
-    if (builder->n_shares > 0)
+    int32_t row = row_of(rows->builder, &rows->index, id);
+    if (row == NO_ROW)
+        return unknown_node(what, id, err);
+    *at = place_of(rows->place, (size_t)row);
+    return STATUS_OK;
+}
+
+/* Sets one flow share. A share is above 0, so a node whose share is not 0 was stated before. */
+static Status fill_share(const PlacedRows *rows, const BuilderShare *stated, Tree *tree, Err *err)
+{
+    size_t at = 0;
+    TRY(find_node(rows, share_name, stated->id, &at, err));
+    if (tree->flow_share[at] > 0)
+        return err_set(err, STATUS_INPUT, "the flow share of node %d is stated twice", stated->id);
+    tree->flow_share[at] = stated->share;
+    return STATUS_OK;
+}
+
+static Status fill_shares(const PlacedRows *rows, Tree *tree, Err *err)
+{
+    const TreeBuilder *builder = rows->builder;
+    TRY(check_terminal_flow(builder, err));
+    if (builder->shares.n > 0)
         TRY(tree_add_flow_shares(tree, err));
-    for (size_t k = 0; k < builder->n_shares; k++) {
-        const BuilderShare *said = &builder->share[k];
-        int32_t row = row_of(builder, index, said->id);
-        Status status = STATUS_OK;
-        if (row == NO_ROW)
-            status = unknown_node(share_name, said->id, err);
-        else if (tree->flow_share[place_of(place, (size_t)row)] > 0)
-            status =
-                err_set(err, STATUS_INPUT, "the flow share of node %d is stated twice", said->id);
-        TRY(builder_blame(builder, said->record, status, err));
-        tree->flow_share[place_of(place, (size_t)row)] = said->share;
+    for (size_t k = 0; k < builder->shares.n; k++) {
+        const BuilderShare *stated = &builder->shares.items[k];
+        TRY(builder_blame(builder, stated->record, fill_share(rows, stated, tree, err), err));
     }
     return STATUS_OK;
 }
 
-/* Finds the nodes of pair k; `number` are those of the pairs before. */
-static Status find_pair(const TreeBuilder *builder, const IdIndex *index, const int32_t *place,
-                        size_t k, double *number, Err *err)
+/* Writes the number of pair k, k + 1, to its two nodes. `number` has NAN at nodes without a pair.
+ */
+static Status fill_pair(const PlacedRows *rows, size_t k, double *number, Err *err)
 {
     for (int side = 0; side < 2; side++) {
-        int32_t id = builder->pair[k].id[side], row = row_of(builder, index, id);
-        if (row == NO_ROW)
-            return unknown_node(tree_pairs_name, id, err);
-        size_t at = place_of(place, (size_t)row);
+        int32_t id = rows->builder->pairs.items[k].id[side];
+        size_t at = 0;
+        TRY(find_node(rows, tree_pairs_name, id, &at, err));
         if (!isnan(number[at]))
             return err_set(err, STATUS_INPUT, "node %d is of a pair twice", id);
         number[at] = (double)(k + 1);
@@ -425,29 +436,24 @@ static Status find_pair(const TreeBuilder *builder, const IdIndex *index, const 
     return STATUS_OK;
 }
 
-static Status fill_pairs(const TreeBuilder *builder, const IdIndex *index, const int32_t *place,
-                         Tree *tree, Err *err)
+static Status fill_pairs(const PlacedRows *rows, Tree *tree, Err *err)
 {
+    const TreeBuilder *builder = rows->builder;
     double *number = NULL;
-    if (builder->n_pairs > 0)
+    if (builder->pairs.n > 0)
         TRY(tree_set_column(tree, tree_pairs_name, "", &number, err));
-    for (size_t k = 0; k < builder->n_pairs; k++)
-        TRY(builder_blame(builder, builder->pair[k].record,
-                          find_pair(builder, index, place, k, number, err), err));
+    for (size_t k = 0; k < builder->pairs.n; k++)
+        TRY(builder_blame(builder, builder->pairs.items[k].record, fill_pair(rows, k, number, err),
+                          err));
     return STATUS_OK;
 }
 
 /* Sets the link of one node. */
-static Status fill_link(const TreeBuilder *builder, const IdIndex *index, const int32_t *place,
-                        const BuilderPair *link, Tree *tree, Err *err)
+static Status fill_link(const PlacedRows *rows, const BuilderPair *link, Tree *tree, Err *err)
 {
-    size_t at[2];
-    for (int side = 0; side < 2; side++) {
-        int32_t row = row_of(builder, index, link->id[side]);
-        if (row == NO_ROW)
-            return unknown_node(link_name, link->id[side], err);
-        at[side] = place_of(place, (size_t)row);
-    }
+    size_t at[2] = {0};
+    for (int side = 0; side < 2; side++)
+        TRY(find_node(rows, link_name, link->id[side], &at[side], err));
     if (tree_is_link(tree, at[0]))
         return err_set(err, STATUS_INPUT, "node %d has two links", link->id[0]);
     tree->link[at[0]] = (int32_t)at[1];
@@ -455,15 +461,16 @@ static Status fill_link(const TreeBuilder *builder, const IdIndex *index, const 
     return STATUS_OK;
 }
 
-static Status fill_links(const TreeBuilder *builder, const IdIndex *index, const int32_t *place,
-                         Tree *tree, Err *err)
+static Status fill_links(const PlacedRows *rows, Tree *tree, Err *err)
 {
-    if (builder->n_links == 0)
+    const TreeBuilder *builder = rows->builder;
+    if (builder->links.n == 0)
         return STATUS_OK;
     TRY(tree_add_links(tree, err));
-    for (size_t k = 0; k < builder->n_links; k++)
-        TRY(builder_blame(builder, builder->link[k].record,
-                          fill_link(builder, index, place, &builder->link[k], tree, err), err));
+    for (size_t k = 0; k < builder->links.n; k++) {
+        const BuilderPair *link = &builder->links.items[k];
+        TRY(builder_blame(builder, link->record, fill_link(rows, link, tree, err), err));
+    }
     Status status = tree_check_links(tree, err);
     if (status == STATUS_INPUT)
         err_prefix(err, "%s: ", builder->name);
@@ -475,31 +482,30 @@ Status builder_build(TreeBuilder *builder, Tree *out, Err *err)
     if (builder->n == 0)
         return err_set(err, STATUS_INPUT, "%s: the file has no nodes; a tree has at least one",
                        builder->name);
-    IdIndex index = {0};
-    int32_t *place = NULL;
+    PlacedRows rows = {.builder = builder};
     Tree tree = {0};
     Status status = STATUS_OK;
     const bool numbered = are_numbered(builder);
     if (!numbered)
-        TRY_GOTO(index_ids(builder, &index, err));
-    TRY_GOTO(find_parents(builder, &index, err));
+        TRY_GOTO(index_ids(builder, &rows.index, err));
+    TRY_GOTO(find_parents(builder, &rows.index, err));
     if (!numbered)
-        TRY_GOTO(place_rows(builder, &place, err));
-    if (are_in_order(builder, place))
+        TRY_GOTO(place_rows(builder, &rows.place, err));
+    if (are_in_order(builder, rows.place))
         move_nodes(builder, &tree);
     else
-        TRY_GOTO(copy_nodes(builder, place, &tree, err));
-    TRY_GOTO(fill_columns(builder, place, &tree, err));
-    TRY_GOTO(fill_shares(builder, &index, place, &tree, err));
-    TRY_GOTO(fill_pairs(builder, &index, place, &tree, err));
-    TRY_GOTO(fill_links(builder, &index, place, &tree, err));
+        TRY_GOTO(copy_nodes(builder, rows.place, &tree, err));
+    TRY_GOTO(fill_columns(builder, rows.place, &tree, err));
+    TRY_GOTO(fill_shares(&rows, &tree, err));
+    TRY_GOTO(fill_pairs(&rows, &tree, err));
+    TRY_GOTO(fill_links(&rows, &tree, err));
     tree.meta = builder->meta;
     builder->meta = (TreeMeta){0};
     *out = tree;
 done:
     if (status != STATUS_OK)
         tree_release(&tree);
-    idindex_release(&index);
-    free(place);
+    idindex_release(&rows.index);
+    free(rows.place);
     return status;
 }

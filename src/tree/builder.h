@@ -16,6 +16,8 @@ typedef struct Tree Tree;
 typedef struct ReadOptions ReadOptions;
 typedef struct TreeReading TreeReading;
 
+/* Maximum number of columns of a file. It stops a small file from naming so many columns that the
+ * values of all nodes fill the memory. Reason of the value not recorded. */
 enum { BUILDER_MAX_COLUMNS = 10000 };
 
 /* A node as the file states it, before ids are resolved. */
@@ -42,12 +44,8 @@ typedef struct TreeBuilder {
     size_t n, capacity; /* number of nodes */
     struct BuilderColumn *column;
     size_t n_columns, columns_capacity;
-    struct BuilderShare *share;
-    size_t n_shares, shares_capacity;
-    struct BuilderPair *pair;
-    size_t n_pairs, pairs_capacity;
-    struct BuilderPair *link;
-    size_t n_links, links_capacity;
+    ARRAY(struct BuilderShare) shares;
+    ARRAY(struct BuilderPair) pairs, links;
 } TreeBuilder;
 
 void builder_release(TreeBuilder *builder);

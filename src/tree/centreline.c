@@ -1,5 +1,6 @@
-/* Splines through all nodes keep the steps of voxel paths, and lengthen them further; a filter
- * removes them [docs/METHODS.md section 10]. */
+/* Centrelines that were traced in voxels have steps. A spline through all nodes would keep the
+ * steps and make the path longer, so a low-pass filter removes them [docs/METHODS.md section 10].
+ * Resampling walks along each branch once and sums what each new segment replaces. */
 #include "tree/tree.h"
 
 #include <math.h>
@@ -20,8 +21,8 @@ CentrelineSums centreline_sums(const Tree *tree)
 
 /* ---- smoothing ------------------------------------------------------------------------------- */
 
-/* Moves each node inside a branch towards the middle of its two neighbours, by `factor` of the way.
- * `before` holds the positions before. */
+/* Moves each node inside a branch towards the midpoint of its two neighbours, by `factor` times its
+ * distance from the midpoint. `before` is scratch space for the old positions of all nodes. */
 static void filter(Tree *tree, const Branches *branches, double factor, Vec3 *before)
 {
     memcpy(before, tree->position, tree->n * sizeof *before);
@@ -34,8 +35,8 @@ static void filter(Tree *tree, const Branches *branches, double factor, Vec3 *be
         }
 }
 
-/* Holds the moves from the positions `from` within their bound. */
-static void hold(Tree *tree, const Branches *branches, const Vec3 *from, SmoothMoves *moves)
+/* Limits the move of each node from its position in `from` to SMOOTH_MOST_RADII radii. */
+static void limit_moves(Tree *tree, const Branches *branches, const Vec3 *from, SmoothMoves *moves)
 {
     for (size_t k = 0, at = 0; k < branches->n; k++, at++)
         for (; at + 1 < branches->end[k]; at++) {
@@ -69,7 +70,7 @@ Status tree_smooth(Tree *tree, SmoothMoves *moves, Err *err)
         filter(tree, &branches, 0.5, before);
         filter(tree, &branches, -0.53, before);
     }
-    hold(tree, &branches, from, moves);
+    limit_moves(tree, &branches, from, moves);
 done:
     branches_release(&branches);
     free(from);
@@ -104,7 +105,7 @@ typedef struct PieceSums {
     double length, inverse_r4; /* sum of l, and of l / r^4 */
 } PieceSums;
 
-/* Adds a part of a segment, `length` mm. */
+/* Adds `length` mm of an old segment to the sums. */
 static void add_part(const BranchResampling *branch, int32_t segment, double length,
                      PieceSums *sums)
 {
@@ -113,6 +114,7 @@ static void add_part(const BranchResampling *branch, int32_t segment, double len
     sums->inverse_r4 += length > 0 ? length / (r2 * r2) : 0;
 }
 
+/* Completes new segment `to`: radius, type and values. `segment` is the old segment at its end. */
 static void end_piece(const BranchResampling *branch, int32_t segment, size_t to,
                       const PieceSums *sums)
 {
@@ -128,7 +130,7 @@ static void end_piece(const BranchResampling *branch, int32_t segment, size_t to
 static void resample(const BranchResampling *branch, size_t first)
 {
     const Tree *tree = branch->tree;
-    double done = 0; /* length of the segments before */
+    double done = 0; /* length of the old segments before the current one */
     int32_t piece = 0;
     PieceSums sums = {0};
     for (size_t i = 0; i < branch->n; i++) {
@@ -176,6 +178,7 @@ static double count_nodes(const Tree *tree, const Branches *branches, double ste
     return n;
 }
 
+/* Makes a tree of n nodes with the metadata and the columns of `tree`. */
 static Status start_tree(const Tree *tree, double n, Tree *out, Err *err)
 {
     double *value;
@@ -206,6 +209,8 @@ static void copy_root(const Tree *tree, size_t from, Tree *out, size_t to)
         out->column[k].value[to] = tree->column[k].value[from];
 }
 
+/* Writes all nodes: copies of the roots, then the new segments of each branch. place[i] receives
+ * the new index of old node i if it is a root or the end of a branch. */
 static void fill(const Tree *tree, const Branches *branches, double step, int32_t *place, Tree *out)
 {
     size_t n = 0;

@@ -1,5 +1,5 @@
-/* Stores points, lines and values as they are added; graph_build does all work when they
- * are complete. */
+/* Points, lines and values are stored as they are added. graph_build makes the tree when all of
+ * them are known. */
 #include "tree/graph_parts.h"
 #include "tree/tree.h"
 

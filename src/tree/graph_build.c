@@ -36,9 +36,7 @@ typedef struct Building {
     GraphLink *link;
     size_t n_links;
     uint32_t *component; /* per point: the sets of connected points [base/sets.h] */
-    uint32_t *degree;    /* per kept point: count of its links */
-    uint32_t *first;     /* per point: where the list of its links starts in `at` */
-    uint32_t *at;        /* indices of links, the list of one point after another */
+    IndexLists links;    /* per kept point: its links */
     uint32_t *parent;    /* per kept point: its parent + 1; 0: none */
     uint32_t *above;     /* per kept point: the link to its parent */
     bool *used;          /* per link: it has been directed; `a` is then its proximal point */
@@ -52,9 +50,7 @@ static void release(Building *building)
     free(building->representative);
     free(building->link);
     free(building->component);
-    free(building->degree);
-    free(building->first);
-    free(building->at);
+    indexlists_release(&building->links);
     free(building->parent);
     free(building->above);
     free(building->used);
@@ -63,6 +59,7 @@ static void release(Building *building)
 
 /* ---- lines ---- */
 
+/* Returns the radius of a line; if it has none, the smaller radius of its points, or 0. */
 static double thickness_of(const Graph *graph, const GraphLine *line)
 {
     if (!isnan(line->radius))
@@ -71,6 +68,7 @@ static double thickness_of(const Graph *graph, const GraphLine *line)
     return isnan(a) || isnan(b) ? 0 : fmin(a, b);
 }
 
+/* Makes the links of all lines whose points were not merged with each other. */
 static Status link_lines(Building *building, Err *err)
 {
     const Graph *graph = building->graph;
@@ -205,6 +203,7 @@ done:
 
 /* ---- loops ---- */
 
+/* Records a cut link in the report. */
 static Status note_cut(Building *building, const GraphLink *link, Err *err)
 {
     TreeReading *reading = building->reading;
@@ -221,8 +220,7 @@ static Status note_cut(Building *building, const GraphLink *link, Err *err)
 }
 
 /* Finds a spanning forest: takes the links in their order, and moves each link that closes a loop
- * to the end. *kept receives the count of links before the first
- * moved one. */
+ * to the end. *kept receives the number of links that close no loop. */
 static void span(Building *building, size_t *kept)
 {
     uint32_t *component = building->component;
@@ -336,81 +334,84 @@ static Status treat_loops(Building *building, Err *err)
 
 /* ---- roots ---- */
 
+/* Returns the number of links of a kept point. */
+static uint32_t degree_of(const Building *building, size_t point)
+{
+    return indexlists_length(&building->links, point);
+}
+
 /* Returns true if a point becomes a node. A point without lines does so only if the file was
  * written from a tree. */
 static bool is_node(const Building *building, size_t point)
 {
     return building->representative[point] == point &&
-           (building->degree[point] > 0 || building->graph->is_tree);
+           (degree_of(building, point) > 0 || building->graph->is_tree);
 }
 
+/* Lists the links of each point. */
 static Status list_links(Building *building, Err *err)
 {
-    size_t n = building->graph->n_points;
-    TRY(mem_calloc(&building->degree, n, sizeof *building->degree, "degrees", err));
-    TRY(mem_calloc(&building->first, n, sizeof *building->first, "links of points", err));
-    TRY(mem_calloc(&building->at, 2 * building->n_links, sizeof *building->at, "links of points",
-                   err));
+    IndexLists *links = &building->links;
+    TRY(indexlists_begin(links, building->graph->n_points, "links of points", err));
     for (size_t i = 0; i < building->n_links; i++) {
-        building->degree[building->link[i].a]++;
-        building->degree[building->link[i].b]++;
+        indexlists_count(links, building->link[i].a);
+        indexlists_count(links, building->link[i].b);
     }
-    uint32_t end = 0;
-    for (size_t i = 0; i < n; i++)
-        building->first[i] = end += building->degree[i];
-    for (size_t i = building->n_links; i-- > 0;) {
-        building->at[--building->first[building->link[i].a]] = (uint32_t)i;
-        building->at[--building->first[building->link[i].b]] = (uint32_t)i;
+    TRY(indexlists_allot(links, "links of points", err));
+    for (uint32_t i = 0; i < building->n_links; i++) {
+        indexlists_put(links, building->link[i].a, i);
+        indexlists_put(links, building->link[i].b, i);
     }
     return STATUS_OK;
 }
 
 static const GraphLink *link_at(const Building *building, uint32_t point, uint32_t k)
 {
-    return &building->link[building->at[building->first[point] + k]];
+    return &building->link[building->links.items[building->links.first[point] + k]];
 }
 
 /* How good a root a point is for its component; the highest rank wins. */
 typedef enum Rank { RANK_ANY, RANK_END, RANK_SOURCE, RANK_INLET } Rank;
 
-typedef struct LinkCandidate {
+typedef struct RootCandidate {
     uint32_t point; /* + 1; 0: none yet */
     Rank rank;
     double thickness;
-} LinkCandidate;
+} RootCandidate;
 
-static LinkCandidate judge(const Building *building, uint32_t point)
+/* Returns a point as a candidate for the root of its component. */
+static RootCandidate candidate_of(const Building *building, uint32_t point)
 {
     const Graph *graph = building->graph;
-    LinkCandidate made = {.point = point + 1};
+    RootCandidate made = {.point = point + 1};
     bool leads_away = true;
-    for (uint32_t k = 0; k < building->degree[point]; k++) {
+    for (uint32_t k = 0; k < degree_of(building, point); k++) {
         const GraphLink *link = link_at(building, point, k);
         leads_away = leads_away && graph->line[link->line].is_directed && link->a == point;
         made.thickness = fmax(made.thickness, link->thickness);
     }
-    made.rank = graph->point[point].is_inlet   ? RANK_INLET
-                : leads_away                   ? RANK_SOURCE
-                : building->degree[point] == 1 ? RANK_END
-                                               : RANK_ANY;
+    made.rank = graph->point[point].is_inlet      ? RANK_INLET
+                : leads_away                      ? RANK_SOURCE
+                : degree_of(building, point) == 1 ? RANK_END
+                                                  : RANK_ANY;
     return made;
 }
 
-static bool is_better(const LinkCandidate *a, const LinkCandidate *b)
+static bool is_better(const RootCandidate *a, const RootCandidate *b)
 {
     return !b->point || a->rank > b->rank || (a->rank == b->rank && a->thickness > b->thickness);
 }
 
 /* Finds the root of each component. best[i] receives the best candidate of the component whose
  * first point is i. */
-static Status choose_roots(Building *building, LinkCandidate *best, Err *err)
+static Status choose_roots(Building *building, RootCandidate *best, Err *err)
 {
     TreeReading *reading = building->reading;
     const Graph *graph = building->graph;
     for (uint32_t i = 0; i < graph->n_points; i++) {
         if (!is_node(building, i))
             continue;
-        LinkCandidate candidate = judge(building, i),
+        RootCandidate candidate = candidate_of(building, i),
                       *of = &best[sets_find(building->component, i)];
         if (is_better(&candidate, of))
             *of = candidate;
@@ -473,9 +474,9 @@ static uint32_t direct_vessel(Building *building, uint32_t from, uint32_t at, bo
         reached[to] = true;
         building->parent[to] = from + 1;
         building->above[to] = at;
-        if (building->degree[to] != 2)
+        if (degree_of(building, to) != 2)
             return to;
-        const uint32_t *both = &building->at[building->first[to]];
+        const uint32_t *both = building->links.items + building->links.first[to];
         at = both[both[0] == at];
         from = to;
     }
@@ -491,8 +492,8 @@ static void direct_from(Building *building, uint32_t root, uint32_t *queue, bool
     reached[root] = true;
     while (done < n) {
         uint32_t point = queue[done++];
-        for (uint32_t k = 0; k < building->degree[point]; k++) {
-            uint32_t at = building->at[building->first[point] + k];
+        for (uint32_t k = 0; k < degree_of(building, point); k++) {
+            uint32_t at = building->links.items[building->links.first[point] + k];
             uint32_t end = direct_vessel(building, point, at, reached);
             if (end != NO_POINT)
                 queue[n++] = end;
@@ -503,7 +504,7 @@ static void direct_from(Building *building, uint32_t root, uint32_t *queue, bool
 static Status direct_links(Building *building, Err *err)
 {
     size_t n = building->graph->n_points;
-    LinkCandidate *best = NULL;
+    RootCandidate *best = NULL;
     uint32_t *queue = NULL;
     bool *reached = NULL;
     Status status = STATUS_OK;
@@ -566,6 +567,7 @@ static size_t distal_point(const Building *building, const GraphLink *link)
     return building->representative[line->b] == link->b ? line->b : line->a;
 }
 
+/* Finds the radius of the segment that a link becomes; NAN if the options replace missing radii. */
 static Status radius_of_link(const Building *building, const GraphLink *link, double *radius,
                              Err *err)
 {
@@ -582,6 +584,8 @@ static Status radius_of_link(const Building *building, const GraphLink *link, do
                        err);
 }
 
+/* Finds the radius of a root: that of the thickest segment that leaves it, or in a file that was
+ * written from a tree the radius of its point. */
 static Status radius_of_root(const Building *building, uint32_t kept, double *radius, Err *err)
 {
     const Graph *graph = building->graph;
@@ -590,7 +594,7 @@ static Status radius_of_root(const Building *building, uint32_t kept, double *ra
         *radius = graph->point[kept].radius;
         return STATUS_OK;
     }
-    for (uint32_t k = 0; k < building->degree[kept]; k++) {
+    for (uint32_t k = 0; k < degree_of(building, kept); k++) {
         const GraphLink *link = link_at(building, kept, k);
         double of_link;
         TRY(radius_of_link(building, link, &of_link, err));
@@ -743,7 +747,8 @@ static Status add_nodes(const Building *building, TreeBuilder *builder, const in
     return status;
 }
 
-static Status hand_over(Building *building, TreeBuilder *builder, Err *err)
+/* Moves the metadata, columns and nodes to the builder. */
+static Status fill_builder(Building *building, TreeBuilder *builder, Err *err)
 {
     const Graph *graph = building->graph;
     TreeReading *reading = building->reading;
@@ -821,7 +826,7 @@ static Status find_near_ends(Building *building, Err *err)
     TRY_GOTO(mem_calloc(&component, graph->n_points, sizeof *component, "components", err));
     for (uint32_t i = 0; i < graph->n_points; i++) {
         component[i] = is_node(building, i) ? sets_find(building->component, i) + 1 : 0;
-        if (component[i] && building->degree[i] == 1)
+        if (component[i] && degree_of(building, i) == 1)
             reach[i] = fmin(median, reach_of(graph, link_at(building, i, 0)));
     }
     status = graph_near_ends(graph, component, reach, median, building->reading, err);
@@ -866,7 +871,7 @@ static Status build(Building *building, TreeBuilder *builder, Err *err)
         TRY(find_near_ends(building, err));
     count_points(building);
     TRY(direct_links(building, err));
-    return hand_over(building, builder, err);
+    return fill_builder(building, builder, err);
 }
 
 Status graph_build(Graph *graph, TreeBuilder *builder, Err *err)

@@ -1,13 +1,14 @@
-/* Most files have ids with few gaps; a table is then fastest. A file of two rows may have the
- * ids 1 and 100000000. If the table would be much longer than the file, entries sorted by id
- * replace it. */
+/* Most files have ids with few gaps. A table with an entry per id is then fastest. But a file of
+ * two rows may have the ids 1 and 100000000. If the table would have more than WIDEST_GAPS entries
+ * per row and SHORT_TABLE more, a list sorted by id replaces it. Reasons of the two values not
+ * recorded. */
 #include "tree/idindex.h"
 
 #include <stdlib.h>
 
 typedef struct IdEntry {
     int32_t id;
-    uint32_t row; /* + 1 */
+    uint32_t row; /* 1 + the row */
 } IdEntry;
 
 void idindex_release(IdIndex *index)

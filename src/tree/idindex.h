@@ -1,4 +1,5 @@
-/* Finds rows by their ids. Takes memory for the rows, not for the largest id. */
+/* Finds rows of a file, such as nodes, by their ids. The index takes O(rows) memory, even if the
+ * largest id is much larger than the number of rows. */
 #ifndef CORCAST_TREE_IDINDEX_H
 #define CORCAST_TREE_IDINDEX_H
 
@@ -18,11 +19,12 @@ typedef struct IdIndex {
 
 void idindex_release(IdIndex *index);
 
-/* Indexes `n` rows whose ids are 0 or more; rows with the id 0 are left out. STATUS_MEMORY. Cost:
- * O(n log n). */
+/* Indexes `n` rows. id[i] >= 0 is the id of row i; rows with the id 0 are left out. Release *index
+ * with idindex_release. Errors: STATUS_MEMORY. Cost: O(n log n). */
 MUST_CHECK Status idindex_make(IdIndex *index, const int32_t *id, size_t n, Err *err);
 
-/* Returns the first row of this id, + 1; 0 if there is none. */
+/* Returns 1 + the first row of this id, or 0 if no row has the id. Cost: O(1), or O(log n) if the
+ * ids have wide gaps. */
 size_t idindex_find(const IdIndex *index, int32_t id);
 
 #endif

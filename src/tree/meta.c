@@ -152,7 +152,7 @@ bool meta_allows(MetaKey key, double value)
     return range_has(row->range, value) && (row->kind != META_WHOLE || value == floor(value));
 }
 
-/* What a key's values may be, as what goes on from "it must be ". */
+/* Appends the allowed values of a key, as the end of the sentence "it must be ...". */
 static void put_allowed(MetaKey key, Text *text)
 {
     const MetaRow *row = &meta_rows[key];
@@ -232,15 +232,10 @@ Status meta_add_text(TreeMeta *meta, MetaKey key, const char *text, Err *err)
 
 static Status refuse_value(MetaKey key, const char *value, Err *err)
 {
-    Text allowed = TEXT_INIT;
-    put_allowed(key, &allowed);
-    Status status = STATUS_OK;
-    TRY_GOTO(text_check(&allowed, err));
-    status = err_set(err, STATUS_INPUT, "%s is '%.40s'; it must be %s", meta_rows[key].name, value,
-                     text_chars(&allowed));
-done:
-    text_release(&allowed);
-    return status;
+    Text sentence = TEXT_INIT;
+    text_printf(&sentence, "%s is '%.40s'; it must be ", meta_rows[key].name, value);
+    put_allowed(key, &sentence);
+    return text_to_error(&sentence, STATUS_INPUT, err);
 }
 
 static bool parse_bits(const char *text, uint64_t *bits)

@@ -1,5 +1,5 @@
-/* Shares are relative. Radii are divided by the largest radius first, so that no power of
- * them overflows. */
+/* Flow shares are relative, so any common factor is allowed. Radii are divided by the largest
+ * radius before they are raised to a power, so that no power overflows. */
 #include "tree/outlets.h"
 
 #include "tree/tree.h"

@@ -1,5 +1,5 @@
-/* A pair's number stays valid when nodes are renumbered, pruned or written to another format. The
- * id of the partner would not. */
+/* Each node of a pair stores the number of the pair. The number stays valid when nodes are
+ * renumbered, pruned or written to another format; the id of the partner would not. */
 #include "tree/pairs.h"
 
 #include "tree/tree.h"

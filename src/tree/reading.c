@@ -1,6 +1,8 @@
-/* The report is measured on the tree that was built, in the same manner for all formats. A unit is
- * plausible if the median radius, read in that unit, is a vessel's. The unit with which the tree
- * was read is tried first; then the other units, more common ones before rarer ones. */
+/* The report is measured on the finished tree, in the same way for all formats.
+ *
+ * A unit is plausible if the median radius, read in that unit, is a radius of vessels. The unit
+ * with which the tree was read is tried first, then the other units, common ones before rare ones.
+ */
 #include "tree/reading.h"
 
 #include "tree/tree.h"
@@ -96,7 +98,8 @@ Status reading_radius(const ReadOptions *options, double *radius, Err *err)
     return STATUS_OK;
 }
 
-/* Gives roots without a radius that of the thickest segment that leaves them. */
+/* Sets the missing radius of a root to the radius of the thickest segment that leaves it. With
+ * `zeros`, a radius of 0 counts as missing. */
 static Status fill_roots(Tree *tree, bool zeros, Err *err)
 {
     double *thickest = NULL;
@@ -114,14 +117,15 @@ static Status fill_roots(Tree *tree, bool zeros, Err *err)
 
 /* ---- repairing radii ------------------------------------------------------------------------- */
 
+/* Returns true for a radius that is missing: 0 or NAN. */
 static bool is_gap(double radius)
 {
     return !(radius > 0);
 }
 
-/* Fills gaps between segments with a radius evenly along the branch, by the middles of the
- * segments; at the ends of the branch, with the nearest radius. Returns false if no segment of the
- * branch has a radius. `middle` has room for a number per segment. */
+/* Fills the missing radii of a branch by linear interpolation between known radii, over the path
+ * length to the middles of the segments. Beyond the first and the last known radius, the radius is
+ * constant. Returns false if no segment has a radius. `middle` has space for n numbers. */
 static bool fill_within(Tree *tree, const int32_t *node, size_t n, double *middle)
 {
     double length = 0, before = NAN;
@@ -145,8 +149,9 @@ static bool fill_within(Tree *tree, const int32_t *node, size_t n, double *middl
     return known < n;
 }
 
-/* Returns the thinner of the radii next to a branch without radii: its parent's, and the thickest
- * daughter's, which `thickest` has per node. Returns `otherwise` if both are gaps. */
+/* Returns the radius for a branch without radii: the smaller radius of its parent and its thickest
+ * daughter, or `otherwise` if both are missing. `thickest` has, per node, the radius of the
+ * thickest segment that leaves it. */
 static double radius_beside(const Tree *tree, const int32_t *node, size_t n, const double *thickest,
                             double otherwise)
 {
@@ -158,6 +163,7 @@ static double radius_beside(const Tree *tree, const int32_t *node, size_t n, con
     return is_gap(up) ? down : is_gap(down) ? up : fmin(up, down);
 }
 
+/* Returns the median of the known radii; NAN if there is none. `radius` has space for all nodes. */
 static double median_radius(const Tree *tree, double *radius)
 {
     size_t n = 0;
@@ -167,6 +173,7 @@ static double median_radius(const Tree *tree, double *radius)
     return n > 0 ? select_number(radius, n, n / 2) : (double)NAN;
 }
 
+/* Lists the ids of the segments without a radius, for the report. */
 static Status list_gaps(TreeReading *reading, const Tree *tree, Err *err)
 {
     TRY(mem_calloc(&reading->repaired, tree->n, sizeof *reading->repaired, "ids", err));
@@ -176,7 +183,8 @@ static Status list_gaps(TreeReading *reading, const Tree *tree, Err *err)
     return STATUS_OK;
 }
 
-/* Fills all gaps. Branches are in the order of the tree, so that the parent of one is filled. */
+/* Fills all missing radii. Branches are in the order of the tree, so the parent of a branch is
+ * filled before the branch. */
 static Status repair(TreeReading *reading, Tree *tree, Err *err)
 {
     Branches branches = {0};
@@ -268,9 +276,11 @@ static Status measure_degrees(TreeReading *reading, const Tree *tree, Err *err)
     return STATUS_OK;
 }
 
-static void believe(TreeReading *reading)
+/* Finds a unit in which the median radius is plausible. Measured trees have medians from 1 um, of
+ * capillaries, to 2.5 mm, of large arteries. */
+static void find_plausible_unit(TreeReading *reading)
 {
-    static const Range of_vessels = {0.001, 2.5}; /* mm: median radii */
+    static const Range of_vessels = {0.001, 2.5}; /* mm */
     static const LengthUnit commoner[] = {LENGTH_MM, LENGTH_UM, LENGTH_M, LENGTH_CM};
     double median = reading->median_radius_mm / length_unit_mm(reading->unit);
     reading->plausible_unit = reading->unit;
@@ -317,7 +327,7 @@ Status reading_measure(TreeReading *reading, const Tree *tree, Err *err)
     measure_radii(reading, tree, radius);
     if (!reading->is_network && !reading->unit_is_stated && !reading->voxels)
         reading->looks_like_voxels = looks_like_voxels(tree);
-    believe(reading);
+    find_plausible_unit(reading);
 done:
     free(radius);
     return status;

@@ -81,8 +81,9 @@ typedef struct ReadCut {
     double radius_mm;
 } ReadCut;
 
-/* Bounds of the arrays below, and number of points from which on integer coordinates look like
- * voxels and not like chance. */
+/* READ_MAX_DEGREE and READ_MAX_CUTS bound the arrays below. READ_FEW is the minimum number of
+ * points whose integer coordinates are taken for voxels, and not for chance. Reasons of the values
+ * not recorded. */
 enum { READ_MAX_DEGREE = 8, READ_MAX_CUTS = 1000, READ_FEW = 20 };
 
 /* How a tree was made from a network, which consists of the points and lines of a file. */

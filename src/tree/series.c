@@ -1,4 +1,4 @@
-/* A name is split from its end, because the part before the time may contain anything. */
+/* A name is split from its end, because the quantity's name may contain underscores and digits. */
 #include "tree/series.h"
 
 #include "tree/tree.h"
@@ -51,6 +51,7 @@ static int by_time(const void *a, const void *b)
     return order ? order : (x->column > y->column) - (x->column < y->column);
 }
 
+/* Lists the columns of a series, in the order of the tree. */
 static Status collect(const Tree *tree, const char *name, Series *series, Err *err)
 {
     size_t capacity = 0, named = strlen(name);
@@ -66,6 +67,7 @@ static Status collect(const Tree *tree, const char *name, Series *series, Err *e
     return STATUS_OK;
 }
 
+/* Checks that the frames have different times and one unit. */
 static Status check(const Tree *tree, const Series *series, Err *err)
 {
     for (size_t k = 1; k < series->n; k++) {

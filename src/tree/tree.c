@@ -1,6 +1,6 @@
-/* One array per quantity, indexed by node, with parents first. Every function here is a loop
- * and none is recursive, so that a chain of a million segments needs no more stack than any
- * other tree. */
+/* A tree is one array per quantity, indexed by node, with parents before their children. All
+ * functions are loops over these arrays, and none is recursive, so a chain of a million segments
+ * needs no deep stack. */
 #include "tree/tree.h"
 
 #include <assert.h>
@@ -73,6 +73,14 @@ void tree_hash(const Tree *tree, Hash *hash)
     for (MetaKey key = 0; key < META_KEYS; key++)
         if (meta->known[key])
             hash_add(hash, &meta->number[key], sizeof meta->number[key]);
+}
+
+bool tree_has_types(const Tree *tree)
+{
+    size_t i = 0;
+    while (i < tree->n && tree->type[i] == TREE_VESSEL_TYPE)
+        i++;
+    return i < tree->n;
 }
 
 int32_t tree_last_id(const Tree *tree)
@@ -291,7 +299,7 @@ Status tree_check(const Tree *tree, Err *err)
     for (size_t i = 0; i < tree->n; i++)
         TRY(check_node(tree, i, err));
     TRY(tree_check_links(tree, err));
-    uint8_t *seen = NULL; /* one bit an id */
+    uint8_t *seen = NULL; /* one bit per id */
     TRY(mem_calloc(&seen, (size_t)tree_last_id(tree) / 8 + 1, 1, "bytes of seen ids", err));
     Status status = STATUS_OK;
     for (size_t i = 0; i < tree->n; i++) {
@@ -331,6 +339,7 @@ static Status prune_flow_shares(const Tree *tree, const int32_t *place, Tree *ou
     return STATUS_OK;
 }
 
+/* Copies the columns of the kept nodes. */
 static Status prune_columns(const Tree *tree, const int32_t *place, Tree *out, Err *err)
 {
     for (size_t k = 0; k < tree->n_columns; k++) {
@@ -344,6 +353,7 @@ static Status prune_columns(const Tree *tree, const int32_t *place, Tree *out, E
     return STATUS_OK;
 }
 
+/* Frees the array of links if no node has a link. */
 static void drop_empty_links(Tree *tree)
 {
     if (tree_link_count(tree) > 0)
@@ -394,7 +404,7 @@ done:
 
 Status tree_pruned(const Tree *tree, double radius_mm, Tree *out, Err *err)
 {
-    int32_t *place = NULL; /* of each node in the new tree */
+    int32_t *place = NULL; /* per node: its index in the new tree, or DROPPED */
     TRY(mem_calloc(&place, tree->n, sizeof *place, "node places", err));
     int32_t n = 0;
     for (size_t i = 0; i < tree->n; i++) {
@@ -407,52 +417,55 @@ Status tree_pruned(const Tree *tree, double radius_mm, Tree *out, Err *err)
     return status;
 }
 
-/* The way along the vessels from its root to each node, mm, and the longest of them. */
-static double measure_ways(const Tree *tree, double *way)
+/* Measures the path length from the root to each node, mm. Returns the longest one. */
+static double measure_paths(const Tree *tree, double *path)
 {
     double longest = 0;
     for (size_t i = 0; i < tree->n; i++) {
-        way[i] = tree_is_segment(tree, i) ? way[tree->parent[i]] + tree_segment_length(tree, i) : 0;
-        longest = fmax(longest, way[i]);
+        path[i] =
+            tree_is_segment(tree, i) ? path[tree->parent[i]] + tree_segment_length(tree, i) : 0;
+        longest = fmax(longest, path[i]);
     }
     return longest;
 }
 
-/* Cuts off the segments of a part of the tree where the way is `reach`. */
-static void cut_ends(const Tree *tree, const int32_t *place, const double *way, double reach,
+/* Shortens the segments that lead beyond the path length `reach`. A shortened segment no longer
+ * ends at the node that its link names, so the link is removed. */
+static void cut_ends(const Tree *tree, const int32_t *place, const double *path, double reach,
                      Tree *part)
 {
     for (size_t i = 0; i < tree->n; i++) {
-        if (place[i] == DROPPED || !(way[i] > reach))
+        if (place[i] == DROPPED || !(path[i] > reach))
             continue;
         size_t parent = (size_t)tree->parent[i];
-        double share = (reach - way[parent]) / (way[i] - way[parent]);
+        double share = (reach - path[parent]) / (path[i] - path[parent]);
         Vec3 from = tree->position[parent], span = vec3_sub(tree->position[i], from);
         part->position[place[i]] = vec3_add_scaled(from, span, share);
         if (part->link)
             part->link[place[i]] = TREE_NO_LINK;
     }
+    drop_empty_links(part);
 }
 
 Status tree_proximal_part(const Tree *tree, double part, Tree *out, Err *err)
 {
     int32_t *place = NULL, n = 0;
-    double *way = NULL;
+    double *path = NULL;
     Status status;
     TRY_GOTO(mem_calloc(&place, tree->n, sizeof *place, "node places", err));
-    TRY_GOTO(mem_calloc(&way, tree->n, sizeof *way, "ways", err));
-    double longest = measure_ways(tree, way), reach = part < 1 ? part * longest : longest;
+    TRY_GOTO(mem_calloc(&path, tree->n, sizeof *path, "path lengths", err));
+    double longest = measure_paths(tree, path), reach = part < 1 ? part * longest : longest;
     for (size_t i = 0; i < tree->n; i++) {
         bool kept =
             !tree_is_segment(tree, i) || (place[tree->parent[i]] != DROPPED &&
-                                          (way[tree->parent[i]] < reach || !(way[i] > reach)));
+                                          (path[tree->parent[i]] < reach || !(path[i] > reach)));
         place[i] = kept ? n++ : DROPPED;
     }
     TRY_GOTO(take_placed(tree, place, (size_t)n, out, err));
-    cut_ends(tree, place, way, reach, out);
+    cut_ends(tree, place, path, reach, out);
 done:
     free(place);
-    free(way);
+    free(path);
     return status;
 }
 

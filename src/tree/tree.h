@@ -114,6 +114,9 @@ static inline double tree_segment_length(const Tree *tree, size_t i)
     return vec3_distance(tree->position[tree->parent[i]], tree->position[i]);
 }
 
+/* Returns true if a node has another type than TREE_VESSEL_TYPE. Cost: O(n). */
+bool tree_has_types(const Tree *tree);
+
 /* Returns the largest id. Cost: O(n). */
 int32_t tree_last_id(const Tree *tree);
 

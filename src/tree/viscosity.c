@@ -1,15 +1,17 @@
-/* The law as published. The quotient of the two powers is written as expm1(C a) / expm1(C b), which
- * keeps its digits where C passes through zero, near a diameter of 8 micrometres. */
+/* The law as published, with one change of form. The quotient ((1 - H)^C - 1) / ((1 - 0.45)^C - 1)
+ * loses all digits where C passes through zero, near a diameter of 8 micrometres. Written as
+ * expm1(C log(1 - H)) / expm1(C log(1 - 0.45)), it keeps them. */
 #include "tree/viscosity.h"
 
 #include "base/base.h"
 
 #include <math.h>
 
-/* ((1 - H)^C - 1) / ((1 - 0.45)^C - 1): how the viscosity grows with the hematocrit. */
+/* Returns ((1 - H)^C - 1) / ((1 - 0.45)^C - 1), the growth of the viscosity with the hematocrit. */
 static double hematocrit_factor(double hematocrit, double exponent)
 {
-    /* A number, as compilers that compute log(1 - 0.45) round it more exactly than the library. */
+    /* log(1 - 0.45) as a literal: a compiler may round the logarithm of a constant in another way
+     * than the library does. */
     const double log_reference = -0.5978370007556204;
     double log_plasma = elementary_log1p(-hematocrit);
     if (exponent == 0)

@@ -1,5 +1,6 @@
-/* A comment is read by the table of keys, one blank behind its '#' left out. A remark is written as
- * it was read but for that blank, so that what corcast has written once it writes again. */
+/* A comment "key: value" is found by the table of keys [tree/meta.h]. comment_read drops the one
+ * blank that comments_put writes after '#', so that a remark stays the same when a file is read and
+ * written again. */
 #include "treeio/comments.h"
 
 #include "treeio/formats.h"
@@ -16,7 +17,8 @@ const char *comment_value(const char *comment, const char *name)
     return *comment == ':' ? comment + 1 + strspn(comment + 1, TEXT_BLANKS) : NULL;
 }
 
-/* The value of a comment "key: value", and its key in *key; NULL when it is none. */
+/* Returns the value of a comment "key: value", and sets *key. Returns NULL if the comment has no
+ * known key. */
 static const char *key_value(const char *comment, MetaKey *key)
 {
     const char *name = comment + strspn(comment, TEXT_BLANKS);
@@ -58,6 +60,7 @@ bool comments_next(MetaWalk *walk, Text *line)
     return true;
 }
 
+/* Returns true if the comment begins with one of the names and a colon. */
 static bool begins_with_one(const char *comment, const char *const *names)
 {
     for (; names && *names; names++)

@@ -1,6 +1,6 @@
-/* The number of a line is counted only when a word is refused: the lines before it are then still
- * whole. A text that is read by lines counts them as they are cut, because cutting removes their
- * ends. */
+/* A text that is read by words counts its lines only for an error, because the line ends are still
+ * there. A text that is read by lines counts each line that it cuts, because cutting removes the
+ * line ends. */
 #include "treeio/cursor.h"
 
 #include "treeio/formats.h"
@@ -49,6 +49,7 @@ static bool is_among(const char *set, char c)
     return c && strchr(set, c);
 }
 
+/* Moves past separators, comments and, if the syntax permits them, zero bytes. */
 static void skip_between(Cursor *cursor)
 {
     const CursorSyntax *syntax = cursor->syntax;
@@ -74,45 +75,35 @@ static size_t word_length(const Cursor *cursor)
     return (size_t)(at - cursor->at);
 }
 
-static void copy_word(const char *from, size_t length, char word[CURSOR_WORD])
+/* Copies a word of this length at the cursor, and moves past it. Returns false for an empty word.
+ */
+static bool take_word(Cursor *cursor, size_t length, char word[CURSOR_WORD])
 {
     size_t kept = length < CURSOR_WORD ? length : CURSOR_WORD - 1;
-    memcpy(word, from, kept);
+    memcpy(word, cursor->at, kept);
     word[kept] = '\0';
+    cursor->at += length;
+    return length > 0;
 }
 
-/* Reads a word up to the quote that closes it, or up to the end. The cursor is behind the first
- * quote. */
-static void take_quoted(Cursor *cursor, char word[CURSOR_WORD])
-{
-    const char *quote = memchr(cursor->at, '"', cursor_left(cursor));
-    size_t length = quote ? (size_t)(quote - cursor->at) : cursor_left(cursor);
-    copy_word(cursor->at, length, word);
-    cursor->at += length + (quote != NULL);
-}
-
+/* Without a closing quote, a quoted word ends at the end of the text. */
 bool cursor_word(Cursor *cursor, char word[CURSOR_WORD])
 {
     skip_between(cursor);
-    if (cursor->syntax->has_quotes && cursor->at < cursor->end && *cursor->at == '"') {
-        cursor->at++;
-        take_quoted(cursor, word);
-        return true;
-    }
-    size_t length = word_length(cursor);
-    copy_word(cursor->at, length, word);
-    cursor->at += length;
-    return length > 0;
+    if (!cursor->syntax->has_quotes || cursor->at == cursor->end || *cursor->at != '"')
+        return take_word(cursor, word_length(cursor), word);
+    cursor->at++;
+    const char *quote = memchr(cursor->at, '"', cursor_left(cursor));
+    take_word(cursor, quote ? (size_t)(quote - cursor->at) : cursor_left(cursor), word);
+    cursor->at += quote != NULL;
+    return true;
 }
 
 bool cursor_word_in_line(Cursor *cursor, char word[CURSOR_WORD])
 {
     while (cursor->at < cursor->end && (*cursor->at == ' ' || *cursor->at == '\t'))
         cursor->at++;
-    size_t length = word_length(cursor);
-    copy_word(cursor->at, length, word);
-    cursor->at += length;
-    return length > 0;
+    return take_word(cursor, word_length(cursor), word);
 }
 
 bool cursor_accept(Cursor *cursor, const char *word)
@@ -168,13 +159,4 @@ size_t keyword_find(const char *word, const char *const *keywords, size_t n)
     while (i < n && !(keywords[i] && strcasecmp(word, keywords[i]) == 0))
         i++;
     return i;
-}
-
-void keywords_put(const char *const *first, size_t n, size_t stride, Text *text)
-{
-    for (size_t i = 0; i < n; i++) {
-        const char *word = *(const char *const *)((const char *)first + i * stride);
-        if (word)
-            text_printf(text, "%s\n", word);
-    }
 }

@@ -90,11 +90,5 @@ Status cursor_locate_error(const Cursor *cursor, Status status, Err *err);
 /* Returns the index of `word` in a list of `n` keywords, or `n` if it is not in the list. Upper and
  * lower case are equal. Entries of the list may be NULL. */
 size_t keyword_find(const char *word, const char *const *keywords, size_t n);
-/* Appends `n` keywords of a table, one per line. The pointers to the keywords are `stride` bytes
- * apart, and may be NULL. */
-void keywords_put(const char *const *first, size_t n, size_t stride, Text *text);
-/* Appends the keywords in one member of all rows of an array: KEYWORDS_PUT(rows, .name, text). */
-#define KEYWORDS_PUT(table, member, text)                                                          \
-    keywords_put(&(table)[0] member, sizeof(table) / sizeof *(table), sizeof *(table), text)
 
 #endif

@@ -11,7 +11,6 @@
  *                  makes a tree of the graph. A format has a TreeRead or a GraphRead, not both.
  *     TreeWrite    writes a tree; NULL if the format is only read.
  *     TreeStores   tells which columns a format that loses columns still writes; NULL if none.
- *     TreeKeywords lists the keywords of the reader for the fuzzer; NULL if there are none.
  *
  * Readers do not scale lengths: treeio.c converts units and applies the user's options. A few
  * options only a GraphRead can apply (radius_array, columns, ...): it finds them in graph->options,
@@ -41,13 +40,8 @@ typedef Status GraphRead(Graph *graph, char *bytes, size_t size, Err *err);
 typedef Status TreeWrite(const Tree *tree, Text *text, Err *err);
 /* Returns true if `column` is one of the few columns that the format can write. */
 typedef bool TreeStores(const TreeColumn *column);
-/* Appends the keywords that the reader of a format knows, one per line. The fuzzer's dictionaries
- * are made of them. */
-typedef void TreeKeywords(Text *text);
 
 TreeStores swc_stores, oned_stores;
-TreeKeywords csv_keywords, table_keywords, vtk_keywords, vtp_keywords, graphml_keywords,
-    oned_keywords, vmv_keywords, vita_keywords, metaio_keywords, amira_keywords;
 TreeDetect amira_detect, csv_detect, opencco_detect, metaio_detect, vtk_detect, vtp_detect,
     gxl_detect, graphml_detect, amiraxml_detect, pvd_detect, csv_segments_detect, oned_detect,
     vmv_detect, vita_detect;

@@ -1,4 +1,5 @@
-/* Names with the same hash form a chain. The hash is FNV-1a. */
+/* A hash table of strings: a KeyMap leads from the hash of a name (FNV-1a) to the last name with
+ * this hash, and each name leads to the one added before it. */
 #include "treeio/names.h"
 
 #include <stdint.h>
@@ -8,7 +9,7 @@
 typedef struct Name {
     const char *text;
     size_t index, record;
-    uint32_t next; /* the next name + 1 of its hash; 0: none */
+    uint32_t next; /* 1 + the index of the name added before with the same hash; 0: none */
 } Name;
 
 void names_release(Names *names)
@@ -17,7 +18,7 @@ void names_release(Names *names)
     ARRAY_RELEASE(&names->name);
 }
 
-/* Cuts ".000" off an integer. */
+/* Cuts a fraction of zeros, ".000", off an integer. */
 static char *without_fraction(char *text)
 {
     char *point = text + strspn(text, "0123456789");

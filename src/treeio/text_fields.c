@@ -6,7 +6,8 @@
 #include <string.h>
 #include <strings.h>
 
-enum { SHOWN = 40 /* characters of a bad value */ };
+/* Number of characters of a bad value that error sentences show. */
+enum { SHOWN = 40 };
 
 Status check_elements(const char *what, double count, size_t size, Err *err)
 {
@@ -40,7 +41,8 @@ const char *text_first_row(const char *start)
     return start;
 }
 
-/* Whether the first `length` characters are a number such as "-10,5" or "1,5e-3". */
+/* Returns true if the first `length` characters are a number with a decimal comma: "-10,5",
+ * "1,5e-3". */
 static bool is_decimal_comma(const char *text, size_t length)
 {
     char copy[64];
@@ -125,7 +127,7 @@ Status field_value(const char *what, const char *text, double *out, Err *err)
     return STATUS_OK;
 }
 
-/* Moves past blanks that part no fields. */
+/* Moves past blanks, unless the separator itself is a blank. */
 static char *skip_blanks(char *at, char separator)
 {
     while (*at && *at != separator && strchr(TEXT_BLANKS, *at))
@@ -133,8 +135,9 @@ static char *skip_blanks(char *at, char separator)
     return at;
 }
 
-/* What comes behind a separator; a blank parts fields together with those that follow it. */
-static char *behind(char *separator)
+/* Returns the start of the field after a separator; NULL at the end of the line. Several blanks in
+ * a row are one separator. */
+static char *after(char *separator)
 {
     if (!*separator)
         return NULL;
@@ -148,7 +151,7 @@ Status csv_field(char **at, char separator, char **field, Err *err)
     *field = from;
     if (*from != '"') {
         to = from + strcspn(from, ends);
-        *at = behind(to);
+        *at = after(to);
         while (to > from && strchr(TEXT_BLANKS, to[-1]))
             to--;
         *to = '\0';
@@ -166,7 +169,7 @@ Status csv_field(char **at, char separator, char **field, Err *err)
             err, STATUS_INPUT,
             "a quoted field is followed by '%.40s'; a separator or the end of the line must follow",
             from);
-    *at = behind(from);
+    *at = after(from);
     *to = '\0';
     return STATUS_OK;
 }

@@ -1,7 +1,9 @@
-/* The table of formats, one row each. The extension of a path decides its format. On standard
- * input, and if several formats share an extension, the first bytes decide; if no format recognises
- * them, the first row of the table is used. Only this file opens files, builds trees of them,
- * checks and commits them. */
+/* The table of formats, one row each, and what all formats have in common: opening, checking,
+ * converting to mm and writing files.
+ *
+ * The extension of a path selects the format. On standard input, and if several formats share an
+ * extension, the first bytes of the file decide. If no format recognizes the bytes, the first
+ * candidate in the order of the table is used. */
 #include "treeio/treeio.h"
 
 #include "treeio/cursor.h"
@@ -13,33 +15,34 @@
 
 enum { MAX_EXTENSIONS = 3 };
 
-/* Options of reading that not all formats take. */
+/* Read options that only some formats accept, as bits, with the property of the file that gives
+ * the option a meaning. */
 enum {
-    UNIT = 1,          /* the file does not say its unit, or not so that it must be believed */
-    VOXELS = 2,        /* its coordinates may be voxels */
-    MERGING = 4,       /* points may share a place */
-    LOOPS = 8,         /* it may have loops */
-    RADIUS_ARRAY = 16, /* it has named arrays, one of which holds the radii */
+    UNIT = 1,          /* the file states no unit, or the stated unit may be wrong */
+    VOXELS = 2,        /* coordinates may be indices of voxels */
+    MERGING = 4,       /* several points may have one position */
+    LOOPS = 8,         /* the network may have loops */
+    RADIUS_ARRAY = 16, /* one of several named arrays holds the radii */
     GRAPHML_KEYS = 32,
-    COLUMNS = 64, /* it is a table whose columns may have any name */
-    EDGES = 128,  /* it may be of points alone, with a second file for the lines */
+    COLUMNS = 64, /* the columns of the table may have any names */
+    EDGES = 128,  /* the table may hold points alone, with the lines in a second file */
     ANY_GRAPH = UNIT | VOXELS | MERGING | LOOPS
 };
 
-/* What a tree may hold that not all formats have a place for. */
+/* The parts of a tree that some formats cannot store, as bits. */
 enum {
     LOSES_COLUMNS = 1,
     LOSES_TYPES = 2,
     LOSES_SHARES = 4,
-    LOSES_ROOT_VALUES = 8, /* of columns, which are of segments there */
+    LOSES_ROOT_VALUES = 8, /* columns have values of segments alone */
     LOSES_ROOT_RADII = 16,
-    LOSES_IDS = 32, /* readers tell nodes apart by their places */
+    LOSES_IDS = 32, /* readers identify nodes by their positions */
     LOSES_LINKS = 64,
-    LOSES_LINK_RADII = 128, /* radii are of points */
+    LOSES_LINK_RADII = 128, /* radii belong to points */
     IS_NETWORK = LOSES_TYPES | LOSES_SHARES | LOSES_ROOT_RADII | LOSES_IDS
 };
 
-/* What options are called in sentences. */
+/* Names of the options in error sentences. */
 static const struct {
     unsigned bit;
     const char *field;
@@ -52,20 +55,20 @@ static const struct {
 
 typedef struct Format {
     const char *name, *description;
-    const char *extensions[MAX_EXTENSIONS + 1]; /* without the '.'; ends with NULL */
-    unsigned loses;                             /* bits of what there is no place for */
-    TreeStores *stores; /* of the columns that are lost, those that are not; NULL: none */
-    unsigned takes;     /* bits of the options of reading */
+    const char *extensions[MAX_EXTENSIONS + 1]; /* without the '.'; the main one first; NULL ends */
+    unsigned loses;                             /* bits LOSES_... */
+    TreeStores *stores; /* finds the columns that are kept despite LOSES_COLUMNS; NULL: none are */
+    unsigned takes;     /* bits of the accepted read options */
     FileForm form;
-    bool names_files;       /* the file refers to other files */
-    TreeDetect *detect;     /* NULL: nothing tells */
-    TreeRead *read;         /* one of a tree ... */
-    GraphRead *read_graph;  /* ... or this one of a network; with both, `detect` tells trees */
-    TreeWrite *write;       /* NULL: the format is only read */
-    TreeKeywords *keywords; /* NULL: the format has none */
+    bool names_files;      /* the file refers to other files */
+    TreeDetect *detect;    /* NULL: no bytes identify the format */
+    TreeRead *read;        /* reads a tree; NULL: the format holds networks */
+    GraphRead *read_graph; /* reads a network. If both functions are set, `read` reads the files
+                            * that `detect` accepts */
+    TreeWrite *write;      /* NULL: the format is only read */
 } Format;
 
-/* As many rows of SWC as there are ids, of the longest numbers, have 18 GB. */
+/* Largest file. An SWC file with TREE_MAX_ID rows of the longest numbers has 18 GB. */
 #define MOST_BYTES 2e10
 
 static const Format formats[] = {
@@ -86,7 +89,6 @@ static const Format formats[] = {
      .takes = ANY_GRAPH | COLUMNS,
      .form = {.name = "a CSV file", .most_bytes = MOST_BYTES, .is_text = true},
      .detect = csv_segments_detect,
-     .keywords = table_keywords,
      .read_graph = table_read,
      .write = csv_segments_write},
     {.name = "CSV",
@@ -96,7 +98,6 @@ static const Format formats[] = {
      .form = {.name = "a CSV file", .most_bytes = MOST_BYTES, .is_text = true},
      .detect = csv_detect,
      .read = csv_read,
-     .keywords = csv_keywords,
      .read_graph = table_read,
      .write = csv_write},
     {.name = "VTK",
@@ -106,7 +107,6 @@ static const Format formats[] = {
      .form = {.name = "a VTK file", .most_bytes = MOST_BYTES},
      .detect = vtk_detect,
      .read_graph = vtk_read,
-     .keywords = vtk_keywords,
      .write = vtk_write},
     {.name = "VTP",
      .description = "VTK's XML: lines, arrays of points and of lines",
@@ -115,7 +115,6 @@ static const Format formats[] = {
      .form = {.name = "a VTP file", .most_bytes = MOST_BYTES},
      .detect = vtp_detect,
      .read_graph = vtp_read,
-     .keywords = vtp_keywords,
      .write = vtp_write},
     {.name = "VTU",
      .description = "VTK's XML of an unstructured grid, its lines alone",
@@ -147,7 +146,6 @@ static const Format formats[] = {
      .form = {.name = "a GraphML file", .most_bytes = MOST_BYTES, .is_text = true},
      .detect = graphml_detect,
      .read_graph = graphml_read,
-     .keywords = graphml_keywords,
      .loses = LOSES_ROOT_VALUES,
      .write = graphml_write},
     {.name = "Amira XML",
@@ -166,7 +164,6 @@ static const Format formats[] = {
      .form = {.name = "a deck of svOneDSolver", .most_bytes = MOST_BYTES, .is_text = true},
      .detect = oned_detect,
      .read_graph = oned_read,
-     .keywords = oned_keywords,
      .write = oned_write},
     {.name = "VMV",
      .loses = IS_NETWORK | LOSES_COLUMNS | LOSES_LINK_RADII,
@@ -176,7 +173,6 @@ static const Format formats[] = {
      .form = {.name = "a VMV file", .most_bytes = MOST_BYTES, .is_text = true},
      .detect = vmv_detect,
      .read_graph = vmv_read,
-     .keywords = vmv_keywords,
      .write = vmv_write},
     {.name = "VItA",
      .description = "a tree grown by VItA",
@@ -184,8 +180,7 @@ static const Format formats[] = {
      .takes = ANY_GRAPH,
      .form = {.name = "a tree of VItA", .most_bytes = MOST_BYTES, .is_text = true},
      .detect = vita_detect,
-     .read_graph = vita_read,
-     .keywords = vita_keywords},
+     .read_graph = vita_read},
     {.name = "Secomb",
      .description = "a microvascular network (network.dat), diameters in um",
      .extensions = {"dat"},
@@ -205,16 +200,14 @@ static const Format formats[] = {
      .takes = ANY_GRAPH,
      .form = {.name = "a MetaIO scene", .most_bytes = MOST_BYTES},
      .detect = metaio_detect,
-     .read_graph = metaio_read,
-     .keywords = metaio_keywords},
+     .read_graph = metaio_read},
     {.name = "Amira",
      .description = "a spatial graph, line set or skeleton of Amira or Avizo, in um",
      .extensions = {"am"},
      .takes = ANY_GRAPH | RADIUS_ARRAY,
      .form = {.name = "an Amira file", .most_bytes = MOST_BYTES},
      .detect = amira_detect,
-     .read_graph = amira_read,
-     .keywords = amira_keywords},
+     .read_graph = amira_read},
 #endif
 };
 
@@ -225,7 +218,7 @@ static bool is_standard(const char *path)
     return strcmp(path, "-") == 0;
 }
 
-/* Whether the path ends in '.' and the extension, which may have dots itself. */
+/* Returns true if the path ends in '.' and the extension, which may contain dots. */
 static bool has_extension(const char *path, const char *extension)
 {
     size_t length = strlen(path), of_extension = strlen(extension);
@@ -233,7 +226,7 @@ static bool has_extension(const char *path, const char *extension)
            strcasecmp(path + length - of_extension, extension) == 0;
 }
 
-/* Whether a file of this name may be of the format. */
+/* Returns true if the name of a file permits the format. */
 static bool may_be(const Format *format, const char *path)
 {
     if (is_standard(path))
@@ -252,8 +245,8 @@ static size_t count_formats(const char *path)
     return count;
 }
 
-/* Of the formats that a file of this name may be, the one that its first bytes tell, or else the
- * first; NULL when there is none. Without bytes, the first. */
+/* Returns, among the formats that the path permits, the one that recognizes the bytes at `start`,
+ * or else the first. Returns NULL if the path permits no format. `start` may be NULL. */
 static const Format *find_format(const char *path, const char *start)
 {
     const Format *first = NULL;
@@ -268,7 +261,7 @@ static const Format *find_format(const char *path, const char *start)
     return first;
 }
 
-/* The first format that a tree is written in to a file of this name; NULL when there is none. */
+/* Returns the first format with a writer that the path permits, or NULL. */
 static const Format *find_written(const char *path)
 {
     for (size_t i = 0; i < N_FORMATS; i++)
@@ -277,7 +270,8 @@ static const Format *find_written(const char *path)
     return NULL;
 }
 
-/* Whether a file may begin like this whose format only its bytes tell: those that are not text. */
+/* Refuses binary data that no binary format recognizes, for files whose format only the bytes
+ * decide. */
 static bool may_begin(const char *start, size_t count)
 {
     bool is_binary = memchr(start, '\0', count) != NULL;
@@ -289,37 +283,15 @@ static bool may_begin(const char *start, size_t count)
 static const FileForm any_form = {
     .name = "a tree file", .most_bytes = MOST_BYTES, .begins = may_begin};
 
-const char *tree_format_name(size_t i)
+bool tree_format_at(size_t i, TreeFormat *out)
 {
-    return i < N_FORMATS ? formats[i].name : NULL;
+    if (i >= N_FORMATS)
+        return false;
+    *out = (TreeFormat){formats[i].name, formats[i].extensions[0], formats[i].description};
+    return true;
 }
 
-const char *tree_format_extension(size_t i)
-{
-    return i < N_FORMATS ? formats[i].extensions[0] : NULL;
-}
-
-const char *tree_format_description(size_t i)
-{
-    return i < N_FORMATS ? formats[i].description : NULL;
-}
-
-void tree_format_keywords(const char *path, Text *text)
-{
-    for (size_t i = 0; i < N_FORMATS; i++)
-        if (may_be(&formats[i], path) && formats[i].keywords)
-            formats[i].keywords(text);
-}
-
-static bool has_types(const Tree *tree)
-{
-    size_t i = 0;
-    while (i < tree->n && tree->type[i] == TREE_VESSEL_TYPE)
-        i++;
-    return i < tree->n;
-}
-
-/* Whether a root has a value in a column. */
+/* Returns true if a root has a value in a column. */
 static bool has_root_values(const Tree *tree)
 {
     for (size_t k = 0; k < tree->n_columns; k++)
@@ -329,11 +301,11 @@ static bool has_root_values(const Tree *tree)
     return false;
 }
 
-/* Finds whether a root is not as thick as the thickest segment that leaves it, and whether no
- * segment leaves it. */
-static Status look_at_roots(const Tree *tree, TreeLosses *lost, Err *err)
+/* Sets lost->root_radii if the radius of a root differs from that of the thickest segment that
+ * leaves the root, and lost->isolated_roots if no segment leaves a root. */
+static Status check_roots(const Tree *tree, TreeLosses *lost, Err *err)
 {
-    double *thickest; /* per node: of the segments that leave it; -1: there are none */
+    double *thickest; /* per node: radius of the thickest segment that leaves it; -1: none */
     TRY(mem_calloc(&thickest, tree->n, sizeof *thickest, "radii", err));
     for (size_t i = 0; i < tree->n; i++) {
         thickest[i] = -1;
@@ -358,9 +330,9 @@ static bool has_link_radii(const Tree *tree)
     return false;
 }
 
-/* A file without flow shares may not state that terminals have them: the key terminal_flow goes
- * with the shares. */
-static bool loses_rule(const Format *format, const Tree *tree)
+/* Returns true if the key terminal_flow is lost. The key says how flow shares were chosen, so a
+ * format that loses the shares must not keep the key. */
+static bool loses_terminal_flow(const Format *format, const Tree *tree)
 {
     return format && format->loses & LOSES_SHARES &&
            meta_number(&tree->meta, META_TERMINAL_FLOW) != TERMINAL_FLOW_EQUAL;
@@ -377,15 +349,15 @@ Status tree_format_losses(const char *path, const Tree *tree, TreeLosses *out, E
 {
     const Format *format = find_written(path);
     unsigned loses = format ? format->loses : 0;
-    TreeLosses lost = {.types = (loses & LOSES_TYPES) && has_types(tree),
+    TreeLosses lost = {.types = (loses & LOSES_TYPES) && tree_has_types(tree),
                        .flow_shares = (loses & LOSES_SHARES) && tree->flow_share,
-                       .terminal_flow = loses_rule(format, tree),
+                       .terminal_flow = loses_terminal_flow(format, tree),
                        .root_values = (loses & LOSES_ROOT_VALUES) && has_root_values(tree),
                        .link_radii = (loses & LOSES_LINK_RADII) && has_link_radii(tree)};
     for (size_t k = 0; k < tree->n_columns; k++)
         lost.columns += !tree_format_stores(path, &tree->column[k]);
     if (loses & LOSES_ROOT_RADII)
-        TRY(look_at_roots(tree, &lost, err));
+        TRY(check_roots(tree, &lost, err));
     if (loses & LOSES_IDS)
         TRY(graph_count_merged(tree, &lost.merged, err));
     *out = lost;
@@ -397,7 +369,7 @@ bool tree_format_known(const char *path)
     return find_format(path, NULL) != NULL;
 }
 
-/* Appends each extension once: several formats may share one. */
+/* Appends each main extension once, because several formats may share one. */
 static void list_extensions(Text *text, bool written)
 {
     const char *listed[N_FORMATS];
@@ -418,23 +390,17 @@ void tree_format_list(Text *text)
 
 static Status refuse_extension(const char *path, bool written, Err *err)
 {
-    Text known = TEXT_INIT;
-    bool is_read = written && tree_format_known(path);
-    list_extensions(&known, written);
-    Status status = STATUS_OK;
-    TRY_GOTO(text_check(&known, err));
-    status =
-        is_read
-            ? err_set(err, STATUS_USAGE,
-                      "%s: %s files can be read, but not written; write the tree to %s", path,
-                      find_format(path, NULL)->name, text_chars(&known))
-            : err_set(
-                  err, STATUS_USAGE,
-                  "%s: unknown extension of a tree file; use %s, or - for standard input or output",
-                  path, text_chars(&known));
+    const Format *readable = written ? find_format(path, NULL) : NULL;
+    Text sentence = TEXT_INIT;
+    if (readable)
+        text_printf(&sentence, "%s: %s files can be read, but not written; write the tree to ",
+                    path, readable->name);
+    else
+        text_printf(&sentence, "%s: unknown extension of a tree file; use ", path);
+    list_extensions(&sentence, written);
+    text_puts(&sentence, readable ? "" : ", or - for standard input or output");
+    Status status = text_to_error(&sentence, STATUS_USAGE, err);
     suggestion_add_extension(file_extension(path), err);
-done:
-    text_release(&known);
     return status;
 }
 
@@ -445,8 +411,8 @@ Status tree_format_check(const char *path, Err *err)
 
 /* ---- reading ---- */
 
-/* The options that are given, as bits. */
-static unsigned given_options(const ReadOptions *options)
+/* Returns the bits of the options that the user set. */
+static unsigned options_set(const ReadOptions *options)
 {
     return (options->has_unit ? UNIT : 0u) |
            (options->has_voxel_size || options->voxel_radii ? VOXELS : 0u) |
@@ -456,7 +422,7 @@ static unsigned given_options(const ReadOptions *options)
            (options->edges ? EDGES : 0u);
 }
 
-/* Appends "GXL, VTK and VTP": the formats that take an option. */
+/* Appends the names of the formats that accept an option: "GXL, VTK and VTP". */
 static void put_takers(unsigned bit, Text *text)
 {
     size_t left = 0;
@@ -469,46 +435,34 @@ static void put_takers(unsigned bit, Text *text)
         }
 }
 
-static Status refuse_option(const Format *format, const char *name, unsigned bit, Err *err)
-{
-    size_t k = 0;
-    while (option_fields[k].bit != bit)
-        k++;
-    Text takers = TEXT_INIT;
-    put_takers(bit, &takers);
-    Status status = STATUS_OK;
-    TRY_GOTO(text_check(&takers, err));
-    TRY_GOTO(err_set(err, STATUS_USAGE, "`%s` applies only to %s; %s is read as %s",
-                     option_fields[k].field, text_chars(&takers), name, format->name));
-done:
-    text_release(&takers);
-    return status;
-}
-
+/* Refuses an option that the format does not accept. */
 static Status check_options(const Format *format, const char *name, const ReadOptions *options,
                             Err *err)
 {
-    unsigned refused = given_options(options) & ~format->takes;
-    return refused ? refuse_option(format, name, refused & -refused, err) : STATUS_OK;
+    unsigned refused = options_set(options) & ~format->takes;
+    if (!refused)
+        return STATUS_OK;
+    size_t k = 0;
+    while (!(option_fields[k].bit & refused))
+        k++;
+    Text sentence = TEXT_INIT;
+    text_printf(&sentence, "`%s` applies only to ", option_fields[k].field);
+    put_takers(option_fields[k].bit, &sentence);
+    text_printf(&sentence, "; %s is read as %s", name, format->name);
+    return text_to_error(&sentence, STATUS_USAGE, err);
 }
 
 static Status refuse_format(const char *called, Err *err)
 {
-    Text known = TEXT_INIT;
-    list_extensions(&known, false);
-    Status status = STATUS_OK;
-    TRY_GOTO(text_check(&known, err));
-    TRY_GOTO(err_set(err, STATUS_USAGE,
-                     "`input_format` is '%s'; it must be %s, without the dot, or a name that "
-                     "`corcast formats` lists",
-                     called, text_chars(&known)));
-done:
-    text_release(&known);
-    return status;
+    Text sentence = TEXT_INIT;
+    text_printf(&sentence, "`input_format` is '%s'; it must be ", called);
+    list_extensions(&sentence, false);
+    text_puts(&sentence, ", without the dot, or a name that `corcast formats` lists");
+    return text_to_error(&sentence, STATUS_USAGE, err);
 }
 
-/* The format of this name or extension, which are told apart by the bytes where several share the
- * extension; NULL when they have to be known for that: *as is then a name of such a file. */
+/* Finds the format that the option names, by its name or an extension. If several formats have the
+ * extension, the bytes must decide: *format is then NULL, and `as` is a path with the extension. */
 static Status format_called(const char *called, const Format **format, char as[32], Err *err)
 {
     for (size_t i = 0; i < N_FORMATS; i++)
@@ -523,22 +477,16 @@ static Status format_called(const char *called, const Format **format, char as[3
     return STATUS_OK;
 }
 
-/* A file, read and told. */
+/* The bytes of a file, and its format. */
 typedef struct TreeSource {
-    const char *name; /* for sentences */
+    const char *name; /* for error sentences */
     const Format *format;
     char *bytes; /* owned */
     size_t size;
 } TreeSource;
 
-/* Takes the bytes of the source from `file`, or reads the file `path` if that is NULL. */
-static Status fill_source(TreeSource *source, const char *path, const MemoryFile *file, Err *err)
-{
-    const FileForm *form = source->format ? &source->format->form : &any_form;
-    return file ? file_read_memory(file, form, &source->bytes, &source->size, err)
-                : file_read(path, form, &source->bytes, &source->size, err);
-}
-
+/* Reads the file `path`, or copies the bytes of `file` unless it is NULL, and finds the format. The
+ * option `input_format` is `called`. */
 static Status open_source(TreeSource *source, const char *path, const MemoryFile *file,
                           const char *called, Err *err)
 {
@@ -551,7 +499,9 @@ static Status open_source(TreeSource *source, const char *path, const MemoryFile
     else if (count_formats(path) == 1)
         format = find_format(path, NULL);
     *source = (TreeSource){.name = is_standard(path) ? "standard input" : path, .format = format};
-    TRY(fill_source(source, path, file, err));
+    const FileForm *form = format ? &format->form : &any_form;
+    TRY(file ? file_read_memory(file, form, &source->bytes, &source->size, err)
+             : file_read(path, form, &source->bytes, &source->size, err));
     if (format)
         return STATUS_OK;
     source->format = find_format(called ? as : path, source->bytes);
@@ -560,7 +510,8 @@ static Status open_source(TreeSource *source, const char *path, const MemoryFile
     return file_to_text(source->name, &source->format->form, source->bytes, &source->size, err);
 }
 
-/* *is_tree: the file was a tree after all. */
+/* Reads a network into the builder. *is_tree receives true if the reader found that the file was
+ * written from a tree and added the nodes itself. */
 static Status read_graph(const TreeSource *source, TreeBuilder *builder, const ReadOptions *options,
                          TreeReading *reading, bool *is_tree, Err *err)
 {
@@ -575,12 +526,12 @@ done:
     return status;
 }
 
-/* What options say of lengths, of a tree that a TreeRead has read in mm. */
+/* Applies the options about lengths to a tree that a TreeRead has read as mm. */
 static void scale_tree(Tree *tree, const Format *format, const ReadOptions *options,
                        TreeReading *reading)
 {
     reading->unit = options->has_unit ? options->unit : LENGTH_MM;
-    reading->unit_is_stated = options->has_unit || format->read_graph; /* CSV's titles say mm */
+    reading->unit_is_stated = options->has_unit || format->read_graph; /* titles of CSV state mm */
     reading->voxels = options->has_voxel_size;
     LengthScale scale = length_scale(options, LENGTH_MM);
     if (!options->has_unit && !options->has_voxel_size)
@@ -591,14 +542,15 @@ static void scale_tree(Tree *tree, const Format *format, const ReadOptions *opti
     }
 }
 
-/* Whether the file is a tree, and what options say of networks does not ask for more. */
+/* Returns true if the TreeRead of the format reads the file. A file of nodes that `detect` accepts
+ * is read as a network if an option needs the steps of graph_build. */
 static bool reads_tree(const TreeSource *source, const ReadOptions *options)
 {
     const Format *format = source->format;
     if (!format->read || !format->read_graph)
         return format->read != NULL;
-    return format->detect(source->bytes) && given_options(options) == 0 &&
-           options->radius_mm == 0 && !options->repair_radii;
+    return format->detect(source->bytes) && options_set(options) == 0 && options->radius_mm == 0 &&
+           !options->repair_radii;
 }
 
 static bool begins(const char *text, const char *with)
@@ -606,8 +558,8 @@ static bool begins(const char *text, const char *with)
     return text && strncmp(text, with, strlen(with)) == 0;
 }
 
-/* Returns whether the program made the tree, as its generator or its first command says: the
- * lengths are in the unit of the format then. */
+/* Returns true if corcast made the tree, as the key generator or the first command states. The
+ * lengths are then in the unit of the format. */
 static bool is_own(const TreeMeta *meta)
 {
     size_t i = 0;
@@ -637,8 +589,8 @@ done:
     return status;
 }
 
-/* Cuts the loops of a tree that has links, which formats of trees state: reads it as a table of
- * nodes, whose reader makes a network of it. */
+/* Cuts the loops of a tree that a TreeRead has read with links. The tree is written as a table of
+ * nodes, which is then read as a network, because only graph_build cuts loops. */
 static Status break_loops(Tree *tree, TreeReading *reading, Err *err)
 {
     static const char name[] = "network.csv";
@@ -686,19 +638,19 @@ done:
 static Status read_any(Tree *tree, const char *path, const MemoryFile *file,
                        const ReadOptions *options, TreeReading *reading, Err *err)
 {
-    static const ReadOptions nothing = {0};
-    const ReadOptions *said = options ? options : &nothing;
+    static const ReadOptions defaults = {0};
+    const ReadOptions *used = options ? options : &defaults;
     TreeReading made = {0};
     TreeSource source = {0};
     Status status = STATUS_OK;
-    TRY_GOTO(open_source(&source, path, file, said->format, err));
+    TRY_GOTO(open_source(&source, path, file, used->format, err));
     made.format = source.format->name;
     if (file && source.format->names_files)
         TRY_GOTO(err_set(
             err, STATUS_USAGE,
             "%s: a PVD file cannot be read from memory, because it refers to other files", path));
-    TRY_GOTO(check_options(source.format, source.name, said, err));
-    TRY_GOTO(read_source(&source, tree, said, &made, err));
+    TRY_GOTO(check_options(source.format, source.name, used, err));
+    TRY_GOTO(read_source(&source, tree, used, &made, err));
     if (reading) {
         *reading = made;
         made = (TreeReading){0};
@@ -726,10 +678,11 @@ Status tree_read(Tree *tree, const char *path, Err *err)
     return tree_read_as(tree, path, NULL, NULL, err);
 }
 
+/* Appends the file of a tree that tree_check has accepted. */
 static Status write_to(const char *path, const Tree *tree, Text *text, Err *err)
 {
     const Format *format = find_written(path);
-    Tree written = *tree; /* borrows all */
+    Tree written = *tree; /* a shallow copy */
     size_t i = 0;
     while (format->loses & LOSES_IDS && i < tree->n && !tree_is_segment(tree, i))
         i++;
@@ -742,12 +695,12 @@ static Status write_to(const char *path, const Tree *tree, Text *text, Err *err)
         return err_set(err, STATUS_INPUT,
                        "%s: %s stores only segments, and the tree has no segments", path,
                        format->form.name);
-    if (loses_rule(format, tree))
+    if (loses_terminal_flow(format, tree))
         written.meta.known[META_TERMINAL_FLOW] = false;
     return format->write(&written, text, err);
 }
 
-/* A tree and the path whose extension decides its format. Borrowed. */
+/* A tree and the path whose extension selects the format. Both are borrowed. */
 typedef struct TreeAt {
     const Tree *tree;
     const char *path;

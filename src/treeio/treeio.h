@@ -47,15 +47,13 @@ MUST_CHECK Status tree_format_losses(const char *path, const Tree *tree, TreeLos
 /* Returns true if the format of `path` can store `column`, or if `path` has no known extension. */
 bool tree_format_stores(const char *path, const TreeColumn *column);
 
-/* Return the name ("SWC"), the main extension ("swc") or the description of format `i`, counted
- * from 0; NULL if there are no more formats. Format 0 is the format of standard output. The strings
- * are static. */
-const char *tree_format_name(size_t i);
-const char *tree_format_extension(size_t i);
-const char *tree_format_description(size_t i);
-/* Appends the keywords of all formats that a file called `path` may have, one per line. "-" may
- * have any format. */
-void tree_format_keywords(const char *path, Text *text);
+/* A row of the list of formats. The strings are static. */
+typedef struct TreeFormat {
+    const char *name, *extension, *description; /* "SWC"; the main extension, "swc"; one line */
+} TreeFormat;
+/* Sets *out to format `i`, counted from 0. Returns false, and leaves *out unchanged, if there are
+ * no more formats. Format 0 is the format of standard output. */
+bool tree_format_at(size_t i, TreeFormat *out);
 /* Appends all main extensions as a list in a sentence: ".swc, .vtp or .csv". */
 void tree_format_list(Text *text);
 
@@ -63,8 +61,8 @@ void tree_format_list(Text *text);
 
 /* Reads a tree.
  *
- * tree     receives the tree; release it with tree_release. Nodes are in the order of the file. One
- *          exception: a parent that comes later in the file moves to just before its first child.
+ * tree     receives the tree; release it with tree_release. Nodes are in the order of the file,
+ *          except that a parent that comes later moves to just before its first child.
  * path     the file. Its extension selects the format. "-" is standard input, whose format is
  *          recognized by its first bytes.
  * Errors   STATUS_USAGE for an unknown extension. STATUS_INPUT, with file and line, for a wrong
@@ -79,7 +77,7 @@ MUST_CHECK Status tree_read(Tree *tree, const char *path, Err *err);
  * options  such as the unit of the file. NULL: the defaults.
  * reading  receives the report; release it with reading_release. NULL: no report is wanted.
  * Errors   those of tree_read and graph_build; STATUS_USAGE for an option that does not apply to
- *          the file's format, and for an unknown options->input_format. */
+ *          the file's format, and for an unknown options->format. */
 MUST_CHECK Status tree_read_as(Tree *tree, const char *path, const ReadOptions *options,
                                TreeReading *reading, Err *err);
 

@@ -1,19 +1,20 @@
-/* expat parses. The text of all open elements stands in one buffer, one behind the other: an
- * element's begins at its mark, and what its children have is cut off when they end. Names of open
- * elements are kept likewise. */
+/* Calls the handlers from the callbacks of expat, which parses the document.
+ *
+ * One buffer holds the texts of all open elements, from the outermost to the innermost. text_at
+ * marks where the text of each element begins. When an element ends, its text is cut off the
+ * buffer, so the text of the parent goes on without it. A second buffer holds the names of the open
+ * elements in the same way. */
 #include "treeio/xml.h"
 
 #include <expat.h>
 #include <stdlib.h>
 #include <string.h>
 
+/* The document is parsed in chunks of 1 MB, because expat takes the size of a chunk as an int. */
 enum { MAX_DEPTH = 64, CHUNK = 1 << 20 };
 
-/* Characters that grow, a zero behind them. */
-typedef struct Chars {
-    char *at;
-    size_t n, capacity;
-} Chars;
+/* A stack of characters, with a zero after the last one. */
+typedef ARRAY(char) Chars;
 
 struct Xml {
     XML_Parser parser;
@@ -22,19 +23,19 @@ struct Xml {
     Chars text, names;
     size_t text_at[MAX_DEPTH], name_at[MAX_DEPTH];
     size_t depth;
-    bool stopped;
-    Status status; /* of a handler */
+    bool stopped;  /* xml_stop was called */
+    Status status; /* the first error of a handler */
     Err *err;
 };
 
-/* A name without what stands before its colon. */
+/* Returns a name without its namespace prefix. */
 static const char *local_name(const char *name)
 {
     const char *colon = strrchr(name, ':');
     return colon ? colon + 1 : name;
 }
 
-/* Ends the parsing when a handler failed. */
+/* Stops the parser if `status` is an error. */
 static void check(Xml *xml, Status status)
 {
     if (status == STATUS_OK)
@@ -45,15 +46,14 @@ static void check(Xml *xml, Status status)
 
 static Status append(Chars *chars, const char *more, size_t length, Err *err)
 {
-    TRY(mem_reserve(&chars->at, &chars->capacity, chars->n + length + 1, 1, "characters of XML",
-                    err));
-    memcpy(chars->at + chars->n, more, length);
+    TRY(ARRAY_RESERVE(chars, length + 1, "characters of XML", err));
+    memcpy(chars->items + chars->n, more, length);
     chars->n += length;
-    chars->at[chars->n] = '\0';
+    chars->items[chars->n] = '\0';
     return STATUS_OK;
 }
 
-/* `text` without the blanks at both ends, cut off in place. */
+/* Removes the blanks and line ends at both ends of a text, in place. Returns the rest. */
 static char *trim(char *text)
 {
     static const char blanks[] = " \t\r\n";
@@ -89,7 +89,7 @@ static Status end(Xml *xml, const char *name, Err *err)
     xml->names.n = xml->name_at[xml->depth];
     if (xml->handlers->end) {
         TRY(append(&xml->text, "", 0, err));
-        TRY(xml->handlers->end(xml->reader, xml, name, trim(xml->text.at + at), err));
+        TRY(xml->handlers->end(xml->reader, xml, name, trim(xml->text.items + at), err));
     }
     xml->text.n = at;
     return STATUS_OK;
@@ -98,7 +98,7 @@ static Status end(Xml *xml, const char *name, Err *err)
 static void XMLCALL on_end(void *context, const XML_Char *name)
 {
     Xml *xml = context;
-    if (xml->status == STATUS_OK) /* that of an empty element follows its begin in any case */
+    if (xml->status == STATUS_OK) /* expat ends an empty element even if its start tag failed */
         check(xml, end(xml, local_name(name), xml->err));
 }
 
@@ -121,7 +121,7 @@ static void XMLCALL on_entity(void *context, const XML_Char *name, int is_parame
                        "it declares the entity '%.40s'; remove all entity declarations", name));
 }
 
-/* The parser's own failure as a Status. */
+/* Reports an error of the parser itself. */
 static Status failure(const Xml *xml, Err *err)
 {
     enum XML_Error code = XML_GetErrorCode(xml->parser);
@@ -160,8 +160,8 @@ Status xml_read(const char *name, const char *bytes, size_t size, const XmlHandl
     if (status == STATUS_INPUT)
         err_prefix(xml.err, "%s:%zu: ", name, xml_line(&xml));
     XML_ParserFree(xml.parser);
-    free(xml.text.at);
-    free(xml.names.at);
+    ARRAY_RELEASE(&xml.text);
+    ARRAY_RELEASE(&xml.names);
     return status;
 }
 
@@ -195,7 +195,7 @@ size_t xml_depth(const Xml *xml)
 
 const char *xml_ancestor(const Xml *xml, size_t up)
 {
-    return up <= xml->depth && up > 0 ? xml->names.at + xml->name_at[xml->depth - up] : "";
+    return up <= xml->depth && up > 0 ? xml->names.items + xml->name_at[xml->depth - up] : "";
 }
 
 void xml_stop(Xml *xml)

@@ -17,10 +17,6 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 
-/* Called by libFuzzer first. With the single argument -words=FILE, prints the keywords that a tree
- * file of this name may have, as a dictionary, and ends the program. "-" stands for any format. */
-int LLVMFuzzerInitialize(int *argc, char ***argv);
-
 /* The path of a file of this name, which lies in a folder of this process and holds the bytes.
  * Borrowed until the next call. */
 const char *fuzz_file(const char *name, const void *bytes, size_t size);

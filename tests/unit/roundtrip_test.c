@@ -256,15 +256,16 @@ static void each_format_holds_each_kind_of_tree(void **state)
 {
     (void)state;
     size_t written = 0;
-    for (size_t i = 0; tree_format_extension(i); i++) {
+    TreeFormat format;
+    for (size_t i = 0; tree_format_at(i, &format); i++) {
         char name[64];
-        snprintf(name, sizeof name, "tree.%s", tree_format_extension(i));
+        snprintf(name, sizeof name, "tree.%s", format.extension);
         if (tree_format_check(name, NULL) != STATUS_OK)
             continue;
         written++;
         for (int kind = 0; kind < KINDS; kind++) {
-            print_message("%s: %s\n", tree_format_extension(i), kind_names[kind]);
-            write_and_read(tree_format_extension(i), (Kind)kind);
+            print_message("%s: %s\n", format.extension, kind_names[kind]);
+            write_and_read(format.extension, (Kind)kind);
         }
     }
     assert_int_equal(written, 10); /* .xml is that of three formats */

@@ -494,6 +494,19 @@ static void links_close_loops(void **state)
     tree_release(&tree);
 }
 
+/* Of the segments that end at links, the part drops one and shortens the other. */
+static void a_part_whose_links_are_cut_off_is_a_tree(void **state)
+{
+    (void)state;
+    Tree tree = ring(), part;
+    Err err;
+    must(tree_proximal_part(&tree, 0.35, &part, &err), &err);
+    must(tree_check(&part, &err), &err);
+    assert_null(part.link);
+    tree_release(&part);
+    tree_release(&tree);
+}
+
 static HashText hash_of(const Tree *tree)
 {
     Hash hash;
@@ -566,6 +579,7 @@ int main(void)
         cmocka_unit_test(a_chain_of_a_million_segments_is_no_deeper_than_a_bush),
         cmocka_unit_test(growth_cuts_vessels_at_the_same_way_from_their_roots),
         cmocka_unit_test(links_close_loops),
+        cmocka_unit_test(a_part_whose_links_are_cut_off_is_a_tree),
         cmocka_unit_test(bad_links_are_refused),
         cmocka_unit_test(a_link_to_a_pruned_node_ends_there),
     };

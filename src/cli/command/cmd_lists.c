@@ -48,9 +48,9 @@ static Status list_domains(Text *lines, Err *err)
 
 static Status list_formats(Text *lines, Err *err)
 {
-    for (size_t i = 0; tree_format_name(i); i++)
-        text_printf(lines, ".%s\t%s\t%s\n", tree_format_extension(i), tree_format_name(i),
-                    tree_format_description(i));
+    TreeFormat format;
+    for (size_t i = 0; tree_format_at(i, &format); i++)
+        text_printf(lines, ".%s\t%s\t%s\n", format.extension, format.name, format.description);
     return text_check(lines, err);
 }
 

@@ -100,8 +100,8 @@ static Status target_name(const SuiteCase *entry, const char *label, char **out,
     const char *extension = file_extension(entry->name);
     if (!label)
         return mem_strdup(out, entry->name, err);
-    return file_format_name(out, err, "%.*s" REFERENCE_MARK "%s.%s",
-                            (int)(extension - entry->name) - 1, entry->name, label, extension);
+    return mem_printf(out, err, "%.*s" REFERENCE_MARK "%s.%s", (int)(extension - entry->name) - 1,
+                      entry->name, label, extension);
 }
 
 static Status accept_case(const SuiteFolders *folders, const SuiteCase *entry,

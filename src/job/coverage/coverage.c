@@ -515,7 +515,7 @@ static Status name_files(const CoverageOptions *options, const VolumeFormat *for
         return STATUS_OK;
     const size_t stem = strlen(options->territories) - strlen(format->suffix);
     at[FILE_TABLE].role = "the table of territories";
-    return file_format_name(&at[FILE_TABLE].path, err, "%.*s.csv", (int)stem, options->territories);
+    return mem_printf(&at[FILE_TABLE].path, err, "%.*s.csv", (int)stem, options->territories);
 }
 
 static Status prepare(Measuring *made, Parsed *parsed, FileSet *files, Err *err)

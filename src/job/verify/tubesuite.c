@@ -249,8 +249,8 @@ static Status write_pictures(const TubeSuiteOptions *options, const TubeCase *on
     const char *folder = options->renderer.folder;
     char *path = NULL, *distance_path = NULL;
     Status status;
-    TRY_GOTO(file_format_name(&path, err, "%s/%s.png", folder, one->name));
-    TRY_GOTO(file_format_name(&distance_path, err, "%s/%s.distance.png", folder, one->name));
+    TRY_GOTO(mem_printf(&path, err, "%s/%s.png", folder, one->name));
+    TRY_GOTO(mem_printf(&distance_path, err, "%s/%s.distance.png", folder, one->name));
     TRY_GOTO(answergrade_picture(distances, &far, err));
     TRY_GOTO(image->plane.values ? picture_from_plane(&shown, &image->plane, ENCODING_SRGB, 8, err)
                                  : picture_to_srgb(&shown, &image->picture, 8, err));

@@ -1,6 +1,6 @@
-/* Reads ParaView's index of a time series: the names of files, each with the tree at one moment.
- * The first is the tree. The arrays of all become columns NAME_TIME, one series for each array
- * [tree/series.h]. An array that is the same at all moments stays one column. */
+/* Reads ParaView's index of a time series: a list of files, each with the tree at one moment. The
+ * first file gives the nodes. Each array becomes a time series, one column NAME_TIME per moment
+ * [tree/series.h]. An array with the same values at all moments becomes one column NAME. */
 #include "treeio/formats.h"
 #include "treeio/treeio.h"
 #include "treeio/xml.h"
@@ -10,15 +10,16 @@
 #include <strings.h>
 #include <sys/stat.h>
 
+/* One file of the index. */
 typedef struct Moment {
     double time;
-    char *path; /* owned */
-    size_t line;
-    Tree tree;
+    char *path;  /* owned */
+    size_t line; /* line of the index, for errors */
+    Tree tree;   /* owned */
 } Moment;
 
 typedef struct Collection {
-    const char *name; /* of the index */
+    const char *name; /* name of the index, for errors */
     ARRAY(Moment) moments;
     size_t n_untimed; /* number of moments whose time the index does not state */
 } Collection;
@@ -96,8 +97,8 @@ static Status check_moment(const Collection *collection, const Moment *moment, E
                           collection->name, moment->path, of_first->path);
 }
 
-/* A pipe would wait for a writer, and a device may never end. What is not there is for the reader
- * to report. */
+/* Refuses pipes and devices: a pipe would wait for a writer, and a device may never end. A missing
+ * file is reported by tree_read_as. */
 static Status check_file(const char *path, Err *err)
 {
     struct stat about;
@@ -125,7 +126,7 @@ done:
 
 static Status read_moments(Collection *collection, const ReadOptions *options, Err *err)
 {
-    ReadOptions of_moments = {0}; /* units are applied to the tree that is made of all */
+    ReadOptions of_moments = {0}; /* units are applied once, to the tree of all moments */
     size_t n = collection->moments.n, untimed = collection->n_untimed;
     if (options) {
         of_moments.radius_mm = options->radius_mm;
@@ -150,7 +151,7 @@ static Status read_moments(Collection *collection, const ReadOptions *options, E
     return STATUS_OK;
 }
 
-/* Whether a column is the same at all moments. */
+/* Returns true if a column has the same values at all moments. */
 static bool is_constant(const Collection *collection, size_t column)
 {
     const Tree *first = &collection->moments.items[0].tree;
@@ -164,23 +165,22 @@ static bool is_constant(const Collection *collection, size_t column)
     return true;
 }
 
-/* `source` gets the values of each column of the builder. */
+/* Adds a column of the tree at one moment to the builder. source[k] receives the values of column k
+ * of the builder. */
 static Status add_column(TreeBuilder *builder, const Moment *moment, size_t column, bool constant,
                          const double **source, Err *err)
 {
     const TreeColumn *from = &moment->tree.column[column];
     char time[NUMBER_TEXT_SIZE];
-    Text name = TEXT_INIT;
-    size_t number;
-    text_puts(&name, from->name);
-    if (!constant)
-        text_printf(&name, "_%s", number_text(moment->time, time));
-    Status status = STATUS_OK;
-    TRY_GOTO(text_check(&name, err));
-    TRY_GOTO(builder_column(builder, text_chars(&name), from->unit, &number, err));
+    char *name;
+    size_t number = 0;
+    TRY(mem_printf(&name, err, constant ? "%s" : "%s_%s", from->name,
+                   number_text(moment->time, time)));
+    Status status;
+    TRY_GOTO(builder_column(builder, name, from->unit, &number, err));
     source[number] = from->value;
 done:
-    text_release(&name);
+    free(name);
     return status;
 }
 

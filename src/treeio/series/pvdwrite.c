@@ -1,6 +1,6 @@
-/* A tree whose values change with time as ParaView reads it: a VTP for each moment, which is the
- * tree with the columns of that moment under the names of their series, and an index of them. The
- * index is written last, so that it never names a file that is not there. */
+/* Writes a tree with time series for ParaView: one VTP file per moment, and an index of these
+ * files. In the file of a moment, the columns of that moment have the names of their series. The
+ * index is written last, so that it never lists a missing file. */
 #include "treeio/treeio.h"
 
 #include <stdlib.h>
@@ -12,11 +12,11 @@ typedef struct NamedSeries {
     char *name;
 } NamedSeries;
 
-/* All series of a tree, which have the same moments. */
+/* All series of a tree. They have the same times. */
 typedef struct Moments {
     const Tree *tree;
     ARRAY(NamedSeries) series;
-    bool *is_frame; /* per column: whether it is of a series; owned */
+    bool *is_frame; /* per column of the tree: the column belongs to a series; owned */
 } Moments;
 
 static void release_series(NamedSeries *named)
@@ -33,6 +33,7 @@ static void release(Moments *moments)
     free(moments->is_frame);
 }
 
+/* Checks that a series has the times of the first series. */
 static Status check_times(const Moments *moments, const NamedSeries *named, Err *err)
 {
     const NamedSeries *first = moments->series.items;
@@ -49,7 +50,7 @@ static Status check_times(const Moments *moments, const NamedSeries *named, Err 
                    first->name, named->name);
 }
 
-/* Adds the series of column `k`, unless the column has none or the series is there. */
+/* Adds the series that column `k` belongs to, if there is one that was not added before. */
 static Status add_series(Moments *moments, size_t k, Err *err)
 {
     const char *column = moments->tree->column[k].name;
@@ -97,7 +98,8 @@ Status tree_moment_path(const char *path, size_t moment, char **out, Err *err)
     return file_with_suffix(path, suffix, out, err);
 }
 
-/* Whether a column stays as it is: one of a series, or of the name of one, does not. */
+/* Returns true if a column is written for every moment: it belongs to no series, and no series has
+ * its name. */
 static bool is_constant(const Moments *moments, size_t column)
 {
     for (size_t s = 0; s < moments->series.n; s++)
@@ -106,7 +108,7 @@ static bool is_constant(const Moments *moments, size_t column)
     return !moments->is_frame[column];
 }
 
-/* The tree at one moment: names and values are borrowed. */
+/* Writes the file of one moment, from a shallow copy of the tree with the columns of the moment. */
 static Status write_moment(const Moments *moments, size_t moment, const char *path, Err *err)
 {
     Tree at = *moments->tree;

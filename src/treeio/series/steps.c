@@ -1,10 +1,8 @@
-/* A folder that svOneDSolver has written, OUTPUT TEXT: a file for each segment and quantity,
- *
- *     MODEL SEGMENT _flow.dat
- *
- * a row for each of the segment's points from its inlet to its outlet, a column for each time step,
- * no header. A segment's value is that of the last row, its distal end. What the segment is called
- * ends in its id, as in the decks that corcast writes ("segment12"). */
+/* Reads a result folder of svOneDSolver (OUTPUT TEXT). There is one file per segment and quantity,
+ * called MODELSEGMENT_flow.dat. A file has one row per point of the segment, from its inlet to its
+ * outlet, and one column per time step, without a header. The last row, at the distal end, gives
+ * the values of the segment. The name of a segment ends in its id, "segment12", as in the decks
+ * that corcast writes. */
 #include "treeio/series/values.h"
 
 #include "treeio/cursor.h"
@@ -14,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What the quantities are in. */
+/* The quantities of svOneDSolver and their units. */
 static const struct {
     const char *name, *unit;
 } quantities[] = {
@@ -25,8 +23,8 @@ enum { QUANTITIES = sizeof quantities / sizeof *quantities };
 typedef struct StepsReader {
     Tree *tree;
     const char *folder, *quantity, *unit;
-    ARRAY(char *) names; /* of the files; owned */
-    IdIndex ids;         /* of the tree's nodes */
+    ARRAY(char *) names; /* names of the files; owned */
+    IdIndex ids;         /* the ids of the tree's nodes */
     size_t *file_of;     /* per node: index of its file + 1; 0: none yet; owned */
     double **column;     /* per time step: the values of the tree's column; owned */
     size_t steps;        /* 0 before the first file */
@@ -125,16 +123,8 @@ static Status open_columns(StepsReader *reader, size_t steps, Err *err)
     return STATUS_OK;
 }
 
-/* Cuts the next word off a line, in place. Returns NULL after the last. */
-static char *next_word(char **line)
-{
-    char *word = *line + strspn(*line, TEXT_BLANKS), *end = word + strcspn(word, TEXT_BLANKS);
-    *line = *end ? end + 1 : end;
-    *end = '\0';
-    return *word ? word : NULL;
-}
-
-static Status take_line(StepsReader *reader, size_t node, char *line, Err *err)
+/* Reads the values of a node, one per time step. */
+static Status read_values(StepsReader *reader, size_t node, char *line, Err *err)
 {
     size_t steps = 0, k = 0;
     for (const char *at = line + strspn(line, TEXT_BLANKS); *at; steps++) {
@@ -146,12 +136,14 @@ static Status take_line(StepsReader *reader, size_t node, char *line, Err *err)
     if (steps != reader->steps)
         return err_set(err, STATUS_INPUT, "the file has %zu time steps, but there are %zu in %s",
                        steps, reader->steps, reader->names.items[0]);
-    for (char *word; (word = next_word(&line)); k++)
+    char *rest = NULL;
+    for (char *word = strtok_r(line, TEXT_BLANKS, &rest); word;
+         word = strtok_r(NULL, TEXT_BLANKS, &rest), k++)
         TRY(field_value(reader->quantity, word, &reader->column[k][node], err));
     return STATUS_OK;
 }
 
-/* Returns the last line that is not blank, or NULL; *number is its number. */
+/* Returns the last line that is not blank, or NULL. *number receives the line's number, or 1. */
 static char *last_line(char *text, size_t size, size_t *number)
 {
     Cursor cursor = cursor_of("", NULL, text, size);
@@ -169,7 +161,7 @@ static Status read_text(StepsReader *reader, size_t file, char *line, Err *err)
 {
     size_t node = 0;
     TRY(find_node(reader, file, &node, err));
-    return line ? take_line(reader, node, line, err)
+    return line ? read_values(reader, node, line, err)
                 : err_set(err, STATUS_INPUT, "the file has no values");
 }
 

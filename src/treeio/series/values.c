@@ -1,11 +1,12 @@
-/* Reads a CSV whose first line names the columns. One of them, id or name, identifies the segments.
- * With a column time, a row is about one segment at one time; otherwise about one segment. A row
- * finds its nodes in the list of its key: an id has one node, a branch of SimVascular has many.
+/* Reads a CSV of values whose first line names the columns. The column id or name identifies the
+ * segments. If there is a column time, a row holds the values of one segment at one time; otherwise
+ * the values of one segment. The key of a row leads to a list of nodes: an id has one node, the
+ * number of a branch of SimVascular has many.
  *
- * The columns of values get their names in the tree before any row is read, and only wanted columns
- * take memory. Rows with a time are kept until all are read, because only then the frames are
- * known. They are sorted by segment and time, so that what is missing or given twice stands beside
- * its neighbours. */
+ * The names of the tree's columns are decided before the first row is read, and only wanted columns
+ * take memory. Rows with a time are stored until the end of the file, because the set of all times
+ * is known only then. They are sorted by segment and time, so that a missing or repeated row is
+ * found by a look at its neighbours. */
 #include "treeio/series/values.h"
 
 #include "treeio/cursor.h"
@@ -20,30 +21,30 @@ enum { NONE = -1 };
 
 /* A column of the file. */
 typedef struct ValueColumn {
-    char *name;       /* in the tree; owned */
+    char *name;       /* the column's name in the tree; owned */
     const char *unit; /* borrowed from the text */
-    bool wanted;
-    double *value; /* of the tree's column; NULL before there is one */
+    bool wanted;      /* the column is read; false for keys and times */
+    double *value;    /* the values of the tree's column, owned by the tree; NULL: none yet */
 } ValueColumn;
 
 /* The values of a segment at a time. */
 typedef struct TimedRow {
     int32_t key;
     double time;
-    size_t line, values; /* line of the file; index of the first value in `held` */
+    size_t line, values; /* line of the file; index of the row's first value in `held` */
 } TimedRow;
 
 typedef struct ValuesReader {
     Tree *tree;
     const char *path, *wanted;  /* NULL: all columns are wanted */
-    bool one_thing;             /* all columns are one series or one column */
-    char *what;                 /* its name; owned */
+    bool is_single;             /* all wanted columns must be one column or one series */
+    char *single_name;          /* its name; owned */
     int key, time;              /* indices of these columns, or NONE */
-    ARRAY(ValueColumn) columns; /* of all fields; keys and times are not wanted */
+    ARRAY(ValueColumn) columns; /* all columns of the file */
     size_t n_wanted;
-    char **field;     /* of one row; owned */
-    IndexLists nodes; /* the nodes of each key */
-    size_t *line_of;  /* per key: its line; 0: none yet; NULL: there was no row; owned */
+    char **field;     /* the fields of one row; owned */
+    IndexLists nodes; /* per key: its nodes */
+    size_t *line_of;  /* per key: the line of its last row, 0: none yet; NULL: no row yet; owned */
     bool of_branches; /* keys are numbers of branches */
     ARRAY(TimedRow) rows;
     ARRAY(double) held; /* the wanted values of all rows with a time */
@@ -59,11 +60,12 @@ static void reader_release(ValuesReader *reader)
     free(reader->line_of);
     ARRAY_RELEASE(&reader->rows);
     ARRAY_RELEASE(&reader->held);
-    free(reader->what);
+    free(reader->single_name);
 }
 
 /* ---- titles ---------------------------------------------------------------------------------- */
 
+/* Adds a column by its title. */
 static Status add_field(ValuesReader *reader, char *title, Err *err)
 {
     int index = (int)reader->columns.n;
@@ -88,17 +90,13 @@ static Status add_field(ValuesReader *reader, char *title, Err *err)
     return STATUS_OK;
 }
 
-/* Calls the column "BASE_TIME". */
+/* Renames a column to "BASE_TIME". */
 static Status rename_column(ValueColumn *column, const char *base, const char *time, Err *err)
 {
-    Text name = TEXT_INIT;
-    char *taken;
-    text_printf(&name, "%s_%s", base, time);
-    Status status = text_take(&name, &taken, err);
-    text_release(&name);
-    TRY(status);
+    char *name;
+    TRY(mem_printf(&name, err, "%s_%s", base, time));
     free(column->name);
-    column->name = taken;
+    column->name = name;
     return STATUS_OK;
 }
 
@@ -108,8 +106,8 @@ static bool is_number(const char *text)
     return number_parse(text, &number) && isfinite(number);
 }
 
-/* Names that are times become those of a series named after the file. If each column is a frame,
- * all names become those of the series, by their order from 0 on. */
+/* Renames the columns whose names are times, so that they form a series called `base`. With
+ * `by_order`, all wanted columns form the series, and their times are 0, 1, ... */
 static Status name_frames(ValuesReader *reader, const char *base, bool by_order, Err *err)
 {
     int frame = 0;
@@ -125,10 +123,10 @@ static Status name_frames(ValuesReader *reader, const char *base, bool by_order,
     return STATUS_OK;
 }
 
-/* What columns are counted or chosen by. */
+/* How columns are selected: all, by their own name, or by the name of their series. */
 typedef enum ColumnMatch { MATCH_ALL, MATCH_NAME, MATCH_SERIES } ColumnMatch;
 
-/* Returns true if a wanted column has the name, or is of the series of this name. */
+/* Returns true if the column is wanted and is selected by `match` and `name`. */
 static bool matches(const ValueColumn *column, ColumnMatch match, const char *name)
 {
     size_t length;
@@ -152,21 +150,17 @@ static size_t count_columns(const ValuesReader *reader, ColumnMatch match, const
 static Status refuse_column(const ValuesReader *reader, Err *err)
 {
     enum { SHOWN = 8 };
-    Text known = TEXT_INIT;
+    Text sentence = TEXT_INIT;
     int shown = 0;
+    text_printf(&sentence, "no column is called '%.40s'; the columns are ", reader->wanted);
     for (size_t i = 0; i < reader->columns.n && shown < SHOWN; i++)
         if (reader->columns.items[i].wanted)
-            text_printf(&known, "%s%.40s", shown++ ? ", " : "", reader->columns.items[i].name);
-    Status status = STATUS_OK;
-    TRY_GOTO(text_check(&known, err));
-    status = err_set(err, STATUS_INPUT, "no column is called '%.40s'; the columns are %s%s",
-                     reader->wanted, text_chars(&known), shown == SHOWN ? ", ..." : "");
-done:
-    text_release(&known);
-    return status;
+            text_printf(&sentence, "%s%.40s", shown++ ? ", " : "", reader->columns.items[i].name);
+    text_puts(&sentence, shown == SHOWN ? ", ..." : "");
+    return text_to_error(&sentence, STATUS_INPUT, err);
 }
 
-/* Only the column of the wanted name, or its series, stays wanted. */
+/* Leaves only the column of the wanted name, or the columns of its series, wanted. */
 static Status choose_wanted(ValuesReader *reader, Err *err)
 {
     const char *name = reader->wanted;
@@ -178,15 +172,15 @@ static Status choose_wanted(ValuesReader *reader, Err *err)
     return STATUS_OK;
 }
 
-/* Finds what all columns are together, and sets reader->what. */
-static Status name_whole(ValuesReader *reader, const char *base, Err *err)
+/* Checks that the wanted columns are one column or one series, and sets reader->single_name. */
+static Status name_single(ValuesReader *reader, const char *base, Err *err)
 {
     size_t n = count_columns(reader, MATCH_ALL, NULL), length;
     double time;
     const ValueColumn *column = reader->columns.items;
     while (!column->wanted)
         column++;
-    TRY(mem_strdup(&reader->what, column->name, err));
+    TRY(mem_strdup(&reader->single_name, column->name, err));
     if (n == 1)
         return STATUS_OK;
     if (reader->time != NONE)
@@ -194,28 +188,29 @@ static Status name_whole(ValuesReader *reader, const char *base, Err *err)
                        "the file has %zu columns of values; name one, as in FILE.csv:%.40s", n,
                        column->name);
     if (series_parse(column->name, &length, &time)) {
-        reader->what[length] = '\0';
-        if (count_columns(reader, MATCH_SERIES, reader->what) == n)
+        reader->single_name[length] = '\0';
+        if (count_columns(reader, MATCH_SERIES, reader->single_name) == n)
             return STATUS_OK;
     }
-    free(reader->what);
-    reader->what = NULL;
+    free(reader->single_name);
+    reader->single_name = NULL;
     TRY(name_frames(reader, base, true, err));
-    return mem_strdup(&reader->what, base, err);
+    return mem_strdup(&reader->single_name, base, err);
 }
 
-/* Decides how the columns are called in the tree and which are read. `base` is the file's name
- * without folders and extension. */
+/* Decides the names of the columns in the tree, and which columns are read. `base` is the file's
+ * name without folders and extension. */
 static Status name_columns(ValuesReader *reader, const char *base, Err *err)
 {
     if (reader->time == NONE)
         TRY(name_frames(reader, base, false, err));
     if (reader->wanted)
         return choose_wanted(reader, err);
-    return reader->one_thing ? name_whole(reader, base, err) : STATUS_OK;
+    return reader->is_single ? name_single(reader, base, err) : STATUS_OK;
 }
 
-/* Makes a column of the tree. Columns from `before` on are the file's, which have other names. */
+/* Makes a column of the tree, or clears an old one. Columns of the tree from index `before` on come
+ * from this file, and their names must differ. */
 static Status open_column(ValuesReader *reader, const char *name, const char *unit, size_t before,
                           double **value, Err *err)
 {
@@ -225,7 +220,8 @@ static Status open_column(ValuesReader *reader, const char *name, const char *un
     return tree_set_column(reader->tree, name, unit, value, err);
 }
 
-static Status check_room(const ValuesReader *reader, size_t columns, Err *err)
+/* Checks that the machine has memory for the values of this many columns. */
+static Status check_memory(const ValuesReader *reader, size_t columns, Err *err)
 {
     return mem_check((double)columns * (double)reader->tree->n * sizeof(double), reader->path, err);
 }
@@ -233,7 +229,7 @@ static Status check_room(const ValuesReader *reader, size_t columns, Err *err)
 static Status open_columns(ValuesReader *reader, Err *err)
 {
     size_t before = reader->tree->n_columns;
-    TRY(check_room(reader, reader->n_wanted, err));
+    TRY(check_memory(reader, reader->n_wanted, err));
     for (size_t i = 0; i < reader->columns.n; i++) {
         ValueColumn *column = &reader->columns.items[i];
         if (column->wanted)
@@ -245,7 +241,7 @@ static Status open_columns(ValuesReader *reader, Err *err)
 static Status read_titles(ValuesReader *reader, char *line, Err *err)
 {
     const char *name = file_name(reader->path), *dot = strrchr(name, '.');
-    Text base = TEXT_INIT;
+    char *base = NULL;
     for (char *at = line, *title; at;) {
         TRY(csv_field(&at, ',', &title, err));
         TRY(add_field(reader, title, err));
@@ -256,12 +252,11 @@ static Status read_titles(ValuesReader *reader, char *line, Err *err)
                            ? "no column is called id or name, which must identify the segments"
                            : "the file has no column of values");
     TRY(mem_calloc(&reader->field, reader->columns.n, sizeof *reader->field, "fields", err));
-    text_append(&base, name, dot && dot > name ? (size_t)(dot - name) : strlen(name));
-    Status status = STATUS_OK;
-    TRY_GOTO(text_check(&base, err));
-    status = name_columns(reader, text_chars(&base), err);
-done:
-    text_release(&base);
+    TRY(mem_strdup(&base, name, err));
+    if (dot && dot > name)
+        base[dot - name] = '\0';
+    Status status = name_columns(reader, base, err);
+    free(base);
     TRY(status);
     reader->n_wanted = count_columns(reader, MATCH_ALL, NULL);
     return reader->time == NONE ? open_columns(reader, err) : STATUS_OK;
@@ -283,7 +278,7 @@ static int32_t branch_of(const char *name)
     return integer_parse(digits, 0, TREE_MAX_ID, &number) ? (int32_t)number : NONE;
 }
 
-/* Returns the key of a node, or NONE. */
+/* Returns the key of node i, or NONE: its id, or its value in the column `branches`. */
 static int32_t key_of(const ValuesReader *reader, const TreeColumn *branches, size_t i)
 {
     if (!branches)
@@ -316,6 +311,7 @@ static Status index_nodes(ValuesReader *reader, const char *name, Err *err)
     return STATUS_OK;
 }
 
+/* Finds the key that a row names. The first row decides what keys are. */
 static Status find_key(ValuesReader *reader, const char *name, int32_t *key, Err *err)
 {
     long long number = NONE;
@@ -334,6 +330,7 @@ static Status find_key(ValuesReader *reader, const char *name, int32_t *key, Err
 
 /* ---- rows ------------------------------------------------------------------------------------ */
 
+/* Sets the value of all nodes of a key. */
 static void put_value(const ValuesReader *reader, int32_t key, double *column, double value)
 {
     const IndexLists *nodes = &reader->nodes;
@@ -341,7 +338,8 @@ static void put_value(const ValuesReader *reader, int32_t key, double *column, d
         column[nodes->items[i]] = value;
 }
 
-static Status take_values(ValuesReader *reader, int32_t key, Err *err)
+/* Stores the wanted values of a row: in the tree, or in `held` if the row has a time. */
+static Status store_values(ValuesReader *reader, int32_t key, Err *err)
 {
     for (size_t i = 0; i < reader->columns.n; i++) {
         const ValueColumn *column = &reader->columns.items[i];
@@ -371,7 +369,7 @@ static Status read_row(ValuesReader *reader, size_t line, char *text, Err *err)
         TRY(field_number("time", reader->field[reader->time], -HUGE_VAL, &row.time, err));
         TRY(ARRAY_PUSH(&reader->rows, "rows", err, row));
     }
-    return take_values(reader, row.key, err);
+    return store_values(reader, row.key, err);
 }
 
 static Status read_line(void *context, size_t number, char *line, Err *err)
@@ -394,7 +392,7 @@ static int by_key_and_time(const void *a, const void *b)
     return order ? order : (x->line > y->line) - (x->line < y->line);
 }
 
-/* All times, each once, upwards, in *times (owned). */
+/* Lists the times of all rows, each once, by rising time. The caller frees *times. */
 static Status list_times(const ValuesReader *reader, double **times, size_t *n, Err *err)
 {
     double *made;
@@ -410,7 +408,7 @@ static Status list_times(const ValuesReader *reader, double **times, size_t *n, 
     return STATUS_OK;
 }
 
-/* Whether the rows from `row` on are of one segment at all n times. */
+/* Checks that the n rows from `row` on are those of one segment at the n times. */
 static Status check_times(const ValuesReader *reader, const TimedRow *row, const double *times,
                           size_t n, Err *err)
 {
@@ -441,32 +439,24 @@ static Status check_all_times(const ValuesReader *reader, const double *times, s
                        reader->path, n, BUILDER_MAX_COLUMNS / reader->n_wanted);
     for (size_t i = 0; i < reader->rows.n; i += n)
         TRY(check_times(reader, reader->rows.items + i, times, n, err));
-    return check_room(reader, n * reader->n_wanted, err);
+    return check_memory(reader, n * reader->n_wanted, err);
 }
 
-/* Opens a column by a name, which it releases. */
-static Status open_named(ValuesReader *reader, Text *name, const char *unit, size_t before,
-                         double **value, Err *err)
-{
-    Status status = STATUS_OK;
-    TRY_GOTO(text_check(name, err));
-    status = open_column(reader, text_chars(name), unit, before, value, err);
-done:
-    text_release(name);
-    return status;
-}
-
-/* The frames of a wanted column, its `number`th. A value that does not change is no series. */
+/* Makes one column of the tree per time for a wanted column, the `number`th from 0. If there is
+ * only one time, the column's name stays without the time, because one column is no series. */
 static Status fill_frames(ValuesReader *reader, const ValueColumn *column, size_t number,
                           const double *times, size_t n, Err *err)
 {
     size_t before = reader->tree->n_columns;
     for (size_t k = 0; k < n; k++) {
         char time[NUMBER_TEXT_SIZE];
+        char *name;
         double *value;
-        Text name = TEXT_INIT;
-        text_printf(&name, n > 1 ? "%s_%s" : "%s", column->name, number_text(times[k], time));
-        TRY(open_named(reader, &name, column->unit, before, &value, err));
+        TRY(mem_printf(&name, err, n > 1 ? "%s_%s" : "%s", column->name,
+                       number_text(times[k], time)));
+        Status status = open_column(reader, name, column->unit, before, &value, err);
+        free(name);
+        TRY(status);
         for (size_t i = k; i < reader->rows.n; i += n)
             put_value(reader, reader->rows.items[i].key, value,
                       reader->held.items[reader->rows.items[i].values + number]);
@@ -474,6 +464,7 @@ static Status fill_frames(ValuesReader *reader, const ValueColumn *column, size_
     return STATUS_OK;
 }
 
+/* Moves the rows with a time to columns of the tree. */
 static Status fill_times(ValuesReader *reader, Err *err)
 {
     double *times = NULL;
@@ -509,10 +500,11 @@ done:
     return status;
 }
 
+/* Returns true if the first `length` characters of `path` are the path of a folder. */
 static bool is_folder(const char *path, size_t length)
 {
     struct stat about;
-    char copy[4096]; /* the system takes no longer path */
+    char copy[4096]; /* PATH_MAX of Linux */
     if (length >= sizeof copy)
         return false;
     memcpy(copy, path, length);
@@ -544,14 +536,14 @@ Status tree_read_values(Tree *tree, const char *path, const char *column, char *
     ValuesReader reader = {.tree = tree,
                            .path = path,
                            .wanted = column,
-                           .one_thing = name != NULL,
+                           .is_single = name != NULL,
                            .key = NONE,
                            .time = NONE};
     Status status = is_folder(path, strlen(path)) ? steps_read(tree, path, column, err)
                                                   : read_csv(&reader, err);
     TRY_GOTO(status);
     if (name)
-        status = mem_strdup(name, column ? column : reader.what, err);
+        status = mem_strdup(name, column ? column : reader.single_name, err);
 done:
     reader_release(&reader);
     return status;
@@ -559,6 +551,8 @@ done:
 
 /* ---- flows ----------------------------------------------------------------------------------- */
 
+/* Checks the flows that were read, copies them to `share`, with 0 for missing ones, and adds them.
+ */
 static Status sum_flows(const Tree *tree, const char *path, double *share, double *sum, Err *err)
 {
     const TreeColumn *flow = &tree->column[0];
@@ -579,7 +573,8 @@ static Status sum_flows(const Tree *tree, const char *path, double *share, doubl
     return STATUS_OK;
 }
 
-/* The flows are read as a column, which becomes the shares. */
+/* The flows are read into the only column of a shallow copy of the tree, so that the tree's own
+ * columns stay unchanged. */
 Status tree_read_flows(Tree *tree, const char *path, Err *err)
 {
     Tree only = {.n = tree->n, .id = tree->id};
@@ -589,7 +584,7 @@ Status tree_read_flows(Tree *tree, const char *path, Err *err)
     TRY_GOTO(mem_calloc(&share, tree->n, sizeof *share, "flow shares", err));
     TRY_GOTO(sum_flows(&only, path, share, &sum, err));
     for (size_t i = 0; i < tree->n; i++)
-        if (tree_is_link(tree, i)) { /* the flow leaves at the place of the node */
+        if (tree_is_link(tree, i)) { /* a node with a link has no share of its own */
             share[tree->link[i]] += share[i];
             share[i] = 0;
         }
@@ -598,7 +593,7 @@ Status tree_read_flows(Tree *tree, const char *path, Err *err)
     tree->meta.known[META_Q_PERF] = true;
     share = NULL;
 done:
-    only.id = NULL; /* the tree's */
+    only.id = NULL; /* owned by `tree` */
     tree_release(&only);
     free(share);
     return status;

@@ -23,13 +23,13 @@ bool values_parse(const char *text, size_t *path, const char **column);
  *
  * column   the column or time series [tree/series.h] to read. NULL: all columns.
  * name     receives the name of the column or series that was read; the caller frees it. NULL: not
- *          wanted. If `name` is not NULL but `column` is, the file must hold one column, one
- * series, or one column per time. The columns of times become a series named after the file. Errors
- * STATUS_INPUT, with file and line, if no column is called id or name; an id belongs to no segment,
- * or occurs twice; a value is not a number; frames are missing; no column is called `column`; or
- * there are more than BUILDER_MAX_COLUMNS columns. STATUS_MEMORY.
- *
- * After an error the tree may have some of the new columns. */
+ *          wanted. If `name` is not NULL and `column` is NULL, the file must hold one column, one
+ *          series, or one column per time. One column per time becomes a series named after the
+ *          file.
+ * Errors   STATUS_INPUT, with file and line, if no column is called id or name; an id belongs to no
+ *          segment, or occurs twice; a value is not a number; a segment lacks a row for a time; no
+ *          column is called `column`; or there are more than BUILDER_MAX_COLUMNS columns.
+ *          STATUS_MEMORY. After an error the tree may have some of the new columns. */
 MUST_CHECK Status tree_read_values(Tree *tree, const char *path, const char *column, char **name,
                                    Err *err);
 

@@ -1,14 +1,18 @@
-/* Networks of Amira and Avizo (.am): a header of words that states how many elements there are of
- * each kind, and which block holds which of their numbers. The blocks "@1" and so on follow, each
- * after a line of its own: as text, as packed numbers, or as numbers compressed by HxByteRLE (a
- * byte n above 127: the next n - 128 bytes as they are; otherwise: the next byte n times) or HxZip
- * (zlib).
+/* Reads networks of Amira and Avizo (.am).
  *
- * The ContentType says how elements are connected. All networks become polylines of VtkData.
- * HxSpatialGraph: the points of an edge run from its first vertex to its second, both included,
- * edge after edge. Edges that share a vertex are joined. Numbers of a vertex go to the points
- * there. HxLineSet: LineIdx lists the vertices of a line, and -1 ends it. SkeletonGraph:
- * NeighbourList lists the neighbours of each vertex, NeighbourCount of them. Origins are roots. */
+ * The header defines the number of elements of each kind, and declares which block holds which
+ * numbers of the elements. A block begins with a line "@1". Its numbers are text, or binary, or
+ * binary and compressed by HxZip (zlib) or HxByteRLE: a byte n above 127 is followed by n - 128
+ * bytes that are copied; any other byte n is followed by one byte that is repeated n times.
+ *
+ * The ContentType tells how elements are connected. All kinds become polylines of VtkData.
+ *
+ *   HxSpatialGraph  The points of an edge run from its first vertex to its second vertex, both
+ *                   included. The points of one edge follow those of the edge before. Edges that
+ *                   share a vertex are joined. Numbers of a vertex go to the points at the vertex.
+ *   HxLineSet       LineIdx lists the vertices of one line after the other; -1 ends a line.
+ *   SkeletonGraph   NeighbourList lists the neighbours of one vertex after the other, and
+ *                   NeighbourCount states how many each vertex has. Origins are roots. */
 #include "treeio/cursor.h"
 #include "treeio/formats.h"
 #include "treeio/vtk/vtkdata.h"
@@ -43,7 +47,7 @@ static const CursorSyntax syntax = {
     .skips_zeros = true,
 };
 
-/* Numbers of all elements of a kind. */
+/* An array that the header declares: numbers of all elements of a kind. */
 typedef struct AmiraField {
     size_t of;  /* index of the kind of elements */
     char *name; /* owned */
@@ -65,7 +69,7 @@ typedef struct AmiraReader {
     bool has_count[ELEMENTS];
     size_t count[ELEMENTS];
     ARRAY(AmiraField) fields;
-    double taken; /* bytes of the numbers of all blocks so far */
+    double taken; /* bytes of memory for the numbers of all blocks so far */
     VtkData data;
 } AmiraReader;
 
@@ -79,9 +83,10 @@ static void release(AmiraReader *reader)
     vtk_release(&reader->data);
 }
 
-/* ---- header ---------------------------------------------------------------------------------- */
+/* ---- header ---- */
 
-static void take_unit(Graph *graph, const char *name)
+/* Sets the unit that the header states. The letter mu may be in UTF-8 or Latin-1. */
+static void set_unit(Graph *graph, const char *name)
 {
     bool is_micro = strcmp(name, "\xc2\xb5m") == 0 || strcmp(name, "\xb5m") == 0;
     for (int unit = 0; unit < LENGTH_UNITS; unit++)
@@ -91,15 +96,7 @@ static void take_unit(Graph *graph, const char *name)
         }
 }
 
-static void set_content(AmiraReader *reader, const char *name)
-{
-    size_t content = keyword_find(name, content_names, CONTENTS);
-    snprintf(reader->content_name, sizeof reader->content_name, "%.39s", name);
-    if (content < CONTENTS)
-        reader->content = (AmiraContent)content;
-}
-
-/* Reads what stands in braces after "Parameters" and the like. */
+/* Reads the words between braces after "Parameters" or another word that is not an element. */
 static Status read_parameters(AmiraReader *reader, Err *err)
 {
     char word[CURSOR_WORD], last[CURSOR_WORD] = "";
@@ -108,10 +105,14 @@ static Status read_parameters(AmiraReader *reader, Err *err)
             return err_set(err, STATUS_INPUT, "the header has a '{' without a '}'");
         depth += strcmp(word, "{") == 0;
         depth -= strcmp(word, "}") == 0;
-        if (strcasecmp(last, "ContentType") == 0)
-            set_content(reader, word);
+        if (strcasecmp(last, "ContentType") == 0) {
+            size_t content = keyword_find(word, content_names, CONTENTS);
+            if (content < CONTENTS)
+                reader->content = (AmiraContent)content;
+            snprintf(reader->content_name, sizeof reader->content_name, "%.39s", word);
+        }
         if (strcasecmp(last, "Coordinates") == 0)
-            take_unit(reader->graph, word);
+            set_unit(reader->graph, word);
     }
     return STATUS_OK;
 }
@@ -132,7 +133,8 @@ static Status read_count(AmiraReader *reader, const char *name, Err *err)
     return check_elements(name, number, reader->size, err);
 }
 
-/* Reads "float[3]" or "int". */
+/* Reads a type, "float[3]" or "int". Reason for 16 as the maximum number of components not
+ * recorded. */
 static Status read_type(AmiraField *field, const char *word, Err *err)
 {
     enum { MAX_COMPONENTS = 16 };
@@ -220,7 +222,7 @@ static Status check_header(const AmiraReader *reader, Err *err)
     return STATUS_OK;
 }
 
-/* Returns where the first line begins that is "@" and a number, or NULL. */
+/* Returns the start of the first line that begins with "@" and a digit, or NULL. */
 static char *first_block(const Cursor *cursor)
 {
     for (char *at = cursor->start; (at = memmem(at, (size_t)(cursor->end - at), "\n@", 2)); at++)
@@ -248,9 +250,9 @@ static Status read_header(AmiraReader *reader, Err *err)
     return STATUS_OK;
 }
 
-/* ---- blocks ---------------------------------------------------------------------------------- */
+/* ---- blocks ---- */
 
-/* Unpacks run lengths. Errors: STATUS_INPUT unless they are exactly `size` bytes. */
+/* Unpacks run lengths. Errors: STATUS_INPUT unless they unpack to exactly `size` bytes. */
 static Status unpack_rle(const char *from, size_t packed, char *to, size_t size, Err *err)
 {
     size_t at = 0, n = 0;
@@ -290,7 +292,8 @@ done:
     return status;
 }
 
-/* Checks that as many numbers can be in the file. zlib compresses by at most 1032. */
+/* Checks, before memory is allocated, that the rest of the file can hold n numbers. A byte run
+ * expands one byte to at most 127 / 2 < 64 bytes, and zlib to at most 1032. */
 static Status check_claim(const AmiraReader *reader, const AmiraField *field, size_t n, Err *err)
 {
     static const double max_ratio[] = {[BYTE_RLE] = 64, [ZIP] = 1032};
@@ -365,7 +368,7 @@ static Status read_blocks(AmiraReader *reader, Err *err)
     }
 }
 
-/* ---- the network ----------------------------------------------------------------------------- */
+/* ---- the network ---- */
 
 static AmiraField *find_field(const AmiraReader *reader, size_t of, const char *name)
 {
@@ -386,7 +389,7 @@ static Status need_field(const AmiraReader *reader, size_t of, const char *name,
                    components == 1 ? "" : "s");
 }
 
-/* Where the points of each edge end, in *end (owned). */
+/* Finds the end of the points of each edge. The caller frees *end. */
 static Status find_ends(const AmiraReader *reader, const AmiraField *counts, size_t **end, Err *err)
 {
     size_t edges = reader->count[EDGE], points = reader->count[POINT], at = 0;
@@ -412,7 +415,8 @@ static Status find_ends(const AmiraReader *reader, const AmiraField *counts, siz
     return STATUS_OK;
 }
 
-/* Joins the end of an edge with the first that has the same vertex. */
+/* Joins the end point of an edge to the first end point at the same vertex. first[v] is 1 + that
+ * point, or 0 if there is none yet. */
 static Status join_vertex(const AmiraReader *reader, double vertex, size_t point, size_t *first,
                           Err *err)
 {
@@ -428,7 +432,8 @@ static Status join_vertex(const AmiraReader *reader, double vertex, size_t point
     return STATUS_OK;
 }
 
-/* The vertex + 1 that lies at each point, in *vertex (owned). */
+/* Joins edges at their vertices. vertex[i] receives 1 + the vertex at point i, or 0 for a point
+ * inside an edge. The caller frees *vertex. */
 static Status join_edges(const AmiraReader *reader, const AmiraField *ends, const size_t *end,
                          size_t **vertex, Err *err)
 {
@@ -451,9 +456,9 @@ done:
     return status;
 }
 
-/* Numbers of vertices as numbers of points, NAN between vertices. */
-static Status spread(const AmiraReader *reader, const AmiraField *field, const size_t *vertex,
-                     double **value, Err *err)
+/* Copies numbers of vertices to the points at the vertices. Other points get NAN. */
+static Status copy_to_points(const AmiraReader *reader, const AmiraField *field,
+                             const size_t *vertex, double **value, Err *err)
 {
     size_t n = reader->count[POINT], components = field->components;
     TRY(mem_calloc(value, n * components, sizeof **value, "numbers of points", err));
@@ -464,14 +469,14 @@ static Status spread(const AmiraReader *reader, const AmiraField *field, const s
     return STATUS_OK;
 }
 
-/* Hands a field over as an array of VTK's. */
+/* Moves a declared array to the VtkData. */
 static Status add_array(AmiraReader *reader, AmiraField *field, const size_t *vertex, Err *err)
 {
     VtkArray array = {.n = reader->count[field->of == VERTEX ? POINT : field->of],
                       .components = field->components};
     VtkData *data = &reader->data;
     if (field->of == VERTEX)
-        TRY(spread(reader, field, vertex, &array.value, err));
+        TRY(copy_to_points(reader, field, vertex, &array.value, err));
     array.name = field->name;
     field->name = NULL;
     if (field->of != VERTEX) {
@@ -482,12 +487,12 @@ static Status add_array(AmiraReader *reader, AmiraField *field, const size_t *ve
         field->of == EDGE ? &data->arrays[GRAPH_LINES] : &data->arrays[GRAPH_POINTS], &array, err);
 }
 
-/* Names of numbers that connect points, and are no arrays. */
+/* Names of the arrays that hold positions and connections, not values. */
 static const char *const own_arrays[] = {"VertexCoordinates", "EdgeConnectivity",
                                          "NumEdgePoints",     "EdgePointCoordinates",
                                          "Coordinates",       "NeighbourCount"};
 
-/* Adds the other numbers as arrays. */
+/* Adds the arrays of values. */
 static Status add_arrays(AmiraReader *reader, const size_t *vertex, Err *err)
 {
     for (size_t i = 0; i < reader->fields.n; i++) {
@@ -502,7 +507,8 @@ static Status add_arrays(AmiraReader *reader, const size_t *vertex, Err *err)
     return STATUS_OK;
 }
 
-static Status add_lines(AmiraReader *reader, const AmiraField *places, size_t *end, Err *err)
+/* Adds one polyline per edge. Takes ownership of `end`. */
+static Status add_lines(AmiraReader *reader, const AmiraField *positions, size_t *end, Err *err)
 {
     VtkData *data = &reader->data;
     size_t points = reader->count[POINT], edges = reader->count[EDGE];
@@ -512,7 +518,7 @@ static Status add_lines(AmiraReader *reader, const AmiraField *places, size_t *e
     TRY(mem_calloc(&data->point, 3 * points, sizeof *data->point, "points", err));
     TRY(mem_calloc(&data->corner, points, sizeof *data->corner, "points", err));
     TRY(mem_calloc(&data->cell, edges, sizeof *data->cell, "edges", err));
-    memcpy(data->point, places->value, 3 * points * sizeof *data->point);
+    memcpy(data->point, positions->value, 3 * points * sizeof *data->point);
     for (size_t i = 0; i < points; i++)
         data->corner[i] = (double)i;
     for (size_t i = 0; i < edges; i++)
@@ -522,15 +528,15 @@ static Status add_lines(AmiraReader *reader, const AmiraField *places, size_t *e
 
 static Status add_spatial_graph(AmiraReader *reader, Err *err)
 {
-    AmiraField *vertices, *ends, *counts, *places;
+    AmiraField *vertices, *ends, *counts, *positions;
     size_t *end = NULL, *vertex = NULL;
     Status status = STATUS_OK;
     TRY(need_field(reader, VERTEX, "VertexCoordinates", 3, &vertices, err));
     TRY(need_field(reader, EDGE, "EdgeConnectivity", 2, &ends, err));
     TRY(need_field(reader, EDGE, "NumEdgePoints", 1, &counts, err));
-    TRY(need_field(reader, POINT, "EdgePointCoordinates", 3, &places, err));
+    TRY(need_field(reader, POINT, "EdgePointCoordinates", 3, &positions, err));
     TRY(find_ends(reader, counts, &end, err));
-    TRY_GOTO(add_lines(reader, places, end, err));
+    TRY_GOTO(add_lines(reader, positions, end, err));
     TRY_GOTO(join_edges(reader, ends, end, &vertex, err));
     TRY_GOTO(add_arrays(reader, vertex, err));
 done:
@@ -538,19 +544,19 @@ done:
     return status;
 }
 
-/* The vertices are the points of the network. */
+/* Moves the positions of the vertices to the points of the network. */
 static Status add_vertices(AmiraReader *reader, Err *err)
 {
-    AmiraField *places;
-    TRY(need_field(reader, VERTICES, "Coordinates", 3, &places, err));
-    reader->data.point = places->value;
+    AmiraField *positions;
+    TRY(need_field(reader, VERTICES, "Coordinates", 3, &positions, err));
+    reader->data.point = positions->value;
     reader->data.n_points = reader->count[VERTICES];
-    places->value = NULL;
+    positions->value = NULL;
     return STATUS_OK;
 }
 
-/* The radius of a line set has no name of its own: it is the first array of one number per vertex,
- * which Amira calls Data or Data0, unless another is called a radius. */
+/* Renames the first array of vertices to "radius" if no array is called a radius. Line sets of
+ * Amira give the radius no name of its own: the array is called Data or Data0. */
 static Status name_radius(AmiraReader *reader, Err *err)
 {
     AmiraField *data = find_field(reader, VERTICES, "Data0");
@@ -582,7 +588,7 @@ static Status add_line_set(AmiraReader *reader, Err *err)
     return name_radius(reader, err);
 }
 
-/* Adds the points that the file calls origins as an array "root" [vtkmeaning.c]. */
+/* Adds an array "root" [vtkmeaning.c] with 1 at the origins and 0 at other points. */
 static Status add_origins(AmiraReader *reader, Err *err)
 {
     VtkData *data = &reader->data;
@@ -600,7 +606,8 @@ static Status add_origins(AmiraReader *reader, Err *err)
     return STATUS_OK;
 }
 
-/* Each edge is in the lists of both its vertices; it is added from the lower one. */
+/* Adds one line per pair of neighbours. Both vertices list the other one, so the line is added at
+ * the lower vertex. */
 static Status add_skeleton(AmiraReader *reader, Err *err)
 {
     VtkData *data = &reader->data;
@@ -648,13 +655,4 @@ done:
 bool amira_detect(const char *start)
 {
     return strncasecmp(start, "# AmiraMesh", 11) == 0 || strncasecmp(start, "# Avizo", 7) == 0;
-}
-
-void amira_keywords(Text *text)
-{
-    KEYWORDS_PUT(element_names, , text);
-    KEYWORDS_PUT(content_names, , text);
-    KEYWORDS_PUT(packing_names, , text);
-    KEYWORDS_PUT(own_arrays, , text);
-    vtk_put_type_names(NAMING_AMIRA, text);
 }

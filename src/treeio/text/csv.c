@@ -1,6 +1,6 @@
-/* CSV of nodes: a line that names the columns, then one line per node. A table has the columns that
- * every tree has; other columns become columns of the tree. Quotes are removed in place, because
- * what is left is never longer. */
+/* Reads and writes the CSV of nodes: a line that names the columns, then one line per node. Also
+ * writes the CSV of segments, which table.c reads. `node_columns` lists the columns with a fixed
+ * meaning; all others are columns of values of the tree. */
 #include "treeio/comments.h"
 #include "treeio/cursor.h"
 #include "treeio/formats.h"
@@ -78,7 +78,7 @@ typedef struct CsvRow {
     int64_t link; /* TREE_NO_LINK: none */
 } CsvRow;
 
-/* An empty parent or link is none. */
+/* Reads an id. An empty or negative parent or link means that there is none. */
 static Status read_id(NodeColumn column, const char *text, int64_t *id, Err *err)
 {
     bool may_lack = column != ID;
@@ -155,13 +155,7 @@ Status csv_read(TreeBuilder *builder, char *bytes, size_t size, Err *err)
     return status;
 }
 
-void csv_keywords(Text *text)
-{
-    KEYWORDS_PUT(node_columns, , text);
-    table_keywords(text);
-}
-
-/* The first line that is no comment names a parent and coordinates in mm. */
+/* Returns true if the first line that is not a comment names a parent and coordinates in mm. */
 bool csv_detect(const char *start)
 {
     start = text_first_row(start);
@@ -193,7 +187,8 @@ static bool is_among(const char *name, const char *const *names, size_t n)
     return n > 0;
 }
 
-/* A column of the tree that is called like one of the file's own gets another title. */
+/* Appends the title of a column of values. A name that has a fixed meaning in the file gets the
+ * prefix "value of". */
 static void put_title(const TreeColumn *column, Text *text)
 {
     bool is_taken = is_among(column->name, node_columns, NODE_COLUMNS) ||
@@ -221,6 +216,7 @@ static void put_titles(const Tree *tree, const char *const *titles, size_t n, Te
     text_puts(text, "\n");
 }
 
+/* Appends a comma and the number; nothing follows the comma if the number is NAN. */
 static void put_number(double value, Text *text)
 {
     char number[NUMBER_TEXT_SIZE + 1] = ",";
@@ -236,7 +232,7 @@ static void put_position(Vec3 position, Text *text)
     put_number(position.z, text);
 }
 
-/* Appends the id that the link of a node names, in a tree with links. */
+/* In a tree with links, appends the field same_as: the id of the node that the link names. */
 static void put_link(const Tree *tree, size_t i, Text *text)
 {
     if (tree_is_link(tree, i))
@@ -272,7 +268,6 @@ Status csv_write(const Tree *tree, Text *text, Err *err)
     return STATUS_OK;
 }
 
-/* Each row has both ends of a segment, the proximal one first. */
 Status csv_segments_write(const Tree *tree, Text *text, Err *err)
 {
     (void)err;

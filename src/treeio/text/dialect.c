@@ -1,6 +1,6 @@
-/* A line is cut into fields, the format says to which section it belongs, and the table of fields
- * says what becomes of each. Segments keep the names of their points until the end, because points
- * may come later. */
+/* A line is cut into fields. The function `choose` of the format selects the section of the line,
+ * and the table of fields gives each field of the section its meaning. Segments keep the names of
+ * their points until the end of the file, because the points may come later. */
 #include "treeio/text/dialect.h"
 
 #include "treeio/cursor.h"
@@ -27,15 +27,11 @@ size_t dialect_find_section(const Dialect *dialect, const char *title)
     return i;
 }
 
-void dialect_put_keywords(const Dialect *dialect, Text *text)
-{
-    keywords_put(&dialect->section->title, dialect->n_sections, sizeof *dialect->section, text);
-    keywords_put(&dialect->field->name, dialect->n_fields, sizeof *dialect->field, text);
-}
-
 /* ---- fields ---------------------------------------------------------------------------------- */
 
-Status field_position(char *const field[3], Vec3 *position, Err *err)
+/* Reads three fields as a position: x, y, z. Errors: STATUS_INPUT, without file and line, unless
+ * all are finite numbers. */
+static Status field_position(char *const field[3], Vec3 *position, Err *err)
 {
     double *const coordinate[] = {&position->x, &position->y, &position->z};
     for (size_t i = 0; i < 3; i++)
@@ -43,6 +39,7 @@ Status field_position(char *const field[3], Vec3 *position, Err *err)
     return STATUS_OK;
 }
 
+/* Adds the column of field `k` to the graph if it is not there yet. */
 static Status open_column(DialectReader *reader, size_t k, Err *err)
 {
     const DialectField *field = &reader->dialect->field[k];
@@ -125,7 +122,7 @@ static Status read_field(DialectReader *reader, DialectRow *row, size_t k, Err *
 
 /* ---- rows ------------------------------------------------------------------------------------ */
 
-/* Adds the row's point, and keeps its segment. */
+/* Adds the row's point to the graph, and the row's segment to the pending segments. */
 static Status add_elements(DialectReader *reader, DialectRow *row, Err *err)
 {
     Graph *graph = reader->graph;

@@ -112,13 +112,7 @@ MUST_CHECK Status dialect_read(DialectReader *reader, char *text, size_t size, E
 MUST_CHECK Status dialect_add_segments(DialectReader *reader, Err *err);
 void dialect_release(DialectReader *reader);
 
-/* Appends the titles of the sections and the names of the fields, one per line. */
-void dialect_put_keywords(const Dialect *dialect, Text *text);
 /* Returns the index of the section called `title`, or n_sections if there is none. */
 size_t dialect_find_section(const Dialect *dialect, const char *title);
-
-/* Reads three fields as a position: x, y, z. Errors: STATUS_INPUT, without file and line, unless
- * all are finite numbers. */
-MUST_CHECK Status field_position(char *const field[3], Vec3 *position, Err *err);
 
 #endif

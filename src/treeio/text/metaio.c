@@ -1,14 +1,15 @@
-/* Tubes of MetaIO scenes (.tre), as MetaIO's metaTube.cxx and ITK's converter of tubes read them:
- * for each object a header of lines "Key = value", which ends with "Points =" or "Points", and then
- * the points, one row of text each or packed numbers. PointDim names the numbers of a point.
- * Without it, they are x, y, z (if NDims is 3), the radius, and numbers that are left out.
- * Positions and radii are in voxels of ElementSpacing; TransformMatrix, CenterOfRotation and Offset
- * move them.
+/* Reads the tubes of MetaIO scenes (.tre) as MetaIO's metaTube.cxx and ITK's converter of tubes do.
  *
- * Older versions of MetaIO reserve more bytes for packed points than they fill. What lies between
- * the last point and the next object is skipped. Children lead away from their parents: one end of
- * a tube is joined to the point of its parent that it names, or to the nearest one if it names
- * none. */
+ * Each object has a header of lines "Key = value", which ends with "Points =" or "Points". The
+ * points follow, one row of text each, or as binary numbers. PointDim names the numbers of a point.
+ * Without PointDim, a row of text holds x, y, z (if NDims is 3), the radius, and numbers that are
+ * ignored. Positions and radii are in voxels of size ElementSpacing. TransformMatrix,
+ * CenterOfRotation and Offset transform the positions.
+ *
+ * Older versions of MetaIO reserve more bytes for binary points than they fill, so the bytes
+ * between the last point and the next object are skipped. Blood flows from a parent tube to its
+ * children: one end of a child is connected to the parent's point that the child names, or to the
+ * parent's nearest point if it names none. */
 #include "treeio/cursor.h"
 #include "treeio/formats.h"
 #include "treeio/names.h"
@@ -22,33 +23,33 @@
 
 enum { MAX_COLUMNS = 200 };
 
-/* What its header says of an object. */
+/* The header of an object. */
 typedef struct TubeHeader {
     bool is_tube, is_root, is_binary, is_big_endian;
-    double artery;                                /* 1 or 0; NAN: not said */
+    double artery;                                /* 1 or 0; NAN: not stated */
     int32_t dimensions, id, parent, parent_point; /* -1: none */
     char *id_text, *parent_text;                  /* borrowed */
     int32_t points;
     double spacing[3], matrix[9], center[3], offset[3];
-    VtkType type; /* of packed numbers */
+    VtkType type; /* type of binary numbers */
     bool has_point_dim;
     size_t n_columns;
-    int32_t meaning[MAX_COLUMNS]; /* of each number of a point: a Meaning, or a column */
+    int32_t meaning[MAX_COLUMNS]; /* per number of a point: a Meaning, or the graph's column */
 } TubeHeader;
 
-/* Numbers of a point that are no columns. */
+/* The numbers of a point that are not columns. */
 typedef enum Meaning { MEANS_X = -4, MEANS_Y, MEANS_Z, MEANS_RADIUS } Meaning;
 
-/* An object that has been read; points, of a tube, as the graph numbers them. */
+/* An object that has been read. Its points have consecutive numbers in the graph. */
 typedef struct TubeObject {
     int32_t id, parent_point;
-    char *parent; /* its ID; NULL: it has none */
-    size_t first, count;
+    char *parent;        /* ID of the parent; NULL: none */
+    size_t first, count; /* first point; number of points */
     size_t line;
-    bool is_moved; /* by a matrix or an offset */
+    bool is_moved; /* a matrix or an offset transforms the object */
 } TubeObject;
 
-/* The first columns of the graph; behind them come those of PointDim. */
+/* The first columns of the graph. The columns of PointDim follow. */
 enum { TUBE, ARTERY, OWN_COLUMNS };
 
 typedef struct TubeReader {
@@ -59,7 +60,7 @@ typedef struct TubeReader {
     const char *column[MAX_COLUMNS]; /* names of PointDim that are columns (borrowed) */
     size_t n_columns;
     Names ids;      /* of objects */
-    size_t assumed; /* tubes without PointDim */
+    size_t assumed; /* count of tubes without PointDim */
 } TubeReader;
 
 static const TubeHeader no_header = {.artery = (double)NAN,
@@ -81,15 +82,13 @@ static bool is_true(const char *value)
 
 static Status read_numbers(const char *key, const char *value, size_t count, double *out, Err *err)
 {
-    double number[9];
-    if (!numbers_parse(value, count, number))
-        return err_set(err, STATUS_INPUT, "%s is '%.40s'; it must be %zu numbers", key, value,
-                       count);
-    memcpy(out, number, count * sizeof *out);
-    return STATUS_OK;
+    return numbers_parse(value, count, out)
+               ? STATUS_OK
+               : err_set(err, STATUS_INPUT, "%s is '%.40s'; it must be %zu numbers", key, value,
+                         count);
 }
 
-/* A matrix of as many rows and columns as there are dimensions. */
+/* Reads a matrix with as many rows and columns as there are dimensions. */
 static Status read_matrix(TubeHeader *header, const char *value, Err *err)
 {
     size_t n = (size_t)header->dimensions;
@@ -120,7 +119,7 @@ static int32_t meaning_of(const char *name)
     return 0;
 }
 
-/* The column of a name of PointDim, in *column. */
+/* Finds or adds the column for a name of PointDim. */
 static Status find_column(TubeReader *reader, const char *name, int32_t *column, Err *err)
 {
     size_t k = 0, number;
@@ -154,10 +153,10 @@ static Status read_point_dim(TubeReader *reader, char *value, Err *err)
     return STATUS_OK;
 }
 
-/* What the value of a key is, and where it goes. */
+/* The form of a key's value. */
 typedef enum KeyKind {
-    KEY_TRUTH,
-    KEY_WHOLE,
+    KEY_BOOLEAN,
+    KEY_INTEGER,
     KEY_VECTOR,
     KEY_MATRIX,
     KEY_TYPE,
@@ -167,16 +166,16 @@ typedef enum KeyKind {
 static const struct {
     const char *name;
     KeyKind kind;
-    size_t member; /* of the header, where the kind has one */
+    size_t member; /* offset of the member of TubeHeader; unused by the last three kinds */
 } keys[] = {
-    {"ID", KEY_WHOLE, offsetof(TubeHeader, id)},
-    {"ParentID", KEY_WHOLE, offsetof(TubeHeader, parent)},
-    {"ParentPoint", KEY_WHOLE, offsetof(TubeHeader, parent_point)},
-    {"NPoints", KEY_WHOLE, offsetof(TubeHeader, points)},
-    {"Root", KEY_TRUTH, offsetof(TubeHeader, is_root)},
-    {"BinaryData", KEY_TRUTH, offsetof(TubeHeader, is_binary)},
-    {"BinaryDataByteOrderMSB", KEY_TRUTH, offsetof(TubeHeader, is_big_endian)},
-    {"ElementByteOrderMSB", KEY_TRUTH, offsetof(TubeHeader, is_big_endian)},
+    {"ID", KEY_INTEGER, offsetof(TubeHeader, id)},
+    {"ParentID", KEY_INTEGER, offsetof(TubeHeader, parent)},
+    {"ParentPoint", KEY_INTEGER, offsetof(TubeHeader, parent_point)},
+    {"NPoints", KEY_INTEGER, offsetof(TubeHeader, points)},
+    {"Root", KEY_BOOLEAN, offsetof(TubeHeader, is_root)},
+    {"BinaryData", KEY_BOOLEAN, offsetof(TubeHeader, is_binary)},
+    {"BinaryDataByteOrderMSB", KEY_BOOLEAN, offsetof(TubeHeader, is_big_endian)},
+    {"ElementByteOrderMSB", KEY_BOOLEAN, offsetof(TubeHeader, is_big_endian)},
     {"ElementSpacing", KEY_VECTOR, offsetof(TubeHeader, spacing)},
     {"CenterOfRotation", KEY_VECTOR, offsetof(TubeHeader, center)},
     {"Offset", KEY_VECTOR, offsetof(TubeHeader, offset)},
@@ -192,10 +191,10 @@ static Status read_value(TubeReader *reader, size_t k, char *value, Err *err)
     TubeHeader *header = &reader->header;
     void *member = (char *)header + keys[k].member;
     switch (keys[k].kind) {
-    case KEY_TRUTH:
+    case KEY_BOOLEAN:
         *(bool *)member = is_true(value);
         return STATUS_OK;
-    case KEY_WHOLE:
+    case KEY_INTEGER:
         return field_integer(keys[k].name, value, -1, INT32_MAX, member, err);
     case KEY_VECTOR:
         return read_numbers(keys[k].name, value, (size_t)header->dimensions, member, err);
@@ -215,7 +214,7 @@ static bool is_moved(const TubeHeader *header)
            memcmp(header->offset, no_header.offset, sizeof header->offset) != 0;
 }
 
-/* Keeps the object whose header has been read. */
+/* Adds the object whose header has been read. */
 static Status add_object(TubeReader *reader, Err *err)
 {
     const TubeHeader *header = &reader->header;
@@ -231,7 +230,7 @@ static Status add_object(TubeReader *reader, Err *err)
                                    .is_moved = is_moved(header)});
 }
 
-/* A new object begins; one without points has ended with its header. */
+/* Begins a new object. An object other than a tube has no points, so it is added now. */
 static Status begin_object(TubeReader *reader, const char *type, Err *err)
 {
     if (!reader->header.is_tube && reader->header.id >= 0)
@@ -262,8 +261,8 @@ static Status read_key(TubeReader *reader, const char *key, char *value, Err *er
 
 /* ---- points ---- */
 
-/* From voxels to where the object is. */
-static Vec3 place(const TubeHeader *header, const double voxel[3])
+/* Converts a position from voxels to the space of the scene. */
+static Vec3 scene_position(const TubeHeader *header, const double voxel[3])
 {
     double out[3];
     for (size_t row = 0; row < 3; row++) {
@@ -288,7 +287,7 @@ static Status add_point(TubeReader *reader, const double *number, Err *err)
         else if (header->meaning[k] < 0)
             voxel[header->meaning[k] - MEANS_X] = number[k];
     }
-    point.position = place(header, voxel);
+    point.position = scene_position(header, voxel);
     point.is_inlet = header->is_root && at == reader->objects.items[reader->objects.n - 1].first;
     TRY(graph_point(graph, &point, err));
     for (size_t k = 0; k < header->n_columns; k++)
@@ -317,7 +316,8 @@ static Status read_row(TubeReader *reader, Err *err)
     return add_point(reader, number, err);
 }
 
-static Status read_packed(TubeReader *reader, Err *err)
+/* Reads the binary points of a tube, and moves to the next object. */
+static Status read_binary(TubeReader *reader, Err *err)
 {
     const TubeHeader *header = &reader->header;
     Cursor *cursor = &reader->cursor;
@@ -356,9 +356,8 @@ static Status check_header(const TubeHeader *header, bool gives_radius, Err *err
     return STATUS_OK;
 }
 
-/* Without PointDim, the numbers of a point are in the order in which MetaIO writes them. What
- * follows the radius, as a color, has no name. Packed points have a size that only PointDim
- * states. */
+/* Assumes the order in which MetaIO writes the numbers of a point. Numbers after the radius, such
+ * as colors, have no name. Binary points are refused, because only PointDim states their size. */
 static Status assume_point_dim(TubeReader *reader, Err *err)
 {
     static const int32_t order[] = {MEANS_X, MEANS_Y, MEANS_Z, MEANS_RADIUS};
@@ -387,7 +386,7 @@ static Status read_tube(TubeReader *reader, Err *err)
     TRY(add_object(reader, err));
     TubeObject *object = &reader->objects.items[reader->objects.n - 1];
     if (header->is_binary)
-        TRY(read_packed(reader, err));
+        TRY(read_binary(reader, err));
     for (int32_t i = 0; !header->is_binary && i < header->points; i++)
         TRY(read_row(reader, err));
     object->count = (size_t)header->points;
@@ -414,6 +413,7 @@ static Status read_line(TubeReader *reader, char *line, Err *err)
 
 /* ---- children ---- */
 
+/* Returns the point of an object that is nearest to a position. */
 static size_t nearest(const Graph *graph, const TubeObject *object, Vec3 to)
 {
     size_t best = object->first;
@@ -430,7 +430,8 @@ typedef struct TubeLink {
     double distance;
 } TubeLink;
 
-/* From the point that the tube names, or else the nearest one, to the end. */
+/* Returns the line to an end of the tube from the parent's point that the tube names or, if it
+ * names none, from the parent's nearest point. */
 static TubeLink link_to(const Graph *graph, const TubeObject *tube, const TubeObject *parent,
                         size_t end)
 {
@@ -440,7 +441,8 @@ static TubeLink link_to(const Graph *graph, const TubeObject *tube, const TubeOb
     return (TubeLink){from, end, vec3_distance(graph->point[from].position, at)};
 }
 
-static Status hang(const TubeReader *reader, const TubeObject *tube, Err *err)
+/* Connects a tube to its parent by the shorter of the lines to its two ends. */
+static Status connect_to_parent(const TubeReader *reader, const TubeObject *tube, Err *err)
 {
     Graph *graph = reader->graph;
     size_t number;
@@ -482,7 +484,7 @@ static Status read_all(TubeReader *reader, Err *err)
         return err_set(err, STATUS_INPUT, "%s: the file has no tube", graph->name);
     for (size_t i = 0; i < reader->objects.n; i++)
         TRY(graph_blame(graph, GRAPH_LINES, reader->objects.items[i].line,
-                        hang(reader, &reader->objects.items[i], err), err));
+                        connect_to_parent(reader, &reader->objects.items[i], err), err));
     return STATUS_OK;
 }
 
@@ -501,10 +503,4 @@ Status metaio_read(Graph *graph, char *bytes, size_t size, Err *err)
 bool metaio_detect(const char *start)
 {
     return strncasecmp(text_first_row(start), "ObjectType", strlen("ObjectType")) == 0;
-}
-
-void metaio_keywords(Text *text)
-{
-    KEYWORDS_PUT(keys, .name, text);
-    vtk_put_type_names(NAMING_METAIO, text);
 }

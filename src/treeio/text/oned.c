@@ -1,9 +1,11 @@
-/* Decks of SimVascular's svOneDSolver: one card per line, with the fields of that program's reader
- * (cvOneDOptionsLegacySerializer.cxx). Nodes at different positions are one node if a JOINT card
- * joins the segments that they end. A segment tapers from one area to the other. Its radius in a
- * tree is that of the outlet, because nodes of other formats have the radius of the segment's
- * distal end. Both areas are columns. Cards may come in any order, so names are looked up at the
- * end. */
+/* Reads and writes decks of SimVascular's svOneDSolver: one card per line, with the fields that the
+ * solver's reader defines (cvOneDOptionsLegacySerializer.cxx).
+ *
+ * A JOINT card connects the ends of segments, whose nodes may have different positions; these nodes
+ * become one point. A segment tapers from its inlet area to its outlet area. Its radius in the tree
+ * is that of the outlet, because other formats state the radius at the distal end. Both areas are
+ * columns, from which the writer restores them. Cards may come in any order, so the names of
+ * segments in joints are looked up after the last card. */
 #include "treeio/comments.h"
 #include "treeio/formats.h"
 #include "treeio/text/dialect.h"
@@ -13,7 +15,7 @@
 #include <string.h>
 #include <strings.h>
 
-/* Cards. Those after DATA_TABLE say nothing about the tree. */
+/* The cards. The cards from OTHER_CARDS on are accepted and ignored. */
 enum { NODE, SEGMENT, JOINT, JOINT_INLET, JOINT_OUTLET, DATA_TABLE, OTHER_CARDS, CARDS = 11 };
 
 /* The segments that a JOINTINLET or JOINTOUTLET card names. */
@@ -33,12 +35,12 @@ typedef struct DeckJoint {
     size_t line;
 } DeckJoint;
 
-/* What a deck says beyond nodes and segments. Texts are borrowed from the file. */
+/* The joints of a deck, and the state of reading. Texts are borrowed from the file. */
 typedef struct DeckState {
     SegmentLists inlets, outlets;
     ARRAY(DeckJoint) joint;
-    ARRAY(char *) word;
-    bool in_table;
+    ARRAY(char *) word; /* names of the segments of all lists */
+    bool in_table;      /* the next line is in a DATATABLE */
 } DeckState;
 
 static Status read_joint(DialectReader *reader, DialectRow *row, Err *err)
@@ -65,21 +67,13 @@ static Status read_list(DialectReader *reader, DialectRow *row, Err *err)
     return STATUS_OK;
 }
 
-static Status begin_table(DialectReader *reader, DialectRow *row, Err *err)
-{
-    DeckState *deck = reader->own;
-    (void)row, (void)err;
-    deck->in_table = true;
-    return STATUS_OK;
-}
-
 static const DialectSection cards[CARDS] = {
     [NODE] = {"NODE", "a NODE card", 5, 5, GRAPH_POINTS, NULL},
     [SEGMENT] = {"SEGMENT", "a SEGMENT card", 9, 17, GRAPH_LINES, NULL},
     [JOINT] = {"JOINT", "a JOINT card", 5, 5, GRAPH_LINES, read_joint},
     [JOINT_INLET] = {"JOINTINLET", "a JOINTINLET card", 4, 0, GRAPH_LINES, read_list},
     [JOINT_OUTLET] = {"JOINTOUTLET", "a JOINTOUTLET card", 4, 0, GRAPH_LINES, read_list},
-    [DATA_TABLE] = {"DATATABLE", "a DATATABLE card", 2, 0, GRAPH_LINES, begin_table},
+    [DATA_TABLE] = {"DATATABLE", "a DATATABLE card", 2, 0, GRAPH_LINES, NULL},
     [OTHER_CARDS] = {.title = "MODEL"},
     {.title = "SOLVEROPTIONS"},
     {.title = "MATERIAL"},
@@ -87,7 +81,7 @@ static const DialectSection cards[CARDS] = {
     {.title = "COUPLING"},
 };
 
-/* The columns come first, in their order in trees. */
+/* The first fields are the columns of the tree, in this order. */
 enum { LENGTH, IN_AREA, OUT_AREA, ELEMENTS, DECK_COLUMNS };
 
 static const DialectField fields[] = {
@@ -111,7 +105,7 @@ static Status read_comment(Graph *graph, const char *comment, Err *err)
     return comment_read_key(&graph->meta, comment, err);
 }
 
-/* Finds the card, and passes over the lines of a DATATABLE. */
+/* Finds the card of a line, and skips the lines in a DATATABLE. */
 static Status choose_card(DialectReader *reader, DialectRow *row, bool *is_row, Err *err)
 {
     DeckState *deck = reader->own;
@@ -121,6 +115,7 @@ static Status choose_card(DialectReader *reader, DialectRow *row, bool *is_row, 
         return STATUS_OK;
     }
     reader->section = dialect_find_section(reader->dialect, row->field[0]);
+    deck->in_table = reader->section == DATA_TABLE;
     return reader->section < CARDS
                ? STATUS_OK
                : err_set(err, STATUS_INPUT, "'%.40s' is not a card of svOneDSolver", row->field[0]);
@@ -132,11 +127,6 @@ static const Dialect dialect = {.section = cards,
                                 .n_fields = sizeof fields / sizeof *fields,
                                 .comment = read_comment,
                                 .choose = choose_card};
-
-void oned_keywords(Text *text)
-{
-    dialect_put_keywords(&dialect, text);
-}
 
 /* The first word is the name of a card. */
 bool oned_detect(const char *start)
@@ -150,8 +140,8 @@ bool oned_detect(const char *start)
 
 /* ---- joints ---------------------------------------------------------------------------------- */
 
-/* Joins the ends of the segments of a list to *point. If *point is no point yet, it becomes the
- * first of them. */
+/* Joins the ends of the segments of a list to *point. If *point is not a point of the graph yet, it
+ * becomes the first of these ends. */
 static Status join_list(DialectReader *reader, const SegmentLists *lists, char *name, size_t *point,
                         Err *err)
 {
@@ -170,6 +160,7 @@ static Status join_list(DialectReader *reader, const SegmentLists *lists, char *
     return STATUS_OK;
 }
 
+/* Joins all segments of a JOINT card. */
 static Status join_ends(DialectReader *reader, const DeckJoint *joint, Err *err)
 {
     const DeckState *deck = reader->own;
@@ -215,13 +206,15 @@ done:
 
 /* ---- writing ---- */
 
-/* A tree on its way into a deck: node i is NODE i, its segment SEGMENT i - 1. */
+/* A tree that is written. Node i is NODE i, and its segment is SEGMENT i - 1. */
 typedef struct DeckTree {
     const Tree *tree;
     Text *text;
-    int32_t *children;                               /* of each node */
-    double *share;                                   /* of the flow that leaves at each node */
-    double all_shares, flow_cm3_s, pressure_dyn_cm2; /* through the inlet, at the terminals */
+    int32_t *children;       /* per node: number of its children; owned */
+    double *share;           /* per node: its flow share; owned */
+    double all_shares;       /* sum of the shares */
+    double flow_cm3_s;       /* flow through the inlet */
+    double pressure_dyn_cm2; /* pressure at the terminals */
 } DeckTree;
 
 static void put_number(Text *text, double value)
@@ -247,7 +240,7 @@ static void put_nodes(const DeckTree *deck)
     }
 }
 
-/* The joint at the end of segment i, whose children are `outlet`. */
+/* Appends the joint at the end of segment i. `outlet` lists its children. */
 static void put_joint(const DeckTree *deck, size_t i, const uint32_t *outlet)
 {
     int32_t count = deck->children[i];
@@ -287,13 +280,15 @@ bool oned_stores(const TreeColumn *column)
     return false;
 }
 
-/* The value of a column that a deck brought, or else `otherwise`. */
+/* Returns the value of a column that came from a deck, or `otherwise` if there is none. */
 static double deck_value(const Tree *tree, size_t k, size_t i, double otherwise)
 {
     const TreeColumn *column = tree_column(tree, fields[k].name);
     return column && oned_stores(column) && column->value[i] > 0 ? column->value[i] : otherwise;
 }
 
+/* Appends a SEGMENT card. The areas of a deck are restored only if the radius still agrees with the
+ * outlet area, to 1e-9, which is above the rounding errors of the conversion. */
 static void put_segment(const DeckTree *deck, size_t i)
 {
     enum { ELEMENTS_OF_A_SEGMENT = 5 };
@@ -314,7 +309,8 @@ static void put_segment(const DeckTree *deck, size_t i)
         text_puts(deck->text, " NOBOUND NONE\n");
 }
 
-/* What resists the flow out of each terminal so that the pressure there is as it should be. */
+/* Appends the resistance at each terminal, pressure / flow, and the constant flow at the inlet. A
+ * terminal without flow gets a resistance that lets almost nothing through. */
 static void put_tables(const DeckTree *deck)
 {
     for (size_t i = 1; i < deck->tree->n; i++) {
@@ -332,7 +328,8 @@ static void put_tables(const DeckTree *deck)
     text_puts(deck->text, "\nENDDATATABLE\n");
 }
 
-/* Walls as stiff as those of the solver's own test cases of rigid vessels. */
+/* Appends the material and the options of the solver. The walls are as stiff as in the solver's own
+ * test cases of rigid vessels. */
 static void put_material(const DeckTree *deck)
 {
     const TreeMeta *meta = &deck->tree->meta;
@@ -358,7 +355,8 @@ static Status check_tree(const DeckTree *deck, Err *err)
     return STATUS_OK;
 }
 
-/* What the tree does not say, the deck says in a comment to have been made up. */
+/* Chooses the flow and the pressure. A comment in the deck states which of them the tree lacks. The
+ * values 1 cm3/s and 60 mmHg are placeholders; reasons not recorded. */
 static void choose_flow(DeckTree *deck)
 {
     const TreeMeta *meta = &deck->tree->meta;

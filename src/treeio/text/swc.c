@@ -1,17 +1,16 @@
-/* SWC: lines are cut into fields in place. Flow shares are comments "flow_share: ID SHARE", and
- * pairs of terminals are comments "terminal_pair: ID ID". Every reader of SWC skips comments.
+/* Reads and writes SWC. Flow shares are comments "flow_share: ID SHARE", and pairs of terminals are
+ * comments "terminal_pair: ID ID", because every reader of SWC skips comments.
  *
  * Parsing numbers takes most of the time, so all processors read a large file. The text is divided
- * into blocks of whole lines. A thread reads the plain rows of a block, seven numbers and nothing
- * else, without changing the text, up to the first line that is no plain row. Then, in the order of
- * the file, these rows are handed over, and the rest of the block is read line by line, by the only
- * code that refuses anything. A few blocks per thread at a time keep the rows that wait in the
- * processor's cache. Rows are written in the same way, a block of text per thread.
+ * into blocks of whole lines. A thread parses the plain rows of a block (seven numbers and nothing
+ * else) up to the first line that is not a plain row, without changing the text. Then, in the order
+ * of the file, these rows are added to the builder, and the rest of the block is read line by line.
+ * Only the reader of single lines reports errors. A wave has only a few blocks per thread, so that
+ * its rows stay in the processor's cache. Rows are written in the same way, one page per thread.
  *
- * Dialects: commas or semicolons may separate fields. A line may name the columns, with '#' or
- * without. Ids may start at 0. A root may have the parent 0. More columns may follow, as in Vaa3D's
- * ESWC; they become the tree's. The first row shows whether ids start at 0, before any id is handed
- * over. */
+ * Accepted dialects: commas or semicolons may separate fields. A line may name the columns, with or
+ * without '#'. Ids may start at 0, which the first row shows. A root may have the parent 0. Further
+ * columns, as in Vaa3D's ESWC, become columns of the tree. */
 #include "treeio/comments.h"
 #include "treeio/formats.h"
 
@@ -26,37 +25,30 @@ enum { N_FIELDS = 7, MAX_FIELDS = 100 };
 
 static const char share_key[] = "flow_share";
 
-/* What is read so far. */
+/* The state of reading. */
 typedef struct SwcReader {
     TreeBuilder *builder;
-    size_t n_fields;    /* in every row; 0: there has been none */
+    size_t n_fields;    /* number of fields of each row; 0: no row has been read */
     int32_t lowest_id;  /* 0 or 1 */
     const char *titles; /* the last line that names columns (borrowed from the text), or NULL */
-    char *rest;         /* of the text; NULL: nothing */
-    size_t line;        /* number of its first line */
+    char *rest;         /* the text that is not read yet; NULL: none is left */
+    size_t line;        /* number of the first line of `rest` */
 } SwcReader;
 
-/* What number of a file is as an id of the tree, whose ids start at 1. Where those of the file do,
- * the parent 0 is none. */
+/* Converts an id of the file to an id of the tree, whose ids start at 1. A number below the file's
+ * lowest id, as the parent 0 in a file whose ids start at 1, means that there is no node. */
 static int64_t id_of(const SwcReader *reader, int32_t number)
 {
     return number < reader->lowest_id ? TREE_NO_PARENT : (int64_t)number + 1 - reader->lowest_id;
 }
 
-static Status read_id(const SwcReader *reader, const char *text, int64_t *id, Err *err)
+/* Reads the id of a node or of a parent, an integer of at least `minimum`. */
+static Status read_id(const SwcReader *reader, const char *what, const char *text, int32_t minimum,
+                      int64_t *id, Err *err)
 {
     int32_t number = 0;
-    TRY(field_integer("id", text, reader->lowest_id, TREE_MAX_ID - 1 + reader->lowest_id, &number,
-                      err));
+    TRY(field_integer(what, text, minimum, TREE_MAX_ID - 1 + reader->lowest_id, &number, err));
     *id = id_of(reader, number);
-    return STATUS_OK;
-}
-
-static Status read_parent(const SwcReader *reader, const char *text, int64_t *parent, Err *err)
-{
-    int32_t number = 0;
-    TRY(field_integer("parent", text, TREE_NO_PARENT, TREE_MAX_ID, &number, err));
-    *parent = id_of(reader, number);
     return STATUS_OK;
 }
 
@@ -65,13 +57,13 @@ static Status read_row(const SwcReader *reader, size_t line, char *const *field,
     const double any = -HUGE_VAL;
     TreeBuilder *builder = reader->builder;
     BuilderNode node = {.record = line};
-    TRY(read_id(reader, field[0], &node.id, err));
+    TRY(read_id(reader, "id", field[0], reader->lowest_id, &node.id, err));
     TRY(field_integer("type", field[1], INT32_MIN, INT32_MAX, &node.type, err));
     TRY(field_number("x coordinate", field[2], any, &node.position.x, err));
     TRY(field_number("y coordinate", field[3], any, &node.position.y, err));
     TRY(field_number("z coordinate", field[4], any, &node.position.z, err));
     TRY(field_radius(builder->options, "radius", field[5], &node.radius_mm, err));
-    TRY(read_parent(reader, field[6], &node.parent, err));
+    TRY(read_id(reader, "parent", field[6], TREE_NO_PARENT, &node.parent, err));
     TRY(builder_node(builder, &node, err));
     for (size_t k = 0; k + N_FIELDS < reader->n_fields; k++) {
         double value;
@@ -81,53 +73,33 @@ static Status read_row(const SwcReader *reader, size_t line, char *const *field,
     return STATUS_OK;
 }
 
-/* Copies the next word at *at, and moves past it; false when there is none or it is too long. */
-static bool next_word(const char **at, char *word, size_t size)
+static bool is_whole(double value, double minimum, double maximum)
 {
-    *at += strspn(*at, TEXT_BLANKS);
-    size_t length = strcspn(*at, TEXT_BLANKS);
-    if (length == 0 || length >= size)
-        return false;
-    memcpy(word, *at, length);
-    word[length] = '\0';
-    *at += length;
-    return true;
-}
-
-/* The two words of a value, the first of which is an id. */
-static bool read_words(const char *value, long long *id, char *second, size_t size)
-{
-    char first[32];
-    return next_word(&value, first, sizeof first) && next_word(&value, second, size) &&
-           !value[strspn(value, TEXT_BLANKS)] && integer_parse(first, 1, TREE_MAX_ID, id);
+    return value >= minimum && value <= maximum && value == (double)(int64_t)value;
 }
 
 static Status read_pair(TreeBuilder *builder, size_t line, const char *value, Err *err)
 {
-    char second[32];
-    long long id = 0, other = 0;
-    if (!read_words(value, &id, second, sizeof second) ||
-        !integer_parse(second, 1, TREE_MAX_ID, &other))
+    double id[2];
+    if (!numbers_parse(value, 2, id) || !is_whole(id[0], 1, TREE_MAX_ID) ||
+        !is_whole(id[1], 1, TREE_MAX_ID))
         return err_set(err, STATUS_INPUT, "%s is '%.40s'; it must be the ids of two nodes",
                        tree_pairs_name, value);
-    return builder_pair(builder, id, other, line, err);
+    return builder_pair(builder, (int64_t)id[0], (int64_t)id[1], line, err);
 }
 
 static Status read_share(TreeBuilder *builder, size_t line, const char *value, Err *err)
 {
-    char share[400];
-    long long number = 0;
-    double part = 0;
-    bool read = read_words(value, &number, share, sizeof share) && number_parse(share, &part) &&
-                isfinite(part) && part > 0;
-    if (!read)
+    double number[2]; /* id and share */
+    if (!numbers_parse(value, 2, number) || !is_whole(number[0], 1, TREE_MAX_ID) ||
+        !isfinite(number[1]) || number[1] <= 0)
         return err_set(err, STATUS_INPUT,
                        "flow_share is '%.40s'; it must be the id of a node and a number above 0",
                        value);
-    return builder_share(builder, number, part, line, err);
+    return builder_share(builder, (int64_t)number[0], number[1], line, err);
 }
 
-/* Whether a line names columns: "id type x y z radius parent", with any words for the others. */
+/* Returns true if a line names the columns: its third to fifth words are x, y and z. */
 static bool names_columns(const char *line)
 {
     static const char *const axes[] = {"x", "y", "z"};
@@ -142,7 +114,7 @@ static bool names_columns(const char *line)
     return true;
 }
 
-/* `comment` is what follows '#'. */
+/* Reads a comment, from after its '#'. */
 static Status read_comment(SwcReader *reader, size_t line, const char *comment, Err *err)
 {
     const char *share = comment_value(comment, share_key);
@@ -156,7 +128,8 @@ static Status read_comment(SwcReader *reader, size_t line, const char *comment, 
     return comment_read(&reader->builder->meta, comment, err);
 }
 
-/* Cuts a line into fields, of which `field` receives the first MAX_FIELDS. Returns their number. */
+/* Cuts a line into fields. `field` receives the first MAX_FIELDS of them. Returns the count of all
+ * fields. */
 static size_t cut_fields(char *line, char **field)
 {
     size_t count = 0;
@@ -166,8 +139,8 @@ static size_t cut_fields(char *line, char **field)
     return count;
 }
 
-/* The columns behind the seventh have the names that a line gives to as many columns as there are,
- * or else "column 8" and so on. */
+/* Adds the columns after the seventh. Their names come from the last line that names as many
+ * columns as the rows have. Without such a line, they are "column 8" and so on. */
 static Status add_columns(const SwcReader *reader, Err *err)
 {
     char *copy = NULL, *title[MAX_FIELDS], number[32];
@@ -240,29 +213,27 @@ static Status read_lines(SwcReader *reader, const char *end, Err *err)
 
 /* ---- plain rows ------------------------------------------------------------------------------ */
 
-enum { BLOCK = 1 << 18 /* bytes */, SHORTEST_ROW = 14 /* with its end */, BLOCKS_PER_THREAD = 8 };
+/* A block has 256 kB. A row has at least 14 bytes: seven digits and seven ends. Reasons for the
+ * size of a block and for 8 blocks per thread not recorded. */
+enum { BLOCK = 1 << 18, SHORTEST_ROW = 14, BLOCKS_PER_THREAD = 8 };
 
 /* Whole lines of the text. */
 typedef struct SwcBlock {
-    char *rest, *end;  /* what is not read of it */
-    BuilderNode *node; /* room for its rows (borrowed) */
-    size_t n;          /* of rows that are read */
+    char *rest, *end;  /* the part that is not parsed yet */
+    BuilderNode *node; /* receives the rows of the block; borrowed from the wave */
+    size_t n;          /* number of rows parsed */
 } SwcBlock;
 
-/* Blocks that are read at once. */
+/* Blocks that are parsed at the same time. */
 typedef struct SwcWave {
     const SwcReader *reader;
     SwcBlock *block;   /* owned */
-    BuilderNode *node; /* of all blocks; owned */
-    size_t n;          /* blocks, at most */
+    BuilderNode *node; /* rows of all blocks; owned */
+    size_t n;          /* maximum number of blocks */
 } SwcWave;
 
-static bool is_whole(double value, double minimum, double maximum)
-{
-    return value >= minimum && value <= maximum && value == (double)(int64_t)value;
-}
-
-/* Takes a line of seven numbers that read_row would accept, and moves past it; else false. */
+/* Parses a plain row at *rest, and moves *rest past it. Returns false, and moves nothing, for any
+ * line that read_row would not accept or that has more than seven numbers. */
 static bool take_row(const SwcReader *reader, char **rest, BuilderNode *node)
 {
     const char *at = *rest;
@@ -277,7 +248,7 @@ static bool take_row(const SwcReader *reader, char **rest, BuilderNode *node)
         at++;
     if ((*at && *at != '\n') || !is_whole(field[1], INT32_MIN, INT32_MAX) || !(field[5] >= 0) ||
         !is_whole(field[0], reader->lowest_id, TREE_MAX_ID - 1 + reader->lowest_id) ||
-        !is_whole(field[6], TREE_NO_PARENT, TREE_MAX_ID))
+        !is_whole(field[6], TREE_NO_PARENT, TREE_MAX_ID - 1 + reader->lowest_id))
         return false;
     *node = (BuilderNode){.id = id_of(reader, (int32_t)field[0]),
                           .parent = id_of(reader, (int32_t)field[6]),
@@ -297,7 +268,8 @@ static void take_rows(size_t index, int worker, void *context)
         block->n++;
 }
 
-/* The block that begins at `from`: of one line where that is longer than a block. */
+/* Returns the block that begins at `from`. A line that is longer than BLOCK is a block of its own.
+ */
 static SwcBlock cut_block(char *from, char *end)
 {
     char *last = end - from > BLOCK ? memrchr(from, '\n', BLOCK) : end - 1;
@@ -305,7 +277,7 @@ static SwcBlock cut_block(char *from, char *end)
     return (SwcBlock){.rest = from, .end = last ? last + 1 : end};
 }
 
-/* Hands the rows of a block on, and reads what is left of it. */
+/* Adds the parsed rows of a block to the builder, and reads the rest of the block by lines. */
 static Status finish_block(SwcReader *reader, const SwcBlock *block, Err *err)
 {
     for (size_t i = 0; i < block->n; i++, reader->line++) {
@@ -359,10 +331,10 @@ Status swc_read(TreeBuilder *builder, char *bytes, size_t size, Err *err)
         TRY(read_plain_rows(&reader, end, err));
     if (reader.lowest_id == 1)
         return STATUS_OK;
-    if (builder->n_shares > 0 || builder->n_pairs > 0)
+    if (builder->shares.n > 0 || builder->pairs.n > 0)
         return err_set(err, STATUS_INPUT,
                        "%s: the ids start at 0, but a %s refers to nodes by ids from 1 on",
-                       builder->name, builder->n_shares > 0 ? share_key : tree_pairs_name);
+                       builder->name, builder->shares.n > 0 ? share_key : tree_pairs_name);
     return reading_note(builder->reading, err, "ids start at 0 in the file; 1 was added to each");
 }
 
@@ -394,7 +366,7 @@ static char *put_number(char *to, double value)
     return to;
 }
 
-/* By hand: fprintf would take as long as all four numbers. */
+/* Appends a row. printf would take as long as the conversion of all four numbers. */
 static char *put_row(const Tree *tree, size_t i, char *to)
 {
     to = put_whole(to, tree->id[i]);
@@ -408,14 +380,15 @@ static char *put_row(const Tree *tree, size_t i, char *to)
     return to;
 }
 
-enum { ROWS = 1024 /* of a page */, LONGEST_ROW = 8 * NUMBER_TEXT_SIZE };
+/* A page has 1024 rows; reason not recorded. */
+enum { ROWS = 1024, LONGEST_ROW = 8 * NUMBER_TEXT_SIZE };
 
-/* SwcPages of rows that are made at once. */
+/* Pages of rows that are written at the same time. */
 typedef struct SwcPages {
     const Tree *tree;
     size_t first;   /* row of the first page */
-    size_t *length; /* of each page's text; owned */
-    char *text;     /* of all, with room for LONGEST_ROW a row; owned */
+    size_t *length; /* per page: length of its text; owned */
+    char *text;     /* the texts of all pages, ROWS * LONGEST_ROW characters apart; owned */
 } SwcPages;
 
 static void fill_page(size_t index, int worker, void *context)
@@ -458,7 +431,7 @@ Status swc_write(const Tree *tree, Text *text, Err *err)
 {
     TreePair *pair;
     size_t pairs;
-    /* Remarks of other formats that a reader of SWC would take for shares or pairs. */
+    /* Remarks that begin with these words would be read as shares or pairs. */
     static const char *const meaningful[] = {share_key, tree_pairs_name, NULL};
     comments_put(&tree->meta, meaningful, text);
     TRY(tree_pairs(tree, &pair, &pairs, err));

@@ -1,14 +1,18 @@
-/* Tables of other programs: of nodes with a parent each, of nodes with a second table of lines, and
- * of vessels with both ends. Columns are found by the names that options state, or by names that
- * programs give them. Columns without a meaning become columns of the tree.
+/* Reads tables of other programs. There are three kinds: nodes with a parent each; nodes with a
+ * second table of lines between them; and vessels with the coordinates of both ends.
  *
- * corcast's own CSV of segments is recognised by the titles that it begins with, none of which is a
- * column of the tree: ids are those of the distal nodes, and lengths follow from the ends.
+ * The role of a column follows from the option `columns`, or from its title, which is compared with
+ * the titles that programs use. A column without a role becomes a column of values in the tree. The
+ * roles that a table has decide its kind.
  *
- * If the first line has numbers only, it is a row: the table has no titles, and options name its
- * columns by their numbers. The separator is the one that is most frequent in the first line:
- * semicolon, tab or comma, or else blanks. A row may name nodes that come later, so parents are
- * looked up at the end. */
+ * The separator is the most frequent one of semicolon, tab and comma in the first line, or else the
+ * blank. If the first line has numbers only, the table has no titles, and options name its columns
+ * by their numbers. A row may name nodes that come later, so names are looked up after the last
+ * row.
+ *
+ * corcast's own CSV of segments is a table of vessels that begins with known titles. Their columns
+ * are no values of the tree: ids are those of the distal nodes, and lengths follow from the ends.
+ */
 #include "treeio/comments.h"
 #include "treeio/cursor.h"
 #include "treeio/formats.h"
@@ -20,7 +24,7 @@
 #include <string.h>
 #include <strings.h>
 
-/* What a column is. */
+/* The meaning of a column. */
 typedef enum Role {
     ROLE_ID,
     ROLE_PARENT,
@@ -41,23 +45,25 @@ typedef enum Role {
     ROLE_SHARE,
     ROLE_LINK,
     ROLES,
-    ROLE_VALUE = ROLES, /* a column of the tree */
+    ROLE_VALUE = ROLES, /* values of the tree */
 } Role;
 
-/* Kinds of tables, as bits. */
+/* Kinds of tables, as bits: LINES is the second table, of lines between nodes. */
 typedef enum TableKind { NODES = 1, VESSELS = 2, LINES = 4 } TableKind;
 
 enum { MAX_ALIASES = 8 };
 
 static const struct {
-    const char *alias[MAX_ALIASES]; /* the first is what options call it; in small letters */
-    unsigned kinds;                 /* of tables that may have such a column */
+    const char *alias[MAX_ALIASES]; /* titles in lower case; options use the first */
+    unsigned kinds;                 /* kinds of tables that may have such a column */
     bool is_length;
 } roles[ROLES] = {
     [ROLE_ID] = {{"id", "node_id", "nodeid", "point_id", "vertex_id", "node", "segment_id"},
                  NODES,
                  false},
-    [ROLE_PARENT] = {{"parent", "parent_id"}, NODES | VESSELS, false}, /* of vessels: not read */
+    [ROLE_PARENT] = {{"parent", "parent_id"},
+                     NODES | VESSELS,
+                     false}, /* ignored in tables of vessels */
     [ROLE_X] = {{"x", "pos_x", "x_pos", "x_coord", "coord_x", "position_x"}, NODES, true},
     [ROLE_Y] = {{"y", "pos_y", "y_pos", "y_coord", "coord_y", "position_y"}, NODES, true},
     [ROLE_Z] = {{"z", "pos_z", "z_pos", "z_coord", "coord_z", "position_z"}, NODES, true},
@@ -83,11 +89,12 @@ static const struct {
     [ROLE_LINK] = {{"same_as"}, NODES | VESSELS, false},
 };
 
-/* What an option says: the column called so, or number so, is that. */
+/* One entry ROLE=COLUMN of the option `columns`. */
 typedef struct ColumnOption {
-    const char *role, *column;
-    size_t number; /* from 1 on; 0: it is no number */
-    bool used;
+    const char *role;   /* the name of a role, or of a column of values */
+    const char *column; /* the title or the number of the column; NULL: the entry is a role alone */
+    size_t number;      /* the number of the column, from 1; 0: `column` is not a number */
+    bool used;          /* a column was found for the entry */
 } ColumnOption;
 
 typedef struct ColumnOptions {
@@ -98,33 +105,33 @@ typedef struct ColumnOptions {
 typedef struct TableColumn {
     Role role;
     const char *title; /* borrowed from the text */
-    size_t value;      /* ROLE_VALUE: the graph's column */
-    size_t texts;      /* its fields that are no numbers */
-    LengthUnit unit;   /* of a length; LENGTH_UNITS: the title says none */
+    size_t value;      /* of ROLE_VALUE: index of the graph's column */
+    size_t texts;      /* count of fields that are not numbers */
+    LengthUnit unit;   /* unit of a length in the title; LENGTH_UNITS: the title states none */
 } TableColumn;
 
-/* A node, and the name of its parent. For a link, of the node that is the same point. */
-typedef struct TableChild {
-    size_t point, line;
-    char *parent;
-} TableChild;
+/* A reference from a point to a node that may come later: to the parent or, for a link, to the node
+ * that is the same point. */
+typedef struct TableReference {
+    size_t point, line; /* index of the point; line of the file */
+    char *node;         /* name of the node; borrowed from the text */
+} TableReference;
 
 typedef struct Table {
-    const char *name; /* of the file */
+    const char *name; /* name of the file, for errors */
     Graph *graph;
-    ColumnOptions *sayings;
+    ColumnOptions *options; /* both tables share the options and the names of nodes */
     Names *nodes;
-    bool beside; /* it is the table of lines that options name */
+    bool is_of_lines; /* this is the second table, which the option `edges` names */
     TableKind kind;
     char separator;
     ARRAY(TableColumn) columns;
-    size_t first_value; /* the columns before are no values: the table is the program's own */
-    size_t at[ROLES];   /* the column + 1 of each role; 0: none */
-    char **field;       /* room for one row */
-    double radius_factor;
-    ARRAY(TableChild) children;
-    ARRAY(TableChild) links;
-    size_t rows;
+    size_t first_value;   /* count of the first columns that are no values, in a CSV of segments */
+    size_t at[ROLES];     /* per role: 1 + index of its column; 0: none */
+    char **field;         /* the fields of one row; owned */
+    double radius_factor; /* converts the radii or diameters to radii in the unit of coordinates */
+    ARRAY(TableReference) children;
+    ARRAY(TableReference) links;
 } Table;
 
 static void release_table(Table *table)
@@ -135,55 +142,56 @@ static void release_table(Table *table)
     ARRAY_RELEASE(&table->links);
 }
 
-/* ---- what options say ---- */
+/* ---- the option `columns` ---- */
 
-/* "x=NAME,y=3" or "x,y,,radius", the columns in order. */
-static Status parse_sayings(ColumnOptions *sayings, const char *said, Err *err)
+/* Parses "x=NAME,y=3", or "x,y,,radius", which lists the roles of the columns in order. */
+static Status parse_options(ColumnOptions *options, const char *chars, Err *err)
 {
     size_t place = 0;
-    if (!said)
+    if (!chars)
         return STATUS_OK;
-    TRY(mem_strdup(&sayings->text, said, err));
-    for (char *rest = sayings->text, *entry; rest;) {
+    TRY(mem_strdup(&options->text, chars, err));
+    for (char *rest = options->text, *entry; rest;) {
         entry = rest;
         rest = strchr(entry, ',');
         if (rest)
             *rest++ = '\0';
         place++;
         char *equals = strchr(entry, '=');
-        ColumnOption saying = {.role = entry, .number = place};
+        ColumnOption option = {.role = entry, .number = place};
         long long number;
         if (equals) {
             *equals = '\0';
-            saying.column = equals + 1;
+            option.column = equals + 1;
             bool is_number = integer_parse(equals + 1, 1, BUILDER_MAX_COLUMNS, &number);
-            saying.number = is_number ? (size_t)number : 0;
+            option.number = is_number ? (size_t)number : 0;
         }
-        if (!*entry)
-            continue;
-        TRY(ARRAY_PUSH(&sayings->option, "columns", err, saying));
+        if (*entry)
+            TRY(ARRAY_PUSH(&options->option, "columns", err, option));
     }
     return STATUS_OK;
 }
 
-static Status check_sayings(const ColumnOptions *sayings, const char *name, Err *err)
+static Status check_options(const ColumnOptions *options, const char *name, Err *err)
 {
-    for (size_t i = 0; i < sayings->option.n; i++) {
-        const ColumnOption *saying = &sayings->option.items[i];
-        if (!saying->used && saying->column)
+    for (size_t i = 0; i < options->option.n; i++) {
+        const ColumnOption *option = &options->option.items[i];
+        if (!option->used && option->column)
             return err_set(err, STATUS_INPUT,
                            "%s: no column is called '%.40s', which `columns` names", name,
-                           saying->column);
-        if (!saying->used)
+                           option->column);
+        if (!option->used)
             return err_set(err, STATUS_INPUT,
                            "%s: the table has no column %zu, which `columns` names for '%.40s'",
-                           name, saying->number, saying->role);
+                           name, option->number, option->role);
     }
     return STATUS_OK;
 }
 
 /* ---- titles ---- */
 
+/* Returns the role with this title, ROLES if there is none. Without `aliases`, only the titles that
+ * options use count. */
 static Role role_called(const char *name, bool aliases)
 {
     for (int role = 0; role < ROLES; role++)
@@ -193,7 +201,8 @@ static Role role_called(const char *name, bool aliases)
     return ROLES;
 }
 
-/* Takes the unit off a title, "x_um", "x [um]" or "x (um)"; LENGTH_UNITS where there is none. */
+/* Cuts the unit off a title such as "x_um", "x [um]" or "x (um)", and returns it. Returns
+ * LENGTH_UNITS if there is none. */
 static LengthUnit cut_length_unit(char *title)
 {
     size_t length = strlen(title);
@@ -214,7 +223,7 @@ static LengthUnit cut_length_unit(char *title)
     return LENGTH_UNITS;
 }
 
-/* What a title says by itself, and in which unit. */
+/* Returns the role that a title states, or ROLES. *unit receives the stated unit of a length. */
 static Role role_of_title(const char *title, LengthUnit *unit)
 {
     char plain[64];
@@ -232,20 +241,22 @@ static Role role_of_title(const char *title, LengthUnit *unit)
     return role != ROLES && roles[role].is_length && *unit != LENGTH_UNITS ? role : ROLES;
 }
 
-static ColumnOption *saying_of(const Table *table, const char *title)
+/* Returns the option about the next column, or NULL. In the second table, numbers of columns count
+ * only if it has no titles, because they refer to the first table. */
+static ColumnOption *option_of(const Table *table, const char *title)
 {
-    for (size_t i = 0; i < table->sayings->option.n; i++) {
-        ColumnOption *saying = &table->sayings->option.items[i];
-        bool by_name = title && saying->column && strcmp(saying->column, title) == 0;
-        bool by_number = !(title && table->beside) && saying->number == table->columns.n + 1;
+    for (size_t i = 0; i < table->options->option.n; i++) {
+        ColumnOption *option = &table->options->option.items[i];
+        bool by_name = title && option->column && strcmp(option->column, title) == 0;
+        bool by_number = !(title && table->is_of_lines) && option->number == table->columns.n + 1;
         if (by_name || by_number)
-            return saying;
+            return option;
     }
     return NULL;
 }
 
-/* The kind of table is known by the roles that are there. */
-static Status judge_kind(Table *table, Err *err)
+/* Finds the kind of the table by the roles that have a column. */
+static Status find_kind(Table *table, Err *err)
 {
     static const struct {
         TableKind kind;
@@ -258,12 +269,12 @@ static Status judge_kind(Table *table, Err *err)
         size_t found = 0;
         while (found < kinds[k].n && table->at[kinds[k].needed[found]])
             found++;
-        if (found == kinds[k].n && (kinds[k].kind == LINES) == table->beside) {
+        if (found == kinds[k].n && (kinds[k].kind == LINES) == table->is_of_lines) {
             table->kind = kinds[k].kind;
             return STATUS_OK;
         }
     }
-    if (table->beside)
+    if (table->is_of_lines)
         return err_set(
             err, STATUS_INPUT,
             "no columns of the edge table are called from and to; name them with `columns`");
@@ -276,23 +287,24 @@ static Status judge_kind(Table *table, Err *err)
                    "vessels); name them with `columns`");
 }
 
+/* Adds the next column. `title` is NULL in a table without titles. */
 static Status add_column(Table *table, char *title, Err *err)
 {
     TableColumn column = {.role = ROLE_VALUE, .title = title, .unit = LENGTH_UNITS};
-    ColumnOption *saying = saying_of(table, title);
+    ColumnOption *option = option_of(table, title);
     Role role = ROLES;
-    if (saying) {
-        saying->used = true;
+    if (option) {
+        option->used = true;
         LengthUnit unit;
-        role = role_called(saying->role, false);
+        role = role_called(option->role, false);
         if (role == ROLES)
-            column.title = saying->role;
+            column.title = option->role;
         else if (title && role_of_title(title, &unit) != ROLES)
             column.unit = unit;
     } else if (title) {
         role = role_of_title(title, &column.unit);
     }
-    if (role != ROLES && table->at[role] && saying)
+    if (role != ROLES && table->at[role] && option)
         return err_set(err, STATUS_INPUT, "two columns are used as %s; only one may be",
                        roles[role].alias[0]);
     if (role != ROLES && !table->at[role]) {
@@ -302,6 +314,7 @@ static Status add_column(Table *table, char *title, Err *err)
     return ARRAY_PUSH(&table->columns, "columns", err, column);
 }
 
+/* Adds column `k` to the graph as a column of values. */
 static Status add_value(Table *table, size_t k, Err *err)
 {
     TableColumn *column = &table->columns.items[k];
@@ -315,25 +328,25 @@ static Status add_value(Table *table, size_t k, Err *err)
     return status;
 }
 
-/* Returns the number of titles of a CSV of segments with which the table begins. 0 if it begins
- * with other titles, or if options say something about columns. */
+/* Returns the count of the titles of a CSV of segments that the table begins with. Returns 0 if it
+ * begins with other titles, or if an option names columns. */
 static size_t own_titles(const Table *table)
 {
     size_t k = 0;
     while (k < table->columns.n && k < CSV_SEGMENT_TITLES && table->columns.items[k].title &&
            strcmp(table->columns.items[k].title, csv_segment_titles[k]) == 0)
         k++;
-    return k + 1 >= CSV_SEGMENT_TITLES && table->sayings->option.n == 0 ? k : 0;
+    return k + 1 >= CSV_SEGMENT_TITLES && table->options->option.n == 0 ? k : 0;
 }
 
-/* Whether a column is not what its title says: tables of this kind have no such column, or it is a
- * diameter beside a radius. */
-static bool is_needless(const Table *table, Role role)
+/* Returns true if the table does not use a role: tables of its kind have no such column, or the
+ * role is the diameter and there is a radius. */
+static bool is_unused(const Table *table, Role role)
 {
     return !(roles[role].kinds & table->kind) || (role == ROLE_DIAMETER && table->at[ROLE_RADIUS]);
 }
 
-/* Those that are needless are values, and so are numbers of the table's elements. */
+/* Adds the columns of values: columns without a role, with an unused one, and the ids of lines. */
 static Status add_values(Table *table, Err *err)
 {
     table->first_value = own_titles(table);
@@ -341,7 +354,7 @@ static Status add_values(Table *table, Err *err)
         TableColumn *column = &table->columns.items[k];
         if (column->role == ROLE_ID && table->kind != NODES)
             column->title = table->kind == LINES ? "edge" : "vessel";
-        if (column->role != ROLE_VALUE && is_needless(table, column->role)) {
+        if (column->role != ROLE_VALUE && is_unused(table, column->role)) {
             table->at[column->role] = 0;
             column->role = ROLE_VALUE;
         }
@@ -351,8 +364,8 @@ static Status add_values(Table *table, Err *err)
     return STATUS_OK;
 }
 
-/* The unit that the titles of the coordinates say, and by what radii are multiplied to be of it. */
-static Status judge_units(Table *table, Err *err)
+/* Finds the unit that the titles of coordinates state, and the factor of radii. */
+static Status find_units(Table *table, Err *err)
 {
     LengthUnit unit = LENGTH_UNITS, of_radius = LENGTH_UNITS;
     for (size_t k = 0; k < table->columns.n; k++) {
@@ -369,7 +382,7 @@ static Status judge_units(Table *table, Err *err)
         *of = column->unit;
     }
     Graph *graph = table->graph;
-    if (!table->beside) {
+    if (!table->is_of_lines) {
         graph->unit_is_stated = unit != LENGTH_UNITS;
         graph->unit = graph->unit_is_stated       ? unit
                       : of_radius != LENGTH_UNITS ? of_radius
@@ -403,8 +416,8 @@ static char separator_of(const char *line)
     return best;
 }
 
-/* How many fields a line has, and whether all are numbers or empty. */
-static Status look_at_line(const Table *table, const char *line, size_t *fields, bool *numbers,
+/* Counts the fields of a line. *numbers receives true if all fields are numbers or empty. */
+static Status count_fields(const Table *table, const char *line, size_t *fields, bool *numbers,
                            Err *err)
 {
     char *copy = NULL, *field;
@@ -421,14 +434,14 @@ static Status look_at_line(const Table *table, const char *line, size_t *fields,
     return status;
 }
 
-/* The first line: titles, or a row of a table without them. */
+/* Reads the first line: titles or, in a table without titles, a row. */
 static Status begin_table(Table *table, char *line, bool *is_row, Err *err)
 {
     size_t fields;
     char *title;
     table->separator = separator_of(line);
-    TRY(look_at_line(table, line, &fields, is_row, err));
-    if (*is_row && table->sayings->option.n == 0)
+    TRY(count_fields(table, line, &fields, is_row, err));
+    if (*is_row && table->options->option.n == 0)
         return err_set(err, STATUS_INPUT,
                        "the table has no titles; name its columns with `columns`, as in "
                        "x0=1,y0=2,z0=3,x1=4,y1=5,z1=6,radius=7");
@@ -439,19 +452,20 @@ static Status begin_table(Table *table, char *line, bool *is_row, Err *err)
         TRY(add_column(table, title, err));
     }
     TRY(mem_calloc(&table->field, fields, sizeof *table->field, "fields", err));
-    TRY(judge_kind(table, err));
+    TRY(find_kind(table, err));
     TRY(add_values(table, err));
-    return judge_units(table, err);
+    return find_units(table, err);
 }
 
 /* ---- rows ---- */
 
-/* NULL where the table has no such column. */
+/* Returns the row's field with a role; NULL if the table has no such column. */
 static char *field_of(const Table *table, Role role)
 {
     return table->at[role] ? table->field[table->at[role] - 1] : NULL;
 }
 
+/* Reads the coordinates of the roles `first`, `first` + 1 and `first` + 2. */
 static Status read_position(const Table *table, Role first, Vec3 *position, Err *err)
 {
     double *const coordinate[] = {&position->x, &position->y, &position->z};
@@ -464,7 +478,7 @@ static Status read_position(const Table *table, Role first, Vec3 *position, Err 
     return STATUS_OK;
 }
 
-/* NAN where the table has none. */
+/* Sets *radius in the unit of the coordinates; NAN if the table has no radii. */
 static Status read_radius(const Table *table, double *radius, Err *err)
 {
     Role role = table->at[ROLE_RADIUS] ? ROLE_RADIUS : ROLE_DIAMETER;
@@ -477,7 +491,8 @@ static Status read_radius(const Table *table, double *radius, Err *err)
     return STATUS_OK;
 }
 
-/* Numbers, and words that stand for them; other texts are no values. */
+/* Returns true if a field is a finite number, "true" or "false". Otherwise *is_text tells whether
+ * the field has text that does not stand for a missing value. */
 static bool value_of(const char *text, double *value, bool *is_text)
 {
     static const struct {
@@ -511,19 +526,19 @@ static Status put_values(Table *table, size_t element, Err *err)
     return STATUS_OK;
 }
 
-/* 0 where the field is none that a node may have. */
+/* Returns the field as an id of a node, or 0 if the field is none. NULL is allowed. */
 static int64_t id_of(const char *field)
 {
     long long id;
     return field && integer_parse(field, 1, TREE_MAX_ID, &id) ? id : 0;
 }
 
-/* Notes the link of point `at`, if the row has one. */
-static Status note_link(Table *table, size_t at, size_t line, Err *err)
+/* Stores the link of point `at` if the row has one. */
+static Status add_link(Table *table, size_t at, size_t line, Err *err)
 {
     char *link = field_of(table, ROLE_LINK);
     bool is_link = link && *link && strcmp(link, "-1") != 0;
-    return is_link ? ARRAY_PUSH(&table->links, "links", err, (TableChild){at, line, link})
+    return is_link ? ARRAY_PUSH(&table->links, "links", err, (TableReference){at, line, link})
                    : STATUS_OK;
 }
 
@@ -544,12 +559,12 @@ static Status read_node(Table *table, size_t line, Err *err)
         TRY(field_integer("type", type, INT32_MIN, INT32_MAX, &point.type, err));
     if (share && *share)
         TRY(field_number("flow_share", share, 0, &point.flow_share, err));
-    TRY(note_link(table, at, line, err));
+    TRY(add_link(table, at, line, err));
     TRY(graph_point(graph, &point, err));
     TRY(put_values(table, at, err));
     if (!parent || !*parent || strcmp(parent, "-1") == 0)
         return STATUS_OK;
-    return ARRAY_PUSH(&table->children, "parents", err, (TableChild){at, line, parent});
+    return ARRAY_PUSH(&table->children, "parents", err, (TableReference){at, line, parent});
 }
 
 static Status read_vessel(Table *table, size_t line, Err *err)
@@ -563,9 +578,9 @@ static Status read_vessel(Table *table, size_t line, Err *err)
         char *id = field_of(table, ROLE_ID), *parent = field_of(table, ROLE_PARENT);
         ends[0].id = id_of(parent);
         ends[1].id = id_of(id);
-        TRY(note_link(table, vessel.b, line, err));
+        TRY(add_link(table, vessel.b, line, err));
         TRY(names_add(table->nodes, id, vessel.b, line, err));
-        TRY(ARRAY_PUSH(&table->children, "parents", err, (TableChild){vessel.a, line, parent}));
+        TRY(ARRAY_PUSH(&table->children, "parents", err, (TableReference){vessel.a, line, parent}));
     }
     TRY(read_position(table, ROLE_X0, &ends[0].position, err));
     TRY(read_position(table, ROLE_X1, &ends[1].position, err));
@@ -576,7 +591,7 @@ static Status read_vessel(Table *table, size_t line, Err *err)
     return graph_line(graph, &vessel, err);
 }
 
-/* The node that a line names, or, of nodes without ids, numbers from 0 on. */
+/* Finds the node that a line names. Nodes without ids are numbered from 0. */
 static Status find_node(const Table *table, Role role, size_t *node, Err *err)
 {
     char *name = field_of(table, role);
@@ -637,60 +652,61 @@ static Status read_table(Table *table, char *bytes, size_t size, Err *err)
     return note_texts(table, err);
 }
 
-/* ---- what the rows mean ---- */
+/* ---- after the last row ---- */
 
-/* The proximal end of a vessel is the distal end of its parent. A parent that is no vessel is a
- * root, whose first mention stands for it. */
+/* Joins the proximal end of each vessel to the distal end of its parent. A parent without a row is
+ * a root; the first proximal end that names it becomes the root. */
 static Status join_vessels(const Table *table, Err *err)
 {
     table->graph->is_named = table->children.n > 0;
     for (size_t i = 0; i < table->children.n; i++) {
-        const TableChild *child = &table->children.items[i];
+        const TableReference *child = &table->children.items[i];
         size_t end;
-        if (names_find(table->nodes, child->parent, &end, NULL) != STATUS_OK)
-            TRY(names_add(table->nodes, child->parent, child->point, child->line, err));
+        if (names_find(table->nodes, child->node, &end, NULL) != STATUS_OK)
+            TRY(names_add(table->nodes, child->node, child->point, child->line, err));
         else
             TRY(graph_join(table->graph, end, child->point, err));
     }
     return STATUS_OK;
 }
 
-/* Joins the points of links to the points that they are. */
+/* Joins each point with a link to the node that the link names. */
 static Status join_links(const Table *table, Err *err)
 {
     for (size_t i = 0; i < table->links.n; i++) {
-        const TableChild *link = &table->links.items[i];
+        const TableReference *link = &table->links.items[i];
         size_t at;
         TRY(graph_blame(table->graph, GRAPH_LINES, link->line,
-                        names_find(table->nodes, link->parent, &at, err), err));
+                        names_find(table->nodes, link->node, &at, err), err));
         TRY(graph_join(table->graph, at, link->point, err));
     }
     return STATUS_OK;
 }
 
+/* Adds a line from each parent to its child. */
 static Status add_parents(const Table *table, Err *err)
 {
     Graph *graph = table->graph;
     for (size_t i = 0; i < table->children.n; i++) {
-        const TableChild *child = &table->children.items[i];
+        const TableReference *child = &table->children.items[i];
         GraphLine line = {
             .b = child->point, .radius = (double)NAN, .is_directed = true, .record = child->line};
         TRY(graph_blame(graph, GRAPH_LINES, child->line,
-                        names_find(table->nodes, child->parent, &line.a, err), err));
+                        names_find(table->nodes, child->node, &line.a, err), err));
         TRY(graph_line(graph, &line, err));
     }
     return STATUS_OK;
 }
 
-/* Reads the table of lines that options name. */
-static Status read_beside(const Table *nodes, const char *path, Err *err)
+/* Reads the second table, of lines, from the file `path`. */
+static Status read_lines(const Table *nodes, const char *path, Err *err)
 {
     static const FileForm form = {.name = "a CSV file", .most_bytes = 4e9, .is_text = true};
     Table edges = {.name = path,
                    .graph = nodes->graph,
-                   .sayings = nodes->sayings,
+                   .options = nodes->options,
                    .nodes = nodes->nodes,
-                   .beside = true};
+                   .is_of_lines = true};
     char *bytes = NULL;
     size_t size;
     nodes->graph->line_record = "line of the edges";
@@ -708,13 +724,13 @@ static Status read_tables(Table *table, char *bytes, size_t size, Err *err)
     Graph *graph = table->graph;
     const ReadOptions *options = graph->options;
     const char *edges = options ? options->edges : NULL;
-    TRY(parse_sayings(table->sayings, options ? options->columns : NULL, err));
+    TRY(parse_options(table->options, options ? options->columns : NULL, err));
     TRY(read_table(table, bytes, size, err));
     if (table->kind == NODES && edges)
-        TRY(read_beside(table, edges, err));
+        TRY(read_lines(table, edges, err));
     if (table->kind == NODES && edges && !table->at[ROLE_ID])
         TRY(reading_note(graph->reading, err, "nodes have no ids; they were numbered from 0"));
-    TRY(check_sayings(table->sayings, table->name, err));
+    TRY(check_options(table->options, table->name, err));
     if (table->kind != NODES && edges)
         return err_set(err, STATUS_INPUT, "%s: `edges` was given, but this is not a table of nodes",
                        table->name);
@@ -733,20 +749,13 @@ static Status read_tables(Table *table, char *bytes, size_t size, Err *err)
 
 Status table_read(Graph *graph, char *bytes, size_t size, Err *err)
 {
-    ColumnOptions sayings = {0};
+    ColumnOptions options = {0};
     Names nodes = {.what = "node"};
-    Table table = {.name = graph->name, .graph = graph, .sayings = &sayings, .nodes = &nodes};
+    Table table = {.name = graph->name, .graph = graph, .options = &options, .nodes = &nodes};
     Status status = read_tables(&table, bytes, size, err);
     release_table(&table);
     names_release(&nodes);
-    free(sayings.text);
-    ARRAY_RELEASE(&sayings.option);
+    free(options.text);
+    ARRAY_RELEASE(&options.option);
     return status;
-}
-
-void table_keywords(Text *text)
-{
-    keywords_put(csv_segment_titles, CSV_SEGMENT_TITLES, sizeof *csv_segment_titles, text);
-    for (size_t k = 0; k < MAX_ALIASES; k++)
-        KEYWORDS_PUT(roles, .alias[k], text);
 }

@@ -65,11 +65,6 @@ static const Dialect dialect = {.section = sections,
                                 .n_fields = sizeof fields / sizeof *fields,
                                 .choose = choose_section};
 
-void vita_keywords(Text *text)
-{
-    dialect_put_keywords(&dialect, text);
-}
-
 Status vita_read(Graph *graph, char *bytes, size_t size, Err *err)
 {
     int32_t expected = -1;

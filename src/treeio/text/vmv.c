@@ -1,12 +1,12 @@
-/* VMV, the files of VessMorphoVis: sections between "$NAME_BEGIN" and "$NAME_END". $PARAM states
- * counts. $VERT_LIST has one vertex per line: its number, position, radius, and sometimes one more
- * value. $STRANDS_LIST has one polyline of vertices per line, after the polyline's number.
- * $RADIUS_SIMULATION and similar sections have one row per vertex, with one value per time step.
- * VessMorphoVis states time steps also of sections that it does not write. Ultraliser puts a '$'
- * before the names of parameters, too.
+/* Reads and writes VMV, the files of VessMorphoVis. A section stands between "$NAME_BEGIN" and
+ * "$NAME_END". $PARAM states counts. $VERT_LIST has one vertex per line: its number, position,
+ * radius, and possibly one more value. $STRANDS_LIST has one polyline per line: its number, then
+ * its vertices. $RADIUS_SIMULATION and similar sections have one row per vertex, with one value per
+ * time step. $PARAM may state time steps of sections that are missing. Ultraliser also puts a '$'
+ * before the names of parameters.
  *
- * VessMorphoVis writes strands away from the root. If at most one line enters every vertex, strands
- * are assumed to be written so. In other files their direction means nothing. */
+ * VessMorphoVis writes strands away from the root. The lines are taken as directed if at most one
+ * of them enters each vertex. Otherwise the order of a strand has no meaning. */
 #include "treeio/comments.h"
 #include "treeio/formats.h"
 #include "treeio/text/dialect.h"
@@ -16,10 +16,11 @@
 #include <string.h>
 #include <strings.h>
 
-/* Sections. Those from RADIUS on are time series. */
+/* The sections. The sections from RADIUS on are time series. */
 enum { PARAMETERS, VERTICES, STRANDS, RADIUS, FLOW, PRESSURE, SECTIONS };
 
-/* The names of time series: of columns, before the number of a time step; of their steps. */
+/* Per time series: the name of its columns, before the number of the time step, and the name of its
+ * steps in errors. */
 static const struct {
     const char *column, *steps;
 } series_names[SECTIONS] = {
@@ -30,7 +31,7 @@ static const struct {
 
 /* The values of all vertices at all time steps. */
 typedef struct TimeSteps {
-    size_t column; /* index of the first step's column; those of the others follow */
+    size_t column; /* index of the first step's column; the columns of later steps follow */
     size_t steps, rows;
     int32_t stated; /* number of steps that the parameters state; -1: none */
 } TimeSteps;
@@ -150,7 +151,7 @@ static Status change_section(DialectReader *reader, const char *title, Err *err)
                    title);
 }
 
-/* Lines after the strands may stand in no section. */
+/* Finds the section of a line. Text outside all sections is accepted after the first strand. */
 static Status choose_section(DialectReader *reader, DialectRow *row, bool *is_row, Err *err)
 {
     const VmvState *state = reader->own;
@@ -171,11 +172,6 @@ static const Dialect dialect = {.section = sections,
                                 .n_fields = sizeof fields / sizeof *fields,
                                 .comment = read_comment,
                                 .choose = choose_section};
-
-void vmv_keywords(Text *text)
-{
-    dialect_put_keywords(&dialect, text);
-}
 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
@@ -204,8 +200,8 @@ static Status check_counts(const Graph *graph, const VmvState *state, Err *err)
     return STATUS_OK;
 }
 
-/* Takes the direction off all lines where two of them enter one vertex. */
-static Status judge_directions(Graph *graph, Err *err)
+/* Makes all lines undirected if two of them enter one vertex. */
+static Status check_directions(Graph *graph, Err *err)
 {
     bool *entered = NULL, directed = true;
     TRY(mem_calloc(&entered, graph->n_points, sizeof *entered, "vertices", err));
@@ -231,7 +227,7 @@ Status vmv_read(Graph *graph, char *bytes, size_t size, Err *err)
         state.series[section].stated = -1;
     TRY_GOTO(dialect_read(&reader, bytes, size, err));
     TRY_GOTO(check_counts(graph, &state, err));
-    TRY_GOTO(judge_directions(graph, err));
+    TRY_GOTO(check_directions(graph, err));
 done:
     dialect_release(&reader);
     return status;
@@ -245,9 +241,9 @@ static void put_um(double mm, Text *text)
     text_number(text, length_from_mm(mm, LENGTH_UM));
 }
 
-/* A node with a link has no vertex of its own, so its number is that of a vertex in the middle of
- * its segment. Vertices alone have radii: the middle has that of the segment, and keeps the segment
- * from repeating a parallel one. */
+/* Appends the vertex of node i. A node with a link is the same point as another node, so its vertex
+ * is put in the middle of its segment: the vertex carries the segment's radius, and makes the
+ * segment differ from another segment between the same two nodes. */
 static void put_vertex(const Tree *tree, size_t i, Text *text)
 {
     Vec3 at = tree->position[i];

@@ -1,7 +1,8 @@
-/* Reads legacy VTK: keywords as text, and after each keyword the numbers that it announces, as text
- * or as big-endian bytes. What is announced is compared with the bytes that are left before memory
- * is allocated. Cells come as counts and points in turns (before version 5), or as two arrays,
- * OFFSETS and CONNECTIVITY. */
+/* Reads legacy VTK. A keyword announces numbers, which follow as text or as big-endian bytes. The
+ * announced count is compared with the number of bytes that are left before memory is allocated.
+ *
+ * Cells have two forms. Before version 5 of the format, each cell is a count followed by that many
+ * point indices. From version 5 on, cells are two arrays, OFFSETS and CONNECTIVITY. */
 #include "treeio/cursor.h"
 #include "treeio/formats.h"
 #include "treeio/vtk/vtkdata.h"
@@ -90,7 +91,8 @@ static void decode(char *name)
     *to = '\0';
 }
 
-/* Reads the length of a binary string. Its first two bits say how many bytes the length takes. */
+/* Reads the length of a binary string. The first two bits of the length state its number of bytes.
+ */
 static Status read_length(Cursor *cursor, size_t *length, Err *err)
 {
     static const size_t sizes[] = {8, 4, 2, 1};
@@ -160,7 +162,7 @@ done:
     return status;
 }
 
-/* Passes over the description of an array, which ends at an empty line. */
+/* Skips the description of an array, which ends at an empty line. */
 static void skip_metadata(Cursor *cursor)
 {
     cursor_skip_line(cursor);
@@ -206,7 +208,7 @@ static Status read_scalars(LegacyReader *reader, Err *err)
     return read_array(reader, name, type, (size_t)components, reader->n, err);
 }
 
-/* Passes over "LOOKUP_TABLE name n" and its colors, which mean nothing here. */
+/* Skips "LOOKUP_TABLE name n" and its colors. */
 static Status skip_table(LegacyReader *reader, Err *err)
 {
     char word[CURSOR_WORD];
@@ -241,18 +243,6 @@ static Status read_cell_types(LegacyReader *reader, Err *err)
     return read_numbers(reader, VTK_INT32, "CELL_TYPES", reader->n_types, types, err);
 }
 
-static Status begin_point_data(LegacyReader *reader, Err *err)
-{
-    reader->arrays = &reader->data.arrays[GRAPH_POINTS];
-    return read_count(reader, "values", &reader->n, err);
-}
-
-static Status begin_cell_data(LegacyReader *reader, Err *err)
-{
-    reader->arrays = &reader->data.arrays[GRAPH_LINES];
-    return read_count(reader, "values", &reader->n, err);
-}
-
 static Status skip_description(LegacyReader *reader, Err *err)
 {
     (void)err;
@@ -264,14 +254,8 @@ static const struct {
     const char *keyword;
     Status (*read)(LegacyReader *reader, Err *err);
 } blocks[] = {
-    {"POINTS", read_points},
-    {"CELL_TYPES", read_cell_types},
-    {"POINT_DATA", begin_point_data},
-    {"CELL_DATA", begin_cell_data},
-    {"FIELD", read_field},
-    {"SCALARS", read_scalars},
-    {"LOOKUP_TABLE", skip_table},
-    {"METADATA", skip_description},
+    {"POINTS", read_points},   {"CELL_TYPES", read_cell_types}, {"FIELD", read_field},
+    {"SCALARS", read_scalars}, {"LOOKUP_TABLE", skip_table},    {"METADATA", skip_description},
 };
 
 /* Attributes "KEYWORD name [components] [type]". */
@@ -318,7 +302,8 @@ static Status read_offset_cells(LegacyReader *reader, size_t n_offsets, VtkCells
     return STATUS_OK;
 }
 
-/* Reads `n` cells that are counts and points in turns, `size` numbers together. */
+/* Reads `n` cells, each a count and as many point indices; `size` is the count of all numbers.
+ * Moves the point indices to the front of the array. */
 static Status read_counted_cells(LegacyReader *reader, size_t n, size_t size, VtkCells *cells,
                                  Err *err)
 {
@@ -360,6 +345,12 @@ static Status read_cells(LegacyReader *reader, VtkCells *cells, Err *err)
 
 static Status read_block(LegacyReader *reader, const char *keyword, Err *err)
 {
+    static const char *const data[] = {[GRAPH_POINTS] = "POINT_DATA", [GRAPH_LINES] = "CELL_DATA"};
+    size_t of = keyword_find(keyword, data, 2);
+    if (of < 2) {
+        reader->arrays = &reader->data.arrays[of];
+        return read_count(reader, "values", &reader->n, err);
+    }
     for (size_t k = 0; k < VTK_CELL_KINDS; k++)
         if (strcasecmp(keyword, vtk_cell_kinds[k].legacy) == 0)
             return read_cells(reader, &reader->cells[k], err);
@@ -424,14 +415,6 @@ static Status add_all_cells(LegacyReader *reader, Err *err)
     for (size_t k = 0; k < VTK_CELL_KINDS; k++)
         TRY(vtk_add_cells(&reader->data, &reader->cells[k], &vtk_cell_kinds[k], 0, err));
     return STATUS_OK;
-}
-
-void vtk_keywords(Text *text)
-{
-    KEYWORDS_PUT(blocks, .keyword, text);
-    KEYWORDS_PUT(attributes, .keyword, text);
-    KEYWORDS_PUT(vtk_cell_kinds, .legacy, text);
-    vtk_put_type_names(NAMING_LEGACY, text);
 }
 
 bool vtk_detect(const char *start)

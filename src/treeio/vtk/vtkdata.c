@@ -1,6 +1,6 @@
-/* All numbers are kept as doubles, which hold every index that a file of this size can have. Values
- * are put together from bytes by shifts, in any byte order. The two most common types are copied
- * instead. */
+/* All numbers are stored as doubles, which represent every index of a file exactly. Values are
+ * assembled from bytes by shifts, in any byte order. The two most common types in the byte order of
+ * the machine are copied, which takes a fraction of the time. */
 #include "treeio/vtk/vtkdata.h"
 
 #include "treeio/cursor.h"
@@ -39,7 +39,7 @@ static const struct {
     {VTK_INT16, {"short", "Int16", "short"}},
     {VTK_UINT16, {"unsigned_short", "UInt16", "ushort"}},
     {VTK_INT32, {"int", "Int32", "int"}},
-    {VTK_INT32, {"vtkidtype"}}, /* in legacy files, whatever size the writing program's ids had */
+    {VTK_INT32, {"vtkidtype"}}, /* 4 bytes in legacy files, for any size of the writer's ids */
     {VTK_UINT32, {"unsigned_int", "UInt32"}},
     {VTK_INT64, {"long", "Int64", "long"}},
     {VTK_INT64, {"vtktypeint64"}},
@@ -81,11 +81,6 @@ const char *vtk_type_name(VtkNaming naming, VtkType type)
     return type_names[i].name[naming];
 }
 
-void vtk_put_type_names(VtkNaming naming, Text *text)
-{
-    KEYWORDS_PUT(type_names, .name[naming], text);
-}
-
 size_t vtk_type_size(VtkType type)
 {
     return types[type].size;
@@ -106,8 +101,8 @@ static double number_of_bits(const VtkTypeRow *type, uint64_t bits)
     return (double)((int64_t)(bits << unused) >> unused);
 }
 
-/* Converts the common types in the byte order of the machine, in a fraction of the time. Returns
- * false for others. */
+/* Converts doubles and 32-bit integers in the byte order of the machine. Returns false for other
+ * values. */
 static bool take_plain(VtkType type, bool is_big_endian, const char *bytes, size_t n, double *out)
 {
     if (is_big_endian != (__BYTE_ORDER__ == __ORDER_BIG_ENDIAN__))
@@ -133,7 +128,8 @@ typedef struct VtkValues {
     double *out;
 } VtkValues;
 
-enum { BLOCK = 1 << 19 /* numbers: two huge pages */ };
+/* Numbers that a thread converts at once: two huge pages of doubles. */
+enum { BLOCK = 1 << 19 };
 
 static void take_block(size_t index, int worker, void *context)
 {
@@ -153,8 +149,8 @@ static void take_block(size_t index, int worker, void *context)
     }
 }
 
-/* Uses all processors: the system clears the memory of `out` while it is written, which takes
- * longer than the conversion. */
+/* Several threads are worth their start because the system clears the pages of `out` when they are
+ * first written, which takes longer than the conversion. */
 void vtk_numbers(VtkType type, bool is_big_endian, const char *bytes, size_t n, double *out)
 {
     VtkValues all = {type, is_big_endian, bytes, n, out};
@@ -212,7 +208,9 @@ VtkArray *vtk_find_array(const VtkArrays *arrays, const char *name)
     return NULL;
 }
 
-double *vtk_detach_values(VtkArrays *arrays, const char *name)
+/* Removes the array of this name and releases it. Returns its values (owned), or NULL if there is
+ * no such array. `name` may be NULL. */
+static double *vtk_detach_values(VtkArrays *arrays, const char *name)
 {
     VtkArray *array = name ? vtk_find_array(arrays, name) : NULL;
     if (!array)
@@ -224,7 +222,7 @@ double *vtk_detach_values(VtkArrays *arrays, const char *name)
     return value;
 }
 
-/* Fills an array up to `n` values, of which the last is `value` and the new ones before are NAN. */
+/* Extends an array to at least `n` values with NAN, and sets value n - 1. */
 static Status fill(VtkArrays *arrays, VtkArray *array, size_t n, double value, size_t file_size,
                    Err *err)
 {
@@ -239,6 +237,7 @@ static Status fill(VtkArrays *arrays, VtkArray *array, size_t n, double value, s
     return STATUS_OK;
 }
 
+/* Moves arrays->next to the array of this name, which is added if there is none. */
 static Status find_or_add(VtkArrays *arrays, const char *name, Err *err)
 {
     VtkArray made = {.components = 1};
@@ -302,7 +301,7 @@ Status vtk_add_line(VtkData *data, size_t cell, const double *corner, size_t n, 
     return STATUS_OK;
 }
 
-/* Copies the coordinates of all points; `axis` has NULL where there is none. */
+/* Copies the coordinates of all points. axis[k] is NULL if coordinate k has no array. */
 static Status set_positions(VtkData *data, double *const axis[3], const char *name, Err *err)
 {
     TRY(mem_calloc(&data->point, 3 * data->n_points, sizeof *data->point, "points", err));
@@ -329,7 +328,8 @@ Status vtk_detach_positions(VtkData *data, const char *const axes[3], const char
 
 /* ---- cells ----------------------------------------------------------------------------------- */
 
-/* VTK's types of cells that are read, or passed over without a note. */
+/* VTK's types of cells that are read as lines, or ignored without a note because they are points.
+ */
 enum { VERTEX = 1, POLY_VERTEX = 2, LINE = 3, POLY_LINE = 4, QUADRATIC_EDGE = 21 };
 
 const VtkCellKind vtk_cell_kinds[VTK_CELL_KINDS] = {
@@ -348,7 +348,7 @@ void vtk_release_cells(VtkCells *cells)
     *cells = (VtkCells){0};
 }
 
-/* The middle of a curved line is its last point in VTK. */
+/* Adds a cell of VTK's type `type`. VTK lists the middle of a quadratic edge last. */
 static Status add_cell(VtkData *data, double type, const double *corner, size_t n,
                        size_t first_point, Err *err)
 {

@@ -1,5 +1,9 @@
-/* The contents of a VTK file of lines, legacy or XML: points, polylines, and arrays of numbers.
- * Readers of other formats with named arrays fill it, too. vtk_to_graph makes a network of it. */
+/* The content of a file of lines with named arrays: points, polylines, and arrays of numbers.
+ *
+ * The readers of legacy VTK, VTK's XML, Amira and the named networks fill a VtkData in any order
+ * with vtk_add_line, vtk_add_cells, vtk_add_array and vtk_set_number. vtk_to_graph then finds the
+ * meaning of the arrays and makes a Graph [tree/graph.h] of it. The caller ends with vtk_release,
+ * also after an error. */
 #ifndef CORCAST_TREEIO_VTK_VTKDATA_H
 #define CORCAST_TREEIO_VTK_VTKDATA_H
 
@@ -12,7 +16,7 @@
 /* ---- types of arrays ---- */
 
 typedef enum VtkType {
-    VTK_TEXT, /* lines of text; all others are numbers */
+    VTK_TEXT, /* lines of text; all other types are numbers */
     VTK_INT8,
     VTK_UINT8,
     VTK_INT16,
@@ -35,23 +39,22 @@ typedef enum VtkNaming {
     NAMINGS
 } VtkNaming;
 
-/* Finds a type by its name in a format. Case does not matter.
- *
- * name     need not end at `length`.
- * Returns  VTK_TYPES if the format has no such type. */
+/* Returns the type whose name in a format is the first `length` characters of `name`, in upper or
+ * lower case; VTK_TYPES if the format has no such type. */
 VtkType vtk_type_called(VtkNaming naming, const char *name, size_t length);
-/* As vtk_type_called, for a whole name. Errors: STATUS_INPUT, without the file's name, for an
- * unknown type, and for text if `numbers_only`, which then names the array. */
+/* Finds the type with this name in a format.
+ *
+ * numbers_only  the name of an array that must hold numbers, for errors; NULL: text is accepted.
+ * Errors        STATUS_INPUT, without the file's name, for an unknown type, and for text if
+ *               `numbers_only` is not NULL. */
 MUST_CHECK Status vtk_find_type(VtkNaming naming, const char *name, const char *numbers_only,
                                 VtkType *type, Err *err);
 /* Returns the first name of a type in a format. */
 const char *vtk_type_name(VtkNaming naming, VtkType type);
-/* Appends all names of types in a format, one per line. */
-void vtk_put_type_names(VtkNaming naming, Text *text);
-/* Returns the number of bytes of one value. Text has bytes of 1. */
+/* Returns the number of bytes of one value; 1 for VTK_TEXT, whose values are characters. */
 size_t vtk_type_size(VtkType type);
 
-/* Converts n values to numbers. `bytes` needs no alignment. */
+/* Converts n values of a type to numbers, on all processors. `bytes` needs no alignment. */
 void vtk_numbers(VtkType type, bool is_big_endian, const char *bytes, size_t n, double *out);
 /* Converts n numbers to values of a type. */
 void vtk_bytes(VtkType type, bool is_big_endian, const double *numbers, size_t n, char *bytes);
@@ -68,35 +71,32 @@ typedef struct VtkArray {
     size_t text_size;
 } VtkArray;
 
-/* Arrays of the same elements. Zeroed, there are none. */
+/* The arrays of all points, of all cells, or of the file. Zeroed, there are none. */
 typedef struct VtkArrays {
     VtkArray *array; /* owned */
     size_t n, capacity;
-    size_t next;    /* array that vtk_set_number tries first */
-    double numbers; /* number of numbers that vtk_set_number and vtk_fill_up made */
+    size_t next;    /* index of the array that vtk_set_number tries first */
+    double numbers; /* count of the numbers that vtk_set_number and vtk_fill_up have added */
 } VtkArrays;
 
+/* Frees what the array owns, and zeroes it. */
 void vtk_release_array(VtkArray *array);
 
-/* Adds an array to *arrays, which owns it then, also after an error. */
+/* Moves an array to *arrays. After an error the array is released. Errors: STATUS_MEMORY. */
 MUST_CHECK Status vtk_add_array(VtkArrays *arrays, VtkArray *array, Err *err);
 /* Returns the first array of this name, or NULL. */
 VtkArray *vtk_find_array(const VtkArrays *arrays, const char *name);
-/* Removes the array of this name and releases it. Returns its values (owned), or NULL if there is
- * no such array. `name` may be NULL. */
-double *vtk_detach_values(VtkArrays *arrays, const char *name);
 
-/* Sets the value of one element in the array of this name, which is made if there is none. Earlier
+/* Sets the value of one element in the array of this name. Adds the array if there is none. Earlier
  * elements without a value get NAN.
  *
  * file_size  size of the file in bytes, which limits how many numbers the arrays may hold.
- * Errors     STATUS_INPUT, without file and line, for more than BUILDER_MAX_COLUMNS names, and as
- *            check_unpacked; STATUS_MEMORY.
+ * Errors     STATUS_INPUT, without file and line, if there would be more than BUILDER_MAX_COLUMNS
+ *            arrays; those of check_unpacked; STATUS_MEMORY.
  * Cost       O(arrays); O(1) if all elements have their numbers in the same order. */
 MUST_CHECK Status vtk_set_number(VtkArrays *arrays, const char *name, size_t element, double value,
                                  size_t file_size, Err *err);
-/* Gives NAN to the last elements of all arrays, so that each array has `n`. Errors: as
- * vtk_set_number. */
+/* Fills all arrays with NAN up to `n` elements. Errors: those of check_unpacked; STATUS_MEMORY. */
 MUST_CHECK Status vtk_fill_up(VtkArrays *arrays, size_t n, size_t file_size, Err *err);
 
 /* ---- data ---- */

@@ -1,5 +1,5 @@
-/* Hands points and lines over to a graph. Every array without another meaning becomes a column. An
- * array of several components becomes several columns. */
+/* Adds the points and lines of a VtkData to a graph. Each array without another meaning becomes a
+ * column; an array of several components becomes several columns. */
 #include "treeio/formats.h"
 #include "treeio/vtk/vtkmeaning.h"
 
@@ -74,6 +74,8 @@ done:
     return status;
 }
 
+/* Adds the columns of points or of lines. Reason for 16 as the maximum number of components not
+ * recorded. */
 static Status add_columns(const VtkMeaning *meaning, const VtkData *data, Graph *graph,
                           GraphElement of, Err *err)
 {
@@ -94,6 +96,7 @@ static Status add_columns(const VtkMeaning *meaning, const VtkData *data, Graph 
 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
+/* Checks that all lines refer to existing points. */
 static Status check_corners(const VtkData *data, const Graph *graph, Err *err)
 {
     for (size_t i = 0, line = 0; i < data->n_corners; i++) {

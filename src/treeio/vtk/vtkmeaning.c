@@ -1,7 +1,8 @@
-/* Finds the meaning of an array by its plain name: without capitals, blanks, signs and a unit in
- * brackets. The tables of radii and diameters have the names that programs for vessels use, best
- * first. If cells and points both have a name, the array of cells is used, because a segment is a
- * cell. A file that corcast wrote is read by the exact names alone. */
+/* Finds the meaning of an array by its plain name: the name in lower case, without blanks, other
+ * signs and a unit in brackets. A table lists the names that programs for vessels give to radii and
+ * diameters, best first. If an array of cells and an array of points have the same name, the array
+ * of cells is used, because a segment is a cell. In a file that corcast wrote, arrays are found by
+ * their exact names. */
 #include "treeio/vtk/vtkmeaning.h"
 
 #include <ctype.h>
@@ -46,7 +47,7 @@ static const VtkArray *find_scalars(const VtkArrays *arrays, const char *name, b
 
 /* ---- radii ----------------------------------------------------------------------------------- */
 
-/* Plain names of radii, and then of diameters, best first. */
+/* Plain names of radii and then of diameters, best first. */
 static const char *const radius_names[] = {
     "radius",
     "maximuminscribedsphereradius",
@@ -71,7 +72,8 @@ static const char *const radius_names[] = {
 };
 enum { N_RADIUS_NAMES = sizeof radius_names / sizeof *radius_names };
 
-/* Uses the array of cells or else of points that has this name. */
+/* Uses the array of cells with this name or, if there is none, the array of points. Returns false
+ * if there is neither. */
 static bool take_radius(VtkMeaning *meaning, const VtkData *data, const char *name, bool exact)
 {
     char plain[PLAIN_SIZE];
@@ -83,6 +85,7 @@ static bool take_radius(VtkMeaning *meaning, const VtkData *data, const char *na
     return meaning->radius != NULL;
 }
 
+/* Appends the first names of arrays of scalars, and counts all of them in *n. */
 static void put_names(const VtkArrays *arrays, const char *of, Text *text, size_t *n)
 {
     enum { SHOWN = 12 };
@@ -94,7 +97,7 @@ static void put_names(const VtkArrays *arrays, const char *of, Text *text, size_
         }
 }
 
-/* The sentence is `what`, then the list of arrays that there are. */
+/* Refuses a file without radii. The sentence is `what`, then a list of the arrays. */
 static Status refuse_radius(const VtkData *data, const Graph *graph, const char *what, Err *err)
 {
     Text names = TEXT_INIT;
@@ -133,7 +136,8 @@ static Status find_radius(VtkMeaning *meaning, const VtkData *data, const Graph 
 
 /* ---- inlets, and trees of corcast ------------------------------------------------------------ */
 
-/* Inlets have the largest value of an array of one of these names, if it has other values, too. */
+/* Finds an array that marks inlets. Inlets are the points with the largest value of the array; the
+ * array must also have another value. */
 static void find_inlets(VtkMeaning *meaning, const VtkData *data)
 {
     static const char *const names[] = {"root", "inlet", "isinlet", "nodeisinput"};
@@ -177,7 +181,8 @@ static bool are_columns(const VtkArrays *arrays)
     return true;
 }
 
-/* A file that corcast wrote has ids, radii, metadata as text, and one number per array. */
+/* Recognizes a file that corcast wrote: it has ids, radii, metadata as text, and arrays of one
+ * component. */
 static void find_tree(VtkMeaning *meaning, const VtkData *data)
 {
     const VtkArrays *points = &data->arrays[GRAPH_POINTS];

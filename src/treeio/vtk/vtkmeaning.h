@@ -1,4 +1,11 @@
-/* What the arrays of a file mean. */
+/* Finds what the named arrays of a file mean: radii, inlets and, in files that corcast wrote, the
+ * ids and links of a tree.
+ *
+ *     TRY(vtk_find_meaning(&meaning, data, graph, err));
+ *     if (meaning.id)
+ *         return vtk_to_tree(&meaning, data, graph, err);   // corcast wrote the file
+ *     TRY(vtk_note_meaning(&meaning, data, graph, err));    // then each array without a meaning
+ *                                                           // [vtk_is_used] becomes a column */
 #ifndef CORCAST_TREEIO_VTK_VTKMEANING_H
 #define CORCAST_TREEIO_VTK_VTKMEANING_H
 
@@ -15,8 +22,7 @@ typedef struct VtkMeaning {
     const VtkArray *id;           /* of points; NULL: another program wrote the file */
     const VtkArray *type, *share; /* of points; NULL: the file has none */
     const VtkArray *cell_radius;  /* of cells, for lines with a link_id; NULL: the file has none */
-    const VtkArray
-        *link[2]; /* per GraphElement: ids of nodes with links; NULL: the file has none */
+    const VtkArray *link[2];      /* per GraphElement: ids of nodes with links; NULL: none */
 } VtkMeaning;
 
 /* Finds the meaning of the arrays. Errors: STATUS_INPUT, with the file's name, if there is no array

@@ -1,10 +1,10 @@
-/* Reads a tree that corcast wrote.
+/* Restores a tree that corcast wrote as a network.
  *
- * Points with the same id are one node: branches have points of their own where they meet. Lines
- * lead away from the root, so that each line gives its distal node a parent. The distal point of a
- * line that closes a loop has the id of a node that has a parent already; the node with a link is
- * the `link_id` of the point or of the line. Nodes are handed over
- * by rising id, which was their order in the tree that was written. */
+ * Points with the same id are one node, because each branch has its own points. Lines lead away
+ * from the root, so each line gives its distal node a parent. The distal point of a line that
+ * closes a loop has the id of a node that already has a parent; the id of the node with the link is
+ * then the `link_id` of the point or of the line. Nodes are added by rising id, which was their
+ * order in the tree that was written. */
 #include "treeio/comments.h"
 #include "treeio/formats.h"
 #include "treeio/vtk/vtkmeaning.h"
@@ -14,20 +14,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What is read. */
+/* A node. All members are 0 if there is none of them. */
+typedef struct VtkNode {
+    uint32_t point, cell; /* 1 + the point and the cell that have the node's values */
+    int32_t parent, link; /* id of the parent; id of the node that the link names */
+} VtkNode;
+
+/* The state of reading. */
 typedef struct VtkTree {
     const VtkMeaning *meaning;
     const VtkData *data;
     const Graph *graph;
     TreeBuilder *builder;
-    /* The nodes, by rising id. Per node: the point and the cell that have its values, + 1, the id
-     * of its parent, and the id that its link names; 0 for none. Owned. */
-    int32_t *id;
-    uint32_t *point, *cell;
-    int32_t *parent, *link;
+    int32_t *id;   /* the ids of all nodes, rising; owned */
+    VtkNode *node; /* per id; owned */
     size_t n;
-    /* The arrays that are columns, those of points first, as the builder has them. Owned. */
-    const VtkArray **column;
+    const VtkArray **column; /* the arrays that are columns, in the order of the builder: arrays of
+                              * points, then of cells; owned */
     size_t n_columns, n_point_columns;
 } VtkTree;
 
@@ -56,7 +59,7 @@ static int32_t id_at(const VtkTree *tree, size_t point)
     return (int32_t)tree->meaning->id->value[point];
 }
 
-/* Returns the node of an id that is there. Ids without gaps begin at 1. */
+/* Returns the index of the node with this id, which must exist. Ids without gaps are 1, 2, ... */
 static size_t node_of(const VtkTree *tree, int32_t id)
 {
     if ((size_t)tree->id[tree->n - 1] == tree->n)
@@ -65,7 +68,7 @@ static size_t node_of(const VtkTree *tree, int32_t id)
     return (size_t)(found - tree->id);
 }
 
-/* Returns number `at` of the array of links of points or lines, 0 if it is none. */
+/* Returns the link_id of a point or of a cell, or 0 if it has none. */
 static int32_t link_id(const VtkTree *tree, GraphElement of, size_t at)
 {
     const VtkArray *array = tree->meaning->link[of];
@@ -73,7 +76,7 @@ static int32_t link_id(const VtkTree *tree, GraphElement of, size_t at)
     return id >= 1 && id <= TREE_MAX_ID && id == floor(id) ? (int32_t)id : 0;
 }
 
-/* Lists the ids, each once. */
+/* Lists the ids, each once, by rising id. */
 static Status list_ids(VtkTree *tree, Err *err)
 {
     size_t points = tree->meaning->id->n, cells = tree->data->n_cells, n = 0;
@@ -88,36 +91,34 @@ static Status list_ids(VtkTree *tree, Err *err)
     for (size_t i = 0; i < n; i++)
         if (i == 0 || tree->id[i] != tree->id[i - 1])
             tree->id[tree->n++] = tree->id[i];
-    TRY(mem_calloc(&tree->point, tree->n, sizeof *tree->point, "nodes", err));
-    TRY(mem_calloc(&tree->cell, tree->n, sizeof *tree->cell, "nodes", err));
-    TRY(mem_calloc(&tree->link, tree->n, sizeof *tree->link, "nodes", err));
-    return mem_calloc(&tree->parent, tree->n, sizeof *tree->parent, "nodes", err);
+    return mem_calloc(&tree->node, tree->n, sizeof *tree->node, "nodes", err);
 }
 
-/* Finds the parents. The values of a node are at the end of the line to it, those of a root at its
- * first point. */
+/* Finds the parents and links. The values of a node are those of the distal point of its line; the
+ * values of a root are those of its first point. */
 static Status find_parents(VtkTree *tree, Err *err)
 {
     const VtkData *data = tree->data;
     for (size_t i = data->n_points; i-- > 0;)
-        tree->point[node_of(tree, id_at(tree, i))] = (uint32_t)i + 1;
+        tree->node[node_of(tree, id_at(tree, i))].point = (uint32_t)i + 1;
     for (size_t i = 0, at = 0; i < data->n_lines; at = data->end[i++])
         for (size_t k = at + 1; k < data->end[i]; k++) {
             size_t from = (size_t)data->corner[k - 1], to = (size_t)data->corner[k];
             int32_t of_point = link_id(tree, GRAPH_POINTS, to);
             int32_t link = of_point ? of_point : link_id(tree, GRAPH_LINES, data->cell[i]);
-            size_t node = node_of(tree, link ? link : id_at(tree, to));
-            if (tree->parent[node])
+            size_t index = node_of(tree, link ? link : id_at(tree, to));
+            VtkNode *node = &tree->node[index];
+            if (node->parent)
                 return graph_blame(
                     tree->graph, GRAPH_LINES, data->cell[i],
                     err_set(err, STATUS_INPUT,
                             "it ends at node %d, as another line does; each node has one parent",
-                            tree->id[node]),
+                            tree->id[index]),
                     err);
-            tree->parent[node] = id_at(tree, from);
-            tree->link[node] = link ? id_at(tree, to) : 0;
-            tree->point[node] = (uint32_t)to + 1;
-            tree->cell[node] = (uint32_t)data->cell[i] + 1;
+            *node = (VtkNode){.point = (uint32_t)to + 1,
+                              .cell = (uint32_t)data->cell[i] + 1,
+                              .parent = id_at(tree, from),
+                              .link = link ? id_at(tree, to) : 0};
         }
     return STATUS_OK;
 }
@@ -127,27 +128,29 @@ static Status find_parents(VtkTree *tree, Err *err)
 static double radius_of(const VtkTree *tree, size_t node)
 {
     const VtkArray *of_cells = tree->meaning->cell_radius;
-    return tree->link[node] && of_cells ? of_cells->value[tree->cell[node] - 1]
-                                        : tree->meaning->radius->value[tree->point[node] - 1];
+    return tree->node[node].link && of_cells
+               ? of_cells->value[tree->node[node].cell - 1]
+               : tree->meaning->radius->value[tree->node[node].point - 1];
 }
 
 static Status add_node(const VtkTree *tree, size_t node, Err *err)
 {
     const VtkMeaning *meaning = tree->meaning;
-    size_t i = tree->point[node] - 1;
+    size_t i = tree->node[node].point - 1;
     double type = meaning->type ? meaning->type->value[i] : TREE_VESSEL_TYPE;
     double share = meaning->share ? meaning->share->value[i] : 0;
     if (!(fabs(type) <= INT32_MAX))
         return err_set(err, STATUS_INPUT, "the type is %g; it must be an integer", type);
     const BuilderNode made = {.id = tree->id[node],
-                              .parent = tree->parent[node] ? tree->parent[node] : TREE_NO_PARENT,
+                              .parent = tree->node[node].parent ? tree->node[node].parent
+                                                                : TREE_NO_PARENT,
                               .type = (int32_t)type,
                               .position = vtk_position(tree->data, i),
                               .radius_mm = radius_of(tree, node),
                               .record = i};
     TRY(builder_node(tree->builder, &made, err));
-    if (tree->link[node])
-        return builder_link(tree->builder, made.id, tree->link[node], i, err);
+    if (tree->node[node].link)
+        return builder_link(tree->builder, made.id, tree->node[node].link, i, err);
     return isnan(share) || share == 0 ? STATUS_OK
                                       : builder_share(tree->builder, made.id, share, i, err);
 }
@@ -190,7 +193,7 @@ static Status list_columns(VtkTree *tree, Err *err)
 static Status add_values(const VtkTree *tree, size_t node, Err *err)
 {
     for (size_t k = 0; k < tree->n_columns; k++) {
-        size_t at = k < tree->n_point_columns ? tree->point[node] : tree->cell[node];
+        size_t at = k < tree->n_point_columns ? tree->node[node].point : tree->node[node].cell;
         double value = at ? tree->column[k]->value[at - 1] : (double)NAN;
         if (!isnan(value))
             TRY(builder_value(tree->builder, k, value, err));
@@ -208,15 +211,12 @@ Status vtk_to_tree(const VtkMeaning *meaning, const VtkData *data, Graph *graph,
     TRY_GOTO(find_parents(&tree, err));
     TRY_GOTO(list_columns(&tree, err));
     for (size_t k = 0; k < tree.n; k++) {
-        TRY_GOTO(builder_blame(tree.builder, tree.point[k] - 1, add_node(&tree, k, err), err));
+        TRY_GOTO(builder_blame(tree.builder, tree.node[k].point - 1, add_node(&tree, k, err), err));
         TRY_GOTO(add_values(&tree, k, err));
     }
 done:
     free(tree.id);
-    free(tree.point);
-    free(tree.cell);
-    free(tree.parent);
-    free(tree.link);
+    free(tree.node);
     free(tree.column);
     return status;
 }

@@ -1,13 +1,16 @@
-/* Writes a tree as VTK, legacy or XML: first a vertex for each root, then a polyline for each
+/* Writes a tree as legacy VTK or as VTK's XML: a vertex for each root, then a polyline for each
  * branch.
  *
- * A polyline has points of its own, all with the values of its segments. Its first point has the
- * values of its first segment, so that a tube around it is as thick as the vessel from end to end.
- * Points shared with the parent would make it a cone. Points of one node have the same `id`, by
- * which vtktree.c finds the tree again. The last point of a branch that closes a loop has the `id`
- * of the node that its link names, and its own id as `link_id`. The tree's metadata are lines of
- * text in the field data. Both kinds of files have the arrays of one table. Numbers pass through
- * one buffer, for trees of any size. */
+ * Each polyline has its own points, with the values of its segments. Its first point has the values
+ * of its first segment, so that a tube around the polyline is as thick as the vessel from end to
+ * end. If the first point were shared with the parent, viewers would draw a cone.
+ *
+ * All points of one node have the same `id`, by which vtktree.c restores the tree. The last point
+ * of a branch that closes a loop has the `id` of the node that the link names, and the id of the
+ * node with the link as `link_id`. The tree's metadata are lines of text in the field data.
+ *
+ * Both formats have the arrays of one table. Numbers pass through a small buffer, so that a tree of
+ * any size needs no copy of its arrays. */
 #include "treeio/comments.h"
 #include "treeio/formats.h"
 #include "treeio/vtk/vtkdata.h"
@@ -50,14 +53,14 @@ static const struct {
     [LINE_ENDS] = {"Lines", "offsets", VTK_INT32, 1},
 };
 
-/* An array of numbers that a file has. */
+/* An array of the file that is written. */
 typedef struct WrittenArray {
     WrittenArrayKind kind;
-    size_t column; /* of the tree, for COLUMN */
+    size_t column; /* of COLUMN: index of the tree's column */
     size_t n;      /* number of numbers */
 } WrittenArray;
 
-/* The points of a polyline have consecutive indices. */
+/* The points and arrays of the file. The points of a polyline have consecutive indices. */
 typedef struct VtkLines {
     const Tree *tree;
     Branches branches;
@@ -81,6 +84,7 @@ static void add_point(VtkLines *lines, int32_t node, int32_t values)
     lines->values[lines->n_points++] = values;
 }
 
+/* Lists the points: roots, then the points of each branch. */
 static Status list_points(VtkLines *lines, Err *err)
 {
     const Tree *tree = lines->tree;
@@ -102,14 +106,6 @@ static Status list_points(VtkLines *lines, Err *err)
     return STATUS_OK;
 }
 
-static bool has_types(const Tree *tree)
-{
-    for (size_t i = 0; i < tree->n; i++)
-        if (tree->type[i] != TREE_VESSEL_TYPE)
-            return true;
-    return false;
-}
-
 /* Lists the arrays in the order of the file. */
 static Status list_arrays(VtkLines *lines, Err *err)
 {
@@ -117,7 +113,7 @@ static Status list_arrays(VtkLines *lines, Err *err)
     size_t points = lines->n_points, roots = lines->n_roots;
     const size_t n[KINDS] = {[RADIUS] = points,
                              [ID] = points,
-                             [TYPE] = has_types(tree) ? points : 0,
+                             [TYPE] = tree_has_types(tree) ? points : 0,
                              [SHARE] = tree->flow_share ? points : 0,
                              [LINK] = tree->link ? points : 0,
                              [POSITION] = 3 * points,
@@ -191,6 +187,7 @@ static const char *name_of(const VtkLines *lines, const WrittenArray *array, Tex
     return text_chars(text);
 }
 
+/* Returns the number of lines of metadata. */
 static size_t count_remarks(const TreeMeta *meta)
 {
     Text line = TEXT_INIT;
@@ -203,7 +200,8 @@ static size_t count_remarks(const TreeMeta *meta)
 
 /* ---- XML ------------------------------------------------------------------------------------- */
 
-/* Appends the metadata as the numbers of their characters, with a 0 after each line. */
+/* Appends the metadata as VTK's XML stores strings: the codes of the characters, and 0 after each
+ * line. */
 static void put_remarks(const TreeMeta *meta, Text *text)
 {
     Text line = TEXT_INIT;
@@ -281,7 +279,8 @@ done:
 
 /* ---- legacy ---------------------------------------------------------------------------------- */
 
-/* Appends a name without blanks. NULL makes the text fail. */
+/* Appends a name in the encoding of legacy VTK: other characters than letters, digits and common
+ * signs become "%41". NULL makes the text fail. */
 static void put_encoded(const char *name, Text *text)
 {
     if (!name)

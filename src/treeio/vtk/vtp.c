@@ -1,7 +1,7 @@
-/* Reads VTK's XML. Arrays are gathered in the order of their elements. Numbers that stand in the
- * document are read at once. Numbers in the element AppendedData are read after the document,
- * because they need not be XML. Then the pieces are put together. The element around an array says
- * what the array is for. */
+/* Reads VTK's XML, of poly data or of unstructured grids. The element around an array defines the
+ * use of the array: points, cells, or values of either. Numbers inside the document are read with
+ * their element. Numbers in the element AppendedData need not be XML, so they are read after the
+ * document. At the end, the points, cells and arrays of all pieces are joined. */
 #include "treeio/cursor.h"
 #include "treeio/formats.h"
 #include "treeio/vtk/vtkdata.h"
@@ -28,12 +28,12 @@ static const char *section_name(size_t section)
 
 /* An array of the file. */
 typedef struct XmlArray {
-    VtkArray array; /* its values are there unless it is appended */
+    VtkArray array; /* has its values already unless is_appended */
     VtkType type;
     bool is_appended;
-    size_t offset; /* in the appended data */
+    size_t offset; /* of the first byte in the appended data */
     size_t section, piece;
-    double max_numbers; /* largest number of numbers that it can have, as its piece says */
+    double max_numbers; /* maximum count of numbers [max_numbers_of] */
 } XmlArray;
 
 typedef struct VtpReader {
@@ -44,8 +44,9 @@ typedef struct VtpReader {
     size_t pieces;
     double points, cells;         /* of the current piece; 0 before the first piece */
     double all_points, all_cells; /* of the pieces so far */
-    double taken;                 /* bytes that the numbers of all arrays take so far */
-    bool in_array, is_base64;     /* of the array, or of the appended data */
+    double taken;                 /* bytes of memory for the numbers of all arrays so far */
+    bool in_array;                /* the text of the current element is numbers */
+    bool is_base64;               /* these numbers, or the appended data, are in base64 */
     size_t appended;              /* position of the appended data; 0: there are none */
 } VtpReader;
 
@@ -115,9 +116,9 @@ static Status begin_piece(VtpReader *reader, const XmlElement *element, Err *err
     return check_elements("cells", reader->all_cells, reader->size, err);
 }
 
-/* Returns the largest number of numbers, or bytes of text, that an array can have. Nothing states
- * the length of lines, of texts and of the file's own data. The limit of a hundred for each point
- * and cell, and a million more, exceeds what any known file takes. */
+/* Returns the maximum count of numbers, or bytes of text, of an array. Arrays of points and cells
+ * have one tuple per element. The file does not state the length of other arrays. Their limit, a
+ * million and a hundred per point and cell, exceeds the length of any known file. */
 static double max_numbers_of(const VtpReader *reader, const XmlArray *of)
 {
     double components = (double)of->array.components;
@@ -197,7 +198,7 @@ static Status parse_numbers(VtkArray *array, char *text, size_t *n, Err *err)
     return STATUS_OK;
 }
 
-/* Makes text of `n` numbers that are its bytes. */
+/* Converts an array of `n` numbers, the codes of characters, to text. */
 static Status to_text(VtkArray *array, size_t n, Err *err)
 {
     TRY(mem_calloc(&array->text, n + 1, 1, "bytes of text", err));
@@ -276,7 +277,7 @@ static Status end(void *context, Xml *xml, const char *name, char *text, Err *er
     return blame_array(of, read_values(reader, of, text, err), err);
 }
 
-/* Decodes the appended arrays. Their data begin behind the first '_' after the element's end. */
+/* Decodes the appended arrays. Their data begin after the first '_' that follows the start tag. */
 static Status decode_appended(VtpReader *reader, Err *err)
 {
     const char *from = NULL, *end_of_file = reader->bytes + reader->size;
@@ -316,7 +317,8 @@ static XmlArray *find_array(const VtpReader *reader, size_t piece, size_t sectio
     return NULL;
 }
 
-/* The points of the first piece are moved, those of others are appended. */
+/* Adds the points of a piece. The array of the first piece is moved, to save a copy; the points of
+ * later pieces are appended. */
 static Status add_points(const VtpReader *reader, size_t piece, VtkData *data, Err *err)
 {
     XmlArray *of = find_array(reader, piece, SECTION_POINTS, NULL);
@@ -365,7 +367,8 @@ static Status add_cells(const VtpReader *reader, size_t piece, VtkData *data, si
     return STATUS_OK;
 }
 
-/* Appends the values of an array of a later piece to those of the first. Text is left out. */
+/* Appends the values of an array of a later piece to the same array of the first piece. Text is
+ * ignored. */
 static Status append_values(VtkArray *to, const VtkArray *more, Err *err)
 {
     size_t n = to->n * to->components, added = more->n * more->components, capacity = n;
@@ -401,7 +404,8 @@ static Status move_arrays(VtpReader *reader, size_t piece, size_t section, VtkDa
     return STATUS_OK;
 }
 
-/* Piece 0 has the arrays before the first piece, which are the file's. */
+/* Joins all pieces. Piece 0 stands for the arrays of the file, which come before the first piece.
+ */
 static Status join_pieces(VtpReader *reader, VtkData *data, Err *err)
 {
     for (size_t piece = 0; piece <= reader->pieces; piece++) {
@@ -412,14 +416,6 @@ static Status join_pieces(VtpReader *reader, VtkData *data, Err *err)
             TRY(move_arrays(reader, piece, section, data, err));
     }
     return STATUS_OK;
-}
-
-void vtp_keywords(Text *text)
-{
-    for (size_t section = 0; section < SECTIONS; section++)
-        text_printf(text, "<%s>\n", section_name(section));
-    KEYWORDS_PUT(packings, , text);
-    vtk_put_type_names(NAMING_XML, text);
 }
 
 bool vtp_detect(const char *start)

@@ -1,11 +1,13 @@
-/* An array is its number of bytes, and these bytes. If it is compressed, it is the number of
- * blocks, the size of a block and of the last one, the compressed size of each block, and the
- * blocks. In base64, the bytes follow the number without padding, but the blocks may begin after
- * padding. A padded group gives fewer bytes and the next group begins anew, so both are read.
+/* An array without compression is its number of bytes, followed by the bytes. A compressed array is
+ * the number of blocks, the unpacked size of a block, the unpacked size of the last block, the
+ * packed size of each block, and the blocks. In base64, padding may stand between these parts or
+ * not. A padded group gives fewer bytes, and the next group starts again, so both forms are read
+ * alike.
  *
- * A file must not make the program allocate much more than its own size. zlib compresses by at most
- * 1032 and LZ4 by at most 255. A file that announces more is refused before memory is allocated,
- * and so is one that announces more than its array can have, or than check_unpacked allows. */
+ * A small file must not make the program allocate much memory. zlib compresses by at most 1032 and
+ * LZ4 by at most 255. A file that announces a higher ratio is refused before memory is allocated.
+ * So is a file that announces more numbers than its array can have, or more than check_unpacked
+ * allows. */
 #include "treeio/vtk/vtpbytes.h"
 
 #include "treeio/formats.h"
@@ -23,8 +25,8 @@ static const double max_ratio[VTP_PACKINGS] = {[VTP_PLAIN] = 1, [VTP_ZLIB] = 103
 typedef struct ByteStream {
     const VtpSource *source;
     const char *at;
-    unsigned char group[3]; /* of base64 */
-    size_t n, used;         /* bytes of the group; bytes of it that were taken */
+    unsigned char group[3]; /* the bytes of the last four letters of base64 */
+    size_t n, used;         /* number of bytes in the group; number of them already read */
 } ByteStream;
 
 /* Returns the six bits of a letter of base64, or -1. */
@@ -44,7 +46,7 @@ static Status refuse_end(Err *err)
     return err_set(err, STATUS_INPUT, "it has fewer bytes than it announces");
 }
 
-/* Reads the next four letters. Blanks between them do not count. */
+/* Reads the next four letters of base64, and ignores blanks between them. */
 static Status next_group(ByteStream *stream, Err *err)
 {
     uint32_t bits = 0;
@@ -101,13 +103,14 @@ static Status take_number(ByteStream *stream, size_t *number, Err *err)
     return STATUS_OK;
 }
 
-/* Returns the number of bytes that the stream can still give. */
+/* Returns an upper bound of the bytes that the stream can still give. */
 static double bytes_left(const ByteStream *stream)
 {
     double left = (double)(stream->source->end - stream->at);
     return (stream->source->is_base64 ? left * 0.75 : left) + 3;
 }
 
+/* Checks that the announced number of bytes is at most `most`. */
 static Status check_claim(const ByteStream *stream, double claimed, double most, Err *err)
 {
     char claim[BYTES_TEXT_SIZE], left[BYTES_TEXT_SIZE];
@@ -117,7 +120,7 @@ static Status check_claim(const ByteStream *stream, double claimed, double most,
                    bytes_text(claimed, claim), bytes_text(bytes_left(stream), left));
 }
 
-/* Raw bytes are not copied. */
+/* Raw bytes are borrowed from the file; bytes in base64 are decoded into new memory. */
 static Status decode_plain(ByteStream *stream, VtpBytes *out, Err *err)
 {
     size_t n = 0;
@@ -133,8 +136,9 @@ static Status decode_plain(ByteStream *stream, VtpBytes *out, Err *err)
 
 /* ---- compressed arrays ----------------------------------------------------------------------- */
 
+/* The header of a compressed array. */
 typedef struct PackedBlocks {
-    size_t n, size; /* number of blocks; bytes of each unpacked block but the last */
+    size_t n, size; /* number of blocks; bytes of each unpacked block except the last */
     size_t last;    /* bytes of the last unpacked block */
     size_t *packed; /* bytes of each packed block; owned */
     size_t largest; /* bytes of the largest packed block */
@@ -165,7 +169,9 @@ static Status read_blocks(ByteStream *stream, PackedBlocks *blocks, Err *err)
     return check_claim(stream, blocks->total, packed * max_ratio[coding->packing] + 64, err);
 }
 
-static Status check_room(const VtpSource *source, double total, Err *err)
+/* Checks that the unpacked bytes, `total`, do not exceed the limits of the array, of the file and
+ * of the machine. */
+static Status check_limits(const VtpSource *source, double total, Err *err)
 {
     char claim[BYTES_TEXT_SIZE], allowed[BYTES_TEXT_SIZE];
     double size = (double)source->number_size, most = source->max_numbers * size;
@@ -221,7 +227,7 @@ static Status decode_blocks(ByteStream *stream, VtpBytes *out, Err *err)
     char *packed = NULL;
     Status status = STATUS_OK;
     TRY_GOTO(read_blocks(stream, &blocks, err));
-    TRY_GOTO(check_room(stream->source, blocks.total, err));
+    TRY_GOTO(check_limits(stream->source, blocks.total, err));
     TRY_GOTO(mem_calloc(&out->decoded, (size_t)blocks.total, 1, "bytes of an array", err));
     TRY_GOTO(mem_calloc(&packed, blocks.largest, 1, "bytes of a block", err));
     status = unpack_blocks(stream, &blocks, packed, out->decoded, err);

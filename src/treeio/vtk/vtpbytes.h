@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+/* How the bytes of arrays are compressed. */
 typedef enum VtpPacking { VTP_PLAIN, VTP_ZLIB, VTP_LZ4, VTP_PACKINGS } VtpPacking;
 
 /* How all arrays of a file are coded. */
@@ -15,16 +16,16 @@ typedef struct VtpCoding {
     size_t header_size; /* bytes of the numbers that state sizes: 4 or 8 */
 } VtpCoding;
 
-/* An array in a file. All is borrowed. */
+/* The bytes of one array in a file, and the limits of its size. All pointers are borrowed. */
 typedef struct VtpSource {
-    const char *name; /* of the file */
+    const char *name; /* name of the file, for errors */
     size_t file_size; /* in bytes */
     VtpCoding coding;
     bool is_base64;
     const char *from, *end; /* from the array's first byte to the end of the file */
-    double max_numbers;     /* largest number of numbers that the array can have */
+    double max_numbers;     /* maximum count of the array's numbers */
     size_t number_size;     /* bytes of each number */
-    double taken;           /* bytes of the numbers of all earlier arrays, as doubles */
+    double taken;           /* bytes of memory for the numbers of all earlier arrays */
 } VtpSource;
 
 /* A decoded array. */

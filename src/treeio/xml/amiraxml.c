@@ -1,8 +1,8 @@
-/* Reads Amira's spatial graph as a workbook of Excel's XML. The worksheet Points has one point per
- * row, with its position and thickness, which is the radius. The worksheet Segments has one
- * polyline per row, through the points of a list of ids. Each segment has end points of its own,
- * which lie at one position where segments meet, so the worksheet Nodes adds nothing. The first row
- * of a worksheet names its columns. Segments have no direction. */
+/* Reads Amira's spatial graph as a workbook of Excel's XML. The first row of a worksheet names its
+ * columns. The worksheet Points has one point per row, with its position and its thickness, which
+ * is the radius. The worksheet Segments has one polyline per row, with the ids of its points.
+ * Segments that meet have end points of their own at one position, so the worksheet Nodes is not
+ * needed. Segments have no direction. */
 #include "treeio/formats.h"
 #include "treeio/xml.h"
 #include "treeio/xml/namednetwork.h"
@@ -62,7 +62,8 @@ static Status begin(void *context, Xml *xml, const XmlElement *element, Err *err
     return namednetwork_begin(&reader->network, reader->of, xml_line(xml), err);
 }
 
-static Status take_value(WorkbookReader *reader, const char *title, char *text, size_t line,
+/* Reads a cell of a row after the titles. */
+static Status read_value(WorkbookReader *reader, const char *title, char *text, size_t line,
                          Err *err)
 {
     double value;
@@ -86,7 +87,7 @@ static Status end_cell(WorkbookReader *reader, char *text, size_t line, Err *err
         return err_set(err, STATUS_INPUT, "a row has more than %d cells, the maximum", MAX_COLUMNS);
     char **title = &reader->title[reader->column];
     if (reader->row > 0)
-        return *title ? take_value(reader, *title, text, line, err) : STATUS_OK;
+        return *title ? read_value(reader, *title, text, line, err) : STATUS_OK;
     *title = slabs_text(&reader->texts, text);
     return *title ? STATUS_OK : mem_out_of("for", "titles", err);
 }

@@ -1,8 +1,8 @@
-/* GraphML of VesselVio, VesselExpress, igraph and networkx. Keys declare numbers of nodes and edges
- * by name, and each program has its own names. Positions are found by the usual names, or by those
- * that the user states. A node without any is one of VesselExpress, whose id is the text of a tuple
- * (z, y, x). Radii are found as in VTK files. Edges are straight: VesselVio leaves out bends. The
- * metadata of a tree that corcast wrote are data of the graph. */
+/* Reads and writes the GraphML of VesselVio, VesselExpress, igraph and networkx. Keys declare the
+ * named numbers of nodes and edges, and each program uses other names. Positions are found by their
+ * usual names, or by the option `graphml_keys`. VesselExpress has no positions; its nodes have the
+ * ids "(z, y, x)". Radii are found as in VTK files. Edges are straight, because VesselVio does not
+ * write bends. The metadata of a tree that corcast wrote are data of the graph. */
 #include "treeio/comments.h"
 #include "treeio/cursor.h"
 #include "treeio/formats.h"
@@ -14,7 +14,7 @@
 #include <string.h>
 #include <strings.h>
 
-/* What a key is for: nodes, edges, the graph, or all. */
+/* The elements of a key, after GRAPH_POINTS and GRAPH_LINES: the graph, or all elements. */
 enum { OF_GRAPH = VTK_OF_FILE, OF_ALL };
 
 typedef struct GraphmlKey {
@@ -30,7 +30,7 @@ typedef struct GraphmlReader {
     Slabs texts;
     Names ids; /* of keys */
     ARRAY(GraphmlKey) keys;
-    size_t data; /* index of the key of the current data */
+    size_t data; /* index of the key of the current element <data> */
 } GraphmlReader;
 
 static Status keep(GraphmlReader *reader, const char *text, char **out, Err *err)
@@ -117,8 +117,8 @@ static Status begin(void *context, Xml *xml, const XmlElement *element, Err *err
 
 /* ---- values ---------------------------------------------------------------------------------- */
 
-/* Names of numbers that are the position of a node, best first. VesselExpress calls nodes
- * "(z, y, x)"; other programs have a text "[x, y, z]". */
+/* Names of the numbers that are the position of a node, best first. The last two rows are names for
+ * numbers that the reader takes from one text "[x, y, z]", and from the ids of VesselExpress. */
 typedef enum AxisNames { OF_TEXT = 5, OF_ID, AXIS_NAMES } AxisNames;
 static const char *const axis_names[AXIS_NAMES][3] = {
     {"X", "Y", "Z"},
@@ -203,7 +203,7 @@ static Status end(void *context, Xml *xml, const char *name, char *text, Err *er
     return STATUS_OK;
 }
 
-/* ---- which numbers are what ------------------------------------------------------------------ */
+/* ---- positions and radii ---- */
 
 /* The option `graphml_keys`, "x=KEY,y=KEY,z=KEY,radius=KEY". */
 typedef struct KeyNames {
@@ -306,12 +306,6 @@ done:
     return status;
 }
 
-void graphml_keywords(Text *text)
-{
-    for (int k = 0; k < 3; k++)
-        KEYWORDS_PUT(axis_names, [k], text);
-}
-
 bool graphml_detect(const char *start)
 {
     return xml_begins(start, "graphml");
@@ -319,7 +313,7 @@ bool graphml_detect(const char *start)
 
 /* ---- writing ---- */
 
-/* Numbers of nodes that are no columns. */
+/* The numbers of nodes that are not columns. */
 static const char *const node_keys[] = {"X", "Y", "Z", "radius", "id", "type"};
 enum { NODE_KEYS = sizeof node_keys / sizeof *node_keys };
 

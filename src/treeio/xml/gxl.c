@@ -1,7 +1,8 @@
-/* GXL of VascuSynth and OpenCCO: nodes with a position of two or three numbers, and edges with a
- * radius from the parent to the child. Names have blanks around them. Node types are not always
- * right (OpenCCO calls the first child of the root so), so roots are found by the edges. The tree's
- * metadata are attributes of <info_graph>, as OpenCCO's pressures are. */
+/* Reads and writes the GXL of VascuSynth and OpenCCO. Nodes have a position of two or three
+ * numbers. Edges lead from the parent to the child and have a radius. The names of attributes have
+ * blanks around them. The node types of files may be wrong (OpenCCO calls the first child of the
+ * root a root), so roots are found by the edges. The tree's metadata are attributes of
+ * <info_graph>, like OpenCCO's pressures. */
 #include "treeio/comments.h"
 #include "treeio/formats.h"
 #include "treeio/xml.h"
@@ -61,7 +62,8 @@ static Status begin(void *context, Xml *xml, const XmlElement *element, Err *err
     return namednetwork_edge(network, from, to, xml_line(xml), err);
 }
 
-/* Keeps a text of the graph: the metadata that corcast wrote, or a remark "NAME: TEXT". */
+/* Stores a text about the whole graph: the metadata that corcast wrote, or a remark "NAME: TEXT".
+ */
 static Status take_remark(GxlReader *reader, const char *text, Err *err)
 {
     const char *name = text_chars(&reader->attribute);
@@ -70,7 +72,7 @@ static Status take_remark(GxlReader *reader, const char *text, Err *err)
     Text comment = TEXT_INIT;
     text_printf(&comment, "%s: ", name);
     text_put_line(&comment, text);
-    Status status = STATUS_OK;
+    Status status;
     TRY_GOTO(text_check(&comment, err));
     status = comment_read(&reader->graph->meta, text_chars(&comment), err);
 done:
@@ -131,7 +133,7 @@ static const char *node_type(const Tree *tree, const int32_t *children, size_t i
 {
     if (!tree_is_segment(tree, i))
         return " root node ";
-    return children[i] == 0 ? " terminal node " : " bifurication "; /* as the others spell it */
+    return children[i] == 0 ? " terminal node " : " bifurication "; /* VascuSynth's spelling */
 }
 
 static void put_attribute(Text *text, const char *name, double value)

@@ -1,4 +1,5 @@
-/* Lines keep the names of their points until all points are there. */
+/* Points and lines fill a VtkData. Lines store the names of their points until the end of the file,
+ * because a point may come after its lines. */
 #include "treeio/xml/namednetwork.h"
 
 #include "treeio/comments.h"

@@ -1,11 +1,20 @@
-/* A network whose points have names and whose lines list the names of their points. Both have any
- * numbers, by name. GXL, GraphML and Amira's workbooks hold such networks. */
+/* A network whose points have names, and whose lines list the names of their points. Points and
+ * lines have any named numbers. GXL, GraphML and Amira's workbooks hold such networks.
+ *
+ *     NamedNetwork network = namednetwork_of("node", size);
+ *     namednetwork_begin(&network, GRAPH_POINTS, line, err);           (for each point)
+ *     namednetwork_name(&network, "n1", line, err);
+ *     namednetwork_set(&network, GRAPH_POINTS, "radius", 1.2, err);    (for each of its numbers)
+ *     namednetwork_edge(&network, "n1", "n2", line, err);              (for each line)
+ *     namednetwork_to_graph(&network, axes, graph, err);               (then namednetwork_release)
+ */
 #ifndef CORCAST_TREEIO_XML_NAMEDNETWORK_H
 #define CORCAST_TREEIO_XML_NAMEDNETWORK_H
 
 #include "treeio/names.h"
 #include "treeio/vtk/vtkdata.h"
 
+/* A line of the network. */
 typedef struct NamedLine {
     size_t end, record; /* end of its names in `ends`; line of the file */
 } NamedLine;
