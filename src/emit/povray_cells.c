@@ -94,7 +94,6 @@ static int scale_number(const Cell *cell)
 /* Declares the functions Fk and Fl of each scale number that a cell has. */
 static Status put_scales(Text *out, void *context, Err *err)
 {
-    static const char *const scale_name = "povray/scale.inc";
     const PovrayGeometry *geometry = context;
     Tmpl template = {0};
     bool used[N_SCALES] = {false};
@@ -102,7 +101,7 @@ static Status put_scales(Text *out, void *context, Err *err)
     for (size_t k = 0; k < geometry->n_objects; k++)
         for (size_t i = 0; i < geometry->cells[k].n_cells; i++)
             used[scale_number(&geometry->cells[k].cells[i])] = true;
-    TRY_GOTO(load_templates(&template, geometry->params, &scale_name, 1, err));
+    TRY_GOTO(tmpl_load(&template, geometry->params->templates, "povray/scale.inc", err));
     for (int number = 0; number < N_SCALES; number++) {
         char digits[12], scale[NUMBER_TEXT_SIZE], low[NUMBER_TEXT_SIZE], high[NUMBER_TEXT_SIZE],
             slope[NUMBER_TEXT_SIZE];

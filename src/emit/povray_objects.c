@@ -146,11 +146,10 @@ static Status put_nothing(Text *out, PovrayGeometry *geometry, Err *err)
 /* Appends the trees as members of the whole. */
 static Status put_trees(Text *out, void *context, Err *err)
 {
-    static const char *const member_name = "povray/member.inc";
     const PovrayGeometry *geometry = context;
     Tmpl member = {0};
     Status status;
-    TRY_GOTO(load_templates(&member, geometry->params, &member_name, 1, err));
+    TRY_GOTO(tmpl_load(&member, geometry->params->templates, "povray/member.inc", err));
     for (size_t k = 1; k < geometry->n_objects; k++) {
         char number[NUMBER_TEXT_SIZE];
         const TmplValue value = {"number", number_text((double)k, number)};

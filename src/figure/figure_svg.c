@@ -310,17 +310,14 @@ static Status put_each_bar(Text *out, void *context, Err *err)
     (void)out;
     const SvgBars *self = context;
     SvgBar bar = {.id = TEXT_INIT, .title = TEXT_INIT};
-    char *path = NULL;
     Status status;
-    TRY_GOTO(file_join(self->svg->templates, "figure/bar.svg", &path, err));
-    TRY_GOTO(tmpl_load(&bar.tmpl, path, err));
+    TRY_GOTO(tmpl_load(&bar.tmpl, self->svg->templates, "figure/bar.svg", err));
     for (size_t i = 0; i < self->bars->n; i++)
         TRY_GOTO(put_bar(self->svg, self->bars, i, &bar, err));
 done:
     tmpl_release(&bar.tmpl);
     text_release(&bar.id);
     text_release(&bar.title);
-    free(path);
     return status;
 }
 

@@ -149,16 +149,14 @@ done:
 static Status read_parts(const PageParams *params, PageTexts *parts, Err *err)
 {
     static const FileForm text = {.name = "a text", .most_bytes = 1e7, .is_text = true};
-    char *page = NULL, *notices = NULL;
+    char *notices = NULL;
     size_t size;
     Status status;
-    TRY_GOTO(file_join(params->templates, "page/page.html", &page, err));
     TRY_GOTO(file_join(params->templates, "colormaps/NOTICES", &notices, err));
-    TRY_GOTO(tmpl_load(&parts->page, page, err));
+    TRY_GOTO(tmpl_load(&parts->page, params->templates, "page/page.html", err));
     TRY_GOTO(file_read(notices, &text, &parts->notices, &size, err));
     status = file_read(params->viewer, &text, &parts->viewer, &size, err);
 done:
-    free(page);
     free(notices);
     return status;
 }
