@@ -96,17 +96,23 @@ Status image_read(Image *image, const char *path, ImageAlpha alpha, const char *
     return status;
 }
 
+/* Moves the codes of an image to *picture. Releases an image of floats. */
+static Status take_picture(Image *image, const char *name, Picture *picture, Err *err)
+{
+    if (image->plane.values) {
+        image_release(image);
+        return err_set(err, STATUS_INPUT,
+                       "%s: holds floats; a picture of 8 or 16 bits is needed here", name);
+    }
+    *picture = image->picture;
+    return STATUS_OK;
+}
+
 Status picture_read(Picture *picture, const char *path, ImageAlpha alpha, Err *err)
 {
     Image image;
     TRY(image_read(&image, path, alpha, NULL, err));
-    if (image.plane.values) {
-        image_release(&image);
-        return err_set(err, STATUS_INPUT,
-                       "%s: holds floats; a picture of 8 or 16 bits is needed here", name_of(path));
-    }
-    *picture = image.picture;
-    return STATUS_OK;
+    return take_picture(&image, name_of(path), picture, err);
 }
 
 Status picture_decode(Picture *picture, const char *name, const void *bytes, size_t size, Err *err)
@@ -116,12 +122,7 @@ Status picture_decode(Picture *picture, const char *name, const void *bytes, siz
     if (!is_known(bytes, size))
         return err_set(err, STATUS_INPUT, "%s: is not an image of a known format", name);
     TRY(decode(&file, ALPHA_REFUSED, &image, err));
-    if (image.plane.values) {
-        image_release(&image);
-        return err_set(err, STATUS_INPUT, "%s: holds floats", name);
-    }
-    *picture = image.picture;
-    return STATUS_OK;
+    return take_picture(&image, name, picture, err);
 }
 
 Status plane_read(Plane *plane, const char *path, ImageAlpha alpha, Err *err)
