@@ -127,11 +127,9 @@ static Status find_branches(TreeLayout *layout, Err *err)
 static int compare_branches(const void *a, const void *b)
 {
     const LayoutBranch *p = a, *q = b;
-    if (p->parent != q->parent)
-        return p->parent < q->parent ? -1 : 1;
-    if (p->from_mm != q->from_mm)
-        return p->from_mm > q->from_mm ? -1 : 1;
-    return p->number < q->number ? -1 : p->number > q->number;
+    const int parent = number_order(p->parent, q->parent);
+    const int from = number_order(q->from_mm, p->from_mm);
+    return parent ? parent : from ? from : number_order(p->number, q->number);
 }
 
 /* Fills `leaving` and `begin`. */

@@ -18,8 +18,8 @@ static const struct PovrayRow {
     unsigned element;
     Status (*find)(PovrayGeometry *geometry, Err *err); /* finds the pieces; NULL: the pieces are
                                                          * the items */
-    Status (*put_macros)(Text *out, void *geometry, Err *err);
-    Status (*put_object)(Text *out, PovrayGeometry *geometry, Err *err);
+    TmplPut *put_macros;
+    PovrayPutObject *put_object;
     double pieces; /* number of pieces that POV-Ray reads in about ten seconds (measured; fields
                     * with ids): a load of 1 [povray_load] */
 } geometries[] = {
@@ -75,15 +75,9 @@ static void put_guard(Text *text, const char *name)
 
 /* ---- geometry -------------------------------------------------------------------------------- */
 
-static Status put_macros(Text *out, void *context, Err *err)
+static Status put_tree(Text *out, const void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
-    return row_of(geometry->scene)->put_macros(out, context, err);
-}
-
-static Status put_tree(Text *out, void *context, Err *err)
-{
-    PovrayGeometry *geometry = context;
     return put_objects(out, geometry, row_of(geometry->scene)->put_object, err);
 }
 
@@ -163,7 +157,7 @@ static void add_scale(Values *values, const Appearance *appearance)
 }
 
 /* Appends the meaning of the colors, if values color the segments. */
-static Status put_values(Text *out, void *context, Err *err)
+static Status put_values(Text *out, const void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     const Appearance *appearance = &geometry->scene->appearance;
@@ -183,7 +177,7 @@ static void put_case(Text *out, const void *appearance, size_t frame)
     text_puts(out, "#break\n");
 }
 
-static Status put_frames(Text *out, void *context, Err *err)
+static Status put_frames(Text *out, const void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     const Appearance *appearance = &geometry->scene->appearance;
@@ -199,9 +193,9 @@ static Status put_frames(Text *out, void *context, Err *err)
     return values_expand(&values, geometry->params, "povray/frames.inc", out, err);
 }
 
-static Status put_geometry(Text *out, void *context, Err *err)
+static Status put_geometry(Text *out, const void *context, Err *err)
 {
-    PovrayGeometry *geometry = context;
+    const PovrayGeometry *geometry = context;
     const EmitParams *params = geometry->params;
     const Scene *scene = geometry->scene;
     const char *file = params->second_file ? params->second_file : params->file;
@@ -218,7 +212,7 @@ static Status put_geometry(Text *out, void *context, Err *err)
     add_flag(&values, "colors", scene->appearance.meaning != NULL);
     add_part(&values, "frames", put_frames, geometry);
     add_part(&values, "blend", put_blend_macros, geometry);
-    add_part(&values, "macros", put_macros, geometry);
+    add_part(&values, "macros", row_of(scene)->put_macros, geometry);
     add_part(&values, "tree", put_tree, geometry);
     return values_expand(&values, params, "povray/vessels.inc", out, err);
 }
@@ -273,7 +267,7 @@ static void add_light_kinds(Values *values, const View *view)
     add_flag(values, "ground", view->ground.present);
 }
 
-static Status put_lights(Text *out, void *context, Err *err)
+static Status put_lights(Text *out, const void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     const Scene *scene = geometry->scene;
@@ -283,7 +277,7 @@ static Status put_lights(Text *out, void *context, Err *err)
 }
 
 /* Appends the geometry, or the line that includes it. */
-static Status put_vessels(Text *out, void *context, Err *err)
+static Status put_vessels(Text *out, const void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     if (!geometry->params->second_file)
@@ -303,7 +297,7 @@ static Vec3 look_at_point(const Scene *scene)
     return vec3_add_scaled(camera->location, camera->direction, depth);
 }
 
-static Status put_camera(Text *out, void *context, Err *err)
+static Status put_camera(Text *out, const void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     const Camera *camera = &geometry->scene->view.camera;
@@ -338,7 +332,7 @@ static void put_effects(Text *text, const EmitParams *params)
 }
 
 /* Appends the plane of a graded background, at twice the depth of the farthest vessel. */
-static Status put_graded(Text *out, void *context, Err *err)
+static Status put_graded(Text *out, const void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     const View *view = &geometry->scene->view;
@@ -352,7 +346,7 @@ static Status put_graded(Text *out, void *context, Err *err)
     return values_expand(&values, geometry->params, "povray/graded.inc", out, err);
 }
 
-static Status put_fade(Text *out, void *context, Err *err)
+static Status put_fade(Text *out, const void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     const Fade *fade = &geometry->scene->view.fade;
@@ -368,17 +362,16 @@ static Status put_fade(Text *out, void *context, Err *err)
 
 /* Appends a switch that replaces the vessels' colors if the user declares a color or a texture. It
  * is left out if the colors represent values. */
-static Status put_tips(Text *out, void *context, Err *err)
+static Status put_tips(Text *out, const void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     const Appearance *appearance = &geometry->scene->appearance;
-    Values values = {.digits = out->digits};
     return appearance->colors && !appearance->meaning
-               ? values_expand(&values, geometry->params, "povray/tips.inc", out, err)
+               ? put_template(geometry->params, "povray/tips.inc", out, err)
                : STATUS_OK;
 }
 
-static Status put_scene(Text *out, PovrayGeometry *geometry, Err *err)
+static Status put_scene(Text *out, const PovrayGeometry *geometry, Err *err)
 {
     const EmitParams *params = geometry->params;
     const Scene *scene = geometry->scene;
@@ -505,7 +498,7 @@ static void add_names(Values *values, const EmitParams *params)
     add_word(values, "settings", params->settings, "\"");
 }
 
-static Status put_frame_settings(Text *out, void *context, Err *err)
+static Status put_frame_settings(Text *out, const void *context, Err *err)
 {
     const EmitParams *params = context;
     size_t n = params->scene->appearance.n_frames;
@@ -531,7 +524,6 @@ Status povray_write_settings(const EmitParams *params, Text *out, Err *err)
     text_printf(add_value(&values, "depth"), "%d", adaptive ? 3 : params->antialias);
     text_puts(add_value(&values, "alpha"),
               params->scene->view.transparent ? "Output_Alpha=on\n" : "");
-    EmitParams all = *params;
-    add_part(&values, "frames", put_frame_settings, &all);
+    add_part(&values, "frames", put_frame_settings, params);
     return values_expand(&values, params, "povray/scene.ini", out, err);
 }

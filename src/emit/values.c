@@ -101,13 +101,13 @@ void add_finish(Values *values, const Finish *finish)
     add_float(values, "roughness", finish->roughness);
 }
 
-void add_part(Values *values, const char *name, Status (*put)(Text *, void *, Err *), void *context)
+void add_part(Values *values, const char *name, TmplPut *put, const void *context)
 {
     assert(values->n_parts < PARTS_MAX);
     values->part[values->n_parts++] = (TmplPart){name, put, context};
 }
 
-static Status put_items(Text *out, void *context, Err *err)
+static Status put_items(Text *out, const void *context, Err *err)
 {
     const ValueList *list = context;
     for (size_t i = 0; i < list->n; i++)

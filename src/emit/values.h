@@ -64,8 +64,7 @@ void add_about(Values *values, const EmitParams *params, Box box, Vec3 origin);
 /* Adds the members of a finish as values with POV-Ray's names: `ambient`, `diffuse`, ... */
 void add_finish(Values *values, const Finish *finish);
 /* Adds a part. `put` appends it when the template reaches it, and receives `context`. */
-void add_part(Values *values, const char *name, Status (*put)(Text *, void *, Err *),
-              void *context);
+void add_part(Values *values, const char *name, TmplPut *put, const void *context);
 /* Adds a part that consists of `n` items. `put` appends each, and receives `context`. */
 void add_list(Values *values, const char *name, PutItem *put, const void *context, size_t n);
 

@@ -108,7 +108,7 @@ static void put_properties(const PageParams *params, Text *out)
     text_release(&json);
 }
 
-static Status put_data(Text *out, void *context, Err *err)
+static Status put_data(Text *out, const void *context, Err *err)
 {
     const PageParams *params = context;
     put_blocks(params, out);
@@ -136,8 +136,7 @@ static Status put_page(const PageParams *params, const PageTexts *from, Text *ou
                                 {"notices", text_chars(&notices)},
                                 {"properties", text_chars(&properties)},
                                 {"viewer", from->viewer}};
-    PageParams given = *params;
-    const TmplPart parts[] = {{"data", put_data, &given}};
+    const TmplPart parts[] = {{"data", put_data, params}};
     status = tmpl_stream(&from->page, values, sizeof values / sizeof *values, parts, 1, out, err);
 done:
     text_release(&properties);

@@ -47,13 +47,15 @@ void tmpl_release(Tmpl *tmpl);
 MUST_CHECK Status tmpl_apply(const Tmpl *tmpl, const TmplValue *values, size_t n, Text *out,
                              Err *err);
 
+/* Appends a text to `out`. Any status other than STATUS_OK ends the expansion of the template. */
+typedef Status TmplPut(Text *out, const void *context, Err *err);
+
 /* The replacement of ${name} by text that a function appends, because the text may be too long for
  * memory. */
 typedef struct TmplPart {
     const char *name; /* borrowed; letters, digits and '_', not starting with a digit */
-    /* Appends the text to `out`. A status other than STATUS_OK ends the expansion. */
-    Status (*put)(Text *out, void *context, Err *err);
-    void *context; /* passed to `put` */
+    TmplPut *put;
+    const void *context; /* borrowed; passed to `put` */
 } TmplPart;
 
 /* Appends the template to `out`, as tmpl_apply does, with parts beside the values. `out` may write

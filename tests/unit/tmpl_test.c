@@ -105,17 +105,17 @@ static void refuses_a_dollar_that_starts_nothing(void **state)
                 "build/tmpl_test.txt:2: '$' must begin ${name} or $$, which gives one '$'");
 }
 
-static Status put_count(Text *out, void *context, Err *err)
+static Status put_count(Text *out, const void *context, Err *err)
 {
-    int *count = context;
-    text_printf(out, "part %d", ++*count);
-    return *count < 3 ? STATUS_OK : err_set(err, STATUS_IO, "the third fails");
+    int *const *count = context;
+    text_printf(out, "part %d", ++**count);
+    return **count < 3 ? STATUS_OK : err_set(err, STATUS_IO, "the third fails");
 }
 
 static Status stream(const char *source, int *count, Text *out, Err *err)
 {
     const TmplValue values[] = {{"a", "value"}};
-    const TmplPart parts[] = {{"p", put_count, count}};
+    const TmplPart parts[] = {{"p", put_count, &count}};
     Tmpl template;
     assert_int_equal(file_write(path, source, strlen(source), err), STATUS_OK);
     assert_int_equal(tmpl_load(&template, "build", file, err), STATUS_OK);
