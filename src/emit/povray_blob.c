@@ -501,28 +501,17 @@ done:
     return status;
 }
 
-/* Appends the functions that find the segment of a point, if segments differ in color or id. */
+/* Appends the functions that find the segment of a point. */
 static Status put_functions(Text *out, const void *context, Err *err)
 {
-    return povray_paints(context) ? put_hierarchy(out, context, NULL, err) : text_check(out, err);
+    return put_hierarchy(out, context, NULL, err);
 }
 
+/* Appends the functions that find the mean position on the color scale. */
 static Status put_weights(Text *out, const void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     return put_hierarchy(out, geometry, geometry->scene->appearance.positions, err);
-}
-
-/* Appends the functions that find the mean position on the color scale, if colors blend. */
-static Status put_blend(Text *out, const void *context, Err *err)
-{
-    const PovrayGeometry *geometry = context;
-    Values values = {.digits = geometry->params->digits};
-    if (!povray_blends(geometry))
-        return text_check(out, err);
-    text_printf(add_value(&values, "top"), "Fw[%zu]", count_nodes(geometry->painted.n) - 1);
-    add_part(&values, "nodes", put_weights, context);
-    return values_expand(&values, geometry->params, "povray/blob_blend.inc", out, err);
 }
 
 /* Appends the paint of a segment. Paints are grouped by GROUP, the maximum size of a map. */
@@ -569,13 +558,11 @@ Status put_blob_macros(Text *out, const void *context, Err *err)
     add_shape(&values);
     add_flag(&values, "painted", painted);
     add_flag(&values, "blended", povray_blends(geometry));
-    Text *top = add_value(&values, "top"), *n_groups = add_value(&values, "n_groups");
-    if (painted) {
-        text_printf(top, "Fn[%zu]", count_nodes(n) - 1);
-        put_text(n_groups, "%z", (n + GROUP - 1) / GROUP);
-    }
+    text_printf(add_value(&values, "top"), "Fn[%zu]", count_nodes(n) - 1);
+    text_printf(add_value(&values, "top_weight"), "Fw[%zu]", count_nodes(n) - 1);
+    add_count(&values, "n_groups", (n + GROUP - 1) / GROUP);
     add_part(&values, "paint", put_functions, context);
-    add_part(&values, "blend", put_blend, context);
-    add_list(&values, "groups", put_paint_of, geometry, painted ? n : 0);
+    add_part(&values, "nodes", put_weights, context);
+    add_list(&values, "groups", put_paint_of, geometry, n);
     return values_expand(&values, geometry->params, "povray/blob.inc", out, err);
 }
