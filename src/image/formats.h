@@ -63,10 +63,11 @@ static inline uint32_t image_u32(const uint8_t *at)
     return (uint32_t)at[0] << 24 | (uint32_t)at[1] << 16 | (uint32_t)at[2] << 8 | at[3];
 }
 
-/* Reads the header of a PNM or PFM file: words between blanks. Skips '#' comments. */
+/* The state of reading the header of a PNM or PFM file, which consists of words that blanks
+ * separate. A comment from '#' to the end of the line counts as a blank. */
 typedef struct HeaderCursor {
     ImageBytes file;
-    size_t at;
+    size_t at; /* offset in the file of the next character */
 } HeaderCursor;
 
 /* Reads the next word as an integer in [minimum, maximum]; `what` names it in errors. */

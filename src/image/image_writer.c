@@ -291,11 +291,12 @@ static Status write_inked(ImageWriter *writer, const Picture *rows, Err *err)
 /* Ends the writing of `n` rows with this status. Adds the path to the message of an error. */
 static Status end_rows(ImageWriter *writer, int n, Status status, Err *err)
 {
-    if (status == STATUS_OK && ferror(writer->file.stream))
+    const bool failed = status == STATUS_OK && ferror(writer->file.stream);
+    writer->next += n;
+    if (failed)
         status = err_set(err, STATUS_IO, "writing failed: %s", strerror(errno));
     if (status != STATUS_OK)
         err_prefix(err, "%s: ", writer->path);
-    writer->next += n;
     return status;
 }
 
