@@ -1,4 +1,5 @@
-/* A diagram is one item of a page; the module figure writes and draws it. */
+/* A diagram is one item of a page, which the module figure writes as SVG and PDF. Pixels are drawn
+ * by figure_draw_bars instead, because bars may be thinner than a pixel. */
 #include "diagram/diagram.h"
 
 #include <math.h>

@@ -7,10 +7,10 @@
  * right, so the link to a daughter farther out crosses none farther in. A last pass from the roots
  * on adds up the rows.
  *
- * A contour is a list of steps from left to right. Heights are stored as
- * differences, so that raising a contour changes only its first step. When a branch is attached,
- * its inner contour is traversed once and dropped, and its outer contour replaces what was
- * traversed. All contours together therefore take O(n). */
+ * A contour is a list of steps from left to right. Heights are stored as differences, so that
+ * raising a contour changes only its first step. When a branch is attached, its inner contour is
+ * traversed once and dropped, and its outer contour replaces the traversed part of the row's
+ * contour. All contours together therefore take O(n). */
 #include "diagram/diagram.h"
 
 #include "derive/derive.h"
@@ -54,10 +54,8 @@ typedef struct TreeLayout {
     int32_t *of_node; /* per node: branch of its segment; NONE at roots */
     LayoutBranch *branch;
     size_t n;
-    /* The daughters of branch b are leaving[begin[b + 1]] to leaving[begin[b + 2] - 1], the last to
-     * leave first. The roots begin at index 0. */
-    int32_t *leaving;
-    size_t *begin;
+    IndexLists daughters; /* list b + 1: the daughters of branch b, the last to leave first; list 0:
+                           * the roots */
     /* At most 4 per branch: two of its own, one where it is attached, one at its end. */
     ContourStep *step;
     size_t n_steps;
@@ -71,8 +69,7 @@ static void layout_release(TreeLayout *layout)
     free(layout->path_mm);
     free(layout->of_node);
     free(layout->branch);
-    free(layout->leaving);
-    free(layout->begin);
+    indexlists_release(&layout->daughters);
     free(layout->step);
 }
 
@@ -123,33 +120,31 @@ static Status find_branches(TreeLayout *layout, Err *err)
     return STATUS_OK;
 }
 
-/* Orders branches by parent; those of the same parent by where they leave, the last first. */
+/* Orders branches by parent. Branches of the same parent are ordered by the path length at which
+ * they leave it, the last first. */
 static int compare_branches(const void *a, const void *b)
 {
     const LayoutBranch *p = a, *q = b;
-    if (p->parent != q->parent)
-        return p->parent < q->parent ? -1 : 1;
-    if (p->from_mm != q->from_mm)
-        return p->from_mm > q->from_mm ? -1 : 1;
-    return p->number < q->number ? -1 : p->number > q->number;
+    const int parent = number_order(p->parent, q->parent);
+    const int from = number_order(q->from_mm, p->from_mm);
+    return parent ? parent : from ? from : number_order(p->number, q->number);
 }
 
-/* Fills `leaving` and `begin`. */
+/* Lists the daughters of each branch. */
 static Status sort_branches(TreeLayout *layout, Err *err)
 {
+    IndexLists *daughters = &layout->daughters;
     LayoutBranch *order = NULL;
     Status status = STATUS_OK;
     TRY_GOTO(mem_calloc(&order, layout->n, sizeof *order, "branches", err));
-    TRY_GOTO(mem_calloc(&layout->leaving, layout->n, sizeof *layout->leaving, "branches", err));
-    TRY_GOTO(mem_calloc(&layout->begin, layout->n + 2, sizeof *layout->begin, "branches", err));
+    TRY_GOTO(indexlists_begin(daughters, layout->n + 1, "branches", err));
     memcpy(order, layout->branch, layout->n * sizeof *order);
     qsort(order, layout->n, sizeof *order, compare_branches);
-    for (size_t k = 0; k < layout->n; k++) {
-        layout->leaving[k] = order[k].number;
-        layout->begin[order[k].parent + 2]++;
-    }
-    for (size_t b = 1; b < layout->n + 2; b++)
-        layout->begin[b] += layout->begin[b - 1];
+    for (size_t k = 0; k < layout->n; k++)
+        indexlists_count(daughters, (size_t)(order[k].parent + 1));
+    TRY_GOTO(indexlists_allot(daughters, "branches", err));
+    for (size_t k = 0; k < layout->n; k++)
+        indexlists_put(daughters, (size_t)(order[k].parent + 1), (uint32_t)order[k].number);
 done:
     free(order);
     return status;
@@ -280,8 +275,9 @@ static double lay_out_rows(TreeLayout *layout, double gap_mm)
     for (size_t b = layout->n; b-- > 0;) {
         LayoutBranch *own = &layout->branch[b];
         begin_contours(layout, own);
-        for (size_t k = layout->begin[b + 1]; k < layout->begin[b + 2]; k++)
-            attach(layout, own, &layout->branch[layout->leaving[k]], gap_mm);
+        const uint32_t *first = layout->daughters.first + b + 1;
+        for (uint32_t k = first[0]; k < first[1]; k++)
+            attach(layout, own, &layout->branch[layout->daughters.items[k]], gap_mm);
         end_contours(layout, own);
     }
     for (size_t b = 0; b < layout->n; b++) {
@@ -358,8 +354,9 @@ static FigureBar bar_of(const TreeLayout *layout, size_t node)
                        .index = (int32_t)node};
 }
 
-/* Returns the cross bar at the end of a segment that closes a loop. Those of two neighbouring rows
- * leave a third of the space between the rows. */
+/* Returns the cross bar at the end of a segment that closes a loop. It extends beyond the segment
+ * by at most a third of the space between rows, so that the cross bars of two neighbouring rows do
+ * not touch. */
 static FigureBar cross_of(const TreeLayout *layout, size_t node)
 {
     FigureBar bar = bar_of(layout, node);

@@ -87,7 +87,7 @@ static void put_spline(const Script *script, size_t curve, Text *out)
     text_puts(out, "]),\n");
 }
 
-static Status put_vessels(Text *out, void *context, Err *err)
+static Status put_vessels(Text *out, const void *context, Err *err)
 {
     const Script *script = context;
     const Curves *curves = &script->curves;

@@ -17,11 +17,8 @@ void curves_release(Curves *curves)
 
 static int compare_kinds(const CurveKind *a, const CurveKind *b)
 {
-    if (a->tree != b->tree)
-        return a->tree < b->tree ? -1 : 1;
-    if (a->order != b->order)
-        return a->order < b->order ? -1 : 1;
-    return (a->paint > b->paint) - (a->paint < b->paint);
+    const int tree = number_order(a->tree, b->tree), order = number_order(a->order, b->order);
+    return tree ? tree : order ? order : number_order(a->paint, b->paint);
 }
 
 static Status find_kinds(const EmitParams *params, const uint32_t *paints, Curves *curves, Err *err)
@@ -68,7 +65,7 @@ static int compare_heads(const void *a, const void *b)
 {
     const CurveHead *one = a, *other = b;
     int order = compare_kinds(&one->kind, &other->kind);
-    return order ? order : (one->segment > other->segment) - (one->segment < other->segment);
+    return order ? order : number_order(one->segment, other->segment);
 }
 
 static Status sort_heads(const Curves *curves, const bool *heads, CurveHead **sorted, Err *err)

@@ -48,7 +48,6 @@ static void put_cell(Text *out, const void *context, size_t slot)
 Status gmsh_write(const EmitParams *params, EmitOutput *to, Err *err)
 {
     const size_t parts = meshends_parts(params->ends);
-    EmitParams context = *params;
     Values values = {0};
     add_source(&values, params);
     add_count(&values, "n_names", parts + 1);
@@ -56,6 +55,6 @@ Status gmsh_write(const EmitParams *params, EmitOutput *to, Err *err)
     add_count(&values, "n_cells", prismcell_count(params));
     add_list(&values, "names", put_name, params->ends, parts);
     add_list(&values, "points", put_point, params->layers, params->layers->n_points);
-    add_list(&values, "cells", put_cell, &context, prismcell_slots(params));
+    add_list(&values, "cells", put_cell, params, prismcell_slots(params));
     return values_expand(&values, params, "gmsh/layers.msh", to->file, err);
 }

@@ -118,7 +118,7 @@ static void put_preview_triangles(Text *out, const void *lattice, size_t i)
     }
 }
 
-static Status put_model(Text *out, void *context, Err *err)
+static Status put_model(Text *out, const void *context, Err *err)
 {
     const BeamLattice *lattice = context;
     const EmitParams *params = lattice->params;

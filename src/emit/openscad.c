@@ -31,21 +31,15 @@ typedef struct Parametric {
 static int by_position(const void *a, const void *b)
 {
     const Vec3 *p = &((const CylinderEnd *)a)->at, *q = &((const CylinderEnd *)b)->at;
-    for (int axis = 0; axis < 3; axis++) {
-        double x = vec3_component(*p, axis), y = vec3_component(*q, axis);
-        if (x != y)
-            return x < y ? -1 : 1;
-    }
-    return 0;
+    const int x = number_order(p->x, q->x), y = number_order(p->y, q->y);
+    return x ? x : y ? y : number_order(p->z, q->z);
 }
 
 static int by_position_and_end(const void *a, const void *b)
 {
     const CylinderEnd *p = a, *q = b;
-    int order = by_position(a, b);
-    if (order == 0 && p->is_far != q->is_far)
-        order = p->is_far ? -1 : 1;
-    return order ? order : p->cylinder < q->cylinder ? -1 : p->cylinder > q->cylinder;
+    const int order = by_position(a, b), end = number_order(q->is_far, p->is_far);
+    return order ? order : end ? end : number_order(p->cylinder, q->cylinder);
 }
 
 static Status find_ends(Parametric *made, Err *err)

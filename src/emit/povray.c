@@ -18,8 +18,8 @@ static const struct PovrayRow {
     unsigned element;
     Status (*find)(PovrayGeometry *geometry, Err *err); /* finds the pieces; NULL: the pieces are
                                                          * the items */
-    Status (*put_macros)(Text *out, void *geometry, Err *err);
-    Status (*put_object)(Text *out, PovrayGeometry *geometry, Err *err);
+    TmplPut *put_macros;
+    PovrayPutObject *put_object;
     double pieces; /* number of pieces that POV-Ray reads in about ten seconds (measured; fields
                     * with ids): a load of 1 [povray_load] */
 } geometries[] = {
@@ -75,15 +75,9 @@ static void put_guard(Text *text, const char *name)
 
 /* ---- geometry -------------------------------------------------------------------------------- */
 
-static Status put_macros(Text *out, void *context, Err *err)
+static Status put_tree(Text *out, const void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
-    return row_of(geometry->scene)->put_macros(out, context, err);
-}
-
-static Status put_tree(Text *out, void *context, Err *err)
-{
-    PovrayGeometry *geometry = context;
     return put_objects(out, geometry, row_of(geometry->scene)->put_object, err);
 }
 
@@ -163,7 +157,7 @@ static void add_scale(Values *values, const Appearance *appearance)
 }
 
 /* Appends the meaning of the colors, if values color the segments. */
-static Status put_values(Text *out, void *context, Err *err)
+static Status put_values(Text *out, const void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     const Appearance *appearance = &geometry->scene->appearance;
@@ -183,25 +177,20 @@ static void put_case(Text *out, const void *appearance, size_t frame)
     text_puts(out, "#break\n");
 }
 
-static Status put_frames(Text *out, void *context, Err *err)
+/* Adds the values of the section for colors that change with time. */
+static void add_frames(Values *values, const Appearance *appearance)
 {
-    const PovrayGeometry *geometry = context;
-    const Appearance *appearance = &geometry->scene->appearance;
-    if (appearance->n_frames == 0)
-        return STATUS_OK;
-    Values values = {.digits = geometry->params->digits};
-    add_count(&values, "count", appearance->n_frames);
-    add_flag(&values, "beats", appearance->widths != NULL);
-    Text *times = add_value(&values, "times");
+    add_count(values, "n_frames", appearance->n_frames);
+    add_flag(values, "beats", appearance->widths != NULL);
+    Text *times = add_value(values, "times");
     for (size_t k = 0; k < appearance->n_frames; k++)
         put_text(times, k ? ",%n" : "%n", appearance->time[k]);
-    add_list(&values, "frames", put_case, appearance, appearance->n_frames);
-    return values_expand(&values, geometry->params, "povray/frames.inc", out, err);
+    add_list(values, "frames", put_case, appearance, appearance->n_frames);
 }
 
-static Status put_geometry(Text *out, void *context, Err *err)
+static Status put_geometry(Text *out, const void *context, Err *err)
 {
-    PovrayGeometry *geometry = context;
+    const PovrayGeometry *geometry = context;
     const EmitParams *params = geometry->params;
     const Scene *scene = geometry->scene;
     const char *file = params->second_file ? params->second_file : params->file;
@@ -216,9 +205,9 @@ static Status put_geometry(Text *out, void *context, Err *err)
     add_tree_position(&values, params);
     add_part(&values, "values", put_values, geometry);
     add_flag(&values, "colors", scene->appearance.meaning != NULL);
-    add_part(&values, "frames", put_frames, geometry);
+    add_frames(&values, &scene->appearance);
     add_part(&values, "blend", put_blend_macros, geometry);
-    add_part(&values, "macros", put_macros, geometry);
+    add_part(&values, "macros", row_of(scene)->put_macros, geometry);
     add_part(&values, "tree", put_tree, geometry);
     return values_expand(&values, params, "povray/vessels.inc", out, err);
 }
@@ -249,48 +238,48 @@ static void put_light(Text *text, const Light *light)
     text_puts(text, ")\n");
 }
 
-static Status put_ground(Text *text, const Ground *ground, const EmitParams *params, Err *err)
-{
-    if (!ground->present)
-        return STATUS_OK;
-    Values values = {.digits = params->digits};
-    put_text(add_value(&values, "normal"), "<%v>", ground->normal);
-    add_number(&values, "offset", ground->offset_mm);
-    put_text(add_value(&values, "color"), "<%c>", ground->color);
-    add_float(&values, "ambient", ground->finish.ambient);
-    add_float(&values, "diffuse", ground->finish.diffuse);
-    return values_expand(&values, params, "povray/ground.inc", text, err);
-}
-
-/* Adds flags for the macros that the lights call, and for the ground. */
-static void add_light_kinds(Values *values, const View *view)
+/* Adds the lights, and flags for the macros that they call. */
+static void add_lights(Values *values, const View *view)
 {
     bool has[LIGHT_KINDS] = {false};
-    for (size_t i = 0; i < view->n_lights; i++)
+    Text *lights = add_value(values, "lights");
+    for (size_t i = 0; i < view->n_lights; i++) {
         has[light_kind(&view->lights[i])] = true;
+        put_light(lights, &view->lights[i]);
+    }
     for (int kind = 0; kind < LIGHT_KINDS; kind++)
         add_flag(values, light_names[kind][0], has[kind]);
-    add_flag(values, "ground", view->ground.present);
 }
 
-static Status put_lights(Text *out, void *context, Err *err)
+/* The next functions add the values of a section of the scene. The section is left out if the scene
+ * lacks what it describes. */
+static void add_ground(Values *values, const Ground *ground)
 {
-    const PovrayGeometry *geometry = context;
-    const Scene *scene = geometry->scene;
-    for (size_t i = 0; i < scene->view.n_lights; i++)
-        put_light(out, &scene->view.lights[i]);
-    return put_ground(out, &scene->view.ground, geometry->params, err);
+    add_flag(values, "ground", ground->present);
+    put_text(add_value(values, "ground_normal"), "<%v>", ground->normal);
+    add_number(values, "ground_offset", ground->offset_mm);
+    put_text(add_value(values, "ground_color"), "<%c>", ground->color);
+    add_float(values, "ground_ambient", ground->finish.ambient);
+    add_float(values, "ground_diffuse", ground->finish.diffuse);
 }
 
-/* Appends the geometry, or the line that includes it. */
-static Status put_vessels(Text *out, void *context, Err *err)
+/* The graded background is a plane at twice the depth of the farthest vessel. */
+static void add_graded(Values *values, const Scene *scene)
 {
-    const PovrayGeometry *geometry = context;
-    if (!geometry->params->second_file)
-        return put_geometry(out, context, err);
-    Values values = {.digits = geometry->params->digits};
-    text_puts(add_value(&values, "file"), geometry->params->second_file);
-    return values_expand(&values, geometry->params, "povray/include.inc", out, err);
+    double near_mm, far_mm;
+    camera_depth_range(&scene->view.camera, scene->geometry.bounds, &near_mm, &far_mm);
+    add_flag(values, "graded", scene->view.effects.grade.present);
+    put_text(add_value(values, "corners"), "<%c>", scene->view.effects.grade.corners);
+    add_number(values, "distance", 2 * far_mm);
+}
+
+static void add_fade(Values *values, const Fade *fade)
+{
+    add_flag(values, "fade", fade_is_on(fade));
+    add_number(values, "fade_nearest", fade->nearest);
+    add_number(values, "fade_farthest", fade->farthest);
+    add_number(values, "fade_near", fade->near_mm);
+    add_number(values, "fade_far", fade->far_mm);
 }
 
 /* Returns the point on the camera's axis at the depth of the centre of the vessels. */
@@ -303,7 +292,7 @@ static Vec3 look_at_point(const Scene *scene)
     return vec3_add_scaled(camera->location, camera->direction, depth);
 }
 
-static Status put_camera(Text *out, void *context, Err *err)
+static Status put_camera(Text *out, const void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     const Camera *camera = &geometry->scene->view.camera;
@@ -337,48 +326,7 @@ static void put_effects(Text *text, const EmitParams *params)
     text_release(&names);
 }
 
-/* Appends the plane of a graded background, at twice the depth of the farthest vessel. */
-static Status put_graded(Text *out, void *context, Err *err)
-{
-    const PovrayGeometry *geometry = context;
-    const View *view = &geometry->scene->view;
-    Values values = {.digits = out->digits};
-    double near_mm, far_mm;
-    if (!view->effects.grade.present)
-        return STATUS_OK;
-    camera_depth_range(&view->camera, geometry->scene->geometry.bounds, &near_mm, &far_mm);
-    put_text(add_value(&values, "corners"), "<%c>", view->effects.grade.corners);
-    add_number(&values, "distance", 2 * far_mm);
-    return values_expand(&values, geometry->params, "povray/graded.inc", out, err);
-}
-
-static Status put_fade(Text *out, void *context, Err *err)
-{
-    const PovrayGeometry *geometry = context;
-    const Fade *fade = &geometry->scene->view.fade;
-    Values values = {.digits = out->digits};
-    if (!fade_is_on(fade))
-        return STATUS_OK;
-    add_number(&values, "fade_nearest", fade->nearest);
-    add_number(&values, "fade_farthest", fade->farthest);
-    add_number(&values, "fade_near", fade->near_mm);
-    add_number(&values, "fade_far", fade->far_mm);
-    return values_expand(&values, geometry->params, "povray/fade.inc", out, err);
-}
-
-/* Appends a switch that replaces the vessels' colors if the user declares a color or a texture. It
- * is left out if the colors represent values. */
-static Status put_tips(Text *out, void *context, Err *err)
-{
-    const PovrayGeometry *geometry = context;
-    const Appearance *appearance = &geometry->scene->appearance;
-    Values values = {.digits = out->digits};
-    return appearance->colors && !appearance->meaning
-               ? values_expand(&values, geometry->params, "povray/tips.inc", out, err)
-               : STATUS_OK;
-}
-
-static Status put_scene(Text *out, PovrayGeometry *geometry, Err *err)
+static Status put_scene(Text *out, const PovrayGeometry *geometry, Err *err)
 {
     const EmitParams *params = geometry->params;
     const Scene *scene = geometry->scene;
@@ -396,12 +344,15 @@ static Status put_scene(Text *out, PovrayGeometry *geometry, Err *err)
     add_float(&values, "background_green", scene->view.background.g);
     add_float(&values, "background_blue", scene->view.background.b);
     text_puts(add_value(&values, "background_transmit"), scene->view.transparent ? "1" : "0");
-    add_part(&values, "graded", put_graded, geometry);
-    add_part(&values, "fade", put_fade, geometry);
-    add_part(&values, "tips", put_tips, geometry);
-    add_part(&values, "geometry", put_vessels, geometry);
-    add_light_kinds(&values, &scene->view);
-    add_part(&values, "lights", put_lights, geometry);
+    add_graded(&values, scene);
+    add_fade(&values, &scene->view.fade);
+    /* This section lets a color or a texture that the user declares replace the vessels' colors. It
+     * is left out if the colors represent values. */
+    add_flag(&values, "tips", scene->appearance.colors && !scene->appearance.meaning);
+    text_puts(add_value(&values, "include"), params->second_file ? params->second_file : "");
+    add_part(&values, "geometry", put_geometry, geometry);
+    add_lights(&values, &scene->view);
+    add_ground(&values, &scene->view.ground);
     return values_expand(&values, params, "povray/scene.pov", out, err);
 }
 
@@ -505,17 +456,6 @@ static void add_names(Values *values, const EmitParams *params)
     add_word(values, "settings", params->settings, "\"");
 }
 
-static Status put_frame_settings(Text *out, void *context, Err *err)
-{
-    const EmitParams *params = context;
-    size_t n = params->scene->appearance.n_frames;
-    if (n == 0)
-        return STATUS_OK;
-    Values values = {.digits = params->digits};
-    add_count(&values, "count", n);
-    return values_expand(&values, params, "povray/frames.ini", out, err);
-}
-
 Status povray_write_settings(const EmitParams *params, Text *out, Err *err)
 {
     const Camera *camera = &params->scene->view.camera;
@@ -529,9 +469,7 @@ Status povray_write_settings(const EmitParams *params, Text *out, Err *err)
     text_puts(add_value(&values, "method"), adaptive ? "2" : "1");
     text_puts(add_value(&values, "threshold"), adaptive ? "0.1" : "0");
     text_printf(add_value(&values, "depth"), "%d", adaptive ? 3 : params->antialias);
-    text_puts(add_value(&values, "alpha"),
-              params->scene->view.transparent ? "Output_Alpha=on\n" : "");
-    EmitParams all = *params;
-    add_part(&values, "frames", put_frame_settings, &all);
+    add_flag(&values, "alpha", params->scene->view.transparent);
+    add_count(&values, "frames", params->scene->appearance.n_frames);
     return values_expand(&values, params, "povray/scene.ini", out, err);
 }

@@ -6,6 +6,11 @@
 #include "emit/povray_text.h"
 #include "emit/values.h"
 
+bool povray_paints(const PovrayGeometry *geometry)
+{
+    return geometry->params->ids || geometry->scene->appearance.colors;
+}
+
 bool povray_blends(const PovrayGeometry *geometry)
 {
     const Scene *scene = geometry->scene;
@@ -70,7 +75,7 @@ static bool all_are_known(const Appearance *appearance)
     return true;
 }
 
-Status put_blend_macros(Text *out, void *context, Err *err)
+Status put_blend_macros(Text *out, const void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     const Appearance *appearance = &geometry->scene->appearance;

@@ -223,7 +223,7 @@ done:
     return status;
 }
 
-static Status put_blobs(Text *out, void *context, Err *err)
+static Status put_blobs(Text *out, const void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     BlobCells cells = {0};
@@ -239,13 +239,11 @@ done:
     return status;
 }
 
-Status put_blob(Text *out, PovrayGeometry *geometry, Err *err)
+Status put_blob(Text *out, const PovrayGeometry *geometry, Err *err)
 {
     bool whole;
-    Values values = {.digits = geometry->params->digits};
     TRY(blob_is_whole(geometry, &whole, err));
-    add_part(&values, "members", put_blobs, geometry);
-    return put_declaration(out, geometry, whole ? "blob" : "union", &values, err);
+    return put_declaration(out, geometry, whole ? "blob" : "union", put_blobs, err);
 }
 
 Status find_visible_segments(PovrayGeometry *geometry, Err *err)
@@ -302,9 +300,8 @@ static const FieldSegment *painted_segment(const Paints *paints, uint32_t number
 static int by_key(const void *a, const void *b)
 {
     const PaintItem *x = a, *y = b;
-    if (x->key != y->key)
-        return x->key < y->key ? -1 : 1;
-    return x->segment < y->segment ? -1 : x->segment > y->segment;
+    const int order = number_order(x->key, y->key);
+    return order ? order : number_order(x->segment, y->segment);
 }
 
 /* Returns the position of a segment's value on the color scale; 0 if it has none. */
@@ -504,27 +501,17 @@ done:
     return status;
 }
 
-static Status put_functions(Text *out, void *context, Err *err)
+/* Appends the functions that find the segment of a point. */
+static Status put_functions(Text *out, const void *context, Err *err)
 {
     return put_hierarchy(out, context, NULL, err);
 }
 
-static Status put_weights(Text *out, void *context, Err *err)
+/* Appends the functions that find the mean position on the color scale. */
+static Status put_weights(Text *out, const void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     return put_hierarchy(out, geometry, geometry->scene->appearance.positions, err);
-}
-
-/* Appends the functions that find the mean position on the color scale, if colors blend. */
-static Status put_blend(Text *out, void *context, Err *err)
-{
-    const PovrayGeometry *geometry = context;
-    Values values = {.digits = geometry->params->digits};
-    if (!povray_blends(geometry))
-        return text_check(out, err);
-    text_printf(add_value(&values, "top"), "Fw[%zu]", count_nodes(geometry->painted.n) - 1);
-    add_part(&values, "nodes", put_weights, context);
-    return values_expand(&values, geometry->params, "povray/blob_blend.inc", out, err);
 }
 
 /* Appends the paint of a segment. Paints are grouped by GROUP, the maximum size of a map. */
@@ -542,12 +529,6 @@ static void put_paint_of(Text *out, const void *context, size_t i)
         put_text(out, "Blob_Group_End(%z)\n", i / GROUP);
 }
 
-static Status put_nothing(Text *out, void *context, Err *err)
-{
-    (void)context;
-    return text_check(out, err);
-}
-
 static void add_shape(Values *values)
 {
     const BlobTube *tube = blob_shape.tube;
@@ -563,11 +544,11 @@ static void add_shape(Values *values)
         add_number(values, numbers[i].name, numbers[i].value);
 }
 
-Status put_blob_macros(Text *out, void *context, Err *err)
+Status put_blob_macros(Text *out, const void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     size_t n = geometry->painted.n;
-    bool painted = geometry->scene->appearance.colors || geometry->params->ids;
+    bool painted = povray_paints(geometry);
     Values values = {.digits = geometry->params->digits};
     if (painted && n > MAX_PAINTED)
         return err_set(
@@ -577,13 +558,11 @@ Status put_blob_macros(Text *out, void *context, Err *err)
     add_shape(&values);
     add_flag(&values, "painted", painted);
     add_flag(&values, "blended", povray_blends(geometry));
-    Text *top = add_value(&values, "top"), *n_groups = add_value(&values, "n_groups");
-    if (painted) {
-        text_printf(top, "Fn[%zu]", count_nodes(n) - 1);
-        put_text(n_groups, "%z", (size_t)((n + GROUP - 1) / GROUP));
-    }
-    add_part(&values, "paint", painted ? put_functions : put_nothing, context);
-    add_part(&values, "blend", put_blend, context);
-    add_list(&values, "groups", put_paint_of, geometry, painted ? n : 0);
+    text_printf(add_value(&values, "top"), "Fn[%zu]", count_nodes(n) - 1);
+    text_printf(add_value(&values, "top_weight"), "Fw[%zu]", count_nodes(n) - 1);
+    add_count(&values, "n_groups", (n + GROUP - 1) / GROUP);
+    add_part(&values, "paint", put_functions, context);
+    add_part(&values, "nodes", put_weights, context);
+    add_list(&values, "groups", put_paint_of, geometry, n);
     return values_expand(&values, geometry->params, "povray/blob.inc", out, err);
 }

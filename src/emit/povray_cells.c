@@ -92,9 +92,8 @@ static int scale_number(const Cell *cell)
 }
 
 /* Declares the functions Fk and Fl of each scale number that a cell has. */
-static Status put_scales(Text *out, void *context, Err *err)
+static Status put_scales(Text *out, const void *context, Err *err)
 {
-    static const char *const scale_name = "povray/scale.inc";
     const PovrayGeometry *geometry = context;
     Tmpl template = {0};
     bool used[N_SCALES] = {false};
@@ -102,7 +101,7 @@ static Status put_scales(Text *out, void *context, Err *err)
     for (size_t k = 0; k < geometry->n_objects; k++)
         for (size_t i = 0; i < geometry->cells[k].n_cells; i++)
             used[scale_number(&geometry->cells[k].cells[i])] = true;
-    TRY_GOTO(load_templates(&template, geometry->params, &scale_name, 1, err));
+    TRY_GOTO(tmpl_load(&template, geometry->params->templates, "povray/scale.inc", err));
     for (int number = 0; number < N_SCALES; number++) {
         char digits[12], scale[NUMBER_TEXT_SIZE], low[NUMBER_TEXT_SIZE], high[NUMBER_TEXT_SIZE],
             slope[NUMBER_TEXT_SIZE];
@@ -166,12 +165,6 @@ static void put_arrays(Text *out, size_t n, bool in_matrices)
         put_matrix_arrays(out, n);
 }
 
-/* Returns true if segments differ in color or id. */
-static bool is_painted(const PovrayGeometry *geometry)
-{
-    return geometry->params->ids || geometry->scene->appearance.colors;
-}
-
 /* Appends a call of Term_Paint for each segment that a cell uses. */
 static void put_paints(Text *out, const PovrayGeometry *geometry, const uint8_t *used)
 {
@@ -190,7 +183,7 @@ static void put_paints(Text *out, const PovrayGeometry *geometry, const uint8_t 
 }
 
 /* Declares the functions and the paints of all segments that cells use. */
-static Status put_terms(Text *out, void *context, Err *err)
+static Status put_terms(Text *out, const void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     size_t n = geometry->scene->geometry.n_segments;
@@ -207,7 +200,7 @@ static Status put_terms(Text *out, void *context, Err *err)
         const Term term = {&geometry->cells[0].forms[i], i, in_matrices};
         TRY_GOTO(put_segment(out, templates, &term, used[i], err));
     }
-    if (is_painted(geometry))
+    if (povray_paints(geometry))
         put_paints(out, geometry, used);
 done:
     free(used);
@@ -215,7 +208,7 @@ done:
     return status;
 }
 
-Status put_cell_macros(Text *out, void *context, Err *err)
+Status put_cell_macros(Text *out, const void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     ErfForm erf = geometry->cells[0].erf;
@@ -224,7 +217,7 @@ Status put_cell_macros(Text *out, void *context, Err *err)
     for (int i = 0; i < ERF_TERMS; i++)
         add_number(&values, names[i], erf_forms[erf][i]);
     add_flag(&values, "exact_erf", erf == ERF_EXACT);
-    add_flag(&values, "painted", is_painted(geometry));
+    add_flag(&values, "painted", povray_paints(geometry));
     add_flag(&values, "blended", povray_blends(geometry));
     add_part(&values, "scales", put_scales, context);
     add_part(&values, "terms", put_terms, context);
@@ -554,7 +547,7 @@ static Status put_cell(Text *out, CellWriter *writer, const Cell *cell, Err *err
     char max_gradient[NUMBER_TEXT_SIZE], accuracy[NUMBER_TEXT_SIZE];
     text_clear(&writer->text[CELL_PAINT]);
     text_clear(&writer->text[CELL_BY_SEGMENT]);
-    if (is_painted(geometry))
+    if (povray_paints(geometry))
         TRY(put_cell_paint(writer, cell, blended ? CELL_BY_SEGMENT : CELL_PAINT, err));
     if (blended)
         TRY(put_cell_blend(writer, cell, err));
@@ -573,7 +566,7 @@ static Status put_cell(Text *out, CellWriter *writer, const Cell *cell, Err *err
                       out, err);
 }
 
-static Status put_isosurfaces(Text *out, void *context, Err *err)
+static Status put_isosurfaces(Text *out, const void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     CellWriter writer = {.geometry = geometry, .cells = &geometry->cells[geometry->object]};
@@ -595,12 +588,10 @@ done:
 
 /* The call of Cell_Guard is the only member if there are no cells. This occurs if every vessel is
  * too short, relative to its radius, to have a surface. */
-Status put_cells(Text *out, PovrayGeometry *geometry, Err *err)
+Status put_cells(Text *out, const PovrayGeometry *geometry, Err *err)
 {
     bool alone = geometry->cells[geometry->object].n_cells == 0;
-    Values values = {.digits = geometry->params->digits};
-    add_part(&values, "members", put_isosurfaces, geometry);
-    return put_declaration(out, geometry, alone ? "object" : "union", &values, err);
+    return put_declaration(out, geometry, alone ? "object" : "union", put_isosurfaces, err);
 }
 
 /* ---- the cells of each object ---------------------------------------------------------------- */

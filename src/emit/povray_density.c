@@ -7,7 +7,7 @@
 
 /* Appends a camera that looks straight at the front of the box. The picture is as wide and as high
  * as the box. */
-static Status put_camera(Text *out, void *context, Err *err)
+static Status put_camera(Text *out, const void *context, Err *err)
 {
     Values values = {0};
     add_flag(&values, "perspective", false);
@@ -37,7 +37,6 @@ Status emit_density(const EmitParams *params, const DensityBox *density, Text *o
     add_number(&values, "emission", 1 / density->thickest_mm);
     put_text(add_value(&values, "low"), "<%v>", density->box.low);
     put_text(add_value(&values, "high"), "<%v>", density->box.high);
-    EmitParams for_camera = *params;
-    add_part(&values, "camera", put_camera, &for_camera);
+    add_part(&values, "camera", put_camera, params);
     return values_expand(&values, params, "povray/density.pov", out, err);
 }

@@ -97,7 +97,7 @@ static void count_joints(const PovrayGeometry *geometry, size_t *all, size_t *wr
         *written += whole->primitives[items.index[i]].kind == PRIMITIVE_JOINT;
 }
 
-Status put_joint_macros(Text *out, void *context, Err *err)
+Status put_joint_macros(Text *out, const void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     Values values = {.digits = geometry->params->digits};

@@ -11,7 +11,7 @@ static void put_point(Text *out, const void *mesh, size_t i)
     put_triple(out, "<", ((const VesselMesh *)mesh)->points[i], ",", ">,\n");
 }
 
-static Status put_normals(Text *out, void *context, Err *err)
+static Status put_normals(Text *out, const void *context, Err *err)
 {
     const VesselMesh *mesh = context;
     for (size_t i = 0; i < mesh->n_points; i++)
@@ -43,7 +43,7 @@ static void put_painted_face(Text *out, const void *mesh, size_t i)
     put_text(out, "%u,\n", mesh_segment(mesh, i));
 }
 
-static Status put_normal_faces(Text *out, void *context, Err *err)
+static Status put_normal_faces(Text *out, const void *context, Err *err)
 {
     const VesselMesh *mesh = context;
     size_t flat = mesh->n_points;
@@ -75,7 +75,7 @@ static void put_texture(Text *out, const void *context, size_t i)
     text_puts(out, ")\n");
 }
 
-static Status put_lists(Text *out, void *context, Err *err)
+static Status put_lists(Text *out, const void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     const PovrayItems *items = &geometry->objects[geometry->object];
@@ -101,14 +101,12 @@ static Status put_lists(Text *out, void *context, Err *err)
     return status;
 }
 
-Status put_mesh(Text *out, PovrayGeometry *geometry, Err *err)
+Status put_mesh(Text *out, const PovrayGeometry *geometry, Err *err)
 {
-    Values values = {.digits = geometry->params->digits};
-    add_part(&values, "members", put_lists, geometry);
-    return put_declaration(out, geometry, "mesh2", &values, err);
+    return put_declaration(out, geometry, "mesh2", put_lists, err);
 }
 
-Status put_mesh_macros(Text *out, void *geometry, Err *err)
+Status put_mesh_macros(Text *out, const void *geometry, Err *err)
 {
     return put_template(((const PovrayGeometry *)geometry)->params, "povray/mesh_macros.inc", out,
                         err);

@@ -119,38 +119,32 @@ void povray_objects_release(PovrayGeometry *geometry)
     rayvolume_free(geometry->volume);
 }
 
-Status put_declaration(Text *out, const PovrayGeometry *geometry, const char *kind, Values *members,
-                       Err *err)
+Status put_declaration(Text *out, const PovrayGeometry *geometry, const char *kind,
+                       TmplPut *put_members, Err *err)
 {
-    Text *name = add_value(members, "name");
+    Values values = {.digits = geometry->params->digits};
+    Text *name = add_value(&values, "name");
     text_puts(name, "Tree");
     if (geometry->object > 0)
         put_text(name, "_%z", geometry->object);
-    text_puts(add_value(members, "kind"), kind);
-    return values_expand(members, geometry->params, "povray/tree.inc", out, err);
+    text_puts(add_value(&values, "kind"), kind);
+    add_part(&values, "members", put_members, geometry);
+    return values_expand(&values, geometry->params, "povray/tree.inc", out, err);
 }
 
-static Status put_nothing_members(Text *out, void *geometry, Err *err)
+/* Appends an invisible object. */
+static Status put_nothing(Text *out, const void *geometry, Err *err)
 {
     return put_template(((const PovrayGeometry *)geometry)->params, "povray/nothing.inc", out, err);
 }
 
-/* Declares an invisible object. */
-static Status put_nothing(Text *out, PovrayGeometry *geometry, Err *err)
-{
-    Values values = {.digits = geometry->params->digits};
-    add_part(&values, "members", put_nothing_members, geometry);
-    return put_declaration(out, geometry, "object", &values, err);
-}
-
 /* Appends the trees as members of the whole. */
-static Status put_trees(Text *out, void *context, Err *err)
+static Status put_trees(Text *out, const void *context, Err *err)
 {
-    static const char *const member_name = "povray/member.inc";
     const PovrayGeometry *geometry = context;
     Tmpl member = {0};
     Status status;
-    TRY_GOTO(load_templates(&member, geometry->params, &member_name, 1, err));
+    TRY_GOTO(tmpl_load(&member, geometry->params->templates, "povray/member.inc", err));
     for (size_t k = 1; k < geometry->n_objects; k++) {
         char number[NUMBER_TEXT_SIZE];
         const TmplValue value = {"number", number_text((double)k, number)};
@@ -162,17 +156,16 @@ done:
     return status;
 }
 
-Status put_objects(Text *out, PovrayGeometry *geometry,
-                   Status (*put_object)(Text *, PovrayGeometry *, Err *), Err *err)
+Status put_objects(Text *out, const PovrayGeometry *geometry, PovrayPutObject *put_object, Err *err)
 {
-    for (geometry->object = 1; geometry->object < geometry->n_objects; geometry->object++)
-        TRY((geometry->objects[geometry->object].n ? put_object : put_nothing)(out, geometry, err));
-    geometry->object = 0;
-    if (geometry->is_empty)
-        return put_nothing(out, geometry, err);
-    if (geometry->n_objects == 1 || is_field(geometry))
-        return put_object(out, geometry, err);
-    Values values = {.digits = geometry->params->digits};
-    add_part(&values, "members", put_trees, geometry);
-    return put_declaration(out, geometry, "Tree_Of()", &values, err);
+    PovrayGeometry one = *geometry;
+    for (one.object = 1; one.object < one.n_objects; one.object++)
+        TRY(one.objects[one.object].n ? put_object(out, &one, err)
+                                      : put_declaration(out, &one, "object", put_nothing, err));
+    one.object = 0;
+    if (one.is_empty)
+        return put_declaration(out, &one, "object", put_nothing, err);
+    if (one.n_objects == 1 || is_field(&one))
+        return put_object(out, &one, err);
+    return put_declaration(out, &one, "Tree_Of()", put_trees, err);
 }

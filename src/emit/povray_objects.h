@@ -12,12 +12,12 @@ typedef struct PovrayItems {
     size_t n;
 } PovrayItems;
 
-/* A geometry that is being written. Everything from `volume` on is owned; release it with
- * povray_objects_release. */
+/* A geometry that is being written. The first three members are borrowed. Everything from `volume`
+ * on is owned; release it with povray_objects_release. */
 typedef struct PovrayGeometry {
     const EmitParams *params;
     const Scene *scene;
-    EmitReport *report;
+    EmitReport *report;   /* NULL: the geometry is only weighed [povray_load] */
     RayVolume *volume;    /* the rays of params->part; NULL: there is no part */
     PovrayItems *objects; /* [0]: Tree; of a forest, [k]: Tree_k */
     size_t n_objects;
@@ -37,17 +37,19 @@ void povray_objects_release(PovrayGeometry *geometry);
 
 /* Appends the declaration of the object with the index geometry->object.
  *
- * kind     the kind of POV-Ray object, such as "union".
- * members  has a part called `members`; is released, even after an error.
- * Errors   those of values_expand. */
+ * kind         the kind of POV-Ray object, such as "union".
+ * put_members  appends the members of the object; its `context` is `geometry`.
+ * Errors       those of values_expand and of put_members. */
 MUST_CHECK Status put_declaration(Text *out, const PovrayGeometry *geometry, const char *kind,
-                                  Values *members, Err *err);
+                                  TmplPut *put_members, Err *err);
 
-/* Appends the declarations of all objects. For each object, sets geometry->object and calls
- * `put_object`, which appends its declaration. Errors: those of `put_object` and of
- * put_declaration. */
-MUST_CHECK Status put_objects(Text *out, PovrayGeometry *geometry,
-                              Status (*put_object)(Text *out, PovrayGeometry *geometry, Err *err),
-                              Err *err);
+/* Appends the declaration of geometry->object. */
+typedef Status PovrayPutObject(Text *out, const PovrayGeometry *geometry, Err *err);
+
+/* Appends the declarations of all objects. Calls `put_object` for each object that has items, with
+ * a copy of the geometry in which `object` is the object's index. An object without items is
+ * declared invisible. Errors: those of `put_object` and of put_declaration. */
+MUST_CHECK Status put_objects(Text *out, const PovrayGeometry *geometry,
+                              PovrayPutObject *put_object, Err *err);
 
 #endif

@@ -18,32 +18,33 @@ static void put_primitive(Text *text, const EmitParams *params, const Primitive 
     text_puts(text, ")\n");
 }
 
-static void put_call(Text *out, const void *context, size_t i)
+static Status put_calls(Text *out, const void *context, Err *err)
 {
     const PovrayGeometry *geometry = context;
     const PovrayItems *items = &geometry->objects[geometry->object];
-    const Primitive *primitive = &geometry->scene->geometry.primitives[items->index[i]];
-    if (primitive->kind == PRIMITIVE_JOINT)
-        put_joint(out, geometry->params, primitive);
-    else
-        put_primitive(out, geometry->params, primitive);
+    for (size_t i = 0; i < items->n; i++) {
+        const Primitive *primitive = &geometry->scene->geometry.primitives[items->index[i]];
+        if (primitive->kind == PRIMITIVE_JOINT)
+            put_joint(out, geometry->params, primitive);
+        else
+            put_primitive(out, geometry->params, primitive);
+    }
+    return text_check(out, err);
 }
 
-Status put_primitives(Text *out, PovrayGeometry *geometry, Err *err)
+Status put_primitives(Text *out, const PovrayGeometry *geometry, Err *err)
 {
-    const size_t n = geometry->objects[geometry->object].n;
-    Values values = {.digits = geometry->params->digits};
-    add_list(&values, "members", put_call, geometry, n);
-    return put_declaration(out, geometry, n == 1 ? "object" : "Tree_Of()", &values, err);
+    const bool alone = geometry->objects[geometry->object].n == 1;
+    return put_declaration(out, geometry, alone ? "object" : "Tree_Of()", put_calls, err);
 }
 
-Status put_primitive_macros(Text *out, void *geometry, Err *err)
+Status put_primitive_macros(Text *out, const void *geometry, Err *err)
 {
     return put_template(((const PovrayGeometry *)geometry)->params, "povray/primitives.inc", out,
                         err);
 }
 
-Status put_joined_macros(Text *out, void *geometry, Err *err)
+Status put_joined_macros(Text *out, const void *geometry, Err *err)
 {
     TRY(put_primitive_macros(out, geometry, err));
     return put_joint_macros(out, geometry, err);

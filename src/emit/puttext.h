@@ -7,10 +7,14 @@
 
 /* Appends `format`, in which each conversion stands for the next argument:
  *
- *     %s  const char *       %n  double, as text_number formats it
- *     %d  int                %f  double, as %n for a float; -0 becomes 0
- *     %u  uint32_t           %v  Vec3, as x,y,z in the digits of %n; -0 becomes 0
- *     %z  size_t             %c  Rgb, as r,g,b in the digits of %f
+ *     %s  const char *
+ *     %d  int
+ *     %u  uint32_t
+ *     %z  size_t
+ *     %n  double, as text_number formats it
+ *     %f  double, rounded to float, in the fewest digits that read back to the float; -0 becomes 0
+ *     %v  Vec3, as x,y,z in the digits of %n; -0 becomes 0
+ *     %c  Rgb, as r,g,b in the digits of %f
  *
  * There are no flags or widths, and no other conversions. */
 void put_text(Text *text, const char *format, ...);

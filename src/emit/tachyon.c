@@ -62,7 +62,7 @@ static Rgb id_color(uint32_t id)
                  ((float)(id & 255) + 0.5F) / 255};
 }
 
-static Status put_textures(Text *out, void *context, Err *err)
+static Status put_textures(Text *out, const void *context, Err *err)
 {
     const EmitParams *params = context;
     const Geometry *geometry = &params->scene->geometry;
@@ -131,7 +131,7 @@ static void put_triangle(Text *text, const EmitParams *params, size_t triangle)
     put_texture_name(text, params, geometry->segments[mesh_segment(mesh, triangle)].segment);
 }
 
-static Status put_vessels(Text *out, void *context, Err *err)
+static Status put_vessels(Text *out, const void *context, Err *err)
 {
     const EmitParams *params = context;
     const Geometry *geometry = &params->scene->geometry;
@@ -188,7 +188,7 @@ static void put_ground(Text *text, const Ground *ground)
     text_puts(text, " ground\n");
 }
 
-static Status put_lights(Text *out, void *context, Err *err)
+static Status put_lights(Text *out, const void *context, Err *err)
 {
     const EmitParams *params = context;
     const View *view = &params->scene->view;
@@ -200,7 +200,6 @@ static Status put_lights(Text *out, void *context, Err *err)
 
 Status tachyon_write(const EmitParams *params, EmitOutput *to, Err *err)
 {
-    EmitParams all = *params;
     const Scene *scene = params->scene;
     const View *view = &scene->view;
     double near_mm, far_mm;
@@ -209,8 +208,8 @@ Status tachyon_write(const EmitParams *params, EmitOutput *to, Err *err)
     add_file(&values, params->file, ".ppm", "");
     add_about(&values, params, scene->geometry.bounds, scene->geometry.origin);
     add_camera(&values, &view->camera);
-    add_part(&values, "textures", put_textures, &all);
-    add_part(&values, "vessels", put_vessels, &all);
+    add_part(&values, "textures", put_textures, params);
+    add_part(&values, "vessels", put_vessels, params);
     if (params->planes) {
         add_number(&values, "depth_near", near_mm);
         add_number(&values, "depth_far", far_mm);
@@ -220,6 +219,6 @@ Status tachyon_write(const EmitParams *params, EmitOutput *to, Err *err)
     text_printf(add_value(&values, "antialiasing"), "%d",
                 params->antialias > 1 ? params->antialias * params->antialias - 1 : 0);
     put_colors(add_value(&values, "background"), view->background);
-    add_part(&values, "lights", put_lights, &all);
+    add_part(&values, "lights", put_lights, params);
     return values_expand(&values, params, "tachyon/picture.tachyon", to->file, err);
 }

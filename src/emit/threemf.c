@@ -44,7 +44,7 @@ static void put_triangle(Text *out, const void *context, size_t i)
     text_puts(out, "/>\n");
 }
 
-static Status put_model(Text *out, void *context, Err *err)
+static Status put_model(Text *out, const void *context, Err *err)
 {
     const EmitParams *params = context;
     Values values = {0};
@@ -54,23 +54,21 @@ static Status put_model(Text *out, void *context, Err *err)
     return values_expand(&values, params, "3mf/model.xml", out, err);
 }
 
-static Status put_types(Text *out, void *params, Err *err)
+static Status put_types(Text *out, const void *params, Err *err)
 {
     return put_template(params, "3mf/content_types.xml", out, err);
 }
 
-static Status put_relations(Text *out, void *params, Err *err)
+static Status put_relations(Text *out, const void *params, Err *err)
 {
     return put_template(params, "3mf/rels.xml", out, err);
 }
 
-Status threemf_put_archive(const EmitParams *params,
-                           Status (*put)(Text *out, void *context, Err *err), void *context,
-                           Text *out, Err *err)
+Status threemf_put_archive(const EmitParams *params, TmplPut *put, const void *context, Text *out,
+                           Err *err)
 {
-    EmitParams own = *params;
-    const ZipEntry entries[] = {{"[Content_Types].xml", put_types, &own},
-                                {"_rels/.rels", put_relations, &own},
+    const ZipEntry entries[] = {{"[Content_Types].xml", put_types, params},
+                                {"_rels/.rels", put_relations, params},
                                 {"3D/3dmodel.model", put, context}};
     TRY(zip_put(entries, sizeof entries / sizeof *entries, out, err));
     return text_check(out, err);
@@ -78,6 +76,5 @@ Status threemf_put_archive(const EmitParams *params,
 
 Status threemf_write(const EmitParams *params, EmitOutput *to, Err *err)
 {
-    EmitParams own = *params;
-    return threemf_put_archive(params, put_model, &own, to->file, err);
+    return threemf_put_archive(params, put_model, params, to->file, err);
 }

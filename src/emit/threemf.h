@@ -7,9 +7,8 @@
 
 /* Appends the archive of a model to `out`. `put` appends the model's XML to its own `out`, and
  * receives `context`. Errors: those of `put` and of zip_put. */
-MUST_CHECK Status threemf_put_archive(const EmitParams *params,
-                                      Status (*put)(Text *out, void *context, Err *err),
-                                      void *context, Text *out, Err *err);
+MUST_CHECK Status threemf_put_archive(const EmitParams *params, TmplPut *put, const void *context,
+                                      Text *out, Err *err);
 
 /* Adds the values `generator`, `description` and `command`, and the part `colors`: a color per
  * segment, or a single color without an appearance. */

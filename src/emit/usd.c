@@ -49,18 +49,18 @@ static void put_id(const CurveGroup *group, size_t curve, size_t i, Text *out)
     put_text(out, "%u", group->params->vessels->ids[curve_segment(group->curves, curve, i)]);
 }
 
-static Status put_points(Text *out, void *context, Err *err)
+static Status put_points(Text *out, const void *context, Err *err)
 {
     return put_each(context, put_position, out, err);
 }
 
-static Status put_widths(Text *out, void *context, Err *err)
+static Status put_widths(Text *out, const void *context, Err *err)
 {
     return put_each(context, put_width, out, err);
 }
 
 /* Appends a color per point, or a single color if all vessels have the same color. */
-static Status put_colors(Text *out, void *context, Err *err)
+static Status put_colors(Text *out, const void *context, Err *err)
 {
     const CurveGroup *group = context;
     if (group->params->appearance->colors)
@@ -69,7 +69,7 @@ static Status put_colors(Text *out, void *context, Err *err)
     return text_check(out, err);
 }
 
-static Status put_segments(Text *out, void *context, Err *err)
+static Status put_segments(Text *out, const void *context, Err *err)
 {
     return put_each(context, put_id, out, err);
 }
@@ -83,7 +83,7 @@ static Box group_box(const CurveGroup *group)
     return box;
 }
 
-static Status put_group(CurveGroup *group, Text *out, Err *err)
+static Status put_group(const CurveGroup *group, Text *out, Err *err)
 {
     const CurveKind *kind = curve_kind(group->curves, group->first);
     Box box = group_box(group);
@@ -105,12 +105,12 @@ static Status put_group(CurveGroup *group, Text *out, Err *err)
     return values_expand(&values, group->params, "usd/curves.usda", out, err);
 }
 
-static Status put_groups(Text *out, void *context, Err *err)
+static Status put_groups(Text *out, const void *context, Err *err)
 {
-    CurveGroup *group = context;
-    for (; group->first < group->curves->n; group->first = group->end) {
-        group->end = curves_group_end(group->curves, group->first);
-        TRY(put_group(group, out, err));
+    CurveGroup group = *(const CurveGroup *)context;
+    for (; group.first < group.curves->n; group.first = group.end) {
+        group.end = curves_group_end(group.curves, group.first);
+        TRY(put_group(&group, out, err));
     }
     return text_check(out, err);
 }

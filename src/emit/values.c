@@ -1,18 +1,14 @@
-/* The text of a value may still grow after further values have been added, which moves its
- * characters. Names and texts are therefore in separate arrays, and the pointers to the characters
- * are set when the template is expanded. */
+/* The templates are programs in languages that have their own rules of quoting. The texts are
+ * therefore inserted unchanged [markup_raw]. */
 #include "emit/values.h"
 
 #include <assert.h>
-#include <stdlib.h>
 #include <string.h>
 
 Text *add_value(Values *values, const char *name)
 {
-    assert(values->n < VALUES_MAX);
-    Text *text = &values->text[values->n];
+    Text *text = markup_raw(&values->texts, name);
     text->digits = values->digits;
-    values->value[values->n++].name = name;
     return text;
 }
 
@@ -105,13 +101,13 @@ void add_finish(Values *values, const Finish *finish)
     add_float(values, "roughness", finish->roughness);
 }
 
-void add_part(Values *values, const char *name, Status (*put)(Text *, void *, Err *), void *context)
+void add_part(Values *values, const char *name, TmplPut *put, const void *context)
 {
     assert(values->n_parts < PARTS_MAX);
     values->part[values->n_parts++] = (TmplPart){name, put, context};
 }
 
-static Status put_items(Text *out, void *context, Err *err)
+static Status put_items(Text *out, const void *context, Err *err)
 {
     const ValueList *list = context;
     for (size_t i = 0; i < list->n; i++)
@@ -126,20 +122,11 @@ void add_list(Values *values, const char *name, PutItem *put, const void *contex
     *list = (ValueList){put, context, n};
 }
 
-static Status load_template(Tmpl *template, const EmitParams *params, const char *name, Err *err)
-{
-    char *path = NULL;
-    TRY(file_join(params->templates, name, &path, err));
-    Status status = tmpl_load(template, path, err);
-    free(path);
-    return status;
-}
-
 Status load_templates(Tmpl *templates, const EmitParams *params, const char *const *names, size_t n,
                       Err *err)
 {
     for (size_t i = 0; i < n; i++)
-        TRY(load_template(&templates[i], params, names[i], err));
+        TRY(tmpl_load(&templates[i], params->templates, names[i], err));
     return STATUS_OK;
 }
 
@@ -152,18 +139,8 @@ void release_templates(Tmpl *templates, size_t n)
 Status values_expand(Values *values, const EmitParams *params, const char *name, Text *out,
                      Err *err)
 {
-    Tmpl template = {0};
-    Status status;
-    TRY_GOTO(load_template(&template, params, name, err));
-    for (size_t i = 0; i < values->n; i++)
-        values->value[i].text = text_chars(&values->text[i]);
-    TRY_GOTO(
-        tmpl_stream(&template, values->value, values->n, values->part, values->n_parts, out, err));
-done:
-    tmpl_release(&template);
-    for (size_t i = 0; i < values->n; i++)
-        text_release(&values->text[i]);
-    return status;
+    return markup_stream(&values->texts, params->templates, name, values->part, values->n_parts,
+                         out, err);
 }
 
 Status put_template(const EmitParams *params, const char *name, Text *out, Err *err)

@@ -15,8 +15,8 @@
 #include "emit/puttext.h" // IWYU pragma: export
 #include "tmpl/tmpl.h"
 
-/* The largest numbers of values and of parts of a template; the largest template sets them. */
-enum { VALUES_MAX = 40, PARTS_MAX = 6 };
+/* The largest number of parts of a template; the largest template sets it. */
+enum { PARTS_MAX = 6 };
 
 /* Appends the text of item `i` of a list, counted from 0. */
 typedef void PutItem(Text *out, const void *context, size_t i);
@@ -31,9 +31,7 @@ typedef struct ValueList {
 /* Zeroed except for `digits`, it has no values. values_expand releases it. */
 typedef struct Values {
     int digits; /* significant digits of doubles, as Text.digits */
-    TmplValue value[VALUES_MAX];
-    Text text[VALUES_MAX];
-    size_t n;
+    Markup texts;
     TmplPart part[PARTS_MAX];
     ValueList list[PARTS_MAX];
     size_t n_parts;
@@ -66,13 +64,13 @@ void add_about(Values *values, const EmitParams *params, Box box, Vec3 origin);
 /* Adds the members of a finish as values with POV-Ray's names: `ambient`, `diffuse`, ... */
 void add_finish(Values *values, const Finish *finish);
 /* Adds a part. `put` appends it when the template reaches it, and receives `context`. */
-void add_part(Values *values, const char *name, Status (*put)(Text *, void *, Err *),
-              void *context);
+void add_part(Values *values, const char *name, TmplPut *put, const void *context);
 /* Adds a part that consists of `n` items. `put` appends each, and receives `context`. */
 void add_list(Values *values, const char *name, PutItem *put, const void *context, size_t n);
 
-/* Loads `n` templates by their paths in the folder of templates, such as "povray/cell.inc". Release
- * them with release_templates, even after an error. Errors: those of tmpl_load. */
+/* Loads `n` templates by their paths in the folder of templates, such as "povray/cell.inc". The
+ * caller zeroes them, and releases them with release_templates, even after an error. Errors: those
+ * of tmpl_load. */
 MUST_CHECK Status load_templates(Tmpl *templates, const EmitParams *params,
                                  const char *const *names, size_t n, Err *err);
 void release_templates(Tmpl *templates, size_t n);

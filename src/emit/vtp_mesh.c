@@ -79,7 +79,7 @@ static void put_points(const EmitParams *params, Record *record, Text *out)
     }
 }
 
-static Status put_arrays(Text *out, void *context, Err *err)
+static Status put_arrays(Text *out, const void *context, Err *err)
 {
     const EmitParams *params = context;
     Record record = {.length = 0};
@@ -128,7 +128,6 @@ static void add_texts(Values *values, const EmitParams *params)
 /* Appends the XML document, made from the template, and the binary arrays. */
 static Status put_document(const EmitParams *params, const char *template, Text *out, Err *err)
 {
-    EmitParams context = *params;
     Values values = {0};
     size_t offset = 0;
     add_texts(&values, params);
@@ -138,7 +137,7 @@ static Status put_document(const EmitParams *params, const char *template, Text 
         add_count(&values, offset_names[array], offset);
         offset += 8 + 4 * array_length(params, array);
     }
-    add_part(&values, "arrays", put_arrays, &context);
+    add_part(&values, "arrays", put_arrays, params);
     return values_expand(&values, params, template, out, err);
 }
 

@@ -2,16 +2,16 @@
 #ifndef CORCAST_EMIT_ZIP_H
 #define CORCAST_EMIT_ZIP_H
 
-#include "base/base.h"
+#include "tmpl/tmpl.h"
 
+/* A file in the archive. All pointers are borrowed. */
 typedef struct ZipEntry {
-    const char *name;
-    /* Appends the content of the entry. Receives `context`. */
-    Status (*put)(Text *out, void *context, Err *err);
-    void *context;
+    const char *name;    /* its path in the archive */
+    TmplPut *put;        /* appends the content of the entry */
+    const void *context; /* passed to `put` */
 } ZipEntry;
 
-enum { ZIP_MAX_ENTRIES = 8 }; /* largest number of entries of an archive */
+enum { ZIP_MAX_ENTRIES = 8 }; /* chosen: more than any archive here has */
 
 /* Appends a ZIP archive of `n` <= ZIP_MAX_ENTRIES entries to `out`. Each entry is compressed while
  * its callback produces it. Every entry is dated 1 January 1980, so equal entries give equal bytes.

@@ -162,7 +162,7 @@ typedef struct FigurePage {
     const FigureFonts *fonts; /* borrowed; NULL: the page has no text */
     FigureItem *items;        /* owned */
     size_t n, capacity;
-    bool failed;           /* memory ran out while an item was added */
+    bool failed;           /* memory ran out while an item was added [figure_check] */
     FigureLetters missing; /* characters of all texts that Liberation Sans lacks */
     const char *unclosed;  /* the first text with a group that is not closed, borrowed from its
                             * item; NULL: there is none */
@@ -204,10 +204,12 @@ void figure_add_artwork(FigurePage *page, const FigureArtwork *artwork, FigureBo
 
 /* A line of text, which may contain markup:
  *
- *     *r*            italic. A star without a matching star, or next to a blank, is drawn as a star
- *     _{w}  ^{-3}    subscript and superscript; groups may be nested. A hyphen at either end of a
- * group is drawn as a minus. A group that is not closed ends at the end of the text
- *     \*  \_  \^  \}  \\    the character itself
+ *     *r*                      italic
+ *     _{w}  ^{-3}              a group: subscript or superscript; groups may be nested
+ *     \*  \_  \^  \{  \}  \\    the character itself
+ *
+ * A star without a matching star, or next to a blank, is drawn as a star. A hyphen at either end of
+ * a group is drawn as a minus. A group that is not closed ends at the end of the text.
  *
  * Superscript and subscript characters of Unicode, such as U+207B, are drawn like groups. */
 typedef struct FigureText {
@@ -235,7 +237,8 @@ void figure_put_unclosed(const FigurePage *page, Text *out);
  * extend beyond the page. Appends nothing if there are none. Cost: O(n^2) for n texts. */
 void figure_put_collisions(const FigurePage *page, Text *out);
 
-/* Returns the bounds of the items from index `first` on. */
+/* Returns the bounds of the items from index `first` on. The bounds of no items are infinite, with
+ * left > right. */
 FigureBox figure_bounds(const FigurePage *page, size_t first);
 /* Moves the items from index `first` on. None may be a picture. */
 void figure_move(FigurePage *page, size_t first, double dx, double dy);
@@ -285,8 +288,7 @@ int figure_ticks(const ColorScale *scale, int wanted, bool integers, double tick
 /* Metadata of the file of a page. Each string is borrowed and has one line. */
 typedef struct FigureNotes {
     const char *templates;   /* the folder of templates */
-    const char *description; /* title of the
-                              * page */
+    const char *description; /* title of the page */
     const char *generator;   /* program and version */
     const char *command;     /* the command line that makes the page */
 } FigureNotes;

@@ -250,10 +250,9 @@ static Status draw_text(PixelRows *target, const FigureItem *item, Err *err)
 
 /* ---- strokes --------------------------------------------------------------------------------- */
 
-enum {
-    STROKE_POINTS = 256
-}; /* maximum number of stroke points per outline: an outline stores the
-    * number of its points in 16 bits */
+/* Maximum number of stroke points per outline. An outline stores the number of its points in 16
+ * bits. Reason of the value not recorded. */
+enum { STROKE_POINTS = 256 };
 
 /* Makes the outline of `n` points of a stroke. The points are mm relative to `at`. */
 static FT_Error stroke_outline(PixelRows *target, FT_Stroker stroker, FigurePoint at,

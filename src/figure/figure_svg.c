@@ -305,22 +305,19 @@ typedef struct SvgBars {
     const FigureBars *bars;
 } SvgBars;
 
-static Status put_each_bar(Text *out, void *context, Err *err)
+static Status put_each_bar(Text *out, const void *context, Err *err)
 {
     (void)out;
     const SvgBars *self = context;
     SvgBar bar = {.id = TEXT_INIT, .title = TEXT_INIT};
-    char *path = NULL;
     Status status;
-    TRY_GOTO(file_join(self->svg->templates, "figure/bar.svg", &path, err));
-    TRY_GOTO(tmpl_load(&bar.tmpl, path, err));
+    TRY_GOTO(tmpl_load(&bar.tmpl, self->svg->templates, "figure/bar.svg", err));
     for (size_t i = 0; i < self->bars->n; i++)
         TRY_GOTO(put_bar(self->svg, self->bars, i, &bar, err));
 done:
     tmpl_release(&bar.tmpl);
     text_release(&bar.id);
     text_release(&bar.title);
-    free(path);
     return status;
 }
 
@@ -333,8 +330,8 @@ static void put_number(double value, Text *text)
 /* Coordinates of bars have all their digits, because bars may be thinner than 0.001 mm. */
 static Status put_bars(void *context, const FigureItem *item, Err *err)
 {
-    SvgPage *svg = context;
-    SvgBars bars = {svg, item->bars};
+    const SvgPage *svg = context;
+    const SvgBars bars = {svg, item->bars};
     const TmplPart part = {"bars", put_each_bar, &bars};
     Markup parts = {0};
     put_number(item->at[0].x, markup_text(&parts, "x"));
@@ -344,20 +341,20 @@ static Status put_bars(void *context, const FigureItem *item, Err *err)
 
 /* ---- pages ----------------------------------------------------------------------------------- */
 
-static Status put_items(Text *out, void *context, Err *err)
+static Status put_items(Text *out, const void *context, Err *err)
 {
     static FigurePut *const put[FIGURE_KINDS] = {
         [FIGURE_PICTURE] = put_picture, [FIGURE_SHAPE] = put_shape,    [FIGURE_LINE] = put_line,
         [FIGURE_RAMP] = put_ramp,       [FIGURE_TEXT] = put_text,      [FIGURE_BARS] = put_bars,
         [FIGURE_STROKES] = put_strokes, [FIGURE_ARTWORK] = put_artwork};
-    SvgPage *svg = context;
-    svg->out = out;
-    return figure_put_items(svg->page, put, svg, err);
+    SvgPage svg = *(const SvgPage *)context;
+    svg.out = out;
+    return figure_put_items(svg.page, put, &svg, err);
 }
 
 Status figure_put_svg(const FigurePage *page, const FigureNotes *notes, Text *out, Err *err)
 {
-    SvgPage svg = {.page = page, .templates = notes->templates};
+    const SvgPage svg = {.page = page, .templates = notes->templates};
     const TmplPart items = {"items", put_items, &svg};
     Markup parts = {0};
     (page->exact ? put_number : put_mm)(page->width_mm, markup_text(&parts, "width"));

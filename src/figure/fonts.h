@@ -51,12 +51,13 @@ void glyphs_release(Glyphs *glyphs);
  * and rise as glyph `first`. */
 size_t glyphs_run(const Glyphs *glyphs, size_t first);
 
+/* Return objects of FreeType, borrowed. Loading a glyph changes the face, so only one thread at a
+ * time may use the fonts. */
 FT_Library fonts_library(const FigureFonts *fonts);
 FT_Face fonts_face(const FigureFonts *fonts, FontFace face);
 
-/* Height of capitals above the baseline, and depth of letters below it, as multiples of the font
- * size.
- */
+/* Height of the capitals of Liberation Sans above the baseline, and depth of its letters below the
+ * baseline, as multiples of the font size. */
 #define FONT_CAPITALS 0.73
 #define FONT_DESCENT 0.21
 

@@ -16,6 +16,8 @@ typedef struct LegendLayout {
     double length;
 } LegendLayout;
 
+/* Sizes in multiples of the text size: width of the bar, length of a tick, space between a tick and
+ * its label, length of a pointed end. Then the width of a tick in mm. Reasons not recorded. */
 static const double bar_ems = 1.1, tick_ems = 0.25, gap_ems = 0.3, point_ems = 0.9, line_mm = 0.18;
 
 /* Converts a position along and across the bar to a point of the page. A vertical bar begins at its

@@ -57,18 +57,29 @@ void figure_add_picture(FigurePage *page, const Picture *picture, int column, in
                            .row = row});
 }
 
+/* Holds nothing. */
+static const FigureBox empty_box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+
+static FigureBox join_boxes(FigureBox a, FigureBox b)
+{
+    return (FigureBox){fmin(a.left, b.left), fmin(a.top, b.top), fmax(a.right, b.right),
+                       fmax(a.bottom, b.bottom)};
+}
+
+static FigureBox pad_box(FigureBox box, double mm)
+{
+    return (FigureBox){box.left - mm, box.top - mm, box.right + mm, box.bottom + mm};
+}
+
 static void add_corners(FigurePage *page, FigureItem item, const FigurePoint *corner, int n)
 {
-    FigureBox box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
     item.n = n;
+    item.box = empty_box;
     for (int i = 0; i < n; i++) {
+        const FigureBox point = {corner[i].x, corner[i].y, corner[i].x, corner[i].y};
         item.at[i] = corner[i];
-        box.left = fmin(box.left, corner[i].x - item.width_mm / 2);
-        box.right = fmax(box.right, corner[i].x + item.width_mm / 2);
-        box.top = fmin(box.top, corner[i].y - item.width_mm / 2);
-        box.bottom = fmax(box.bottom, corner[i].y + item.width_mm / 2);
+        item.box = join_boxes(item.box, pad_box(point, item.width_mm / 2));
     }
-    item.box = box;
     add(page, item);
 }
 
@@ -77,11 +88,22 @@ void figure_add_shape(FigurePage *page, const FigurePoint *corner, int n, Figure
     add_corners(page, (FigureItem){.kind = FIGURE_SHAPE, .color = color}, corner, n);
 }
 
+/* Returns a filled rectangle as an item. */
+static FigureItem filled_box(FigureBox box, FigureColor color)
+{
+    return (FigureItem){.kind = FIGURE_SHAPE,
+                        .box = box,
+                        .color = color,
+                        .n = 4,
+                        .at = {{box.left, box.top},
+                               {box.right, box.top},
+                               {box.right, box.bottom},
+                               {box.left, box.bottom}}};
+}
+
 void figure_add_box(FigurePage *page, FigureBox box, FigureColor color)
 {
-    const FigurePoint corner[] = {
-        {box.left, box.top}, {box.right, box.top}, {box.right, box.bottom}, {box.left, box.bottom}};
-    figure_add_shape(page, corner, 4, color);
+    add(page, filled_box(box, color));
 }
 
 void figure_add_line(FigurePage *page, const FigurePoint *corner, int n, bool closed,
@@ -183,12 +205,10 @@ FigureColor figure_color(const float linear[3])
 FigureItem figure_bar(const FigureItem *item, size_t i)
 {
     const FigureBar *bar = &item->bars->bars[i];
-    const double left = item->at[0].x + bar->x[0], right = item->at[0].x + bar->x[1];
-    const double top = item->at[0].y + bar->y[0], bottom = item->at[0].y + bar->y[1];
-    return (FigureItem){.kind = FIGURE_SHAPE,
-                        .color = figure_color(item->bars->color[bar->index]),
-                        .n = 4,
-                        .at = {{left, top}, {right, top}, {right, bottom}, {left, bottom}}};
+    const FigurePoint at = item->at[0];
+    return filled_box(
+        (FigureBox){at.x + bar->x[0], at.y + bar->y[0], at.x + bar->x[1], at.y + bar->y[1]},
+        figure_color(item->bars->color[bar->index]));
 }
 
 void figure_set_halo(FigurePage *page, size_t item, double width_mm, FigureColor color)
@@ -201,20 +221,10 @@ void figure_set_halo(FigurePage *page, size_t item, double width_mm, FigureColor
 static FigureItem halo_of(const FigureItem *item)
 {
     FigureItem halo = *item;
-    const FigureBox *box = &item->box;
-    const double wide = item->halo_mm;
+    if (item->kind != FIGURE_TEXT)
+        return filled_box(pad_box(item->box, item->halo_mm), item->halo);
     halo.color = item->halo;
-    halo.outline_mm = 2 * wide;
-    if (item->kind == FIGURE_TEXT)
-        return halo;
-    halo.kind = FIGURE_SHAPE;
-    halo.n = 4;
-    halo.box =
-        (FigureBox){box->left - wide, box->top - wide, box->right + wide, box->bottom + wide};
-    halo.at[0] = (FigurePoint){halo.box.left, halo.box.top};
-    halo.at[1] = (FigurePoint){halo.box.right, halo.box.top};
-    halo.at[2] = (FigurePoint){halo.box.right, halo.box.bottom};
-    halo.at[3] = (FigurePoint){halo.box.left, halo.box.bottom};
+    halo.outline_mm = 2 * item->halo_mm;
     return halo;
 }
 
@@ -270,14 +280,9 @@ void figure_put_unclosed(const FigurePage *page, Text *out)
 
 FigureBox figure_bounds(const FigurePage *page, size_t first)
 {
-    FigureBox bounds = {INFINITY, INFINITY, -INFINITY, -INFINITY};
-    for (size_t i = first; i < page->n; i++) {
-        const FigureBox *box = &page->items[i].box;
-        bounds.left = fmin(bounds.left, box->left);
-        bounds.top = fmin(bounds.top, box->top);
-        bounds.right = fmax(bounds.right, box->right);
-        bounds.bottom = fmax(bounds.bottom, box->bottom);
-    }
+    FigureBox bounds = empty_box;
+    for (size_t i = first; i < page->n; i++)
+        bounds = join_boxes(bounds, page->items[i].box);
     return bounds;
 }
 

@@ -24,6 +24,12 @@ static Status broken(const char *what, Err *err)
     return err_set(err, STATUS_IO, "the page: cairo's PDF cannot be converted to inks: %s", what);
 }
 
+/* Returns true if the text at `at` begins with `word`. */
+static bool begins(const char *at, const char *word)
+{
+    return strncmp(at, word, strlen(word)) == 0;
+}
+
 /* ---- colors ---------------------------------------------------------------------------------- */
 
 /* Appends the inks of a color as four numbers. With `black_alone`, black becomes black ink only. */
@@ -62,8 +68,8 @@ static void put_content(const PdfFile *file, const char *content, Text *out)
             continue;
         }
         const size_t length = strcspn(at, " \r\n\t([<>/");
-        const bool fill = length == 2 && strncmp(at, "rg", 2) == 0;
-        if ((fill || (length == 2 && strncmp(at, "RG", 2) == 0)) && number[0]) {
+        const bool fill = length == 2 && begins(at, "rg");
+        if ((fill || (length == 2 && begins(at, "RG"))) && number[0]) {
             const double rgb[3] = {atof(number[0]), atof(number[1]), atof(number[2])};
             text_append(out, copied, (size_t)(number[0] - copied));
             put_inks(file, rgb, true, out);
@@ -89,13 +95,13 @@ static void put_dictionary(const PdfFile *file, const char *at, size_t length, T
     for (const char *end = at + length; at < end;) {
         double rgb[3];
         int taken = 0;
-        if (strncmp(at, rgb_space, sizeof rgb_space - 1) == 0) {
+        if (begins(at, rgb_space)) {
             text_puts(out, "/DeviceCMYK");
             at += sizeof rgb_space - 1;
-        } else if (strncmp(at, jpeg_filter, sizeof jpeg_filter - 1) == 0) {
+        } else if (begins(at, jpeg_filter)) {
             text_puts(out, "/FlateDecode"); /* put_deflated writes this compression */
             at += sizeof jpeg_filter - 1;
-        } else if ((strncmp(at, "/C0 [", 5) == 0 || strncmp(at, "/C1 [", 5) == 0) &&
+        } else if ((begins(at, "/C0 [") || begins(at, "/C1 [")) &&
                    sscanf(at + 5, "%lf %lf %lf ]%n", &rgb[0], &rgb[1], &rgb[2], &taken) == 3 &&
                    taken > 0) {
             text_append(out, at, 5);
@@ -166,8 +172,7 @@ done:
 
 static bool has(const char *from, const char *to, const char *word)
 {
-    const char *found = memmem(from, (size_t)(to - from), word, strlen(word));
-    return found != NULL;
+    return memmem(from, (size_t)(to - from), word, strlen(word)) != NULL;
 }
 
 /* Decodes a JPEG to 8-bit codes of three channels. The caller frees *out. */
@@ -227,7 +232,7 @@ static Status put_object(PdfFile *file, const char *body, const char *end, Err *
                               : !has(body, stream, "/Length1") && !has(body, stream, "Type0C") &&
                                     !has(body, stream, "Type1C") && has(body, stream, "/Length ");
     const char *last = end;
-    while (last > stream && strncmp(last, "\nendstream", strlen("\nendstream")) != 0)
+    while (last > stream && !begins(last, "\nendstream"))
         last--;
     if (last == stream)
         return broken("a stream has no end", err);
@@ -267,7 +272,7 @@ static Status put_objects(PdfFile *file, PdfObject *object, size_t n, Err *err)
             if (object[k].from > object[i].from && object[k].from < next)
                 next = object[k].from;
         const char *end = file->pdf + next;
-        while (body && end > body && strncmp(end, "endobj", strlen("endobj")) != 0)
+        while (body && end > body && !begins(end, "endobj"))
             end--;
         if (!body || end <= body)
             return broken("an object has no end", err);
@@ -305,7 +310,7 @@ static Status convert(PdfFile *file, Err *err)
     size_t n = 0, at = 0;
     Status status;
     for (const char *c = file->pdf + file->length; c > file->pdf && !table; c--)
-        table = strncmp(c, "startxref\n", strlen("startxref\n")) == 0 ? c : NULL;
+        table = begins(c, "startxref\n") ? c : NULL;
     if (!table || sscanf(table, "startxref %zu", &at) != 1 || at >= file->length ||
         sscanf(file->pdf + at, "xref 0 %zu", &n) != 1 || n < 2 || n > file->length)
         return broken("it has no table", err);

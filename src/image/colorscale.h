@@ -12,17 +12,18 @@
 #include "base/base.h"
 #include "image/colormap.h"
 
-/* A color for values that the map does not cover. If `given` is false, the default applies. */
+/* A color for values that the map does not cover. If `given` is false, the default applies that
+ * ColorScale states. */
 typedef struct ScaleColor {
     bool given;
     float rgb[3]; /* linear */
 } ScaleColor;
 
-enum { COLORSCALE_MAX_BOUNDS = 64 };
+enum { COLORSCALE_MAX_BOUNDS = 64 }; /* largest number of bounds; reason not recorded */
 
 typedef struct ColorScale {
-    const char *name; /* of the quantity, borrowed; NULL: there is no scale */
-    const char *unit; /* borrowed; "" for pure numbers */
+    const char *name; /* name of the quantity; borrowed; NULL: there is no scale */
+    const char *unit; /* unit of the quantity; borrowed; "" for pure numbers */
     double range[2];  /* values at the ends of the map, ascending; above 0 with `log` */
     bool log;         /* the map is linear in the logarithm of the value */
     int classes;      /* N >= 2: N equal classes of one color each; else continuous */
@@ -30,10 +31,12 @@ typedef struct ColorScale {
      * below bounds[0] and the last from bounds[n - 1] on. */
     double bounds[COLORSCALE_MAX_BOUNDS];
     int n_bounds;           /* 0: there are none */
-    ScaleColor under, over; /* of values below and above the range, or all bounds; default: the
-                             * colors of the ends */
-    ScaleColor none;        /* of values that cannot be shown; default: middle grey */
-    Colormap map;           /* owned by the maker of the scale */
+    ScaleColor under, over; /* colors of values below and above the range, or, if there are bounds,
+                             * below the first and above the last bound; default: the colors of the
+                             * ends of the map */
+    ScaleColor none;        /* color of values that cannot be shown [colorscale_position]; default:
+                             * middle grey */
+    Colormap map;           /* the code that fills the scale also releases the map */
 } ColorScale;
 
 /* Returns the position of a value on the scale: 0 and 1 at the ends of the range, and beyond them
@@ -62,10 +65,13 @@ bool colorscale_fit(ColorScale *scale, const double *values, size_t n);
 MUST_CHECK Status colorscale_percentiles(const ColorScale *scale, const double *values, size_t n,
                                          const double percent[2], double out[2], Err *err);
 
-/* Numbers of values below and above the range, and of values that cannot be shown. */
+/* Counts of values outside the range. */
 typedef struct ScaleOutside {
-    size_t below, above, none;
+    size_t below, above; /* values that have the colors `under` and `over` */
+    size_t none;         /* values that cannot be shown */
 } ScaleOutside;
+
+/* Counts the values among `n` values that are outside the range. */
 ScaleOutside colorscale_outside(const ColorScale *scale, const double *values, size_t n);
 
 /* Returns the number of separate colors of the scale: n_bounds + 1, or `classes`, or the number of
@@ -94,6 +100,7 @@ typedef struct ColorRamp {
     float rgb[COLORRAMP_ENTRIES][3];
 } ColorRamp;
 
+/* Samples the map at the positions of the ramp, as colormap_linear does. */
 void colorramp_init(ColorRamp *ramp, const Colormap *map);
 /* Computes what colorscale_at computes, but interpolates between the entries of `ramp`, as POV-Ray
  * does. colorramp_init must have filled `ramp` from scale->map. */

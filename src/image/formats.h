@@ -63,10 +63,11 @@ static inline uint32_t image_u32(const uint8_t *at)
     return (uint32_t)at[0] << 24 | (uint32_t)at[1] << 16 | (uint32_t)at[2] << 8 | at[3];
 }
 
-/* Reads the header of a PNM or PFM file: words between blanks. Skips '#' comments. */
+/* The state of reading the header of a PNM or PFM file, which consists of words that blanks
+ * separate. A comment from '#' to the end of the line counts as a blank. */
 typedef struct HeaderCursor {
     ImageBytes file;
-    size_t at;
+    size_t at; /* offset in the file of the next character */
 } HeaderCursor;
 
 /* Reads the next word as an integer in [minimum, maximum]; `what` names it in errors. */
@@ -152,6 +153,7 @@ typedef struct ImageOutput {
                            * image; `begin` sets it; 0: as many rows as the caller passes */
     uint8_t *chunk;       /* owned; NULL if chunk_rows is 0. `rows` may change it */
     int n_gathered;       /* rows in the chunk */
+    uint8_t *row;         /* owned; workspace of the encoder for a row; NULL: it needs none */
     /* Arguments of `rows`: */
     const void *values; /* codes or floats, as the form states: `chunk` unless chunk_rows is 0 */
     int first, n;       /* index in the image of the first row; number of rows */
@@ -164,9 +166,9 @@ typedef struct RowEncoder {
     GuardedWork *begin; /* writes the part of the file before the rows */
     GuardedWork *rows;  /* writes the next rows */
     GuardedWork *end;   /* writes the part of the file after the rows; NULL: there is none */
-    void (*release)(
-        void *self);  /* releases what the state owns; runs in the guard; NULL: nothing */
-    int channels;     /* channels in the file; 0: as the form states */
+    void (*release)(void *self); /* releases what the state owns besides the ImageOutput; runs in
+                                  * the guard; NULL: nothing */
+    int channels;                /* channels in the file; 0: as the form states */
     double max_ratio; /* maximum ratio of the values' size to the file's size; 0: unknown */
     ImageTraits traits;
 } RowEncoder;
@@ -181,11 +183,12 @@ MUST_CHECK Status imageoutput_check_seekable(const ImageOutput *output, Err *err
 /* Returns the text of the note with this key; NULL if there is none. */
 const char *image_note(const ImageNotes *notes, const char *key);
 
-/* Makes the ICC profile for a file of this form: the output profile of the inks, or that of sRGB.
- * No profile is made if the codes are grey or linear. The caller frees profile->bytes. Errors:
- * STATUS_MEMORY. */
+/* Makes the ICC profile for a file of this form: the output profile of the inks, or the profile of
+ * sRGB. No profile is made if the codes are grey or linear. The caller frees profile->bytes, also
+ * after an error. Errors: STATUS_MEMORY. */
 MUST_CHECK Status image_profile(const ImageForm *form, ImageProfile *profile, Err *err);
 
+/* Returns the bits of the codes that the inks convert: 8 or 16. */
 int inks_bits(const Inks *inks);
 
 #endif

@@ -19,6 +19,9 @@
 #include <stdint.h>
 #include <string.h>
 
+/* Largest side of an image in pixels, largest number of channels of a Plane, and largest id that an
+ * image file can hold: an id takes the three bytes of a color. Reasons of the first two values not
+ * recorded. */
 enum { IMAGE_MAX_SIDE = 1 << 20, IMAGE_MAX_CHANNELS = 10, IMAGE_MAX_ID = 0xffffff };
 
 /* A rectangle of pixels; `left` and `top` count from 0. */
@@ -60,6 +63,7 @@ MUST_CHECK Status picture_init(Picture *picture, int width, int height, int chan
 MUST_CHECK Status idplane_init(IdPlane *ids, int width, int height, Err *err);
 /* As plane_init, but leaves the values undefined, for a plane that is about to be filled. */
 MUST_CHECK Status plane_init_unset(Plane *plane, int width, int height, int channels, Err *err);
+/* Free an image and zero the struct. A zeroed struct is allowed. */
 void plane_release(Plane *plane);
 void picture_release(Picture *picture);
 void idplane_release(IdPlane *ids);
@@ -70,6 +74,7 @@ static inline uint16_t picture_code(const Picture *picture, size_t i)
     return picture->bits == 8 ? picture->codes8[i] : picture->codes16[i];
 }
 
+/* Sets the code with index `i`, which must fit into the bits of the picture. */
 static inline void picture_set(Picture *picture, size_t i, uint16_t code)
 {
     if (picture->bits == 8)
@@ -249,10 +254,14 @@ typedef struct ImageWriter ImageWriter;
 MUST_CHECK Status imagewriter_open(ImageWriter **out, const char *path, const ImageForm *form,
                                    Err *err);
 /* Write the next rows, which have the form's width, channels and bits. The output must be seekable
- * for TIFF and OpenEXR, and for PFM unless all rows are written in one call. */
+ * for TIFF and OpenEXR, and for PFM unless all rows are written in one call. Errors: STATUS_IO,
+ * naming the file; STATUS_MEMORY. After an error only imagewriter_discard may follow. */
 MUST_CHECK Status imagewriter_codes(ImageWriter *writer, const Picture *rows, Err *err);
 MUST_CHECK Status imagewriter_floats(ImageWriter *writer, const Plane *rows, Err *err);
+/* Completes the file and gives it its final name. All rows must have been written. Errors:
+ * STATUS_IO, STATUS_MEMORY; the file is then removed. */
 MUST_CHECK Status imagewriter_commit(ImageWriter *writer, Err *err);
+/* Removes the incomplete file. NULL is allowed. */
 void imagewriter_discard(ImageWriter *writer);
 
 /* Write a whole image in the format that imagewriter_open chooses. `notes` may be NULL. A `packing`
@@ -299,7 +308,7 @@ const char *imagereader_note(const ImageReader *reader, const char *key);
 /* Reads the next rows->height rows into a picture of the file's width, channels and bits. With the
  * last row the rest of the file is read. Errors: STATUS_INPUT if the file is broken. */
 MUST_CHECK Status imagereader_codes(ImageReader *reader, Picture *rows, Err *err);
-void imagereader_close(ImageReader *reader);
+void imagereader_close(ImageReader *reader); /* NULL is allowed */
 
 /* The content of a file: integer codes, or linear floats. */
 typedef struct Image {

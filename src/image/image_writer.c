@@ -13,11 +13,11 @@ struct ImageWriter {
     const RowEncoder *encoder;
     ImageOutput *output; /* owned */
     OutFile file;
-    char *path;       /* owned; for errors */
-    ImageForm form;   /* form of the rows that the caller passes */
-    int next;         /* index of the next row */
-    void *inked_row;  /* owned; NULL unless colors are converted to inks */
-    void *colors_row; /* owned; the colors of a row with black ink as its fourth channel */
+    char *path;     /* owned; for errors */
+    ImageForm form; /* form of the rows that the caller passes */
+    int next;       /* index of the next row */
+    Picture inked;  /* owned; a row of inks; empty unless colors are converted to inks */
+    Picture colors; /* owned; the colors of a row that has black ink as its fourth channel */
 };
 
 const char *image_note(const ImageNotes *notes, const char *key)
@@ -62,6 +62,7 @@ static void free_output(ImageOutput *output)
     free(output->profile.bytes);
     free(output->description);
     free(output->chunk);
+    free(output->row);
     free(output);
 }
 
@@ -212,10 +213,8 @@ static Status begin(ImageWriter *writer, Err *err)
         TRY(outfile_check_room(&writer->file, bytes / encoder->max_ratio, err));
     if (form.packing.inks) {
         form.channels = 4;
-        TRY(mem_calloc(&writer->inked_row, (size_t)form.width, (size_t)form.bits / 2,
-                       "bytes of a row", err));
-        TRY(mem_calloc(&writer->colors_row, (size_t)form.width, (size_t)form.bits / 8 * 3,
-                       "bytes of a row", err));
+        TRY(picture_init(&writer->inked, form.width, 1, 4, form.bits, err));
+        TRY(picture_init(&writer->colors, form.width, 1, 3, form.bits, err));
     }
     Status status = open_output(encoder, writer->file.stream, &form, &writer->output, err);
     if (status != STATUS_OK)
@@ -244,96 +243,80 @@ done:
 /* Frees the writer and its buffers, but not its encoder's state and its file. */
 static void release(ImageWriter *writer)
 {
-    free(writer->inked_row);
-    free(writer->colors_row);
+    picture_release(&writer->inked);
+    picture_release(&writer->colors);
     free(writer->path);
     free(writer);
 }
 
-/* Returns code `i` of a row of 8 or 16 bits. */
-static unsigned code_at(const void *row, int bits, size_t i)
+/* Copies the three colors of a row whose fourth channel is black ink. `first` is the index of the
+ * row's first code. */
+static const void *without_black(ImageWriter *writer, const Picture *rows, size_t first)
 {
-    return bits == 8 ? ((const uint8_t *)row)[i] : ((const uint16_t *)row)[i];
-}
-
-static void set_code(void *row, int bits, size_t i, unsigned code)
-{
-    if (bits == 8)
-        ((uint8_t *)row)[i] = (uint8_t)code;
-    else
-        ((uint16_t *)row)[i] = (uint16_t)code;
-}
-
-/* Copies the three colors of a row whose fourth channel is black ink. */
-static const void *without_black(ImageWriter *writer, const void *row)
-{
-    const int bits = writer->form.bits;
-    for (size_t i = 0; i < (size_t)writer->form.width; i++)
-        for (size_t c = 0; c < 3; c++)
-            set_code(writer->colors_row, bits, 3 * i + c, code_at(row, bits, 4 * i + c));
-    return writer->colors_row;
+    for (size_t i = 0; i < 3 * (size_t)rows->width; i++)
+        picture_set(&writer->colors, i, picture_code(rows, first + i / 3 * 4 + i % 3));
+    return picture_codes(&writer->colors);
 }
 
 /* Adds the separate black channel to the inks of a row. Where black is 100 %, the other inks become
  * 0. */
-static void print_black(ImageWriter *writer, const void *row)
+static void print_black(ImageWriter *writer, const Picture *rows, size_t first)
 {
-    const int bits = writer->form.bits;
-    const uint64_t full = (1u << bits) - 1;
-    for (size_t i = 0; i < (size_t)writer->form.width; i++) {
-        const uint64_t black = code_at(row, bits, 4 * i + 3);
-        for (size_t c = 0; black > 0 && c < 4; c++) {
-            const uint64_t ink = code_at(writer->inked_row, bits, 4 * i + c) * (full - black);
-            set_code(writer->inked_row, bits, 4 * i + c,
-                     (unsigned)((ink + (c == 3 ? black * full : 0) + full / 2) / full));
-        }
+    const uint64_t full = (1u << rows->bits) - 1;
+    for (size_t i = 0; i < 4 * (size_t)rows->width; i++) {
+        const uint64_t black = picture_code(rows, first + i / 4 * 4 + 3);
+        const uint64_t ink = picture_code(&writer->inked, i) * (full - black);
+        const uint64_t own = i % 4 == 3 ? black * full : 0;
+        if (black > 0)
+            picture_set(&writer->inked, i, (uint16_t)((ink + own + full / 2) / full));
     }
 }
 
-/* Converts the colors of `n` rows to inks, and writes the rows one by one. */
-static Status write_inked(ImageWriter *writer, const uint8_t *values, int n, Err *err)
+/* Converts the colors of rows to inks, and writes the rows one by one. */
+static Status write_inked(ImageWriter *writer, const Picture *rows, Err *err)
 {
-    const ImageForm *form = &writer->form;
-    size_t row_bytes = (size_t)form->width * (size_t)form->channels * (size_t)form->bits / 8;
-    for (int y = 0; y < n; y++) {
-        const void *row = values + (size_t)y * row_bytes;
-        const bool black = form->channels == 4;
-        inks_convert(form->packing.inks, black ? without_black(writer, row) : row,
-                     writer->inked_row, (size_t)form->width);
+    const bool black = rows->channels == 4;
+    for (int y = 0; y < rows->height; y++) {
+        const size_t first = (size_t)y * picture_stride(rows);
+        const void *row = (const uint8_t *)picture_codes(rows) + first * (size_t)rows->bits / 8;
+        inks_convert(writer->form.packing.inks, black ? without_black(writer, rows, first) : row,
+                     picture_codes(&writer->inked), (size_t)rows->width);
         if (black)
-            print_black(writer, row);
-        TRY(put_rows(writer->output, writer->inked_row, 1, err));
+            print_black(writer, rows, first);
+        TRY(put_rows(writer->output, picture_codes(&writer->inked), 1, err));
     }
     return STATUS_OK;
 }
 
-static Status write_rows(ImageWriter *writer, const void *values, int n, Err *err)
+/* Ends the writing of `n` rows with this status. Adds the path to the message of an error. */
+static Status end_rows(ImageWriter *writer, int n, Status status, Err *err)
 {
-    assert(n >= 0 && writer->next + n <= writer->form.height);
-    Status status;
-    TRY_GOTO(writer->inked_row ? write_inked(writer, values, n, err)
-                               : put_rows(writer->output, values, n, err));
+    const bool failed = status == STATUS_OK && ferror(writer->file.stream);
     writer->next += n;
-    if (!ferror(writer->file.stream))
-        return STATUS_OK;
-    status = err_set(err, STATUS_IO, "writing failed: %s", strerror(errno));
-done:
-    err_prefix(err, "%s: ", writer->path);
+    if (failed)
+        status = err_set(err, STATUS_IO, "writing failed: %s", strerror(errno));
+    if (status != STATUS_OK)
+        err_prefix(err, "%s: ", writer->path);
     return status;
 }
 
 Status imagewriter_codes(ImageWriter *writer, const Picture *rows, Err *err)
 {
     assert(rows->width == writer->form.width && rows->channels == writer->form.channels &&
-           rows->bits == writer->form.bits);
-    return write_rows(writer, picture_codes(rows), rows->height, err);
+           rows->bits == writer->form.bits && writer->next + rows->height <= writer->form.height);
+    return end_rows(writer, rows->height,
+                    writer->form.packing.inks
+                        ? write_inked(writer, rows, err)
+                        : put_rows(writer->output, picture_codes(rows), rows->height, err),
+                    err);
 }
 
 Status imagewriter_floats(ImageWriter *writer, const Plane *rows, Err *err)
 {
     assert(rows->width == writer->form.width && rows->channels == writer->form.channels &&
-           writer->form.bits == 32);
-    return write_rows(writer, rows->values, rows->height, err);
+           writer->form.bits == 32 && writer->next + rows->height <= writer->form.height);
+    return end_rows(writer, rows->height, put_rows(writer->output, rows->values, rows->height, err),
+                    err);
 }
 
 /* An encoder may still write to the file when it is released, so the file is closed last. */

@@ -80,7 +80,7 @@ static void save(cmsHPROFILE from, ImageProfile *profile)
     memcpy(profile->bytes + DATE, date, sizeof date);
 }
 
-/* A GuardedWork. */
+/* A GuardedWork: makes the ImageProfile of sRGB. */
 static Status make_srgb(void *profile, Err *err)
 {
     (void)err;
@@ -92,26 +92,15 @@ static Status make_srgb(void *profile, Err *err)
     return STATUS_OK;
 }
 
-static Status srgb_profile(ImageProfile *profile, Err *err)
-{
-    Guard guard = {.format = "ICC", .name = "the color profile"};
-    ImageProfile made = {0};
-    Status status;
-    TRY_GOTO(guard_run(&guard, make_srgb, &made, err));
-    *profile = made;
-    return STATUS_OK;
-done:
-    free(made.bytes);
-    return status;
-}
-
 Status image_profile(const ImageForm *form, ImageProfile *profile, Err *err)
 {
     const Inks *inks = form->packing.inks;
+    Guard guard = {.format = "ICC", .name = "the color profile"};
     *profile = (ImageProfile){0};
+    if (!inks && (form->channels < 3 || form->encoding != ENCODING_SRGB))
+        return STATUS_OK;
     if (!inks)
-        return form->channels >= 3 && form->encoding == ENCODING_SRGB ? srgb_profile(profile, err)
-                                                                      : STATUS_OK;
+        return guard_run(&guard, make_srgb, profile, err);
     TRY(mem_calloc(&profile->bytes, inks->profile.size, 1, "bytes of a profile", err));
     memcpy(profile->bytes, inks->profile.bytes, inks->profile.size);
     profile->size = inks->profile.size;

@@ -232,7 +232,6 @@ typedef struct JpegWriter {
     ImageOutput output;
     struct jpeg_compress_struct jpeg;
     struct jpeg_error_mgr errors;
-    uint8_t *row; /* owned; inverted inks; NULL: there are no inks */
 } JpegWriter;
 
 static void set_colors(JpegWriter *self)
@@ -290,11 +289,12 @@ static Status begin(void *work, Err *err)
         return err_set(err, STATUS_USAGE, "a JPEG has at most %ld x %ld pixels, not %d x %d",
                        JPEG_MAX_DIMENSION, JPEG_MAX_DIMENSION, form->width, form->height);
     if (form->channels == 4)
-        TRY(mem_calloc(&self->row, self->output.row_bytes, 1, "bytes of a row", err));
+        TRY(mem_calloc(&self->output.row, self->output.row_bytes, 1, "bytes of a row", err));
     write_header(self);
     return STATUS_OK;
 }
 
+/* Inks are inverted in the workspace output.row. */
 static Status write_rows(void *work, Err *err)
 {
     (void)err;
@@ -303,8 +303,8 @@ static Status write_rows(void *work, Err *err)
     const uint8_t *codes = self->output.values;
     for (int y = 0; y < self->output.n; y++, codes += samples) {
         /* libjpeg takes a pointer to a non-const row, but only reads the row. */
-        JSAMPROW row = self->row ? self->row : (void *)(uintptr_t)codes;
-        for (size_t i = 0; self->row && i < samples; i++)
+        JSAMPROW row = self->output.row ? self->output.row : (void *)(uintptr_t)codes;
+        for (size_t i = 0; self->output.row && i < samples; i++)
             row[i] = (uint8_t)(255 - codes[i]);
         jpeg_write_scanlines(&self->jpeg, &row, 1);
     }
@@ -323,7 +323,6 @@ static void release_writer(void *work)
 {
     JpegWriter *self = work;
     jpeg_destroy_compress(&self->jpeg);
-    free(self->row);
 }
 
 const RowEncoder jpeg_encoder = {.format = "JPEG",

@@ -68,12 +68,11 @@ static Status decode(void *work, Err *err)
 const ImageDecoder pfm_decoder = {
     .format = "PFM", .state_size = sizeof(ImageInput), .is = pfm_is, .decode = decode};
 
-/* ------------------------------------------------------------------------------------ writing */
+/* ---- writing --------------------------------------------------------------------------------- */
 
 typedef struct PfmWriter {
     ImageOutput output;
-    off_t start;  /* offset of the pixels in the file */
-    uint8_t *row; /* owned */
+    off_t start; /* offset of the pixels in the file */
 } PfmWriter;
 
 static Status begin(void *work, Err *err)
@@ -82,7 +81,7 @@ static Status begin(void *work, Err *err)
     const ImageForm *form = &self->output.form;
     self->start = fprintf(self->output.stream, "%s\n%d %d\n-1.0\n",
                           form->channels == 3 ? "PF" : "Pf", form->width, form->height);
-    return mem_calloc(&self->row, self->output.row_bytes, 1, "bytes of a row", err);
+    return mem_calloc(&self->output.row, self->output.row_bytes, 1, "bytes of a row", err);
 }
 
 /* The file begins with the last row of the image. The file must therefore be seekable, unless all
@@ -102,22 +101,15 @@ static Status write_rows(void *work, Err *err)
     for (int y = output->n - 1; y >= 0; y--) {
         const float *from = (const float *)output->values + (size_t)y * row_values;
         for (size_t i = 0; i < row_values; i++)
-            write_float(self->row + 4 * i, from[i]);
-        fwrite(self->row, 1, row_bytes, output->stream);
+            write_float(self->output.row + 4 * i, from[i]);
+        fwrite(self->output.row, 1, row_bytes, output->stream);
     }
     return STATUS_OK;
-}
-
-static void release(void *work)
-{
-    PfmWriter *self = work;
-    free(self->row);
 }
 
 const RowEncoder pfm_encoder = {.format = "PFM",
                                 .state_size = sizeof(PfmWriter),
                                 .begin = begin,
                                 .rows = write_rows,
-                                .release = release,
                                 .max_ratio = 1,
                                 .traits = {.floats = true}};

@@ -198,9 +198,9 @@ const ImageDecoder pnm_decoder = {
 
 typedef struct PnmWriter {
     ImageOutput output;
-    int copies;   /* how often the file repeats each code: 3 if a grey picture becomes a PPM, else
-                   * 1 */
-    uint8_t *row; /* owned; NULL: the rows in memory have the bytes of the file */
+    /* The workspace output.row is NULL if the rows in memory have the bytes of the file. */
+    int copies; /* how often the file repeats each code: 3 if a grey picture becomes a PPM, else 1
+                 */
 } PnmWriter;
 
 /* The header has no comment lines, because libvips cannot read them. */
@@ -214,7 +214,7 @@ static Status begin(void *work, Err *err)
             form->height, form->bits == 16 ? 65535 : 255);
     return form->bits == 8 && self->copies == 1
                ? STATUS_OK
-               : mem_calloc(&self->row, self->output.row_bytes, (size_t)self->copies,
+               : mem_calloc(&self->output.row, self->output.row_bytes, (size_t)self->copies,
                             "bytes of a row", err);
 }
 
@@ -227,12 +227,12 @@ static Status write_rows(void *work, Err *err)
     const size_t samples = output->row_bytes / (deep ? 2 : 1);
     const uint8_t *codes8 = output->values;
     const uint16_t *codes16 = output->values;
-    if (!self->row) {
+    if (!output->row) {
         fwrite(codes8, output->row_bytes, (size_t)output->n, output->stream);
         return STATUS_OK;
     }
     for (int y = 0; y < output->n; y++) {
-        uint8_t *at = self->row;
+        uint8_t *at = output->row;
         for (size_t i = 0; i < samples; i++) {
             uint16_t code = deep ? *codes16++ : *codes8++;
             for (int copy = 0; copy < self->copies; copy++) {
@@ -241,20 +241,14 @@ static Status write_rows(void *work, Err *err)
                 *at++ = (uint8_t)(code & 255);
             }
         }
-        fwrite(self->row, 1, (size_t)(at - self->row), output->stream);
+        fwrite(output->row, 1, (size_t)(at - output->row), output->stream);
     }
     return STATUS_OK;
-}
-
-static void release(void *work)
-{
-    PnmWriter *self = work;
-    free(self->row);
 }
 
 #define PNM_ENCODER(file_channels)                                                                 \
     {                                                                                              \
         .format = "PNM", .state_size = sizeof(PnmWriter), .begin = begin, .rows = write_rows,      \
-        .release = release, .channels = (file_channels), .max_ratio = 1                            \
+        .channels = (file_channels), .max_ratio = 1                                                \
     }
 const RowEncoder ppm_encoder = PNM_ENCODER(3), pgm_encoder = PNM_ENCODER(1);

@@ -29,19 +29,18 @@ static const uint8_t *find_chunk(const ImageBytes *file, const char *name, size_
 static Status check_features(const ImageBytes *file, const WebPBitstreamFeatures *features,
                              Err *err)
 {
+    /* A blank picture takes a few bytes at any size. Each file may therefore hold BLANK bytes.
+     * Reasons of both values not recorded. */
+    enum { RATIO = 10000, BLANK = 64 << 20 };
     size_t size, pixels = (size_t)features->width * (size_t)features->height;
     const uint8_t *profile = find_chunk(file, "ICCP", &size);
-    enum {
-        BLANK = 64 << 20
-    }; /* a blank picture takes a few bytes at any size, so that each file
-        * may hold this many bytes */
     if (features->has_animation)
         return err_set(err, STATUS_INPUT, "%s: is an animation; it must be a single picture",
                        file->name);
     if (profile)
         TRY(image_check_profile(file->name, profile, size, err));
     return image_check_claim(file, features->width, features->height, 4 * pixels,
-                             file->size * 10000 + BLANK, err);
+                             file->size * RATIO + BLANK, err);
 }
 
 /* libwebp reports a failed allocation like a broken file, but errno is then ENOMEM. */

@@ -1,4 +1,5 @@
-/* A drawing without a picture is a finding, not an error: the caller decides what it means. */
+/* Runs up to DRAWING_JOBS commands at the same time and polls them. A drawing without a picture is
+ * not an error: it is recorded with a reason, and the caller decides what it means. */
 #include "oracle/drawing.h"
 
 #include "oracle/shell.h"
@@ -68,7 +69,7 @@ typedef struct DrawingJob {
     ShellDrawing *drawing;
 } DrawingJob;
 
-/* Removes an old picture and starts the command. */
+/* Removes an old picture, so that it cannot be mistaken for the new one, and starts the command. */
 static Status start_job(DrawingJob *job, ShellDrawing *drawing, Err *err)
 {
     pid_t child;
@@ -82,7 +83,8 @@ static Status start_job(DrawingJob *job, ShellDrawing *drawing, Err *err)
     return STATUS_OK;
 }
 
-/* Records what the command has drawn. `timeout_s` is 0 if it ended in time. */
+/* Records whether the command has drawn a picture. `timeout_s` is 0 if the command ended in time.
+ */
 static void take_end(ShellDrawing *drawing, int exit_status, double timeout_s)
 {
     char line[320], *reason = drawing->reason;
@@ -98,7 +100,8 @@ static void take_end(ShellDrawing *drawing, int exit_status, double timeout_s)
         snprintf(reason, size, "it wrote no picture");
 }
 
-/* Takes the end of a job, if it has ended or is too old. Returns false if it goes on. */
+/* Ends a job whose command has exited or exceeds the timeout. Returns false if the command still
+ * runs. */
 static bool end_job(DrawingJob *job, double timeout_s)
 {
     int ended = 0;
@@ -108,7 +111,7 @@ static bool end_job(DrawingJob *job, double timeout_s)
     const pid_t done = waitpid(job->child, &ended, too_old ? 0 : WNOHANG);
     if (done == 0 || (done < 0 && errno == EINTR))
         return false;
-    kill(-job->child, SIGKILL); /* what the command left running */
+    kill(-job->child, SIGKILL); /* processes that the command started and left running */
     file_spare_on_signal(job->child);
     take_end(job->drawing, shell_exit_status(ended), too_old ? timeout_s : 0);
     job->child = 0;

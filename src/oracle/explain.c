@@ -1,12 +1,13 @@
-/* Explains pixels at which POV-Ray's image (A) differs from the native renderer's (B).
+/* Explains pixels at which POV-Ray's picture (A) differs from the picture of corcast's renderer
+ * (B).
  *
  * Blobs: the visible point, its normal, its segment and its shadows are computed from the field
- * along the pixel's ray. Of the renderer only the shading function is used. Its colors equal
- * POV-Ray's at all other pixels.
+ * along the pixel's ray. The only code that this shares with the renderer is the shading function,
+ * whose colors equal POV-Ray's colors at all other pixels.
  *
- * Other models: the renderer draws the pixel twice more, with a camera of one pixel. The first time
- * shadow rays ignore hits nearer than 1e-3 mm, as POV-Ray's shadow rays do. The second time they
- * ignore hits nearer than 1e-4 mm, as POV-Ray's shadow cache does. */
+ * Other models: the renderer draws the pixel twice more, with a camera of one pixel. In the first
+ * drawing shadow rays ignore hits nearer than 1e-3 mm, as POV-Ray's shadow rays do. In the second
+ * drawing they ignore hits nearer than 1e-4 mm, as POV-Ray's shadow cache does. */
 #include "oracle/explain.h"
 
 #include "field/field.h"
@@ -15,29 +16,34 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Maximum number of differing pixels that are examined. The others are only counted. */
+/* Maximum number of differing pixels that are examined. Further pixels are only counted. Reason of
+ * the value not recorded. */
 enum { MAX_EXAMINED = 500 };
 
-/* POV-Ray's limits: shadow rays, and the shadow cache, ignore nearer hits. */
+/* POV-Ray's limits, mm: its shadow rays and its shadow cache ignore nearer hits. */
 static const double shadow_ray_start_mm = 1e-3, shadow_cache_start_mm = 1e-4;
-/* Distance from a root, in units of the vessel's radius, at which A's visible point still counts as
- * this root. It is not zero because POV-Ray loses precision where it misses a root. */
+/* Maximum distance from a root, in units of the vessel's radius, at which A's visible point still
+ * counts as this root. It is not zero because POV-Ray loses precision where it misses a root.
+ * Reason of the value not recorded. */
 static const double root_tolerance_radii = 0.02;
-/* A ray whose cosine to the surface normal is at most this is grazing. POV-Ray misses roots mostly
- * along grazing rays, then also along neighbouring ones. Where the field is steep, it misses a root
- * of one ray alone. */
+/* A ray is grazing if its cosine to the surface normal is at most this. POV-Ray misses roots mostly
+ * along grazing rays, and then also along neighbouring rays. Where the field is steep, it misses a
+ * root along a single ray. Reason of the value not recorded. */
 static const double max_grazing_cosine = 0.1;
-/* Length of the difference of two unit normals. A's normals come from 16-bit codes. */
+/* Maximum length of the difference of two unit normals that count as equal. A's normals are decoded
+ * from 16-bit codes, whose steps are 3e-5. */
 static const double normal_tolerance = 2e-4;
 
-/* What blocks a light from one shading point. "The grazing ray" is, of the shadow rays that vessels
- * block, the one with the smallest cosine to the surface normal. */
+/* The vessels that block a light at one shading point. "The grazing ray" is the shadow ray with the
+ * smallest cosine to the surface normal among the shadow rays that vessels block. */
 typedef struct LightBlockage {
     double visibility; /* fraction of the light that arrives, 0..1 */
-    double blocker_mm; /* from the shading point along the grazing ray to the surface; NAN: no ray
-                        * is blocked by a vessel */
-    double cosine;     /* between the grazing ray and the surface's normal; NAN: no such ray */
-    int n_grazing;     /* points of the light whose rays graze the first surface that they hit */
+    double blocker_mm; /* distance from the shading point along the grazing ray to the surface; NAN:
+                        * no vessel blocks a ray */
+    double cosine;     /* cosine between the grazing ray and the surface's normal; NAN: no vessel
+                        * blocks a ray */
+    int n_grazing;     /* number of points of the light whose rays graze the first surface that they
+                        * hit */
 } LightBlockage;
 
 /* The state of one examination. */
@@ -51,7 +57,7 @@ typedef struct Examiner {
     LightBlockage blockages[VIEW_MAX_LIGHTS]; /* per light, for the last shading point queried */
 } Examiner;
 
-/* Returns how the scene's model can be examined: PROOF_FIELD for a blob. */
+/* Returns the kind of proof of the scene's model: PROOF_FIELD for a blob. */
 static ModelProof proof_method(const ExplainCase *input)
 {
     return models[input->scene->geometry.model].proof;
@@ -99,8 +105,8 @@ static Status draw_one(const Examiner *examiner, Renderer *renderer, Rgb *color,
     return STATUS_OK;
 }
 
-/* Returns true if an image's color lies between two others, channel by channel. 16-bit codes may
- * be off by one. */
+/* Returns true if each channel of a pixel of A or B lies between the channels of two colors. Allows
+ * 16-bit codes to differ by one. */
 static bool lies_between(const Examiner *examiner, const Rendering *side, Rgb low, Rgb high,
                          size_t pixel)
 {
@@ -143,8 +149,8 @@ static Status examine_field(const Examiner *examiner, Ray ray, double t_min, dou
     return blob_roots(geometry->segments, geometry->n_segments, ray, t_min, t_max, roots, err);
 }
 
-/* Finds the field's normal at `x`, turned against the ray. Returns the segment of the largest term
- * at `x`. */
+/* Finds the field's normal at `x`, on the side from which the ray comes. Returns the segment of the
+ * largest term at `x`. */
 static const FieldSegment *find_wall(const Examiner *examiner, Ray ray, Vec3 x, Vec3 *normal)
 {
     const Geometry *geometry = &examiner->input->scene->geometry;
@@ -169,8 +175,8 @@ static const FieldSegment *find_wall(const Examiner *examiner, Ray ray, Vec3 x, 
     return largest;
 }
 
-/* Finds whether a shadow ray from `place` to a light is free: neither the ground nor a root of the
- * field is in its way. Updates `found` if a vessel blocks it. */
+/* Sets *free to true if neither the ground nor a root of the field is on the shadow ray from
+ * `place` to a point of a light. Updates `found` if a vessel blocks the ray. */
 static Status examine_shadow_ray(const Examiner *examiner, Vec3 place, LightDirection way,
                                  bool *free, LightBlockage *found, Err *err)
 {
@@ -221,8 +227,8 @@ static Status examine_lights(Examiner *examiner, Vec3 place, Err *err)
     return STATUS_OK;
 }
 
-/* Dims the lights of examiner->view to the part that arrives. Light `brighter`, if there is one,
- * arrives by `more` of its points more. */
+/* Multiplies the colors of the lights of examiner->view by their visibility. `more` points of light
+ * `brighter` are visible in addition; SIZE_MAX: of no light. */
 static void set_lights(Examiner *examiner, size_t brighter, int more)
 {
     const View *view = &examiner->input->scene->view;
@@ -237,7 +243,7 @@ static void set_lights(Examiner *examiner, size_t brighter, int more)
     }
 }
 
-/* What a ray hits. */
+/* The point that a ray hits. */
 typedef struct VisiblePoint {
     double t; /* INFINITY: neither vessel nor ground */
     ShadingInput at;
@@ -245,8 +251,7 @@ typedef struct VisiblePoint {
     Rgb color;
 } VisiblePoint;
 
-/* Returns the color of a hit in the light that arrives there, with `more` points of light
- * `brighter` added. */
+/* Returns the color of a hit, lit by the lights that set_lights sets. */
 static Rgb lit(Examiner *examiner, const VisiblePoint *seen, size_t brighter, int more)
 {
     if (seen->t == HUGE_VAL)
@@ -276,8 +281,8 @@ static VisiblePoint wall_at(const Examiner *examiner, Ray ray, double t)
     return seen;
 }
 
-/* Finds what a ray hits whose first hit of a vessel is at `t`. Sets examiner->blockages for that
- * point. */
+/* Finds the point that a ray hits: the ground, or the vessel at `t`, the first root of the field;
+ * HUGE_VAL: there is no root. Sets examiner->blockages for that point. */
 static Status look_to(Examiner *examiner, Ray ray, double t, VisiblePoint *seen, Err *err)
 {
     const Ground *ground = &examiner->input->scene->view.ground;
@@ -321,7 +326,8 @@ static int samples_of(const Examiner *examiner)
     return n > 1 ? n * n + 1 : 1;
 }
 
-/* Returns the ray of a sample. PixelSample 0 is the pixel's centre. */
+/* Returns the ray of a sample. Sample 0 is at the pixel's centre. The other samples are on a
+ * regular grid, as POV-Ray's switches +AM1 -J place them. */
 static Ray sample_ray(const Examiner *examiner, int i, int j, int sample)
 {
     const Camera *camera = &examiner->input->scene->view.camera;
@@ -332,7 +338,7 @@ static Ray sample_ray(const Examiner *examiner, int i, int j, int sample)
                       j - 0.5 + ((sample - 1) / n + 0.5) / n);
 }
 
-/* Returns the pixel's color if sample `changed` had `color`. */
+/* Returns the mean color of the pixel's samples, where sample `changed` has `color`. */
 static Rgb mean_with(const Examiner *examiner, const PixelSample *samples, int changed, Rgb color)
 {
     int n = samples_of(examiner);
@@ -346,7 +352,7 @@ static Rgb mean_with(const Examiner *examiner, const PixelSample *samples, int c
                  (float)((double)sum.b / count)};
 }
 
-/* Returns true if A's pixel is explained by sample `changed` having `color`. */
+/* Returns true if A's pixel has the color that it would have if sample `changed` had `color`. */
 static bool explains(const Examiner *examiner, const PixelSample *samples, int changed, Rgb color,
                      size_t pixel)
 {
@@ -367,7 +373,8 @@ static Vec3 normal_at(const Rendering *side, size_t pixel)
     return vec3((double)n[0], (double)n[1], (double)n[2]);
 }
 
-/* Returns true if B shows what the field gives: point, normal, segment and color. */
+/* Returns true if B has the point, the normal, the segment and the color that follow from the
+ * field. */
 static bool native_is_right(const Examiner *examiner, const PixelSample *samples, size_t pixel)
 {
     const Rendering *b = examiner->input->b;
@@ -433,14 +440,15 @@ static bool is_alone(const Examiner *examiner, const SettledPixel *found)
     return true;
 }
 
-/* Returns true if POV-Ray may miss a root at a pixel whose ray has this cosine. */
+/* Returns true if POV-Ray may miss a root at a pixel whose ray has this cosine to the normal
+ * [max_grazing_cosine]. */
 static bool may_miss(const Examiner *examiner, const SettledPixel *found, double cosine)
 {
     return cosine <= max_grazing_cosine || (isfinite(cosine) && is_alone(examiner, found));
 }
 
-/* Settles the pixel if A shows a later root or nothing, and POV-Ray may have missed the first root.
- */
+/* Settles the pixel if A shows a later root or no vessel, and POV-Ray may have missed the first
+ * root. */
 static void find_missed(const Examiner *examiner, const PixelSample *sample, size_t pixel,
                         SettledPixel *found)
 {
@@ -454,8 +462,8 @@ static void find_missed(const Examiner *examiner, const PixelSample *sample, siz
     found->cosine = cosine;
 }
 
-/* Settles the pixel if A shows the surface a little before or behind the first root, with the
- * normal and color of that point. */
+/* Settles the pixel if A shows the surface slightly before or behind the first root
+ * [root_tolerance_radii], with the normal and the color of that point. */
 static Status examine_inexact(Examiner *examiner, const PixelSample *sample, size_t pixel,
                               SettledPixel *found, Err *err)
 {
@@ -476,8 +484,8 @@ static Status examine_inexact(Examiner *examiner, const PixelSample *sample, siz
     return STATUS_OK;
 }
 
-/* Returns true if more points of this light would explain A: up to those whose rays graze a
- * surface, at least one. */
+/* Returns true if A has the color that it would have if more points of this light were visible. At
+ * most n_grazing points may be visible in addition, but at least one. */
 static bool misses_of_light(Examiner *examiner, const PixelSample *samples, int s, size_t pixel,
                             const VisiblePoint *seen, size_t light)
 {
@@ -488,7 +496,8 @@ static bool misses_of_light(Examiner *examiner, const PixelSample *samples, int 
     return false;
 }
 
-/* Settles the pixel if A is lit as if shadow rays of sample `s` to one light had missed a root. */
+/* Settles the pixel if A is lit as if shadow rays from sample `s` to one light had missed a root.
+ */
 static Status examine_shadows(Examiner *examiner, const PixelSample *samples, int s, size_t pixel,
                               SettledPixel *found, Err *err)
 {
@@ -508,7 +517,8 @@ static Status examine_shadows(Examiner *examiner, const PixelSample *samples, in
     return STATUS_OK;
 }
 
-/* Settles the pixel if A's color is explained by sample `s` having missed its first roots. */
+/* Settles the pixel if A has the color that it would have if the ray of sample `s` had missed its
+ * first roots. */
 static Status examine_later_roots(Examiner *examiner, const PixelSample *samples, int s,
                                   size_t pixel, SettledPixel *found, Err *err)
 {

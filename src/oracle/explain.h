@@ -20,9 +20,9 @@ bool explain_applies(const ExplainCase *input);
 /* Examines the first 500 pixels that differ by more than the tolerance. A pixel is settled if B is
  * correct at the pixel and a known limitation of POV-Ray explains the color of A:
  *
- * - Blobs: the field is computed in long double along the pixel's ray. B shows its first root. A
- *   shows a later root or the surface behind the vessels, or A is lit as if a shadow ray had missed
- * a root.
+ * - Blobs: the field is computed in long double along the pixel's ray, and B shows its first root.
+ *   A shows a later root or the surface behind the vessels, or A is lit as if a shadow ray had
+ *   missed a root.
  * - Shadows of other models: B is lit as if hits nearer than 0.001 mm, POV-Ray's limit for shadow
  *   rays, cast no shadow. The color of A is between this color and the color with the limit of
  *   POV-Ray's shadow cache, 0.0001 mm [docs/POVRAY.md section 3].

@@ -1,4 +1,4 @@
-/* Scene files for other programs, and the planes that these draw. */
+/* Writes the files of a scene as a set, so that a failed call leaves no file behind. */
 #include "oracle/planes.h"
 
 #include <stdio.h>

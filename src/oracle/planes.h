@@ -13,6 +13,7 @@ typedef struct OraclePlanes {
     Frame frame;     /* depth, normals and ids; linear colors only if corcast drew them */
 } OraclePlanes;
 
+/* Frees all planes and zeroes the struct. A zeroed struct is allowed. */
 void planes_release(OraclePlanes *planes);
 
 /* Writes a scene to `path`, in the format of the emitter for `extension`. Also writes the second

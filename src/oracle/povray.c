@@ -1,8 +1,8 @@
-/* POV-Ray's command line, its output and its planes.
+/* Formats POV-Ray's command line, interprets its output, and decodes its planes.
  *
- * POV-Ray prints everything to standard error: progress as "Rendered 120 of 400 pixels (30%)" that
- * ends in a carriage return, a banner with its version, and the reason of a failure near the end,
- * between statistics. */
+ * POV-Ray prints everything to standard error. First comes a banner with its version. Progress
+ * lines such as "Rendered 120 of 400 pixels (30%)" follow, which end in a carriage return. The
+ * reason of a failure is near the end, between statistics. */
 #include "oracle/povray.h"
 
 #include <math.h>
@@ -26,8 +26,8 @@ static bool has_alpha(const PovrayParams *params)
     return params->plane == POVRAY_ALPHA || (params->plane == POVRAY_COLOR && params->alpha);
 }
 
-/* POV-Ray counts rows and columns from 1. It takes an end of 1 or less for a fraction of the
- * picture. */
+/* POV-Ray counts rows and columns from 1. It interprets an end of 1 or less as a fraction of the
+ * picture; MIN_TILE_SIDE keeps ends above 1. */
 static Status add_part(const PixelRect *part, Arguments *arguments, Err *err)
 {
     TRY(arguments_add(arguments, err, "+SC%d", part->left + 1));
@@ -36,7 +36,8 @@ static Status add_part(const PixelRect *part, Arguments *arguments, Err *err)
     return arguments_add(arguments, err, "+ER%d", part->top + part->height);
 }
 
-/* Specifies every switch that a user's povray.ini could set. */
+/* Sets every switch that a user's povray.ini could set, so that pictures do not depend on that
+ * file. */
 static Status add_arguments(const void *context, const ProgramPaths *paths, Arguments *arguments,
                             Err *err)
 {
@@ -98,7 +99,7 @@ Status povray_command(const PovrayParams *params, char **out, Err *err)
     return status;
 }
 
-/* Returns the start of the last line that holds `mark`, or NULL. */
+/* Returns the start of the last line that contains `mark`, or NULL. */
 static const char *last_line_with(const char *printed, const char *mark)
 {
     const char *found = NULL;
@@ -125,9 +126,9 @@ static const char *last_lines(const char *printed)
     return start;
 }
 
-/* Returns the start of the reason of a failure. Lines before the banner are about POV-Ray's
- * settings and give no reason. The last error is the one that ended it. Without an error, the last
- * lines are all that is known. */
+/* Returns the start of the reason of a failure. Lines before the banner concern POV-Ray's settings
+ * and state no reason. The last error is the error that ended POV-Ray. If there is no error, the
+ * last lines are returned. */
 static const char *start_of_reason(const char *printed)
 {
     static const char *const marks[] = {"rror:", "Fatal error", "annot "};
@@ -137,8 +138,7 @@ static const char *start_of_reason(const char *printed)
     return start ? start : last_lines(printed);
 }
 
-/* Writes the reason of a failure as one line. Replaces the name that POV-Ray was given for the
- * scene by `scene`. */
+/* Writes the reason of a failure as one line. Replaces the private name of the scene by `scene`. */
 static void reason_of_failure(const Text *log, const char *scene, char *reason, size_t size)
 {
     static const char given[] = PROGRAM_FOLDER PROGRAM_SCENE;
@@ -198,7 +198,7 @@ static bool is_whole_picture(const char *path, const PovrayParams *params)
            header[BEGIN + 9] == (has_alpha(params) ? RGBA : RGB) && memcmp(tail, end, END) == 0;
 }
 
-/* POV-Ray writes the picture, prints how long it took, and exits 0.3 s later. */
+/* POV-Ray completes the picture, prints the time that it took, and exits 0.3 s later. */
 static bool is_done(const void *context, const Text *printed, const char *picture)
 {
     enum { LAST = 400 };

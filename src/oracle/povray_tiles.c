@@ -1,15 +1,14 @@
-/* POV-Ray's drawing of a scene.
+/* POV-Ray reads a scene once for each plane. Each reading is a run of its own, and several runs
+ * work at the same time.
  *
- * POV-Ray reads a scene once for each plane. Several of these runs go on side by side.
+ * A scene that is too large for POV-Ray is drawn in tiles. The tile of the largest load is halved
+ * across its longer side until POV-Ray can read the scene of every tile in about ten seconds
+ * [povray_load]. The scene of a tile contains only the vessels that rays of the tile can hit. The
+ * positions of the vessels alone determine this choice, never a picture that corcast has drawn.
  *
- * A scene that is too large for POV-Ray is drawn in tiles. The picture is halved across its longer
- * side, then the heaviest tile is halved, until POV-Ray can read each tile's scene in good time
- * [emit.h, povray_load]. A tile's scene contains only what rays of the tile can hit. Which vessels
- * it leaves out depends on their positions alone, never on what corcast has drawn.
- *
- * POV-Ray is asked for the tile's rows and columns of the whole picture. Its rays are therefore
- * those of the whole picture to the last bit, and what they hit is the same piece by piece. So the
- * pixels are those of the whole picture. */
+ * A tile is a range of rows and columns of the whole picture. POV-Ray therefore traces the rays of
+ * the whole picture, equal to the last bit, and they hit the same pieces of the same vessels. The
+ * pixels of the tiles are therefore equal to the pixels of the whole picture. */
 #include "oracle/povray_tiles.h"
 
 #include "field/field.h"
@@ -19,12 +18,12 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Tiles are not narrower or lower than this, in pixels: smaller ones cost more in parsing than they
- * save. Reason of the number not recorded. */
+/* Minimum side of a tile, in pixels. Smaller tiles cost more time for parsing than they save.
+ * Reason of the value not recorded. */
 enum { MIN_TILE_SIDE = 8 };
 
-/* The sum of the loads [emit.h, povray_load] of the scenes that are in memory at one time: about
- * 2 GB. */
+/* Maximum sum of the loads [povray_load] of the scenes that are in memory at the same time. A load
+ * of 1 takes 1 GB. */
 static const double max_load_at_once = 2;
 
 static const char *const plane_names[POVRAY_PLANES] = {
@@ -42,7 +41,8 @@ typedef struct PlaneList {
     size_t n;
 } PlaneList;
 
-/* Depth and ids share a picture if the ids are small enough. That saves a run of POV-Ray. */
+/* Lists the planes. Depth and ids share a picture if no id exceeds POVRAY_MAX_ID, which saves a run
+ * of POV-Ray. */
 static PlaneList planes_of(const Geometry *geometry, bool alpha)
 {
     uint32_t most = 0;
@@ -68,7 +68,7 @@ typedef struct SceneTile {
 typedef struct SceneTiles {
     SceneTile *items; /* owned; from the top and the left */
     size_t n, capacity;
-    bool cut; /* scenes contain only what the rays of their tile can hit */
+    bool cut; /* each scene contains only the vessels that rays of its tile can hit */
 } SceneTiles;
 
 static void tiles_release(SceneTiles *tiles)
@@ -80,10 +80,10 @@ static void tiles_release(SceneTiles *tiles)
     free(tiles->items);
 }
 
-/* What scenes are written from. */
+/* The input of all scenes. */
 typedef struct SceneSource {
-    const PovrayTilesParams *params;
-    CellTree cells; /* owned; of a model that has cells, else empty */
+    const PovrayTilesParams *params; /* borrowed */
+    CellTree cells;                  /* owned; empty if the model has no cells */
 } SceneSource;
 
 static SceneModel model_of(const PovrayTilesParams *params)
@@ -102,8 +102,8 @@ static bool has_cells(const PovrayTilesParams *params)
     return models[model_of(params)].proof == PROOF_STEPS;
 }
 
-/* Returns how a scene is written. It has no anatomy, which changes no picture and makes POV-Ray
- * read each tree of a field twice. */
+/* Returns the parameters of a scene. The scene has no anatomy: an anatomy changes no pixel, and
+ * makes POV-Ray read each tree of a field twice. */
 static EmitParams emit_params(const SceneSource *source, bool ids, const PixelRect *part)
 {
     EmitParams params = source->params->emit;
@@ -113,7 +113,8 @@ static EmitParams emit_params(const SceneSource *source, bool ids, const PixelRe
     return params;
 }
 
-/* Finds the load of what the rays of a part can hit; of the whole scene if `part` is NULL. */
+/* Finds the load of the vessels that rays of a part can hit. If `part` is NULL, finds the load of
+ * the whole scene. */
 static Status weigh(const SceneSource *source, const PixelRect *part, double *load, Err *err)
 {
     const EmitParams params = emit_params(source, has_id_scene(source->params), part);
@@ -141,7 +142,7 @@ static SceneTile *heaviest(const SceneTiles *tiles)
     return found;
 }
 
-/* Replaces a tile by its halves. */
+/* Replaces tile `place` by its two halves. */
 static Status halve(const SceneSource *source, SceneTiles *tiles, size_t place, Err *err)
 {
     TRY(ARRAY_RESERVE(tiles, 1, "tiles", err));
@@ -221,8 +222,8 @@ static Status tile_path(const PovrayTilesParams *params, const SceneTiles *tiles
 
 /* ---- scenes ---------------------------------------------------------------------------------- */
 
-/* Writes the scene of a tile, or the scene that paints its ids. The ids of an implicit surface have
- * a scene of their own, because they make up most of it. */
+/* Writes the scene of a tile, or the scene that paints its ids. The paints of ids are the largest
+ * part of the scene of an implicit surface, so they have a separate scene. */
 static Status write_scene(const SceneSource *source, const SceneTiles *tiles, size_t index,
                           bool ids, Err *err)
 {
@@ -233,7 +234,8 @@ static Status write_scene(const SceneSource *source, const SceneTiles *tiles, si
     return planes_write_scene(&params, "pov", *path, err);
 }
 
-/* All scenes of all tiles: the scene of a tile, then the scene of its ids if there is one. */
+/* The scenes of all tiles. Each tile has its scene, and then the scene of its ids if there is one.
+ */
 typedef struct SceneList {
     const SceneSource *source;
     const SceneTiles *tiles;
@@ -270,7 +272,7 @@ typedef struct PlaneRun {
     char *output;  /* owned */
     char *command; /* owned */
     PovrayRun took;
-    double fraction; /* how much of it is drawn */
+    double fraction; /* the fraction of its pixels that is drawn */
     PovrayTiles *all;
 } PlaneRun;
 
@@ -281,10 +283,11 @@ struct PovrayTiles {
     char *planes_file; /* path of POVRAY_PLANES_FILE; owned */
     PlaneRun *run;     /* owned; the planes of the first tile, then those of the second, ... */
     size_t n_runs;
-    int at_once;          /* runs that go on side by side */
-    pthread_mutex_t lock; /* of the fractions, and of params.progress */
+    int at_once;          /* maximum number of runs at the same time */
+    pthread_mutex_t lock; /* protects PlaneRun.fraction and the calls of params.progress */
 };
 
+/* A ProgramProgress: reports the mean fraction of all runs. */
 static bool report_plane(double fraction, void *context)
 {
     PlaneRun *run = context;
@@ -301,7 +304,7 @@ static bool report_plane(double fraction, void *context)
     return goes_on;
 }
 
-/* Returns how many runs go on side by side. Each gets its share of the processors. */
+/* Returns the maximum number of runs at the same time. The runs share the processors. */
 static int runs_at_once(const PovrayTiles *all)
 {
     int threads = all->params.threads, most = (int)all->planes.n;
@@ -381,13 +384,13 @@ static void copy_pixels(const Picture *from, const PixelRect *rect, Picture *to)
     size_t pixel = (size_t)to->channels * (size_t)to->bits / 8;
     for (int y = rect->top; y < rect->top + rect->height; y++) {
         size_t at = ((size_t)y * (size_t)to->width + (size_t)rect->left) * pixel;
-        const void *row = to->bits == 8 ? (void *)from->codes8 : (void *)from->codes16;
-        void *out = to->bits == 8 ? (void *)to->codes8 : (void *)to->codes16;
-        memcpy((char *)out + at, (const char *)row + at, (size_t)rect->width * pixel);
+        memcpy((char *)picture_codes(to) + at, (const char *)picture_codes(from) + at,
+               (size_t)rect->width * pixel);
     }
 }
 
-/* Copies the pixels of a tile into the plane. The picture of the first tile becomes the plane. */
+/* Copies the pixels of a tile into the plane. The picture of the first tile becomes the plane,
+ * because POV-Ray draws the pixels outside a tile black. */
 static Status add_tile(const char *path, const PixelRect *rect, Picture *plane, Err *err)
 {
     Picture tile;
@@ -399,8 +402,8 @@ static Status add_tile(const char *path, const PixelRect *rect, Picture *plane, 
     return STATUS_OK;
 }
 
-/* Puts the tiles of a plane together, writes the whole to `path`, and removes the files of the
- * tiles. `place` is the index of the plane in PovrayTiles.planes. */
+/* Joins the tiles of a plane, writes the whole plane to `path`, and removes the files of the tiles.
+ * `place` is the index of the plane in PovrayTiles.planes. */
 static Status join_plane(const PovrayTiles *all, size_t place, const char *path, Picture *joined,
                          Err *err)
 {
@@ -438,7 +441,7 @@ done:
     return status;
 }
 
-/* ---- all of it ------------------------------------------------------------------------------- */
+/* ---- public functions ------------------------------------------------------------------------ */
 
 void povraytiles_free(PovrayTiles *tiles)
 {
@@ -499,5 +502,5 @@ Status povraytiles_draw(PovrayTiles *tiles, OraclePlanes *planes, PovrayRun *run
     for (size_t place = 0; place < tiles->planes.n; place++)
         TRY_GOTO(take_plane(tiles, place, planes, err));
 done:
-    return status == STATUS_INPUT ? STATUS_TOOL : status; /* the files are POV-Ray's */
+    return status == STATUS_INPUT ? STATUS_TOOL : status; /* POV-Ray has written the files */
 }

@@ -1,21 +1,22 @@
-/* How another program is started, watched and ended.
+/* Starts another program, watches it and ends it.
  *
- * Output: the program's output is read through a pipe. Only its beginning and its end are kept.
+ * Output: a pipe receives the program's output. Only the beginning and the end of the output are
+ * stored.
  *
  * Names: some programs do not accept every path on their command line. POV-Ray rejects line feeds
- * and letters beyond ASCII, Tachyon long paths. Therefore all files have fixed names in a private
- * folder beside the picture: links to the scene and its header, the picture, and POV-Ray's restart
- * file. The
- * program reaches this folder through an open file handle. It runs in the scene's folder, where it
- * finds the files that the scene includes. The picture gets its final name when it is whole.
+ * and letters beyond ASCII, Tachyon rejects long paths. Therefore all files have fixed names in a
+ * private folder beside the picture: links to the scene and its header, the picture, and POV-Ray's
+ * restart file. The program reaches this folder through an open file descriptor. It runs in the
+ * scene's folder, where it finds the files that the scene includes. The picture gets its final name
+ * when it is complete.
  *
- * Ending: POV-Ray exits a while after its picture is whole, so it is killed then. A script that
- * stands for it may have more to do, so a script is waited for.
+ * Ending: POV-Ray exits some time after its picture is complete, so it is killed then. A script
+ * that replaces POV-Ray may do further work, so this module waits until a script exits.
  *
- * The program, or the script and all that it starts, is a process group of its own. The group is
- * killed when a signal ends this process, before the files are removed. It is also killed when it
- * prints nothing, or reports no progress, for too long. If this process is killed, the kernel kills
- * the program itself. */
+ * The program and all processes that it starts are one process group. If a signal ends this
+ * process, the group is killed before the files are removed. The group is also killed if it prints
+ * nothing, or reports no progress, for too long. If this process is killed, the kernel kills the
+ * program itself, but not the processes that the program has started. */
 #include "oracle/program.h"
 
 #include <errno.h>
@@ -120,10 +121,11 @@ static void become_program(char *const *arguments, const char *folder, int priva
     _exit(STATUS_NOT_STARTED);
 }
 
-/* Bytes of output that are kept, from its beginning and from its end. The banner with the version
- * is in the first, the reason of a failure in the last. */
+/* Numbers of bytes of output that are stored, from the beginning and from the end. The banner with
+ * the version is at the beginning, and the reason of a failure is at the end. Reasons of the values
+ * not recorded. */
 enum { LOG_BEGIN = 1 << 16, LOG_END = 1 << 20 };
-/* A program that prints more bytes than this is ended. */
+/* A program that prints more bytes than this is ended. Reason of the value not recorded. */
 static const double max_output_bytes = 1e9;
 
 typedef struct Log {
@@ -203,7 +205,7 @@ static Status end_program(pid_t child, Status status)
     return status;
 }
 
-/* Returns true if the process is the program itself, not a script, and has only to exit. */
+/* Returns true if the process is the program itself, not a script, and its picture is complete. */
 static bool is_done(const Program *program, pid_t child, const Text *printed, const char *picture)
 {
     char path[PATH_MAX];
@@ -214,7 +216,8 @@ static bool is_done(const Program *program, pid_t child, const Text *printed, co
 }
 
 /* Returns an error for a program that has printed too much, has printed nothing for too long, or
- * has made no progress for even longer: a program that hangs may go on to print. */
+ * has made no progress for even longer. The last rule is needed because a program that hangs may
+ * continue to print. */
 static Status check_life(const Program *program, const Log *log, Err *err)
 {
     enum { PATIENCE_WITHOUT_PROGRESS = 5 }; /* POV-Ray reports no progress while it parses */
@@ -248,11 +251,13 @@ typedef struct ProgramProcess {
     const Workplace *place;
     Log log;
     pid_t child;
-    int ended; /* as waitpid has it; 0 if the program was killed after its picture was whole */
+    int ended; /* the status of waitpid; 0 if the program was killed after its picture was complete
+                */
 } ProgramProcess;
 
-/* Waits until the program itself has ended. A process that it has started may keep the pipe open
- * longer, and the program may close the pipe earlier. Reads what is left in the pipe. */
+/* Waits until the program itself has ended, then reads the rest of its output. The end of the pipe
+ * does not mark the end of the program: a process that the program has started may keep the pipe
+ * open longer, and the program may close the pipe earlier. */
 static Status attend(ProgramProcess *process, int handle, Err *err)
 {
     enum { WAIT_MS = 100, SHORT_WAIT_MS = 2, LAST_READS = 8 };
@@ -305,8 +310,8 @@ static Status run_program(ProgramProcess *process, Err *err)
     return status;
 }
 
-/* Sets *output to the final path of the picture, with links followed. Refuses a device or a pipe,
- * which cannot be replaced by a file. */
+/* Sets *output (owned) to the final path of the picture, with links followed. Refuses a device or a
+ * pipe, because a file cannot replace it. */
 static Status find_output(const Program *program, char **output, Err *err)
 {
     struct stat about;

@@ -1,4 +1,5 @@
-/* The command is a process group, so that a signal can end all of it. */
+/* Each command runs in a process group of its own. A signal to the group ends the command and all
+ * processes that it started. */
 #include "oracle/shell.h"
 
 #include <errno.h>
@@ -34,8 +35,8 @@ void shell_fill(const char *command, const ShellMark *marks, size_t n, size_t ap
     }
 }
 
-/* Runs `command` in this process. Its output goes to the file descriptor `output`; -1: it is
- * dropped. */
+/* Replaces this process, a child, by the command. The output goes to the file descriptor `output`;
+ * -1: it is discarded. */
 static void become_command(const char *command, int output)
 {
     int nothing = open("/dev/null", O_RDWR | O_CLOEXEC);

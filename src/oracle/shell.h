@@ -21,7 +21,8 @@ void shell_fill(const char *command, const ShellMark *marks, size_t n, size_t ap
  * processes that it started are ended as well.
  *
  * heard        true: the output of the command goes to standard error; false: it is discarded.
- * exit_status  receives the exit status of the command.
+ * exit_status  receives the exit status of the command; 126 or 127: the command could not be run;
+ *              unchanged if no process can be started.
  * Errors       STATUS_TOOL if the command cannot be run, or is ended by a signal. */
 MUST_CHECK Status shell_run(const char *command, bool heard, int *exit_status, Err *err);
 

@@ -1,7 +1,8 @@
-/* One scene gives both planes. Segments have flat colors, and Tachyon's low shading shows these
- * colors unchanged: the id plane. In its medium shading segments are black, because there is no
- * light, and fog covers them that grows linearly along the ray: the depth plane. Tachyon truncates
- * codes, so a depth is half a step beyond its code. */
+/* Tachyon draws both planes from one scene. The id plane uses Tachyon's low shading, which shows
+ * the flat colors of the segments unchanged; a color encodes an id. The depth plane uses the medium
+ * shading. The scene has no lights, so the segments are black, and a fog whose density grows
+ * linearly along the ray covers them. Tachyon truncates codes, so half a step is added to each
+ * depth. */
 #include "oracle/tachyon.h"
 
 #include "oracle/planes.h"
@@ -14,7 +15,7 @@
 
 typedef enum TachyonPlane { TACHYON_ID, TACHYON_DEPTH, TACHYON_PLANES } TachyonPlane;
 
-/* One run. All pointers are borrowed. */
+/* A run of Tachyon. All pointers are borrowed. */
 typedef struct TachyonPlaneRun {
     const TachyonParams *params;
     TachyonPlane plane;

@@ -108,70 +108,40 @@ static void put_properties(const PageParams *params, Text *out)
     text_release(&json);
 }
 
-static Status put_data(Text *out, void *context, Err *err)
+static Status put_data(Text *out, const void *context, Err *err)
 {
     const PageParams *params = context;
     put_blocks(params, out);
     return text_check(out, err);
 }
 
-/* The files that a page is made of besides its parameters. */
-typedef struct PageTexts {
-    Tmpl page;
-    char *viewer, *notices; /* owned */
-} PageTexts;
-
-static Status put_page(const PageParams *params, const PageTexts *from, Text *out, Err *err)
+/* Appends a text file. */
+static Status put_file(const char *path, Text *out, Err *err)
 {
-    Text properties = TEXT_INIT, title = TEXT_INIT, notices = TEXT_INIT;
-    put_properties(params, &properties);
-    text_escaped(&title, params->title);
-    text_escaped(&notices, from->notices);
-    Status status;
-    TRY_GOTO(text_check(&properties, err));
-    TRY_GOTO(text_check(&title, err));
-    TRY_GOTO(text_check(&notices, err));
-    const TmplValue values[] = {{"title", text_chars(&title)},
-                                {"generator", params->generator},
-                                {"notices", text_chars(&notices)},
-                                {"properties", text_chars(&properties)},
-                                {"viewer", from->viewer}};
-    PageParams given = *params;
-    const TmplPart parts[] = {{"data", put_data, &given}};
-    status = tmpl_stream(&from->page, values, sizeof values / sizeof *values, parts, 1, out, err);
-done:
-    text_release(&properties);
-    text_release(&title);
-    text_release(&notices);
-    return status;
-}
-
-static Status read_parts(const PageParams *params, PageTexts *parts, Err *err)
-{
-    static const FileForm text = {.name = "a text", .most_bytes = 1e7, .is_text = true};
-    char *page = NULL, *notices = NULL;
+    static const FileForm form = {.name = "a text", .most_bytes = 1e7, .is_text = true};
+    char *chars;
     size_t size;
-    Status status;
-    TRY_GOTO(file_join(params->templates, "page/page.html", &page, err));
-    TRY_GOTO(file_join(params->templates, "colormaps/NOTICES", &notices, err));
-    TRY_GOTO(tmpl_load(&parts->page, page, err));
-    TRY_GOTO(file_read(notices, &text, &parts->notices, &size, err));
-    status = file_read(params->viewer, &text, &parts->viewer, &size, err);
-done:
-    free(page);
-    free(notices);
-    return status;
+    TRY(file_read(path, &form, &chars, &size, err));
+    text_puts(out, chars);
+    free(chars);
+    return STATUS_OK;
 }
 
 Status page_put(const PageParams *params, Text *out, Err *err)
 {
-    PageTexts parts = {0};
+    const TmplPart data = {"data", put_data, params};
+    Markup page = {0};
+    char *notices = NULL;
     Status status;
-    TRY_GOTO(read_parts(params, &parts, err));
-    status = put_page(params, &parts, out, err);
+    text_puts(markup_text(&page, "title"), params->title);
+    text_puts(markup_raw(&page, "generator"), params->generator);
+    put_properties(params, markup_raw(&page, "properties"));
+    TRY_GOTO(file_join(params->templates, "colormaps/NOTICES", &notices, err));
+    TRY_GOTO(put_file(notices, markup_text(&page, "notices"), err));
+    TRY_GOTO(put_file(params->viewer, markup_raw(&page, "viewer"), err));
+    status = markup_stream(&page, params->templates, "page/page.html", &data, 1, out, err);
 done:
-    tmpl_release(&parts.page);
-    free(parts.viewer);
-    free(parts.notices);
+    markup_release(&page);
+    free(notices);
     return status;
 }

@@ -13,9 +13,9 @@
 #include "stage/stage.h"
 #include "tree/tree.h"
 
-/* A color map that the user can select. */
+/* A color map that the user can select. The owner of a PageMap frees both members. */
 typedef struct PageMap {
-    char *name; /* owned by whoever owns the PageMap */
+    char *name;
     Colormap map;
 } PageMap;
 

@@ -3,7 +3,6 @@
 #include "tmpl/tmpl.h"
 
 #include <assert.h>
-#include <stdlib.h>
 
 Text *markup_text(Markup *self, const char *name)
 {
@@ -40,19 +39,16 @@ Status markup_stream(Markup *self, const char *templates, const char *file, cons
 {
     TmplValue values[sizeof self->parts / sizeof *self->parts];
     Tmpl tmpl = {0};
-    char *path = NULL;
     Status status;
     for (size_t i = 0; i < self->n; i++) {
         if (!self->parts[i].markup)
             escape(&self->parts[i].text);
         values[i] = (TmplValue){self->parts[i].name, text_chars(&self->parts[i].text)};
     }
-    TRY_GOTO(file_join(templates, file, &path, err));
-    TRY_GOTO(tmpl_load(&tmpl, path, err));
+    TRY_GOTO(tmpl_load(&tmpl, templates, file, err));
     status = tmpl_stream(&tmpl, values, self->n, parts, n_parts, out, err);
 done:
     tmpl_release(&tmpl);
-    free(path);
     markup_release(self);
     return status;
 }

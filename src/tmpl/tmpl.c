@@ -200,14 +200,14 @@ static Status check_used(const TmplExpansion *self, Err *err)
     return STATUS_OK;
 }
 
-Status tmpl_load(Tmpl *tmpl, const char *path, Err *err)
+Status tmpl_load(Tmpl *tmpl, const char *templates, const char *file, Err *err)
 {
     static const FileForm form = {.name = "a template", .most_bytes = 1e7, .is_text = true};
     Tmpl loaded = {0};
     size_t size = 0;
     Status status;
-    TRY_GOTO(file_read(path, &form, &loaded.source, &size, err));
-    TRY_GOTO(mem_strdup(&loaded.path, path, err));
+    TRY_GOTO(file_join(templates, file, &loaded.path, err));
+    TRY_GOTO(file_read(loaded.path, &form, &loaded.source, &size, err));
     *tmpl = loaded;
     return STATUS_OK;
 done:
@@ -242,13 +242,4 @@ done:
 Status tmpl_apply(const Tmpl *tmpl, const TmplValue *values, size_t n, Text *out, Err *err)
 {
     return tmpl_stream(tmpl, values, n, NULL, 0, out, err);
-}
-
-Status tmpl_expand(const char *path, const TmplValue *values, size_t n, Text *out, Err *err)
-{
-    Tmpl tmpl;
-    TRY(tmpl_load(&tmpl, path, err));
-    Status status = tmpl_apply(&tmpl, values, n, out, err);
-    tmpl_release(&tmpl);
-    return status;
 }

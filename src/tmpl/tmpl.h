@@ -9,8 +9,11 @@
  * ${!name} ... ${/name} is left out otherwise. Sections may contain each other. A line end behind
  * one of these marks is left out as well.
  *
+ *     Tmpl tmpl;
  *     const TmplValue values[] = {{"title", "A tree"}};
- *     TRY(tmpl_expand("templates/page/page.html", values, 1, &out, err)); */
+ *     TRY(tmpl_load(&tmpl, "templates", "page/page.html", err));
+ *     Status status = tmpl_apply(&tmpl, values, 1, &out, err);
+ *     tmpl_release(&tmpl); */
 #ifndef CORCAST_TMPL_TMPL_H
 #define CORCAST_TMPL_TMPL_H
 
@@ -28,28 +31,31 @@ typedef struct Tmpl {
     char *path, *source; /* owned */
 } Tmpl;
 
-/* Reads a template. Release it with tmpl_release. Errors: STATUS_INPUT if the file is missing or is
- * not text; STATUS_MEMORY. */
-MUST_CHECK Status tmpl_load(Tmpl *tmpl, const char *path, Err *err);
+/* Reads the template `file` of the folder `templates`. *tmpl is set on success only; release it
+ * with tmpl_release. Errors: STATUS_INPUT, naming the file, if it is missing or is not text;
+ * STATUS_MEMORY. */
+MUST_CHECK Status tmpl_load(Tmpl *tmpl, const char *templates, const char *file, Err *err);
+/* Frees the template and zeroes *tmpl. A zeroed Tmpl is allowed. */
 void tmpl_release(Tmpl *tmpl);
 
-/* Appends the template to `out`, with every ${name} replaced by the text of that name and every
- * $$ by one $.
+/* Appends the template to `out`. Replaces every ${name} by the text of that name, and every $$ by
+ * one $.
  *
- * Errors   STATUS_INPUT, naming file, line and name, for any other $, for a name that `values`
- *          lacks, for a value that the template does not use, so that a template and its caller
- *          always agree, and for a section that does not begin or end; STATUS_MEMORY. On failure
- *          `out` is unchanged. */
+ * Errors   STATUS_INPUT, naming the file and the name, for any other $, for a name that `values`
+ *          lacks, for a value that the template does not use, and for a section that does not begin
+ *          or end. `out` is then unchanged. STATUS_MEMORY. */
 MUST_CHECK Status tmpl_apply(const Tmpl *tmpl, const TmplValue *values, size_t n, Text *out,
                              Err *err);
+
+/* Appends a text to `out`. Any status other than STATUS_OK ends the expansion of the template. */
+typedef Status TmplPut(Text *out, const void *context, Err *err);
 
 /* The replacement of ${name} by text that a function appends, because the text may be too long for
  * memory. */
 typedef struct TmplPart {
     const char *name; /* borrowed; letters, digits and '_', not starting with a digit */
-    /* Appends the text to `out`. A status other than STATUS_OK ends the expansion. */
-    Status (*put)(Text *out, void *context, Err *err);
-    void *context; /* passed to `put` */
+    TmplPut *put;
+    const void *context; /* borrowed; passed to `put` */
 } TmplPart;
 
 /* Appends the template to `out`, as tmpl_apply does, with parts beside the values. `out` may write
@@ -58,14 +64,11 @@ typedef struct TmplPart {
 MUST_CHECK Status tmpl_stream(const Tmpl *tmpl, const TmplValue *values, size_t n,
                               const TmplPart *parts, size_t n_parts, Text *out, Err *err);
 
-/* Reads a template and expands it once. Errors: those of tmpl_load and tmpl_apply. */
-MUST_CHECK Status tmpl_expand(const char *path, const TmplValue *values, size_t n, Text *out,
-                              Err *err);
+/* ---- values that are collected one by one ---------------------------------------------------- */
 
-/* ---- pages of markup ------------------------------------------------------------------------- */
-
-/* The values of a template of HTML or SVG: a text for each name, at most 48. Initialise with {0};
- * release with markup_release, which markup_put and markup_stream call. */
+/* The values of a template: a text for each name, at most 48. The largest template sets this limit,
+ * which markup_text asserts. Initialise with {0}; release with markup_release, which markup_put and
+ * markup_stream call. */
 typedef struct Markup {
     struct {
         const char *name; /* borrowed */
@@ -75,15 +78,17 @@ typedef struct Markup {
     size_t n;
 } Markup;
 
-/* Adds an empty value for `name`, which is borrowed, and returns its text for the caller to fill
- * with plain text. The text belongs to `self`. */
+/* Adds an empty value for `name`, which is borrowed, and returns its text. The caller fills the
+ * text with plain text, which is escaped for HTML and SVG. The text belongs to `self`. */
 Text *markup_text(Markup *self, const char *name);
-/* Adds an empty value as markup_text does, for the caller to fill with markup. */
+/* Adds an empty value as markup_text does. The caller fills it with markup or with text of another
+ * language, which is inserted unchanged. */
 Text *markup_raw(Markup *self, const char *name);
 /* Frees all texts and removes all values. */
 void markup_release(Markup *self);
 /* Appends the expanded template `file` of the folder `templates` to `out`. Releases the values,
- * also on failure. Errors: those of tmpl_load and tmpl_apply. */
+ * also on failure. Errors: those of tmpl_load and tmpl_apply; STATUS_MEMORY if a value ran out of
+ * memory. */
 MUST_CHECK Status markup_put(Markup *self, const char *templates, const char *file, Text *out,
                              Err *err);
 /* Appends the expanded template as markup_put does, with parts beside the values. `out` may write
