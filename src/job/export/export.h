@@ -28,7 +28,8 @@ extern const Command command_export;
  * stores. Without an output, the result has colors and no named parts.
  *
  * options  options->settings and other members are set from `print` or `wall_mm`.
- * mesh     borrows from `options` and `parsed`; release it with meshing_release.
+ * mesh     set on success only. It borrows from `options` and `parsed`; release it with
+ *          meshing_release.
  * Errors   STATUS_USAGE if an option has no effect on the format, or if the output has no known
  *          extension; those of picture_read_tree and meshing_make. */
 MUST_CHECK Status mesh_make(ExportOptions *options, Parsed *parsed, MeshResult *mesh, Err *err);

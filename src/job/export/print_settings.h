@@ -13,8 +13,9 @@ typedef struct PrintSettings {
     PrintParams params;
 } PrintSettings;
 
-/* Reads "KEY=VALUE,KEY,...", in any order, into *out. Errors: STATUS_USAGE, naming the option, the
- * key and the accepted values; STATUS_MEMORY. */
+/* Reads "KEY=VALUE,KEY,...", in any order, into *out. Keys that are missing have their defaults;
+ * "" sets all defaults. Errors: STATUS_USAGE, naming the option, the key and the accepted values;
+ * STATUS_MEMORY. *out is then unchanged. */
 MUST_CHECK Status printing_parse(const char *text, PrintSettings *out, Err *err);
 
 #endif

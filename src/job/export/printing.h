@@ -13,8 +13,8 @@ typedef struct PrintChanges {
     double thinnest_mm; /* diameter of the thinnest segment, scaled and thickened */
 } PrintChanges;
 
-/* Scales and thickens the vessels. Errors: STATUS_INPUT if the nozzle is wider than the trunk or
- * the wall. */
+/* Scales and thickens the vessels, and reports this in *changes. Errors: STATUS_INPUT if the nozzle
+ * is wider than the trunk or the wall; the vessels are then changed, and *changes is not. */
 MUST_CHECK Status printing_prepare(const PrintSettings *settings, VesselTree *vessels,
                                    PrintChanges *changes, Err *err);
 
@@ -24,7 +24,7 @@ MUST_CHECK Status printing_prepare(const PrintSettings *settings, VesselTree *ve
 MUST_CHECK Status printing_check_bed(const PrintSettings *settings, const VesselMesh *mesh,
                                      Err *err);
 
-/* Returns the thickness of the wall around the thinnest vessel, in mm. */
+/* Returns the thickness of the wall around the thinnest vessel, in mm; 0 without a wall. */
 double printing_thinnest_wall(const PrintSettings *settings, const PrintChanges *changes);
 /* Computes the sides of the bounding box of a mesh, in mm. */
 void printing_size(const VesselMesh *mesh, double size[3]);

@@ -41,7 +41,8 @@ typedef struct SceneResult {
  * parts of the tree and effects that the scene does not contain.
  *
  * taker    receives the files of scene_write; NULL: they are written to the file system.
- * out      borrows from `options` and `parsed`; release it with sceneresult_release.
+ * out      set on success only. It borrows from `options` and `parsed`; release it with
+ *          sceneresult_release.
  * Errors   STATUS_USAGE if an option has no effect on the format, or if the output has no known
  *          extension; those of picture_read_source, picture_scene_of, scene_files_name and
  *          meshing_make. */

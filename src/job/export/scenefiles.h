@@ -18,8 +18,9 @@ typedef enum SceneFile {
     SCENE_FILES
 } SceneFile;
 
-/* Finds the default emitter for the extension of a file name: of meshes and curves if `of_meshes`,
- * else of scenes. Errors: STATUS_USAGE, with the known extensions. */
+/* Finds the default emitter [emit/emit.h] for the extension of a file name: of meshes and curves if
+ * `of_meshes`, else of scenes. Errors: STATUS_USAGE, with the known extensions; STATUS_MEMORY.
+ * *emitter is then NULL. */
 MUST_CHECK Status scene_files_find(const char *output, bool of_meshes, const Emitter **emitter,
                                    Err *err);
 

@@ -8,8 +8,10 @@
 #include "voxel/voxel.h"
 
 typedef struct VolumeOptions {
-    NumberList voxel;  /* voxel size, mm: one number, or one per axis; empty: longest side / 256 */
-    int depth, labels; /* choices */
+    NumberList voxel; /* voxel size, mm: one number, or one per axis; empty: longest side / 256 */
+    int depth;        /* choice: type of the samples, a SampleType */
+    int labels;       /* choice: 0: no labels; 1: label is the id of the segment; 2: its Strahler
+                       * order; 3: the number of its tree */
     const char *centreline; /* path of the centreline volume; NULL: none */
 } VolumeOptions;
 

@@ -88,9 +88,9 @@ MUST_CHECK Status rendering_open(RenderOptions *options, Parsed *parsed, const F
                                  Rendering *out, Err *err);
 void rendering_close(Rendering *rendering);
 
-/* Makes the command line for provenance and puts annotations on the sheet. Reports what the scene
- * shows, and what parts of the tree it does not show. Call this once, before drawing. Errors:
- * STATUS_USAGE if an annotation does not fit, STATUS_MEMORY. */
+/* Makes the command line for provenance and puts annotations on the sheet. Sends notes about what
+ * the scene shows, and what parts of the tree it does not show. Call this once, before drawing.
+ * Errors: STATUS_USAGE if an annotation does not fit, STATUS_MEMORY. */
 MUST_CHECK Status rendering_describe(Rendering *rendering, Err *err);
 /* Draws the single picture of the options into *made, zeroed before; the caller releases it even
  * after an error. Errors: STATUS_USAGE if the options select several pictures; as rendering_draw.

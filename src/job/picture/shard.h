@@ -35,11 +35,12 @@ typedef struct Shard {
     HashText made_from;      /* hash of everything that the tile was made from */
 } Shard;
 
-/* Whether the file is a part of a picture, or may be kept as one. */
+/* Returns true if options ask for a tile, for commands, or for --resume. The picture's file then
+ * needs a note. */
 bool shard_is_asked(const ShardOptions *options);
-/* Checks the file that is a part, and the number of tiles.
- * Errors  STATUS_USAGE when the format of the file holds no notes, when the picture has fewer rows
- *         than tiles need, and for commands about a tree from standard input. */
+/* Checks the options against the picture's file. Errors: STATUS_USAGE if the format of the file
+ * holds no notes, if the picture has fewer rows than the tiles need, and for commands about a tree
+ * from standard input. */
 MUST_CHECK Status shard_check(const ShardOptions *options, const FramesForm *form,
                               const Parsed *parsed, Err *err);
 

@@ -4,9 +4,9 @@
 
 #include "options/options.h"
 
-/* Writes the whole picture to `output`. The operands are the files of the tiles, or folders with
- * them. Memory does not grow with the picture. The picture gets its name only if every tile is
- * sound.
+/* Writes the whole picture to `output`. The operands are the files of the tiles, or folders that
+ * contain them. Memory does not grow with the picture. The file `output` appears only if every tile
+ * is valid.
  *
  * Errors  STATUS_INPUT if a tile is missing, there twice, broken, or of another picture;
  *         STATUS_USAGE if `output` is one of the tiles; STATUS_IO; STATUS_MEMORY. */

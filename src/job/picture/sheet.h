@@ -24,7 +24,8 @@ typedef struct Sheet {
  * sheet   zeroed before; the caller calls sheet_release even after an error.
  * Errors  the errors of figurefonts_load and templates_folder; STATUS_MEMORY. */
 MUST_CHECK Status sheet_open(Sheet *sheet, Err *err);
-/* Begins an empty page. `pixels` are its width and height; `dpi` is in pixels per inch. */
+/* Begins an empty page. `pixels` are its width and height; `dpi` is in pixels per inch. The page
+ * borrows the fonts. */
 void sheet_begin(Sheet *sheet, const int pixels[2], double dpi);
 /* Sets the metadata of the file. Moves the text out of `description`, and copies `command`. Errors:
  * STATUS_MEMORY. */
