@@ -26,7 +26,7 @@ typedef struct Work {
 } Work;
 
 /* Records in `noted` that the files will be written, except files without a role (FileSlot.role).
- * Does nothing if a taker [options/files.h] receives the files. Errors: as files_write. */
+ * Errors: as files_write. */
 MUST_CHECK Status work_note_files(const FileSet *files, Files *noted, Err *err);
 
 /* Estimates, checks memory and disk, and does the work.

@@ -36,14 +36,9 @@ MUST_CHECK Status mesh_make(ExportOptions *options, Parsed *parsed, MeshResult *
 
 /* Exports a tree to options->output and to the files beside it.
  *
- * options  as for mesh_make.
- * taker    receives the files; NULL: the files are written to the file system.
+ * options  an ExportOptions, with an output; as for mesh_make.
  * Errors   those of mesh_make, meshing_write, volumes_write and webpage_write. If the operation
  *          fails, all files are as before. */
-MUST_CHECK Status export_write(ExportOptions *options, Parsed *parsed, const FileTaker *taker,
-                               Err *err);
-
-/* Exports a tree to files: calls export_write without a taker. `options` is an ExportOptions. */
 MUST_CHECK Status export_run(void *options, Parsed *parsed, Err *err);
 
 #endif

@@ -24,8 +24,7 @@ void volumes_extensions(Text *out);
  * for density files, a scene. The names of the additional files are derived from `output`.
  *
  * output   path of the volume.
- * files    zeroed by the caller, except for its taker (FileTaker); the caller releases it with
- *          fileset_release even after an error.
+ * files    zeroed by the caller, who releases it with fileset_release even after an error.
  * Errors   STATUS_MEMORY. */
 MUST_CHECK Status volumes_name(const VolumeOptions *options, const VolumeFormat *format,
                                const char *output, FileSet *files, Err *err);
