@@ -123,15 +123,7 @@ static Status set_options(const Figure *figure, size_t i, Err *err)
     return STATUS_OK;
 }
 
-static Status prepare_panels(const Figure *figure, Err *err)
-{
-    for (size_t i = 0; i < figure->plan.n; i++)
-        if (figure_has_tree(figure, i))
-            TRY(set_options(figure, i, err));
-    return STATUS_OK;
-}
-
-/* Makes the tree of a panel the first operand. */
+/* Makes the tree of a panel the first operand, and rebases the paths of its options. */
 static Status set_tree(const Figure *figure, size_t i, Err *err)
 {
     Section *section = figure->plan.sections[i];
@@ -140,12 +132,12 @@ static Status set_tree(const Figure *figure, size_t i, Err *err)
     if (section->maker) {
         parsed_give(&section->render, madetrees_tree(&figure->plan, &figure->trees, i),
                     section->tree_name);
-        return STATUS_OK;
+    } else {
+        TRY(figure_path(figure->folder, panel->tree, path, err));
+        section->render.operands[0] = *path;
+        section->render.n_operands = 1;
     }
-    TRY(figure_path(figure->folder, panel->tree, path, err));
-    section->render.operands[0] = *path;
-    section->render.n_operands = 1;
-    return STATUS_OK;
+    return figure_rebase(&section->render, figure->folder, NULL, err);
 }
 
 static Status in_panel(Section *section, Status status, Err *err)
@@ -155,12 +147,6 @@ static Status in_panel(Section *section, Status status, Err *err)
         err_prefix(err, "[panel %s]: ", section->name);
     }
     return status;
-}
-
-static Status set_paths(const Figure *figure, size_t i, Err *err)
-{
-    TRY(set_tree(figure, i, err));
-    return figure_rebase(&figure->plan.sections[i]->render, figure->folder, NULL, err);
 }
 
 static Status draw_panel(const Figure *figure, size_t i, Panel *panel, Err *err)
@@ -207,7 +193,7 @@ static Status draw_panels(Figure *figure, Err *err)
     size_t first = 0;
     for (size_t i = 0; i < figure->plan.n; i++)
         if (figure_has_tree(figure, i))
-            TRY(in_panel(figure->plan.sections[i], set_paths(figure, i, err), err));
+            TRY(in_panel(figure->plan.sections[i], set_tree(figure, i, err), err));
     if (figure->options->same_scale)
         TRY(set_scale(figure, err));
     for (size_t i = 0; i < figure->plan.n; i++) {
@@ -401,17 +387,6 @@ static void say_images(const Figure *figure)
             figure->sheet.page.dpi);
 }
 
-/* Reports what the panels have lost of their trees and how they are colored. */
-static Status say_panels(const Figure *figure, Err *err)
-{
-    Status status = STATUS_OK;
-    for (size_t i = 0; i < figure->plan.n && status == STATUS_OK; i++)
-        if (figure_has_tree(figure, i))
-            status = picture_say(&figure->panels[i].scene, &figure->panels[i].report,
-                                 figure->parsed->common.talk, err);
-    return status;
-}
-
 static Status fill_page(Figure *figure, Err *err)
 {
     int number = 0;
@@ -426,22 +401,20 @@ static Status fill_page(Figure *figure, Err *err)
     TRY(figure_check(&figure->sheet.page, err));
     TRY(sheet_say(&figure->sheet, figure->parsed->common.talk, err));
     say_images(figure);
-    return say_panels(figure, err);
+    for (size_t i = 0; i < figure->plan.n; i++)
+        if (figure_has_tree(figure, i))
+            TRY(picture_say(&figure->panels[i].scene, &figure->panels[i].report,
+                            figure->parsed->common.talk, err));
+    return STATUS_OK;
 }
 
 /* ---- files ----------------------------------------------------------------------------------- */
 
-static Status write_picture(const Figure *figure, const Picture *picture, Err *err)
+/* Writes the page as pixels. */
+static Status write_pixels(const Figure *figure, Err *err)
 {
     const ImageNote notes[] = {{"Software", GENERATOR}, {"Comment", figure->sheet.notes.command}};
     const ImageNotes all = {.notes = notes, .count = 2, .dpi = figure->sheet.page.dpi};
-    return picture_write(picture, figure->options->output, ENCODING_SRGB, &all,
-                         &figure->press.packing, err);
-}
-
-/* The page as pixels. */
-static Status write_pixels(const Figure *figure, Err *err)
-{
     const FigurePage *page = &figure->sheet.page;
     const int bits = figure->press.bits;
     const unsigned scale = bits == 8 ? 1 : 257;
@@ -454,21 +427,15 @@ static Status write_pixels(const Figure *figure, Err *err)
             picture_set(&picture, i, (uint16_t)(page->background.rgb[i % channels] * scale));
     Status status = figure_draw(page, 0, &picture, err);
     if (status == STATUS_OK)
-        status = write_picture(figure, &picture, err);
+        status = picture_write(&picture, figure->options->output, ENCODING_SRGB, &all,
+                               &figure->press.packing, err);
     picture_release(&picture);
     return status;
 }
 
-static Status write_file(const Figure *figure, Err *err)
-{
-    const char *output = figure->options->output;
-    return frames_is_page(output)
-               ? frames_write_page(&figure->sheet.page, &figure->sheet.notes, output, err)
-               : write_pixels(figure, err);
-}
-
 Status figure_write(Figure *figure, Err *err)
 {
+    const char *output = figure->options->output;
     Text description = TEXT_INIT;
     char *line = NULL;
     TRY(command_line_text(figure->parsed, &line, err));
@@ -477,7 +444,10 @@ Status figure_write(Figure *figure, Err *err)
     Status status = sheet_describe(&figure->sheet, &description, line, err);
     text_release(&description);
     free(line);
-    return status == STATUS_OK ? write_file(figure, err) : status;
+    TRY(status);
+    return frames_is_page(output)
+               ? frames_write_page(&figure->sheet.page, &figure->sheet.notes, output, err)
+               : write_pixels(figure, err);
 }
 
 /* ---- the recipe ------------------------------------------------------------------------------ */
@@ -541,7 +511,9 @@ static Status make_figure(Figure *figure, const char *recipe, Err *err)
     TRY(sheet_open(&figure->sheet, err));
     sheet_begin(&figure->sheet, pixels, options->size.dpi > 0 ? options->size.dpi : 300);
     TRY(figure_place_panels(figure, err));
-    TRY(prepare_panels(figure, err));
+    for (size_t i = 0; i < figure->plan.n; i++)
+        if (figure_has_tree(figure, i))
+            TRY(set_options(figure, i, err));
     if (figure->parsed->common.dump)
         TRY(put_recipe(figure, err));
     TRY(file_beside(recipe, "", &figure->folder, err));
@@ -595,7 +567,6 @@ const Command command_figure = {
     .min_operands = 1,
     .max_operands = 1,
     .needs_output = true,
-    .is_lookup = false,
     .own_recipe = true,
     .own_check = true,
     .size = sizeof(FigureOptions),

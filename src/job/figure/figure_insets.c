@@ -6,12 +6,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The section of this kind and name; plan.n when there is none. */
-static size_t find_section(const FigurePlan *plan, SectionKind kind, const char *name)
+/* Returns the index of the panel of this name; plan->n if there is none. */
+static size_t find_panel(const FigurePlan *plan, const char *name)
 {
     size_t i = 0;
     while (i < plan->n &&
-           (plan->sections[i]->kind != kind || strcmp(plan->sections[i]->name, name) != 0))
+           (plan->sections[i]->kind != SECTION_PANEL || strcmp(plan->sections[i]->name, name) != 0))
         i++;
     return i;
 }
@@ -23,10 +23,10 @@ static const double far_sides = 10;
 static Status check_inset(const FigurePlan *plan, const Section *section, Err *err)
 {
     const InsetOptions *inset = section->own.options;
-    if (!inset->of || find_section(plan, SECTION_PANEL, inset->of) == plan->n)
+    if (!inset->of || find_panel(plan, inset->of) == plan->n)
         return err_set(err, STATUS_USAGE, "[inset %s]: of: %s%s is not the name of a panel",
                        section->name, inset->of ? "" : "nothing", inset->of ? inset->of : "");
-    const Section *panel = plan->sections[find_section(plan, SECTION_PANEL, inset->of)];
+    const Section *panel = plan->sections[find_panel(plan, inset->of)];
     if (((const PanelOptions *)panel->own.options)->image)
         return err_set(err, STATUS_USAGE,
                        "[inset %s]: of: %s shows an image; an inset needs a tree", section->name,
@@ -57,7 +57,7 @@ Status figure_plan_insets(Figure *figure, size_t of, size_t first, size_t *n, Er
         if (section->kind != SECTION_INSET)
             continue;
         TRY(check_inset(&figure->plan, section, err));
-        if (find_section(&figure->plan, SECTION_PANEL, inset->of) != of)
+        if (find_panel(&figure->plan, inset->of) != of)
             continue;
         double height = inset->height_mm > 0 ? inset->height_mm : inset->width_mm;
         figure->insets[first + (*n)++] =
@@ -322,8 +322,7 @@ Status figure_put_insets(Figure *figure, size_t of, Err *err)
     for (size_t i = 0; i < figure->plan.n; i++) {
         const Section *section = figure->plan.sections[i];
         const InsetOptions *inset = section->own.options;
-        if (section->kind != SECTION_INSET ||
-            find_section(&figure->plan, SECTION_PANEL, inset->of) != of)
+        if (section->kind != SECTION_INSET || find_panel(&figure->plan, inset->of) != of)
             continue;
         TRY(put_inset(figure, section, of, &panel->insets[k++], err));
     }

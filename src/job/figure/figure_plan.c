@@ -221,15 +221,13 @@ static Status take_key(Section *section, const char *name, const char *value, Er
 /* A line of [panels]. */
 typedef struct Default {
     const char *name, *value;
-    size_t line;
 } Default;
 
 typedef struct Reading {
     Parsed *figure;
     FigurePlan *plan;
-    Parsed said;       /* of `figure`: which keys the recipe has given */
-    Default *defaults; /* owned */
-    size_t n, capacity;
+    Parsed said; /* of `figure`: which keys the recipe has given */
+    ARRAY(Default) defaults;
     bool seen_figure, seen_panels;
     enum { IN_NOTHING, IN_FIGURE, IN_PANELS, IN_SECTION } in;
 } Reading;
@@ -238,8 +236,10 @@ typedef struct Reading {
  * and one of the panel's own takes precedence. */
 static Status take_defaults(const Reading *reading, Section *section, Err *err)
 {
-    for (size_t i = 0; i < reading->n; i++)
-        TRY(take_key(section, reading->defaults[i].name, reading->defaults[i].value, err));
+    for (size_t i = 0; i < reading->defaults.n; i++) {
+        const Default *line = &reading->defaults.items[i];
+        TRY(take_key(section, line->name, line->value, err));
+    }
     Parsed *const all[] = {&section->own, &section->render};
     for (size_t k = 0; k < 2; k++)
         for (size_t i = 0; i < all[k]->n_settings; i++)
@@ -317,9 +317,7 @@ static Status take_figure_key(Reading *reading, const char *name, const char *va
 /* Errors have the line of [panels] only when it is checked there: on a panel that is not kept. */
 static Status take_default(Reading *reading, const char *name, const char *value, Err *err)
 {
-    TRY(mem_reserve(&reading->defaults, &reading->capacity, reading->n + 1,
-                    sizeof *reading->defaults, "keys", err));
-    reading->defaults[reading->n++] = (Default){.name = name, .value = value};
+    TRY(ARRAY_PUSH(&reading->defaults, "keys", err, (Default){name, value}));
     Section trial = {.kind = SECTION_PANEL};
     Status status = parsed_init(&trial.own, &kinds[SECTION_PANEL], err);
     if (status == STATUS_OK)
@@ -398,7 +396,7 @@ Status figureplan_read(const char *path, Parsed *figure, FigurePlan *plan, Err *
     Reading reading = {.figure = figure, .plan = plan};
     TRY(parsed_init(&reading.said, figure->command, err));
     Status status = ini_read(path, "the recipe of a figure", take_line, &reading, &plan->text, err);
-    free(reading.defaults);
+    ARRAY_RELEASE(&reading.defaults);
     parsed_release(&reading.said);
     TRY(status);
     status = check_plan(plan, err);

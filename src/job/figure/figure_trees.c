@@ -3,7 +3,6 @@
 #include "job/figure/figure_trees.h"
 
 #include "job/figure/figure_paths.h"
-
 #include <stdlib.h>
 #include <string.h>
 
@@ -96,26 +95,20 @@ static Status parse(const Section *section, const char *folder, Parsed *parsed, 
     return STATUS_OK;
 }
 
-static Status run_maker(const Section *section, const Common *figure, Parsed *parsed,
+static Status make_tree(const Section *section, const Common *figure, const char *folder,
                         MadeTree *made, Err *err)
 {
     const Talk *talk = figure->talk;
     const Talk warnings = {.say = pass_warning, .user = &talk};
-    parsed->common.threads = figure->threads;
-    parsed->common.talk = &warnings;
-    return section->maker->make(parsed->options, parsed, made, err);
-}
-
-static Status make_tree(const Section *section, const Common *figure, const char *folder,
-                        MadeTree *made, Err *err)
-{
     Words words = {0};
     Parsed parsed;
     TRY(parsed_init(&parsed, section->maker->command, err));
     parsed.in_memory = true;
     Status status = parse(section, folder, &parsed, &words, err);
+    parsed.common.threads = figure->threads;
+    parsed.common.talk = &warnings;
     if (status == STATUS_OK)
-        status = run_maker(section, figure, &parsed, made, err);
+        status = section->maker->make(parsed.options, &parsed, made, err);
     if (status != STATUS_OK) {
         options_name_fields(&parsed, err);
         err_prefix(err, "[panel %s]: %s: ", section->name, section->maker->command->name);

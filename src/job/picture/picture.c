@@ -623,8 +623,14 @@ ViewParams picture_view_params(const PictureOptions *options, const PictureSourc
     return params;
 }
 
-Status picture_widths(const PictureOptions *options, const PictureTree *tree, size_t frames,
-                      double **widths, Err *err)
+/* Computes the factors of all radii in all frames from the tree's series dilation, frame by frame.
+ *
+ * frames   number of frames of the colors.
+ * widths   receives frames * n numbers; the caller frees them.
+ * Errors   STATUS_INPUT if the tree has no such series, or it has another number of frames, or a
+ *          radius would not be above 0. STATUS_MEMORY. */
+static Status read_widths(const PictureOptions *options, const PictureTree *tree, size_t frames,
+                          double **widths, Err *err)
 {
     FieldSeries series;
     const TreeMeta said = blood_said(&options->coloring.blood);
@@ -681,7 +687,7 @@ static Status beating_geometry(const PictureOptions *options, const PictureSourc
     TRY(tree_series(tree, "dilation", &series, err));
     const size_t frames = series.n;
     series_release(&series);
-    TRY(picture_widths(options, &source->of, frames, &widths, err));
+    TRY(read_widths(options, &source->of, frames, &widths, err));
     const double *factors = &widths[(frame < frames ? frame : 0) * tree->n];
     if (model_is_of((SceneModel)options->model, MODEL_CYLINDERS | MODEL_BALLS)) {
         TRY_GOTO(picture_geometry(&still, source, common, &resting, report, err));
@@ -749,7 +755,7 @@ Status picture_appearance(const PictureOptions *options, const PictureSource *so
         TRY(coloring_by_radius(&tree, &source->look, &made, err));
     Status status = blend(options, &made, err);
     if (status == STATUS_OK && options->beat > 0 && made.n_frames > 0)
-        status = picture_widths(options, &source->of, made.n_frames, &made.widths, err);
+        status = read_widths(options, &source->of, made.n_frames, &made.widths, err);
     else if (status == STATUS_OK && options->beat > 0 && options->coloring.frame == 0)
         status = err_set(err, STATUS_USAGE,
                          "--beat: the field '%s' does not change in time; --color-by takes a field "

@@ -152,15 +152,6 @@ void picture_say_smooth(const SmoothReport *report, const Talk *talk);
  * nothing. */
 ColoredTree picture_colored_tree(const PictureTree *tree);
 
-/* Computes the factors of all radii in all frames from the tree's series dilation, frame by frame.
- *
- * frames   number of frames of the colors.
- * widths   receives frames * n numbers; the caller frees them.
- * Errors   STATUS_INPUT if the tree has no such series, or it has another number of frames, or a
- *          radius would not be above 0. STATUS_MEMORY. */
-MUST_CHECK Status picture_widths(const PictureOptions *options, const PictureTree *tree,
-                                 size_t frames, double **widths, Err *err);
-
 /* The input of a picture: a tree and a look. Release it with picture_source_release. */
 typedef struct PictureSource {
     PictureTree of;

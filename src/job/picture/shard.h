@@ -82,4 +82,13 @@ MUST_CHECK Status shard_is_there(const char *path, const Shard *shard, bool *the
 MUST_CHECK Status shard_put_commands(const ShardOptions *options, const Parsed *parsed,
                                      const char *output, int first, int last, Err *err);
 
+/* Joins the tiles of a picture, which `render --tile` drew into separate files. Writes the whole
+ * picture to `output`. The operands are the files of the tiles, or folders that
+ * contain them. Memory does not grow with the picture. The file `output` appears only if every tile
+ * is valid.
+ *
+ * Errors  STATUS_INPUT if a tile is missing, there twice, broken, or of another picture;
+ *         STATUS_USAGE if `output` is one of the tiles; STATUS_IO; STATUS_MEMORY. */
+MUST_CHECK Status shards_merge(const char *output, Parsed *parsed, Err *err);
+
 #endif

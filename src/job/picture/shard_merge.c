@@ -1,10 +1,9 @@
 /* Reads the notes of all tiles, compares them with the first, and sorts the tiles. Then copies a
  * few rows at a time, so that a picture of any size needs the memory of these rows. If a tile is
  * broken further down, copying fails, and the picture does not get its name. */
-#include "job/picture/shard_merge.h"
+#include "job/picture/shard.h"
 
 #include "image/image.h"
-#include "job/picture/shard.h"
 #include "options/talk.h"
 #include <stdlib.h>
 #include <string.h>

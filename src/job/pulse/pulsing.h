@@ -99,6 +99,10 @@ MUST_CHECK Status pulsing_add_columns(Pulsing *made, Err *err);
  * errors of tree_write and pulse_put_deck. */
 MUST_CHECK Status pulsing_write(Pulsing *made, Err *err);
 
+/* Returns the input impedance at root node i for harmonic k, mmHg s/ml. For k = 0, returns the
+ * steady resistance, down to the venous pressure. Returns NAN if the flow of this harmonic is 0. */
+Phasor pulse_root_impedance(const Pulse *pulse, size_t i, int k);
+
 /* Returns the report as JSON: a new reference; NULL if memory runs out. */
 json_t *pulsing_json(const Pulsing *made);
 

@@ -263,32 +263,18 @@ Status growing_read_demand(Growing *growing, Err *err)
     return STATUS_OK;
 }
 
-/* Tells why a tree is not complete, in the words of the options. */
-static void warn_of_partial(const Parsed *parsed, const Err *why)
-{
-    Err named = *why;
-    options_name_fields(parsed, &named);
-    talk_warn(parsed->common.talk, "%s", named.text);
-}
-
 /* Fills the tree of --from. */
-static Status fill(Growing *growing, const Parsed *parsed, Tree *tree, GrowReport *report, Err *err)
+static Status fill(const Growing *growing, Tree *tree, GrowReport *report, Err *err)
 {
-    Progress progress;
     Morphometry table = {0};
     char *path = NULL;
     TRY(template_file("fill", "morphometry", growing->fill, ".txt", &path, err));
     Status status = morphometry_read(&table, path, err);
     free(path);
-    if (status != STATUS_OK)
-        return status;
     const FillRules rules = {&table, file_name(growing->fill), growing->fill_from,
                              growing->fill_to};
-    growing->params.progress = progress_report;
-    growing->params.progress_context = &progress;
-    progress_start(&progress, "filling", parsed->common.talk);
-    status = fill_tree(&growing->params, &rules, &growing->domain, tree, report, err);
-    progress_end(&progress);
+    if (status == STATUS_OK)
+        status = fill_tree(&growing->params, &rules, &growing->domain, tree, report, err);
     morphometry_release(&table);
     return status;
 }
@@ -297,19 +283,22 @@ Status growing_run(Growing *growing, const Parsed *parsed, Tree *tree, GrowRepor
 {
     Progress progress;
     const Talk *talk = parsed->common.talk;
-    if (growing->fill)
-        return fill(growing, parsed, tree, report, err);
-    TRY(grow_params_check(&growing->params, &growing->domain, err));
-    if (growing->params.pair_mm > 0 && growing->domain.dimension == 2)
+    if (!growing->fill)
+        TRY(grow_params_check(&growing->params, &growing->domain, err));
+    if (!growing->fill && growing->params.pair_mm > 0 && growing->domain.dimension == 2)
         talk_note(talk, "two trees that must not cross block each other in the plane: usually only "
                         "about 20 paired terminals fit; use a three-dimensional domain for more");
     growing->params.progress = progress_report;
     growing->params.progress_context = &progress;
-    progress_start(&progress, "growing", talk);
-    Status status = grow_tree(&growing->params, &growing->domain, tree, report, err);
+    progress_start(&progress, growing->fill ? "filling" : "growing", talk);
+    Status status = growing->fill
+                        ? fill(growing, tree, report, err)
+                        : grow_tree(&growing->params, &growing->domain, tree, report, err);
     progress_end(&progress);
-    if (status == STATUS_OK && !report->complete)
-        warn_of_partial(parsed, err);
+    if (status == STATUS_OK && !growing->fill && !report->complete) {
+        options_name_fields(parsed, err); /* `err` says why the tree is not complete */
+        talk_warn(talk, "%s", err->text);
+    }
     return status;
 }
 

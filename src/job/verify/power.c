@@ -86,23 +86,16 @@ done:
 
 static Status open_place(PowerFiles *place, const char *extension, Err *err)
 {
-    Text name = TEXT_INIT;
-    text_printf(&name, "drawn.%s", extension);
-    const char *const names[POWER_FILES] = {
-        [FILE_DRAWN] = text_chars(&name), [FILE_A] = "a.png", [FILE_B] = "b.png"};
-    char *path = NULL;
-    Status status;
-    TRY_GOTO(make_folder(&place->folder, err));
+    static const char *const names[POWER_FILES] = {
+        [FILE_DRAWN] = "drawn", [FILE_A] = "a", [FILE_B] = "b"};
+    TRY(make_folder(&place->folder, err));
     for (int i = 0; i < POWER_FILES; i++) {
-        TRY_GOTO(file_join(place->folder, names[i], &path, err));
-        TRY_GOTO(file_remove_on_signal(path, err));
-        place->files[i] = path;
-        path = NULL;
+        char **path = &place->files[i];
+        TRY(file_format_name(path, err, "%s/%s.%s", place->folder, names[i],
+                             i == FILE_DRAWN ? extension : "png"));
+        TRY(file_remove_on_signal(*path, err));
     }
-done:
-    free(path);
-    text_release(&name);
-    return status;
+    return STATUS_OK;
 }
 
 static void close_place(PowerFiles *place)
@@ -169,7 +162,7 @@ static Status tolerance_differs(void *context, const Picture *reference, const P
 /* The rule of another program. */
 typedef struct VerdictCommand {
     const PowerFiles *place;
-    char *command; /* owned; both files filled in */
+    char *command; /* owned; both files filled in; NULL: there is no such rule */
 } VerdictCommand;
 
 static Status command_differs(void *context, const Picture *reference, const Picture *picture,

@@ -35,6 +35,8 @@ void verification_release(Verification *v)
         free(v->commands.items[i]);
     ARRAY_RELEASE(&v->commands);
     free(v->name);
+    free(v->description);
+    free(v->templates);
 }
 
 Status verification_add_command(Verification *v, const char *command, Err *err)
@@ -165,36 +167,26 @@ static double clock_of(const Verification *v)
     return n > 1 ? (double)(v->frame - 1) / (double)(n - 1) : 0;
 }
 
-/* Texts of scene files. All are owned. */
-typedef struct SceneTexts {
-    char *templates;
-    Text description;
-} SceneTexts;
-
-static void texts_release(SceneTexts *texts)
+/* Sets the texts of scene files. */
+static Status set_texts(Verification *v, Err *err)
 {
-    free(texts->templates);
-    text_release(&texts->description);
-}
-
-static Status texts_init(const Verification *v, SceneTexts *texts, Err *err)
-{
-    *texts = (SceneTexts){.description = TEXT_INIT};
-    picture_description(&v->scene.geometry, v->tree, &texts->description);
+    Text description = TEXT_INIT;
+    picture_description(&v->scene.geometry, v->tree, &description);
     if (v->scene.appearance.meaning)
-        text_printf(&texts->description, ", colored by %s", v->scene.appearance.meaning);
-    TRY(text_check(&texts->description, err));
-    return templates_folder(&texts->templates, err);
+        text_printf(&description, ", colored by %s", v->scene.appearance.meaning);
+    Status status = text_take(&description, &v->description, err);
+    text_release(&description);
+    return status == STATUS_OK ? templates_folder(&v->templates, err) : status;
 }
 
-static EmitParams emit_params(const Verification *v, const Scene *scene, const SceneTexts *texts)
+static EmitParams emit_params(const Verification *v, const Scene *scene)
 {
     return (EmitParams){.scene = scene,
                         .command = v->commands.items[0],
                         .shadows = v->options->picture.stage.shadows,
                         .cells = picture_cells(&v->options->picture),
-                        .templates = texts->templates,
-                        .description = text_chars(&texts->description),
+                        .templates = v->templates,
+                        .description = v->description,
                         .generator = GENERATOR};
 }
 
@@ -226,7 +218,7 @@ static Status draw_side(size_t side, int worker, void *context, Err *err)
 }
 
 /* Draws both sides. If both fail, the error is POV-Ray's. */
-static Status draw_both(Verification *v, const SceneTexts *texts, Err *err)
+static Status draw_both(Verification *v, Err *err)
 {
     Scene written = v->scene;
     Progress progress;
@@ -234,7 +226,7 @@ static Status draw_both(Verification *v, const SceneTexts *texts, Err *err)
         written.appearance = v->moments;
     if (v->moments.widths)
         written.geometry = v->resting;
-    const PovrayTilesParams params = {.emit = emit_params(v, &written, texts),
+    const PovrayTilesParams params = {.emit = emit_params(v, &written),
                                       .folder = v->options->folder,
                                       .clock = clock_of(v),
                                       .antialias = v->options->picture.antialias,
@@ -260,9 +252,9 @@ done:
     return status;
 }
 
-static Status draw_tachyon(Verification *v, const SceneTexts *texts, Err *err)
+static Status draw_tachyon(Verification *v, Err *err)
 {
-    const TachyonParams params = {.emit = emit_params(v, &v->scene, texts),
+    const TachyonParams params = {.emit = emit_params(v, &v->scene),
                                   .folder = v->options->folder,
                                   .threads = v->common->threads,
                                   .program = v->options->tachyon};
@@ -285,17 +277,12 @@ static Status show_both(Verification *v, Err *err)
 
 Status verification_draw(Verification *v, Err *err)
 {
-    SceneTexts texts;
-    Status status;
-    TRY_GOTO(texts_init(v, &texts, err));
-    TRY_GOTO(draw_both(v, &texts, err));
+    TRY(set_texts(v, err));
+    TRY(draw_both(v, err));
     if (v->options->witness == WITNESS_TACHYON)
-        TRY_GOTO(draw_tachyon(v, &texts, err));
-    TRY_GOTO(write_native(v, err));
-    status = show_both(v, err);
-done:
-    texts_release(&texts);
-    return status;
+        TRY(draw_tachyon(v, err));
+    TRY(write_native(v, err));
+    return show_both(v, err);
 }
 
 /* ---- comparison ------------------------------------------------------------------------------ */

@@ -49,6 +49,8 @@ typedef struct Verification {
     const Common *common;
     const char *tree;    /* path of the tree, for sentences */
     char *name;          /* name of the tree, for the report */
+    char *description;   /* of the scene, in scene files; set by verification_draw */
+    char *templates;     /* path of the folder of templates; set by verification_draw */
     Scene scene;         /* the scene at the time step that is compared */
     Geometry resting;    /* geometry of the vessels at rest, if they beat; the scene's geometry is
                           * then that at the time step */
