@@ -452,23 +452,6 @@ Status figure_write(Figure *figure, Err *err)
 
 /* ---- the recipe ------------------------------------------------------------------------------ */
 
-/* The recipe's path: a file by its '/' or extension, else one of templates/figures; in *path
- * (owned). */
-static Status find_recipe(const char *name, char **path, Err *err)
-{
-    if (strchr(name, '/') || strcmp(file_extension(name), "ini") == 0)
-        return mem_strdup(path, name, err);
-    return template_find("figure", "figures", name, ".ini", path, err);
-}
-
-/* The complete recipe. Its paths are those of the recipe that was read. */
-static Status put_recipe(Figure *figure, Err *err)
-{
-    text_puts(&figure->recipe, "; " GENERATOR ": figure FILE -o F.pdf\n");
-    figureplan_put(&figure->plan, figure->parsed, &figure->recipe);
-    return text_check(&figure->recipe, err);
-}
-
 static bool is_typed(const Setting *setting)
 {
     return setting->typed;
@@ -514,8 +497,11 @@ static Status make_figure(Figure *figure, const char *recipe, Err *err)
     for (size_t i = 0; i < figure->plan.n; i++)
         if (figure_has_tree(figure, i))
             TRY(set_options(figure, i, err));
-    if (figure->parsed->common.dump)
-        TRY(put_recipe(figure, err));
+    if (figure->parsed->common.dump) { /* before the paths of the recipe change */
+        text_puts(&figure->recipe, "; " GENERATOR ": figure FILE -o F.pdf\n");
+        figureplan_put(&figure->plan, figure->parsed, &figure->recipe);
+        TRY(text_check(&figure->recipe, err));
+    }
     TRY(file_beside(recipe, "", &figure->folder, err));
     TRY(open_press(figure, err));
     TRY(madetrees_make(&figure->plan, &figure->parsed->common, figure->folder, &figure->trees,
@@ -527,11 +513,14 @@ static Status make_figure(Figure *figure, const char *recipe, Err *err)
 
 Status figure_make(const FigureOptions *options, Parsed *parsed, Figure *out, Err *err)
 {
+    const char *name = parsed->operands[0];
+    const bool is_path = strchr(name, '/') || strcmp(file_extension(name), "ini") == 0;
     char *recipe = NULL;
     out->options = options;
     out->parsed = parsed;
     TRY(check_output(options, err));
-    TRY(find_recipe(parsed->operands[0], &recipe, err));
+    TRY(is_path ? mem_strdup(&recipe, name, err)
+                : template_find("figure", "figures", name, ".ini", &recipe, err));
     Status status = make_figure(out, recipe, err);
     free(recipe);
     return status;

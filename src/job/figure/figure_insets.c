@@ -1,5 +1,6 @@
-/* An inset is a picture of its own, drawn by the camera of its panel's, cropped. Two lines, its
- * leaders, lead from the part that it shows to it. They are interrupted where vessels are. */
+/* An inset is a picture of its own: the camera of its panel, restricted to a part of the view. Two
+ * lines, the leaders, lead from the magnified part to the inset. A leader is interrupted where
+ * vessels are, and the pair of leaders is chosen that vessels cover least. */
 #include "job/figure/figure.h"
 
 #include <math.h>
@@ -261,18 +262,17 @@ static void put_leaders(FigurePage *page, const FigureBox *part, const FigureBox
         put_leader(page, &all[best[k]], shadow, width_mm, ink);
 }
 
-/* Its paper covers the panel's lines. */
-static void put_lines(Figure *figure, const PanelInset *inset, const FigureBox *shown)
+/* Draws a frame around a box. */
+static void put_frame(FigurePage *page, const FigureBox *box, double width_mm, FigureColor ink)
 {
-    FigurePage *page = &figure->sheet.page;
-    figure_add_box(page, *shown, page->background);
-    figure_add_strokes(page, &inset->strokes, (FigurePoint){shown->left, shown->top}, figure->ink);
+    FigurePoint corner[4];
+    corners_of(box, corner);
+    figure_add_line(page, corner, 4, true, width_mm, ink);
 }
 
 static Status put_inset(Figure *figure, const Section *section, size_t of, const PanelInset *inset,
                         Err *err)
 {
-    enum { CORNERS = 4 };
     const InsetOptions *options = section->own.options;
     const Panel *panel = &figure->panels[of];
     const PanelRect *rect = &figure->rects[of];
@@ -287,19 +287,19 @@ static Status put_inset(Figure *figure, const Section *section, size_t of, const
         return err_set(err, STATUS_USAGE, "[inset %s] extends beyond the page", section->name);
     const FigureBox shown = {left * pixel, top * pixel, (left + inset->pixels[0]) * pixel,
                              (top + inset->pixels[1]) * pixel};
-    if (!panel->in_lines)
+    if (panel->in_lines) { /* a box of paper covers the lines of the panel */
+        figure_add_box(page, shown, page->background);
+        figure_add_strokes(page, &inset->strokes, (FigurePoint){shown.left, shown.top},
+                           figure->ink);
+    } else {
         figure_add_picture(page, &inset->picture, left, top);
-    else
-        put_lines(figure, inset, &shown);
+    }
     FigureBox part = panel_part(inset, &panel->scene.view.camera);
     part = (FigureBox){box.left + part.left * width, box.top + part.top * height,
                        box.left + part.right * width, box.top + part.bottom * height};
     FigureColor ink = annotation_ink(panel->scene.view.background);
-    FigurePoint corner[CORNERS];
-    corners_of(&part, corner);
-    figure_add_line(page, corner, CORNERS, true, line_mm, ink);
-    corners_of(&shown, corner);
-    figure_add_line(page, corner, CORNERS, true, line_mm, ink);
+    put_frame(page, &part, line_mm, ink);
+    put_frame(page, &shown, line_mm, ink);
     if (options->leaders) {
         Shadow shadow;
         TRY(cast_shadow(&panel->scene, box, &shadow, err));

@@ -4,7 +4,6 @@
 
 #include "job/picture/coloring.h"
 #include "job/verify/compare_parts.h"
-#include "options/talk.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -196,15 +195,6 @@ static Status compare_sides(const CompareOptions *options, const Tolerance *tole
                                              : compare_codes(options, tolerance, made, err);
 }
 
-/* Tells which files had lost something before they were compared. */
-static void note_losses(const ComparedSide sides[2], const Talk *talk)
-{
-    for (int i = 0; i < 2; i++)
-        if (sides[i].image.lossy)
-            talk_note(talk, "%s is lossy (%s): compression has changed its colors", sides[i].name,
-                      sides[i].image.lossy);
-}
-
 static Status compare_pair(CompareOptions *options, const Parsed *parsed, Comparison *made,
                            Err *err)
 {
@@ -217,7 +207,8 @@ static Status compare_pair(CompareOptions *options, const Parsed *parsed, Compar
     TRY(compare_tolerance(&options->judge, options->depth_mm, &tolerance, &made->tier, err));
     TRY(sides_read(options, parsed, made->plane, made->sides, err));
     TRY(compare_sides(options, &tolerance, made, err));
-    note_losses(made->sides, parsed->common.talk);
+    for (int i = 0; i < 2; i++)
+        compare_note_loss(made->sides[i].name, &made->sides[i].image, parsed->common.talk);
     made->agrees = made->result.agrees;
     return STATUS_OK;
 }

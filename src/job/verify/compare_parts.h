@@ -15,6 +15,10 @@ MUST_CHECK Status sides_read(const CompareOptions *options, const Parsed *parsed
                              ComparedSide sides[2], Err *err);
 void sides_release(ComparedSide sides[2]);
 
+/* Sends a note if the file of an image is lossy, so that its colors changed before the comparison.
+ */
+void compare_note_loss(const char *name, const Image *image, const Talk *talk);
+
 /* Returns the image of a side as sRGB; borrowed. */
 const Picture *side_shown(const ComparedSide *side);
 

@@ -2,6 +2,7 @@
 #include "job/verify/compare_parts.h"
 
 #include "job/picture/coloring.h"
+#include "options/talk.h"
 #include <string.h>
 
 void sides_release(ComparedSide sides[2])
@@ -12,6 +13,12 @@ void sides_release(ComparedSide sides[2])
         picture_release(&sides[i].shown);
         idplane_release(&sides[i].ids);
     }
+}
+
+void compare_note_loss(const char *name, const Image *image, const Talk *talk)
+{
+    if (image->lossy)
+        talk_note(talk, "%s is lossy (%s): compression has changed its colors", name, image->lossy);
 }
 
 const Picture *side_shown(const ComparedSide *side)

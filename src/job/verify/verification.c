@@ -130,14 +130,6 @@ static Status render_native(Verification *v, Err *err)
     return verification_takes_two_steps(v) ? render_frame(v, true, &v->exact, err) : STATUS_OK;
 }
 
-static Status write_native(const Verification *v, Err *err)
-{
-    TRY(write_frame(v, &v->native.frame, "native.png", encoding_of(v), err));
-    return verification_takes_two_steps(v)
-               ? write_frame(v, &v->exact, "exact.png", ENCODING_SRGB, err)
-               : STATUS_OK;
-}
-
 /* ---- the other programs ---------------------------------------------------------------------- */
 
 Status verification_pick_frame(Verification *v, int frame, Err *err)
@@ -266,23 +258,19 @@ static Status draw_tachyon(Verification *v, Err *err)
     return STATUS_OK;
 }
 
-/* Converts linear colors to what a screen shows. */
-static Status show_both(Verification *v, Err *err)
-{
-    if (v->options->bits == 8)
-        return STATUS_OK;
-    TRY(picture_to_srgb(&v->shown[0], &v->povray.picture, 8, err));
-    return picture_to_srgb(&v->shown[1], &v->native.picture, 8, err);
-}
-
 Status verification_draw(Verification *v, Err *err)
 {
     TRY(set_texts(v, err));
     TRY(draw_both(v, err));
     if (v->options->witness == WITNESS_TACHYON)
         TRY(draw_tachyon(v, err));
-    TRY(write_native(v, err));
-    return show_both(v, err);
+    TRY(write_frame(v, &v->native.frame, "native.png", encoding_of(v), err));
+    if (verification_takes_two_steps(v))
+        TRY(write_frame(v, &v->exact, "exact.png", ENCODING_SRGB, err));
+    if (v->options->bits == 8)
+        return STATUS_OK;
+    TRY(picture_to_srgb(&v->shown[0], &v->povray.picture, 8, err));
+    return picture_to_srgb(&v->shown[1], &v->native.picture, 8, err);
 }
 
 /* ---- comparison ------------------------------------------------------------------------------ */
