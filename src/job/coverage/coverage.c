@@ -21,7 +21,8 @@ static const char *const territory_kinds[] = {"terminal", "segment", "tree", NUL
 /* Number of voxels along the longest side of the domain, without --spacing. */
 enum { USUAL_VOXELS = 128 };
 
-/* Accepted difference between the volume of the domain and that of its voxels, as a fraction. */
+/* Accepted difference between the volume of the domain and that of its voxels, as a fraction.
+ * Reason of the value not recorded; it decides which --spacing is refused as too large. */
 static const double volume_room = 0.1;
 
 typedef struct CoverageOptions {
@@ -297,7 +298,8 @@ static Status measure(void *job, Progress *progress, Err *err)
     return coverage_measure(params, &made->result->report, err);
 }
 
-/* The voxels must have about the domain's volume; else they are too large for its thin parts. */
+/* Checks that the voxels have about the volume of the domain. Otherwise they are too large for thin
+ * parts of the domain. */
 static Status check_volume(const Measuring *made, Err *err)
 {
     const CoverageReport *report = &made->result->report;
@@ -312,7 +314,8 @@ static Status check_volume(const Measuring *made, Err *err)
     return STATUS_OK;
 }
 
-/* A tree that grew in a plane has all its nodes at one z. */
+/* Warns of a flat tree in a domain of three dimensions. All nodes of a flat tree have the same z.
+ */
 static void warn_flat(const Measuring *made, const Talk *talk)
 {
     const Tree *tree = &made->tree;

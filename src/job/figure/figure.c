@@ -100,8 +100,9 @@ static Status set_background(const Figure *figure, Parsed *render, Err *err)
     return set_key(render, "background", color, err);
 }
 
-/* What the page says of a panel's options. Those of the recipe are no longer typed, as in recipes
- * of commands: one that has no effect on this panel is not refused. */
+/* Sets the options of a panel that the page determines. Options of the recipe are no longer marked
+ * as typed, as in recipes of commands, so that an option without effect on this panel is not
+ * refused. */
 static Status set_options(const Figure *figure, size_t i, Err *err)
 {
     const FigureOptions *options = figure->options;
@@ -235,14 +236,16 @@ static Status read_images(Figure *figure, Err *err)
 
 /* ---- the page -------------------------------------------------------------------------------- */
 
-/* Black or white, whichever is read on the paper. */
+/* Returns black or white: the one with more contrast on this color. */
 static FigureColor ink_on(FigureColor paper)
 {
     const Vec3 srgb = vec3(paper.rgb[0] / 255.0, paper.rgb[1] / 255.0, paper.rgb[2] / 255.0);
     return annotation_ink(rgb_of_option(srgb));
 }
 
-/* In the line above the panel, or in its upper left corner: at the edge where nobody sees one. */
+/* Adds the letter of a panel: in the line above the panel or, without a title, in its upper left
+ * corner. If the panel has the color of the page, its edge is invisible, and the letter is at the
+ * edge. */
 static Status put_letter(Figure *figure, size_t i, const char *letter, FigureColor paper, Err *err)
 {
     const FigureOptions *options = figure->options;
@@ -282,7 +285,7 @@ static void put_title(Figure *figure, size_t i, FigureColor ink)
         figure_add_text(&figure->sheet.page, &text);
 }
 
-/* a, b, ..., z, aa, ... */
+/* Makes the letter of panel `number`, counted from 0: a, b, ..., z, aa, ... */
 static void automatic_letter(int number, bool upper, char out[8])
 {
     char digits[8];
@@ -308,7 +311,8 @@ static void put_image(Figure *figure, size_t i)
         (FigureBox){x - half_width, y - half_height, x + half_width, y + half_height});
 }
 
-/* Adds a panel, its insets, and its annotations. The letter is the page's. */
+/* Adds a panel, its insets, and its annotations. The letter is added for the page, not as an
+ * annotation of the picture. */
 static Status put_panel(Figure *figure, size_t i, int number, Err *err)
 {
     Panel *panel = &figure->panels[i];
@@ -339,7 +343,8 @@ static Status put_panel(Figure *figure, size_t i, int number, Err *err)
 
 /* ---- text ------------------------------------------------------------------------------------ */
 
-/* Larger coordinates are a mistake, and beyond what FreeType and cairo take. */
+/* Largest distance from the corner of the page, mm. Larger coordinates are mistakes, and more than
+ * FreeType and cairo accept. */
 static const double far_mm = 1e4;
 
 static Status put_text(Figure *figure, const Section *section, Err *err)
@@ -374,7 +379,7 @@ static Status put_text(Figure *figure, const Section *section, Err *err)
     return STATUS_OK;
 }
 
-/* Notes what an EPS cannot hold of the images. */
+/* Sends a note about what an EPS cannot store of the images. */
 static void say_images(const Figure *figure)
 {
     size_t vectors = 0;

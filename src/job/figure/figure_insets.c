@@ -17,8 +17,8 @@ static size_t find_panel(const FigurePlan *plan, const char *name)
     return i;
 }
 
-/* An inset may lie beside its panel. What is farther off than this many sides of the panel is a
- * mistake. */
+/* Largest distance of an inset, in sides of its panel. An inset may be beside its panel; a larger
+ * distance is taken for a mistake. Reason of the value not recorded. */
 static const double far_sides = 10;
 
 static Status check_inset(const FigurePlan *plan, const Section *section, Err *err)
@@ -48,7 +48,7 @@ static Status check_inset(const FigurePlan *plan, const Section *section, Err *e
     return STATUS_OK;
 }
 
-/* The insets of panel `of`, which follow each other from `first` on. */
+/* The insets of a panel are stored one after another, from `first` on. */
 Status figure_plan_insets(Figure *figure, size_t of, size_t first, size_t *n, Err *err)
 {
     *n = 0;
@@ -78,7 +78,7 @@ static void corners_of(const FigureBox *box, FigurePoint corner[4])
     corner[3] = (FigurePoint){box->left, box->bottom};
 }
 
-/* Whether a line has a part within the box, whose edges do not count. */
+/* Returns true if a part of the line is inside the box. The edges of the box do not count. */
 static bool crosses(FigurePoint from, FigurePoint to, const FigureBox *box)
 {
     double begin = 0, end = 1;
@@ -96,7 +96,7 @@ static bool crosses(FigurePoint from, FigurePoint to, const FigureBox *box)
     return end - begin > 1e-6;
 }
 
-/* Whether two lines cross. */
+/* Returns true if two lines cross. */
 static bool lines_cross(const FigurePoint a[2], const FigurePoint b[2])
 {
     double side[4];

@@ -1,5 +1,5 @@
-/* A path is found in a value by the kind of its option. Values of kind text hold paths in four
- * options, each in its own way. */
+/* The kind of an option tells whether its value is a path. Four options of kind text contain a
+ * path, each in its own form. */
 #include "job/figure/figure_paths.h"
 
 #include "treeio/treeio.h"

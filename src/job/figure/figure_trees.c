@@ -1,5 +1,5 @@
-/* A maker gets its options as words of a command line, which are cut as a shell cuts them: at
- * blanks outside quotes. The tree stays in memory. */
+/* The command that makes a tree gets its options as the words of a command line. The words are cut
+ * as a shell cuts them: at blanks outside quotes. The tree stays in memory. */
 #include "job/figure/figure_trees.h"
 
 #include "job/figure/figure_paths.h"
@@ -68,7 +68,8 @@ static void pass_warning(void *user, TalkKind kind, const char *sentence)
         talk_warn(*talk, "%s", sentence);
 }
 
-/* Has the recipe of a maker start at the folder: it is read while options are parsed. */
+/* Replaces the path of --recipe by the path from the folder. A recipe is read while options are
+ * parsed, too early for figure_rebase. */
 static Status rebase_recipe(const char *folder, Words *words, Err *err)
 {
     for (int i = 0; i + 1 < words->n; i++)

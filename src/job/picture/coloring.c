@@ -1,5 +1,6 @@
-/* A field of the tree, and a scale for its values: of the options, or fitted to them. The unit
- * comes first, so that all other numbers, given and said, are in it. */
+/* Reads a field of the tree, and fits a color scale to its values unless options state the scale.
+ * The values are converted to the unit of --unit first, so that all numbers of options and messages
+ * have this unit. */
 #include "job/picture/coloring.h"
 
 #include "image/image.h"

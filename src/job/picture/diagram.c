@@ -1,4 +1,5 @@
-/* One layout, drawn on a page or as pixels: the output's extension says which. */
+/* Lays the tree out once, and draws the layout on a page or as pixels. The extension of the output
+ * selects which. */
 #include "job/picture/diagram.h"
 
 #include "diagram/diagram.h"
@@ -167,7 +168,8 @@ static Status check(const DiagramOptions *options, Err *err)
     return frames_check_output(options->output, false, err);
 }
 
-/* The widest page of journals, mm: on it, the text of a legend has its size in points. */
+/* Width of the widest page of journals, mm. The text of a legend has its size in points on a page
+ * of this width. */
 static const double widest_mm = 180;
 
 /* Makes the page larger, and adds the legend there. */

@@ -1,7 +1,7 @@
-/* One writer a file. The planes take their final names first and the picture last, so that a
- * picture never stands beside planes of another. OpenEXR holds planes itself: they become channels
- * of the picture, floats throughout, as few programs take whole numbers: ids, up to IMAGE_MAX_ID,
- * are exact in 32 bits. */
+/* Each file has its own writer. The planes get their final names first and the picture last, so
+ * that a picture is never beside the planes of another picture. OpenEXR contains the planes as
+ * channels of the picture. All channels are floats, because few programs read integer channels. Ids
+ * up to IMAGE_MAX_ID are exact in a float of 32 bits. */
 #include "job/picture/frames.h"
 
 #include "options/output.h"
@@ -75,7 +75,7 @@ static bool is_layered(const FramesForm *form)
     return form->picture && strcmp(file_extension(form->path), "exr") == 0;
 }
 
-/* Whether there is such a file. */
+/* Returns true if the file is written. */
 static bool is_wanted(const FramesForm *form, int file)
 {
     return is_asked_for(form, file) && (file == FILE_PICTURE || !is_layered(form));
@@ -247,7 +247,7 @@ static Status take_codes(FramesWriter *writer, Picture *codes, Err *err)
     return STATUS_OK;
 }
 
-/* Puts all that is asked for into one plane. */
+/* Merges all specified planes into one. */
 static void merge(const FramesForm *form, const Frame *rows, Plane *merged)
 {
     const Plane *const values[] = {[FILE_DEPTH] = &rows->depth,

@@ -1,4 +1,4 @@
-/* A drawing has lines and paper: what says how surfaces look has no effect on it. */
+/* A drawing consists of lines and paper, so options about the look of surfaces have no effect. */
 #include "job/picture/line_drawing.h"
 
 #include "render/render.h"

@@ -1,6 +1,6 @@
-/* Each way to draw begins with rendering_open, which finds everything that may fail for a reason of
- * the user's before the first ray: options, files, templates, the tree. What is drawn then goes to
- * memory, to files or to a page. */
+/* Each way to draw begins with rendering_open, which detects all user errors before the first ray:
+ * in options, files, templates and the tree. The pictures then go to memory, to files or to a page.
+ */
 #include "job/picture/render.h"
 
 #include "job/job.h"
@@ -86,7 +86,8 @@ static Status plan_rows(Rendering *r, Err *err)
     return STATUS_OK;
 }
 
-/* STATUS_MEMORY unless there is memory for a band, and for a picture that is held as a whole. */
+/* Checks that there is memory for a band, and for a picture that is stored as a whole. Errors:
+ * STATUS_MEMORY. */
 static Status check_size(const Rendering *r, Err *err)
 {
     const FramesForm *form = &r->form;
@@ -171,8 +172,8 @@ static Status fill_sheet(Rendering *r, Err *err)
     return STATUS_OK;
 }
 
-/* Adds to the form what the files state and what lies over the pictures, and says what the scene
- * has lost. */
+/* Sets what the files state and what is drawn over the pictures, and sends notes about what the
+ * scene does not show. */
 Status rendering_describe(Rendering *r, Err *err)
 {
     TRY(command_line_text(r->parsed, &r->provenance, err));
@@ -240,7 +241,7 @@ void render_release(RenderResult *result)
 
 /* ---- into files ------------------------------------------------------------------------------ */
 
-/* Notes the names of all pictures, and of the planes beside them. */
+/* Records the files of all pictures and of their planes. */
 static Status note_files(Rendering *r, Err *err)
 {
     for (int k = r->animation.first; k <= r->animation.last; k++) {

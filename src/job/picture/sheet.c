@@ -1,4 +1,4 @@
-/* Templates and fonts are found first: a page that cannot be written is not worth drawing. */
+/* Templates and fonts are loaded first, because a page that cannot be written need not be drawn. */
 #include "job/picture/sheet.h"
 
 #include "options/output.h"

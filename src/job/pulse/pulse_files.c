@@ -1,4 +1,4 @@
-/* The files that `pulse` writes. */
+/* Writes the files of `pulse`: tables per segment and per root, values over time, and the deck. */
 #include "job/pulse/pulsing.h"
 
 #include "treeio/treeio.h"
@@ -69,7 +69,7 @@ static Status put_impedance(const void *context, Text *text, Err *err)
 
 /* ---- fields over time ------------------------------------------------------------------------ */
 
-/* The name of a field at frame m: "wss_0.0333". */
+/* Makes the name of a field at frame m, such as "wss_0.0333". */
 static void name_frame(const Pulsing *made, PulseField field, size_t m, char out[64])
 {
     char time[NUMBER_TEXT_SIZE];

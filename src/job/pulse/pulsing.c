@@ -1,4 +1,6 @@
-/* Options, waveforms and outlets are read before anything is computed. */
+/* Solves the linear model of pulse waves [pulse/pulse.h] for a tree. All options, waveforms and
+ * files of outlets are read before anything is computed. Warnings tell where a linear model is not
+ * accurate. */
 #include "job/pulse/pulsing.h"
 
 #include "options/output.h"
@@ -292,7 +294,8 @@ done:
     return status;
 }
 
-/* Reads a waveform by the value of an option. *is_file receives whether it is the user's. */
+/* Reads the waveform that an option names. *is_file receives true if it is a file of the user,
+ * false if it is a template. */
 static Status read_waveform(Pulsing *made, const char *option, const char *value, Waveform *out,
                             bool *is_file, Err *err)
 {
@@ -380,7 +383,7 @@ static Status read_wall(const PulsingOptions *options, PulseWall *wall, Err *err
                    options->wall, names);
 }
 
-/* Takes the columns rp, c and rd of `values`, whose nodes are the tree's. */
+/* Reads the columns rp, c and rd of `values`, whose nodes are those of the tree. */
 static Status take_given(const Tree *values, PulseLumped *given, const char *path, Err *err)
 {
     const TreeColumn *column[] = {tree_column(values, "rp"), tree_column(values, "c"),

@@ -106,7 +106,7 @@ static void find_radii(const BifurcationOptions *options, double radii[3])
     radii[2] = radii[1] * options->ratio;
 }
 
-/* The angles, in degrees, at which forces r^lambda along the three vessels are in balance. */
+/* Finds the angles, in degrees, at which forces r^lambda along the three vessels are in balance. */
 static Status find_angles(const BifurcationOptions *options, const double radii[3],
                           double angles[2], Err *err)
 {

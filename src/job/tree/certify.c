@@ -1,10 +1,10 @@
-/* Bounds a tree's target, and tells apart what the target is above the bound by.
+/* Proves a lower bound of a tree's target, and divides the gap between target and bound into parts.
  *
- * The parts are the differences of targets between the tree's and the bound, each of a problem that
- * is freer than the one before: the tree; the tree refined within the rules of length and
- * clearance; the best geometry without them, with radii by Murray's law; the same with free radii;
- * the bound. Only the last two are minima, so where a freer problem was solved worse, its part is
- * 0. */
+ * The parts are differences between consecutive targets in this list. Each problem has fewer
+ * constraints than the one before: the tree; the tree refined within the rules of length and
+ * clearance; the best geometry without these rules, with radii by Murray's law; the same with free
+ * radii; the bound. Only the last two are proved minima. If a problem with fewer constraints was
+ * solved worse, its part is 0. */
 #include "job/tree/certify.h"
 
 #include "derive/derive.h"

@@ -1,4 +1,4 @@
-/* Values of a file and derived fields become columns, one after the other. */
+/* Reads values of a file and derives fields, in this order. Both become columns of the tree. */
 #include "job/tree/convert_tree.h"
 
 #include "derive/derive.h"
@@ -52,7 +52,7 @@ const OptionTable treeconversion_table = OPTION_TABLE(rows);
 
 /* ---- columns --------------------------------------------------------------------------------- */
 
-/* Reads the values that are asked for into the tree. */
+/* Reads the values of --values into the tree. */
 static Status join_values(const TreeConversion *conversion, Parsed *parsed, Tree *tree, Err *err)
 {
     size_t length;
@@ -73,7 +73,7 @@ static Status join_values(const TreeConversion *conversion, Parsed *parsed, Tree
     return status;
 }
 
-/* Radius, type and length are in files of trees already, as numbers or as where segments end. */
+/* Returns true for fields that files of trees store anyway: radius, type and length. */
 static bool is_in_files(const char *name)
 {
     return strcmp(name, "radius") == 0 || strcmp(name, "length") == 0 || strcmp(name, "type") == 0;
@@ -135,7 +135,7 @@ static Status add_list(Tree *tree, const TreeMeta *said, const char *list, Err *
     return status;
 }
 
-/* Derives the fields that are asked for into the tree. */
+/* Derives the fields of --fields into the tree. */
 static Status join_fields(const TreeConversion *conversion, const Parsed *parsed, Tree *tree,
                           Err *err)
 {
@@ -209,7 +209,8 @@ static void fill_arrays(const Tree *tree, const Branches *branches, double *cons
     }
 }
 
-/* The names are exact, so the columns have no units: lengths are in mm, areas in mm^2. */
+/* Adds the columns of --centreline-arrays. Other programs need the exact names, so the columns
+ * state no units: lengths are in mm, areas in mm^2. */
 static Status add_arrays(Tree *tree, Err *err)
 {
     static const char *const names[CENTRELINE_ARRAYS] = {"MaximumInscribedSphereRadius",
@@ -243,7 +244,7 @@ Status convert_tree_make(const TreeConversion *conversion, Parsed *parsed, Tree 
 
 /* ---- files ----------------------------------------------------------------------------------- */
 
-/* Takes note of the file of a moment. */
+/* Records the file of a moment as written. */
 static Status note_moment(Parsed *parsed, const char *to, size_t moment, Err *err)
 {
     char *path = NULL;

@@ -195,7 +195,7 @@ void growing_set_defaults(Growing *growing)
     growing->fill_to = 1;
 }
 
-/* Takes the parameters that no option gives from the metadata of the tree to continue. */
+/* Sets the parameters that no option specifies from the metadata of the tree to continue. */
 static Status take_meta(Growing *growing, Err *err)
 {
     const Tree *from = &growing->from;
@@ -222,7 +222,8 @@ static Status read_from(Growing *growing, const Parsed *parsed, bool *has_domain
                    "--from: the header of the tree names no domain; give --domain");
 }
 
-/* Notes the domain's file, and checks the options against the viscosity law, which is known now. */
+/* Records the file of the domain, and checks the options against the viscosity law, which is known
+ * now. */
 static Status check(const Growing *growing, Parsed *parsed, Err *err)
 {
     TRY(options_refuse(parsed, blood_unmet(growing->params.blood.viscosity_law), err));

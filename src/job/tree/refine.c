@@ -1,4 +1,5 @@
-/* Refines a tree within a domain: that of the option --domain, or that of the tree's metadata. */
+/* Refines a tree within a domain. The domain is that of the option --domain, or that of the tree's
+ * metadata. */
 #include "job/tree/certify.h"
 #include "job/tree/makers.h"
 #include "job/tree/refining.h"
@@ -46,7 +47,7 @@ static void set_defaults(void *options)
     ((RefineOptions *)options)->refining.level = GROW_REFINE_TOPOLOGY;
 }
 
-/* Notes the columns that refinement drops. */
+/* Sends a note about the columns that refinement removes. */
 static Status note_columns(const Tree *tree, const Talk *talk, Err *err)
 {
     Text names = TEXT_INIT;

@@ -1,5 +1,5 @@
-/* What is compared, and how, follows from the options and from what the files hold: integers or
- * floats, colors or planes of geometry. */
+/* The options and the content of the files decide what is compared: integers or floats, colors or
+ * planes of geometry, images, answers or folders. */
 #include "job/verify/compare.h"
 
 #include "job/picture/coloring.h"
@@ -114,7 +114,7 @@ static Status check_pair(const CompareOptions *options, PlaneKind plane, const P
 
 /* ---- two images ------------------------------------------------------------------------------ */
 
-/* The ids of both sides, or NULL for both. */
+/* Returns the ids of a side; NULL unless the ids of both sides are known. */
 static const IdPlane *ids_of(const Comparison *made, int side)
 {
     return made->sides[0].ids.ids && made->sides[1].ids.ids ? &made->sides[side].ids : NULL;

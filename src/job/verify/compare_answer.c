@@ -4,7 +4,7 @@
 #include "job/picture/coloring.h"
 #include <string.h>
 
-/* Options that have no effect on grades are refused. */
+/* Refuses options without effect on grades. */
 static Status check(const Parsed *parsed, bool two_answers, Err *err)
 {
     for (size_t i = 0; i < parsed->n_settings; i++) {

@@ -1,5 +1,5 @@
-/* The renderer runs twice, and the faults are planted in the second picture. If the renderer does
- * not repeat itself exactly, the rule has to bear its noise, too. */
+/* The renderer runs twice, and the faults are planted in a copy of the second picture. If the
+ * renderer does not repeat itself exactly, the rule must also accept its noise. */
 #include "job/verify/power.h"
 
 #include "job/picture/coloring.h"
@@ -249,7 +249,7 @@ done:
     return status;
 }
 
-/* Has a scene drawn twice, and measures the power of the rule that the options state. */
+/* Runs the renderer twice, and measures the power of the rule that the options specify. */
 static Status measure_drawn(const PowerOptions *options, const PowerFiles *place,
                             const Parsed *parsed, Power *power, Err *err)
 {

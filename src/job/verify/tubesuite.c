@@ -171,7 +171,7 @@ done:
     return status;
 }
 
-/* Takes the intervals of an answer for grading. */
+/* Copies the intervals of an answer into the form that is graded. */
 static Status take_answer(const Answer *answer, AnswerFile *file, Err *err)
 {
     const int width = answer->plane.width, height = answer->plane.height;

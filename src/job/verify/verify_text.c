@@ -1,4 +1,4 @@
-/* The report of a verification, and its short form for people. */
+/* Makes the report of a verification [compare/compare.h], and its short form as text. */
 #include "job/verify/verify.h"
 
 #include <stdio.h>
