@@ -141,14 +141,6 @@ static Status make_scene(const PictureOptions *picture, const Parsed *parsed, Sc
                : STATUS_OK;
 }
 
-static Status make_surface(const PictureOptions *picture, const Common *common, SceneResult *made,
-                           Err *err)
-{
-    const MeshingOptions meshing = {.tolerance = picture->tolerance,
-                                    .part_overlaps = picture->part_overlaps};
-    return meshing_make(made->emitter, &meshing, &made->source.of, common, &made->mesh, err);
-}
-
 /* Selects the final emitter, now that the number of vessels is known, and records the output
  * files. */
 static Status settle_format(const SceneOptions *options, Parsed *parsed, SceneResult *made,
@@ -167,11 +159,14 @@ static Status settle_format(const SceneOptions *options, Parsed *parsed, SceneRe
 static Status make(const SceneOptions *options, Parsed *parsed, SceneResult *made, Err *err)
 {
     const PictureOptions *picture = &options->picture;
+    const MeshingOptions meshing = {.tolerance = picture->tolerance,
+                                    .part_overlaps = picture->part_overlaps};
     TRY(find_emitter(options->output, selected_form(options, parsed), &made->emitter, err));
     TRY(check(options, made->emitter, err));
     TRY(picture_read_source(picture, parsed, &made->source, err));
     TRY(settle_format(options, parsed, made, err));
-    return made->emitter->of_meshes ? make_surface(picture, &parsed->common, made, err)
+    return made->emitter->of_meshes ? meshing_make(made->emitter, &meshing, &made->source.of,
+                                                   &parsed->common, &made->mesh, err)
                                     : make_scene(picture, parsed, made, err);
 }
 

@@ -151,8 +151,8 @@ static void check_picture(Check *check, const ImageFacts *facts)
 
 typedef void TakeLine(Check *check, char *line, int number);
 
-/* Runs a program of poppler-utils on the file, and calls `take` with each line of its output.
- * `operand` follows the file; NULL: none. */
+/* Runs a program of poppler-utils on the file, and calls `take`, if it is not NULL, with each line
+ * of its output. `operand` follows the file; NULL: none. */
 static Status ask(Check *check, const char *program, const char *operand, TakeLine *take, Err *err)
 {
     Text command = TEXT_INIT;
@@ -167,7 +167,8 @@ static Status ask(Check *check, const char *program, const char *operand, TakeLi
     Status status = text_check(&command, err);
     FILE *answer = status == STATUS_OK ? popen(text_chars(&command), "r") : NULL;
     for (int i = 0; answer && fgets(line, sizeof line, answer); i++)
-        take(check, line, i);
+        if (take)
+            take(check, line, i);
     int ended = answer ? pclose(answer) : 0;
     text_release(&command);
     if (status == STATUS_OK && (!answer || ended == 127 << 8))
@@ -237,11 +238,6 @@ static void take_image(Check *check, char *line, int number)
         refuse(check, "bits: %d per channel; the maximum is %g", bits, check->preset->bits);
 }
 
-static void take_nothing(Check *check, char *line, int number)
-{
-    (void)check, (void)line, (void)number;
-}
-
 /* Measures the ink of the page, which Poppler draws in the four inks into `folder`. Poppler
  * converts RGB to at most 200 %. */
 static Status measure_page(Check *check, const char *folder, Err *err)
@@ -251,7 +247,7 @@ static Status measure_page(Check *check, const char *folder, Err *err)
     Status status;
     TRY_GOTO(file_join(folder, "page", &page, err));
     TRY_GOTO(file_join(folder, "page.jpg", &file, err));
-    TRY_GOTO(ask(check, "pdftoppm -jpegcmyk -r 150 -singlefile", page, take_nothing, err));
+    TRY_GOTO(ask(check, "pdftoppm -jpegcmyk -r 150 -singlefile", page, NULL, err));
     TRY_GOTO(image_facts(file, &facts, err));
     check_ink(check, facts.ink_percent);
 done:

@@ -442,13 +442,10 @@ Status figure_write(Figure *figure, Err *err)
 {
     const char *output = figure->options->output;
     Text description = TEXT_INIT;
-    char *line = NULL;
-    TRY(command_line_text(figure->parsed, &line, err));
     text_puts(&description, "figure ");
     text_put_line(&description, file_name(figure->parsed->operands[0]));
-    Status status = sheet_describe(&figure->sheet, &description, line, err);
+    Status status = sheet_describe(&figure->sheet, &description, figure->parsed, err);
     text_release(&description);
-    free(line);
     TRY(status);
     return frames_is_page(output)
                ? frames_write_page(&figure->sheet.page, &figure->sheet.notes, output, err)

@@ -81,13 +81,6 @@ static bool is_wanted(const FramesForm *form, int file)
     return is_asked_for(form, file) && (file == FILE_PICTURE || !is_layered(form));
 }
 
-static void choose_channels(FramesWriter *writer)
-{
-    for (int i = 0; i < LAYERS; i++)
-        if (is_asked_for(writer->form, layers[i].of))
-            writer->channels[writer->n_channels++] = layers[i].channel;
-}
-
 /* Returns true if the fourth channel of the picture is the black ink of what is drawn over it. */
 static bool has_black(const FramesForm *form)
 {
@@ -113,7 +106,9 @@ static Status open_picture(FramesWriter *writer, Err *err)
                        .notes = &all,
                        .packing = form->packing};
     if (is_layered(form)) {
-        choose_channels(writer);
+        for (int i = 0; i < LAYERS; i++)
+            if (is_asked_for(form, layers[i].of))
+                writer->channels[writer->n_channels++] = layers[i].channel;
         image.channels = writer->n_channels;
         image.named = writer->channels;
     }

@@ -1,5 +1,5 @@
 /* The extension of the output decides which options have an effect. Options without effect are
- * refused. A preset sets those options that no option states. */
+ * refused. A preset sets its options where the user sets none. */
 #include "job/picture/press.h"
 
 #include "job/picture/frames.h"

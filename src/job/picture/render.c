@@ -160,7 +160,7 @@ static Status fill_sheet(Rendering *r, Err *err)
     Text description = TEXT_INIT;
     sheet_begin(&r->sheet, picture->size.pixels, annotation_dpi(&picture->size));
     picture_description(&r->scene.geometry, r->source.of.path, &description);
-    Status status = sheet_describe(&r->sheet, &description, r->provenance, err);
+    Status status = sheet_describe(&r->sheet, &description, r->parsed, err);
     text_release(&description);
     TRY(status);
     const FigureBox whole = {0, 0, page->width_mm, page->height_mm};

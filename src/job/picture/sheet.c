@@ -17,10 +17,10 @@ void sheet_begin(Sheet *sheet, const int pixels[2], double dpi)
                 sheet->fonts);
 }
 
-Status sheet_describe(Sheet *sheet, Text *description, const char *command, Err *err)
+Status sheet_describe(Sheet *sheet, Text *description, const Parsed *parsed, Err *err)
 {
     TRY(text_take(description, &sheet->description, err));
-    TRY(mem_strdup(&sheet->command, command, err));
+    TRY(command_line_text(parsed, &sheet->command, err));
     sheet->notes = (FigureNotes){.templates = sheet->templates,
                                  .description = sheet->description,
                                  .generator = GENERATOR,

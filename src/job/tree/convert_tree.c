@@ -3,6 +3,7 @@
 
 #include "derive/derive.h"
 #include "job/tree/makers.h"
+#include "options/output.h"
 #include "options/reading.h"
 #include "treeio/treeio.h"
 #include <stdlib.h>
@@ -73,12 +74,6 @@ static Status join_values(const TreeConversion *conversion, Parsed *parsed, Tree
     return status;
 }
 
-/* Returns true for fields that files of trees store anyway: radius, type and length. */
-static bool is_in_files(const char *name)
-{
-    return strcmp(name, "radius") == 0 || strcmp(name, "length") == 0 || strcmp(name, "type") == 0;
-}
-
 static Status add_field(Tree *tree, const TreeMeta *said, const char *name, Err *err)
 {
     Field field;
@@ -107,11 +102,12 @@ static Status skip_lacking(Status status, const char *name, Text *lacking)
 
 static Status add_all(Tree *tree, const TreeMeta *said, const Talk *talk, Err *err)
 {
+    static const char *const in_files[] = {"radius", "length", "type", NULL};
     Text lacking = TEXT_INIT;
     Status status = STATUS_OK;
     const char *name;
     for (size_t i = 0; (name = derive_field_name(i)); i++)
-        if (!is_in_files(name))
+        if (!is_one_of(name, in_files)) /* files of trees store these anyway */
             TRY_GOTO(skip_lacking(add_field(tree, said, name, err), name, &lacking));
     TRY_GOTO(text_check(&lacking, err));
     if (*text_chars(&lacking))

@@ -222,16 +222,6 @@ static Status read_from(Growing *growing, const Parsed *parsed, bool *has_domain
                    "--from: the header of the tree names no domain; give --domain");
 }
 
-/* Records the file of the domain, and checks the options against the viscosity law, which is known
- * now. */
-static Status check(const Growing *growing, Parsed *parsed, Err *err)
-{
-    TRY(options_refuse(parsed, blood_unmet(growing->params.blood.viscosity_law), err));
-    if (!growing->domain.file)
-        return STATUS_OK;
-    return files_read(&parsed->files, "--domain", growing->domain.file, err);
-}
-
 Status growing_prepare(Growing *growing, Parsed *parsed, Err *err)
 {
     GrowParams *params = &growing->params;
@@ -250,7 +240,10 @@ Status growing_prepare(Growing *growing, Parsed *parsed, Err *err)
     TRY(growing_read_demand(growing, err));
     if (growing->demand)
         TRY(files_read(&parsed->files, "--demand", demand_file(growing->demand), err));
-    return check(growing, parsed, err);
+    /* The viscosity law is known now. */
+    TRY(options_refuse(parsed, blood_unmet(params->blood.viscosity_law), err));
+    const char *file = growing->domain.file;
+    return file ? files_read(&parsed->files, "--domain", file, err) : STATUS_OK;
 }
 
 Status growing_read_demand(Growing *growing, Err *err)

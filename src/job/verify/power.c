@@ -98,13 +98,6 @@ static Status open_place(PowerFiles *place, const char *extension, Err *err)
     return STATUS_OK;
 }
 
-static void close_place(PowerFiles *place)
-{
-    for (int i = 0; i < POWER_FILES; i++)
-        file_forget(place->files[i]);
-    file_forget(place->folder);
-}
-
 /* ---- the renderer ---------------------------------------------------------------------------- */
 
 /* Reads a picture as sRGB of its own depth; floats become 16-bit codes. */
@@ -309,7 +302,9 @@ Status power_run(const PowerOptions *options, Parsed *parsed, PowerReport *repor
     TRY_GOTO(open_place(&place, options->extension, err));
     status = measure_drawn(options, &place, parsed, &report->power, err);
 done:
-    close_place(&place);
+    for (int i = 0; i < POWER_FILES; i++)
+        file_forget(place.files[i]);
+    file_forget(place.folder);
     return status;
 }
 

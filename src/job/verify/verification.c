@@ -152,13 +152,6 @@ Status verification_pick_frame(Verification *v, int frame, Err *err)
     return STATUS_OK;
 }
 
-/* Returns the value of the scene's clock at the moment that is compared. */
-static double clock_of(const Verification *v)
-{
-    size_t n = v->moments.n_frames;
-    return n > 1 ? (double)(v->frame - 1) / (double)(n - 1) : 0;
-}
-
 /* Sets the texts of scene files. */
 static Status set_texts(Verification *v, Err *err)
 {
@@ -212,15 +205,16 @@ static Status draw_side(size_t side, int worker, void *context, Err *err)
 /* Draws both sides. If both fail, the error is POV-Ray's. */
 static Status draw_both(Verification *v, Err *err)
 {
+    const size_t n = v->moments.n_frames;
     Scene written = v->scene;
     Progress progress;
-    if (v->moments.n_frames > 0)
+    if (n > 0)
         written.appearance = v->moments;
     if (v->moments.widths)
         written.geometry = v->resting;
     const PovrayTilesParams params = {.emit = emit_params(v, &written),
                                       .folder = v->options->folder,
-                                      .clock = clock_of(v),
+                                      .clock = n > 1 ? (v->frame - 1) / (double)(n - 1) : 0,
                                       .antialias = v->options->picture.antialias,
                                       .bits = v->options->bits,
                                       .alpha = v->has_alpha,
