@@ -1,6 +1,6 @@
 /* The steps that operations which write files have in common: estimate the cost, refuse what the
  * machine cannot hold, work, write the result and the files beside it, and give all files their
- * names together. */
+ * names together. The functions are called in the order of this header. */
 #ifndef CORCAST_JOB_WORK_H
 #define CORCAST_JOB_WORK_H
 
@@ -25,13 +25,14 @@ typedef struct Work {
     Status (*make)(void *job, Progress *progress, Err *err);
 } Work;
 
-/* Notes the files as written, except those without a role. Does nothing if there is a taker. Errors
- * as files_write. */
+/* Records in `noted` that the files will be written, except files without a role (FileSlot.role).
+ * Errors: as files_write. */
 MUST_CHECK Status work_note_files(const FileSet *files, Files *noted, Err *err);
 
 /* Estimates, checks memory and disk, and does the work.
  *
- * files    are open, and their disk is checked; NULL: nothing is written.
+ * job      passed to Work.estimate and Work.make.
+ * files    must be open; their disk is checked. NULL: nothing is written.
  * Errors   STATUS_MEMORY or STATUS_IO if the machine or the disk is too small, before the work; and
  *          those of Work.make. */
 MUST_CHECK Status work_make(const Work *work, void *job, const FileSet *files, const Talk *talk,

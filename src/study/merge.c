@@ -1,7 +1,7 @@
 /* The extension of the output decides whether runs or tiles are joined. */
 #include "study/merge.h"
 
-#include "job/picture/shard_merge.h"
+#include "job/picture/shard.h"
 #include "options/output.h"
 #include "study/study_table.h"
 

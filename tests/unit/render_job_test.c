@@ -22,6 +22,20 @@ static void parse(const char *options, Parsed *parsed, char words[512])
     must(options_parse(parsed, n, argv, &err), &err);
 }
 
+/* Draws one picture into memory, as the library does. */
+static Status draw(Parsed *parsed, RenderResult *result, Err *err)
+{
+    Rendering rendering;
+    *result = (RenderResult){0};
+    ((RenderOptions *)parsed->options)->output = NULL;
+    TRY(rendering_open(parsed->options, parsed, NULL, &rendering, err));
+    Status status = rendering_describe(&rendering, err);
+    if (status == STATUS_OK)
+        status = rendering_draw_result(&rendering, result, err);
+    rendering_close(&rendering);
+    return status;
+}
+
 static void make(const char *options, RenderResult *result)
 {
     Parsed parsed;
@@ -29,7 +43,7 @@ static void make(const char *options, RenderResult *result)
     char words[512], with_output[400];
     snprintf(with_output, sizeof with_output, "%s -o unused.png", options);
     parse(with_output, &parsed, words);
-    must(render_make(parsed.options, &parsed, result, &err), &err);
+    must(draw(&parsed, result, &err), &err);
     parsed_release(&parsed);
 }
 
@@ -141,46 +155,6 @@ static void test_32_bits_give_linear_floats_with_alpha(void **state)
     remove(path);
 }
 
-/* A result that is written is the file that render_run writes. */
-static void test_a_result_is_written_with_the_bytes_of_the_command(void **state)
-{
-    (void)state;
-    static const struct {
-        const char *options, *name;
-    } cases[] = {{"--color-by radius", "q.png"},
-                 {"--bits 16 --look journal", "q.tif"},
-                 {"--bits 32 --background none --planes depth,id", "q.exr"},
-                 {"", "q.jpg"}};
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        RenderResult result;
-        Parsed parsed;
-        Err err = {{0}};
-        char path[64], words[512], bytes[2][65];
-        for (int written = 0; written < 2; written++) {
-            char text[400];
-            Hash hash;
-            snprintf(path, sizeof path, "%s/%s", folder, cases[i].name);
-            snprintf(text, sizeof text, "%s -o %s", cases[i].options, path);
-            parse(text, &parsed, words);
-            RenderOptions *options = parsed.options;
-            if (written) {
-                must(render_make(options, &parsed, &result, &err), &err);
-                options->output = path;
-                must(render_write(options, &parsed, &result, &err), &err);
-                render_release(&result);
-            } else {
-                must(render_run(options, &parsed, &err), &err);
-            }
-            parsed_release(&parsed);
-            hash_begin(&hash);
-            must(file_hash(path, &hash, &err), &err);
-            memcpy(bytes[written], hash_text(&hash).hex, 65);
-            remove(path);
-        }
-        assert_string_equal(bytes[0], bytes[1]);
-    }
-}
-
 static void refused(const char *options, const char *sentence)
 {
     Parsed parsed;
@@ -189,7 +163,7 @@ static void refused(const char *options, const char *sentence)
     char words[512], with_output[400];
     snprintf(with_output, sizeof with_output, "%s -o unused.png", options);
     parse(with_output, &parsed, words);
-    assert_int_equal(render_make(parsed.options, &parsed, &result, &err), STATUS_USAGE);
+    assert_int_equal(draw(&parsed, &result, &err), STATUS_USAGE);
     if (!strstr(err.text, sentence))
         fail_msg("%s", err.text);
     parsed_release(&parsed);
@@ -252,7 +226,6 @@ int main(void)
         cmocka_unit_test(test_a_picture_in_memory_has_the_codes_of_the_file),
         cmocka_unit_test(test_planes_in_memory_have_the_values_of_the_files),
         cmocka_unit_test(test_32_bits_give_linear_floats_with_alpha),
-        cmocka_unit_test(test_a_result_is_written_with_the_bytes_of_the_command),
         cmocka_unit_test(test_what_needs_files_is_refused),
         cmocka_unit_test(test_one_picture_of_an_animation_is_drawn),
         cmocka_unit_test(test_a_scene_is_drawn_several_times),

@@ -1,7 +1,6 @@
 /* Prints what `pulse` found. Films and scenes are drawn by the commands render and scene, as if
  * they were called with the tree that has the values over time. */
 #include "cli/commands.h"
-#include "job/pulse/pulse_files.h"
 #include "job/pulse/pulsing.h"
 #include "options/output.h"
 #include <stdio.h>

@@ -1,5 +1,5 @@
-/* The volumes are streamed while they are measured. Everything that a user can get wrong is checked
- * before. */
+/* The volumes are written to their files while they are measured, so that they need no memory.
+ * Therefore all options, the tree and the domain are checked before. */
 #include "job/coverage/coverage.h"
 
 #include "derive/derive.h"
@@ -21,7 +21,8 @@ static const char *const territory_kinds[] = {"terminal", "segment", "tree", NUL
 /* Number of voxels along the longest side of the domain, without --spacing. */
 enum { USUAL_VOXELS = 128 };
 
-/* Accepted difference between the volume of the domain and that of its voxels, as a fraction. */
+/* Accepted difference between the volume of the domain and that of its voxels, as a fraction.
+ * Reason of the value not recorded; it decides which --spacing is refused as too large. */
 static const double volume_room = 0.1;
 
 typedef struct CoverageOptions {
@@ -100,7 +101,9 @@ typedef struct Measuring {
     DomainTube *tubes, *outlets;
     size_t n_tubes, n_outlets;
     uint32_t *tube_node, *outlet_node; /* index of the node of a tube or an outlet */
-    uint32_t *labels, most_label;      /* per outlet or tube */
+    size_t n_parts;               /* number of outlets or tubes whose territories are measured */
+    const uint32_t *part_node;    /* their nodes: outlet_node or tube_node */
+    uint32_t *labels, most_label; /* per outlet or tube */
     VolumeStream distances, territories;
     CoverageParams params;
     CoverageResult *result;
@@ -177,17 +180,18 @@ static Status label_territories(Measuring *made, Err *err)
 {
     const Tree *tree = &made->tree;
     bool by_outlet = made->options->kind == TERRITORY_TERMINAL;
-    size_t n = by_outlet ? made->n_outlets : made->n_tubes;
     const uint32_t *node = by_outlet ? made->outlet_node : made->tube_node;
     Field number = {0};
-    if (n == 0)
+    made->n_parts = by_outlet ? made->n_outlets : made->n_tubes;
+    made->part_node = node;
+    if (made->n_parts == 0)
         return err_set(err, STATUS_INPUT,
                        "--territories: no vessel ends at a terminal, so that none supplies tissue; "
                        "use --territory segment or tree");
-    TRY(mem_calloc(&made->labels, n, sizeof *made->labels, "labels", err));
+    TRY(mem_calloc(&made->labels, made->n_parts, sizeof *made->labels, "labels", err));
     if (made->options->kind == TERRITORY_TREE)
         TRY(derive_rule(tree, &(TreeMeta){0}, "tree", &number, err));
-    for (size_t i = 0; i < n; i++) {
+    for (size_t i = 0; i < made->n_parts; i++) {
         made->labels[i] =
             number.value ? (uint32_t)number.value[node[i]] : (uint32_t)tree->id[node[i]];
         made->most_label = made->labels[i] > made->most_label ? made->labels[i] : made->most_label;
@@ -294,7 +298,8 @@ static Status measure(void *job, Progress *progress, Err *err)
     return coverage_measure(params, &made->result->report, err);
 }
 
-/* The voxels must have about the domain's volume; else they are too large for its thin parts. */
+/* Checks that the voxels have about the volume of the domain. Otherwise they are too large for thin
+ * parts of the domain. */
 static Status check_volume(const Measuring *made, Err *err)
 {
     const CoverageReport *report = &made->result->report;
@@ -309,7 +314,8 @@ static Status check_volume(const Measuring *made, Err *err)
     return STATUS_OK;
 }
 
-/* A tree that grew in a plane has all its nodes at one z. */
+/* Warns of a flat tree in a domain of three dimensions. All nodes of a flat tree have the same z.
+ */
 static void warn_flat(const Measuring *made, const Talk *talk)
 {
     const Tree *tree = &made->tree;
@@ -400,16 +406,14 @@ typedef struct Territory {
 static void sum_territories(const Measuring *made, const double *flow, Territory *territory)
 {
     const Tree *tree = &made->tree;
-    TerritoryKind kind = (TerritoryKind)made->options->kind;
-    bool by_outlet = kind == TERRITORY_TERMINAL;
-    size_t n = by_outlet ? made->n_outlets : made->n_tubes;
-    const uint32_t *node = by_outlet ? made->outlet_node : made->tube_node;
-    for (size_t i = 0; i < n; i++) {
-        bool counts =
-            kind != TERRITORY_TREE || !tree_is_segment(tree, (size_t)tree->parent[node[i]]);
-        territory[made->labels[i]].voxels += made->result->report.territory[i];
-        territory[made->labels[i]].flow += flow && counts ? flow[node[i]] : 0;
-        territory[made->labels[i]].exists = true;
+    const bool of_trees = made->options->kind == TERRITORY_TREE;
+    for (size_t i = 0; i < made->n_parts; i++) {
+        const size_t node = made->part_node[i];
+        const bool counts = !of_trees || !tree_is_segment(tree, (size_t)tree->parent[node]);
+        Territory *own = &territory[made->labels[i]];
+        own->voxels += made->result->report.territory[i];
+        own->flow += flow && counts ? flow[node] : 0;
+        own->exists = true;
     }
 }
 

@@ -30,12 +30,12 @@ typedef struct CoverageResult {
  * the files that the options name.
  *
  * options  the options that command_coverage sets.
- * result   receives the result; release it with coverageresult_release.
+ * result   is overwritten; release it with coverageresult_release even after an error.
  * Errors   STATUS_USAGE if an output has no format of volumes, if `beyond` does not increase, or if
  *          the voxels are too large for the domain; STATUS_INPUT if neither the options nor the
  *          tree state a domain, if no vessel is in the domain, or if the vessels fill it; the
  *          errors of reading_tree, tree_domain_parse, volume_check, work_make, coverage_measure
- *          and work_write. */
+ *          and work_write; STATUS_MEMORY. */
 MUST_CHECK Status coverage_make(void *options, Parsed *parsed, CoverageResult *result, Err *err);
 /* Returns the result as JSON: a new reference; NULL if memory runs out. `command` is the command
  * line for provenance. */

@@ -283,23 +283,15 @@ static bool is_page(const ExportOptions *options)
     return strcmp(file_extension(options->output), "html") == 0;
 }
 
-Status export_write(ExportOptions *options, Parsed *parsed, const FileTaker *taker, Err *err)
-{
-    FileSet files = {.taker = taker};
-    Status status;
-    if (is_page(options))
-        status = export_page(options, parsed, &files, err);
-    else if (volume_format_find(options->output))
-        status = export_volume(options, parsed, &files, err);
-    else
-        status = export_mesh(options, parsed, &files, err);
-    fileset_release(&files);
-    return status;
-}
-
 Status export_run(void *options, Parsed *parsed, Err *err)
 {
-    return export_write(options, parsed, NULL, err);
+    const char *output = ((const ExportOptions *)options)->output;
+    FileSet files = {0};
+    Status status = is_page(options)             ? export_page(options, parsed, &files, err)
+                    : volume_format_find(output) ? export_volume(options, parsed, &files, err)
+                                                 : export_mesh(options, parsed, &files, err);
+    fileset_release(&files);
+    return status;
 }
 
 /* Returns the emitter for the output; NULL for a volume or a page, and for an output that is

@@ -28,21 +28,17 @@ extern const Command command_export;
  * stores. Without an output, the result has colors and no named parts.
  *
  * options  options->settings and other members are set from `print` or `wall_mm`.
- * mesh     borrows from `options` and `parsed`; release it with meshing_release.
+ * mesh     set on success only. It borrows from `options` and `parsed`; release it with
+ *          meshing_release.
  * Errors   STATUS_USAGE if an option has no effect on the format, or if the output has no known
  *          extension; those of picture_read_tree and meshing_make. */
 MUST_CHECK Status mesh_make(ExportOptions *options, Parsed *parsed, MeshResult *mesh, Err *err);
 
 /* Exports a tree to options->output and to the files beside it.
  *
- * options  as for mesh_make.
- * taker    receives the files; NULL: the files are written to the file system.
+ * options  an ExportOptions, with an output; as for mesh_make.
  * Errors   those of mesh_make, meshing_write, volumes_write and webpage_write. If the operation
  *          fails, all files are as before. */
-MUST_CHECK Status export_write(ExportOptions *options, Parsed *parsed, const FileTaker *taker,
-                               Err *err);
-
-/* Exports a tree to files: calls export_write without a taker. `options` is an ExportOptions. */
 MUST_CHECK Status export_run(void *options, Parsed *parsed, Err *err);
 
 #endif

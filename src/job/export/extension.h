@@ -25,16 +25,19 @@ extern const char extension_column[];
  *
  * Errors   STATUS_USAGE for a length outside [0, 100]; STATUS_INPUT, naming ids, if a row of the
  *          file is not about an outlet, or if an extension overlaps another vessel; the errors of
- *          files_read and tree_read_values; STATUS_MEMORY. */
+ *          files_read and tree_read_values; STATUS_MEMORY. The tree is then unchanged. */
 MUST_CHECK Status extension_apply(const ExtensionOptions *options, Parsed *parsed, Tree *tree,
                                   Err *err);
 
-/* Computes a field of the blood. *field is empty if the flow or the viscosity is unknown. Errors:
- * as derive_rule. */
+/* Computes the field `name` of the blood, such as "wss" or "reynolds". Release *field with
+ * field_release. The field is empty, value NULL, if the flow or the viscosity is unknown. `said`
+ * has the values of the blood that options specify. Errors: as derive_rule, without STATUS_INPUT.
+ */
 MUST_CHECK Status extension_field(const Tree *tree, const TreeMeta *said, const char *name,
                                   Field *field, Err *err);
-/* Returns the length of a straight vessel with a segment's radius after which laminar flow is
- * developed, mm: 0.06 times the Reynolds number times the diameter. */
+/* Returns the entrance length of a segment, mm: the length of a straight vessel of the segment's
+ * radius after which laminar flow is developed. This is 0.06 times the Reynolds number times the
+ * diameter. `reynolds` has a value per node. */
 double extension_entrance(const Tree *tree, const Field *reynolds, size_t segment);
 
 /* Reports the largest entrance length of the inlets and of the outlets, beside the length of the

@@ -57,15 +57,6 @@ static json_t *segment_ids(const VesselTree *vessels, const uint32_t *list, size
     return ids;
 }
 
-/* Adds the members that describe the wall. */
-static json_t *with_wall(json_t *object, const MeshResult *made)
-{
-    const PrintParams *params = &made->print->params;
-    return JSON_WITH(object, {"wall_mm", json_number(params->wall_mm)},
-                     {"wall_over_radius", json_number(params->wall_ratio)},
-                     {"outer_mm3", json_number(made->printed.outer_mm3)});
-}
-
 /* Returns the size of the smallest feature, in mm: the minimum of the vessel diameters, wall
  * thicknesses and gaps between vessels. */
 static double smallest_of(const MeshResult *made)
@@ -103,7 +94,11 @@ static json_t *print_json(const MeshResult *made)
          segment_ids(vessels, report->closest.segments, 2 * report->has_closest)},
         {"smallest_feature_mm", json_number(smallest_of(made))}, {"size_mm", json_numbers(size, 3)},
         {"bed_mm", settings->bed_mm[2] > 0 ? json_numbers(settings->bed_mm, 3) : json_null()});
-    return print_has_wall(&settings->params) ? with_wall(all, made) : all;
+    return print_has_wall(&settings->params)
+               ? JSON_WITH(all, {"wall_mm", json_number(settings->params.wall_mm)},
+                           {"wall_over_radius", json_number(settings->params.wall_ratio)},
+                           {"outer_mm3", json_number(report->outer_mm3)})
+               : all;
 }
 
 static json_t *layers_json(const PrismLayers *layers)

@@ -57,7 +57,7 @@ typedef struct MeshResult {
  * Sends notes about the expected cost, about changes to vessels, and about the size of the mesh.
  *
  * of      is moved into the result and zeroed; it is released after an error.
- * out     is released with meshing_release.
+ * out     set on success only; release it with meshing_release.
  * Errors  STATUS_DIFFERS if the mesh is invalid; STATUS_INPUT if the printer's nozzle is too wide
  *         or its bed too small; those of stage_vessels, coloring_appearance, work_make,
  *         vesselmesh_build, print_build, meshends_find and prismlayers_sweep. */
@@ -71,7 +71,7 @@ void meshing_release(MeshResult *mesh);
 MUST_CHECK Status meshing_write(const MeshResult *mesh, FileSet *files, const Parsed *parsed,
                                 Err *err);
 
-/* Sends notes with the facts about a mesh for a 3D printer. */
+/* Sends notes with the facts about a mesh for a 3D printer; mesh->print must not be NULL. */
 void mesh_say_print(const MeshResult *mesh, const Talk *talk);
 /* Returns the manifest of a mesh: a new reference, or NULL if memory runs out. */
 json_t *mesh_manifest(const MeshResult *mesh);

@@ -1,6 +1,6 @@
 /* Each key is a row of a table. The row describes the accepted values of the key, for error
  * messages. */
-#include "job/export/print_settings.h"
+#include "job/export/printing.h"
 
 #include <stdlib.h>
 #include <string.h>

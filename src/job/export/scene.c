@@ -5,10 +5,23 @@
 
 #include "job/export/meshing.h"
 #include "job/export/scenefiles.h"
-#include "options/output.h"
-#include <stdio.h>
-#include <stdlib.h>
+#include "job/picture/picture.h"
 #include <string.h>
+
+/* The form of a model for OpenSCAD. */
+typedef enum ScadForm {
+    SCAD_AUTO,       /* the number of vessels selects the form */
+    SCAD_PARAMETRIC, /* modules, which OpenSCAD unites */
+    SCAD_POLYHEDRON  /* one closed surface */
+} ScadForm;
+
+typedef struct SceneOptions {
+    const char *output; /* its extension selects the format */
+    bool ids;           /* adds the ids that POV-Ray needs to draw the id plane */
+    bool ini;           /* also writes the settings file */
+    ScadForm scad;
+    PictureOptions picture;
+} SceneOptions;
 
 static const char *const scad_forms[] = {
     [SCAD_AUTO] = "auto", [SCAD_PARAMETRIC] = "parametric", [SCAD_POLYHEDRON] = "polyhedron", NULL};
@@ -52,7 +65,7 @@ static Status check(const SceneOptions *options, const Emitter *emitter, Err *er
     const PictureOptions *picture = &options->picture;
     const SceneModel model =
         picture->as_mesh ? model_with(MODEL_TRIANGLES) : (SceneModel)picture->model;
-    if (options->ini && options->output && strcmp(options->output, "-") == 0)
+    if (options->ini && strcmp(options->output, "-") == 0)
         return err_set(err, STATUS_USAGE,
                        "--ini writes a file beside S.pov; it cannot be used with standard output");
     TRY(picture_check_povray(picture, err));
@@ -78,8 +91,8 @@ static ScadForm selected_form(const SceneOptions *options, const Parsed *parsed)
 }
 
 /* Finds the emitter for an output. The form matters only for .scad: SCAD_POLYHEDRON selects the
- * emitter of meshes. All other outputs have an emitter of scenes; standard output and a scene in
- * memory have the emitter for POV-Ray. */
+ * emitter of meshes. All other outputs have an emitter of scenes; standard output and a missing
+ * output have the emitter for POV-Ray. */
 static Status find_emitter(const char *output, ScadForm form, const Emitter **emitter, Err *err)
 {
     const char *name = output && strcmp(output, "-") ? output : "scene.pov";
@@ -104,6 +117,18 @@ static ScadForm form_by_size(const Tree *tree, const char *output, const Talk *t
 
 /* ---- the scene in memory --------------------------------------------------------------------- */
 
+/* A scene in memory, or a surface if the format stores meshes. All members except `emitter` are
+ * owned. */
+typedef struct SceneResult {
+    const Emitter *emitter; /* the format that the result was made for */
+    PictureSource source;   /* the tree; if the emitter writes meshes, the tree has moved to
+                             * `mesh` */
+    Scene scene;            /* set if the emitter writes scenes, as is `anatomy` */
+    Anatomy anatomy;
+    MeshResult mesh; /* set if the emitter writes meshes */
+    FileSet files;   /* the files of options->output */
+} SceneResult;
+
 static Status make_scene(const PictureOptions *picture, const Parsed *parsed, SceneResult *made,
                          Err *err)
 {
@@ -114,14 +139,6 @@ static Status make_scene(const PictureOptions *picture, const Parsed *parsed, Sc
     return made->emitter->has_view
                ? picture_say_effects(picture, "the scene omits them", parsed->common.talk, err)
                : STATUS_OK;
-}
-
-static Status make_surface(const PictureOptions *picture, const Common *common, SceneResult *made,
-                           Err *err)
-{
-    const MeshingOptions meshing = {.tolerance = picture->tolerance,
-                                    .part_overlaps = picture->part_overlaps};
-    return meshing_make(made->emitter, &meshing, &made->source.of, common, &made->mesh, err);
 }
 
 /* Selects the final emitter, now that the number of vessels is known, and records the output
@@ -135,32 +152,25 @@ static Status settle_format(const SceneOptions *options, Parsed *parsed, SceneRe
         TRY(find_emitter(options->output,
                          form_by_size(&made->source.of.tree, options->output, parsed->common.talk),
                          &made->emitter, err));
-    if (!options->output)
-        return STATUS_OK;
     TRY(scene_files_name(made->emitter, options->output, options->ini, &made->files, err));
     return work_note_files(&made->files, &parsed->files, err);
 }
 
-Status scene_make(const SceneOptions *options, Parsed *parsed, const FileTaker *taker,
-                  SceneResult *out, Err *err)
+static Status make(const SceneOptions *options, Parsed *parsed, SceneResult *made, Err *err)
 {
     const PictureOptions *picture = &options->picture;
-    SceneResult made = {.files.taker = taker};
-    Status status;
-    TRY_GOTO(find_emitter(options->output, selected_form(options, parsed), &made.emitter, err));
-    TRY_GOTO(check(options, made.emitter, err));
-    TRY_GOTO(picture_read_source(picture, parsed, &made.source, err));
-    TRY_GOTO(settle_format(options, parsed, &made, err));
-    TRY_GOTO(made.emitter->of_meshes ? make_surface(picture, &parsed->common, &made, err)
-                                     : make_scene(picture, parsed, &made, err));
-    *out = made;
-    return STATUS_OK;
-done:
-    sceneresult_release(&made);
-    return status;
+    const MeshingOptions meshing = {.tolerance = picture->tolerance,
+                                    .part_overlaps = picture->part_overlaps};
+    TRY(find_emitter(options->output, selected_form(options, parsed), &made->emitter, err));
+    TRY(check(options, made->emitter, err));
+    TRY(picture_read_source(picture, parsed, &made->source, err));
+    TRY(settle_format(options, parsed, made, err));
+    return made->emitter->of_meshes ? meshing_make(made->emitter, &meshing, &made->source.of,
+                                                   &parsed->common, &made->mesh, err)
+                                    : make_scene(picture, parsed, made, err);
 }
 
-void sceneresult_release(SceneResult *scene)
+static void sceneresult_release(SceneResult *scene)
 {
     picture_source_release(&scene->source);
     scene_release(&scene->scene);
@@ -217,7 +227,7 @@ static void say_limits(const SceneResult *made, const EmitReport *report, const 
                   report->openscad_s, geometry->drawn);
 }
 
-Status scene_write(const SceneOptions *options, const Parsed *parsed, SceneResult *scene, Err *err)
+static Status write(const SceneOptions *options, const Parsed *parsed, SceneResult *scene, Err *err)
 {
     EmitReport report = {0};
     const SceneWriting writing = {options, scene, &report};
@@ -230,9 +240,10 @@ Status scene_write(const SceneOptions *options, const Parsed *parsed, SceneResul
 
 Status scene_run(void *options, Parsed *parsed, Err *err)
 {
-    SceneResult scene;
-    TRY(scene_make(options, parsed, NULL, &scene, err));
-    Status status = scene_write(options, parsed, &scene, err);
+    SceneResult scene = {0};
+    Status status = make(options, parsed, &scene, err);
+    if (status == STATUS_OK)
+        status = write(options, parsed, &scene, err);
     sceneresult_release(&scene);
     return status;
 }

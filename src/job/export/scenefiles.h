@@ -18,8 +18,9 @@ typedef enum SceneFile {
     SCENE_FILES
 } SceneFile;
 
-/* Finds the default emitter for the extension of a file name: of meshes and curves if `of_meshes`,
- * else of scenes. Errors: STATUS_USAGE, with the known extensions. */
+/* Finds the default emitter [emit/emit.h] for the extension of a file name: of meshes and curves if
+ * `of_meshes`, else of scenes. Errors: STATUS_USAGE, with the known extensions; STATUS_MEMORY.
+ * *emitter is then NULL. */
 MUST_CHECK Status scene_files_find(const char *output, bool of_meshes, const Emitter **emitter,
                                    Err *err);
 
@@ -27,8 +28,7 @@ MUST_CHECK Status scene_files_find(const char *output, bool of_meshes, const Emi
  * For "-", standard output, there are no additional files.
  *
  * settings  the settings file is written.
- * files     zeroed by the caller, except for files->taker (FileTaker), which the caller may set;
- *           the caller releases it with fileset_release even after an error.
+ * files     zeroed by the caller, who releases it with fileset_release even after an error.
  * Errors    STATUS_USAGE if the format cannot use the name of the second file; STATUS_MEMORY. */
 MUST_CHECK Status scene_files_name(const Emitter *emitter, const char *path, bool settings,
                                    FileSet *files, Err *err);

@@ -26,11 +26,12 @@ static Status find_flow_parts(const Tree *tree, double **parts, Err *err)
     return STATUS_OK;
 }
 
-static void put_vector(Vec3 v, Text *out)
+/* Appends numbers, each after a comma. -0 becomes 0. */
+static void put_numbers(const double *numbers, size_t n, Text *out)
 {
-    for (int axis = 0; axis < 3; axis++) {
-        text_number(out, vec3_component(v, axis) + 0);
+    for (size_t i = 0; i < n; i++) {
         text_puts(out, ",");
+        text_number(out, numbers[i] + 0);
     }
 }
 
@@ -42,8 +43,7 @@ static void put_extension(const MeshEnd *end, size_t node, const Tree *tree, con
 {
     size_t at = end->is_inlet ? (size_t)tree->parent[node] : node;
     double length = tree_column(tree, extension_column)->value[at];
-    text_puts(out, ",");
-    text_number(out, length);
+    put_numbers(&length, 1, out);
     text_puts(out, ",");
     if (wss->value && isfinite(wss->value[node]))
         text_number(out, mmhg_from_pa(2 * wss->value[node] * length / tree->radius_mm[node]));
@@ -67,13 +67,11 @@ Status solver_ends(const MeshEnds *ends, const Tree *tree, const VesselTree *ves
     text_puts(out, is_extended ? ",extension_mm,extension_drop_mmhg,entrance_mm\n" : "\n");
     for (size_t i = 0; i < ends->n; i++) {
         const MeshEnd *end = &ends->ends[i];
-        text_printf(out, "%s,%zu,%u,", end->name, ends->n_walls + i + 1,
-                    vessels->ids[end->segment]);
-        put_vector(end->center, out);
-        put_vector(end->normal, out);
-        text_number(out, end->radius_mm);
-        text_puts(out, ",");
-        text_number(out, end->area_mm2);
+        const Vec3 at = end->center, normal = end->normal;
+        const double row[] = {at.x,     at.y,     at.z,           normal.x,
+                              normal.y, normal.z, end->radius_mm, end->area_mm2};
+        text_printf(out, "%s,%zu,%u", end->name, ends->n_walls + i + 1, vessels->ids[end->segment]);
+        put_numbers(row, sizeof row / sizeof *row, out);
         text_puts(out, ",");
         if (!end->is_ring)
             text_number(out, parts[vessels->segments[end->segment].segment]);

@@ -80,13 +80,9 @@ typedef enum VolumeFile {
 static Status name_beside(const char *output, const char *replaced, const char *suffix,
                           const char *role, FileSlot *file, Err *err)
 {
-    Text path = TEXT_INIT;
+    const size_t kept = strlen(output) - strlen(replaced);
     file->role = role;
-    text_append(&path, output, strlen(output) - strlen(replaced));
-    text_puts(&path, suffix);
-    Status status = text_take(&path, &file->path, err);
-    text_release(&path);
-    return status;
+    return file_format_name(&file->path, err, "%.*s%s", (int)kept, output, suffix);
 }
 
 Status volumes_name(const VolumeOptions *options, const VolumeFormat *format, const char *output,

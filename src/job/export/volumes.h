@@ -8,8 +8,10 @@
 #include "voxel/voxel.h"
 
 typedef struct VolumeOptions {
-    NumberList voxel;  /* voxel size, mm: one number, or one per axis; empty: longest side / 256 */
-    int depth, labels; /* choices */
+    NumberList voxel; /* voxel size, mm: one number, or one per axis; empty: longest side / 256 */
+    int depth;        /* choice: type of the samples, a SampleType */
+    int labels;       /* choice: 0: no labels; 1: label is the id of the segment; 2: its Strahler
+                       * order; 3: the number of its tree */
     const char *centreline; /* path of the centreline volume; NULL: none */
 } VolumeOptions;
 
@@ -22,8 +24,7 @@ void volumes_extensions(Text *out);
  * for density files, a scene. The names of the additional files are derived from `output`.
  *
  * output   path of the volume.
- * files    zeroed by the caller, except for its taker (FileTaker); the caller releases it with
- *          fileset_release even after an error.
+ * files    zeroed by the caller, who releases it with fileset_release even after an error.
  * Errors   STATUS_MEMORY. */
 MUST_CHECK Status volumes_name(const VolumeOptions *options, const VolumeFormat *format,
                                const char *output, FileSet *files, Err *err);

@@ -22,12 +22,9 @@ typedef struct Webpage {
     char *templates, *viewer, *title; /* owned */
     Look look;
     Appearance appearance;
-    FieldSeries *fields;
-    size_t n_fields, capacity;
-    char **names; /* names of series of columns, borrowed by fields; owned */
-    size_t n_names, names_capacity;
-    PageMap *maps;
-    size_t n_maps, maps_capacity;
+    ARRAY(FieldSeries) fields;
+    ARRAY(char *) names; /* names of series of columns, borrowed by fields; owned */
+    ARRAY(PageMap) maps;
 } Webpage;
 
 static void webpage_release(Webpage *page)
@@ -36,35 +33,35 @@ static void webpage_release(Webpage *page)
     free(page->templates);
     free(page->viewer);
     free(page->title);
-    for (size_t i = 0; i < page->n_fields; i++)
-        fieldseries_release(&page->fields[i]);
-    for (size_t i = 0; i < page->n_names; i++)
-        free(page->names[i]);
-    for (size_t i = 0; i < page->n_maps; i++) {
-        free(page->maps[i].name);
-        colormap_release(&page->maps[i].map);
+    for (size_t i = 0; i < page->fields.n; i++)
+        fieldseries_release(&page->fields.items[i]);
+    for (size_t i = 0; i < page->names.n; i++)
+        free(page->names.items[i]);
+    for (size_t i = 0; i < page->maps.n; i++) {
+        free(page->maps.items[i].name);
+        colormap_release(&page->maps.items[i].map);
     }
-    free(page->fields);
-    free(page->names);
-    free(page->maps);
+    ARRAY_RELEASE(&page->fields);
+    ARRAY_RELEASE(&page->names);
+    ARRAY_RELEASE(&page->maps);
 }
 
 /* ---- fields ---------------------------------------------------------------------------------- */
 
 static bool has_field(const Webpage *page, const char *name)
 {
-    for (size_t i = 0; i < page->n_fields; i++)
-        if (strcmp(page->fields[i].field.name, name) == 0)
+    for (size_t i = 0; i < page->fields.n; i++)
+        if (strcmp(page->fields.items[i].field.name, name) == 0)
             return true;
     return false;
 }
 
 static Status add_field(Webpage *page, const TreeMeta *said, const char *name, Err *err)
 {
-    TRY(mem_reserve(&page->fields, &page->capacity, page->n_fields + 1, sizeof *page->fields,
-                    "fields", err));
-    TRY(derive_series(&page->of->tree, said, name, &page->fields[page->n_fields], err));
-    page->n_fields++;
+    FieldSeries series = {0};
+    TRY(ARRAY_RESERVE(&page->fields, 1, "fields", err));
+    TRY(derive_series(&page->of->tree, said, name, &series, err));
+    page->fields.items[page->fields.n++] = series;
     return STATUS_OK;
 }
 
@@ -75,13 +72,12 @@ static Status add_shown(Webpage *page, Err *err)
     Appearance *shown = &page->appearance;
     if (!shown->colors)
         return STATUS_OK;
-    TRY(mem_reserve(&page->fields, &page->capacity, 1, sizeof *page->fields, "fields", err));
-    page->fields[page->n_fields++] = (FieldSeries){.field = {.name = shown->scale.name,
-                                                             .unit = shown->scale.unit,
-                                                             .value = shown->values,
-                                                             .n = shown->n_values},
-                                                   .time = shown->time,
-                                                   .frames = shown->n_frames ? shown->n_frames : 1};
+    const Field field = {.name = shown->scale.name,
+                         .unit = shown->scale.unit,
+                         .value = shown->values,
+                         .n = shown->n_values};
+    const size_t frames = shown->n_frames ? shown->n_frames : 1;
+    TRY(ARRAY_PUSH(&page->fields, "fields", err, (FieldSeries){field, shown->time, frames}));
     shown->values = NULL;
     shown->time = NULL;
     return STATUS_OK;
@@ -125,11 +121,10 @@ static Status series_name(Webpage *page, const char *column, const char **name, 
     if (!series_parse(column, &length, &time))
         return STATUS_OK;
     char *made = NULL;
-    TRY(mem_reserve(&page->names, &page->names_capacity, page->n_names + 1, sizeof *page->names,
-                    "names", err));
+    TRY(ARRAY_RESERVE(&page->names, 1, "names", err));
     TRY(mem_strdup(&made, column, err));
     made[length] = '\0';
-    page->names[page->n_names++] = made;
+    page->names.items[page->names.n++] = made;
     TRY(tree_series(&page->of->tree, made, &series, err));
     if (series.n)
         *name = made;
@@ -171,24 +166,15 @@ done:
 
 /* ---- colors --------------------------------------------------------------------------------- */
 
-/* Adds a color map. The page takes ownership of `name`. */
-static Status add_map(Webpage *page, char *name, const char *path, Err *err)
-{
-    PageMap *map = &page->maps[page->n_maps];
-    *map = (PageMap){.name = name};
-    page->n_maps++;
-    return colormap_read(&map->map, path, err);
-}
-
 static Status read_map(Webpage *page, const char *value, Err *err)
 {
-    char *path = NULL, *name = NULL;
+    char *path = NULL;
     Status status;
     TRY_GOTO(template_file("colormap", "colormaps", value, ".txt", &path, err));
-    TRY_GOTO(mem_reserve(&page->maps, &page->maps_capacity, page->n_maps + 1, sizeof *page->maps,
-                         "color maps", err));
-    TRY_GOTO(mem_strdup(&name, file_name(value), err));
-    status = add_map(page, name, path, err);
+    TRY_GOTO(ARRAY_PUSH(&page->maps, "color maps", err, (PageMap){0}));
+    PageMap *map = &page->maps.items[page->maps.n - 1];
+    TRY_GOTO(mem_strdup(&map->name, file_name(value), err));
+    status = colormap_read(&map->map, path, err);
 done:
     free(path);
     return status;
@@ -199,16 +185,15 @@ static Status read_maps(const char *chosen, Webpage *page, Err *err)
 {
     Text names = TEXT_INIT;
     char *lines = NULL;
-    Status status = template_names("colormaps", ".txt", &names, err);
-    if (status == STATUS_OK)
-        status = text_take(&names, &lines, err);
+    Status status;
+    TRY_GOTO(template_names("colormaps", ".txt", &names, err));
+    TRY_GOTO(text_take(&names, &lines, err));
+    if (strchr(chosen, '/'))
+        TRY_GOTO(read_map(page, chosen, err));
+    for (char *rest = lines, *name; (name = text_line(&rest)) && *name;)
+        TRY_GOTO(read_map(page, name, err));
+done:
     text_release(&names);
-    if (status == STATUS_OK && strchr(chosen, '/'))
-        status = read_map(page, chosen, err);
-    char *rest = lines;
-    for (char *name; status == STATUS_OK && (name = text_line(&rest));)
-        if (*name)
-            status = read_map(page, name, err);
     free(lines);
     return status;
 }
@@ -257,9 +242,9 @@ static Status check_bytes(const Webpage *page, Err *err)
     double bytes = 0;
     size_t moments = 0;
     char size[BYTES_TEXT_SIZE];
-    for (size_t i = 0; i < page->n_fields; i++) {
-        bytes += (double)page->fields[i].field.n * sizeof(float) * 4 / 3;
-        moments += page->fields[i].frames;
+    for (size_t i = 0; i < page->fields.n; i++) {
+        bytes += (double)page->fields.items[i].field.n * sizeof(float) * 4 / 3;
+        moments += page->fields.items[i].frames;
     }
     if (bytes <= WEBPAGE_MAX_BYTES)
         return STATUS_OK;
@@ -299,10 +284,10 @@ static Status put_page(const void *job, const char *command, FileSlot files[], E
                                .command = command,
                                .tree = tree,
                                .origin = vec3_scale(vec3_add(box.low, box.high), 0.5),
-                               .fields = page->fields,
-                               .n_fields = page->n_fields,
-                               .maps = page->maps,
-                               .n_maps = page->n_maps,
+                               .fields = page->fields.items,
+                               .n_fields = page->fields.n,
+                               .maps = page->maps.items,
+                               .n_maps = page->maps.n,
                                .look = &page->look,
                                .look_name = page->look_name,
                                .is_look_chosen = page->is_look_chosen,

@@ -58,7 +58,8 @@ static void refuse(Check *check, const char *format, ...)
 
 /* ---- sizes ----------------------------------------------------------------------------------- */
 
-/* Half a millimetre is what rounding to pixels and cutting edges may take or give. */
+/* Accepted difference of a length, mm: rounding to pixels and cutting edges may change a length by
+ * half a millimetre. */
 static const double slack_mm = 0.5;
 
 static void check_lengths(Check *check, double width_mm, double height_mm)
@@ -85,7 +86,8 @@ static void check_resolution(Check *check, double dpi, const char *of)
         refuse(check, "resolution: %.4g dpi%s; the maximum is %g", dpi, of, preset->most_dpi);
 }
 
-/* Without a resolution, the pixels must do for the narrowest column. */
+/* Checks the resolution and the lengths. If the file states no resolution, its pixels must suffice
+ * for the narrowest column. */
 static void check_pixels(Check *check, const ImageFacts *facts)
 {
     double least = check->preset->least_dpi[check->kind];
@@ -118,7 +120,7 @@ static void check_colors(Check *check, const char *colors, const char *profile)
         refuse(check, "profile: \"%s\"; the preset accepts sRGB", profile);
 }
 
-/* 1 % is what rounding to 8 bits may give. */
+/* Checks the ink. Rounding to 8 bits may change the sum by 1 %. */
 static void check_ink(Check *check, double percent)
 {
     if (check->ink_percent > 0 && percent > check->ink_percent + 1)
@@ -149,8 +151,8 @@ static void check_picture(Check *check, const ImageFacts *facts)
 
 typedef void TakeLine(Check *check, char *line, int number);
 
-/* Has a program of poppler's read the file, and `take` each line of its output. `operand` follows
- * the file; NULL: none. */
+/* Runs a program of poppler-utils on the file, and calls `take`, if it is not NULL, with each line
+ * of its output. `operand` follows the file; NULL: none. */
 static Status ask(Check *check, const char *program, const char *operand, TakeLine *take, Err *err)
 {
     Text command = TEXT_INIT;
@@ -165,7 +167,8 @@ static Status ask(Check *check, const char *program, const char *operand, TakeLi
     Status status = text_check(&command, err);
     FILE *answer = status == STATUS_OK ? popen(text_chars(&command), "r") : NULL;
     for (int i = 0; answer && fgets(line, sizeof line, answer); i++)
-        take(check, line, i);
+        if (take)
+            take(check, line, i);
     int ended = answer ? pclose(answer) : 0;
     text_release(&command);
     if (status == STATUS_OK && (!answer || ended == 127 << 8))
@@ -177,7 +180,7 @@ static Status ask(Check *check, const char *program, const char *operand, TakeLi
     return status;
 }
 
-/* "Pages:           1", "Page size:       252.28 x 170.08 pts". */
+/* Reads lines such as "Pages:           1" and "Page size:       252.28 x 170.08 pts". */
 static void take_info(Check *check, char *line, int number)
 {
     (void)number;
@@ -189,9 +192,10 @@ static void take_info(Check *check, char *line, int number)
         check_lengths(check, width * mm, height * mm);
 }
 
-/* Two lines of heads; columns from the right: generation and object number, uni, sub, emb,
- * encoding, the type in one to three words. The letters of a Type 3 font are drawings, which other
- * programs cannot edit, search or hint, so publishers refuse it even if it is embedded. */
+/* Reads a line about a font. The first two lines are headings. The columns are, from the right:
+ * generation and object number, uni, sub, emb, encoding, and the type in one to three words. The
+ * letters of a Type 3 font are drawings, which other programs cannot edit, search or hint.
+ * Publishers therefore refuse such a font even if it is embedded. */
 static void take_font(Check *check, char *line, int number)
 {
     char *words[16], *rest = NULL;
@@ -211,8 +215,8 @@ static void take_font(Check *check, char *line, int number)
         refuse(check, "fonts: text must be converted to outlines");
 }
 
-/* Two lines of heads; page num type width height color comp bpc enc interp object ID x-ppi y-ppi.
- */
+/* Reads a line about an image. The first two lines are headings. The columns are: page num type
+ * width height color comp bpc enc interp object ID x-ppi y-ppi. */
 static void take_image(Check *check, char *line, int number)
 {
     char type[32], color[32];
@@ -234,12 +238,8 @@ static void take_image(Check *check, char *line, int number)
         refuse(check, "bits: %d per channel; the maximum is %g", bits, check->preset->bits);
 }
 
-static void take_nothing(Check *check, char *line, int number)
-{
-    (void)check, (void)line, (void)number;
-}
-
-/* Has the page drawn in the four inks, to `folder`. Poppler converts RGB to at most 200 %. */
+/* Measures the ink of the page, which Poppler draws in the four inks into `folder`. Poppler
+ * converts RGB to at most 200 %. */
 static Status measure_page(Check *check, const char *folder, Err *err)
 {
     char *page = NULL, *file = NULL;
@@ -247,7 +247,7 @@ static Status measure_page(Check *check, const char *folder, Err *err)
     Status status;
     TRY_GOTO(file_join(folder, "page", &page, err));
     TRY_GOTO(file_join(folder, "page.jpg", &file, err));
-    TRY_GOTO(ask(check, "pdftoppm -jpegcmyk -r 150 -singlefile", page, take_nothing, err));
+    TRY_GOTO(ask(check, "pdftoppm -jpegcmyk -r 150 -singlefile", page, NULL, err));
     TRY_GOTO(image_facts(file, &facts, err));
     check_ink(check, facts.ink_percent);
 done:

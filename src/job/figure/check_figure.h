@@ -18,13 +18,15 @@ typedef struct CheckFigureOptions {
 typedef struct FigureFindings {
     Text refused;   /* one line per property that the publisher refuses */
     Text unchecked; /* one line per requirement that was not checked */
-    int n_refused;
+    int n_refused;  /* number of lines in `refused`; 0: the figure is accepted */
 } FigureFindings;
 
 /* Checks the file `path` against the preset. All formats that corcast writes can be checked. A PDF
- * needs the programs of the package poppler-utils.
+ * needs the programs of the package poppler-utils. A figure that the publisher refuses is not an
+ * error.
  *
- * findings  the caller releases it even after an error.
+ * findings  receives the findings. The caller releases it even after an error; it may then have
+ *           the findings before the error.
  * Errors    STATUS_USAGE if there is no such preset; STATUS_INPUT if the file or the preset is
  *           broken; STATUS_TOOL if a program is missing; STATUS_MEMORY. */
 MUST_CHECK Status check_figure_make(const CheckFigureOptions *options, const char *path,

@@ -100,8 +100,9 @@ static Status set_background(const Figure *figure, Parsed *render, Err *err)
     return set_key(render, "background", color, err);
 }
 
-/* What the page says of a panel's options. Those of the recipe are no longer typed, as in recipes
- * of commands: one that has no effect on this panel is not refused. */
+/* Sets the options of a panel that the page determines. Options of the recipe are no longer marked
+ * as typed, as in recipes of commands, so that an option without effect on this panel is not
+ * refused. */
 static Status set_options(const Figure *figure, size_t i, Err *err)
 {
     const FigureOptions *options = figure->options;
@@ -123,15 +124,7 @@ static Status set_options(const Figure *figure, size_t i, Err *err)
     return STATUS_OK;
 }
 
-static Status prepare_panels(const Figure *figure, Err *err)
-{
-    for (size_t i = 0; i < figure->plan.n; i++)
-        if (figure_has_tree(figure, i))
-            TRY(set_options(figure, i, err));
-    return STATUS_OK;
-}
-
-/* Makes the tree of a panel the first operand. */
+/* Makes the tree of a panel the first operand, and rebases the paths of its options. */
 static Status set_tree(const Figure *figure, size_t i, Err *err)
 {
     Section *section = figure->plan.sections[i];
@@ -140,12 +133,12 @@ static Status set_tree(const Figure *figure, size_t i, Err *err)
     if (section->maker) {
         parsed_give(&section->render, madetrees_tree(&figure->plan, &figure->trees, i),
                     section->tree_name);
-        return STATUS_OK;
+    } else {
+        TRY(figure_path(figure->folder, panel->tree, path, err));
+        section->render.operands[0] = *path;
+        section->render.n_operands = 1;
     }
-    TRY(figure_path(figure->folder, panel->tree, path, err));
-    section->render.operands[0] = *path;
-    section->render.n_operands = 1;
-    return STATUS_OK;
+    return figure_rebase(&section->render, figure->folder, NULL, err);
 }
 
 static Status in_panel(Section *section, Status status, Err *err)
@@ -155,12 +148,6 @@ static Status in_panel(Section *section, Status status, Err *err)
         err_prefix(err, "[panel %s]: ", section->name);
     }
     return status;
-}
-
-static Status set_paths(const Figure *figure, size_t i, Err *err)
-{
-    TRY(set_tree(figure, i, err));
-    return figure_rebase(&figure->plan.sections[i]->render, figure->folder, NULL, err);
 }
 
 static Status draw_panel(const Figure *figure, size_t i, Panel *panel, Err *err)
@@ -207,7 +194,7 @@ static Status draw_panels(Figure *figure, Err *err)
     size_t first = 0;
     for (size_t i = 0; i < figure->plan.n; i++)
         if (figure_has_tree(figure, i))
-            TRY(in_panel(figure->plan.sections[i], set_paths(figure, i, err), err));
+            TRY(in_panel(figure->plan.sections[i], set_tree(figure, i, err), err));
     if (figure->options->same_scale)
         TRY(set_scale(figure, err));
     for (size_t i = 0; i < figure->plan.n; i++) {
@@ -249,14 +236,16 @@ static Status read_images(Figure *figure, Err *err)
 
 /* ---- the page -------------------------------------------------------------------------------- */
 
-/* Black or white, whichever is read on the paper. */
+/* Returns black or white: the one with more contrast on this color. */
 static FigureColor ink_on(FigureColor paper)
 {
     const Vec3 srgb = vec3(paper.rgb[0] / 255.0, paper.rgb[1] / 255.0, paper.rgb[2] / 255.0);
     return annotation_ink(rgb_of_option(srgb));
 }
 
-/* In the line above the panel, or in its upper left corner: at the edge where nobody sees one. */
+/* Adds the letter of a panel: in the line above the panel or, without a title, in its upper left
+ * corner. If the panel has the color of the page, its edge is invisible, and the letter is at the
+ * edge. */
 static Status put_letter(Figure *figure, size_t i, const char *letter, FigureColor paper, Err *err)
 {
     const FigureOptions *options = figure->options;
@@ -296,7 +285,7 @@ static void put_title(Figure *figure, size_t i, FigureColor ink)
         figure_add_text(&figure->sheet.page, &text);
 }
 
-/* a, b, ..., z, aa, ... */
+/* Makes the letter of panel `number`, counted from 0: a, b, ..., z, aa, ... */
 static void automatic_letter(int number, bool upper, char out[8])
 {
     char digits[8];
@@ -322,7 +311,8 @@ static void put_image(Figure *figure, size_t i)
         (FigureBox){x - half_width, y - half_height, x + half_width, y + half_height});
 }
 
-/* Adds a panel, its insets, and its annotations. The letter is the page's. */
+/* Adds a panel, its insets, and its annotations. The letter is added for the page, not as an
+ * annotation of the picture. */
 static Status put_panel(Figure *figure, size_t i, int number, Err *err)
 {
     Panel *panel = &figure->panels[i];
@@ -353,7 +343,8 @@ static Status put_panel(Figure *figure, size_t i, int number, Err *err)
 
 /* ---- text ------------------------------------------------------------------------------------ */
 
-/* Larger coordinates are a mistake, and beyond what FreeType and cairo take. */
+/* Largest distance from the corner of the page, mm. Larger coordinates are mistakes, and more than
+ * FreeType and cairo accept. */
 static const double far_mm = 1e4;
 
 static Status put_text(Figure *figure, const Section *section, Err *err)
@@ -388,7 +379,7 @@ static Status put_text(Figure *figure, const Section *section, Err *err)
     return STATUS_OK;
 }
 
-/* Notes what an EPS cannot hold of the images. */
+/* Sends a note about what an EPS cannot store of the images. */
 static void say_images(const Figure *figure)
 {
     size_t vectors = 0;
@@ -399,17 +390,6 @@ static void say_images(const Figure *figure)
             figure->parsed->common.talk,
             "an .eps has no transparency: translucent parts of images become pixels of %g dpi",
             figure->sheet.page.dpi);
-}
-
-/* Reports what the panels have lost of their trees and how they are colored. */
-static Status say_panels(const Figure *figure, Err *err)
-{
-    Status status = STATUS_OK;
-    for (size_t i = 0; i < figure->plan.n && status == STATUS_OK; i++)
-        if (figure_has_tree(figure, i))
-            status = picture_say(&figure->panels[i].scene, &figure->panels[i].report,
-                                 figure->parsed->common.talk, err);
-    return status;
 }
 
 static Status fill_page(Figure *figure, Err *err)
@@ -426,22 +406,20 @@ static Status fill_page(Figure *figure, Err *err)
     TRY(figure_check(&figure->sheet.page, err));
     TRY(sheet_say(&figure->sheet, figure->parsed->common.talk, err));
     say_images(figure);
-    return say_panels(figure, err);
+    for (size_t i = 0; i < figure->plan.n; i++)
+        if (figure_has_tree(figure, i))
+            TRY(picture_say(&figure->panels[i].scene, &figure->panels[i].report,
+                            figure->parsed->common.talk, err));
+    return STATUS_OK;
 }
 
 /* ---- files ----------------------------------------------------------------------------------- */
 
-static Status write_picture(const Figure *figure, const Picture *picture, Err *err)
+/* Writes the page as pixels. */
+static Status write_pixels(const Figure *figure, Err *err)
 {
     const ImageNote notes[] = {{"Software", GENERATOR}, {"Comment", figure->sheet.notes.command}};
     const ImageNotes all = {.notes = notes, .count = 2, .dpi = figure->sheet.page.dpi};
-    return picture_write(picture, figure->options->output, ENCODING_SRGB, &all,
-                         &figure->press.packing, err);
-}
-
-/* The page as pixels. */
-static Status write_pixels(const Figure *figure, Err *err)
-{
     const FigurePage *page = &figure->sheet.page;
     const int bits = figure->press.bits;
     const unsigned scale = bits == 8 ? 1 : 257;
@@ -454,50 +432,27 @@ static Status write_pixels(const Figure *figure, Err *err)
             picture_set(&picture, i, (uint16_t)(page->background.rgb[i % channels] * scale));
     Status status = figure_draw(page, 0, &picture, err);
     if (status == STATUS_OK)
-        status = write_picture(figure, &picture, err);
+        status = picture_write(&picture, figure->options->output, ENCODING_SRGB, &all,
+                               &figure->press.packing, err);
     picture_release(&picture);
     return status;
 }
 
-static Status write_file(const Figure *figure, Err *err)
+Status figure_write(Figure *figure, Err *err)
 {
     const char *output = figure->options->output;
+    Text description = TEXT_INIT;
+    text_puts(&description, "figure ");
+    text_put_line(&description, file_name(figure->parsed->operands[0]));
+    Status status = sheet_describe(&figure->sheet, &description, figure->parsed, err);
+    text_release(&description);
+    TRY(status);
     return frames_is_page(output)
                ? frames_write_page(&figure->sheet.page, &figure->sheet.notes, output, err)
                : write_pixels(figure, err);
 }
 
-Status figure_write(Figure *figure, Err *err)
-{
-    Text description = TEXT_INIT;
-    char *line = NULL;
-    TRY(command_line_text(figure->parsed, &line, err));
-    text_puts(&description, "figure ");
-    text_put_line(&description, file_name(figure->parsed->operands[0]));
-    Status status = sheet_describe(&figure->sheet, &description, line, err);
-    text_release(&description);
-    free(line);
-    return status == STATUS_OK ? write_file(figure, err) : status;
-}
-
 /* ---- the recipe ------------------------------------------------------------------------------ */
-
-/* The recipe's path: a file by its '/' or extension, else one of templates/figures; in *path
- * (owned). */
-static Status find_recipe(const char *name, char **path, Err *err)
-{
-    if (strchr(name, '/') || strcmp(file_extension(name), "ini") == 0)
-        return mem_strdup(path, name, err);
-    return template_find("figure", "figures", name, ".ini", path, err);
-}
-
-/* The complete recipe. Its paths are those of the recipe that was read. */
-static Status put_recipe(Figure *figure, Err *err)
-{
-    text_puts(&figure->recipe, "; " GENERATOR ": figure FILE -o F.pdf\n");
-    figureplan_put(&figure->plan, figure->parsed, &figure->recipe);
-    return text_check(&figure->recipe, err);
-}
 
 static bool is_typed(const Setting *setting)
 {
@@ -541,9 +496,14 @@ static Status make_figure(Figure *figure, const char *recipe, Err *err)
     TRY(sheet_open(&figure->sheet, err));
     sheet_begin(&figure->sheet, pixels, options->size.dpi > 0 ? options->size.dpi : 300);
     TRY(figure_place_panels(figure, err));
-    TRY(prepare_panels(figure, err));
-    if (figure->parsed->common.dump)
-        TRY(put_recipe(figure, err));
+    for (size_t i = 0; i < figure->plan.n; i++)
+        if (figure_has_tree(figure, i))
+            TRY(set_options(figure, i, err));
+    if (figure->parsed->common.dump) { /* before the paths of the recipe change */
+        text_puts(&figure->recipe, "; " GENERATOR ": figure FILE -o F.pdf\n");
+        figureplan_put(&figure->plan, figure->parsed, &figure->recipe);
+        TRY(text_check(&figure->recipe, err));
+    }
     TRY(file_beside(recipe, "", &figure->folder, err));
     TRY(open_press(figure, err));
     TRY(madetrees_make(&figure->plan, &figure->parsed->common, figure->folder, &figure->trees,
@@ -555,11 +515,14 @@ static Status make_figure(Figure *figure, const char *recipe, Err *err)
 
 Status figure_make(const FigureOptions *options, Parsed *parsed, Figure *out, Err *err)
 {
+    const char *name = parsed->operands[0];
+    const bool is_path = strchr(name, '/') || strcmp(file_extension(name), "ini") == 0;
     char *recipe = NULL;
     out->options = options;
     out->parsed = parsed;
     TRY(check_output(options, err));
-    TRY(find_recipe(parsed->operands[0], &recipe, err));
+    TRY(is_path ? mem_strdup(&recipe, name, err)
+                : template_find("figure", "figures", name, ".ini", &recipe, err));
     Status status = make_figure(out, recipe, err);
     free(recipe);
     return status;
@@ -595,7 +558,6 @@ const Command command_figure = {
     .min_operands = 1,
     .max_operands = 1,
     .needs_output = true,
-    .is_lookup = false,
     .own_recipe = true,
     .own_check = true,
     .size = sizeof(FigureOptions),

@@ -40,7 +40,7 @@ typedef struct Figure {
     MadeTrees trees;
     Press press; /* the output profile of a page in pixels */
     Sheet sheet; /* the page and its metadata */
-    Text recipe; /* with --dump-recipe: the complete recipe */
+    Text recipe; /* with --dump-recipe: the complete recipe, which the caller prints; else empty */
     /* Per section: zeroed if the section is of another kind; owned. The insets are in the order of
      * their panels. */
     PanelRect *rects;
@@ -54,7 +54,7 @@ typedef struct Figure {
  * path, if it has a '/' or the extension .ini, or a name in templates/figures. Options of the
  * command line take precedence over the recipe.
  *
- * figure  the caller calls figure_done even after an error.
+ * figure  zeroed before; the caller calls figure_done even after an error.
  * Errors  STATUS_USAGE and STATUS_INPUT, naming the recipe's line or section; the errors of
  *         render_make; STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status figure_make(const FigureOptions *options, Parsed *parsed, Figure *figure,
@@ -67,6 +67,11 @@ void figure_done(Figure *figure);
 
 /* ---- the parts of figure_make --------------------------------------------------------------- */
 
+/* figure_place_panels comes first. Then, per panel, come figure_plan_insets before the panel is
+ * drawn, and figure_put_insets afterwards. Index i or `of` is an index into figure->plan.sections.
+ */
+
+/* Returns true if section `i` is a panel. */
 static inline bool figure_is_panel(const Figure *figure, size_t i)
 {
     return figure->plan.sections[i]->kind == SECTION_PANEL;
@@ -79,9 +84,9 @@ static inline bool figure_has_tree(const Figure *figure, size_t i)
     return section->kind == SECTION_PANEL && !((const PanelOptions *)section->own.options)->image;
 }
 
-/* Places the panels in the cells of the grid, and allocates panels and insets. Errors:
- * STATUS_USAGE, naming the panel, if there is no room for it on the page, or if it spans more
- * columns than there are; STATUS_MEMORY. */
+/* Places the panels in the cells of the grid: sets figure->rects, and allocates panels, insets and
+ * artworks. Errors: STATUS_USAGE, naming the panel, if there is no room for it on the page, or if
+ * it spans more columns than there are; STATUS_MEMORY. */
 MUST_CHECK Status figure_place_panels(Figure *figure, Err *err);
 /* Returns the box of a panel on the page, in mm. */
 FigureBox figure_panel_box(const Figure *figure, size_t i);

@@ -1,11 +1,12 @@
-/* The grid: columns of one width, rows of one height. Places are whole pixels of the page, so that
- * no picture is resampled. */
+/* Places panels in a grid whose columns have one width and whose rows have one height. Positions
+ * are whole pixels of the page, so that no picture is resampled. */
 #include "job/figure/figure.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-/* The cell in which each panel begins, row by row; how many rows there are. */
+/* Finds the cell in which each panel begins: cell[i] is its column and row. Returns the number of
+ * rows. */
 static int find_cells(const Figure *figure, int (*cell)[2])
 {
     const int columns = figure->options->columns;

@@ -1,32 +1,33 @@
-/* An inset is a picture of its own, drawn by the camera of its panel's, cropped. Two lines, its
- * leaders, lead from the part that it shows to it. They are interrupted where vessels are. */
+/* An inset is a picture of its own: the camera of its panel, restricted to a part of the view. Two
+ * lines, the leaders, lead from the magnified part to the inset. A leader is interrupted where
+ * vessels are, and the pair of leaders is chosen that vessels cover least. */
 #include "job/figure/figure.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* The section of this kind and name; plan.n when there is none. */
-static size_t find_section(const FigurePlan *plan, SectionKind kind, const char *name)
+/* Returns the index of the panel of this name; plan->n if there is none. */
+static size_t find_panel(const FigurePlan *plan, const char *name)
 {
     size_t i = 0;
     while (i < plan->n &&
-           (plan->sections[i]->kind != kind || strcmp(plan->sections[i]->name, name) != 0))
+           (plan->sections[i]->kind != SECTION_PANEL || strcmp(plan->sections[i]->name, name) != 0))
         i++;
     return i;
 }
 
-/* An inset may lie beside its panel. What is farther off than this many sides of the panel is a
- * mistake. */
+/* Largest distance of an inset, in sides of its panel. An inset may be beside its panel; a larger
+ * distance is taken for a mistake. Reason of the value not recorded. */
 static const double far_sides = 10;
 
 static Status check_inset(const FigurePlan *plan, const Section *section, Err *err)
 {
     const InsetOptions *inset = section->own.options;
-    if (!inset->of || find_section(plan, SECTION_PANEL, inset->of) == plan->n)
+    if (!inset->of || find_panel(plan, inset->of) == plan->n)
         return err_set(err, STATUS_USAGE, "[inset %s]: of: %s%s is not the name of a panel",
                        section->name, inset->of ? "" : "nothing", inset->of ? inset->of : "");
-    const Section *panel = plan->sections[find_section(plan, SECTION_PANEL, inset->of)];
+    const Section *panel = plan->sections[find_panel(plan, inset->of)];
     if (((const PanelOptions *)panel->own.options)->image)
         return err_set(err, STATUS_USAGE,
                        "[inset %s]: of: %s shows an image; an inset needs a tree", section->name,
@@ -47,7 +48,7 @@ static Status check_inset(const FigurePlan *plan, const Section *section, Err *e
     return STATUS_OK;
 }
 
-/* The insets of panel `of`, which follow each other from `first` on. */
+/* The insets of a panel are stored one after another, from `first` on. */
 Status figure_plan_insets(Figure *figure, size_t of, size_t first, size_t *n, Err *err)
 {
     *n = 0;
@@ -57,7 +58,7 @@ Status figure_plan_insets(Figure *figure, size_t of, size_t first, size_t *n, Er
         if (section->kind != SECTION_INSET)
             continue;
         TRY(check_inset(&figure->plan, section, err));
-        if (find_section(&figure->plan, SECTION_PANEL, inset->of) != of)
+        if (find_panel(&figure->plan, inset->of) != of)
             continue;
         double height = inset->height_mm > 0 ? inset->height_mm : inset->width_mm;
         figure->insets[first + (*n)++] =
@@ -77,7 +78,7 @@ static void corners_of(const FigureBox *box, FigurePoint corner[4])
     corner[3] = (FigurePoint){box->left, box->bottom};
 }
 
-/* Whether a line has a part within the box, whose edges do not count. */
+/* Returns true if a part of the line is inside the box. The edges of the box do not count. */
 static bool crosses(FigurePoint from, FigurePoint to, const FigureBox *box)
 {
     double begin = 0, end = 1;
@@ -95,7 +96,7 @@ static bool crosses(FigurePoint from, FigurePoint to, const FigureBox *box)
     return end - begin > 1e-6;
 }
 
-/* Whether two lines cross. */
+/* Returns true if two lines cross. */
 static bool lines_cross(const FigurePoint a[2], const FigurePoint b[2])
 {
     double side[4];
@@ -261,18 +262,17 @@ static void put_leaders(FigurePage *page, const FigureBox *part, const FigureBox
         put_leader(page, &all[best[k]], shadow, width_mm, ink);
 }
 
-/* Its paper covers the panel's lines. */
-static void put_lines(Figure *figure, const PanelInset *inset, const FigureBox *shown)
+/* Draws a frame around a box. */
+static void put_frame(FigurePage *page, const FigureBox *box, double width_mm, FigureColor ink)
 {
-    FigurePage *page = &figure->sheet.page;
-    figure_add_box(page, *shown, page->background);
-    figure_add_strokes(page, &inset->strokes, (FigurePoint){shown->left, shown->top}, figure->ink);
+    FigurePoint corner[4];
+    corners_of(box, corner);
+    figure_add_line(page, corner, 4, true, width_mm, ink);
 }
 
 static Status put_inset(Figure *figure, const Section *section, size_t of, const PanelInset *inset,
                         Err *err)
 {
-    enum { CORNERS = 4 };
     const InsetOptions *options = section->own.options;
     const Panel *panel = &figure->panels[of];
     const PanelRect *rect = &figure->rects[of];
@@ -287,19 +287,19 @@ static Status put_inset(Figure *figure, const Section *section, size_t of, const
         return err_set(err, STATUS_USAGE, "[inset %s] extends beyond the page", section->name);
     const FigureBox shown = {left * pixel, top * pixel, (left + inset->pixels[0]) * pixel,
                              (top + inset->pixels[1]) * pixel};
-    if (!panel->in_lines)
+    if (panel->in_lines) { /* a box of paper covers the lines of the panel */
+        figure_add_box(page, shown, page->background);
+        figure_add_strokes(page, &inset->strokes, (FigurePoint){shown.left, shown.top},
+                           figure->ink);
+    } else {
         figure_add_picture(page, &inset->picture, left, top);
-    else
-        put_lines(figure, inset, &shown);
+    }
     FigureBox part = panel_part(inset, &panel->scene.view.camera);
     part = (FigureBox){box.left + part.left * width, box.top + part.top * height,
                        box.left + part.right * width, box.top + part.bottom * height};
     FigureColor ink = annotation_ink(panel->scene.view.background);
-    FigurePoint corner[CORNERS];
-    corners_of(&part, corner);
-    figure_add_line(page, corner, CORNERS, true, line_mm, ink);
-    corners_of(&shown, corner);
-    figure_add_line(page, corner, CORNERS, true, line_mm, ink);
+    put_frame(page, &part, line_mm, ink);
+    put_frame(page, &shown, line_mm, ink);
     if (options->leaders) {
         Shadow shadow;
         TRY(cast_shadow(&panel->scene, box, &shadow, err));
@@ -322,8 +322,7 @@ Status figure_put_insets(Figure *figure, size_t of, Err *err)
     for (size_t i = 0; i < figure->plan.n; i++) {
         const Section *section = figure->plan.sections[i];
         const InsetOptions *inset = section->own.options;
-        if (section->kind != SECTION_INSET ||
-            find_section(&figure->plan, SECTION_PANEL, inset->of) != of)
+        if (section->kind != SECTION_INSET || find_panel(&figure->plan, inset->of) != of)
             continue;
         TRY(put_inset(figure, section, of, &panel->insets[k++], err));
     }

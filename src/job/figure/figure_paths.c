@@ -1,5 +1,5 @@
-/* A path is found in a value by the kind of its option. Values of kind text hold paths in four
- * options, each in its own way. */
+/* The kind of an option tells whether its value is a path. Four options of kind text contain a
+ * path, each in its own form. */
 #include "job/figure/figure_paths.h"
 
 #include "treeio/treeio.h"
@@ -9,12 +9,8 @@
 
 Status figure_path(const char *folder, const char *path, char **out, Err *err)
 {
-    Text text = TEXT_INIT;
-    text_puts(&text, path[0] == '/' || strcmp(path, "-") == 0 ? "" : folder);
-    text_puts(&text, path);
-    Status status = text_take(&text, out, err);
-    text_release(&text);
-    return status;
+    const bool is_fixed = path[0] == '/' || strcmp(path, "-") == 0;
+    return file_format_name(out, err, "%s%s", is_fixed ? "" : folder, path);
 }
 
 /* Returns the path in the description of a domain, such as mesh:FILE; NULL if there is none. */
@@ -49,24 +45,19 @@ static const char *find_path(const Option *option, const char *value, const char
 static Status rebase_value(Parsed *parsed, const Setting *setting, const char *folder, Err *err)
 {
     const char *value = *(const char *const *)(setting->base + setting->option->where);
-    char *from_folder = NULL, *path = NULL;
-    Text text = TEXT_INIT;
+    char *from_folder = NULL, *path = NULL, *changed = NULL;
     Status status;
     if (!value)
         return STATUS_OK;
     TRY_GOTO(figure_path(folder, value, &from_folder, err));
     const char *begin = find_path(setting->option, value, from_folder);
-    if (!begin) {
-        status = STATUS_OK;
+    if (!begin)
         goto done;
-    }
     TRY_GOTO(figure_path(folder, begin, &path, err));
-    text_append(&text, value, (size_t)(begin - value));
-    text_puts(&text, path);
-    TRY_GOTO(text_check(&text, err));
-    TRY_GOTO(options_set(parsed, setting->option->name, text_chars(&text), err));
+    TRY_GOTO(file_format_name(&changed, err, "%.*s%s", (int)(begin - value), value, path));
+    status = options_set(parsed, setting->option->name, changed, err);
 done:
-    text_release(&text);
+    free(changed);
     free(from_folder);
     free(path);
     return status;

@@ -11,7 +11,7 @@
  *
  * folder     ends with '/'; "": nothing changes.
  * is_fixed   returns true for a setting that is not to be changed; NULL: there is no such setting.
- * Errors     STATUS_MEMORY. */
+ * Errors     STATUS_MEMORY. The values before the error are then changed already. */
 MUST_CHECK Status figure_rebase(Parsed *parsed, const char *folder,
                                 bool (*is_fixed)(const Setting *setting), Err *err);
 
@@ -19,7 +19,7 @@ MUST_CHECK Status figure_rebase(Parsed *parsed, const char *folder,
  * standard input.
  *
  * folder   ends with '/', or is "".
- * out      receives the path; the caller frees it.
+ * out      receives the path; the caller frees it. Unchanged after an error.
  * Errors   STATUS_MEMORY. */
 MUST_CHECK Status figure_path(const char *folder, const char *path, char **out, Err *err);
 

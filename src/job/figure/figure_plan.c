@@ -1,7 +1,8 @@
-/* A section is the options of a command that nobody can call: `panel`, `inset` or `text`. So keys
- * are read, checked, and written back by the tables that the command line has. A panel has the
- * options of `render` besides, but those that say where a picture goes and how it is cut up: that
- * the page says. Its tree is a file, or what a command makes: the key `grow` holds its options. */
+/* A section is read as the options of a command that no user can call: `panel`, `inset` or `text`.
+ * Keys are therefore read, checked and written back by the same tables as options of the command
+ * line. A panel also has the options of `render`, except those that the page sets: where a picture
+ * goes, its size, and how it is divided. The tree of a panel is a file, or a command makes it: the
+ * key `grow` has the options of that command. */
 #include "job/figure/figure_plan.h"
 
 #include "job/job.h"
@@ -139,7 +140,7 @@ static bool is_of_panels(const Option *option)
            !is_one_of(option->name, of_page);
 }
 
-/* Whether an option of a section's own command, or of `figure`, is a key. */
+/* Returns true if an option of a section's own command, or of `figure`, is a key. */
 static bool is_own(const Option *option)
 {
     static const char *const common[] = {"seed", "output", NULL};
@@ -162,7 +163,8 @@ static void offer_keys(const Parsed *parsed, OptionIsKey *is_key, Suggestion *su
             suggestion_offer(suggestion, parsed->settings[i].option->name);
 }
 
-/* `b` may have no options. */
+/* Returns the error of an unknown key, with suggestions among the keys of `a` and `b`. `b` may have
+ * no options. */
 static Status unknown_key(const char *name, const char *section, const Parsed *a, const Parsed *b,
                           Err *err)
 {
@@ -174,7 +176,7 @@ static Status unknown_key(const char *name, const char *section, const Parsed *a
     return STATUS_USAGE;
 }
 
-/* The sentence is about keys of a file, not options. */
+/* Reads the value of a key. `twice`: the key may be given several times. */
 static Status read_value(Setting *setting, const char *value, bool twice, Err *err)
 {
     if (setting->typed && !twice)
@@ -184,8 +186,8 @@ static Status read_value(Setting *setting, const char *value, bool twice, Err *e
     return STATUS_OK;
 }
 
-/* A panel's own tree takes precedence over that of [panels], and is one of two: a file, or what a
- * command makes. */
+/* Sets the tree of a panel: the file `value`, or what `maker` makes with the arguments `value`. A
+ * panel's own tree replaces the tree of [panels]. */
 static Status take_tree(Section *section, const TreeMaker *maker, const char *value, Err *err)
 {
     PanelOptions *panel = section->own.options;
@@ -221,25 +223,25 @@ static Status take_key(Section *section, const char *name, const char *value, Er
 /* A line of [panels]. */
 typedef struct Default {
     const char *name, *value;
-    size_t line;
 } Default;
 
 typedef struct Reading {
     Parsed *figure;
     FigurePlan *plan;
-    Parsed said;       /* of `figure`: which keys the recipe has given */
-    Default *defaults; /* owned */
-    size_t n, capacity;
+    Parsed said; /* of `figure`: which keys the recipe has given */
+    ARRAY(Default) defaults;
     bool seen_figure, seen_panels;
     enum { IN_NOTHING, IN_FIGURE, IN_PANELS, IN_SECTION } in;
 } Reading;
 
-/* Options that [panels] gives are not typed: one without effect in this panel is no fault of it,
- * and one of the panel's own takes precedence. */
+/* Applies the keys of [panels] to a panel. These options are not marked as typed: a panel's own
+ * value may then replace them, and an option without effect on this panel is not refused. */
 static Status take_defaults(const Reading *reading, Section *section, Err *err)
 {
-    for (size_t i = 0; i < reading->n; i++)
-        TRY(take_key(section, reading->defaults[i].name, reading->defaults[i].value, err));
+    for (size_t i = 0; i < reading->defaults.n; i++) {
+        const Default *line = &reading->defaults.items[i];
+        TRY(take_key(section, line->name, line->value, err));
+    }
     Parsed *const all[] = {&section->own, &section->render};
     for (size_t k = 0; k < 2; k++)
         for (size_t i = 0; i < all[k]->n_settings; i++)
@@ -314,12 +316,11 @@ static Status take_figure_key(Reading *reading, const char *name, const char *va
     return setting->typed ? STATUS_OK : setting_read(setting, value, err);
 }
 
-/* Errors have the line of [panels] only when it is checked there: on a panel that is not kept. */
+/* Stores a key of [panels]. Its value is checked here on a panel that is not kept, so that an error
+ * names the line of [panels]. */
 static Status take_default(Reading *reading, const char *name, const char *value, Err *err)
 {
-    TRY(mem_reserve(&reading->defaults, &reading->capacity, reading->n + 1,
-                    sizeof *reading->defaults, "keys", err));
-    reading->defaults[reading->n++] = (Default){.name = name, .value = value};
+    TRY(ARRAY_PUSH(&reading->defaults, "keys", err, (Default){name, value}));
     Section trial = {.kind = SECTION_PANEL};
     Status status = parsed_init(&trial.own, &kinds[SECTION_PANEL], err);
     if (status == STATUS_OK)
@@ -380,7 +381,7 @@ static Status check_panel(Section *section, Err *err)
     return STATUS_OK;
 }
 
-/* What holds only of the whole. */
+/* Checks what depends on the whole recipe. */
 static Status check_plan(const FigurePlan *plan, Err *err)
 {
     size_t panels = 0;
@@ -398,7 +399,7 @@ Status figureplan_read(const char *path, Parsed *figure, FigurePlan *plan, Err *
     Reading reading = {.figure = figure, .plan = plan};
     TRY(parsed_init(&reading.said, figure->command, err));
     Status status = ini_read(path, "the recipe of a figure", take_line, &reading, &plan->text, err);
-    free(reading.defaults);
+    ARRAY_RELEASE(&reading.defaults);
     parsed_release(&reading.said);
     TRY(status);
     status = check_plan(plan, err);

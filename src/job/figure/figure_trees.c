@@ -1,9 +1,8 @@
-/* A maker gets its options as words of a command line, which are cut as a shell cuts them: at
- * blanks outside quotes. The tree stays in memory. */
+/* The command that makes a tree gets its options as the words of a command line. The words are cut
+ * as a shell cuts them: at blanks outside quotes. The tree stays in memory. */
 #include "job/figure/figure_trees.h"
 
 #include "job/figure/figure_paths.h"
-
 #include <stdlib.h>
 #include <string.h>
 
@@ -69,7 +68,8 @@ static void pass_warning(void *user, TalkKind kind, const char *sentence)
         talk_warn(*talk, "%s", sentence);
 }
 
-/* Has the recipe of a maker start at the folder: it is read while options are parsed. */
+/* Replaces the path of --recipe by the path from the folder. A recipe is read while options are
+ * parsed, too early for figure_rebase. */
 static Status rebase_recipe(const char *folder, Words *words, Err *err)
 {
     for (int i = 0; i + 1 < words->n; i++)
@@ -96,26 +96,20 @@ static Status parse(const Section *section, const char *folder, Parsed *parsed, 
     return STATUS_OK;
 }
 
-static Status run_maker(const Section *section, const Common *figure, Parsed *parsed,
+static Status make_tree(const Section *section, const Common *figure, const char *folder,
                         MadeTree *made, Err *err)
 {
     const Talk *talk = figure->talk;
     const Talk warnings = {.say = pass_warning, .user = &talk};
-    parsed->common.threads = figure->threads;
-    parsed->common.talk = &warnings;
-    return section->maker->make(parsed->options, parsed, made, err);
-}
-
-static Status make_tree(const Section *section, const Common *figure, const char *folder,
-                        MadeTree *made, Err *err)
-{
     Words words = {0};
     Parsed parsed;
     TRY(parsed_init(&parsed, section->maker->command, err));
     parsed.in_memory = true;
     Status status = parse(section, folder, &parsed, &words, err);
+    parsed.common.threads = figure->threads;
+    parsed.common.talk = &warnings;
     if (status == STATUS_OK)
-        status = run_maker(section, figure, &parsed, made, err);
+        status = section->maker->make(parsed.options, &parsed, made, err);
     if (status != STATUS_OK) {
         options_name_fields(&parsed, err);
         err_prefix(err, "[panel %s]: %s: ", section->name, section->maker->command->name);

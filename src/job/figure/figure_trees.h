@@ -22,7 +22,7 @@ typedef struct MadeTrees {
  *         an output, and for wrong options; the errors of the commands. */
 MUST_CHECK Status madetrees_make(const FigurePlan *plan, const Common *figure, const char *folder,
                                  MadeTrees *trees, Err *err);
-/* Returns the tree of a section that has a maker; borrowed. */
+/* Returns the tree of section `i`, which must have a maker; borrowed from `trees`. */
 const Tree *madetrees_tree(const FigurePlan *plan, const MadeTrees *trees, size_t i);
 void madetrees_release(MadeTrees *trees);
 

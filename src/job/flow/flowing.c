@@ -1,4 +1,7 @@
-/* Boundary conditions come from a table, from the file of the network, or are those of trees. */
+/* Steady flow follows from the resistances of the segments and the boundary conditions. These come
+ * from a table, from the columns of a network's file, or from the metadata of a tree. Pries's law
+ * makes the resistance depend on the hematocrit; with phase separation, flow and hematocrit are
+ * then solved in turn [flownetwork_separate]. */
 #include "job/flow/flowing.h"
 
 #include "options/output.h"
@@ -99,7 +102,7 @@ static Status check_output(const FlowingOptions *options, Err *err)
 
 /* ---- boundary conditions --------------------------------------------------------------------- */
 
-/* The names in Secomb's networks, and the types of a boundary node. */
+/* The names of columns in Secomb's networks, and the types of a boundary node. */
 static const char type_column[] = "boundary type", value_column[] = "boundary value",
                   hematocrit_column[] = "boundary hematocrit";
 enum { TYPE_PRESSURE = 0, TYPE_FLOW = 2 };
@@ -126,7 +129,7 @@ static Status find_kind(const Flowing *made, BoundaryKind *kind, Err *err)
                    given);
 }
 
-/* Options of the boundary conditions of trees have no effect on others. */
+/* Refuses options about the boundary conditions of trees, if others are used. */
 static Status refuse_options(const Flowing *made, BoundaryKind kind, Err *err)
 {
     static const char *const of_terminals[] = {"q-perf", "p-perf", "flow-split"};
@@ -140,8 +143,8 @@ static Status refuse_options(const Flowing *made, BoundaryKind kind, Err *err)
     return STATUS_OK;
 }
 
-/* Sets the condition of a node; numbers that are NAN are not stated. *is_known receives whether one
- * is. */
+/* Sets the condition of a node. A number that is NAN is not stated. is_known[place] becomes true if
+ * a pressure or a flow is stated. */
 static Status set_condition(Flowing *made, size_t i, double mmhg, double ml_min, double hematocrit,
                             bool *is_known, Err *err)
 {
@@ -164,7 +167,7 @@ static Status set_condition(Flowing *made, size_t i, double mmhg, double ml_min,
     return STATUS_OK;
 }
 
-/* Takes the columns of a table. A column without a unit has the usual one. */
+/* Sets the conditions from the columns of a table. A column without a unit has the usual unit. */
 static Status take_table(Flowing *made, const Tree *values, bool *is_known, Err *err)
 {
     static const struct {

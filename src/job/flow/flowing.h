@@ -14,16 +14,23 @@
 
 extern const Command command_flow;
 
-/* What happens at ends without a boundary condition. */
-typedef enum FlowingEnds { ENDS_REFUSED, ENDS_CLOSED, ENDS_ESTIMATED } FlowingEnds;
+/* What happens at an end without a boundary condition. An end is a node of one segment. */
+typedef enum FlowingEnds {
+    ENDS_REFUSED,  /* it is an error */
+    ENDS_CLOSED,   /* no flow passes the end */
+    ENDS_ESTIMATED /* the pressure of the end is estimated [flownetwork_estimate] */
+} FlowingEnds;
 
 /* The options of `flow`. The help of each option describes its member. Texts are borrowed. */
 typedef struct FlowingOptions {
     const char *output, *summary, *boundary; /* NULL: not given */
     int ends;                                /* a FlowingEnds */
-    bool separation, json;
-    double cell_fl, target_mmhg, target_pa;
-    size_t starts; /* number of starts of the estimate [NetworkEstimate.starts] */
+    bool separation;    /* red cells separate at bifurcations, by Pries's law */
+    bool json;          /* for the command line: the report is printed as JSON */
+    double cell_fl;     /* mean volume of a red cell, femtolitres */
+    double target_mmhg; /* pressure that the estimate aims at */
+    double target_pa;   /* wall shear stress that the estimate aims at */
+    size_t starts;      /* number of starts of the estimate [NetworkEstimate.starts] */
     BloodOptions blood;
 } FlowingOptions;
 
@@ -34,7 +41,7 @@ typedef struct FlowingRow {
     const char *unit;  /* "" for pure numbers */
     double value;
 } FlowingRow;
-enum { FLOWING_ROWS = 40 };
+enum { FLOWING_ROWS = 40 }; /* capacity; a report has at most 26 rows */
 
 /* The result. Release with flowing_release. */
 typedef struct Flowing {
@@ -60,12 +67,13 @@ typedef struct Flowing {
  * made     receives the result; release it with flowing_release even after an error.
  * Errors   STATUS_USAGE for options without effect; STATUS_INPUT for boundary conditions that do
  *          not determine the flow, naming the node; the errors of reading_tree, blood_settle,
- *          tree_read_values, flownetwork_solve and flownetwork_estimate. */
+ *          tree_read_values, flownetwork_solve and flownetwork_estimate; STATUS_MEMORY. */
 MUST_CHECK Status flowing_make(void *options, Parsed *parsed, Flowing *made, Err *err);
 void flowing_release(Flowing *made);
 
-/* Writes the files that the options name. Errors: STATUS_MEMORY, those of tree_write and
- * file_write_parts. */
+/* Writes the files that the options name: the summary, then the tree. Errors: STATUS_MEMORY, those
+ * of tree_write and file_write_parts. After an error of the tree, the summary is already written.
+ */
 MUST_CHECK Status flowing_write(const Flowing *made, Err *err);
 
 /* Returns the report as JSON: a new reference; NULL if memory runs out. */

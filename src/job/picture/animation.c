@@ -1,6 +1,6 @@
 /* A picture differs from the next in one thing: colors (a series), the view (a turn) or the
- * geometry (growth). The first two leave what a renderer has prepared of the geometry as it is, so
- * that such a picture costs its pixels. */
+ * geometry (growth). A series and a turn keep the geometry, so a renderer prepares it once, and
+ * each picture costs its pixels only. */
 #include "job/picture/animation.h"
 
 #include <stdio.h>
@@ -9,7 +9,7 @@
 
 enum { MOST_PICTURES = 1000000 };
 
-/* "all" or "A..B" or "A". */
+/* Reads "all", "A..B" or "A". */
 static bool read_frames(const char *text, Animation *animation)
 {
     const char *dots = strstr(text, "..");
@@ -32,7 +32,7 @@ static bool read_frames(const char *text, Animation *animation)
     return true;
 }
 
-/* The one %d, %4d or %04d of a pattern: its start, width and length. */
+/* The position, length and width of the one %d, %4d or %04d in a pattern. */
 typedef struct Place {
     size_t start, length;
     int width;
@@ -133,7 +133,7 @@ Status animation_frame_turn(const PictureOptions *options, const PictureSource *
     return stage_view(&source->look, &params, &scene->geometry, &scene->view, err);
 }
 
-/* The colors of a part of a tree, whose nodes are in the same order. */
+/* Copies the colors of a part of a tree, whose nodes are in the same order. */
 static Status part_appearance(const Appearance *whole, const Tree *tree, const Tree *part,
                               Appearance *out, Err *err)
 {
@@ -156,7 +156,7 @@ static Status part_appearance(const Appearance *whole, const Tree *tree, const T
     return STATUS_OK;
 }
 
-/* The tree as far as it has grown, seen as the whole one is. */
+/* Makes the scene of the tree as far as it has grown, in the view of the whole tree. */
 static Status grow_to(const AnimationSubject *subject, double part, Scene *grown, Err *err)
 {
     const Scene *whole = subject->whole;
@@ -181,7 +181,7 @@ static Status grow_to(const AnimationSubject *subject, double part, Scene *grown
     return status;
 }
 
-/* The frame of a series, with the radii of that frame. */
+/* Makes the geometry of a frame of a series, with the radii of that frame. */
 static Status beat_at(const AnimationSubject *subject, int number, Scene *shown, Scene *grown,
                       Err *err)
 {

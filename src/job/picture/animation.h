@@ -76,7 +76,8 @@ static inline bool animation_moves(const Animation *animation, const PictureOpti
 
 /* Makes the scene of picture `number`.
  *
- * shown   borrows from the whole scene and from *grown.
+ * number  from 1 to animation->n.
+ * shown   receives the scene; it borrows from the whole scene and from *grown.
  * grown   if animation_moves, receives the geometry and for growth the colors of this picture;
  *         zeroed before; release it with scene_release. Otherwise it stays unchanged.
  * Errors  as picture_geometry; STATUS_MEMORY. */

@@ -1,6 +1,6 @@
-/* The legend stands at the right of the picture or below it, and a camera that frames the tree
- * leaves that room free. The letter stands in the upper left corner, where publishers want it, and
- * the scale bar in the emptiest corner. All distances follow from the size of the text. */
+/* The legend is at the right of the picture or below it, and a camera that frames the tree leaves
+ * that space free. The letter is in the upper left corner, where publishers expect it, and the
+ * scale bar in the corner with the fewest vessels. All distances are multiples of the font size. */
 #include "job/picture/annotation.h"
 
 #include "derive/derive.h"
@@ -141,7 +141,7 @@ static void put_title(const Annotation *annotation, const ColorScale *scale, Tex
     }
 }
 
-/* "10 mm", and in micrometres what is less than one. */
+/* Appends a length such as "10 mm"; a length below 1 mm is in micrometres. */
 static void put_length(double mm, Text *text)
 {
     bool small = mm < 1;
@@ -293,7 +293,7 @@ Status annotation_make_room(Annotation *annotation, const FigureFonts *fonts,
     return STATUS_OK;
 }
 
-/* At the edge, in the middle of it. */
+/* The legend is centred at its edge of the rectangle. */
 Status annotation_put_legend(const Annotation *annotation, const Appearance *appearance,
                              FigureColor ink, FigureBox where, FigurePage *page, Err *err)
 {

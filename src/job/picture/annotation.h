@@ -65,8 +65,9 @@ MUST_CHECK Status annotation_make_room(Annotation *annotation, const FigureFonts
                                        const Appearance *appearance, const PictureSize *picture,
                                        int room[2], Err *err);
 
-/* Measures the legend of a page, and chooses its side if no option specifies one: below a page that
- * is upright, if more of the page is then left for the tree, else at the right.
+/* Measures the legend that a page of this size would have, and chooses its side if no option
+ * specifies one: below a page that is upright, if more of the page is then left for the tree, else
+ * at the right.
  *
  * annotation  receives the side.
  * page        its size and fonts; its items do not matter.

@@ -1,5 +1,6 @@
-/* A field of the tree, and a scale for its values: of the options, or fitted to them. The unit
- * comes first, so that all other numbers, given and said, are in it. */
+/* Reads a field of the tree, and fits a color scale to its values unless options state the scale.
+ * The values are converted to the unit of --unit first, so that all numbers of options and messages
+ * have this unit. */
 #include "job/picture/coloring.h"
 
 #include "image/image.h"
@@ -105,26 +106,15 @@ static const Option rows[] = {
      .help = "color of segments without a value or, with --log, with a value of 0 or less"},
 };
 
-static bool has_bounds(const Coloring *coloring)
-{
-    return coloring->classes.n > 1;
-}
-
-/* Whether the range is neither fitted nor of percentiles. */
-static bool range_is_told(const Coloring *coloring)
-{
-    const RangeEnds *ends = &coloring->range;
-    return coloring->has_range && !ends->percent[0] && !ends->percent[1];
-}
-
 static ConditionSet unmet(const void *set, const Parsed *parsed)
 {
     const Coloring *coloring = set;
     (void)parsed;
+    const RangeEnds *ends = &coloring->range;
     const bool blood = coloring->field || coloring->uses_blood;
+    const bool has_values = coloring->has_range && !ends->percent[0] && !ends->percent[1];
     return UNLESS(blood, USES_BLOOD) | UNLESS(blood || coloring->uses_flow, USES_FLOW) |
-           UNLESS(!has_bounds(coloring), NO_BOUNDS) |
-           UNLESS(!range_is_told(coloring), FITTED_RANGE);
+           UNLESS(coloring->classes.n <= 1, NO_BOUNDS) | UNLESS(!has_values, FITTED_RANGE);
 }
 
 const OptionTable coloring_table = {OPTION_ROWS(rows), .unmet = unmet};

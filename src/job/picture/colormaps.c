@@ -1,5 +1,5 @@
-/* Both the list and the picture are made of the files of templates/colormaps. A line of the list is
- * made of the comment that a file begins with. */
+/* Lists and draws the files of templates/colormaps. A line of the list is the comment at the
+ * beginning of a file. */
 #include "job/picture/colormaps.h"
 
 #include "options/output.h"
@@ -21,7 +21,7 @@ static const OptionTable own_table = OPTION_TABLE(own);
 
 /* ---- the list -------------------------------------------------------------------------------- */
 
-/* The comment that a file begins with, in one line. */
+/* Joins the comment at the beginning of a file to one line. */
 static void join_head(char *text, Text *head)
 {
     for (char *rest = text, *line; (line = text_line(&rest)) && *line == '#';)
@@ -29,7 +29,7 @@ static void join_head(char *text, Text *head)
                     line + 1 + strspn(line + 1, TEXT_BLANKS));
 }
 
-/* Appends what of a head stands after `from` and before `to`; nothing where it lacks either. */
+/* Appends the part of a comment between `from` and `to`; nothing if it lacks either. */
 static void put_between(const char *head, const char *from, const char *to, Text *line)
 {
     const char *begin = strstr(head, from), *end = begin ? strstr(begin, to) : NULL;

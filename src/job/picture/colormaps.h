@@ -1,4 +1,4 @@
-/* The job `colormaps`: a list and a picture of the color maps in templates/colormaps. */
+/* The operation `colormaps`: a list and a picture of the color maps in templates/colormaps. */
 #ifndef CORCAST_JOB_PICTURE_COLORMAPS_H
 #define CORCAST_JOB_PICTURE_COLORMAPS_H
 

@@ -1,5 +1,5 @@
-/* What a file holds follows from its extension, and what is read becomes what is to be written: a
- * tree a tree, a picture a picture of sRGB, a plane of floats a plane. */
+/* The extension of the output decides what is read and written: a tree, a picture of sRGB codes, or
+ * a plane of floats. The input must be of the same kind. */
 #include "job/picture/convert.h"
 
 #include "image/image.h"
@@ -43,8 +43,9 @@ static void set_defaults(void *options)
     press_set_defaults(&((ConvertOptions *)options)->press);
 }
 
-/* What is transparent is laid on the background, if one is given. */
-static Status lay_down(const ConvertOptions *options, Image *image, Err *err)
+/* Composites a transparent image over the background, if an option specifies one. Releases the
+ * image after an error. */
+static Status composite(const ConvertOptions *options, Image *image, Err *err)
 {
     const Rgb ground = rgb_of_option(options->background);
     Status status = STATUS_OK;
@@ -60,7 +61,7 @@ static Status read_picture(const ConvertOptions *options, const char *from, cons
 {
     Image image = {0};
     TRY(picture_read(&image.picture, from, ALPHA_KEPT, err));
-    TRY(lay_down(options, &image, err));
+    TRY(composite(options, &image, err));
     picture_release(&image.transparent);
     *picture = image.picture;
     if (picture->channels != 4 || image_traits(to).keeps_alpha)
@@ -72,8 +73,7 @@ static Status read_picture(const ConvertOptions *options, const char *from, cons
                    from, to);
 }
 
-/* Codes of another gamma become sRGB's, which all formats hold, and have as many bits as are asked
- * for. */
+/* Reads a picture as sRGB codes, which all formats can store, of the specified number of bits. */
 static Status read_in_bits(const ConvertOptions *options, const char *from, const char *to,
                            Picture *out, Err *err)
 {
@@ -112,15 +112,15 @@ static Status convert_plane(const ConvertOptions *options, const char *from, con
 {
     const ImagePacking packing = {.half = options->press.bits == 16};
     Image image = {0};
-    TRY(options->has_background ? plane_read(&image.plane, from, ALPHA_KEPT, err)
-                                : plane_read(&image.plane, from, ALPHA_REFUSED, err));
-    TRY(lay_down(options, &image, err));
+    TRY(plane_read(&image.plane, from, options->has_background ? ALPHA_KEPT : ALPHA_REFUSED, err));
+    TRY(composite(options, &image, err));
     Status status = plane_write(&image.plane, to, &packing, err);
     image_release(&image);
     return status;
 }
 
-/* What an output is to hold; an input that is no tree is recognised by its first bytes. */
+/* What a file contains, by its extension. An image that is read is recognised by its first bytes.
+ */
 typedef enum FileKind { FILE_TREE, FILE_PICTURE, FILE_PLANE, FILE_UNKNOWN } FileKind;
 
 static const struct {
@@ -171,16 +171,12 @@ done:
     return status;
 }
 
-static FileKind kind_of_input(const Parsed *parsed)
-{
-    return parsed->given || parsed->reading.format ? FILE_TREE : kind_of(parsed->operands[0]);
-}
-
 Status convert_run(void *options, Parsed *parsed, Err *err)
 {
     const ConvertOptions *own_options = options;
     const char *from = parsed->operands[0], *to = parsed->operands[1];
-    FileKind kind = kind_of(to), kind_from = kind_of_input(parsed);
+    const bool from_is_tree = parsed->given || parsed->reading.format;
+    FileKind kind = kind_of(to), kind_from = from_is_tree ? FILE_TREE : kind_of(from);
     if (kind_from == FILE_UNKNOWN || kind == FILE_UNKNOWN)
         return unknown_kind(kind == FILE_UNKNOWN ? to : from, err);
     if ((kind_from == FILE_TREE) != (kind == FILE_TREE))
@@ -194,7 +190,7 @@ Status convert_run(void *options, Parsed *parsed, Err *err)
                : convert_plane(own_options, from, to, err);
 }
 
-/* The output's kind decides which options have an effect. */
+/* The kind of the output decides which options have an effect. */
 static ConditionSet unmet(const void *set, const Parsed *parsed)
 {
     const char *to = options_output(parsed);

@@ -6,12 +6,13 @@
 
 extern const Command command_convert;
 
-/* Reads the first operand and writes the second, a tree or an image like the first.
+/* Reads the first operand, a tree or an image, and writes it to the second. The extension of the
+ * second operand selects the format.
  *
  * options  parsed->options.
  * Errors   STATUS_USAGE for an unknown extension, for a tree that is to become an image or the
- *          other way round, and for options without effect; as convert_tree_make,
- *          convert_tree_write, picture_read, plane_read and their writers. */
+ *          other way round, and for options without effect; the errors of convert_tree_make,
+ *          convert_tree_write, picture_read, plane_read, picture_write and plane_write. */
 MUST_CHECK Status convert_run(void *options, Parsed *parsed, Err *err);
 
 #endif

@@ -1,7 +1,14 @@
-/* One layout, drawn on a page or as pixels: the output's extension says which. */
+/* Lays the tree out once, and draws the layout on a page or as pixels. The extension of the output
+ * selects which. */
 #include "job/picture/diagram.h"
 
+#include "diagram/diagram.h"
 #include "job/picture/annotation.h"
+#include "job/picture/coloring.h"
+#include "job/picture/frames.h"
+#include "job/picture/picture.h"
+#include "job/picture/press.h"
+#include "job/picture/sheet.h"
 #include "options/output.h"
 #include "options/templates.h"
 #include <stdlib.h>
@@ -91,6 +98,23 @@ static void set_defaults(void *options)
     annotation_set_defaults(&own_options->annotation);
 }
 
+/* A diagram, and the data that it is drawn from. All arrays are owned. It must not be moved,
+ * because it points to itself. */
+typedef struct MadeDiagram {
+    bool is_page;    /* true: the result is `page`; false: the result is `pixels` */
+    FigurePage page; /* vector graphics in true size; zeroed if not is_page */
+    Frame pixels;    /* pixels.color is the image; zeroed if is_page */
+    Press press;     /* how the image is stored in its file; zeroed if is_page */
+    PictureTree of;  /* the tree */
+    Appearance appearance;
+    Diagram layout;
+    DiagramStyle style; /* borrows from the other members */
+    FigureBars bars;
+    float (*color)[3]; /* per node: linear RGB */
+    Sheet sheet; /* templates and fonts, and the page that lies over `pixels`; only opened for a
+                    legend */
+} MadeDiagram;
+
 static Status paint(const DiagramOptions *options, MadeDiagram *made, Err *err)
 {
     const Tree *tree = &made->of.tree;
@@ -144,7 +168,8 @@ static Status check(const DiagramOptions *options, Err *err)
     return frames_check_output(options->output, false, err);
 }
 
-/* The widest page of journals, mm: on it, the text of a legend has its size in points. */
+/* Width of the widest page of journals, mm. The text of a legend has its size in points on a page
+ * of this width. */
 static const double widest_mm = 180;
 
 /* Makes the page larger, and adds the legend there. */
@@ -184,26 +209,24 @@ static Status draw_pixels(DiagramOptions *options, MadeDiagram *made, Err *err)
                                  &made->sheet.page, err);
 }
 
-Status diagram_make(void *options, Parsed *parsed, MadeDiagram *made, Err *err)
+static Status make(DiagramOptions *options, const Parsed *parsed, MadeDiagram *made, Err *err)
 {
-    DiagramOptions *own_options = options;
-    *made = (MadeDiagram){.is_page = is_page(own_options)};
-    TRY(check(own_options, err));
+    TRY(check(options, err));
     if (!made->is_page)
-        TRY(press_open(&own_options->press, own_options->output, parsed->common.threads,
-                       &made->press, err));
-    if (own_options->annotation.legend)
+        TRY(press_open(&options->press, options->output, parsed->common.threads, &made->press,
+                       err));
+    if (options->annotation.legend)
         TRY(sheet_open(&made->sheet, err));
-    TRY(lay_out(own_options, parsed, made, err));
+    TRY(lay_out(options, parsed, made, err));
     if (!made->is_page)
-        return draw_pixels(own_options, made, err);
+        return draw_pixels(options, made, err);
     diagram_make_page(&made->style, &made->bars, &made->page);
-    if (own_options->annotation.legend)
-        TRY(add_legend(own_options, made, err));
+    if (options->annotation.legend)
+        TRY(add_legend(options, made, err));
     return figure_check(&made->page, err);
 }
 
-void madediagram_release(MadeDiagram *made)
+static void madediagram_release(MadeDiagram *made)
 {
     figure_release(&made->page);
     sheet_release(&made->sheet);
@@ -246,23 +269,17 @@ done:
     return status;
 }
 
-Status diagram_write(const void *options, const Parsed *parsed, MadeDiagram *made, Err *err)
-{
-    char *command = NULL;
-    TRY(command_line_text(parsed, &command, err));
-    Status status = made->is_page ? write_page(options, made, command, err)
-                                  : write_pixels(options, made, command, err);
-    free(command);
-    return status;
-}
-
 Status diagram_run(void *options, Parsed *parsed, Err *err)
 {
-    MadeDiagram made;
-    Status status = STATUS_OK;
-    TRY_GOTO(diagram_make(options, parsed, &made, err));
-    status = diagram_write(options, parsed, &made, err);
+    MadeDiagram made = {.is_page = is_page(options)};
+    char *command = NULL;
+    Status status;
+    TRY_GOTO(make(options, parsed, &made, err));
+    TRY_GOTO(command_line_text(parsed, &command, err));
+    status = made.is_page ? write_page(options, &made, command, err)
+                          : write_pixels(options, &made, command, err);
 done:
+    free(command);
     madediagram_release(&made);
     return status;
 }

@@ -1,7 +1,7 @@
-/* One writer a file. The planes take their final names first and the picture last, so that a
- * picture never stands beside planes of another. OpenEXR holds planes itself: they become channels
- * of the picture, floats throughout, as few programs take whole numbers: ids, up to IMAGE_MAX_ID,
- * are exact in 32 bits. */
+/* Each file has its own writer. The planes get their final names first and the picture last, so
+ * that a picture is never beside the planes of another picture. OpenEXR contains the planes as
+ * channels of the picture. All channels are floats, because few programs read integer channels. Ids
+ * up to IMAGE_MAX_ID are exact in a float of 32 bits. */
 #include "job/picture/frames.h"
 
 #include "options/output.h"
@@ -16,16 +16,14 @@ bool frames_is_page(const char *path)
 
 Status frames_check_output(const char *path, bool planes, Err *err)
 {
-    if (strcmp(path, "-") == 0) {
-        if (planes)
-            return err_set(err, STATUS_USAGE,
-                           "--planes needs -o FILE, from which the names of the planes are formed");
+    static const char *const known[] = {"png", "ppm",  "pfm", "tif", "tiff",
+                                        "jpg", "jpeg", "exr", NULL};
+    const bool is_stream = strcmp(path, "-") == 0;
+    if (is_stream && planes)
+        return err_set(err, STATUS_USAGE,
+                       "--planes needs -o FILE, from which the names of the planes are formed");
+    if (is_stream || is_one_of(file_extension(path), known))
         return STATUS_OK;
-    }
-    static const char *const known[] = {"png", "ppm", "pfm", "tif", "tiff", "jpg", "jpeg", "exr"};
-    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
-        if (strcmp(file_extension(path), known[i]) == 0)
-            return STATUS_OK;
     (void)err_set(err, STATUS_USAGE,
                   "-o: '%s' does not end in .png, .ppm, .tif, .jpg, .exr or .pfm%s", path,
                   frames_is_page(path) ? "" : ", or for a page in .svg, .pdf or .eps");
@@ -77,17 +75,10 @@ static bool is_layered(const FramesForm *form)
     return form->picture && strcmp(file_extension(form->path), "exr") == 0;
 }
 
-/* Whether there is such a file. */
+/* Returns true if the file is written. */
 static bool is_wanted(const FramesForm *form, int file)
 {
     return is_asked_for(form, file) && (file == FILE_PICTURE || !is_layered(form));
-}
-
-static void choose_channels(FramesWriter *writer)
-{
-    for (int i = 0; i < LAYERS; i++)
-        if (is_asked_for(writer->form, layers[i].of))
-            writer->channels[writer->n_channels++] = layers[i].channel;
 }
 
 /* Returns true if the fourth channel of the picture is the black ink of what is drawn over it. */
@@ -115,7 +106,9 @@ static Status open_picture(FramesWriter *writer, Err *err)
                        .notes = &all,
                        .packing = form->packing};
     if (is_layered(form)) {
-        choose_channels(writer);
+        for (int i = 0; i < LAYERS; i++)
+            if (is_asked_for(form, layers[i].of))
+                writer->channels[writer->n_channels++] = layers[i].channel;
         image.channels = writer->n_channels;
         image.named = writer->channels;
     }
@@ -199,8 +192,8 @@ Status frames_open(FramesWriter **out, const FramesForm *form, Err *err)
     return STATUS_OK;
 }
 
-/* Copies rows into a whole picture or plane, from the row `at` on. Without values there is nothing
- * to copy. */
+/* Copies rows into a whole picture, from the row `at` on. Without codes there is nothing to copy,
+ * as for values below. */
 static void keep_codes(Picture *whole, const Picture *rows, int at)
 {
     const size_t stride = picture_stride(rows), n = (size_t)rows->height * stride;
@@ -216,14 +209,6 @@ static void keep_values(Plane *whole, const Plane *rows, int at)
     if (whole->values)
         memcpy(whole->values + (size_t)at * stride, rows->values,
                (size_t)rows->height * stride * sizeof *rows->values);
-}
-
-static void keep_ids(IdPlane *whole, const IdPlane *rows, int at)
-{
-    const size_t stride = (size_t)whole->width;
-    if (whole->ids)
-        memcpy(whole->ids + (size_t)at * stride, rows->ids,
-               (size_t)rows->height * stride * sizeof *rows->ids);
 }
 
 /* Draws what lies over the picture, with black ink in a channel of its own. */
@@ -257,7 +242,7 @@ static Status take_codes(FramesWriter *writer, Picture *codes, Err *err)
     return STATUS_OK;
 }
 
-/* Puts all that is asked for into one plane. */
+/* Merges all specified planes into one. */
 static void merge(const FramesForm *form, const Frame *rows, Plane *merged)
 {
     const Plane *const values[] = {[FILE_DEPTH] = &rows->depth,
@@ -362,11 +347,14 @@ static Status write_planes(FramesWriter *writer, const Frame *rows, Err *err)
 
 static void keep_planes(Frame *kept, const Frame *rows, int at)
 {
+    const size_t stride = (size_t)kept->id.width;
     keep_values(&kept->color, &rows->color, at);
     keep_values(&kept->alpha, &rows->alpha, at);
     keep_values(&kept->depth, &rows->depth, at);
     keep_values(&kept->normal, &rows->normal, at);
-    keep_ids(&kept->id, &rows->id, at);
+    if (kept->id.ids)
+        memcpy(kept->id.ids + (size_t)at * stride, rows->id.ids,
+               (size_t)rows->id.height * stride * sizeof *rows->id.ids);
 }
 
 Status frames_rows(FramesWriter *writer, const Frame *rows, Err *err)
@@ -410,12 +398,8 @@ void frames_discard(FramesWriter *writer)
 Status frames_write(const Frame *frame, const FramesForm *form, Err *err)
 {
     FramesForm whole = *form;
-    whole.width = frame->codes.width > 0 ? frame->codes.width
-                  : form->picture        ? frame->color.width
-                                         : frame->id.width;
-    whole.height = frame->codes.width > 0 ? frame->codes.height
-                   : form->picture        ? frame->color.height
-                                          : frame->id.height;
+    whole.width = form->picture ? frame->color.width : frame->id.width;
+    whole.height = form->picture ? frame->color.height : frame->id.height;
     whole.depth = frame->depth.values != NULL;
     whole.normal = frame->normal.values != NULL;
     whole.id = frame->id.ids != NULL;

@@ -1,4 +1,4 @@
-/* A drawing has lines and paper: what says how surfaces look has no effect on it. */
+/* A drawing consists of lines and paper, so options about the look of surfaces have no effect. */
 #include "job/picture/line_drawing.h"
 
 #include "render/render.h"
@@ -16,21 +16,18 @@ Status line_drawing_check(const PictureOptions *picture, const char *output, Err
     return STATUS_OK;
 }
 
-static Status write_lines(const Strokes *strokes, const FramesForm *form, Err *err)
-{
-    static const FigureColor black;
-    figure_add_strokes(form->page, strokes, (FigurePoint){0, 0}, black);
-    TRY(figure_check(form->page, err));
-    return frames_write_page(form->page, form->notes, form->path, err);
-}
-
 Status line_drawing_write(const Scene *scene, double line_mm, int threads, const FramesForm *form,
                           Err *err)
 {
+    static const FigureColor black;
     const InkParams params = {form->page->width_mm, line_mm, threads};
-    Strokes strokes;
-    TRY(ink_draw(&scene->geometry, &scene->view, &params, &strokes, err));
-    Status status = write_lines(&strokes, form, err);
+    Strokes strokes = {0};
+    Status status;
+    TRY_GOTO(ink_draw(&scene->geometry, &scene->view, &params, &strokes, err));
+    figure_add_strokes(form->page, &strokes, (FigurePoint){0, 0}, black);
+    TRY_GOTO(figure_check(form->page, err));
+    status = frames_write_page(form->page, form->notes, form->path, err);
+done:
     strokes_release(&strokes);
     return status;
 }

@@ -17,7 +17,8 @@ MUST_CHECK Status line_drawing_check(const PictureOptions *picture, const char *
 /* Draws the vessels of the scene as lines below everything else on the page form->page, and writes
  * the page.
  *
- * line_mm  width of the lines on paper.
+ * line_mm  width of the lines on paper, in ink_range.
+ * threads  as Common.threads [options/options.h].
  * Errors   the errors of ink_draw and frames_write_page. */
 MUST_CHECK Status line_drawing_write(const Scene *scene, double line_mm, int threads,
                                      const FramesForm *form, Err *err);

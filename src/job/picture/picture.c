@@ -1,6 +1,6 @@
-/* Options in, and out of them the three things that a picture is of: the look and the tree are read
- * once, and geometry, appearance and view made of them, each by itself. An option that has no
- * effect on the picture asked for is refused. */
+/* The look and the tree are read once. Geometry, appearance and view are made from them, each by a
+ * function of its own, so that animations can replace one of the three. An option that has no
+ * effect on the picture is refused. */
 #include "job/picture/picture.h"
 
 #include "image/image.h"
@@ -22,12 +22,14 @@ static const char *const views[] = {
     [VIEW_TOP] = "top",     [VIEW_BOTTOM] = "bottom", [VIEW_ISO] = "iso",   NULL};
 static const char *const up_axes[] = {[UP_Y] = "y", [UP_Z] = "z", NULL};
 
-/* What is framed: the tree, whatever the model; the domain that it tells; or what is drawn. */
+/* What the camera frames: the tree, whatever the model; the domain that the tree states; or the
+ * geometry that is drawn. */
 enum { PICTURE_TREE, PICTURE_DOMAIN, PICTURE_DRAWING };
 static const char *const framings[] = {
     [PICTURE_TREE] = "tree", [PICTURE_DOMAIN] = "domain", [PICTURE_DRAWING] = "drawing", NULL};
 
-/* What a point has the color of: its largest term, or the mean of all. */
+/* The color of a point of a field: that of the segment with the largest term, or the color of the
+ * mean value of all segments. */
 enum { BLEND_SEGMENT, BLEND_BLENDED };
 static const char *const color_blends[] = {
     [BLEND_SEGMENT] = "segment", [BLEND_BLENDED] = "blended", NULL};
@@ -307,7 +309,7 @@ CellParams picture_cells(const PictureOptions *options)
     return (CellParams){.beta = options->cell_beta, .erf = (ErfForm)options->erf};
 }
 
-/* Options that fight each other are refused rather than silently ignored. */
+/* Refuses options that exclude each other, instead of ignoring one of them. */
 static Status check_camera(const PictureOptions *options, Err *err)
 {
     const ViewParams *stage = &options->stage;
@@ -343,7 +345,7 @@ Status picture_check_povray(const PictureOptions *options, Err *err)
     return err_set(err, STATUS_USAGE, "--ao cannot be verified: POV-Ray has no ambient occlusion");
 }
 
-/* Says which segments and joints of the tree the picture does not show. */
+/* Sends notes about segments and joints of the tree that the picture does not show. */
 static Status say_losses(const Geometry *geometry, const PictureReport *made, const Talk *talk,
                          Err *err)
 {
@@ -419,7 +421,7 @@ static Status check_distance(const Scene *scene, Err *err)
                    least);
 }
 
-/* Says what POV-Ray's fixed lengths hide of a tiny tree: it sees nothing below them. */
+/* Sends notes about parts of a tiny tree that POV-Ray's fixed lengths hide. */
 static void say_limits(const Scene *scene, bool shadows, const Talk *talk)
 {
     const Geometry *geometry = &scene->geometry;
@@ -475,22 +477,17 @@ static Status take_look(const PictureOptions *options, const Parsed *parsed, Loo
     return STATUS_OK;
 }
 
-static bool has_segments(const Tree *tree)
-{
-    for (size_t i = 0; i < tree->n; i++)
-        if (tree_is_segment(tree, i))
-            return true;
-    return false;
-}
-
-/* The tree without thin segments, in its place. */
+/* Replaces the tree by the tree without thin segments. */
 static Status prune(double radius_mm, bool keep_whole, PictureTree *of, Err *err)
 {
     Tree rest;
     TRY(reading_refuse_loops(&of->tree, of->path, "--prune-radius", err));
     TRY(tree_pruned(&of->tree, radius_mm, &rest, err));
     of->pruned = of->tree.n - rest.n;
-    if (of->pruned > 0 && !has_segments(&rest)) {
+    size_t i = 0;
+    while (i < rest.n && !tree_is_segment(&rest, i))
+        i++;
+    if (of->pruned > 0 && i == rest.n) { /* no segment is left */
         tree_release(&rest);
         return err_set(err, STATUS_INPUT, "%s: all %zu segments are thinner than --prune-radius %g",
                        of->path, of->pruned, radius_mm);
@@ -623,8 +620,14 @@ ViewParams picture_view_params(const PictureOptions *options, const PictureSourc
     return params;
 }
 
-Status picture_widths(const PictureOptions *options, const PictureTree *tree, size_t frames,
-                      double **widths, Err *err)
+/* Computes the factors of all radii in all frames from the tree's series dilation, frame by frame.
+ *
+ * frames   number of frames of the colors.
+ * widths   receives frames * n numbers; the caller frees them.
+ * Errors   STATUS_INPUT if the tree has no such series, or it has another number of frames, or a
+ *          radius would not be above 0. STATUS_MEMORY. */
+static Status read_widths(const PictureOptions *options, const PictureTree *tree, size_t frames,
+                          double **widths, Err *err)
 {
     FieldSeries series;
     const TreeMeta said = blood_said(&options->coloring.blood);
@@ -681,7 +684,7 @@ static Status beating_geometry(const PictureOptions *options, const PictureSourc
     TRY(tree_series(tree, "dilation", &series, err));
     const size_t frames = series.n;
     series_release(&series);
-    TRY(picture_widths(options, &source->of, frames, &widths, err));
+    TRY(read_widths(options, &source->of, frames, &widths, err));
     const double *factors = &widths[(frame < frames ? frame : 0) * tree->n];
     if (model_is_of((SceneModel)options->model, MODEL_CYLINDERS | MODEL_BALLS)) {
         TRY_GOTO(picture_geometry(&still, source, common, &resting, report, err));
@@ -719,7 +722,7 @@ Status picture_geometry(const PictureOptions *options, const PictureSource *sour
     return status;
 }
 
-/* Has the colors blend, if they are to. */
+/* Makes the colors blend, if the options specify it. */
 static Status blend(const PictureOptions *options, Appearance *appearance, Err *err)
 {
     enum { MOST_STEPS = 128 }; /* that a color map of POV-Ray holds */
@@ -749,7 +752,7 @@ Status picture_appearance(const PictureOptions *options, const PictureSource *so
         TRY(coloring_by_radius(&tree, &source->look, &made, err));
     Status status = blend(options, &made, err);
     if (status == STATUS_OK && options->beat > 0 && made.n_frames > 0)
-        status = picture_widths(options, &source->of, made.n_frames, &made.widths, err);
+        status = read_widths(options, &source->of, made.n_frames, &made.widths, err);
     else if (status == STATUS_OK && options->beat > 0 && options->coloring.frame == 0)
         status = err_set(err, STATUS_USAGE,
                          "--beat: the field '%s' does not change in time; --color-by takes a field "

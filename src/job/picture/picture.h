@@ -1,5 +1,8 @@
 /* Declares the options that define a picture, and builds the scene of the picture from them. The
- * commands scene, render, view and verify share these options.
+ * commands scene, render, view, answer and verify share these options.
+ *
+ * Use: picture_set_defaults, the tables PICTURE_TABLES, then picture_scene, or in two steps
+ * picture_read_source and picture_scene_of. picture_say reports what the scene does not show.
  *
  * "Specified" means: given on the command line or in a recipe. All strings and tables that an
  * options struct points to are borrowed from the parsed command line (Parsed).
@@ -58,7 +61,7 @@ typedef struct PictureOptions {
     /* The option of this name is specified: */
     bool has_height, has_angle, has_view, has_turn, has_joints, has_antialias, has_projection,
         has_smooth, has_shadows, has_occlusion;
-    int erf;          /* choice: ErfForm; POV-Ray's isosurface */
+    int erf;          /* POV-Ray's isosurface: how the error function is computed, an ErfForm */
     double cell_beta; /* POV-Ray's isosurface: a cell is split while its side / the smallest radius
                        * that matters in the cell is larger than this; 0: CELL_BETA */
     Coloring coloring;
@@ -148,15 +151,6 @@ void picture_say_smooth(const SmoothReport *report, const Talk *talk);
 /* Returns the tree as coloring_appearance takes it. The result borrows from `tree` and owns
  * nothing. */
 ColoredTree picture_colored_tree(const PictureTree *tree);
-
-/* Computes the factors of all radii in all frames from the tree's series dilation, frame by frame.
- *
- * frames   number of frames of the colors.
- * widths   receives frames * n numbers; the caller frees them.
- * Errors   STATUS_INPUT if the tree has no such series, or it has another number of frames, or a
- *          radius would not be above 0. STATUS_MEMORY. */
-MUST_CHECK Status picture_widths(const PictureOptions *options, const PictureTree *tree,
-                                 size_t frames, double **widths, Err *err);
 
 /* The input of a picture: a tree and a look. Release it with picture_source_release. */
 typedef struct PictureSource {

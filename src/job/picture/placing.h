@@ -1,12 +1,14 @@
-/* Places annotations where few vessels are, and gives them halos where vessels are behind them. */
+/* Places annotations where few vessels are, and gives them halos where vessels are behind them. A
+ * halo is a rim in the color of the background. */
 #ifndef CORCAST_JOB_PICTURE_PLACING_H
 #define CORCAST_JOB_PICTURE_PLACING_H
 
 #include "figure/figure.h"
 #include "scene/scene.h"
 
+/* The corner of a picture that an annotation is in. */
 typedef enum Corner {
-    CORNER_EMPTIEST,
+    CORNER_EMPTIEST, /* the corner with the fewest vessels; see placing_move */
     CORNER_BOTTOM_LEFT,
     CORNER_BOTTOM_RIGHT,
     CORNER_TOP_RIGHT,

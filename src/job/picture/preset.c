@@ -1,5 +1,5 @@
-/* An INI file, each of whose keys is a row of a table; all of them must be there, so that a check
- * never passes for want of a number. */
+/* A preset is an INI file, and each of its keys is a row of a table. All keys must be present, so
+ * that a check never passes because a number is missing. */
 #include "job/picture/preset.h"
 
 #include "options/templates.h"

@@ -1,4 +1,5 @@
-/* Options that have no effect on a file of the format that its name says are refused. */
+/* The extension of the output decides which options have an effect. Options without effect are
+ * refused. A preset sets its options where the user sets none. */
 #include "job/picture/press.h"
 
 #include "job/picture/frames.h"
@@ -74,7 +75,7 @@ static Status imply(const Parsed *parsed, const char *name, const char *value, E
     return setting && !setting->said ? setting_read(setting, value, err) : STATUS_OK;
 }
 
-/* A picture is square, but no higher than a page. */
+/* Sets the height of a picture on paper: the picture is square, but not higher than the page. */
 static Status settle(void *set, const Parsed *parsed, Err *err)
 {
     const PressOptions *options = set;

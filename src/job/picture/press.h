@@ -1,7 +1,8 @@
 /* Reads the options that define how a picture is stored in its file: bits, compression, quality and
- * CMYK colors. All commands that write pictures share these options.
+ * CMYK colors. All commands that write pictures share these options. A Press is the output profile:
+ * these settings, read and completed.
  *
- * These settings, read and completed, are called an output profile (type Press). */
+ * Use: press_set_defaults, the option table press_table, press_check, press_open, press_release. */
 #ifndef CORCAST_JOB_PICTURE_PRESS_H
 #define CORCAST_JOB_PICTURE_PRESS_H
 
@@ -40,7 +41,7 @@ typedef struct Press {
  *
  * output    path of the picture file, whose extension is the format.
  * threads   as Common.threads.
- * press     release it with press_release.
+ * press     set on success only; release it with press_release.
  * Errors    the errors of inks_read. */
 MUST_CHECK Status press_open(const PressOptions *options, const char *output, int threads,
                              Press *press, Err *err);

@@ -1,6 +1,6 @@
-/* Each way to draw begins with rendering_open, which finds everything that may fail for a reason of
- * the user's before the first ray: options, files, templates, the tree. What is drawn then goes to
- * memory, to files or to a page. */
+/* Each way to draw begins with rendering_open, which detects all user errors before the first ray:
+ * in options, files, templates and the tree. The pictures then go to memory, to files or to a page.
+ */
 #include "job/picture/render.h"
 
 #include "job/job.h"
@@ -86,7 +86,8 @@ static Status plan_rows(Rendering *r, Err *err)
     return STATUS_OK;
 }
 
-/* STATUS_MEMORY unless there is memory for a band, and for a picture that is held as a whole. */
+/* Checks that there is memory for a band, and for a picture that is stored as a whole. Errors:
+ * STATUS_MEMORY. */
 static Status check_size(const Rendering *r, Err *err)
 {
     const FramesForm *form = &r->form;
@@ -159,7 +160,7 @@ static Status fill_sheet(Rendering *r, Err *err)
     Text description = TEXT_INIT;
     sheet_begin(&r->sheet, picture->size.pixels, annotation_dpi(&picture->size));
     picture_description(&r->scene.geometry, r->source.of.path, &description);
-    Status status = sheet_describe(&r->sheet, &description, r->provenance, err);
+    Status status = sheet_describe(&r->sheet, &description, r->parsed, err);
     text_release(&description);
     TRY(status);
     const FigureBox whole = {0, 0, page->width_mm, page->height_mm};
@@ -171,8 +172,8 @@ static Status fill_sheet(Rendering *r, Err *err)
     return STATUS_OK;
 }
 
-/* Adds to the form what the files state and what lies over the pictures, and says what the scene
- * has lost. */
+/* Sets what the files state and what is drawn over the pictures, and sends notes about what the
+ * scene does not show. */
 Status rendering_describe(Rendering *r, Err *err)
 {
     TRY(command_line_text(r->parsed, &r->provenance, err));
@@ -231,32 +232,6 @@ Status rendering_draw_result(Rendering *r, RenderResult *made, Err *err)
     return r->form.colors ? mem_strdup(&made->colors, r->form.colors, err) : STATUS_OK;
 }
 
-/* Writes the report of --json, if it was given. */
-static Status write_report(const Rendering *r, Err *err)
-{
-    const char *path = r->options->json;
-    return path ? json_write(rendering_json(r), path, err) : STATUS_OK;
-}
-
-Status render_make(RenderOptions *options, Parsed *parsed, RenderResult *result, Err *err)
-{
-    Rendering r;
-    RenderResult made = {0};
-    options->output = NULL;
-    TRY(rendering_open(options, parsed, NULL, &r, err));
-    Status status = rendering_describe(&r, err);
-    if (status == STATUS_OK)
-        status = rendering_draw_result(&r, &made, err);
-    if (status == STATUS_OK)
-        status = write_report(&r, err);
-    rendering_close(&r);
-    if (status == STATUS_OK)
-        *result = made;
-    else
-        render_release(&made);
-    return status;
-}
-
 void render_release(RenderResult *result)
 {
     frame_release(&result->frame);
@@ -264,47 +239,9 @@ void render_release(RenderResult *result)
     *result = (RenderResult){0};
 }
 
-static Status write_result(const RenderOptions *options, const Press *press, const char *command,
-                           const RenderResult *result, Err *err)
-{
-    const Frame *frame = &result->frame;
-    const bool codes = frame->codes.width > 0;
-    const FramesForm form = {.path = options->output,
-                             .bits = codes ? frame->codes.bits : 8,
-                             .encoding = ENCODING_SRGB,
-                             .packing = press->packing,
-                             .dpi = result->dpi,
-                             .picture = true,
-                             .color = codes && frame->color.values,
-                             .alpha =
-                                 codes ? frame->codes.channels == 4 : frame->alpha.values != NULL,
-                             .provenance = command,
-                             .colors = result->colors};
-    TRY(frames_check_output(options->output, false, err));
-    if (image_traits(options->output).floats == codes)
-        return err_set(err, STATUS_USAGE, "-o: '%s' cannot store a picture of %s; %s",
-                       options->output, codes ? "8 or 16 bits" : "floats",
-                       codes ? "use .png, .tif, .jpg or .ppm" : "use .exr or .pfm");
-    return frames_write(frame, &form, err);
-}
-
-Status render_write(const RenderOptions *options, const Parsed *parsed, const RenderResult *result,
-                    Err *err)
-{
-    Press press;
-    char *command = NULL;
-    TRY(press_open(&options->press, options->output, parsed->common.threads, &press, err));
-    Status status = command_line_text(parsed, &command, err);
-    if (status == STATUS_OK)
-        status = write_result(options, &press, command, result, err);
-    free(command);
-    press_release(&press);
-    return status;
-}
-
 /* ---- into files ------------------------------------------------------------------------------ */
 
-/* Notes the names of all pictures, and of the planes beside them. */
+/* Records the files of all pictures and of their planes. */
 static Status note_files(Rendering *r, Err *err)
 {
     for (int k = r->animation.first; k <= r->animation.last; k++) {
@@ -321,26 +258,21 @@ static Status note_files(Rendering *r, Err *err)
     return STATUS_OK;
 }
 
-/* Makes a command for each tile, or for each picture of the animation. */
-static Status put_commands(const Rendering *r, Err *err)
-{
-    const ShardOptions *options = &r->options->shard;
-    const int tiles = options->tiles;
-    return shard_put_commands(options, r->parsed, r->form.path, tiles ? 1 : r->animation.first,
-                              tiles ? tiles : r->animation.last, err);
-}
-
 static Status write_pictures(Rendering *r, Err *err)
 {
+    const int tiles = r->options->shard.tiles;
     TRY(note_files(r, err));
     if (r->options->shard.commands)
-        return put_commands(r, err);
+        return shard_put_commands(&r->options->shard, r->parsed, r->form.path,
+                                  tiles ? 1 : r->animation.first, tiles ? tiles : r->animation.last,
+                                  err);
     TRY(rendering_describe(r, err));
     if (r->options->ink_mm > 0)
         return line_drawing_write(&r->scene, r->options->ink_mm, r->params.threads, &r->form, err);
     for (int k = r->animation.first; k <= r->animation.last; k++)
         TRY(rendering_draw(r, k, NULL, err));
-    return write_report(r, err);
+    const char *report = r->options->json;
+    return report ? json_write(rendering_json(r), report, err) : STATUS_OK;
 }
 
 Status render_run(void *options, Parsed *parsed, Err *err)

@@ -1,14 +1,13 @@
 /* The operation `render`: draws pictures of a tree into memory, or into files band by band.
  *
- * render_run does the whole operation with files. render_make draws one picture into memory, and
- * render_write writes the picture to a file. A caller that draws the same scene several times opens
- * a Rendering.
+ * render_run does the whole operation with files. A caller that wants the picture in memory, or
+ * that draws the same scene several times, opens a Rendering:
  *
- * Use, with the parsed options of `render`:
- *
- *     TRY(render_make(parsed->options, parsed, &result, err));
- *     status = render_write(parsed->options, parsed, &result, err);
- *     render_release(&result); */
+ *     TRY(rendering_open(options, parsed, NULL, &rendering, err));
+ *     status = rendering_describe(&rendering, err);
+ *     if (status == STATUS_OK)
+ *         status = rendering_draw_result(&rendering, &result, err);   (then render_release)
+ *     rendering_close(&rendering); */
 #ifndef CORCAST_JOB_PICTURE_RENDER_H
 #define CORCAST_JOB_PICTURE_RENDER_H
 
@@ -26,21 +25,6 @@ typedef struct RenderResult {
     const char *engine; /* the engine that drew the picture, such as "raster" */
 } RenderResult;
 
-/* Draws one picture into memory. `options` are parsed->options.
- *
- * options  Without `output`, --bits chooses the form: 8 or 16 bit codes, or 32 bit floats. Of an
- *          animation, --only selects the picture.
- * result   set on success only.
- * Errors   STATUS_USAGE if options exclude each other, have no effect, or need files; STATUS_INPUT
- *          if the tree, a template or a values file is bad; STATUS_MEMORY. Errors of the tree's
- *          reading and of the geometry [picture.h]. */
-MUST_CHECK Status render_make(RenderOptions *options, Parsed *parsed, RenderResult *result,
-                              Err *err);
-/* Writes a result to options->output, with the bytes that render_run writes. The file's extension
- * must suit the result: .exr and .pfm for floats, other picture formats for codes. Errors:
- * STATUS_USAGE for another extension, STATUS_IO, STATUS_MEMORY. */
-MUST_CHECK Status render_write(const RenderOptions *options, const Parsed *parsed,
-                               const RenderResult *result, Err *err);
 void render_release(RenderResult *result);
 
 /* Draws all pictures that the options select. Writes each band before it draws the next, so that a
@@ -48,7 +32,7 @@ void render_release(RenderResult *result);
  * detected before rendering starts.
  *
  * options  the RenderOptions of `parsed`.
- * Errors   as render_make; STATUS_IO. */
+ * Errors   those of rendering_open, rendering_describe and rendering_draw; STATUS_IO. */
 MUST_CHECK Status render_run(void *options, Parsed *parsed, Err *err);
 
 /* ---- a scene that is drawn several times ---------------------------------------------------- */
@@ -77,20 +61,23 @@ typedef struct Rendering {
     bool in_memory;     /* no file is written */
 } Rendering;
 
-/* Checks the options, reads look and tree, and makes the scene.
+/* Checks the options, reads look and tree, and makes the scene. Without options->output, pictures
+ * are drawn into memory: --bits then chooses 8 or 16 bit codes, or 32 bit floats.
  *
  * fonts   fonts of the page on which the caller puts the picture. The caller then draws legend,
  *         scale bar and letter, and lines (--ink) are allowed without an output. NULL: legend,
  *         scale bar and letter are drawn over the picture.
  * out     set on success; release it with rendering_close. On failure there is nothing to close.
- * Errors  as render_make. */
+ * Errors  STATUS_USAGE if options exclude each other, have no effect, or need files; STATUS_INPUT
+ *         if the tree, a template or a values file is bad; the errors of picture_read_source and
+ *         picture_scene_of; STATUS_MEMORY. */
 MUST_CHECK Status rendering_open(RenderOptions *options, Parsed *parsed, const FigureFonts *fonts,
                                  Rendering *out, Err *err);
 void rendering_close(Rendering *rendering);
 
-/* Makes the command line for provenance and puts annotations on the sheet. Reports what the scene
- * shows, and what parts of the tree it does not show. Call this once, before drawing. Errors:
- * STATUS_USAGE if an annotation does not fit, STATUS_MEMORY. */
+/* Makes the command line for provenance and puts annotations on the sheet. Sends notes about what
+ * the scene shows, and what parts of the tree it does not show. Call this once, before drawing.
+ * Errors: STATUS_USAGE if an annotation does not fit, STATUS_MEMORY. */
 MUST_CHECK Status rendering_describe(Rendering *rendering, Err *err);
 /* Draws the single picture of the options into *made, zeroed before; the caller releases it even
  * after an error. Errors: STATUS_USAGE if the options select several pictures; as rendering_draw.

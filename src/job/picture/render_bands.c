@@ -134,7 +134,8 @@ static Status draw_picture(const Rendering *r, Renderer *renderer, const Scene *
     return status;
 }
 
-/* Puts the note of picture `number` into the form. *there is whether --resume finds the picture. */
+/* Makes the note of picture `number` and sets form->shard to it. With --resume, sets *there to true
+ * if a valid file of the picture exists. */
 static Status find_shard(const Rendering *r, FramesForm *form, int number, Text *note, bool *there,
                          Err *err)
 {

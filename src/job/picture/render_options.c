@@ -1,4 +1,5 @@
-/* What is said of a picture beside its scene: the method, the file, and what fights what. */
+/* The rows of `render` that are not about the scene, their defaults, and the checks of options that
+ * exclude each other. Each check is made before the scene is, so that errors come at once. */
 #include "job/picture/render_options.h"
 
 #include "job/picture/frames.h"
@@ -113,7 +114,7 @@ static const Option own[] = {
      .help = "draw N images of the tree as it grows from its root"},
 };
 
-/* Which conditions on parts of pictures do not hold. */
+/* Returns the conditions about animations and tiles that do not hold. */
 static ConditionSet unmet_of_parts(const RenderOptions *options)
 {
     const AnimationOptions *animation = &options->animation;
@@ -164,14 +165,15 @@ void render_settle(RenderOptions *options)
         picture->projection = PROJECTION_ORTHOGRAPHIC;
 }
 
-/* Whether vessels thinner than a pixel are drawn by their coverage: not where a method is asked
- * for, whose picture it is. */
+/* Returns true if vessels thinner than a pixel are drawn by their coverage. A method that an option
+ * selects draws its own picture of them. */
 static bool covers_thin(const RenderOptions *options)
 {
     return options->method == RENDER_FASTEST && options->hits == HITS_EXACT;
 }
 
-/* Of an isosurface and of a mesh there is one way to be drawn. */
+/* Refuses a method for models that it cannot draw: only the default method draws isosurfaces and
+ * meshes. */
 static Status check_method(const RenderOptions *options, Err *err)
 {
     SceneModel model = (SceneModel)options->picture.model;
@@ -184,15 +186,7 @@ static Status check_method(const RenderOptions *options, Err *err)
                    models_of(elements).text, models[model].name);
 }
 
-/* What the file holds: 8 bits of a page, and nothing over floats. */
-static Status check_file(const RenderOptions *options, Err *err)
-{
-    TRY(annotation_check_file(&options->annotation, options->output, err));
-    return press_check(&options->press, options->output, err);
-}
-
-/* Nothing can be drawn over what is transparent, nor parts of it joined; and every pixel is to be
- * of the same samples over any background. */
+/* Refuses annotations over a transparent picture, whose halos and ink depend on the background. */
 static Status check_transparent(const RenderOptions *options, Err *err)
 {
     static const char *const able[] = {"png", "tif", "tiff", "exr", NULL};
@@ -211,7 +205,8 @@ static Status check_transparent(const RenderOptions *options, Err *err)
 Status render_check(const RenderOptions *options, Err *err)
 {
     const PictureOptions *picture = &options->picture;
-    TRY(check_file(options, err));
+    TRY(annotation_check_file(&options->annotation, options->output, err));
+    TRY(press_check(&options->press, options->output, err));
     if (options->ink_mm > 0)
         TRY(line_drawing_check(picture, options->output, err));
     if (options->min_width_px > 0 && !covers_thin(options))
@@ -254,7 +249,7 @@ RenderParams render_params_of(const RenderOptions *options, int threads, CellPar
                           .kernels = options->kernels};
 }
 
-/* Of an animation the one picture that --only asks for. */
+/* Restricts the animation to the picture that --only selects; 0 selects all. */
 static Status pick_only(int only, Animation *animation, Err *err)
 {
     if (only == 0)
@@ -266,7 +261,7 @@ static Status pick_only(int only, Animation *animation, Err *err)
     return STATUS_OK;
 }
 
-/* Options that have no place beside effects of the look. */
+/* Refuses options that have no effect together with effects of the look. */
 static Status check_effects(const RenderOptions *options, const View *view, Err *err)
 {
     if (!effects_present(&view->effects))

@@ -51,7 +51,7 @@ MUST_CHECK Status render_check(const RenderOptions *options, Err *err);
 /* Returns the parameters of the renderer, without planes and progress.
  *
  * threads  number of threads; 0: all processors.
- * cells    receives the cells of an isosurface; the result borrows it. */
+ * cells    receives the cells of an isosurface; the result borrows the pointer. */
 RenderParams render_params_of(const RenderOptions *options, int threads, CellParams *cells);
 
 /* Makes the scene, reserves space for a legend, and determines the pictures of an animation.

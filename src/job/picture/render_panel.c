@@ -26,21 +26,16 @@ View panel_inset_view(const PanelInset *inset, const View *view)
     return shown;
 }
 
-static Status draw_strokes(const Rendering *r, const View *view, Strokes *strokes, Err *err)
-{
-    const InkParams params = {.width_mm = view->camera.width * MM_PER_INCH / r->form.dpi,
-                              .line_mm = r->options->ink_mm,
-                              .threads = r->params.threads};
-    return ink_draw(&r->scene.geometry, view, &params, strokes, err);
-}
-
 /* Draws the panel's own view, or an inset's. */
 static Status draw_view(Rendering *r, const View *view, Picture *picture, Strokes *strokes,
                         Err *err)
 {
+    const InkParams ink = {.width_mm = view->camera.width * MM_PER_INCH / r->form.dpi,
+                           .line_mm = r->options->ink_mm,
+                           .threads = r->params.threads};
     Frame frame = {0};
-    if (r->options->ink_mm > 0)
-        return draw_strokes(r, view, strokes, err);
+    if (ink.line_mm > 0)
+        return ink_draw(&r->scene.geometry, view, &ink, strokes, err);
     Status status = view == &r->scene.view ? rendering_draw(r, 1, &frame, err)
                                            : rendering_draw_view(r, view, &frame, err);
     if (status == STATUS_OK)

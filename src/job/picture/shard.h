@@ -35,11 +35,12 @@ typedef struct Shard {
     HashText made_from;      /* hash of everything that the tile was made from */
 } Shard;
 
-/* Whether the file is a part of a picture, or may be kept as one. */
+/* Returns true if options ask for a tile, for commands, or for --resume. The picture's file then
+ * needs a note. */
 bool shard_is_asked(const ShardOptions *options);
-/* Checks the file that is a part, and the number of tiles.
- * Errors  STATUS_USAGE when the format of the file holds no notes, when the picture has fewer rows
- *         than tiles need, and for commands about a tree from standard input. */
+/* Checks the options against the picture's file. Errors: STATUS_USAGE if the format of the file
+ * holds no notes, if the picture has fewer rows than the tiles need, and for commands about a tree
+ * from standard input. */
 MUST_CHECK Status shard_check(const ShardOptions *options, const FramesForm *form,
                               const Parsed *parsed, Err *err);
 
@@ -80,5 +81,14 @@ MUST_CHECK Status shard_is_there(const char *path, const Shard *shard, bool *the
  * options->lines. Errors: STATUS_USAGE if options->lines is NULL, STATUS_MEMORY, STATUS_IO. */
 MUST_CHECK Status shard_put_commands(const ShardOptions *options, const Parsed *parsed,
                                      const char *output, int first, int last, Err *err);
+
+/* Joins the tiles of a picture, which `render --tile` drew into separate files. Writes the whole
+ * picture to `output`. The operands are the files of the tiles, or folders that
+ * contain them. Memory does not grow with the picture. The file `output` appears only if every tile
+ * is valid.
+ *
+ * Errors  STATUS_INPUT if a tile is missing, there twice, broken, or of another picture;
+ *         STATUS_USAGE if `output` is one of the tiles; STATUS_IO; STATUS_MEMORY. */
+MUST_CHECK Status shards_merge(const char *output, Parsed *parsed, Err *err);
 
 #endif

@@ -1,10 +1,9 @@
 /* Reads the notes of all tiles, compares them with the first, and sorts the tiles. Then copies a
  * few rows at a time, so that a picture of any size needs the memory of these rows. If a tile is
  * broken further down, copying fails, and the picture does not get its name. */
-#include "job/picture/shard_merge.h"
+#include "job/picture/shard.h"
 
 #include "image/image.h"
-#include "job/picture/shard.h"
 #include "options/talk.h"
 #include <stdlib.h>
 #include <string.h>
@@ -16,17 +15,16 @@ typedef struct TileFile {
 } TileFile;
 
 typedef struct TileFiles {
-    TileFile *tile; /* owned */
-    size_t n, capacity;
-    ImageReader *first; /* the file of tile[0], with which the others must agree; owned */
+    ARRAY(TileFile) tiles;
+    ImageReader *first; /* the file of the first tile, with which the others must agree; owned */
 } TileFiles;
 
-static void tiles_release(TileFiles *tiles)
+static void tilefiles_release(TileFiles *files)
 {
-    for (size_t i = 0; i < tiles->n; i++)
-        free(tiles->tile[i].path);
-    free(tiles->tile);
-    imagereader_close(tiles->first);
+    for (size_t i = 0; i < files->tiles.n; i++)
+        free(files->tiles.items[i].path);
+    ARRAY_RELEASE(&files->tiles);
+    imagereader_close(files->first);
 }
 
 /* ---- finding tiles --------------------------------------------------------------------------- */
@@ -65,7 +63,7 @@ static Status check_same(const ImageReader *first, const TileFile *a, const Imag
  * if it was found in a folder. */
 static Status add_file(void *user, const char *path, bool named, Err *err)
 {
-    TileFiles *tiles = user;
+    TileFiles *files = user;
     ImageReader *reader = NULL;
     TileFile tile = {0};
     Status status;
@@ -77,14 +75,12 @@ static Status add_file(void *user, const char *path, bool named, Err *err)
     if (!is_tile || imagereader_form(reader)->height != tile.shard.rows)
         TRY_GOTO(err_set(err, STATUS_INPUT, "%s: is not a tile drawn by render --tile", path));
     TRY_GOTO(mem_strdup(&tile.path, path, err));
-    if (tiles->first)
-        TRY_GOTO(check_same(tiles->first, &tiles->tile[0], reader, &tile, err));
-    TRY_GOTO(mem_reserve(&tiles->tile, &tiles->capacity, tiles->n + 1, sizeof *tiles->tile, "tiles",
-                         err));
-    tiles->tile[tiles->n++] = tile;
+    if (files->first)
+        TRY_GOTO(check_same(files->first, &files->tiles.items[0], reader, &tile, err));
+    TRY_GOTO(ARRAY_PUSH(&files->tiles, "tiles", err, tile));
     tile.path = NULL;
-    if (!tiles->first) {
-        tiles->first = reader;
+    if (!files->first) {
+        files->first = reader;
         reader = NULL;
     }
 done:
@@ -100,33 +96,33 @@ static int by_number(const void *a, const void *b)
 }
 
 /* Sorts the tiles. Errors: STATUS_INPUT if a tile is missing, or there are two of it. */
-static Status check_complete(TileFiles *tiles, Err *err)
+static Status check_complete(TileFiles *files, Err *err)
 {
-    if (tiles->n == 0)
+    if (files->tiles.n == 0)
         return err_set(err, STATUS_INPUT, "no tiles to merge were found");
-    qsort(tiles->tile, tiles->n, sizeof *tiles->tile, by_number);
-    const int count = tiles->tile[0].shard.count;
-    for (size_t i = 0; i < tiles->n; i++) {
-        const TileFile *tile = &tiles->tile[i];
+    qsort(files->tiles.items, files->tiles.n, sizeof *files->tiles.items, by_number);
+    const int count = files->tiles.items[0].shard.count;
+    for (size_t i = 0; i < files->tiles.n; i++) {
+        const TileFile *tile = &files->tiles.items[i];
         if (i > 0 && tile->shard.number == tile[-1].shard.number)
             return err_set(err, STATUS_INPUT, "%s and %s are both tile %d of %d", tile[-1].path,
                            tile->path, tile->shard.number, count);
         if (tile->shard.number != (int)i + 1)
             return err_set(err, STATUS_INPUT, "tile %d of %d is missing; there are %zu", (int)i + 1,
-                           count, tiles->n);
+                           count, files->tiles.n);
     }
-    if (tiles->n < (size_t)count)
-        return err_set(err, STATUS_INPUT, "tile %zu of %d is missing; there are %zu", tiles->n + 1,
-                       count, tiles->n);
+    if (files->tiles.n < (size_t)count)
+        return err_set(err, STATUS_INPUT, "tile %zu of %d is missing; there are %zu",
+                       files->tiles.n + 1, count, files->tiles.n);
     return STATUS_OK;
 }
 
-static Status find_tiles(const Parsed *parsed, TileFiles *tiles, Err *err)
+static Status find_tiles(const Parsed *parsed, TileFiles *files, Err *err)
 {
     static const char *const extensions[] = {"png", "tif", "tiff", NULL};
     for (int i = 0; i < parsed->n_operands; i++)
-        TRY(files_visit(parsed->operands[i], extensions, add_file, tiles, err));
-    return check_complete(tiles, err);
+        TRY(files_visit(parsed->operands[i], extensions, add_file, files, err));
+    return check_complete(files, err);
 }
 
 /* ---- copying --------------------------------------------------------------------------------- */
@@ -149,16 +145,16 @@ done:
     return status;
 }
 
-static Status copy_tiles(const TileFiles *tiles, ImageWriter *writer, const ImageForm *form,
+static Status copy_tiles(const TileFiles *files, ImageWriter *writer, const ImageForm *form,
                          Progress *progress, Err *err)
 {
     enum { ROWS = 16 };
     Picture rows;
     TRY(picture_init(&rows, form->width, ROWS, form->channels, form->bits, err));
     Status status = STATUS_OK;
-    for (size_t i = 0; i < tiles->n; i++) {
-        TRY_GOTO(copy_rows(tiles->tile[i].path, writer, &rows, err));
-        if (!progress_show(progress, (double)(i + 1) / (double)tiles->n))
+    for (size_t i = 0; i < files->tiles.n; i++) {
+        TRY_GOTO(copy_rows(files->tiles.items[i].path, writer, &rows, err));
+        if (!progress_show(progress, (double)(i + 1) / (double)files->tiles.n))
             TRY_GOTO(err_cancelled(err));
     }
 done:
@@ -177,9 +173,9 @@ static Status whole_notes(const ImageNotes *of, ImageNote **notes, ImageNotes *w
     return STATUS_OK;
 }
 
-static Status merge(const char *output, const TileFiles *tiles, const Common *common, Err *err)
+static Status merge(const char *output, const TileFiles *files, const Common *common, Err *err)
 {
-    ImageForm form = *imagereader_form(tiles->first);
+    ImageForm form = *imagereader_form(files->first);
     ImageNote *notes = NULL;
     ImageNotes whole;
     ImageWriter *writer = NULL;
@@ -189,9 +185,9 @@ static Status merge(const char *output, const TileFiles *tiles, const Common *co
     TRY_GOTO(whole_notes(form.notes, &notes, &whole, err));
     form.notes = &whole;
     form.packing.threads = common->threads;
-    form.height = tiles->tile[0].shard.height;
+    form.height = files->tiles.items[0].shard.height;
     TRY_GOTO(imagewriter_open(&writer, output, &form, err));
-    TRY_GOTO(copy_tiles(tiles, writer, &form, &progress, err));
+    TRY_GOTO(copy_tiles(files, writer, &form, &progress, err));
     status = imagewriter_commit(writer, err);
     writer = NULL;
 done:
@@ -204,13 +200,13 @@ done:
 
 Status shards_merge(const char *output, Parsed *parsed, Err *err)
 {
-    TileFiles tiles = {0};
+    TileFiles files = {0};
     Status status;
-    TRY_GOTO(find_tiles(parsed, &tiles, err));
-    for (size_t i = 0; i < tiles.n; i++)
-        TRY_GOTO(files_read(&parsed->files, "the tile", tiles.tile[i].path, err));
-    status = merge(output, &tiles, &parsed->common, err);
+    TRY_GOTO(find_tiles(parsed, &files, err));
+    for (size_t i = 0; i < files.tiles.n; i++)
+        TRY_GOTO(files_read(&parsed->files, "the tile", files.tiles.items[i].path, err));
+    status = merge(output, &files, &parsed->common, err);
 done:
-    tiles_release(&tiles);
+    tilefiles_release(&files);
     return status;
 }

@@ -1,4 +1,4 @@
-/* Templates and fonts are found first: a page that cannot be written is not worth drawing. */
+/* Templates and fonts are loaded first, because a page that cannot be written need not be drawn. */
 #include "job/picture/sheet.h"
 
 #include "options/output.h"
@@ -17,10 +17,10 @@ void sheet_begin(Sheet *sheet, const int pixels[2], double dpi)
                 sheet->fonts);
 }
 
-Status sheet_describe(Sheet *sheet, Text *description, const char *command, Err *err)
+Status sheet_describe(Sheet *sheet, Text *description, const Parsed *parsed, Err *err)
 {
     TRY(text_take(description, &sheet->description, err));
-    TRY(mem_strdup(&sheet->command, command, err));
+    TRY(command_line_text(parsed, &sheet->command, err));
     sheet->notes = (FigureNotes){.templates = sheet->templates,
                                  .description = sheet->description,
                                  .generator = GENERATOR,

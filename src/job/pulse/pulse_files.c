@@ -1,7 +1,6 @@
-/* The files that `pulse` writes. */
-#include "job/pulse/pulse_files.h"
-
+/* Writes the files of `pulse`: tables per segment and per root, values over time, and the deck. */
 #include "job/pulse/pulsing.h"
+
 #include "treeio/treeio.h"
 #include <stdlib.h>
 #include <strings.h>
@@ -15,25 +14,6 @@ Phasor pulse_root_impedance(const Pulse *pulse, size_t i, int k)
     const Phasor p = pulse_pressure(pulse, i, k), q = pulse_flow(pulse, i, k);
     const double size = (q.re * q.re + q.im * q.im) / unit;
     return (Phasor){(p.re * q.re + p.im * q.im) / size, (p.im * q.re - p.re * q.im) / size};
-}
-
-void pulse_root_range(const Pulse *pulse, size_t i, double range[2])
-{
-    Waveform at = {.period_s = pulse->period_s,
-                   .mean = pulse->pressure[i],
-                   .harmonics = pulse->params.harmonics};
-    range[0] = HUGE_VAL;
-    range[1] = -HUGE_VAL;
-    for (int k = 1; k <= at.harmonics; k++) {
-        const Phasor p = pulse_pressure(pulse, i, k);
-        at.re[k] = mmhg_from_pa(p.re);
-        at.im[k] = mmhg_from_pa(p.im);
-    }
-    for (int m = 0; m < PULSE_SAMPLES; m++) {
-        const double p = waveform_at(&at, at.period_s * m / PULSE_SAMPLES);
-        range[0] = fmin(range[0], p);
-        range[1] = fmax(range[1], p);
-    }
 }
 
 /* ---- tables ---------------------------------------------------------------------------------- */
@@ -89,7 +69,7 @@ static Status put_impedance(const void *context, Text *text, Err *err)
 
 /* ---- fields over time ------------------------------------------------------------------------ */
 
-/* The name of a field at frame m: "wss_0.0333". */
+/* Makes the name of a field at frame m, such as "wss_0.0333". */
 static void name_frame(const Pulsing *made, PulseField field, size_t m, char out[64])
 {
     char time[NUMBER_TEXT_SIZE];

@@ -1,7 +1,8 @@
-/* Options, waveforms and outlets are read before anything is computed. */
+/* Solves the linear model of pulse waves [pulse/pulse.h] for a tree. All options, waveforms and
+ * files of outlets are read before anything is computed. Warnings tell where a linear model is not
+ * accurate. */
 #include "job/pulse/pulsing.h"
 
-#include "job/pulse/pulse_files.h"
 #include "options/output.h"
 #include "options/reading.h"
 #include "options/templates.h"
@@ -293,7 +294,8 @@ done:
     return status;
 }
 
-/* Reads a waveform by the value of an option. *is_file receives whether it is the user's. */
+/* Reads the waveform that an option names. *is_file receives true if it is a file of the user,
+ * false if it is a template. */
 static Status read_waveform(Pulsing *made, const char *option, const char *value, Waveform *out,
                             bool *is_file, Err *err)
 {
@@ -381,7 +383,7 @@ static Status read_wall(const PulsingOptions *options, PulseWall *wall, Err *err
                    options->wall, names);
 }
 
-/* Takes the columns rp, c and rd of `values`, whose nodes are the tree's. */
+/* Reads the columns rp, c and rd of `values`, whose nodes are those of the tree. */
 static Status take_given(const Tree *values, PulseLumped *given, const char *path, Err *err)
 {
     const TreeColumn *column[] = {tree_column(values, "rp"), tree_column(values, "c"),
@@ -451,6 +453,23 @@ static void widen(double range[2], double value)
     range[1] = fmax(range[1], value);
 }
 
+/* Sets range[0] and range[1] to the smallest and the largest pressure at the first root, node 0. */
+static void find_root_range(const Pulse *pulse, double range[2])
+{
+    Waveform at = {.period_s = pulse->period_s,
+                   .mean = pulse->pressure[0],
+                   .harmonics = pulse->params.harmonics};
+    range[0] = HUGE_VAL;
+    range[1] = -HUGE_VAL;
+    for (int k = 1; k <= at.harmonics; k++) {
+        const Phasor p = pulse_pressure(pulse, 0, k);
+        at.re[k] = mmhg_from_pa(p.re);
+        at.im[k] = mmhg_from_pa(p.im);
+    }
+    for (int m = 0; m < PULSE_SAMPLES; m++)
+        widen(range, waveform_at(&at, at.period_s * m / PULSE_SAMPLES));
+}
+
 static void summarize(Pulsing *made)
 {
     const Tree *tree = &made->tree;
@@ -473,7 +492,7 @@ static void summarize(Pulsing *made)
     }
     report.oscillating = (double)oscillating / (double)(segments ? segments : 1);
     report.reversing = (double)reversing / (double)(segments ? segments : 1);
-    pulse_root_range(&made->pulse, 0, report.inlet_mmhg);
+    find_root_range(&made->pulse, report.inlet_mmhg);
     made->report = report;
 }
 

@@ -80,7 +80,8 @@ static inline bool pulsing_draws(const char *path)
  * accurate.
  *
  * options  a PulsingOptions.
- * made     release it with pulsing_release even after an error. It borrows options and parsed.
+ * made     is overwritten; release it with pulsing_release even after an error. It borrows options
+ *          and parsed.
  * Errors   STATUS_USAGE for options without effect and for unknown names; STATUS_INPUT for a
  *          malformed waveform or file of outlets; the errors of reading_tree, blood_settle and
  *          pulse_solve. */
@@ -89,13 +90,18 @@ void pulsing_release(Pulsing *made);
 
 /* Adds a column to made->tree for each field and moment, such as "wss_0.0333", with the time in
  * seconds. If the output is a film or a scene, adds only the first field and the dilation. Errors:
- * STATUS_MEMORY. */
+ * STATUS_MEMORY; some columns may then be there. */
 MUST_CHECK Status pulsing_add_columns(Pulsing *made, Err *err);
 
-/* Writes the files that the options name. Does not write films and scenes: the caller draws them
- * from the columns of pulsing_add_columns. Errors: STATUS_IO; STATUS_MEMORY; the errors of
- * tree_write and pulse_put_deck. */
+/* Writes the files that the options name. For a tree or a table of values, it calls
+ * pulsing_add_columns itself. Does not write films and scenes: the caller calls
+ * pulsing_add_columns, and draws them from the columns. Errors: STATUS_IO; STATUS_MEMORY; the
+ * errors of tree_write and pulse_put_deck. */
 MUST_CHECK Status pulsing_write(Pulsing *made, Err *err);
+
+/* Returns the input impedance at root node i for harmonic k, mmHg s/ml. For k = 0, returns the
+ * steady resistance, down to the venous pressure. Returns NAN if the flow of this harmonic is 0. */
+Phasor pulse_root_impedance(const Pulse *pulse, size_t i, int k);
 
 /* Returns the report as JSON: a new reference; NULL if memory runs out. */
 json_t *pulsing_json(const Pulsing *made);

@@ -7,6 +7,7 @@
 #include "job/tree/makers.h"
 #include "options/output.h"
 #include <math.h>
+#include <string.h>
 
 typedef struct BifurcationOptions {
     const char *output;
@@ -94,19 +95,7 @@ static Status check_sizes(const char *name, const NumberList *list, Err *err)
     return STATUS_OK;
 }
 
-static void find_radii(const BifurcationOptions *options, double radii[3])
-{
-    const double gamma = options->gamma;
-    const NumberList *given = &options->radii;
-    for (size_t i = 0; i < given->n; i++)
-        radii[i] = given->at[i];
-    if (given->n == 3)
-        return;
-    radii[1] = radii[0] * elementary_pow(1 + elementary_pow(options->ratio, gamma), -1 / gamma);
-    radii[2] = radii[1] * options->ratio;
-}
-
-/* The angles, in degrees, at which forces r^lambda along the three vessels are in balance. */
+/* Finds the angles, in degrees, at which forces r^lambda along the three vessels are in balance. */
 static Status find_angles(const BifurcationOptions *options, const double radii[3],
                           double angles[2], Err *err)
 {
@@ -146,7 +135,12 @@ static Status check(const BifurcationOptions *options, Err *err)
 static Status find_shape(const BifurcationOptions *options, double radii[3], double lengths[3],
                          double angles[2], Err *err)
 {
-    find_radii(options, radii);
+    const double gamma = options->gamma;
+    memcpy(radii, options->radii.at, 3 * sizeof *radii);
+    if (options->radii.n == 1) {
+        radii[1] = radii[0] * elementary_pow(1 + elementary_pow(options->ratio, gamma), -1 / gamma);
+        radii[2] = radii[1] * options->ratio;
+    }
     for (size_t i = 0; i < 3; i++)
         lengths[i] = options->lengths.at[options->lengths.n == 3 ? i : 0];
     if (!options->has_angles)

@@ -1,4 +1,5 @@
-/* All operations that derive flow from a tree share these options. */
+/* All operations that derive flow from a tree share these options. A value of an option takes
+ * precedence over the tree's metadata. */
 #include "job/tree/blood.h"
 
 #include "derive/derive.h"
@@ -91,23 +92,21 @@ ConditionSet blood_unmet(ViscosityLaw law)
     return law == VISCOSITY_PRIES ? WHEN(CONSTANT_VISCOSITY) : WHEN(PRIES);
 }
 
-/* Returns the exponent of the options, else the tree's, else 3, Murray's. */
-static double gamma_of(const BloodOptions *blood, const Tree *tree)
+/* Divides the flow in proportion to radius^gamma. The exponent is that of the options, else the
+ * tree's, else 3, Murray's. A tree whose exponent depends on the radius has no single exponent. */
+static Status part_by_radius(const BloodOptions *blood, Tree *tree, const char *tree_path, Err *err)
 {
     const TreeMeta *source = blood->said.known[META_GAMMA] ? &blood->said : &tree->meta;
-    return source->known[META_GAMMA] ? source->number[META_GAMMA] : 3;
-}
-
-/* A tree whose exponent depends on the radius has no single exponent to use. */
-static Status check_gamma(const BloodOptions *blood, const Tree *tree, const char *tree_path,
-                          Err *err)
-{
-    if (blood->said.known[META_GAMMA] || !tree->meta.known[META_GAMMA_BY_RADIUS])
-        return STATUS_OK;
-    return err_set(err, STATUS_USAGE,
-                   "--flow-split murray: the exponent of %s varies with radius; give one number "
-                   "with --flow-exponent",
-                   tree_path);
+    const double gamma = source->known[META_GAMMA] ? source->number[META_GAMMA] : 3;
+    if (source == &tree->meta && tree->meta.known[META_GAMMA_BY_RADIUS])
+        return err_set(err, STATUS_USAGE,
+                       "--flow-split murray: the exponent of %s varies with radius; give one "
+                       "number with --flow-exponent",
+                       tree_path);
+    Status status = tree_set_flow_by_radius(tree, gamma, err);
+    if (status == STATUS_INPUT)
+        err_prefix(err, "%s: ", tree_path);
+    return status;
 }
 
 static Status part_flow(const BloodOptions *blood, Tree *tree, const char *tree_path, Err *err)
@@ -119,13 +118,8 @@ static Status part_flow(const BloodOptions *blood, Tree *tree, const char *tree_
         tree_set_flow_equal(tree);
         return STATUS_OK;
     }
-    if (strcmp(law, "murray") == 0) {
-        TRY(check_gamma(blood, tree, tree_path, err));
-        Status status = tree_set_flow_by_radius(tree, gamma_of(blood, tree), err);
-        if (status == STATUS_INPUT)
-            err_prefix(err, "%s: ", tree_path);
-        return status;
-    }
+    if (strcmp(law, "murray") == 0)
+        return part_by_radius(blood, tree, tree_path, err);
     if (strcasecmp(file_extension(law), "csv") == 0)
         return tree_read_flows(tree, law, err);
     return err_set(err, STATUS_USAGE, "--flow-split: '%.60s' is not equal, murray or a FILE.csv",

@@ -19,11 +19,13 @@ extern const OptionTable blood_table; /* sets a BloodOptions */
  * The result owns nothing. */
 TreeMeta blood_said(const BloodOptions *blood);
 
-/* Returns the conditions of options about blood that are not met under a viscosity law. */
+/* Returns the conditions [options/conditions.h] of options about blood that are not met under a
+ * viscosity law. */
 ConditionSet blood_unmet(ViscosityLaw law);
 /* Checks the options against the tree, the first operand, and divides the flow among the tree's
- * terminals by the rule or file of terminal_flow. Errors: STATUS_USAGE for options that do not
- * apply to the tree's viscosity law, and for a terminal_flow that is neither a rule nor a file; the
+ * terminals by the rule or file of terminal_flow. If it is NULL, the tree keeps its flow. Errors:
+ * STATUS_USAGE for options that do not apply to the tree's viscosity law, for a terminal_flow that
+ * is neither a rule nor a file, and for "murray" if the tree's exponent varies with the radius; the
  * errors of tree_set_flow_by_radius and tree_read_flows. */
 MUST_CHECK Status blood_settle(const BloodOptions *blood, const Parsed *parsed, Tree *tree,
                                Err *err);

@@ -1,10 +1,10 @@
-/* Bounds a tree's target, and tells apart what the target is above the bound by.
+/* Proves a lower bound of a tree's target, and divides the gap between target and bound into parts.
  *
- * The parts are the differences of targets between the tree's and the bound, each of a problem that
- * is freer than the one before: the tree; the tree refined within the rules of length and
- * clearance; the best geometry without them, with radii by Murray's law; the same with free radii;
- * the bound. Only the last two are minima, so where a freer problem was solved worse, its part is
- * 0. */
+ * The parts are differences between consecutive targets in this list. Each problem has fewer
+ * constraints than the one before: the tree; the tree refined within the rules of length and
+ * clearance; the best geometry without these rules, with radii by Murray's law; the same with free
+ * radii; the bound. Only the last two are minima. If a problem with fewer constraints was
+ * solved worse, its part is 0. */
 #include "job/tree/certify.h"
 
 #include "derive/derive.h"
@@ -104,17 +104,21 @@ static Status check_viscosity(const CertifyOptions *options, const char *path, c
                    path);
 }
 
-static Status refine_geometry(Tree *tree, double *refined, Err *err)
+/* Refines the geometry of the tree, with the exponent of the bound. */
+static Status refine(const char *path, Tree *tree, Certified *found, Err *err)
 {
     const RefineParams params = {.level = GROW_REFINE_GEOMETRY, .seed = 1};
     RefineReport report;
     Domain domain = {0};
     bool has_domain;
-    Status status = STATUS_OK;
+    Status status;
+    meta_set_number(&tree->meta, META_LAMBDA, found->bound.lambda);
     TRY_GOTO(tree_domain(tree, &domain, &has_domain, err));
     TRY_GOTO(refine_tree(&params, has_domain ? &domain : NULL, tree, &report, err));
-    *refined = report.target_after;
+    found->refined = report.target_after;
 done:
+    if (status == STATUS_INPUT)
+        err_prefix(err, "--explain-gap: %s: ", path);
     domain_release(&domain);
     return status;
 }
@@ -128,16 +132,6 @@ static void part_distance(Certified *found)
         found->part[k] = isnan(level[k]) ? (double)NAN : fmax(0, above - level[k]);
         above = isnan(level[k]) ? above : fmin(above, level[k]);
     }
-}
-
-/* Refines the tree's geometry, by the exponent of the bound. */
-static Status refine(const char *path, Tree *tree, Certified *found, Err *err)
-{
-    meta_set_number(&tree->meta, META_LAMBDA, found->bound.lambda);
-    Status status = refine_geometry(tree, &found->refined, err);
-    if (status == STATUS_INPUT)
-        err_prefix(err, "--explain-gap: %s: ", path);
-    return status;
 }
 
 static Status bound(const CertifyOptions *options, const char *path, const Tree *tree,

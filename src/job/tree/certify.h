@@ -11,8 +11,15 @@
 
 extern const Command command_certify;
 
-/* The parts of the gap between target and bound, in the target's unit. */
-enum { PART_SEARCH, PART_RULES, PART_RADII, PART_UNPROVED, PARTS };
+/* The parts of the gap between target and bound. Each is a difference of targets, in the target's
+ * unit. */
+enum {
+    PART_SEARCH,   /* what refinement of the geometry gains while all rules are kept */
+    PART_RULES,    /* what the best geometry without rules of length and clearance gains */
+    PART_RADII,    /* what radii gain that need not follow Murray's law */
+    PART_UNPROVED, /* between the best geometry that was found and the bound */
+    PARTS
+};
 
 /* Per part: its key in JSON, and a sentence for users that explains it. */
 extern const struct PartRow {
@@ -44,7 +51,8 @@ json_t *certified_json(const Certified *found);
 /* Computes a lower bound for the target of a tree, for the reports of other operations.
  *
  * said    values that the user specified; they take precedence over those of the tree.
- * out     receives a new JSON object with `target`, `bound` and `above`, the relative gap: (target
+ * out     receives a new reference, which the caller releases: a JSON object with `target`, `bound`
+ * and `above`, the relative gap: (target
  *         - bound) / bound. It is JSON null if the viscosity depends on the radius, or if the
  *         exponent is unknown or out of range.
  * Errors  as bound_tree. */

@@ -1,8 +1,9 @@
-/* Values of a file and derived fields become columns, one after the other. */
+/* Reads values of a file and derives fields, in this order. Both become columns of the tree. */
 #include "job/tree/convert_tree.h"
 
 #include "derive/derive.h"
 #include "job/tree/makers.h"
+#include "options/output.h"
 #include "options/reading.h"
 #include "treeio/treeio.h"
 #include <stdlib.h>
@@ -52,7 +53,7 @@ const OptionTable treeconversion_table = OPTION_TABLE(rows);
 
 /* ---- columns --------------------------------------------------------------------------------- */
 
-/* Reads the values that are asked for into the tree. */
+/* Reads the values of --values into the tree. */
 static Status join_values(const TreeConversion *conversion, Parsed *parsed, Tree *tree, Err *err)
 {
     size_t length;
@@ -71,12 +72,6 @@ static Status join_values(const TreeConversion *conversion, Parsed *parsed, Tree
         status = tree_read_values(tree, path, column, NULL, err);
     free(path);
     return status;
-}
-
-/* Radius, type and length are in files of trees already, as numbers or as where segments end. */
-static bool is_in_files(const char *name)
-{
-    return strcmp(name, "radius") == 0 || strcmp(name, "length") == 0 || strcmp(name, "type") == 0;
 }
 
 static Status add_field(Tree *tree, const TreeMeta *said, const char *name, Err *err)
@@ -107,11 +102,12 @@ static Status skip_lacking(Status status, const char *name, Text *lacking)
 
 static Status add_all(Tree *tree, const TreeMeta *said, const Talk *talk, Err *err)
 {
+    static const char *const in_files[] = {"radius", "length", "type", NULL};
     Text lacking = TEXT_INIT;
     Status status = STATUS_OK;
     const char *name;
     for (size_t i = 0; (name = derive_field_name(i)); i++)
-        if (!is_in_files(name))
+        if (!is_one_of(name, in_files)) /* files of trees store these anyway */
             TRY_GOTO(skip_lacking(add_field(tree, said, name, err), name, &lacking));
     TRY_GOTO(text_check(&lacking, err));
     if (*text_chars(&lacking))
@@ -135,7 +131,7 @@ static Status add_list(Tree *tree, const TreeMeta *said, const char *list, Err *
     return status;
 }
 
-/* Derives the fields that are asked for into the tree. */
+/* Derives the fields of --fields into the tree. */
 static Status join_fields(const TreeConversion *conversion, const Parsed *parsed, Tree *tree,
                           Err *err)
 {
@@ -209,7 +205,8 @@ static void fill_arrays(const Tree *tree, const Branches *branches, double *cons
     }
 }
 
-/* The names are exact, so the columns have no units: lengths are in mm, areas in mm^2. */
+/* Adds the columns of --centreline-arrays. Other programs need the exact names, so the columns
+ * state no units: lengths are in mm, areas in mm^2. */
 static Status add_arrays(Tree *tree, Err *err)
 {
     static const char *const names[CENTRELINE_ARRAYS] = {"MaximumInscribedSphereRadius",
@@ -243,7 +240,7 @@ Status convert_tree_make(const TreeConversion *conversion, Parsed *parsed, Tree 
 
 /* ---- files ----------------------------------------------------------------------------------- */
 
-/* Takes note of the file of a moment. */
+/* Records the file of a moment as written. */
 static Status note_moment(Parsed *parsed, const char *to, size_t moment, Err *err)
 {
     char *path = NULL;

@@ -1,5 +1,6 @@
-/* Grows and, if asked, refines. What the tree is like is told before it is written, so that a
- * caller who keeps the tree in memory learns it, too. */
+/* Grows a tree and, if an option asks for it, refines the tree. Notes and warnings about the tree
+ * are sent before the tree is written, so that a caller who keeps the tree in memory gets them,
+ * too. */
 #include "job/tree/certify.h"
 #include "job/tree/growing.h"
 #include "job/tree/makers.h"
@@ -91,7 +92,8 @@ static void warn_of_size(const Talk *talk, const GrowReport *report, const Domai
 
 /* ---- the report ------------------------------------------------------------------------------ */
 
-/* The factors by which the radii of the tree of --from changed; null if they did not. */
+/* Returns the factors by which the radii of the tree of --from changed; JSON null if they did not.
+ */
 static json_t *change_json(const GrowReport *report)
 {
     if (!(report->median_change > 0))

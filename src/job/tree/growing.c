@@ -195,7 +195,7 @@ void growing_set_defaults(Growing *growing)
     growing->fill_to = 1;
 }
 
-/* Takes the parameters that no option gives from the metadata of the tree to continue. */
+/* Sets the parameters that no option specifies from the metadata of the tree to continue. */
 static Status take_meta(Growing *growing, Err *err)
 {
     const Tree *from = &growing->from;
@@ -222,15 +222,6 @@ static Status read_from(Growing *growing, const Parsed *parsed, bool *has_domain
                    "--from: the header of the tree names no domain; give --domain");
 }
 
-/* Notes the domain's file, and checks the options against the viscosity law, which is known now. */
-static Status check(const Growing *growing, Parsed *parsed, Err *err)
-{
-    TRY(options_refuse(parsed, blood_unmet(growing->params.blood.viscosity_law), err));
-    if (!growing->domain.file)
-        return STATUS_OK;
-    return files_read(&parsed->files, "--domain", growing->domain.file, err);
-}
-
 Status growing_prepare(Growing *growing, Parsed *parsed, Err *err)
 {
     GrowParams *params = &growing->params;
@@ -249,7 +240,10 @@ Status growing_prepare(Growing *growing, Parsed *parsed, Err *err)
     TRY(growing_read_demand(growing, err));
     if (growing->demand)
         TRY(files_read(&parsed->files, "--demand", demand_file(growing->demand), err));
-    return check(growing, parsed, err);
+    /* The viscosity law is known now. */
+    TRY(options_refuse(parsed, blood_unmet(params->blood.viscosity_law), err));
+    const char *file = growing->domain.file;
+    return file ? files_read(&parsed->files, "--domain", file, err) : STATUS_OK;
 }
 
 Status growing_read_demand(Growing *growing, Err *err)
@@ -263,32 +257,18 @@ Status growing_read_demand(Growing *growing, Err *err)
     return STATUS_OK;
 }
 
-/* Tells why a tree is not complete, in the words of the options. */
-static void warn_of_partial(const Parsed *parsed, const Err *why)
-{
-    Err named = *why;
-    options_name_fields(parsed, &named);
-    talk_warn(parsed->common.talk, "%s", named.text);
-}
-
 /* Fills the tree of --from. */
-static Status fill(Growing *growing, const Parsed *parsed, Tree *tree, GrowReport *report, Err *err)
+static Status fill(const Growing *growing, Tree *tree, GrowReport *report, Err *err)
 {
-    Progress progress;
     Morphometry table = {0};
     char *path = NULL;
     TRY(template_file("fill", "morphometry", growing->fill, ".txt", &path, err));
     Status status = morphometry_read(&table, path, err);
     free(path);
-    if (status != STATUS_OK)
-        return status;
     const FillRules rules = {&table, file_name(growing->fill), growing->fill_from,
                              growing->fill_to};
-    growing->params.progress = progress_report;
-    growing->params.progress_context = &progress;
-    progress_start(&progress, "filling", parsed->common.talk);
-    status = fill_tree(&growing->params, &rules, &growing->domain, tree, report, err);
-    progress_end(&progress);
+    if (status == STATUS_OK)
+        status = fill_tree(&growing->params, &rules, &growing->domain, tree, report, err);
     morphometry_release(&table);
     return status;
 }
@@ -297,19 +277,22 @@ Status growing_run(Growing *growing, const Parsed *parsed, Tree *tree, GrowRepor
 {
     Progress progress;
     const Talk *talk = parsed->common.talk;
-    if (growing->fill)
-        return fill(growing, parsed, tree, report, err);
-    TRY(grow_params_check(&growing->params, &growing->domain, err));
-    if (growing->params.pair_mm > 0 && growing->domain.dimension == 2)
+    if (!growing->fill)
+        TRY(grow_params_check(&growing->params, &growing->domain, err));
+    if (!growing->fill && growing->params.pair_mm > 0 && growing->domain.dimension == 2)
         talk_note(talk, "two trees that must not cross block each other in the plane: usually only "
                         "about 20 paired terminals fit; use a three-dimensional domain for more");
     growing->params.progress = progress_report;
     growing->params.progress_context = &progress;
-    progress_start(&progress, "growing", talk);
-    Status status = grow_tree(&growing->params, &growing->domain, tree, report, err);
+    progress_start(&progress, growing->fill ? "filling" : "growing", talk);
+    Status status = growing->fill
+                        ? fill(growing, tree, report, err)
+                        : grow_tree(&growing->params, &growing->domain, tree, report, err);
     progress_end(&progress);
-    if (status == STATUS_OK && !report->complete)
-        warn_of_partial(parsed, err);
+    if (status == STATUS_OK && !growing->fill && !report->complete) {
+        options_name_fields(parsed, err); /* `err` says why the tree is not complete */
+        talk_warn(talk, "%s", err->text);
+    }
     return status;
 }
 

@@ -1,5 +1,8 @@
 /* Collects the parameters of growth from options, from the header of a tree that is to be
- * continued, and from the files that options name. */
+ * continued, and from the files that options name. Then grows the tree.
+ *
+ * Use: growing_set_defaults, the option table growing_table, growing_prepare, growing_run,
+ * growing_release, in this order. */
 #ifndef CORCAST_JOB_TREE_GROWING_H
 #define CORCAST_JOB_TREE_GROWING_H
 
@@ -36,12 +39,15 @@ extern const OptionTable growing_table; /* sets a Growing */
 MUST_CHECK Status growing_prepare(Growing *growing, Parsed *parsed, Err *err);
 
 /* Replaces the demand map by the map that demand_spec names; with NULL, removes it. Errors: those
- * of demand_read. */
+ * of demand_read; there is then no map. */
 MUST_CHECK Status growing_read_demand(Growing *growing, Err *err);
 
 /* Grows a tree, or fills the tree of --from if `fill` is set, and shows progress. If growth stopped
- * early, as --partial allows, warns and states the reason. Errors: those of grow_tree, fill_tree
- * and morphometry_read. */
+ * early, as --partial allows, warns and states the reason.
+ *
+ * tree     receives the tree; release it with tree_release.
+ * report   receives the facts about the growth; must not be NULL.
+ * Errors   those of grow_tree, fill_tree and morphometry_read. */
 MUST_CHECK Status growing_run(Growing *growing, const Parsed *parsed, Tree *tree,
                               GrowReport *report, Err *err);
 

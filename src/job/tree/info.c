@@ -1,4 +1,5 @@
-/* What the options say of the blood takes precedence over what the tree's file says. */
+/* Measures a tree, and writes its statistics as CSV. Values of the blood that options state take
+ * precedence over those of the tree's file. */
 #include "job/tree/info.h"
 
 #include "job/tree/blood.h"
@@ -107,7 +108,7 @@ static void put_count(Text *text, const char *table, int number, const char *qua
     put_row(text, table, number, quantity, (Spread){count, NAN});
 }
 
-/* The standard deviation of a single value is unknown. */
+/* Appends a table. The standard deviation of a single value is unknown. */
 static void put_table(Text *text, const char *name, const StatisticsTable *table)
 {
     for (size_t i = 0; i < table->n; i++) {

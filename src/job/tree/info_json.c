@@ -1,4 +1,5 @@
-/* The report of `info` as JSON. The keys are a contract: they may be added to, never renamed. */
+/* Makes the report of `info` as JSON. Other programs read the keys: keys may be added, but not
+ * renamed. */
 #include "job/tree/info.h"
 #include "job/tree/summary_json.h"
 

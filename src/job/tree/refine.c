@@ -1,4 +1,5 @@
-/* Refines a tree within a domain: that of the option --domain, or that of the tree's metadata. */
+/* Refines a tree within a domain. The domain is that of the option --domain, or that of the tree's
+ * metadata. */
 #include "job/tree/certify.h"
 #include "job/tree/makers.h"
 #include "job/tree/refining.h"
@@ -46,22 +47,7 @@ static void set_defaults(void *options)
     ((RefineOptions *)options)->refining.level = GROW_REFINE_TOPOLOGY;
 }
 
-/* Makes the domain of the option or of the tree. *found is false if neither names one. */
-static Status find_domain(const char *spec, const Tree *tree, Domain *domain, bool *found, Err *err)
-{
-    if (!spec)
-        return tree_domain(tree, domain, found, err);
-    *found = true;
-    return tree_domain_parse(spec, NULL, NULL, domain, err);
-}
-
-static void set_clearance(double mm, TreeMeta *meta)
-{
-    meta_set_number(meta, META_CLEARANCE, mm);
-    meta->known[META_CLEARANCE] = mm > 0;
-}
-
-/* Notes the columns that refinement drops. */
+/* Sends a note about the columns that refinement removes. */
 static Status note_columns(const Tree *tree, const Talk *talk, Err *err)
 {
     Text names = TEXT_INIT;
@@ -94,16 +80,21 @@ static Status make_report(const RefineReport *report, MadeTree *made, Err *err)
         err);
 }
 
-/* Reads the tree and the domain. *found is false if there is no domain. */
+/* Reads the tree, and the domain of the option or of the tree. *found is false if neither states
+ * one. */
 static Status read_inputs(const RefineOptions *options, Parsed *parsed, Tree *tree, Domain *domain,
                           bool *found, Err *err)
 {
     TRY(reading_tree(parsed, parsed->operands[0], tree, NULL, err));
-    TRY(find_domain(options->domain, tree, domain, found, err));
+    *found = true;
+    TRY(options->domain ? tree_domain_parse(options->domain, NULL, NULL, domain, err)
+                        : tree_domain(tree, domain, found, err));
     if (domain->file)
         TRY(files_read(&parsed->files, "--domain", domain->file, err));
-    if (options->has_clearance)
-        set_clearance(options->clearance_mm, &tree->meta);
+    if (options->has_clearance) {
+        meta_set_number(&tree->meta, META_CLEARANCE, options->clearance_mm);
+        tree->meta.known[META_CLEARANCE] = options->clearance_mm > 0;
+    }
     return note_columns(tree, parsed->common.talk, err);
 }
 

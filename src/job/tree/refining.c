@@ -1,4 +1,4 @@
-/* One driver for all operations that refine. */
+/* Runs the refinement for all operations that refine a tree, and describes it in the metadata. */
 #include "job/tree/refining.h"
 
 #include "options/output.h"

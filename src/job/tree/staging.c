@@ -17,8 +17,7 @@ typedef struct Staging {
     const char *path;
     const Parsed *parsed;
     Growing *growing;
-    StageLine *line; /* owned */
-    size_t n, capacity;
+    ARRAY(StageLine) lines;
     char *text;            /* that lines point into; owned */
     const char *domain;    /* text of the current domain; NULL: the one of growing_prepare */
     const char *last_name; /* the stage before; NULL: none */
@@ -40,9 +39,10 @@ static const Setting *find_option(const Staging *staging, const char *name)
  * stage in later ones. */
 static Status check_line(const Staging *staging, const StageLine *line, Err *err)
 {
-    bool is_first = staging->n == 0 || strcmp(line->stage, staging->line[0].stage) == 0;
-    for (size_t i = 0; i < staging->n; i++) {
-        const StageLine *other = &staging->line[i];
+    const StageLine *lines = staging->lines.items;
+    bool is_first = staging->lines.n == 0 || strcmp(line->stage, lines[0].stage) == 0;
+    for (size_t i = 0; i < staging->lines.n; i++) {
+        const StageLine *other = &lines[i];
         if (strcmp(other->stage, line->stage) != 0)
             continue;
         if (!line->name)
@@ -66,14 +66,12 @@ static Status take_line(void *user, const char *section, const char *name, const
     Staging *staging = user;
     if (*section == '\0')
         return err_set(err, STATUS_INPUT, "'%s' is before the first stage, [NAME]", name);
-    TRY(mem_reserve(&staging->line, &staging->capacity, staging->n + 1, sizeof *staging->line,
-                    "lines", err));
     const StageLine line = {section, name, value};
     const Setting *setting = name ? find_option(staging, name) : NULL;
     if (name && !setting)
         return err_set(err, STATUS_INPUT, "unknown option '%s' in a stage", name);
     TRY(check_line(staging, &line, err));
-    staging->line[staging->n++] = line;
+    TRY(ARRAY_PUSH(&staging->lines, "lines", err, line));
     if (!name)
         return STATUS_OK;
     Status status = setting_read(setting, value, err);
@@ -198,8 +196,8 @@ static Status add_stage(Staging *staging, const char *name, Tree *tree, GrowRepo
  * next section starts. */
 static size_t apply(const Staging *staging, size_t at)
 {
-    for (at++; at < staging->n && staging->line[at].name; at++) {
-        const StageLine *line = &staging->line[at];
+    for (at++; at < staging->lines.n && staging->lines.items[at].name; at++) {
+        const StageLine *line = &staging->lines.items[at];
         Status status = setting_read(find_option(staging, line->name), line->value, NULL);
         (void)status; /* it was read before */
     }
@@ -210,11 +208,11 @@ static size_t apply(const Staging *staging, size_t at)
 static Status check_all(Staging *staging, Err *err)
 {
     Growing before = *staging->growing;
-    if (staging->n == 0)
+    if (staging->lines.n == 0)
         return err_set(err, STATUS_INPUT, "%s: has no stage; begin one with a line [NAME]",
                        staging->path);
-    for (size_t at = 0; at < staging->n;) {
-        const char *name = staging->line[at].stage;
+    for (size_t at = 0; at < staging->lines.n;) {
+        const char *name = staging->lines.items[at].stage;
         at = apply(staging, at);
         TRY(check_stage(staging, name, err));
         take_note(staging, name);
@@ -227,8 +225,8 @@ static Status check_all(Staging *staging, Err *err)
 static Status grow_all(Staging *staging, Tree *tree, GrowReport *report, Err *err)
 {
     *report = (GrowReport){.complete = true};
-    for (size_t at = 0; at < staging->n && report->complete;) {
-        const char *name = staging->line[at].stage;
+    for (size_t at = 0; at < staging->lines.n && report->complete;) {
+        const char *name = staging->lines.items[at].stage;
         at = apply(staging, at);
         TRY(add_stage(staging, name, tree, report, err));
     }
@@ -249,7 +247,7 @@ done:
     before.demand = growing->demand;
     before.domain = growing->domain; /* what else stages said is in their text */
     *growing = before;
-    free(staging.line);
+    ARRAY_RELEASE(&staging.lines);
     free(staging.text);
     return status;
 }

@@ -1,4 +1,4 @@
-/* The keys are a contract: they may be added to, never renamed. */
+/* Other programs read the keys of these objects: keys may be added, but not renamed. */
 #include "job/tree/summary_json.h"
 
 #include <stdlib.h>

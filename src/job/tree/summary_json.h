@@ -8,8 +8,8 @@
 json_t *summary_json(const TreeSummary *summary);
 
 /* Returns the pairs of terminals [tree/pairs.h] as a JSON array: a new reference, or NULL if memory
- * runs out. An item has the two ids and the distance of the nodes in mm. Returns JSON null if the
- * tree has no pairs. */
+ * runs out or the pairs cannot be read. An item is the array [id, id, distance of the two nodes in
+ * mm]. Returns JSON null if the tree has no pairs. */
 json_t *pairs_json(const Tree *tree);
 
 #endif

@@ -82,8 +82,8 @@ static bool is_standard_input(const char *spec)
     return file && file[1] == '-' && (!file[2] || file[2] == ',' || file[2] == '@');
 }
 
-/* "-" means standard input on the command line alone. In the metadata of a tree it cannot be read
- * again. */
+/* A domain in a file "-" can be read from standard input once only, on the command line. The
+ * metadata of a tree cannot repeat it. */
 Status tree_domain(const Tree *tree, Domain *domain, bool *found, Err *err)
 {
     *found = false;

@@ -1,4 +1,5 @@
-/* Domains that depend on a tree: the domain that a tree was grown in, and hulls about trees. */
+/* Domains that depend on a tree: the domain that a tree was grown in, and hulls around trees. A
+ * hull is the set of points within a distance of a tree's vessels. */
 #ifndef CORCAST_JOB_TREE_TREE_DOMAIN_H
 #define CORCAST_JOB_TREE_TREE_DOMAIN_H
 
@@ -6,8 +7,8 @@
 #include "tree/tree.h"
 
 /* Makes a domain from the value of --domain. Accepts all texts that domain_parse accepts, and two
- * hulls: "hull:MM" is the set of points within MM of the tree `from`, and "hull:FILE,MM" the set of
- * points within MM of the tree in a file.
+ * hulls: "hull:MM" is the hull around the tree `from`, and "hull:FILE,MM" the hull around the tree
+ * in a file. MM is the distance in mm.
  *
  * from       NULL: there is no tree, and "hull:MM" is an error.
  * from_path  name of `from` in messages.
@@ -24,7 +25,8 @@ MUST_CHECK Status tree_domain_parse(const char *spec, const Tree *from, const ch
  * Errors  STATUS_INPUT for a domain that was read from standard input; the errors of
  *         tree_domain_parse. */
 MUST_CHECK Status tree_domain(const Tree *tree, Domain *domain, bool *found, Err *err);
-/* Computes the bounding box of the domain of tree_domain. Errors: those of tree_domain. */
+/* Computes the bounding box of the domain of tree_domain. If *found is false, *box is not set.
+ * Errors: those of tree_domain. */
 MUST_CHECK Status tree_domain_box(const Tree *tree, Box *box, bool *found, Err *err);
 
 #endif

@@ -1,5 +1,5 @@
-/* The scene is that of `verify`, without a moved camera: lengths, colors and lights are those that
- * `render` draws. */
+/* The scene is that of `verify`, but the camera is not moved. Lengths, colors and lights are
+ * therefore those that `render` draws. */
 #include "job/verify/answer.h"
 
 #include "options/output.h"

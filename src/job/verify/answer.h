@@ -1,5 +1,6 @@
 /* The operation `answer`: computes a proven interval for each pixel of a scene and writes the
- * intervals to an OpenEXR file, by which `compare` grades pictures. */
+ * intervals to an OpenEXR file, by which `compare` grades pictures. The interval certainly contains
+ * the color of the pixel. A pixel is decided if its interval is narrow enough. */
 #ifndef CORCAST_JOB_VERIFY_ANSWER_H
 #define CORCAST_JOB_VERIFY_ANSWER_H
 
@@ -31,6 +32,7 @@ typedef struct AnswerReport {
 
 /* Makes the scene, computes its answer and writes options->output.
  *
+ * report  set on success only.
  * Errors  STATUS_USAGE if the answer is not defined for an option, such as ambient occlusion, or
  *         for the scene [answer_make]; the errors of picture_scene; STATUS_CANCELLED; STATUS_IO;
  *         STATUS_MEMORY. */

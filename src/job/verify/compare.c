@@ -1,10 +1,9 @@
-/* What is compared, and how, follows from the options and from what the files hold: integers or
- * floats, colors or planes of geometry. */
+/* The options and the content of the files decide what is compared: integers or floats, colors or
+ * planes of geometry, images, answers or folders. */
 #include "job/verify/compare.h"
 
 #include "job/picture/coloring.h"
 #include "job/verify/compare_parts.h"
-#include "options/talk.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -115,7 +114,7 @@ static Status check_pair(const CompareOptions *options, PlaneKind plane, const P
 
 /* ---- two images ------------------------------------------------------------------------------ */
 
-/* The ids of both sides, or NULL for both. */
+/* Returns the ids of a side; NULL unless the ids of both sides are known. */
 static const IdPlane *ids_of(const Comparison *made, int side)
 {
     return made->sides[0].ids.ids && made->sides[1].ids.ids ? &made->sides[side].ids : NULL;
@@ -196,15 +195,6 @@ static Status compare_sides(const CompareOptions *options, const Tolerance *tole
                                              : compare_codes(options, tolerance, made, err);
 }
 
-/* Tells which files had lost something before they were compared. */
-static void note_losses(const ComparedSide sides[2], const Talk *talk)
-{
-    for (int i = 0; i < 2; i++)
-        if (sides[i].image.lossy)
-            talk_note(talk, "%s is lossy (%s): compression has changed its colors", sides[i].name,
-                      sides[i].image.lossy);
-}
-
 static Status compare_pair(CompareOptions *options, const Parsed *parsed, Comparison *made,
                            Err *err)
 {
@@ -217,7 +207,8 @@ static Status compare_pair(CompareOptions *options, const Parsed *parsed, Compar
     TRY(compare_tolerance(&options->judge, options->depth_mm, &tolerance, &made->tier, err));
     TRY(sides_read(options, parsed, made->plane, made->sides, err));
     TRY(compare_sides(options, &tolerance, made, err));
-    note_losses(made->sides, parsed->common.talk);
+    for (int i = 0; i < 2; i++)
+        compare_note_loss(made->sides[i].name, &made->sides[i].image, parsed->common.talk);
     made->agrees = made->result.agrees;
     return STATUS_OK;
 }

@@ -39,9 +39,10 @@ typedef struct Comparison {
     Plane distances;       /* COMPARED_ANSWER with options->heat: distance of each pixel */
     Suite suite;           /* COMPARED_SUITES */
     SuiteFolders folders;  /* COMPARED_SUITES; borrows the strings of the options */
-    Tolerance
-        tolerances[2];   /* COMPARED_SUITES: of the suite, and for the tolerance files of cases */
-    float background[3]; /* COMPARED_SUITES */
+    /* COMPARED_SUITES: the tolerance of the suite, and the one that tolerance files of cases change
+     */
+    Tolerance tolerances[2];
+    float background[3]; /* COMPARED_SUITES: linear RGB */
     Text accepted;       /* COMPARED_NOTHING: a line per accepted case */
     char *tier;          /* name of the tolerance if it is from a file, else NULL; owned */
 } Comparison;
@@ -56,7 +57,8 @@ extern const Command command_compare;
  *
  * options      options->given replaces the operands if it is not zeroed. Receives the default of
  *              `metrics`, which depends on other options.
- * comparison   release it with comparison_release. It borrows file names from `parsed`.
+ * comparison   is overwritten; release it with comparison_release. After an error it is released
+ *              already. It borrows file names from `parsed`.
  * Errors       STATUS_USAGE if options exclude each other or have no effect; STATUS_INPUT if a file
  *              is malformed, or if the images differ in size or bit depth; STATUS_IO;
  *              STATUS_MEMORY. */

@@ -2,10 +2,9 @@
 #include "job/verify/compare_parts.h"
 
 #include "job/picture/coloring.h"
-#include "options/talk.h"
 #include <string.h>
 
-/* Options that have no effect on grades are refused. */
+/* Refuses options without effect on grades. */
 static Status check(const Parsed *parsed, bool two_answers, Err *err)
 {
     for (size_t i = 0; i < parsed->n_settings; i++) {
@@ -30,9 +29,7 @@ static Status grade_picture(const CompareOptions *options, const Parsed *parsed,
     Status status;
     TRY_GOTO(answerfile_read(&answer, parsed->operands[0], err));
     TRY_GOTO(image_read(&image, parsed->operands[1], ALPHA_KEPT, NULL, err));
-    if (image.lossy)
-        talk_note(parsed->common.talk, "%s is lossy (%s): compression has changed its colors",
-                  parsed->operands[1], image.lossy);
+    compare_note_loss(parsed->operands[1], &image, parsed->common.talk);
     TRY_GOTO(image_composite(&image, background, err));
     status = answergrade_image(&answer, &image, &made->grade,
                                options->heat ? &made->distances : NULL, err);

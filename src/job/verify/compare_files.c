@@ -1,4 +1,4 @@
-/* The files that `compare` writes about a comparison. */
+/* Writes the files about a comparison: page, report folder, JUnit XML, ledger and pictures. */
 #include "job/verify/compare_parts.h"
 
 #include "options/output.h"

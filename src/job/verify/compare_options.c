@@ -1,4 +1,4 @@
-/* The rows of the options, and the tolerance that they state. */
+/* The rows of the options of `compare`, and the tolerance that follows from their values. */
 #include "job/verify/compare_options.h"
 
 #include <math.h>

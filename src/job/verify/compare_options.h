@@ -46,10 +46,10 @@ typedef struct CompareOptions {
     const char *reference; /* folder of reference images; the operand is then the folder of the
                             * images that are judged */
     const char *only;      /* pattern of the cases that are compared; NULL: all */
-    const char *accept, *reason; /* pattern of the cases that are accepted, and the reason */
-    const char *label, *machine,
-        *expires;                 /* with `accept`: label of a further reference; the machine
-                                   * and the last day that are stored with a reference */
+    const char *accept, *reason;  /* pattern of the cases that are accepted, and the reason */
+    const char *label;            /* with `accept`: label of a further reference */
+    const char *machine;          /* with `accept`: the machine that is stored with a reference */
+    const char *expires;          /* with `accept`: the last day that is stored with a reference */
     const char *noise, *variance; /* test of noisy images: paths of other renderings, separated by
                                    * commas, or a file of variances per pixel */
     double alarms;                /* false alarm rate of the noise test, in (0, 1) */

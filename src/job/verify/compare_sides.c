@@ -1,7 +1,8 @@
-/* The two images of a comparison, and what is done to them before they are compared. */
+/* Reads the two images of a comparison, and converts them so that they can be compared. */
 #include "job/verify/compare_parts.h"
 
 #include "job/picture/coloring.h"
+#include "options/talk.h"
 #include <string.h>
 
 void sides_release(ComparedSide sides[2])
@@ -12,6 +13,12 @@ void sides_release(ComparedSide sides[2])
         picture_release(&sides[i].shown);
         idplane_release(&sides[i].ids);
     }
+}
+
+void compare_note_loss(const char *name, const Image *image, const Talk *talk)
+{
+    if (image->lossy)
+        talk_note(talk, "%s is lossy (%s): compression has changed its colors", name, image->lossy);
 }
 
 const Picture *side_shown(const ComparedSide *side)
@@ -95,7 +102,7 @@ done:
     return status;
 }
 
-/* Gets one image. Only colors have alpha: of a plane of geometry every value counts. */
+/* Reads or copies one image. Only colors have alpha; all values of a plane of geometry count. */
 static Status get_image(const SidesReading *reading, size_t index, Err *err)
 {
     const CompareOptions *options = reading->options;
@@ -157,8 +164,8 @@ static const char *holds(const ComparedSide *side)
     return side->image.plane.values ? "floats" : "integers";
 }
 
-/* Images of unlike gamma become planes of linear colors; pictures of unlike depth become 16-bit.
- */
+/* Converts images of different gamma to planes of linear colors, and pictures of different bits to
+ * 16 bits. */
 static Status match_images(ComparedSide sides[2], Err *err)
 {
     Image *a = &sides[0].image, *b = &sides[1].image;

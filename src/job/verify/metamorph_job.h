@@ -10,9 +10,9 @@
 typedef struct MetamorphOptions {
     RendererOptions renderer;
     const char *relations; /* names, separated by commas; NULL: all */
-    TrialFormat format;
-    double seconds;
-    size_t max_pairs; /* 0: no limit */
+    TrialFormat format;    /* of the scenes */
+    double seconds;        /* duration of the search */
+    size_t max_pairs;      /* maximum number of pairs; 0: no limit */
 } MetamorphOptions;
 
 /* Describes the operation. Its options set a MetamorphOptions. */

@@ -1,4 +1,4 @@
-/* POV-Ray with the switches that `verify` gives it, for any scene. */
+/* Runs POV-Ray on any scene with the same switches as `verify` does. */
 #include "job/verify/povray.h"
 
 #include "job/picture/frames.h"

@@ -19,11 +19,11 @@ typedef struct PovrayOptions {
 /* Describes the operation. Its options set a PovrayOptions. */
 extern const Command command_povray;
 
-/* Runs POV-Ray on the scene that is the first operand, and writes
- * its picture to options->output. The picture is always a file.
+/* Runs POV-Ray on the scene that is the first operand, and writes its picture to options->output.
+ * The picture is always a file.
  *
  * options  its size is set from the scene if the user gave none.
- * run      receives version and duration.
+ * run      receives version and duration; set on success only.
  * Errors   STATUS_USAGE if an option has no effect, or if neither option nor scene gives a size;
  *          STATUS_INPUT if the scene cannot be read; the errors of povray_draw. */
 MUST_CHECK Status povray_run(PovrayOptions *options, Parsed *parsed, PovrayRun *run, Err *err);

@@ -1,5 +1,5 @@
-/* The renderer runs twice, and the faults are planted in the second picture. If the renderer does
- * not repeat itself exactly, the rule has to bear its noise, too. */
+/* The renderer runs twice, and the faults are planted in a copy of the second picture. If the
+ * renderer does not repeat itself exactly, the rule must also accept its noise. */
 #include "job/verify/power.h"
 
 #include "job/picture/coloring.h"
@@ -86,30 +86,16 @@ done:
 
 static Status open_place(PowerFiles *place, const char *extension, Err *err)
 {
-    Text name = TEXT_INIT;
-    text_printf(&name, "drawn.%s", extension);
-    const char *const names[POWER_FILES] = {
-        [FILE_DRAWN] = text_chars(&name), [FILE_A] = "a.png", [FILE_B] = "b.png"};
-    char *path = NULL;
-    Status status;
-    TRY_GOTO(make_folder(&place->folder, err));
+    static const char *const names[POWER_FILES] = {
+        [FILE_DRAWN] = "drawn", [FILE_A] = "a", [FILE_B] = "b"};
+    TRY(make_folder(&place->folder, err));
     for (int i = 0; i < POWER_FILES; i++) {
-        TRY_GOTO(file_join(place->folder, names[i], &path, err));
-        TRY_GOTO(file_remove_on_signal(path, err));
-        place->files[i] = path;
-        path = NULL;
+        char **path = &place->files[i];
+        TRY(file_format_name(path, err, "%s/%s.%s", place->folder, names[i],
+                             i == FILE_DRAWN ? extension : "png"));
+        TRY(file_remove_on_signal(*path, err));
     }
-done:
-    free(path);
-    text_release(&name);
-    return status;
-}
-
-static void close_place(PowerFiles *place)
-{
-    for (int i = 0; i < POWER_FILES; i++)
-        file_forget(place->files[i]);
-    file_forget(place->folder);
+    return STATUS_OK;
 }
 
 /* ---- the renderer ---------------------------------------------------------------------------- */
@@ -169,7 +155,7 @@ static Status tolerance_differs(void *context, const Picture *reference, const P
 /* The rule of another program. */
 typedef struct VerdictCommand {
     const PowerFiles *place;
-    char *command; /* owned; both files filled in */
+    char *command; /* owned; both files filled in; NULL: there is no such rule */
 } VerdictCommand;
 
 static Status command_differs(void *context, const Picture *reference, const Picture *picture,
@@ -256,7 +242,7 @@ done:
     return status;
 }
 
-/* Has a scene drawn twice, and measures the power of the rule that the options state. */
+/* Runs the renderer twice, and measures the power of the rule that the options specify. */
 static Status measure_drawn(const PowerOptions *options, const PowerFiles *place,
                             const Parsed *parsed, Power *power, Err *err)
 {
@@ -316,7 +302,9 @@ Status power_run(const PowerOptions *options, Parsed *parsed, PowerReport *repor
     TRY_GOTO(open_place(&place, options->extension, err));
     status = measure_drawn(options, &place, parsed, &report->power, err);
 done:
-    close_place(&place);
+    for (int i = 0; i < POWER_FILES; i++)
+        file_forget(place.files[i]);
+    file_forget(place.folder);
     return status;
 }
 

@@ -1,4 +1,5 @@
-/* All renderers under test are shell commands with the same marks. */
+/* A renderer under test is a shell command. All operations that test renderers have these options.
+ */
 #include "job/verify/renderer_options.h"
 
 #include <stdlib.h>

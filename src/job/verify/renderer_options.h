@@ -16,7 +16,7 @@ typedef struct RendererOptions {
 extern const OptionTable renderer_options;
 
 /* Creates the output folder. Sets *path to its absolute path, because the command may change the
- * folder; the caller frees it.
+ * working folder; the caller frees *path. After an error *path is NULL or unchanged.
  *
  * content  the content of the folder, for the message: "the reports".
  * Errors   STATUS_USAGE if the command or the folder is missing; STATUS_IO; STATUS_MEMORY. */

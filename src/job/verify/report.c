@@ -1,11 +1,11 @@
-/* The reports themselves are merged by the module compare. */
+/* The module compare merges the reports [compare/compare.h]. This file records what it reads. */
 #include "job/verify/report.h"
 
 #include "compare/compare.h"
 #include "options/templates.h"
 #include <stdlib.h>
 
-/* Notes the files that report_merge reads in a folder. */
+/* Records the files that report_merge reads in a folder. */
 static Status note_case(const char *folder, Files *files, Err *err)
 {
     static const char *const names[] = {"report.html", "report.json"};

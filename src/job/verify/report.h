@@ -15,7 +15,7 @@ extern const Command command_report;
 
 /* Writes one page about the operands, folders that `verify` or `compare --report` has written.
  *
- * agree   receives true if the verdict of every folder is "agree".
+ * agree   receives true if the verdict of every folder is "agree"; set on success only.
  * Errors  STATUS_INPUT if a folder has no report; STATUS_USAGE if a file would be both read and
  *         written; STATUS_IO; STATUS_MEMORY. */
 MUST_CHECK Status report_run(const ReportOptions *options, Parsed *parsed, bool *agree, Err *err);

@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* The names of formats, which are also the extensions of scenes. */
 static const char *const formats[] = {"pov", "tachyon", "json", "swc", NULL};
 
 static const Option own[] = {
@@ -170,7 +171,7 @@ done:
     return status;
 }
 
-/* Takes the intervals of an answer for grading. */
+/* Copies the intervals of an answer into the form that is graded. */
 static Status take_answer(const Answer *answer, AnswerFile *file, Err *err)
 {
     const int width = answer->plane.width, height = answer->plane.height;
@@ -190,8 +191,7 @@ static Status take_answer(const Answer *answer, AnswerFile *file, Err *err)
 static Status open_case(const TubeSuiteOptions *options, const char *scenes, TubeCase *one,
                         char **tree, Err *err)
 {
-    static const char *const extensions[SUITE_FORMATS] = {"pov", "tachyon", "json", "swc"};
-    TRY(drawing_name(one->drawing, scenes, one->name, extensions[options->format],
+    TRY(drawing_name(one->drawing, scenes, one->name, formats[options->format],
                      options->format == SUITE_TACHYON ? "ppm" : "png", err));
     TRY(file_with_suffix(one->drawing->scene, ".swc", tree, err));
     return write_tree(one, *tree, err);

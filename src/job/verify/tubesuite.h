@@ -1,5 +1,6 @@
 /* The operation `suite`: lets a renderer draw the scenes of the tube suite, and grades each picture
- * by the proven answer for its scene [compare/grade/grade.h]. */
+ * by the proven answer for its scene [compare/grade/grade.h]. The tube suite is a list of small
+ * trees, templates/suite/scenes.ini, that are drawn as cylinders. */
 #ifndef CORCAST_JOB_VERIFY_TUBESUITE_H
 #define CORCAST_JOB_VERIFY_TUBESUITE_H
 

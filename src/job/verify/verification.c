@@ -35,6 +35,8 @@ void verification_release(Verification *v)
         free(v->commands.items[i]);
     ARRAY_RELEASE(&v->commands);
     free(v->name);
+    free(v->description);
+    free(v->templates);
 }
 
 Status verification_add_command(Verification *v, const char *command, Err *err)
@@ -128,14 +130,6 @@ static Status render_native(Verification *v, Err *err)
     return verification_takes_two_steps(v) ? render_frame(v, true, &v->exact, err) : STATUS_OK;
 }
 
-static Status write_native(const Verification *v, Err *err)
-{
-    TRY(write_frame(v, &v->native.frame, "native.png", encoding_of(v), err));
-    return verification_takes_two_steps(v)
-               ? write_frame(v, &v->exact, "exact.png", ENCODING_SRGB, err)
-               : STATUS_OK;
-}
-
 /* ---- the other programs ---------------------------------------------------------------------- */
 
 Status verification_pick_frame(Verification *v, int frame, Err *err)
@@ -158,43 +152,26 @@ Status verification_pick_frame(Verification *v, int frame, Err *err)
     return STATUS_OK;
 }
 
-/* Returns the value of the scene's clock at the moment that is compared. */
-static double clock_of(const Verification *v)
+/* Sets the texts of scene files. */
+static Status set_texts(Verification *v, Err *err)
 {
-    size_t n = v->moments.n_frames;
-    return n > 1 ? (double)(v->frame - 1) / (double)(n - 1) : 0;
-}
-
-/* Texts of scene files. All are owned. */
-typedef struct SceneTexts {
-    char *templates;
-    Text description;
-} SceneTexts;
-
-static void texts_release(SceneTexts *texts)
-{
-    free(texts->templates);
-    text_release(&texts->description);
-}
-
-static Status texts_init(const Verification *v, SceneTexts *texts, Err *err)
-{
-    *texts = (SceneTexts){.description = TEXT_INIT};
-    picture_description(&v->scene.geometry, v->tree, &texts->description);
+    Text description = TEXT_INIT;
+    picture_description(&v->scene.geometry, v->tree, &description);
     if (v->scene.appearance.meaning)
-        text_printf(&texts->description, ", colored by %s", v->scene.appearance.meaning);
-    TRY(text_check(&texts->description, err));
-    return templates_folder(&texts->templates, err);
+        text_printf(&description, ", colored by %s", v->scene.appearance.meaning);
+    Status status = text_take(&description, &v->description, err);
+    text_release(&description);
+    return status == STATUS_OK ? templates_folder(&v->templates, err) : status;
 }
 
-static EmitParams emit_params(const Verification *v, const Scene *scene, const SceneTexts *texts)
+static EmitParams emit_params(const Verification *v, const Scene *scene)
 {
     return (EmitParams){.scene = scene,
                         .command = v->commands.items[0],
                         .shadows = v->options->picture.stage.shadows,
                         .cells = picture_cells(&v->options->picture),
-                        .templates = texts->templates,
-                        .description = text_chars(&texts->description),
+                        .templates = v->templates,
+                        .description = v->description,
                         .generator = GENERATOR};
 }
 
@@ -226,17 +203,18 @@ static Status draw_side(size_t side, int worker, void *context, Err *err)
 }
 
 /* Draws both sides. If both fail, the error is POV-Ray's. */
-static Status draw_both(Verification *v, const SceneTexts *texts, Err *err)
+static Status draw_both(Verification *v, Err *err)
 {
+    const size_t n = v->moments.n_frames;
     Scene written = v->scene;
     Progress progress;
-    if (v->moments.n_frames > 0)
+    if (n > 0)
         written.appearance = v->moments;
     if (v->moments.widths)
         written.geometry = v->resting;
-    const PovrayTilesParams params = {.emit = emit_params(v, &written, texts),
+    const PovrayTilesParams params = {.emit = emit_params(v, &written),
                                       .folder = v->options->folder,
-                                      .clock = clock_of(v),
+                                      .clock = n > 1 ? (v->frame - 1) / (double)(n - 1) : 0,
                                       .antialias = v->options->picture.antialias,
                                       .bits = v->options->bits,
                                       .alpha = v->has_alpha,
@@ -260,9 +238,9 @@ done:
     return status;
 }
 
-static Status draw_tachyon(Verification *v, const SceneTexts *texts, Err *err)
+static Status draw_tachyon(Verification *v, Err *err)
 {
-    const TachyonParams params = {.emit = emit_params(v, &v->scene, texts),
+    const TachyonParams params = {.emit = emit_params(v, &v->scene),
                                   .folder = v->options->folder,
                                   .threads = v->common->threads,
                                   .program = v->options->tachyon};
@@ -274,28 +252,19 @@ static Status draw_tachyon(Verification *v, const SceneTexts *texts, Err *err)
     return STATUS_OK;
 }
 
-/* Converts linear colors to what a screen shows. */
-static Status show_both(Verification *v, Err *err)
+Status verification_draw(Verification *v, Err *err)
 {
+    TRY(set_texts(v, err));
+    TRY(draw_both(v, err));
+    if (v->options->witness == WITNESS_TACHYON)
+        TRY(draw_tachyon(v, err));
+    TRY(write_frame(v, &v->native.frame, "native.png", encoding_of(v), err));
+    if (verification_takes_two_steps(v))
+        TRY(write_frame(v, &v->exact, "exact.png", ENCODING_SRGB, err));
     if (v->options->bits == 8)
         return STATUS_OK;
     TRY(picture_to_srgb(&v->shown[0], &v->povray.picture, 8, err));
     return picture_to_srgb(&v->shown[1], &v->native.picture, 8, err);
-}
-
-Status verification_draw(Verification *v, Err *err)
-{
-    SceneTexts texts;
-    Status status;
-    TRY_GOTO(texts_init(v, &texts, err));
-    TRY_GOTO(draw_both(v, &texts, err));
-    if (v->options->witness == WITNESS_TACHYON)
-        TRY_GOTO(draw_tachyon(v, &texts, err));
-    TRY_GOTO(write_native(v, err));
-    status = show_both(v, err);
-done:
-    texts_release(&texts);
-    return status;
 }
 
 /* ---- comparison ------------------------------------------------------------------------------ */

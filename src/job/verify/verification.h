@@ -1,4 +1,12 @@
-/* One scene, drawn by POV-Ray and by corcast, and how the two pictures compare. */
+/* One scene, drawn by POV-Ray and by corcast, and how the two pictures compare.
+ *
+ * Use, for a Verification whose options, common, tree and scene are set:
+ *
+ *     TRY(verification_add_command(&v, command, err));   (corcast's own command line)
+ *     TRY(verification_pick_frame(&v, frame, err));
+ *     TRY(verification_draw(&v, err));
+ *     TRY(verification_compare(&v, err));
+ *     report = verification_report(&v); */
 #ifndef CORCAST_JOB_VERIFY_VERIFICATION_H
 #define CORCAST_JOB_VERIFY_VERIFICATION_H
 
@@ -41,6 +49,8 @@ typedef struct Verification {
     const Common *common;
     const char *tree;    /* path of the tree, for sentences */
     char *name;          /* name of the tree, for the report */
+    char *description;   /* of the scene, in scene files; set by verification_draw */
+    char *templates;     /* path of the folder of templates; set by verification_draw */
     Scene scene;         /* the scene at the time step that is compared */
     Geometry resting;    /* geometry of the vessels at rest, if they beat; the scene's geometry is
                           * then that at the time step */
@@ -71,8 +81,9 @@ MUST_CHECK Status verification_add_command(Verification *v, const char *command,
  */
 bool verification_takes_two_steps(const Verification *v);
 
-/* Selects a moment of a scene whose colors change with time; 0 selects the first. POV-Ray's scene
- * still contains all moments. Errors: STATUS_USAGE if there is no such moment. */
+/* Selects moment number `frame`, counted from 1, of a scene whose colors change with time; 0
+ * selects the first. POV-Ray's scene still contains all moments. Must be called once. Errors:
+ * STATUS_USAGE if there is no such moment; STATUS_MEMORY. */
 MUST_CHECK Status verification_pick_frame(Verification *v, int frame, Err *err);
 
 /* Draws the scene with POV-Ray, corcast and, if asked, Tachyon. Writes scenes and planes into the

@@ -1,4 +1,5 @@
-/* The folder, the scene that is compared, and the order of the steps. */
+/* Opens the folder, makes the scene that is compared, and runs the steps of the verification in
+ * order. */
 #include "job/verify/verify.h"
 
 #include "emit/emit.h"

@@ -21,7 +21,8 @@ extern const Command command_verify;
 MUST_CHECK Status verify_run(VerifyOptions *options, Parsed *parsed, Verification *result,
                              Err *err);
 
-/* Appends the verdict and the main numbers, one line per plane. */
+/* Appends the verdict and the main numbers, one line per plane. If memory runs out, `out` records
+ * it. */
 void verify_text(const Verification *result, Text *out);
 /* Returns the report, as report.json has it: a new reference, or NULL if memory runs out. */
 json_t *verify_json(const Verification *result);

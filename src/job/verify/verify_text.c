@@ -1,4 +1,4 @@
-/* The report of a verification, and its short form for people. */
+/* Makes the report of a verification [compare/compare.h], and its short form as text. */
 #include "job/verify/verify.h"
 
 #include <stdio.h>
@@ -78,14 +78,6 @@ static void put_distances(const char *title, const CompareResult *result, const 
                     result->values[MEASURE_MAX], unit);
 }
 
-static void put_planes(const CompareResult results[PLANE_KINDS], Text *out)
-{
-    put_counts("color", &results[PLANE_COLOR], out);
-    put_distances("depth", &results[PLANE_DEPTH], "mm", out);
-    put_distances("normal", &results[PLANE_NORMAL], "deg", out);
-    put_counts("id", &results[PLANE_ID], out);
-}
-
 /* Appends a line for each cause that was found, and for the first pixels of a blob. */
 static void put_settled(const Settled *settled, Text *out)
 {
@@ -121,7 +113,10 @@ static void put_surface(const VerifyFindings *found, Text *out)
 void verify_text(const Verification *result, Text *out)
 {
     const VerifyFindings *found = &result->found;
-    put_planes(found->planes, out);
+    put_counts("color", &found->planes[PLANE_COLOR], out);
+    put_distances("depth", &found->planes[PLANE_DEPTH], "mm", out);
+    put_distances("normal", &found->planes[PLANE_NORMAL], "deg", out);
+    put_counts("id", &found->planes[PLANE_ID], out);
     if (result->has_alpha)
         put_counts("alpha", &found->alpha, out);
     if (found->examined)
