@@ -17,7 +17,7 @@
 const char *const command_group_names[COMMAND_GROUPS] = {
     [COMMANDS_GROW] = "Grow and measure",
     [COMMANDS_DRAW] = "Draw",
-    [COMMANDS_EXPORT] = "Hand on to other programs",
+    [COMMANDS_EXPORT] = "Convert and export",
     [COMMANDS_CHECK] = "Check",
     [COMMANDS_LIST] = "List what options accept",
     [COMMANDS_HELP] = "Help",

@@ -71,6 +71,19 @@ static void put_range(const Range *range, Text *text)
         text_printf(text, "%sat most %s", above_0 ? ", " : "", high);
 }
 
+/* Appends the range and the unit: "0..64 mm". A placeholder such as "8|16" lists all values, so no
+ * range follows. The help of a size states its units. */
+static void put_accepted(const Option *option, Text *text)
+{
+    const bool lists_values = option->argument && isdigit((unsigned char)*option->argument);
+    if (option->kind == OPTION_SIZE || lists_values)
+        return;
+    if (option_range(option))
+        put_range(option_range(option), text);
+    if (option_unit(option))
+        text_printf(text, "%s%s", text->length ? " " : "", option_unit(option));
+}
+
 /* Appends the value or the phrase that applies if the option is not given. */
 static void put_default(const Setting *plain, Text *text)
 {
@@ -89,8 +102,7 @@ void help_put_meaning(const Setting *plain, Text *text)
     put_choices(option, text);
     if (option->list)
         text_printf(text, "; `corcast %s` lists the names", option->list);
-    if (option_range(option) && option->kind != OPTION_SIZE)
-        put_range(option_range(option), &range);
+    put_accepted(option, &range);
     put_default(plain, &value);
     const bool has_range = range.length || !text_chars(&range);
     const bool has_value = value.length || !text_chars(&value);
@@ -188,8 +200,8 @@ done:
 }
 
 const char help_exit_status[] =
-    "0 success, 1 a comparison found a difference, 2 wrong usage or input, 3 a file, another "
-    "program or memory failed.";
+    "0 success; 1 a comparison or check found a difference; 2 the command line or an input is "
+    "wrong; 3 a file cannot be read or written, another program failed, or memory ran out.";
 
 static bool has_json(const Command *command, OptionKind kind)
 {
@@ -242,8 +254,9 @@ static void put_usage(Text *text)
     }
     text_puts(text, "\n");
     put_wrapped(
-        "`corcast COMMAND --help` shows the options of a command. A file name '-' stands for "
-        "standard input or output.",
+        "`corcast COMMAND --help` shows the options of a command. Square brackets behind an option "
+        "contain the accepted range, the unit and the default. A file name '-' stands for standard "
+        "input or output.",
         0, 0, text);
     help_put_json_rule(&json_rule);
     put_wrapped(text_chars(&json_rule), 0, 0, text);

@@ -17,24 +17,25 @@ static const Option common_options[] = {
      SETS(INPUT, Common, recipe),
      .group = GROUP_RUN,
      .aside = true,
-     .help = "read options from FILE, one per line, without dashes: `lambda = 1`, `log = on`; "
-             "options on the command line take precedence. --dump-recipe prints such a file"},
+     .help = "file of options, one `name = value` per line, without dashes: `lambda = 1`, `log = "
+             "on`; options on the command line take precedence; --dump-recipe prints such a file"},
     {.name = "dump-recipe",
      SETS(FLAG, Common, dump),
      .group = GROUP_RUN,
      .aside = true,
-     .help = "also print a recipe with every option in effect on standard output"},
+     .help = "also print every option in effect on standard output, as a file for --recipe"},
     {.name = "seed",
      SETS(SEED, Common, seed),
      .group = GROUP_RUN,
      .when = WHEN(OWN_SEED),
-     .help = "seed of the random numbers; the same seed makes the same random choices"},
+     .help = "seed of the random numbers, an integer; runs with the same seed make the same "
+             "random choices"},
     {.name = "threads",
      SETS(WHOLE, Common, threads),
      FROM_TO(0, 256),
      .group = GROUP_RUN,
      .aside = true,
-     .help = "number of threads; 0 uses all processors"},
+     .help = "number of threads; 0 uses one thread per processor"},
     {.name = "quiet",
      SETS(FLAG, Common, quiet),
      .group = GROUP_RUN,
@@ -44,7 +45,7 @@ static const Option common_options[] = {
      SETS(FLAG, Common, help),
      .group = GROUP_RUN,
      .aside = true,
-     .help = "show this help (also -h)"},
+     .help = "print this help; -h does the same"},
 };
 
 static const OptionTable common_table = OPTION_TABLE(common_options);

@@ -170,8 +170,8 @@ static const Option models_own[] = {
     {.name = "of",
      SETS(CHOICE, ModelsOptions, of),
      .choices = model_kinds,
-     .help = "list only some models: anything (all models), primitives (only models made of "
-             "cylinders, spheres and joints), field (only models made of a potential field)"},
+     .help = "models to list: anything (all models), primitives (only models made of cylinders, "
+             "spheres and joints), field (only models made of a potential field)"},
 };
 
 static const OptionTable models_table = OPTION_TABLE(models_own);

@@ -506,14 +506,15 @@ static const Option own[] = {
     {.name = "save",
      SETS(OUTPUT, ViewOptions, recipe),
      .aside = true,
-     .help = "recipe file that the key w writes"},
+     .help = "recipe that the key w writes"},
     {.name = "turntable",
      SETS(WHOLE, ViewOptions, turn),
      FROM_TO(1, 100000),
      .group = GROUP_RUN,
      .aside = true,
      .otherwise = "",
-     .help = "draw N full-quality images of one turn, print the images per second, and quit"},
+     .help = "number of full-quality images of one turn; the command draws them, prints the "
+             "images per second, and quits"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);
