@@ -27,7 +27,8 @@ static Status export_pulse(void *options, Parsed *parsed, Err *err)
     TRY_GOTO(pulsing_make(options, parsed, &made, err));
     if (pulsing_draws(made.options->output))
         TRY_GOTO(err_set(err, STATUS_USAGE,
-                         "the tree of corcast_pulse has the moments; draw it with \"beat\""));
+                         "corcast_export writes no pictures of pulse waves; draw the tree of "
+                         "corcast_pulse with the option \"beat\""));
     status = pulsing_write(&made, err);
 done:
     pulsing_release(&made);
@@ -118,7 +119,7 @@ static Status pass_stream(const Sink *sink, const char *name, FILE *stream, Err 
     while ((count = fread(block, 1, BLOCK, stream)) > 0 || is_first) {
         is_first = false;
         if (!give(sink, name, block, count))
-            return err_set(err, STATUS_IO, "%s: the sink did not take the bytes", name);
+            return err_set(err, STATUS_IO, "%s: the sink refused the bytes", name);
     }
     return ferror(stream) ? err_set(err, STATUS_IO, "%s: reading failed", name) : STATUS_OK;
 }

@@ -65,7 +65,7 @@ static Status find_command(const RequestForm *form, const Command **command, Err
     if (is_word_of((*command)->name, form->commands))
         return STATUS_OK;
     return err_set(err, STATUS_USAGE,
-                   "options are of the command %s; this operation takes those of: %s",
+                   "the options belong to the command %s; this operation takes options of: %s",
                    (*command)->name, form->commands);
 }
 

@@ -282,7 +282,7 @@ static Status write_bytes(const corcast_tree *tree, const char *name, corcast_si
     const int stop = sink(user, file_name(name), text_chars(&text), text.length);
     callback_end(own);
     if (stop)
-        status = err_set(err, STATUS_IO, "%s: the sink did not take the bytes", file_name(name));
+        status = err_set(err, STATUS_IO, "%s: the sink refused the bytes", file_name(name));
 done:
     text_release(&text);
     return status;

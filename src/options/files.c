@@ -89,7 +89,8 @@ static Status refuse(const FileUse *a, const FileUse *b, Err *err)
         return err_set(err, STATUS_USAGE, "%s and %s cannot both be standard %s", a->role, b->role,
                        a->written ? "output" : "input");
     if (a->written && b->written)
-        return err_set(err, STATUS_USAGE, "%s '%s' and %s '%s' are one file; write to two", a->role,
+        return err_set(err, STATUS_USAGE,
+                       "%s '%s' and %s '%s' are the same file; write to two files", a->role,
                        a->path, b->role, b->path);
     const FileUse *written = a->written ? a : b, *read = a->written ? b : a;
     return err_set(err, STATUS_USAGE, "%s '%s' would be written over %s '%s'; choose another name",

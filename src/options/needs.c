@@ -24,7 +24,7 @@ static bool is_on(const Setting *setting)
     }
 }
 
-/* Takes the next of some names that are parted by blanks, and finds it among the options of the
+/* Takes the next of some names that are separated by blanks, and finds it among the options of the
  * command; *setting is NULL for an option that the command does not have. False: there is none. */
 static bool next_name(const Parsed *parsed, const char **names, const Setting **setting)
 {

@@ -32,7 +32,8 @@ const char *const option_group_names[OPTION_GROUPS] = {
 
 /* ---- reading --------------------------------------------------------------------------------- */
 
-/* Reads `count` numbers parted by `separator`; the last ones may be missing down to `least`. */
+/* Reads `count` numbers separated by `separator`. The last ones may be missing, down to `least`
+ * numbers. */
 static bool read_numbers(const char *text, char separator, int least, int count, double *out)
 {
     for (int i = 0; i < count; i++) {
@@ -126,7 +127,7 @@ static Status parse_whole(const Option *option, const char *value, long long *ou
     if (integer_parse(value, (long long)option_range(option)->low,
                       (long long)option_range(option)->high, out))
         return STATUS_OK;
-    return wrong_number(option, value, "a whole number", err);
+    return wrong_number(option, value, "an integer", err);
 }
 
 static Status read_whole(const Option *option, const char *value, void *where, Err *err)
@@ -150,7 +151,7 @@ static Status read_seed(const Option *option, const char *value, void *where, Er
     char *end;
     unsigned long long seed = strtoull(value, &end, 10);
     if (!*value || *end || strspn(value, "0123456789") != strlen(value) || strlen(value) > 19)
-        return wrong(option, value, "a whole number from 0 to 9999999999999999999", err);
+        return wrong(option, value, "an integer from 0 to 9999999999999999999", err);
     *(uint64_t *)where = seed;
     return STATUS_OK;
 }
@@ -229,8 +230,8 @@ static Status read_size(const Option *option, const char *value, void *where, Er
         read = range_has(*option_range(option), sides[i]) && sides[i] == floor(sides[i]);
     if (!read)
         return wrong_number(option, value,
-                            "a size on paper, as 89mm or 89mmx60mm (or in cm, in, pt), or "
-                            "WIDTHxHEIGHT in pixels, each a whole number",
+                            "a size on paper, such as 89mm or 89mmx60mm (or in cm, in, pt), or "
+                            "WIDTHxHEIGHT in pixels, each an integer",
                             err);
     for (int i = 0; i < 2; i++) {
         size->mm[i] = sides[i] * mm[i];
@@ -243,7 +244,7 @@ static Status read_vector(const Option *option, const char *value, void *where, 
 {
     double xyz[3] = {0, 0, 0};
     if (!read_numbers(value, ',', 2, 3, xyz))
-        return wrong(option, value, "X,Y or X,Y,Z, numbers parted by commas", err);
+        return wrong(option, value, "X,Y or X,Y,Z, numbers separated by commas", err);
     *(Vec3 *)where = vec3(xyz[0], xyz[1], xyz[2]);
     return STATUS_OK;
 }
@@ -265,7 +266,7 @@ static Status read_list(const Option *option, const char *value, void *where, Er
     for (const char *comma = value; (comma = strchr(comma, ',')); comma++)
         list.n++;
     if (list.n > MAX_LIST || !read_numbers(value, ',', (int)list.n, (int)list.n, list.at))
-        return wrong(option, value, "a list of numbers parted by commas", err);
+        return wrong(option, value, "a list of numbers separated by commas", err);
     *(NumberList *)where = list;
     return STATUS_OK;
 }
@@ -298,13 +299,14 @@ static Status read_color(const Option *option, const char *value, void *where, E
     for (int i = 0; i < 3; i++)
         read = read && rgb[i] >= 0 && rgb[i] <= 1;
     if (!read)
-        return wrong(option, value,
-                     option->can_be_none
-                         ? "none, R,G,B, three numbers from 0 to 1 parted by commas, #RRGGBB or "
-                           "the name of a color, as in red"
-                         : "R,G,B, three numbers from 0 to 1 parted by commas, #RRGGBB or the name "
-                           "of a color, as in red",
-                     err);
+        return wrong(
+            option, value,
+            option->can_be_none
+                ? "none, R,G,B, three numbers from 0 to 1 separated by commas, #RRGGBB or "
+                  "the name of a color, such as red"
+                : "R,G,B, three numbers from 0 to 1 separated by commas, #RRGGBB or the name "
+                  "of a color, such as red",
+            err);
     *(Vec3 *)where = vec3(rgb[0], rgb[1], rgb[2]);
     return STATUS_OK;
 }

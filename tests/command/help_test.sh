@@ -213,7 +213,7 @@ END
 test_forms_that_are_not_of_one_command_are_refused() {
     run corcast help grow --as bash
     expect_status 2
-    expect_sentence "--as bash is of all commands; leave out grow"
+    expect_sentence "--as bash describes all commands; leave out 'grow'"
     run corcast help --as html
     expect_status 2
     expect_sentence "--as: 'html' is not one of text, man, markdown, bash, zsh, fish, names"

@@ -81,8 +81,8 @@ Status run_help(void *options, Parsed *parsed, Err *err)
     if (form == FORM_TEXT)
         return help_print(command, err);
     if (command && form != FORM_MAN && form != FORM_JSON)
-        return err_set(err, STATUS_USAGE, "--as %s is of all commands; leave out %s", forms[form],
-                       name);
+        return err_set(err, STATUS_USAGE, "--as %s describes all commands; leave out '%s'",
+                       forms[form], name);
     Text text = TEXT_INIT;
     Status status = put_form(form, command, &text, err);
     if (status == STATUS_OK)
