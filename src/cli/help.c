@@ -124,7 +124,7 @@ void help_put_escaped(const char *chars, const char *special, Text *text)
         text_printf(text, strchr(special, *chars) ? "\\%c" : "%c", *chars);
 }
 
-static void put_option(const Setting *plain, Text *text)
+static void put_option_lines(const Setting *plain, Text *text)
 {
     const Option *option = plain->option;
     Text left = TEXT_INIT, meaning = TEXT_INIT;
@@ -144,17 +144,27 @@ static void put_option(const Setting *plain, Text *text)
     text_release(&meaning);
 }
 
-static void put_group(const Parsed *plain, OptionGroup group, Text *text)
+void help_put_groups(const Parsed *plain, bool common, HelpHeading *put_heading,
+                     HelpMeaning *put_option, Text *text)
 {
-    bool headed = false;
-    for (size_t i = 0; i < plain->n_settings; i++) {
-        if (plain->settings[i].option->group != group || !command_obeys(plain, &plain->settings[i]))
-            continue;
-        if (!headed)
-            text_printf(text, "\n%s:\n", option_group_names[group]);
-        headed = true;
-        put_option(&plain->settings[i], text);
+    for (int group = 0; group < OPTION_GROUPS; group++) {
+        bool has_heading = false;
+        for (size_t i = 0; i < plain->n_settings; i++) {
+            const Setting *setting = &plain->settings[i];
+            if ((int)setting->option->group != group || !command_obeys(plain, setting) ||
+                (!common && setting_is_common(plain, setting)))
+                continue;
+            if (!has_heading)
+                put_heading(option_group_names[group], text);
+            has_heading = true;
+            put_option(setting, text);
+        }
     }
+}
+
+static void put_heading(const char *name, Text *text)
+{
+    text_printf(text, "\n%s:\n", name);
 }
 
 static void put_help(const Parsed *plain, Text *text)
@@ -164,8 +174,7 @@ static void put_help(const Parsed *plain, Text *text)
                 command->name, *command->operands ? " " : "", command->operands);
     if (command->examples)
         text_printf(text, "\nexamples:\n%s", command->examples);
-    for (int group = 0; group < OPTION_GROUPS; group++)
-        put_group(plain, (OptionGroup)group, text);
+    help_put_groups(plain, true, put_heading, put_option_lines, text);
 }
 
 Status help_put(HelpPut *put, const Command *command, Text *text, Err *err)
@@ -268,12 +277,10 @@ static void put_usage(Text *text)
 Status help_print(const Command *command, Err *err)
 {
     Text text = TEXT_INIT;
-    Status status;
-    if (!command)
+    Status status = STATUS_OK;
+    if (command)
+        status = help_put(put_help, command, &text, err);
+    else
         put_usage(&text);
-    TRY_GOTO(command ? help_put(put_help, command, &text, err) : text_check(&text, err));
-    fputs(text_chars(&text), stdout);
-done:
-    text_release(&text);
-    return status;
+    return command_print(status, &text, err);
 }

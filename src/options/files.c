@@ -1,6 +1,7 @@
-/* A list of all files that a command line names, searched for each that is added: there are few. A
- * file that exists is known by device and inode; one that does not yet, by those of its folder and
- * its name. */
+/* All files of a command line are in one list, which is searched for each file that is added,
+ * because a command line names few files. An existing file is identified by its device and inode. A
+ * file that does not exist yet is identified by the device and inode of its folder, and by its
+ * name. */
 #include "options/files.h"
 
 #include <dirent.h>
@@ -42,7 +43,7 @@ static bool is_standard(const FileUse *use)
     return strcmp(use->path, "-") == 0;
 }
 
-/* A file that will be made: where links lead, by its folder and its name. */
+/* Identifies a file that does not exist yet, after resolving links. */
 static Status identify_new(FileUse *use, Err *err)
 {
     char *final = NULL;

@@ -85,10 +85,7 @@ Status run_help(void *options, Parsed *parsed, Err *err)
                        forms[form], name);
     Text text = TEXT_INIT;
     Status status = put_form(form, command, &text, err);
-    if (status == STATUS_OK)
-        fputs(text_chars(&text), stdout);
-    text_release(&text);
-    return status;
+    return command_print(status, &text, err);
 }
 
 const Command command_help = {

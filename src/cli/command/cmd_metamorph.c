@@ -6,13 +6,11 @@
 
 static Status print(const MetamorphOptions *options, const Metamorph *result, Err *err)
 {
-    Text text = TEXT_TO(stdout);
+    Text text = TEXT_INIT;
     if (options->renderer.json)
         return json_write(metamorph_json(result), "-", err);
     metamorph_text(result, &text);
-    Status status = text_flush(&text, err);
-    text_release(&text);
-    return status;
+    return command_print(STATUS_OK, &text, err);
 }
 
 Status run_metamorph(void *options, Parsed *parsed, Err *err)

@@ -6,7 +6,7 @@
 
 static Status print(const PowerOptions *options, const PowerReport *report, Err *err)
 {
-    Text text = TEXT_TO(stdout);
+    Text text = TEXT_INIT;
     if (options->json && options->choose)
         return json_write(
             json_with(power_json(&report->power), "choice", choice_json(&report->choice)), "-",
@@ -16,9 +16,7 @@ static Status print(const PowerOptions *options, const PowerReport *report, Err 
     power_text(&report->power, &text);
     if (options->choose)
         choice_text(&report->choice, &text);
-    Status status = text_flush(&text, err);
-    text_release(&text);
-    return status;
+    return command_print(STATUS_OK, &text, err);
 }
 
 Status run_power(void *options, Parsed *parsed, Err *err)

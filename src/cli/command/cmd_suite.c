@@ -6,13 +6,11 @@
 
 static Status print(const TubeSuiteOptions *options, const TubeSuite *suite, Err *err)
 {
-    Text text = TEXT_TO(stdout);
+    Text text = TEXT_INIT;
     if (options->renderer.json)
         return json_write(tubesuite_json(suite), "-", err);
     tubesuite_text(suite, &text);
-    Status status = text_flush(&text, err);
-    text_release(&text);
-    return status;
+    return command_print(STATUS_OK, &text, err);
 }
 
 Status run_suite(void *options, Parsed *parsed, Err *err)

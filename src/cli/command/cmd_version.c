@@ -87,11 +87,7 @@ Status run_version(void *options, Parsed *parsed, Err *err)
     text_puts(&text, "\n");
     put_program("POV-Ray", povray ? povray : "povray", "which povray and verify run", &text);
     put_program("OpenSCAD", "openscad", "which would open models of scene", &text);
-    Status status = text_check(&text, err);
-    if (status == STATUS_OK)
-        fputs(text_chars(&text), stdout);
-    text_release(&text);
-    return status;
+    return command_print(STATUS_OK, &text, err);
 }
 
 const Command command_version = {
