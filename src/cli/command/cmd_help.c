@@ -1,4 +1,4 @@
-/* Help in all its forms: for people on a terminal, for man, for the documents, for shells. */
+/* The command help: prints the help as text, manual page, reference, completion script or JSON. */
 #include "cli/commands.h"
 #include "cli/help.h"
 #include <stdio.h>

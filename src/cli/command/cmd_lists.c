@@ -1,6 +1,6 @@
-/* The commands that list what options accept: models, fields, looks, presets, domains, formats,
- * morphometries. Each line has a name, a tab and a description, so that scripts can cut the name
- * off; fields, looks and formats have one more column between the two. */
+/* The commands that list the values of an option, such as models and fields. A line has a name, a
+ * tab and a description, so that scripts can cut the name off. Some lists have more columns between
+ * the name and the description. */
 #include "cli/commands.h"
 #include "derive/derive.h"
 #include "domain/domain.h"

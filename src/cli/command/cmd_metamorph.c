@@ -1,4 +1,4 @@
-/* Prints what the search found. The exit status tells whether a relation is broken. */
+/* Prints the result of the search. The exit status is 1 if a cause was found. */
 #include "cli/commands.h"
 #include "job/verify/metamorph_job.h"
 #include "options/output.h"

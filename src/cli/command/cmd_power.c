@@ -1,4 +1,5 @@
-/* Prints what a rule misses. The exit status says whether it calls two equal scenes different. */
+/* Prints which faults a tolerance fails to detect. The exit status is 1 if the tolerance rejects a
+ * second rendering of the same scene. */
 #include "cli/commands.h"
 #include "job/verify/power.h"
 #include "options/output.h"

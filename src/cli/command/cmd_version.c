@@ -1,5 +1,5 @@
-/* What a report of a fault needs to say: program, compiler, instructions, libraries, and the other
- * programs that are found. */
+/* Prints what a bug report needs: the versions of the program, its compiler and libraries, the
+ * processor instructions, and the other programs that were found. */
 #include "cli/commands.h"
 #include "cli/window/window.h"
 #include "figure/figure.h"
@@ -27,7 +27,8 @@ static void put_kernels(Text *text)
     text_puts(text, "\n");
 }
 
-/* The first line with a number that the program prints when asked for its version. */
+/* Copies the first line with a digit and without a colon from the output of `PROGRAM --version` to
+ * *line. Returns false if there is none or if the program fails. */
 static bool ask_version(const char *program, char *line, int size)
 {
     Text command = TEXT_INIT;
