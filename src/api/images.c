@@ -15,12 +15,11 @@ static Status read_image(const char *path, corcast_image **out, Err *err)
     TRY(argument_check(out, "out", err));
     TRY(handle_new(&made, HANDLE_IMAGE, sizeof *made, err));
     Status status = image_read(&made->color, path, ALPHA_KEPT, NULL, err);
-    if (status != STATUS_OK) {
+    if (status == STATUS_OK)
+        *out = made;
+    else
         corcast_image_free(made);
-        return status;
-    }
-    *out = made;
-    return STATUS_OK;
+    return status;
 }
 
 int corcast_image_read(const char *path, corcast_image **out, corcast_error *error)
@@ -81,12 +80,11 @@ static Status from_pixels(const corcast_pixels *pixels, corcast_image **out, Err
     TRY(check_pixels(pixels, err));
     TRY(handle_new(&made, HANDLE_IMAGE, sizeof *made, err));
     Status status = fill_image(pixels, &made->color, err);
-    if (status != STATUS_OK) {
+    if (status == STATUS_OK)
+        *out = made;
+    else
         corcast_image_free(made);
-        return status;
-    }
-    *out = made;
-    return STATUS_OK;
+    return status;
 }
 
 int corcast_image_from_pixels(const corcast_pixels *pixels, corcast_image **out,

@@ -64,12 +64,11 @@ static Status new_mesh(const corcast_tree *tree, const corcast_options *options,
     TRY(argument_check(out, "out", err));
     TRY(handle_new(&made, HANDLE_MESH, sizeof *made, err));
     Status status = make_mesh(&form, made, call, err);
-    if (status != STATUS_OK) {
+    if (status == STATUS_OK)
+        *out = made;
+    else
         corcast_mesh_free(made);
-        return status;
-    }
-    *out = made;
-    return STATUS_OK;
+    return status;
 }
 
 int corcast_mesh_new(const corcast_tree *tree, const corcast_options *options, corcast_mesh **out,

@@ -114,12 +114,11 @@ static Status draw_scene(corcast_scene *scene, corcast_image **out, corcast_repo
     scene->request.before = call->before;
     (void)templates_set(scene->request.templates);
     Status status = draw_image(&scene->rendering, made, report, err);
-    if (status != STATUS_OK) {
+    if (status == STATUS_OK)
+        *out = made;
+    else
         corcast_image_free(made);
-        return status;
-    }
-    *out = made;
-    return STATUS_OK;
+    return status;
 }
 
 int corcast_render(corcast_scene *scene, corcast_image **out, corcast_report **report,
