@@ -11,14 +11,15 @@
 static Status read_image(const char *path, corcast_image **out, Err *err)
 {
     corcast_image *made = NULL;
+    Status status = STATUS_OK;
     TRY(path_check(path, "path", err));
     TRY(argument_check(out, "out", err));
     TRY(handle_new(&made, HANDLE_IMAGE, sizeof *made, err));
-    Status status = image_read(&made->color, path, ALPHA_KEPT, NULL, err);
-    if (status == STATUS_OK)
-        *out = made;
-    else
-        corcast_image_free(made);
+    TRY_GOTO(image_read(&made->color, path, ALPHA_KEPT, NULL, err));
+    *out = made;
+    made = NULL;
+done:
+    corcast_image_free(made);
     return status;
 }
 
@@ -76,14 +77,15 @@ static Status fill_image(const corcast_pixels *pixels, Image *image, Err *err)
 static Status from_pixels(const corcast_pixels *pixels, corcast_image **out, Err *err)
 {
     corcast_image *made = NULL;
+    Status status = STATUS_OK;
     TRY(argument_check(out, "out", err));
     TRY(check_pixels(pixels, err));
     TRY(handle_new(&made, HANDLE_IMAGE, sizeof *made, err));
-    Status status = fill_image(pixels, &made->color, err);
-    if (status == STATUS_OK)
-        *out = made;
-    else
-        corcast_image_free(made);
+    TRY_GOTO(fill_image(pixels, &made->color, err));
+    *out = made;
+    made = NULL;
+done:
+    corcast_image_free(made);
     return status;
 }
 

@@ -108,16 +108,17 @@ static Status draw_scene(corcast_scene *scene, corcast_image **out, corcast_repo
                          const Call *call, Err *err)
 {
     corcast_image *made = NULL;
+    Status status = STATUS_OK;
     TRY(handle_check(scene, HANDLE_SCENE, "scene", err));
     TRY(argument_check(out, "out", err));
     TRY(handle_new(&made, HANDLE_IMAGE, sizeof *made, err));
     scene->request.before = call->before;
     (void)templates_set(scene->request.templates);
-    Status status = draw_image(&scene->rendering, made, report, err);
-    if (status == STATUS_OK)
-        *out = made;
-    else
-        corcast_image_free(made);
+    TRY_GOTO(draw_image(&scene->rendering, made, report, err));
+    *out = made;
+    made = NULL;
+done:
+    corcast_image_free(made);
     return status;
 }
 
