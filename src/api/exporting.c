@@ -26,7 +26,8 @@ static Status export_pulse(void *options, Parsed *parsed, Err *err)
     TRY_GOTO(pulsing_make(options, parsed, &made, err));
     if (pulsing_draws(made.options->output))
         TRY_GOTO(err_set(err, STATUS_USAGE,
-                         "the tree of corcast_pulse has the moments; draw it with \"beat\""));
+                         "corcast_export writes no pictures of pulse waves; draw the tree of "
+                         "corcast_pulse with the option \"beat\""));
     status = pulsing_write(&made, err);
 done:
     pulsing_release(&made);

@@ -18,18 +18,18 @@ typedef struct ImageSource {
 
 static Status read_image(const ImageSource *from, corcast_image **out, Err *err)
 {
-    corcast_image *made;
+    corcast_image *made = NULL;
+    Status status = STATUS_OK;
     TRY(argument_check(out, "out", err));
     TRY(handle_new(&made, HANDLE_IMAGE, sizeof *made, err));
-    Status status = from->bytes ? image_decode(&made->color, from->name, from->bytes, from->size,
-                                               ALPHA_KEPT, err)
-                                : image_read(&made->color, from->name, ALPHA_KEPT, NULL, err);
-    if (status != STATUS_OK) {
-        corcast_image_free(made);
-        return status;
-    }
+    TRY_GOTO(from->bytes ? image_decode(&made->color, from->name, from->bytes, from->size,
+                                        ALPHA_KEPT, err)
+                         : image_read(&made->color, from->name, ALPHA_KEPT, NULL, err));
     *out = made;
-    return STATUS_OK;
+    made = NULL;
+done:
+    corcast_image_free(made);
+    return status;
 }
 
 int corcast_image_read(const char *path, corcast_image **out, corcast_error *error)
@@ -97,16 +97,16 @@ static Status fill_image(const corcast_pixels *pixels, Image *image, Err *err)
 static Status from_pixels(const corcast_pixels *pixels, corcast_image **out, Err *err)
 {
     corcast_image *made = NULL;
+    Status status = STATUS_OK;
     TRY(argument_check(out, "out", err));
     TRY(check_pixels(pixels, err));
     TRY(handle_new(&made, HANDLE_IMAGE, sizeof *made, err));
-    Status status = fill_image(pixels, &made->color, err);
-    if (status != STATUS_OK) {
-        corcast_image_free(made);
-        return status;
-    }
+    TRY_GOTO(fill_image(pixels, &made->color, err));
     *out = made;
-    return STATUS_OK;
+    made = NULL;
+done:
+    corcast_image_free(made);
+    return status;
 }
 
 int corcast_image_from_pixels(const corcast_pixels *pixels, corcast_image **out,

@@ -60,16 +60,16 @@ static Status new_mesh(const corcast_tree *tree, const corcast_options *options,
 {
     const RequestForm form = {.commands = "export", .options = options, .tree = tree};
     corcast_mesh *made = NULL;
+    Status status = STATUS_OK;
     TRY(handle_check(tree, HANDLE_TREE, "tree", err));
     TRY(argument_check(out, "out", err));
     TRY(handle_new(&made, HANDLE_MESH, sizeof *made, err));
-    Status status = make_mesh(&form, made, call, err);
-    if (status != STATUS_OK) {
-        corcast_mesh_free(made);
-        return status;
-    }
+    TRY_GOTO(make_mesh(&form, made, call, err));
     *out = made;
-    return STATUS_OK;
+    made = NULL;
+done:
+    corcast_mesh_free(made);
+    return status;
 }
 
 int corcast_mesh_new(const corcast_tree *tree, const corcast_options *options, corcast_mesh **out,

@@ -3,6 +3,7 @@
 #include "api/request.h"
 
 #include "job/job.h"
+#include "options/output.h"
 #include "options/templates.h"
 #include <stdlib.h>
 #include <string.h>
@@ -40,19 +41,6 @@ static bool show_progress(void *user, const char *what, double fraction)
 
 /* ---- opening --------------------------------------------------------------------------------- */
 
-/* Returns true if `name` is one of the words in `names`, which are separated by blanks. */
-static bool is_word_of(const char *name, const char *names)
-{
-    const size_t length = strlen(name);
-    for (const char *word = names; *word; word += strspn(word, " ")) {
-        size_t n = strcspn(word, " ");
-        if (n == length && strncmp(word, name, n) == 0)
-            return true;
-        word += n;
-    }
-    return false;
-}
-
 static Status find_command(const RequestForm *form, const Command **command, Err *err)
 {
     char first[32];
@@ -62,10 +50,10 @@ static Status find_command(const RequestForm *form, const Command **command, Err
         return STATUS_OK;
     TRY(handle_check(form->options, HANDLE_OPTIONS, "options", err));
     *command = form->options->command;
-    if (is_word_of((*command)->name, form->commands))
+    if (is_word_of(form->commands, (*command)->name))
         return STATUS_OK;
     return err_set(err, STATUS_USAGE,
-                   "options are of the command %s; this operation takes those of: %s",
+                   "the options belong to the command %s; this operation takes options of: %s",
                    (*command)->name, form->commands);
 }
 

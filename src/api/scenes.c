@@ -108,18 +108,18 @@ static Status draw_scene(corcast_scene *scene, corcast_image **out, corcast_repo
                          const Call *call, Err *err)
 {
     corcast_image *made = NULL;
+    Status status = STATUS_OK;
     TRY(handle_check(scene, HANDLE_SCENE, "scene", err));
     TRY(argument_check(out, "out", err));
     TRY(handle_new(&made, HANDLE_IMAGE, sizeof *made, err));
     scene->request.before = call->before;
     (void)templates_set(scene->request.templates);
-    Status status = draw_image(&scene->rendering, made, report, err);
-    if (status != STATUS_OK) {
-        corcast_image_free(made);
-        return status;
-    }
+    TRY_GOTO(draw_image(&scene->rendering, made, report, err));
     *out = made;
-    return STATUS_OK;
+    made = NULL;
+done:
+    corcast_image_free(made);
+    return status;
 }
 
 int corcast_render(corcast_scene *scene, corcast_image **out, corcast_report **report,

@@ -81,7 +81,7 @@ static Status find_option(const corcast_options *options, const char *name, cons
         return options_get(options->parsed, name, &unused, err);
     *option = setting->option;
     if (is_one_of(name, printing))
-        return err_set(err, STATUS_USAGE, "'%s' is an option of the command line alone", name);
+        return err_set(err, STATUS_USAGE, "'%s' is an option of the command line only", name);
     return STATUS_OK;
 }
 

@@ -9,7 +9,7 @@
 
 static Status refused(const char *name, Err *err)
 {
-    return err_set(err, STATUS_IO, "%s: the sink did not take the bytes", name);
+    return err_set(err, STATUS_IO, "%s: the sink refused the bytes", name);
 }
 
 static Status check_sink(const Sink *sink, Err *err)

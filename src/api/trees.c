@@ -65,6 +65,8 @@ static Status read_tree(const TreeFile *file, const corcast_options *options, co
     Request request = {0};
     Tree tree = {0};
     Status status = STATUS_OK;
+    if (file->bytes)
+        TRY(argument_check(file->bytes->bytes, "bytes", err));
     TRY(path_check(file->path, file->bytes ? "name" : "path", err));
     TRY(argument_check(out, "out", err));
     TRY_GOTO(request_open(&request, &form, call, err));
@@ -82,13 +84,6 @@ int corcast_tree_read(const char *path, const corcast_options *options, corcast_
     return call_end(&call, read_tree(&file, options, out, &call, &call.err));
 }
 
-static Status read_bytes(const TreeFile *file, const corcast_options *options, corcast_tree **out,
-                         const Call *call, Err *err)
-{
-    TRY(argument_check(file->bytes->bytes, "bytes", err));
-    return read_tree(file, options, out, call, err);
-}
-
 int corcast_tree_read_bytes(const void *bytes, size_t size, const char *name,
                             const corcast_options *options, corcast_tree **out,
                             corcast_error *error)
@@ -96,7 +91,7 @@ int corcast_tree_read_bytes(const void *bytes, size_t size, const char *name,
     Call call = call_begin(error);
     const MemoryFile in_memory = {.name = name, .bytes = bytes, .size = size};
     const TreeFile file = {.path = name, .bytes = &in_memory};
-    return call_end(&call, read_bytes(&file, options, out, &call, &call.err));
+    return call_end(&call, read_tree(&file, options, out, &call, &call.err));
 }
 
 /* ---- arrays ---------------------------------------------------------------------------------- */

@@ -15,12 +15,9 @@
 #include <string.h>
 
 const char *const command_group_names[COMMAND_GROUPS] = {
-    [COMMANDS_GROW] = "Grow and measure",
-    [COMMANDS_DRAW] = "Draw",
-    [COMMANDS_EXPORT] = "Hand on to other programs",
-    [COMMANDS_CHECK] = "Check",
-    [COMMANDS_LIST] = "List what options accept",
-    [COMMANDS_HELP] = "Help",
+    [COMMANDS_GROW] = "Grow and measure",         [COMMANDS_DRAW] = "Draw",
+    [COMMANDS_EXPORT] = "Convert and export",     [COMMANDS_CHECK] = "Check",
+    [COMMANDS_LIST] = "List what options accept", [COMMANDS_HELP] = "Help",
 };
 
 /* The bits of most commands. */
@@ -106,6 +103,16 @@ Status command_unknown(const char *name, Err *err)
     return status;
 }
 
+Status command_print(Status status, Text *text, Err *err)
+{
+    if (status == STATUS_OK)
+        status = text_check(text, err);
+    if (status == STATUS_OK)
+        fputs(text_chars(text), stdout);
+    text_release(text);
+    return status;
+}
+
 /* Returns STATUS_USAGE if the recipe would be printed into the output on standard output. */
 static Status check_dump(const Parsed *parsed, Err *err)
 {
@@ -130,10 +137,7 @@ static Status run(Parsed *parsed, Err *err)
     Status status = text_check(&recipe, err);
     if (status == STATUS_OK)
         status = run_command(parsed->options, parsed, err);
-    if (status == STATUS_OK)
-        fputs(text_chars(&recipe), stdout);
-    text_release(&recipe);
-    return status;
+    return command_print(status, &recipe, err);
 }
 
 /* The library reads no environment, so these variables are read here. */

@@ -79,4 +79,9 @@ Status command_unknown(const char *name, Err *err);
  *             an output file. */
 MUST_CHECK Status command_run(const Command *command, int argc, char **argv, Err *err);
 
+/* Prints *text on standard output if `status` is STATUS_OK, and releases *text in any case.
+ *
+ * Returns  `status` if it is an error, else the result of text_check. */
+MUST_CHECK Status command_print(Status status, Text *text, Err *err);
+
 #endif

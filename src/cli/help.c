@@ -71,6 +71,19 @@ static void put_range(const Range *range, Text *text)
         text_printf(text, "%sat most %s", above_0 ? ", " : "", high);
 }
 
+/* Appends the range and the unit: "0..64 mm". A placeholder such as "8|16" lists all values, so no
+ * range follows. The help of a size states its units. */
+static void put_accepted(const Option *option, Text *text)
+{
+    const bool lists_values = option->argument && isdigit((unsigned char)*option->argument);
+    if (option->kind == OPTION_SIZE || lists_values)
+        return;
+    if (option_range(option))
+        put_range(option_range(option), text);
+    if (option_unit(option))
+        text_printf(text, "%s%s", text->length ? " " : "", option_unit(option));
+}
+
 /* Appends the value or the phrase that applies if the option is not given. */
 static void put_default(const Setting *plain, Text *text)
 {
@@ -89,8 +102,7 @@ void help_put_meaning(const Setting *plain, Text *text)
     put_choices(option, text);
     if (option->list)
         text_printf(text, "; `corcast %s` lists the names", option->list);
-    if (option_range(option) && option->kind != OPTION_SIZE)
-        put_range(option_range(option), &range);
+    put_accepted(option, &range);
     put_default(plain, &value);
     const bool has_range = range.length || !text_chars(&range);
     const bool has_value = value.length || !text_chars(&value);
@@ -112,7 +124,7 @@ void help_put_escaped(const char *chars, const char *special, Text *text)
         text_printf(text, strchr(special, *chars) ? "\\%c" : "%c", *chars);
 }
 
-static void put_option(const Setting *plain, Text *text)
+static void put_option_lines(const Setting *plain, Text *text)
 {
     const Option *option = plain->option;
     Text left = TEXT_INIT, meaning = TEXT_INIT;
@@ -132,17 +144,27 @@ static void put_option(const Setting *plain, Text *text)
     text_release(&meaning);
 }
 
-static void put_group(const Parsed *plain, OptionGroup group, Text *text)
+void help_put_groups(const Parsed *plain, bool common, HelpHeading *put_heading,
+                     HelpMeaning *put_option, Text *text)
 {
-    bool headed = false;
-    for (size_t i = 0; i < plain->n_settings; i++) {
-        if (plain->settings[i].option->group != group || !command_obeys(plain, &plain->settings[i]))
-            continue;
-        if (!headed)
-            text_printf(text, "\n%s:\n", option_group_names[group]);
-        headed = true;
-        put_option(&plain->settings[i], text);
+    for (int group = 0; group < OPTION_GROUPS; group++) {
+        bool has_heading = false;
+        for (size_t i = 0; i < plain->n_settings; i++) {
+            const Setting *setting = &plain->settings[i];
+            if ((int)setting->option->group != group || !command_obeys(plain, setting) ||
+                (!common && setting_is_common(plain, setting)))
+                continue;
+            if (!has_heading)
+                put_heading(option_group_names[group], text);
+            has_heading = true;
+            put_option(setting, text);
+        }
     }
+}
+
+static void put_heading(const char *name, Text *text)
+{
+    text_printf(text, "\n%s:\n", name);
 }
 
 static void put_help(const Parsed *plain, Text *text)
@@ -152,8 +174,7 @@ static void put_help(const Parsed *plain, Text *text)
                 command->name, *command->operands ? " " : "", command->operands);
     if (command->examples)
         text_printf(text, "\nexamples:\n%s", command->examples);
-    for (int group = 0; group < OPTION_GROUPS; group++)
-        put_group(plain, (OptionGroup)group, text);
+    help_put_groups(plain, true, put_heading, put_option_lines, text);
 }
 
 Status help_put(HelpPut *put, const Command *command, Text *text, Err *err)
@@ -188,8 +209,8 @@ done:
 }
 
 const char help_exit_status[] =
-    "0 success, 1 a comparison found a difference, 2 wrong usage or input, 3 a file, another "
-    "program or memory failed.";
+    "0 success; 1 a comparison or check found a difference; 2 the command line or an input is "
+    "wrong; 3 a file cannot be read or written, another program failed, or memory ran out.";
 
 static bool has_json(const Command *command, OptionKind kind)
 {
@@ -242,8 +263,9 @@ static void put_usage(Text *text)
     }
     text_puts(text, "\n");
     put_wrapped(
-        "`corcast COMMAND --help` shows the options of a command. A file name '-' stands for "
-        "standard input or output.",
+        "`corcast COMMAND --help` shows the options of a command. Square brackets behind an option "
+        "contain the accepted range, the unit and the default. A file name '-' stands for standard "
+        "input or output.",
         0, 0, text);
     help_put_json_rule(&json_rule);
     put_wrapped(text_chars(&json_rule), 0, 0, text);
@@ -255,12 +277,10 @@ static void put_usage(Text *text)
 Status help_print(const Command *command, Err *err)
 {
     Text text = TEXT_INIT;
-    Status status;
-    if (!command)
+    Status status = STATUS_OK;
+    if (command)
+        status = help_put(put_help, command, &text, err);
+    else
         put_usage(&text);
-    TRY_GOTO(command ? help_put(put_help, command, &text, err) : text_check(&text, err));
-    fputs(text_chars(&text), stdout);
-done:
-    text_release(&text);
-    return status;
+    return command_print(status, &text, err);
 }

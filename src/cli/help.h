@@ -23,6 +23,17 @@ void help_put_meaning(const Setting *plain, Text *text);
  * from a Text that failed, `text` fails. `text` fails if memory runs out. */
 void help_put_escaped(const char *chars, const char *special, Text *text);
 
+/* Appends the heading of a group of options, and the description of one option. `text` fails if
+ * memory runs out. */
+typedef void HelpHeading(const char *name, Text *text);
+typedef void HelpMeaning(const Setting *plain, Text *text);
+
+/* Calls `put_heading` for each group that has options, then `put_option` for each option of the
+ * group. Skips the options that the command does not obey, and the common options if `common` is
+ * false. */
+void help_put_groups(const Parsed *plain, bool common, HelpHeading *put_heading,
+                     HelpMeaning *put_option, Text *text);
+
 /* Appends a description of a command. `plain` has the default values. `text` fails if memory runs
  * out. */
 typedef void HelpPut(const Parsed *plain, Text *text);

@@ -1,11 +1,11 @@
-/* The handler only sets a flag, and puts the old action back, so that a second SIGINT ends a
- * program that does not come to ask for the flag. */
+/* The handler sets a flag and restores the action from before interrupt_catch. A second SIGINT
+ * therefore ends a program that does not read the flag soon. */
 #include "cli/interrupt.h"
 
 #include <signal.h>
 #include <stddef.h>
 
-/* A signal handler can reach nothing but globals. */
+/* Globals, because a signal handler receives no other data. */
 static volatile sig_atomic_t asked;
 static struct sigaction before;
 

@@ -1,18 +1,19 @@
-/* Finds the command, reads its options, runs it, and says in one line why it failed. All that
- * differs between commands stands in their descriptions. */
+/* Finds the command that the first argument names, runs it, and prints one line if it fails. The
+ * table of commands (cli/commands.h) holds everything that differs between commands. */
 #include "cli/commands.h"
 #include "options/output.h"
 
 #include <stdio.h>
 #include <string.h>
 
-/* What ends well but cannot be told on standard output has failed. */
+/* Prints the error, if there is one, and returns the exit status. A command whose output cannot be
+ * written has failed. */
 static int finish(const char *command, Status status, Err *err)
 {
     if (status_exit(status) < 2 && (fflush(stdout) != 0 || ferror(stdout)))
         status = err_set(err, STATUS_IO, "standard output: writing failed");
     if (err->text[0] && status != STATUS_OK) {
-        Text line = TEXT_INIT; /* names in it may hold anything */
+        Text line = TEXT_INIT; /* file names in the sentence may contain control characters */
         text_put_line(&line, err->text);
         fprintf(stderr, "corcast%s%s: %s\n", *command ? " " : "", command,
                 text_chars(&line) ? text_chars(&line) : err->text);
@@ -21,7 +22,8 @@ static int finish(const char *command, Status status, Err *err)
     return status_exit(status);
 }
 
-/* The command that the first word stands for: by its name, or as an option. */
+/* Returns the name of the command that the first argument stands for; --help and -h stand for the
+ * command help. */
 static const char *command_name(const char *word)
 {
     static const char *const help_words[] = {"--help", "-h", NULL};

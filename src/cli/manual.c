@@ -5,26 +5,6 @@
 #include "options/output.h"
 #include <string.h>
 
-/* Calls `head` for each heading that has options, then `put` for each option under it. Skips common
- * options if `common` is false. */
-static void for_groups(const Parsed *plain, bool common, void (*head)(const char *name, Text *text),
-                       void (*put)(const Setting *setting, Text *text), Text *text)
-{
-    for (int group = 0; group < OPTION_GROUPS; group++) {
-        bool headed = false;
-        for (size_t i = 0; i < plain->n_settings; i++) {
-            const Setting *setting = &plain->settings[i];
-            if ((int)setting->option->group != group || !command_obeys(plain, setting) ||
-                (!common && setting_is_common(plain, setting)))
-                continue;
-            if (!headed)
-                head(option_group_names[group], text);
-            headed = true;
-            put(setting, text);
-        }
-    }
-}
-
 /* ---- man ------------------------------------------------------------------------------------- */
 
 /* Appends text that troff prints verbatim. It must not begin a line, where troff reads requests. */
@@ -113,7 +93,7 @@ void manual_put(const Parsed *plain, Text *text)
     put_troff(command->operands, text);
     text_puts(text, *command->operands ? " [options]\n" : "[options]\n");
     text_puts(text, ".SH OPTIONS\n");
-    for_groups(plain, true, put_man_heading, put_man_option, text);
+    help_put_groups(plain, true, put_man_heading, put_man_option, text);
     if (command->examples) {
         text_puts(text, ".SH EXAMPLES\n");
         put_lines(command->examples, text);
@@ -176,7 +156,7 @@ static void put_markdown(const Parsed *plain, Text *text)
     text_printf(text, "\n## %s\n\n", command->name);
     help_put_escaped(command->summary, "*<", text);
     text_printf(text, "\n\n    corcast %s %s\n", command->name, command->operands);
-    for_groups(plain, false, put_markdown_heading, put_markdown_option, text);
+    help_put_groups(plain, false, put_markdown_heading, put_markdown_option, text);
     if (command->examples)
         text_printf(text, "\n```\n%s```\n", command->examples);
 }

@@ -1,5 +1,5 @@
-/* Progress is one line of standard error, written over where that is a terminal. The time left is
- * what the rest takes at the speed so far. */
+/* Progress is one line of standard error. A terminal overwrites the line. The remaining time is
+ * estimated from the mean speed of the step so far. */
 #include "cli/screen.h"
 
 #include "base/base.h"
@@ -9,8 +9,8 @@
 #include <string.h>
 #include <unistd.h>
 
-/* ", 12 s left" once there is something to tell it by, else nothing: after a hundredth of the work,
- * or ten seconds of it. */
+/* Formats the remaining time: ", 12 s left". Returns "" as long as the estimate is too uncertain:
+ * in the first second, and then until 1 % of the work is done or 10 s have passed. */
 static const char *time_left(double elapsed_s, double fraction, char out[32])
 {
     double left_s = elapsed_s * (1 - fraction) / fraction;
@@ -69,7 +69,7 @@ static void show(Screen *screen, const char *what, double fraction)
     fflush(stderr);
 }
 
-/* From the first question on, SIGINT does not end the program until the step has ended. */
+/* From the first call on, the first SIGINT only sets the flag, until the step ends. */
 static bool is_enough(void *user)
 {
     Screen *screen = user;
@@ -79,7 +79,7 @@ static bool is_enough(void *user)
     return interrupt_asked();
 }
 
-/* Never stops the operation: a signal does. */
+/* Never stops the operation; only a signal does. */
 static bool show_progress(void *user, const char *what, double fraction)
 {
     show(user, what, fraction);

@@ -38,9 +38,9 @@ static const ConditionRow rows[] = {
     [WHEN_TIFF] = {.sentence = "is for .tif"},
     [WHEN_JPEG] = {.sentence = "is for .jpg"},
     [WHEN_HAS_INKS] = {.sentence = "is for .tif, .jpg and .pdf"},
-    [WHEN_ON_PAPER] = {.sentence = "needs a --size on paper, as 89mm"},
+    [WHEN_ON_PAPER] = {.sentence = "needs a --size on paper, such as 89mm"},
     [WHEN_ON_PAPER_OR_KEPT] =
-        {.sentence = "needs a --size on paper, as 89mm, or a file that keeps it (.png, "
+        {.sentence = "needs a --size on paper, such as 89mm, or a file that keeps it (.png, "
                      ".tif, .jpg, .pdf, .eps, .svg)"},
     [WHEN_KEEPS_DPI] = {.sentence = "is for .png, .tif and .jpg"},
     [WHEN_POTENTIAL] = {.sentence = "", .model = MODEL_POTENTIAL},
@@ -74,7 +74,7 @@ static const ConditionRow rows[] = {
     [WHEN_NAMED_PARTS] = {.sentence =
                               "is for named parts: a .vtp, .msh or .vtu, or an .stl with --parts"},
     [WHEN_LAYERS] = {.sentence = "is for layers of prisms: a .msh or .vtu"},
-    [WHEN_VOLUME] = {.sentence = "is for volumes, as V.nii.gz", .groups = GROUP(VOXELS)},
+    [WHEN_VOLUME] = {.sentence = "is for volumes, such as V.nii.gz", .groups = GROUP(VOXELS)},
     [WHEN_NO_VOLUME] = {.sentence =
                             "is for surfaces; a volume always contains cylinders and balls"},
     [WHEN_NO_PAGE] = {.sentence = "is for surfaces; a page always shows cylinders and balls"},

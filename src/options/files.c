@@ -1,6 +1,7 @@
-/* A list of all files that a command line names, searched for each that is added: there are few. A
- * file that exists is known by device and inode; one that does not yet, by those of its folder and
- * its name. */
+/* All files of a command line are in one list, which is searched for each file that is added,
+ * because a command line names few files. An existing file is identified by its device and inode. A
+ * file that does not exist yet is identified by the device and inode of its folder, and by its
+ * name. */
 #include "options/files.h"
 
 #include <dirent.h>
@@ -42,7 +43,7 @@ static bool is_standard(const FileUse *use)
     return strcmp(use->path, "-") == 0;
 }
 
-/* A file that will be made: where links lead, by its folder and its name. */
+/* Identifies a file that does not exist yet, after resolving links. */
 static Status identify_new(FileUse *use, Err *err)
 {
     char *final = NULL;
@@ -89,7 +90,8 @@ static Status refuse(const FileUse *a, const FileUse *b, Err *err)
         return err_set(err, STATUS_USAGE, "%s and %s cannot both be standard %s", a->role, b->role,
                        a->written ? "output" : "input");
     if (a->written && b->written)
-        return err_set(err, STATUS_USAGE, "%s '%s' and %s '%s' are one file; write to two", a->role,
+        return err_set(err, STATUS_USAGE,
+                       "%s '%s' and %s '%s' are the same file; write to two files", a->role,
                        a->path, b->role, b->path);
     const FileUse *written = a->written ? a : b, *read = a->written ? b : a;
     return err_set(err, STATUS_USAGE, "%s '%s' would be written over %s '%s'; choose another name",

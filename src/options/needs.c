@@ -1,10 +1,11 @@
-/* Whether an option has an effect, from its row: its conditions, of which the tables of the command
- * find out which do not hold, options of which one must be on, and options that must be off. */
+/* Decides from the row of an option whether the option has an effect. A row states conditions
+ * (Option.when), options of which one must be on (Option.needs), and options that must be off
+ * (Option.excludes). The tables of the command compute which conditions do not hold. */
 #include "options/options.h"
 
 #include <string.h>
 
-/* Whether an option that others need or exclude is on. */
+/* Returns true if an option that another option needs or excludes is on. */
 static bool is_on(const Setting *setting)
 {
     const void *where = setting->base + setting->option->where;
@@ -24,8 +25,9 @@ static bool is_on(const Setting *setting)
     }
 }
 
-/* Takes the next of some names that are parted by blanks, and finds it among the options of the
- * command; *setting is NULL for an option that the command does not have. False: there is none. */
+/* Finds the option of the next name in *names, which are separated by blanks, and moves *names
+ * behind the name. Sets *setting to NULL if the command has no such option. Returns false if no
+ * name is left. */
 static bool next_name(const Parsed *parsed, const char **names, const Setting **setting)
 {
     size_t length = *names ? strcspn(*names, " ") : 0;
@@ -36,7 +38,8 @@ static bool next_name(const Parsed *parsed, const char **names, const Setting **
     return true;
 }
 
-/* Whether one of the options that `option` needs is on, or the command has none of them. */
+/* Returns true if one of the options that `option` needs is on, or if the command has none of them.
+ */
 static bool has_needed(const Parsed *parsed, const Option *option)
 {
     const Setting *setting;

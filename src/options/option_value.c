@@ -1,6 +1,6 @@
-/* The kinds of options: a row of a table says how a value of the kind is read, how often it is
- * given, and how it is written, so that what is written reads back to the same value. Two options
- * say the same when their texts are the same. */
+/* A table has one row per kind of option: how a value is read, how many values an option has, and
+ * how a value is written. A value that is written reads back to the same value. Two options
+ * therefore have equal values if their texts are equal. */
 #include "options/options.h"
 
 #include "options/color_names.h"
@@ -32,18 +32,24 @@ const char *const option_group_names[OPTION_GROUPS] = {
 
 /* ---- reading --------------------------------------------------------------------------------- */
 
-/* Reads `count` numbers parted by `separator`; the last ones may be missing down to `least`. */
-static bool read_numbers(const char *text, char separator, int least, int count, double *out)
+/* Reads a finite number from the first `length` characters. */
+static bool read_part(const char *text, size_t length, double *number)
+{
+    char part[64];
+    if (length >= sizeof part)
+        return false;
+    memcpy(part, text, length);
+    part[length] = '\0';
+    return number_parse(part, number) && isfinite(*number);
+}
+
+/* Reads `count` numbers separated by commas. The last ones may be missing, down to `least`
+ * numbers. */
+static bool read_numbers(const char *text, int least, int count, double *out)
 {
     for (int i = 0; i < count; i++) {
-        const char *end = strchr(text, separator);
-        size_t length = end && i + 1 < count ? (size_t)(end - text) : strlen(text);
-        char number[64];
-        if (length >= sizeof number)
-            return false;
-        memcpy(number, text, length);
-        number[length] = '\0';
-        if (!number_parse(number, &out[i]) || !isfinite(out[i]))
+        const size_t length = i + 1 < count ? strcspn(text, ",") : strlen(text);
+        if (!read_part(text, length, &out[i]))
             return false;
         text += length;
         if (*text == '\0')
@@ -53,7 +59,7 @@ static bool read_numbers(const char *text, char separator, int least, int count,
     return false;
 }
 
-/* An option and where its value lies. */
+/* Reads a value of an option into the member at `where`. */
 typedef Status ReadValue(const Option *option, const char *value, void *where, Err *err);
 
 static Status wrong(const Option *option, const char *value, const char *allowed, Err *err)
@@ -94,7 +100,7 @@ static Status read_text(const Option *option, const char *value, void *where, Er
     return STATUS_OK;
 }
 
-/* A row whose argument ends in ".csv" accepts no other extension. */
+/* If the placeholder of the option ends in ".csv", other extensions are refused. */
 static Status read_output(const Option *option, const char *value, void *where, Err *err)
 {
     const char *extension = file_extension(value);
@@ -126,7 +132,7 @@ static Status parse_whole(const Option *option, const char *value, long long *ou
     if (integer_parse(value, (long long)option_range(option)->low,
                       (long long)option_range(option)->high, out))
         return STATUS_OK;
-    return wrong_number(option, value, "a whole number", err);
+    return wrong_number(option, value, "an integer", err);
 }
 
 static Status read_whole(const Option *option, const char *value, void *where, Err *err)
@@ -150,27 +156,25 @@ static Status read_seed(const Option *option, const char *value, void *where, Er
     char *end;
     unsigned long long seed = strtoull(value, &end, 10);
     if (!*value || *end || strspn(value, "0123456789") != strlen(value) || strlen(value) > 19)
-        return wrong(option, value, "a whole number from 0 to 9999999999999999999", err);
+        return wrong(option, value, "an integer from 0 to 9999999999999999999", err);
     *(uint64_t *)where = seed;
     return STATUS_OK;
 }
 
-/* A number, after which its option's unit may stand: "10mm". */
+/* Reads a number, which the unit of the option may follow: "10mm". */
 static bool parse_with_unit(const Option *option, const char *value, double *number)
 {
-    char digits[64];
     const char *unit = option_unit(option);
     size_t length = strlen(value), tail = unit ? strlen(unit) : 0;
     if (tail == 0 || length <= tail || strcmp(value + length - tail, unit) != 0)
-        return number_parse(value, number);
-    snprintf(digits, sizeof digits, "%.*s", (int)(length - tail), value);
-    return length - tail < sizeof digits && number_parse(digits, number);
+        return number_parse(value, number) && isfinite(*number);
+    return read_part(value, length - tail, number);
 }
 
 static Status read_number(const Option *option, const char *value, void *where, Err *err)
 {
     double number;
-    if (!parse_with_unit(option, value, &number) || !isfinite(number) ||
+    if (!parse_with_unit(option, value, &number) ||
         (option_range(option) && !range_has(*option_range(option), number)))
         return wrong_number(option, value, "a number", err);
     *(double *)where = number;
@@ -192,23 +196,17 @@ static const struct {
     double mm;
 } paper_units[] = {{"mm", 1}, {"cm", 10}, {"in", MM_PER_INCH}, {"pt", MM_PER_INCH / 72}};
 
-/* A number and how many mm one of its unit is, 0 where it has none. */
+/* Reads a positive number and sets *mm to its unit in mm; 0 if the number has no unit. */
 static bool read_side(const char *text, size_t length, double *side, double *mm)
 {
-    char number[64];
     *mm = 0;
     for (size_t i = 0; i < sizeof paper_units / sizeof *paper_units; i++)
         if (length > 2 && strncmp(text + length - 2, paper_units[i].name, 2) == 0)
             *mm = paper_units[i].mm;
-    length -= *mm > 0 ? 2 : 0;
-    if (length >= sizeof number)
-        return false;
-    memcpy(number, text, length);
-    number[length] = '\0';
-    return number_parse(number, side) && isfinite(*side) && *side > 0;
+    return read_part(text, length - (*mm > 0 ? 2 : 0), side) && *side > 0;
 }
 
-/* Both sides are in pixels or both are lengths; one length is that of both. */
+/* Reads two sides, both in pixels or both with a unit. One length applies to both sides. */
 static bool read_sides(const char *value, double sides[2], double mm[2])
 {
     const char *by = strchr(value, 'x');
@@ -229,8 +227,8 @@ static Status read_size(const Option *option, const char *value, void *where, Er
         read = range_has(*option_range(option), sides[i]) && sides[i] == floor(sides[i]);
     if (!read)
         return wrong_number(option, value,
-                            "a size on paper, as 89mm or 89mmx60mm (or in cm, in, pt), or "
-                            "WIDTHxHEIGHT in pixels, each a whole number",
+                            "a size on paper, such as 89mm or 89mmx60mm (or in cm, in, pt), or "
+                            "WIDTHxHEIGHT in pixels, each an integer",
                             err);
     for (int i = 0; i < 2; i++) {
         size->mm[i] = sides[i] * mm[i];
@@ -242,8 +240,8 @@ static Status read_size(const Option *option, const char *value, void *where, Er
 static Status read_vector(const Option *option, const char *value, void *where, Err *err)
 {
     double xyz[3] = {0, 0, 0};
-    if (!read_numbers(value, ',', 2, 3, xyz))
-        return wrong(option, value, "X,Y or X,Y,Z, numbers parted by commas", err);
+    if (!read_numbers(value, 2, 3, xyz))
+        return wrong(option, value, "X,Y or X,Y,Z, numbers separated by commas", err);
     *(Vec3 *)where = vec3(xyz[0], xyz[1], xyz[2]);
     return STATUS_OK;
 }
@@ -264,13 +262,13 @@ static Status read_list(const Option *option, const char *value, void *where, Er
     NumberList list = {.n = 1};
     for (const char *comma = value; (comma = strchr(comma, ',')); comma++)
         list.n++;
-    if (list.n > MAX_LIST || !read_numbers(value, ',', (int)list.n, (int)list.n, list.at))
-        return wrong(option, value, "a list of numbers parted by commas", err);
+    if (list.n > MAX_LIST || !read_numbers(value, (int)list.n, (int)list.n, list.at))
+        return wrong(option, value, "a list of numbers separated by commas", err);
     *(NumberList *)where = list;
     return STATUS_OK;
 }
 
-/* #RGB or #RRGGBB. */
+/* Reads the hexadecimal digits of #RGB or #RRGGBB. */
 static bool read_code(const char *value, uint32_t *rgb)
 {
     const size_t digits = strspn(value + 1, "0123456789abcdefABCDEF");
@@ -294,35 +292,30 @@ static Status read_color(const Option *option, const char *value, void *where, E
             vec3((code >> 16) / 255.0, (code >> 8 & 255) / 255.0, (code & 255) / 255.0);
         return STATUS_OK;
     }
-    bool read = read_numbers(value, ',', 3, 3, rgb);
+    bool read = read_numbers(value, 3, 3, rgb);
     for (int i = 0; i < 3; i++)
         read = read && rgb[i] >= 0 && rgb[i] <= 1;
     if (!read)
-        return wrong(option, value,
-                     option->can_be_none
-                         ? "none, R,G,B, three numbers from 0 to 1 parted by commas, #RRGGBB or "
-                           "the name of a color, as in red"
-                         : "R,G,B, three numbers from 0 to 1 parted by commas, #RRGGBB or the name "
-                           "of a color, as in red",
-                     err);
+        return wrong(
+            option, value,
+            option->can_be_none
+                ? "none, R,G,B, three numbers from 0 to 1 separated by commas, #RRGGBB or "
+                  "the name of a color, such as red"
+                : "R,G,B, three numbers from 0 to 1 separated by commas, #RRGGBB or the name "
+                  "of a color, such as red",
+            err);
     *(Vec3 *)where = vec3(rgb[0], rgb[1], rgb[2]);
     return STATUS_OK;
 }
 
-/* A number, or with '%' a percentile. */
+/* Reads a number; with a '%' at its end, the number is a percentile. */
 static bool read_end(const char *text, size_t length, double *at, bool *percent)
 {
-    char number[64];
     *percent = length > 0 && text[length - 1] == '%';
-    length -= *percent;
-    if (length >= sizeof number)
-        return false;
-    memcpy(number, text, length);
-    number[length] = '\0';
-    return number_parse(number, at) && isfinite(*at) && (!*percent || (*at >= 0 && *at <= 100));
+    return read_part(text, length - *percent, at) && (!*percent || (*at >= 0 && *at <= 100));
 }
 
-/* An option with a unit takes values only. */
+/* The range of an option with a unit has values only, no percentiles. */
 static Status read_range(const Option *option, const char *value, void *where, Err *err)
 {
     RangeEnds ends;
@@ -461,11 +454,11 @@ static void put_range(const void *where, Text *text)
 /* ---- kinds ----------------------------------------------------------------------------------- */
 
 typedef struct Kind {
-    const char *name;     /* for programs */
-    const char *argument; /* what stands for a value */
+    const char *name;     /* in the JSON schema */
+    const char *argument; /* placeholder of a value in the help */
     ReadValue *read;
     CountValues *count;
-    PutValue *put; /* NULL: one of the choices */
+    PutValue *put; /* NULL: the value is an index into Option.choices */
     bool is_path;
 } Kind;
 

@@ -7,6 +7,7 @@
  * that command only. */
 #include "options/options.h"
 
+#include "options/output.h"
 #include "options/reading.h"
 #include <ctype.h>
 #include <stdlib.h>
@@ -17,24 +18,25 @@ static const Option common_options[] = {
      SETS(INPUT, Common, recipe),
      .group = GROUP_RUN,
      .aside = true,
-     .help = "read options from FILE, one per line, without dashes: `lambda = 1`, `log = on`; "
-             "options on the command line take precedence. --dump-recipe prints such a file"},
+     .help = "file of options, one `name = value` per line, without dashes: `lambda = 1`, `log = "
+             "on`; options on the command line take precedence; --dump-recipe prints such a file"},
     {.name = "dump-recipe",
      SETS(FLAG, Common, dump),
      .group = GROUP_RUN,
      .aside = true,
-     .help = "also print a recipe with every option in effect on standard output"},
+     .help = "also print every option in effect on standard output, as a file for --recipe"},
     {.name = "seed",
      SETS(SEED, Common, seed),
      .group = GROUP_RUN,
      .when = WHEN(OWN_SEED),
-     .help = "seed of the random numbers; the same seed makes the same random choices"},
+     .help = "seed of the random numbers, an integer; runs with the same seed make the same "
+             "random choices"},
     {.name = "threads",
      SETS(WHOLE, Common, threads),
      FROM_TO(0, 256),
      .group = GROUP_RUN,
      .aside = true,
-     .help = "number of threads; 0 uses all processors"},
+     .help = "number of threads; 0 uses one thread per processor"},
     {.name = "quiet",
      SETS(FLAG, Common, quiet),
      .group = GROUP_RUN,
@@ -44,30 +46,18 @@ static const Option common_options[] = {
      SETS(FLAG, Common, help),
      .group = GROUP_RUN,
      .aside = true,
-     .help = "show this help (also -h)"},
+     .help = "print this help; -h does the same"},
 };
 
 static const OptionTable common_table = OPTION_TABLE(common_options);
 
 /* ---- settings -------------------------------------------------------------------------------- */
 
-/* Returns true if a list of names separated by blanks contains the name. NULL is an empty list. */
-static bool lists(const char *names, const char *name)
-{
-    const size_t length = strlen(name);
-    for (const char *at = names; at && *at; at += strcspn(at, " ")) {
-        at += strspn(at, " ");
-        if (strcspn(at, " ") == length && strncmp(at, name, length) == 0)
-            return true;
-    }
-    return false;
-}
-
 /* Adds the options of a table except those in the list `without`. */
 static void bind(Parsed *parsed, const OptionTable *table, const char *without, void *base)
 {
     for (size_t i = 0; i < table->n; i++)
-        if (!lists(without, table->options[i].name))
+        if (!is_word_of(without, table->options[i].name))
             parsed->settings[parsed->n_settings++] =
                 (Setting){.option = &table->options[i], .base = base};
 }
@@ -270,7 +260,7 @@ static Role role_of(const Option *option)
     return role;
 }
 
-/* Returns true if the word after a switch is its value, not another option or a file. */
+/* Returns true if the word after a switch is its value, and not another option or a file. */
 static bool is_value_of_switch(const char *word)
 {
     return *word && *word != '-' && !strpbrk(word, "./");
@@ -441,7 +431,6 @@ static Status settle_size(const Option *option, PictureSize *size, Err *err)
     return STATUS_OK;
 }
 
-/* What can be said only of all options together. */
 Status options_settle(const Parsed *parsed, Err *err)
 {
     for (int t = 0; t < MAX_TABLES && parsed->command->tables[t].table; t++) {
@@ -533,7 +522,7 @@ bool options_said(const Parsed *parsed, const char *name)
 
 /* ---- fields ---------------------------------------------------------------------------------- */
 
-/* Whether an option's name, and then its unit, read like the field. */
+/* Returns true if the field is the option's name, or the name and the unit: `min_radius_mm`. */
 static bool is_called(const Option *option, const char *field, size_t length)
 {
     const char *unit = option_unit(option);
@@ -554,14 +543,14 @@ static bool sets(const Option *option, const char *field, size_t length)
            is_called(option, field, length);
 }
 
-/* Appends as many of `n` characters as there is room for. */
+/* Appends `n` characters, or as many as fit in the sentence. */
 static void append(Err *sentence, const char *chars, size_t n)
 {
     size_t length = strlen(sentence->text), room = sizeof sentence->text - 1 - length;
     memcpy(sentence->text + length, chars, n < room ? n : room);
 }
 
-/* Memory may have run out, so that a sentence of its own size has to do. */
+/* Allocates nothing, because the error may be that memory ran out. */
 void options_name_fields(const Parsed *parsed, Err *err)
 {
     Err named = {{0}};

@@ -1,6 +1,6 @@
-/* What commands have in common when they write: the command line that a file tells of itself, made
- * of the options' values rather than of what was typed, so that a recipe, the order of the options
- * and what does not matter leave no trace; names for people; JSON. */
+/* The command line that a file stores as its provenance is formatted from the values of the options
+ * and not from the words that were typed. A recipe, the order of the options, and options that do
+ * not change the result therefore leave no trace, and equal results have equal lines. */
 #include "options/output.h"
 
 #include "options/templates.h"
@@ -19,7 +19,18 @@ bool is_one_of(const char *word, const char *const *words)
     return *words;
 }
 
-/* *line, cleaned for one line, in *out. */
+bool is_word_of(const char *words, const char *word)
+{
+    const size_t length = strlen(word);
+    for (const char *at = words; at && *at; at += strcspn(at, " ")) {
+        at += strspn(at, " ");
+        if (strcspn(at, " ") == length && strncmp(at, word, length) == 0)
+            return true;
+    }
+    return false;
+}
+
+/* Moves *line to *out as one line of UTF-8, and releases it. */
 static Status take_line(Text *line, char **out, Err *err)
 {
     Text clean = TEXT_INIT;
@@ -37,8 +48,8 @@ Status shown_name(const char *path, char **out, Err *err)
     return take_line(&name, out, err);
 }
 
-/* Of a path the last component. What stands before a colon in a text is no path, as in
- * mesh:FILE, and a file of the user's own is told from a template by its '/'. */
+/* Appends a value; of a path, only the last component. In a text such as mesh:FILE, the path begins
+ * behind the colon. A file of the user's own keeps "./", which distinguishes it from a template. */
 static void put_shown_value(const Setting *setting, size_t at, Text *text)
 {
     Text value = TEXT_INIT;
@@ -81,7 +92,7 @@ static void put_setting(const Setting *setting, PutValue *put_value, Text *text)
     }
 }
 
-/* As file_extension, but "nii.gz" of V.nii.gz. */
+/* Returns the extension of a path as file_extension does, but "nii.gz" for V.nii.gz. */
 static const char *whole_extension(const char *path)
 {
     const char *extension = file_extension(path), *name = file_name(path);
@@ -91,8 +102,8 @@ static const char *whole_extension(const char *path)
     return strcmp(extension, "gz") == 0 && at > name ? at : extension;
 }
 
-/* Appends the output under the name that the help gives it, with the extension that it has: what is
- * written does not depend on its own name, but where it tells that. */
+/* Appends the output under its name in the help, with its real extension. The content of a file
+ * does not depend on the name of the file, unless Option.is_told is true. */
 static void put_output(const Setting *setting, bool in_memory, Text *text)
 {
     const char *path = *(const char *const *)(setting->base + setting->option->where);
@@ -110,7 +121,8 @@ static void put_output(const Setting *setting, bool in_memory, Text *text)
         text_puts(text, name);
 }
 
-/* The output itself stands last; others are told where what is written shows them. */
+/* Returns true if the command line of the provenance contains the option. --output follows at the
+ * end, and other output files appear only if Option.is_told is true. */
 static bool tells(const Setting *setting, const Setting *plain, Text *text)
 {
     const Option *option = setting->option;
@@ -157,7 +169,7 @@ Status command_line_text(const Parsed *parsed, char **out, Err *err)
     return take_line(&text, out, err);
 }
 
-/* `cd` to the working folder, and the program by its own path. */
+/* Appends `cd` to the working folder, and the path of the program. */
 static Status put_program(Text *text, Err *err)
 {
     char program[PATH_MAX];

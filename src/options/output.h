@@ -1,4 +1,5 @@
-/* What commands share when they write: shell words, the command line for provenance, and JSON. */
+/* Helpers for the files that commands write: words quoted for a shell, the command line that a file
+ * stores as its provenance, and JSON. */
 #ifndef CORCAST_OPTIONS_OUTPUT_H
 #define CORCAST_OPTIONS_OUTPUT_H
 
@@ -9,6 +10,9 @@
 
 /* Returns true if `word` is in the list `words`, which NULL ends. */
 bool is_one_of(const char *word, const char *const *words);
+/* Returns true if `word` is one of the words in `words`, which are separated by blanks. NULL has no
+ * words. */
+bool is_word_of(const char *words, const char *word);
 
 /* Appends a path, quoted for a shell, as an operand. A path that looks like an option gets "./"
  * before it. `text` fails if memory runs out. */

@@ -24,64 +24,64 @@ static const Option rows[] = {
      GIVEN(ReadOptions, has_voxel_size),
      .group = GROUP_INPUT,
      .otherwise = "",
-     .help =
-         "edge lengths of a voxel in the input unit, for a file whose coordinates are counted in "
-         "voxels; each coordinate is multiplied by its length, radii only with --voxel-radii"},
+     .help = "for a file whose coordinates are counted in voxels: edge lengths of a voxel in x, "
+             "y and z, in the unit of --input-unit; coordinates are multiplied by them, radii "
+             "only with --voxel-radii"},
     {.name = "voxel-radii",
      SETS(FLAG, ReadOptions, voxel_radii),
      .group = GROUP_INPUT,
-     .help = "with --voxel-size: radii are in voxels as well; multiply them by the geometric mean "
-             "of the three edge lengths"},
+     .help = "with --voxel-size: also multiply each radius, by the geometric mean of the three "
+             "edge lengths"},
     {.name = "merge-tolerance",
      SETS(NUMBER, ReadOptions, merge_tolerance_mm),
      FROM_TO(0, 1e3),
      .group = GROUP_INPUT,
      .unit = "mm",
-     .help = "for a file of separate lines: treat points that are at most MM apart as one; 0 joins "
-             "only points at the same position"},
+     .help = "for a file of separate lines: maximum distance of two points that are joined; 0 "
+             "joins only points at the same position"},
     {.name = "break-loops",
      SETS(FLAG, ReadOptions, break_loops),
      .group = GROUP_INPUT,
-     .help = "cut each loop of a network at its thinnest line; without it loops are kept, and what "
-             "needs a tree is refused"},
+     .help = "cut each loop of a network at its thinnest line; without this option loops are "
+             "kept, and a command that needs a tree refuses the file"},
     {.name = "radius",
      SETS(NUMBER, ReadOptions, radius_mm),
      FROM_TO(0, 1e3),
      .group = GROUP_INPUT,
      .unit = "mm",
-     .help = "radius of vessels whose radius is missing or 0 in the file; by default a file with "
-             "missing radii is refused; with --repair-radii: only if no vessel of the file has a "
-             "radius"},
+     .help = "radius of all vessels whose radius is missing or 0 in the file; 0 refuses a file "
+             "with missing radii; with --repair-radii the option acts only if no vessel of the "
+             "file has a radius"},
     {.name = "repair-radii",
      SETS(FLAG, ReadOptions, repair_radii),
      .group = GROUP_INPUT,
-     .help =
-         "fill each radius that is missing, 0, negative or not a number from its neighbours along "
-         "the branch; takes precedence over --radius"},
+     .help = "replace each radius that is missing, 0, negative or not a number by a value "
+             "between the radii of its neighbours along the branch; takes precedence over "
+             "--radius"},
     {.name = "radius-array",
      SETS(TEXT, ReadOptions, radius_array),
      .group = GROUP_INPUT,
      .argument = "NAME",
      .otherwise = "recognized by its name",
-     .help = "name of the array that contains the radii"},
+     .help = "name of the array of the file that contains the radii"},
     {.name = "graphml-keys",
      SETS(TEXT, ReadOptions, graphml_keys),
      .group = GROUP_INPUT,
      .argument = "x=KEY,...",
      .otherwise = "recognized by their names",
-     .help = "names of the GraphML keys that contain x, y, z and radius"},
+     .help = "GraphML only: names of the keys that contain x, y, z and radius"},
     {.name = "columns",
      SETS(TEXT, ReadOptions, columns),
      .group = GROUP_INPUT,
      .argument = "x=NAME,...",
      .otherwise = "recognized by their names",
-     .help = "names or numbers of the columns of the tree file that contain x, y, z, radius and "
+     .help = "tables only: names or numbers of the columns that contain x, y, z, radius and "
              "others"},
     {.name = "edges",
      SETS(INPUT, ReadOptions, edges),
      .group = GROUP_INPUT,
      .argument = "E.csv",
-     .help = "table of edges, if the tree file is a table of points alone"},
+     .help = "tables only: table of edges, if the tree file is a table of points alone"},
 };
 
 const OptionTable reading_table = OPTION_TABLE(rows);

@@ -42,7 +42,7 @@ static json_t *with_choices(json_t *object, const char *const *choices)
     return choices ? json_with(object, "choices", array) : object;
 }
 
-/* Adds names that are parted by blanks as an array. */
+/* Adds names that are separated by blanks as an array. */
 static json_t *with_names(json_t *object, const char *key, const char *names)
 {
     if (!names)

@@ -1,7 +1,7 @@
-/* The folder of templates is the one that the caller has set, or is looked for where the program or
- * the library that holds this code is: beside the build folder, or where `make install` puts it.
- * Where the system does not tell the path of this code, as on Linux without /proc, it is looked for
- * below the prefix of the build. */
+/* Without a folder from templates_set, the search starts at the file that contains this code, the
+ * program or the library: first beside the build folder, then where `make install` copies the
+ * templates. On a system that does not state the path of this file, such as Linux without /proc,
+ * the search uses the prefix of the build (PREFIX). */
 #include "options/templates.h"
 
 #include <dirent.h>
@@ -17,14 +17,14 @@ static bool is_folder(const char *path)
     return access(path, X_OK) == 0;
 }
 
-/* Takes the last `n` components of a path away, but not its root. */
+/* Removes the last `n` components of a path, but not its root. */
 static void cut_components(char *path, int n)
 {
     for (; n > 0 && strrchr(path, '/') > path; n--)
         *strrchr(path, '/') = '\0';
 }
 
-/* The folder that a thread has set: a value of the call that the thread is in. */
+/* The folder of templates_set; each thread has its own. */
 static _Thread_local const char *chosen;
 
 const char *templates_set(const char *folder)
@@ -34,7 +34,7 @@ const char *templates_set(const char *folder)
     return before;
 }
 
-/* Takes the folder that was set, if looks are in it. */
+/* Copies the folder of templates_set. Returns STATUS_IO if it has no folder "looks". */
 static Status take_chosen(char **folder, Err *err)
 {
     char *looks = NULL;
@@ -62,7 +62,7 @@ static Status try_folder(const char *parent, const char *path, char **folder, Er
 Status templates_folder(char **folder, Err *err)
 {
     static const struct {
-        int up; /* components fewer than for the one before */
+        int up; /* number of components to remove from the path of the row before */
         const char *path;
     } places[] = {{2, "templates"},
                   {0, "share/corcast/templates"},
@@ -87,8 +87,8 @@ Status templates_folder(char **folder, Err *err)
     return STATUS_OK;
 }
 
-/* Appends the names, without their extension, of the files in the folder that have it, `between`
- * them and `before_last`. */
+/* Appends the names, without extension, of the files in the folder that have the extension. The
+ * string `between` separates the names, and `before_last` precedes the last one. */
 static void list_names(const char *folder, const char *extension, const char *between,
                        const char *before_last, Text *out)
 {

@@ -1,12 +1,14 @@
-/* Finds the files of the templates folder. */
+/* Finds files in the templates folder, which has one subfolder per kind: looks, color maps,
+ * presets, waveforms, published tables. An option takes the name of such a file, or a path with a
+ * '/'. */
 #ifndef CORCAST_OPTIONS_TEMPLATES_H
 #define CORCAST_OPTIONS_TEMPLATES_H
 
 #include "base/base.h"
 
 /* Sets the templates folder for the calling thread, and returns the folder that was set before.
- * NULL or
- * "": templates_folder searches for it. Both strings are borrowed. */
+ * NULL
+ * or "": templates_folder searches for it. Both strings are borrowed. */
 const char *templates_set(const char *folder);
 
 /* Sets *folder to the templates folder; the caller frees it with free(). If templates_set has set

@@ -31,19 +31,20 @@ typedef struct Appearance {
     Rgb *colors;       /* per segment index; NULL: all have `color` */
     double *values;    /* per segment index: the value its color stands for, or NAN; NULL: none */
     ColorScale scale;  /* from values to colors; zeroed if `colors` is NULL */
-    char *name, *unit; /* of the scale */
-    size_t n_values;
+    char *name, *unit; /* of the field that the scale shows: "wss", "Pa" */
+    size_t n_values;   /* number of entries of `values`, in all frames */
     ScaleOutside outside; /* number of drawn segments whose value is outside the scale */
     double *positions;    /* per segment index: the value's position on the scale, if colors
                            * blend [stage_blend]; else NULL */
     ColorRamp *ramp;      /* the colors that positions are mapped to, if colors blend; else NULL */
     char *meaning; /* the meaning of the colors in words: "wss 3.70 to 54.1 Pa, of ..."; or NULL */
     bool fitted;   /* the range of the scale was computed from values, and not specified */
-    /* If colors change with time, `colors`, `values` and `places` hold n_frames frames one after
-     * another, of n_segments entries each. */
+    /* If colors change with time, `colors`, `values` and `positions` hold n_frames frames one
+     * after another, of n_segments entries each. */
     double *time; /* per frame: its time, rising; NULL: colors do not change */
     size_t n_frames, n_segments;
-    /* As `values`: factors of the radii, for vessels that beat; NULL: they do not. */
+    /* Per segment index and frame, as `values`: the factor of the radius in a picture of beating
+     * vessels; NULL: the vessels do not beat. */
     double *widths;
 } Appearance;
 
@@ -55,7 +56,7 @@ void appearance_release(Appearance *appearance);
 Appearance appearance_frame(const Appearance *appearance, size_t frame);
 
 /* Returns the linear color at a position on the scale. Requires that colors blend. */
-Rgb appearance_blended(const Appearance *appearance, double place);
+Rgb appearance_blended(const Appearance *appearance, double position);
 
 /* Returns the linear color of a segment, given by its index. */
 static inline Rgb appearance_color(const Appearance *appearance, uint32_t segment)

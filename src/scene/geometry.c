@@ -119,12 +119,12 @@ Status geometry_with_ends(const Geometry *geometry, Primitive **all, size_t *n, 
 static Status check_tube(Vec3 a, Vec3 b, double radius, uint32_t id, Err *err)
 {
     if (!vec3_finite(a) || !vec3_finite(b) || !(radius > 0) || !isfinite(radius))
-        return err_set(err, STATUS_INPUT,
-                       "the segment of node %u has a place or radius that is not a finite number",
-                       id);
+        return err_set(
+            err, STATUS_INPUT,
+            "the segment of node %u has a position or radius that is not a finite number", id);
     if (vec3_length(a) + radius > SCENE_FARTHEST_MM || vec3_length(b) + radius > SCENE_FARTHEST_MM)
         return err_set(err, STATUS_INPUT,
-                       "the segment of node %u lies farther than %g mm from the origin", id,
+                       "the segment of node %u is farther than %g mm from the origin", id,
                        SCENE_FARTHEST_MM);
     return STATUS_OK;
 }

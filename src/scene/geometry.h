@@ -48,6 +48,7 @@ typedef union PrimitiveFrame {
     JointFrame joint;
 } PrimitiveFrame;
 
+/* Prepares a primitive for primitive_hits. The frame of a joint borrows its axes. */
 PrimitiveFrame primitive_frame(const Primitive *primitive);
 
 /* Finds all intersections of the line of the ray with the primitive, in any order. Ignores round
@@ -118,8 +119,9 @@ void geometry_release(Geometry *geometry);
 /* Finds the bounds of primitives and field segments. A field has no spheres at ends. */
 void geometry_find_bounds(Geometry *geometry);
 /* Copies a geometry of cylinders and spheres for a moment at which vessels beat. Each radius is
- * multiplied by factors[segment]. So a sphere keeps its segment, of which it has the color, and
- * fits that segment's cylinder. Release *out with geometry_release. Errors: STATUS_MEMORY. */
+ * multiplied by factors[segment index]. A sphere at an end of a cylinder has the same segment index
+ * as the cylinder, so both keep equal radii. Release *out with geometry_release. Errors:
+ * STATUS_MEMORY. */
 MUST_CHECK Status geometry_beaten(const Geometry *still, const double *factors, Geometry *out,
                                   Err *err);
 

@@ -32,6 +32,7 @@ typedef struct MeshEnds {
  * meshends_release. Errors: STATUS_MEMORY. O(triangles + segments). */
 MUST_CHECK Status meshends_find(const VesselMesh *mesh, const VesselTree *tree, MeshEnds *out,
                                 Err *err);
+/* Frees the arrays and zeroes *ends. */
 void meshends_release(MeshEnds *ends);
 
 /* Returns the number of parts. */

@@ -18,8 +18,9 @@ typedef struct PrismLayers {
     size_t n_trees;
     size_t n_layers;
     size_t n_prisms;
-    size_t n_thinner;       /* points of the wall at which the layers are thinner than asked for */
-    double mean_part;       /* mean over the points of the wall: thickness / thickness asked for */
+    size_t n_thinner;       /* points of the wall at which the layers are thinner than the specified
+                               thickness */
+    double mean_part;       /* mean over the points of the wall: thickness / specified thickness */
     double least_part;      /* minimum of this ratio */
     double volume_mm3;      /* of all prisms */
     double core_volume_mm3; /* inside the last surface */

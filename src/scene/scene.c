@@ -41,10 +41,10 @@ Appearance appearance_frame(const Appearance *appearance, size_t frame)
     return one;
 }
 
-Rgb appearance_blended(const Appearance *appearance, double place)
+Rgb appearance_blended(const Appearance *appearance, double position)
 {
     float rgb[3];
-    colorscale_on_ramp(&appearance->scale, appearance->ramp, place, rgb);
+    colorscale_on_ramp(&appearance->scale, appearance->ramp, position, rgb);
     return (Rgb){rgb[0], rgb[1], rgb[2]};
 }
 

@@ -185,8 +185,11 @@ Status view_check(const View *view, Err *err)
     if (!vec3_finite(camera->location) || !vec3_finite(camera->right) || !vec3_finite(camera->up) ||
         !(vec3_length(camera->direction) > 0) || !(vec3_length(camera->right) > 0) ||
         !(vec3_length(camera->up) > 0))
-        return err_set(err, STATUS_INPUT, "the camera has no direction or no extent");
+        return err_set(err, STATUS_INPUT,
+                       "the camera has a direction or a picture side of length 0, or a vector that "
+                       "is not finite");
     if (view->ground.present && !isfinite(view->ground.offset_mm))
-        return err_set(err, STATUS_INPUT, "the ground has no place");
+        return err_set(err, STATUS_INPUT,
+                       "the position of the ground plane is not a finite number");
     return STATUS_OK;
 }

@@ -42,6 +42,7 @@ typedef struct Coincidence {
  * nothing to release after an error. Errors: STATUS_MEMORY. Cost: O(n) for n nodes, and more if
  * many nodes lie close together. */
 MUST_CHECK Status coincidence_find(const Tree *tree, Coincidence *coincidence, Err *err);
+/* Frees the arrays and zeroes *coincidence. */
 void coincidence_release(Coincidence *coincidence);
 /* Returns the twins and junctions of the pieces of a smooth tree, borrowed from it. */
 static inline Coincidence coincidence_of_smooth(const SmoothTree *smooth)

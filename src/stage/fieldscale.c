@@ -65,17 +65,17 @@ static Status set_classes(const FieldScaleParams *params, ColorScale *scale, Err
     const double *at = params->classes;
     if (params->n_classes == 1) {
         if (!(at[0] >= 1 && at[0] <= MOST_CLASSES && at[0] == floor(at[0])))
-            return err_set(
-                err, STATUS_USAGE,
-                "`classes`: '%g' is not a whole number from 1 to %d, nor a list of bounds", at[0],
-                MOST_CLASSES);
+            return err_set(err, STATUS_USAGE,
+                           "`classes`: '%g' is not an integer from 1 to %d, nor a list of bounds",
+                           at[0], MOST_CLASSES);
         scale->classes = (int)at[0];
         return STATUS_OK;
     }
     for (size_t i = 1; i < params->n_classes; i++)
         if (!(at[i - 1] < at[i]))
-            return err_set(err, STATUS_USAGE, "`classes`: bounds ascend, but %g comes before %g",
-                           at[i - 1], at[i]);
+            return err_set(err, STATUS_USAGE,
+                           "`classes`: bounds must ascend, but %g comes before %g", at[i - 1],
+                           at[i]);
     memcpy(scale->bounds, at, params->n_classes * sizeof *at);
     scale->n_bounds = (int)params->n_classes;
     return STATUS_OK;
@@ -95,8 +95,9 @@ static Status set_ends(const FieldScaleParams *params, const FieldValues *values
         return err_set(err, STATUS_USAGE, "`range`: with `log` both ends must be positive, not %g",
                        range[0]);
     if (!(range[0] <= range[1]))
-        return err_set(err, STATUS_USAGE, "`range`: %g, of the field %s, is not below %g", range[0],
-                       values->series.field.name, range[1]);
+        return err_set(err, STATUS_USAGE,
+                       "`range`: the lower end %g of the field %s is above the upper end %g",
+                       range[0], values->series.field.name, range[1]);
     memcpy(scale->range, range, sizeof range);
     return STATUS_OK;
 }
@@ -125,8 +126,8 @@ static Status check_separate(const FieldScaleParams *params, const ColorScale *s
     for (size_t i = 0; i < values->n_drawn; i++)
         if (isfinite(values->drawn[i]) && values->drawn[i] != floor(values->drawn[i]))
             return err_set(err, STATUS_USAGE,
-                           "`colormap` %s has separate colors, for whole numbers; the field %s "
-                           "takes them with `classes`",
+                           "`colormap` %s has separate colors, which suit integers; the field %s "
+                           "needs `classes` for them",
                            params->map_name, values->series.field.name);
     return STATUS_OK;
 }

@@ -31,6 +31,7 @@ typedef struct FieldValues {
  * Errors  STATUS_USAGE if the field cannot be in this unit; STATUS_MEMORY. */
 MUST_CHECK Status fieldvalues_take(const Tree *tree, FieldSeries *series, const char *unit,
                                    FieldValues *out, Err *err);
+/* Frees the values and zeroes *values. */
 void fieldvalues_release(FieldValues *values);
 
 /* Parameters of fieldscale_color. Numbers are in the unit of the values. */

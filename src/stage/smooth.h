@@ -54,6 +54,7 @@ MUST_CHECK Status stage_smooth(const Tree *tree, SceneModel model, SmoothTree *o
  * by tree_proximal_part, so that the curves of the part are those of the whole. Errors:
  * STATUS_MEMORY. */
 MUST_CHECK Status smoothtree_part(const SmoothTree *whole, double part, SmoothTree *out, Err *err);
+/* Frees the arrays and zeroes *smooth. */
 void smoothtree_release(SmoothTree *smooth);
 /* Returns true if the piece that ends at `node` is drawn. stage_vessels lists these pieces in the
  * order of their nodes. */

@@ -9,8 +9,8 @@ static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, MergeOptions, output),
      .argument = "P.tif|T.csv",
-     .help = "complete image, .png, .tif (BigTIFF above 4 GB) or .ppm; or the table of a study, "
-             ".csv or .jsonl"},
+     .help = "file to write: the complete image, .png, .tif (BigTIFF above 4 GB) or .ppm; or the "
+             "table of a study, .csv or .jsonl"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);

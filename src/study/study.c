@@ -24,8 +24,8 @@ static const Option own[] = {
      .help = "also write the tree of each run, as SWC"},
     {.name = "table",
      SETS(FLAG, StudyOptions, table),
-     .help = "grow nothing; print one CSV table of the given files or folders, results of `corcast "
-             "info --json` or runs of a study"},
+     .help = "grow nothing; print one CSV table of results on standard output; the operands are "
+             "files of `corcast info --json`, or folders of studies"},
     {.name = "only",
      SETS(WHOLE, StudyOptions, only),
      FROM_TO(1, STUDY_MAX_RUNS),
@@ -33,12 +33,14 @@ static const Option own[] = {
      .argument = "K",
      .otherwise = "",
      .excludes = "table commands",
-     .help = "grow only run K and write no tables; the first run is 1"},
+     .help = "grow only run K of the plan, and write no tables; the first run is 1; `corcast "
+             "merge` joins the results"},
     {.name = "commands",
      SETS(FLAG, StudyOptions, commands),
      .group = GROUP_PARTS,
      .excludes = "table",
-     .help = "grow nothing; print one command per run, for GNU parallel, Slurm and others"},
+     .help = "grow nothing; print one command per run on standard output, for GNU parallel, "
+             "Slurm and others"},
 };
 
 static ConditionSet unmet(const void *set, const Parsed *parsed)

@@ -73,7 +73,7 @@ static void wrong_handles(corcast_tree *tree)
     corcast_tree *out = NULL;
     EXPECT(2, "tree is not a corcast_tree",
            corcast_refine((corcast_tree *)(void *)options, NULL, NULL, error));
-    EXPECT(2, "options are of the command render", corcast_grow(options, &out, NULL, error));
+    EXPECT(2, "the options belong to the command render", corcast_grow(options, &out, NULL, error));
     EXPECT(2, "not a corcast_options",
            corcast_options_set((corcast_options *)(void *)tree, "gamma", "3", error));
     corcast_options_free(options);
@@ -97,7 +97,7 @@ static void wrong_options(void)
     EXPECT(2, "--gamma", corcast_options_set(options, "gamma", "three", error));
     EXPECT(2, "standard streams", corcast_options_set(options, "from", "-", error));
     EXPECT(2, "standard streams", corcast_options_set(options, "domain", "mask:-,0.5", error));
-    EXPECT(2, "command line alone", corcast_options_set(options, "help", "on", error));
+    EXPECT(2, "command line only", corcast_options_set(options, "help", "on", error));
     OK(corcast_options_set(options, "gamma", "2.5", error));
     EXPECT(2, "--gamma", corcast_options_set(options, "gamma", "-1", error));
     OK(corcast_options_get(options, "gamma", &value, error));

@@ -217,8 +217,8 @@ test_classes_may_have_bounds() {
     make_vessels
     expect_codes --color-by radius --classes 2,5.48,15 -- \
         "2 68 1 84" "4 49 104 142" "6 53 183 121" "8 53 183 121" "10 253 231 37"
-    refuses '--classes: bounds ascend, but 5 comes before 2' --color-by radius --classes 1,5,2
-    refuses "--classes: '2.5' is not a whole number from 1 to 256, nor a list of bounds" \
+    refuses '--classes: bounds must ascend, but 5 comes before 2' --color-by radius --classes 1,5,2
+    refuses "--classes: '2.5' is not an integer from 1 to 256, nor a list of bounds" \
         --color-by radius --classes 2.5
     refuses '--log has no effect if --classes gives bounds' --color-by radius --classes 1,2 --log
     refuses '--range has no effect if --classes gives bounds' --color-by radius --classes 1,2 --range 1,2
@@ -235,7 +235,7 @@ test_a_range_may_be_of_percentiles() {
     says 'corcast: radius 2 to 6 mm, as given; 1 below, 2 above'
     refuses "'75%,25%' is not A,B, two numbers with A below B, or percentiles" --color-by radius --range 75%,25%
     refuses "'2,1' is not A,B, two numbers with A below B" --color-by radius --range 2,1
-    refuses '--range: 30, of the field radius, is not below 10.96' --color-by radius --range 30,75%
+    refuses '--range: the lower end 30 of the field radius is above the upper end 10.96' --color-by radius --range 30,75%
 }
 
 test_a_pruned_picture_may_keep_the_range_of_the_tree() {
@@ -273,7 +273,7 @@ test_a_map_of_separate_colors_counts_whole_numbers() {
         "2 228 26 28" "4 228 26 28" "6 228 26 28" "8 228 26 28" "10 228 26 28"
     expect_codes --color-by radius --classes 2,5,15 --colormap Dark2 -- \
         "2 27 158 119" "4 217 95 2" "6 117 112 179" "8 117 112 179" "10 231 41 138"
-    refuses '--colormap Set1 has separate colors, for whole numbers' --color-by radius --colormap Set1
+    refuses '--colormap Set1 has separate colors, which suit integers' --color-by radius --colormap Set1
 }
 
 test_a_field_of_many_decades_gets_a_hint() {

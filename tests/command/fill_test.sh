@@ -104,7 +104,7 @@ test_a_filling_that_cannot_be_is_refused_in_one_sentence() {
 --from skeleton.swc --fill kassab|--fill: 'kassab' is unknown; available: kassab-lad
 --from skeleton.swc --fill kassab-lad --fill-from 12|--fill-from 12: must be from 2 to 11, the highest order of kassab-lad
 --from skeleton.swc --fill kassab-lad --fill-to 7|--fill-to 7: must be from 1 to below --fill-from 7
---from skeleton.swc --fill kassab-lad --fill-from 1|--fill-from: '1' is not a whole number from 2 to 100
+--from skeleton.swc --fill kassab-lad --fill-from 1|--fill-from: '1' is not an integer from 2 to 100
 --from skeleton.swc --fill kassab-lad --domain disc:20|--fill: published tables describe vessels in space; the domain has two dimensions, and must have three
 --from skeleton.swc --terminals 50 --fill-to 3|--fill-to needs --fill or --stages
 END

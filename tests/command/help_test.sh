@@ -14,7 +14,11 @@ test_help_prints_headings_ranges_and_defaults() {
     expect_stdout '--gamma NUMBER\|MM:NUMBER,\.\.\.$'
     run_ok corcast render --help
     expect_stdout '^size and camera:$'
-    expect_stdout '--size WxH +image size in pixels \(800x600\) or on paper \(89mmx60mm\); one$'
+    expect_stdout '--size WxH +size of the image, in pixels \(800x600\) or on paper \(89mmx60mm\);$'
+    tr -s ' \n' ' ' <stdout | grep -qF -- '--min-width PX minimum drawn vessel width; 0 draws true widths [0..64; default: 0]' ||
+        fail "expected the range and the default of --min-width"
+    tr -s ' \n' ' ' <stdout | grep -qF '[0.01..170 deg; default: 30]' || fail "expected the unit of --angle"
+    ! grep -qF '[8..' stdout || fail "expected no range beside the values of --bits"
     [ "$(awk 'length > 92' stdout | grep -vc '^  corcast')" -eq 0 ] || fail "expected no line of options over 92 columns"
     run_ok corcast refine --help
     tr -s ' \n' ' ' <stdout | grep -q 'with many more moves) \[default: topology\]' || fail "expected the default of refine"
@@ -209,7 +213,7 @@ END
 test_forms_that_are_not_of_one_command_are_refused() {
     run corcast help grow --as bash
     expect_status 2
-    expect_sentence "--as bash is of all commands; leave out grow"
+    expect_sentence "--as bash describes all commands; leave out 'grow'"
     run corcast help --as html
     expect_status 2
     expect_sentence "--as: 'html' is not one of text, man, markdown, bash, zsh, fish, names"

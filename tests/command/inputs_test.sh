@@ -259,7 +259,7 @@ test_what_is_too_far_or_too_short_to_draw_is_named() {
     printf '1 1 0 0 0 1 -1\n7 1 0 1e155 0 1 1\n' >far.swc
     run corcast render far.swc -o p.png
     expect_status 2
-    expect_sentence 'far\.swc: the segment of node 7 lies farther than 1e\+07 mm from the origin'
+    expect_sentence 'far\.swc: the segment of node 7 is farther than 1e\+07 mm from the origin'
     printf '1 1 0 0 0 1 -1\n2 1 0 1e-30 0 1 1\n' >short.swc
     run corcast render short.swc -o p.png
     expect_status 2

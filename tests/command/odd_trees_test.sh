@@ -126,7 +126,7 @@ test_a_radius_of_a_millionth_of_a_micrometre() {
 
 test_a_radius_of_a_thousand_kilometres() {
     rows '1 3 0 0 0 1e9 -1' '2 3 5 0 0 1e9 1'
-    each_way refuses 'the segment of node 2 lies farther than 1e\+07 mm from the origin'
+    each_way refuses 'the segment of node 2 is farther than 1e\+07 mm from the origin'
 }
 
 test_two_hundred_segments_at_one_place() {

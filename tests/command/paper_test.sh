@@ -37,7 +37,7 @@ test_dpi_of_a_size_in_pixels_is_kept_and_changes_nothing_else() {
     rm ./*.decoded
     run corcast render tree.swc --size 31x23 --dpi 450 -o p.ppm
     expect_status 2
-    expect_sentence '--dpi needs a --size on paper, as 89mm, or a file that keeps it'
+    expect_sentence '--dpi needs a --size on paper, such as 89mm, or a file that keeps it'
     run corcast scene tree.swc --size 31x23 --dpi 450 -o p.pov
     expect_status 2
     expect_sentence '--dpi needs a --size on paper'
@@ -71,7 +71,7 @@ test_bad_sizes_are_refused_in_a_sentence() {
     for size in 0mm 0mmx5mm 5mmx0mm -3mm 5kmx5km mm 5mmx7 7x5mm 1e999mm nanmm 5mmx5mmx5mm 89 ''; do
         run corcast render tree.swc --size "$size" -o p.png
         expect_status 2
-        expect_sentence "^corcast render: --size: '$size' is not a size on paper, as 89mm or 89mmx60mm"
+        expect_sentence "^corcast render: --size: '$size' is not a size on paper, such as 89mm or 89mmx60mm"
     done
     run corcast render tree.swc --size 40000inx1mm -o p.png
     expect_status 2

@@ -120,7 +120,7 @@ test_merge_names_the_tile_that_is_missing_broken_or_another() {
     merge_refuses 'no tiles to merge were found' empty
     run corcast merge p.tile-1.png p.tile-2.png p.tile-3.png -o p.tile-2.png
     expect_status 2
-    expect_sentence 'p.tile-2.png. would be written over|are one file'
+    expect_sentence 'p.tile-2.png. would be written over|are the same file'
 }
 
 # retell FROM TO IN OUT: copies a PNG and replaces FROM by TO in the note about its tile.

@@ -303,8 +303,8 @@ test_no_file_is_written_over_one_that_is_read() {
 test_no_file_is_written_twice() {
     cp "$DATA/bifurcation.swc" tree.swc
     run_ok corcast render --exact tree.swc --size 20x10 -o a.png
-    refuses "-o 'j.swc' and --json 'j.swc' are one file; write to two" grow --terminals 3 -o j.swc --json j.swc
-    refuses "-o 's.png' and --json './s.png' are one file" render tree.swc -o s.png --json ./s.png
+    refuses "-o 'j.swc' and --json 'j.swc' are the same file; write to two files" grow --terminals 3 -o j.swc --json j.swc
+    refuses "-o 's.png' and --json './s.png' are the same file" render tree.swc -o s.png --json ./s.png
     refuses "--json 's.depth.pfm' and --planes 's.depth.pfm'" \
         render tree.swc -o s.png --json s.depth.pfm --planes depth
     refuses "-o 'x.png' and --difference 'x.png'" compare a.png a.png -o x.png --difference x.png
@@ -315,7 +315,7 @@ test_no_file_is_written_twice() {
     refuses "--look is given twice" render tree.swc -o x.png --look cast --look=print
     refuses "--recipe is given twice" grow --recipe tree.ini --recipe tree.ini -o x.swc
     ln -s there.swc link.swc
-    refuses "-o 'link.swc' and --json 'there.swc' are one file" grow --terminals 3 -o link.swc --json there.swc
+    refuses "-o 'link.swc' and --json 'there.swc' are the same file" grow --terminals 3 -o link.swc --json there.swc
     [ ! -e there.swc ] || fail "expected nothing to be written"
 }
 

@@ -320,7 +320,7 @@ test_a_turn_says_how_many_pictures_a_second() {
     grow_tree 20
     open_display
     run_ok corcast view tree.swc --size 200x160 --turntable 40
-    expect_stdout '^[0-9.]+ pictures a second, [0-9.]+ ms of a processor each$'
+    expect_stdout '^[0-9.]+ pictures per second, [0-9.]+ ms of processor time each$'
 }
 
 run_tests "$@"

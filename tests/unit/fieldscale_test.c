@@ -136,13 +136,13 @@ static void test_what_makes_no_scale_is_refused(void **state)
                         halves[] = {0, 0.5, 1, 2, 0}, falling[] = {2, 1};
     FieldScaleParams params = plain;
     color(&params, none, 1, false, "`color_by`: the field pressure has no value");
-    color(&params, halves, 1, true, "`colormap` map has separate colors, for whole numbers");
+    color(&params, halves, 1, true, "`colormap` map has separate colors, which suit integers");
     params.classes = falling;
     params.n_classes = 2;
-    color(&params, rising, 1, false, "`classes`: bounds ascend, but 2 comes before 1");
+    color(&params, rising, 1, false, "`classes`: bounds must ascend, but 2 comes before 1");
     params.classes = (const double[]){2.5};
     params.n_classes = 1;
-    color(&params, rising, 1, false, "`classes`: '2.5' is not a whole number from 1 to 256");
+    color(&params, rising, 1, false, "`classes`: '2.5' is not an integer from 1 to 256");
     params = plain;
     params.log = true;
     color(&params, below, 1, false, "has no value above 0");
@@ -152,7 +152,8 @@ static void test_what_makes_no_scale_is_refused(void **state)
     params.log = false;
     params.percent[0] = true;
     params.ends[0] = 100;
-    color(&params, rising, 1, false, "`range`: 40, of the field pressure, is not below 5");
+    color(&params, rising, 1, false,
+          "`range`: the lower end 40 of the field pressure is above the upper end 5");
 }
 
 static void test_frames_share_one_scale(void **state)

@@ -1,4 +1,4 @@
-/* A bound, the target's distance from it and, on request, its proof as a file. */
+/* Prints the bound and how far the target is above it; writes the proof to --certificate. */
 #include "cli/commands.h"
 #include "job/tree/certify.h"
 #include "options/output.h"
@@ -9,11 +9,12 @@ static void print(const char *path, const Certified *found)
     const Bound *bound = &found->bound;
     printf("%s\n", path);
     printf("  target        %.9g (sum of length * radius^%g)\n", bound->target, bound->lambda);
-    printf("  bound         %.9g, proved: with this topology, these %zu terminals, their flows and "
-           "pressures, none is below\n",
-           bound->bound, bound->outlets);
-    printf("  best found    %.9g, with free radii and places\n", bound->best);
-    printf("  above bound   %.3g %%, of it\n", 100 * (bound->target / bound->bound - 1));
+    printf(
+        "  bound         %.9g, proved: no tree with this topology, these %zu terminals, and their "
+        "flows and pressures has a lower target\n",
+        bound->bound, bound->outlets);
+    printf("  best found    %.9g, with free radii and positions\n", bound->best);
+    printf("  above bound   %.3g %% of the bound\n", 100 * (bound->target / bound->bound - 1));
     for (int k = 0; k < PARTS; k++)
         if (!isnan(found->part[k]))
             printf("    %-11s %.3g %% (%s)\n", part_rows[k].key,

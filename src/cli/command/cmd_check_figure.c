@@ -1,4 +1,4 @@
-/* Prints what a publisher would refuse in a figure, as lines or as JSON. */
+/* Prints which requirements of a publisher a figure violates, as lines or as JSON. */
 #include "cli/commands.h"
 #include "job/figure/check_figure.h"
 #include "options/output.h"
@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Returns an array of the lines, which it takes. */
+/* Returns the lines of *text as a new JSON array, and empties *text. NULL if memory runs out. */
 static json_t *json_lines(Text *text)
 {
     json_t *array = json_array();

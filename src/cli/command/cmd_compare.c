@@ -7,14 +7,12 @@
 static Status print(const CompareOptions *options, const Comparison *comparison, bool quiet,
                     Err *err)
 {
-    Text text = TEXT_TO(stdout);
+    Text text = TEXT_INIT;
     if (options->json && comparison->kind != COMPARED_NOTHING)
         return json_write(comparison_json(comparison), "-", err);
     if (!quiet)
         comparison_text(options, comparison, &text);
-    Status status = text_flush(&text, err);
-    text_release(&text);
-    return status;
+    return command_print(STATUS_OK, &text, err);
 }
 
 Status run_compare(void *options, Parsed *parsed, Err *err)

@@ -33,7 +33,7 @@ static void print(const char *name, const CoverageResult *result)
     printf("  largest void  %.5g mm from any vessel, at %.5g, %.5g, %.5g mm\n", report->largest_mm,
            report->largest_at.x, report->largest_at.y, report->largest_at.z);
     if (report->largest_error_mm > 1e-3)
-        printf("                (many places are as far; none is more than %.2g mm farther)\n",
+        printf("                (many points are as far; no point is more than %.2g mm farther)\n",
                report->largest_error_mm);
     print_law(result);
 }

@@ -1,4 +1,4 @@
-/* Draws a figure, and prints its complete recipe where that is asked for. */
+/* Draws a figure, and prints its complete recipe with --dump-recipe. */
 #include "cli/commands.h"
 #include "job/figure/figure.h"
 #include <stdio.h>

@@ -1,4 +1,4 @@
-/* Help in all its forms: for people on a terminal, for man, for the documents, for shells. */
+/* The command help: prints the help as text, manual page, reference, completion script or JSON. */
 #include "cli/commands.h"
 #include "cli/help.h"
 #include <stdio.h>
@@ -81,14 +81,11 @@ Status run_help(void *options, Parsed *parsed, Err *err)
     if (form == FORM_TEXT)
         return help_print(command, err);
     if (command && form != FORM_MAN && form != FORM_JSON)
-        return err_set(err, STATUS_USAGE, "--as %s is of all commands; leave out %s", forms[form],
-                       name);
+        return err_set(err, STATUS_USAGE, "--as %s describes all commands; leave out '%s'",
+                       forms[form], name);
     Text text = TEXT_INIT;
     Status status = put_form(form, command, &text, err);
-    if (status == STATUS_OK)
-        fputs(text_chars(&text), stdout);
-    text_release(&text);
-    return status;
+    return command_print(status, &text, err);
 }
 
 const Command command_help = {

@@ -1,12 +1,12 @@
-/* What `info` found, for people. */
+/* Prints the report of `info` as text. */
 #include "cli/commands.h"
 #include "job/tree/info.h"
 #include "options/output.h"
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Prints a number as people write it, to the right of a column of this width, or with a negative
- * width to the left. */
+/* Prints a number in readable form, right-aligned in a column of `width` characters, or
+ * left-aligned if the width is negative. */
 static void print_number(int width, double value, int digits)
 {
     char text[READABLE_SIZE];
@@ -24,7 +24,7 @@ static void print_mean(double mean, double deviation)
     print_number(-9, deviation, 3);
 }
 
-/* Prints a unit as people write it, after `before`. */
+/* Prints `before` and a unit in readable form. */
 static Status print_unit(const char *before, const char *unit, Err *err)
 {
     Text text = TEXT_INIT;
@@ -79,8 +79,8 @@ static void print_summary(const char *path, const TreeSummary *summary)
            READABLE(box->low.z, 4), READABLE(box->high.z, 4));
 }
 
-/* The series that column `k` is of, as one: "pressure (mmHg): 24 frames, 0 to 0.8", its columns
- * marked; the column itself where there is none. */
+/* Prints column `k`. If the column belongs to a series, prints the series once, such as "pressure
+ * (mmHg): 24 frames, 0 to 0.8", and sets *printed of all its columns. */
 static Status print_column(const Tree *tree, size_t k, bool *printed, Err *err)
 {
     const TreeColumn *column = &tree->column[k];
@@ -134,7 +134,7 @@ static const char *ending(size_t count)
     return count == 1 ? "" : "s";
 }
 
-/* Prints what of a network did not become part of the tree. */
+/* Prints which points and lines of a network did not become part of the tree. */
 static void print_left_out(const NetworkReading *network)
 {
     const struct {

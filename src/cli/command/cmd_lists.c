@@ -1,6 +1,6 @@
-/* The commands that list what options accept: models, fields, looks, presets, domains, formats,
- * morphometries. Each line has a name, a tab and a description, so that scripts can cut the name
- * off; fields, looks and formats have one more column between the two. */
+/* The commands that list the values of an option, such as models and fields. A line has a name, a
+ * tab and a description, so that scripts can cut the name off. Some lists have more columns between
+ * the name and the description. */
 #include "cli/commands.h"
 #include "derive/derive.h"
 #include "domain/domain.h"
@@ -14,44 +14,26 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Appends all lines of a list. */
-typedef Status ListNames(Text *lines, Err *err);
-
-static Status list(ListNames *names, Err *err)
-{
-    Text lines = TEXT_INIT;
-    Status status = names(&lines, err);
-    if (status == STATUS_OK)
-        status = text_check(&lines, err);
-    if (status == STATUS_OK && text_chars(&lines))
-        fputs(text_chars(&lines), stdout);
-    text_release(&lines);
-    return status;
-}
-
-static Status list_fields(Text *lines, Err *err)
+static void list_fields(Text *lines)
 {
     for (size_t i = 0; derive_field_name(i); i++)
         text_printf(lines, "%s\t%s\t%s\n", derive_field_name(i),
                     *derive_field_unit(i) ? derive_field_unit(i) : "-",
                     derive_field_description(i));
-    return text_check(lines, err);
 }
 
-static Status list_domains(Text *lines, Err *err)
+static void list_domains(Text *lines)
 {
     const DomainShape *shape;
     for (size_t i = 0; (shape = domain_shape(i)); i++)
         text_printf(lines, "%s:%s\t%s\n", shape->name, shape->parameters, shape->description);
-    return text_check(lines, err);
 }
 
-static Status list_formats(Text *lines, Err *err)
+static void list_formats(Text *lines)
 {
     TreeFormat format;
     for (size_t i = 0; tree_format_at(i, &format); i++)
         text_printf(lines, ".%s\t%s\t%s\n", format.extension, format.name, format.description);
-    return text_check(lines, err);
 }
 
 /* Appends the name of a look, whether POV-Ray can reproduce it, and what it looks like. */
@@ -117,44 +99,45 @@ static Status describe_waveform(const char *name, Text *lines, Err *err)
     return text_check(lines, err);
 }
 
-static Status list_walls(Text *lines, Err *err)
+static void list_walls(Text *lines)
 {
     for (size_t i = 0; pulse_wall_name(i); i++)
         text_printf(lines, "%s\t%s\n", pulse_wall_name(i), pulse_wall_description(i));
-    return text_check(lines, err);
 }
 
-/* Calls `describe_name` for each file of a folder of the templates, in alphabetical order. */
-static Status list_templates(const char *folder, const char *extension,
-                             Status (*describe_name)(const char *name, Text *lines, Err *err),
-                             Text *lines, Err *err)
+/* A list command: either appends all lines, or describes one file of a folder of the templates. */
+typedef struct NameList {
+    const Command *command;
+    void (*list)(Text *lines);      /* NULL: the names are those of files */
+    const char *folder, *extension; /* of the files */
+    Status (*describe)(const char *name, Text *lines, Err *err);
+} NameList;
+
+static const NameList name_lists[] = {
+    {&command_fields, list_fields, NULL, NULL, NULL},
+    {&command_domains, list_domains, NULL, NULL, NULL},
+    {&command_formats, list_formats, NULL, NULL, NULL},
+    {&command_walls, list_walls, NULL, NULL, NULL},
+    {&command_looks, NULL, "looks", ".ini", describe_look},
+    {&command_presets, NULL, "presets", ".ini", describe_preset},
+    {&command_morphometries, NULL, "morphometry", ".txt", describe_morphometry},
+    {&command_waveforms, NULL, "waveforms", ".ini", describe_waveform},
+};
+
+/* Describes each file of a list, in alphabetical order. */
+static Status list_templates(const NameList *list, Text *lines, Err *err)
 {
     Text names = TEXT_INIT;
-    Status status = template_names(folder, extension, &names, err);
+    Status status = template_names(list->folder, list->extension, &names, err);
     char *rest = NULL, *all = NULL;
     if (status == STATUS_OK)
         status = mem_strdup(&all, text_chars(&names), err);
     for (char *name = all ? strtok_r(all, "\n", &rest) : NULL; name && status == STATUS_OK;
          name = strtok_r(NULL, "\n", &rest))
-        status = describe_name(name, lines, err);
+        status = list->describe(name, lines, err);
     free(all);
     text_release(&names);
     return status;
-}
-
-static Status list_looks(Text *lines, Err *err)
-{
-    return list_templates("looks", ".ini", describe_look, lines, err);
-}
-
-static Status list_presets(Text *lines, Err *err)
-{
-    return list_templates("presets", ".ini", describe_preset, lines, err);
-}
-
-static Status list_morphometries(Text *lines, Err *err)
-{
-    return list_templates("morphometry", ".txt", describe_morphometry, lines, err);
 }
 
 /* The values of `models --of`, and the elements that models of each kind are made of. */
@@ -170,8 +153,8 @@ static const Option models_own[] = {
     {.name = "of",
      SETS(CHOICE, ModelsOptions, of),
      .choices = model_kinds,
-     .help = "list only some models: anything (all models), primitives (only models made of "
-             "cylinders, spheres and joints), field (only models made of a potential field)"},
+     .help = "models to list: anything (all models), primitives (only models made of cylinders, "
+             "spheres and joints), field (only models made of a potential field)"},
 };
 
 static const OptionTable models_table = OPTION_TABLE(models_own);
@@ -187,25 +170,19 @@ Status run_models(void *options, Parsed *parsed, Err *err)
     return STATUS_OK;
 }
 
-static Status list_waveforms(Text *lines, Err *err)
-{
-    return list_templates("waveforms", ".ini", describe_waveform, lines, err);
-}
-
 Status run_list(void *options, Parsed *parsed, Err *err)
 {
     (void)options;
-    static const struct {
-        const Command *command;
-        ListNames *names;
-    } lists[] = {{&command_fields, list_fields},       {&command_looks, list_looks},
-                 {&command_domains, list_domains},     {&command_formats, list_formats},
-                 {&command_presets, list_presets},     {&command_morphometries, list_morphometries},
-                 {&command_waveforms, list_waveforms}, {&command_walls, list_walls}};
-    size_t i = 0;
-    while (lists[i].command != parsed->command)
-        i++;
-    return list(lists[i].names, err);
+    const NameList *list = name_lists;
+    Text lines = TEXT_INIT;
+    Status status = STATUS_OK;
+    while (list->command != parsed->command)
+        list++;
+    if (list->list)
+        list->list(&lines);
+    else
+        status = list_templates(list, &lines, err);
+    return command_print(status, &lines, err);
 }
 
 const Command command_models = {.name = "models",

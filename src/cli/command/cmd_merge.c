@@ -1,4 +1,4 @@
-/* The result is a file, and nothing is printed. */
+/* Runs the job merge, which writes a file and prints nothing. */
 #include "cli/commands.h"
 #include "study/merge.h"
 

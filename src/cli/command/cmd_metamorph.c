@@ -1,4 +1,4 @@
-/* Prints what the search found. The exit status tells whether a relation is broken. */
+/* Prints the result of the search. The exit status is 1 if a cause was found. */
 #include "cli/commands.h"
 #include "job/verify/metamorph_job.h"
 #include "options/output.h"
@@ -6,13 +6,11 @@
 
 static Status print(const MetamorphOptions *options, const Metamorph *result, Err *err)
 {
-    Text text = TEXT_TO(stdout);
+    Text text = TEXT_INIT;
     if (options->renderer.json)
         return json_write(metamorph_json(result), "-", err);
     metamorph_text(result, &text);
-    Status status = text_flush(&text, err);
-    text_release(&text);
-    return status;
+    return command_print(STATUS_OK, &text, err);
 }
 
 Status run_metamorph(void *options, Parsed *parsed, Err *err)

@@ -1,4 +1,5 @@
-/* The picture is a file, and the job tells the rest. */
+/* Runs POV-Ray, which the environment may replace. The job writes the picture and reports the time.
+ */
 #include "cli/commands.h"
 #include "cli/programs.h"
 #include "job/verify/povray.h"

@@ -1,4 +1,5 @@
-/* Prints what a rule misses. The exit status says whether it calls two equal scenes different. */
+/* Prints which faults a tolerance fails to detect. The exit status is 1 if the tolerance rejects a
+ * second rendering of the same scene. */
 #include "cli/commands.h"
 #include "job/verify/power.h"
 #include "options/output.h"
@@ -6,7 +7,7 @@
 
 static Status print(const PowerOptions *options, const PowerReport *report, Err *err)
 {
-    Text text = TEXT_TO(stdout);
+    Text text = TEXT_INIT;
     if (options->json && options->choose)
         return json_write(
             json_with(power_json(&report->power), "choice", choice_json(&report->choice)), "-",
@@ -16,9 +17,7 @@ static Status print(const PowerOptions *options, const PowerReport *report, Err 
     power_text(&report->power, &text);
     if (options->choose)
         choice_text(&report->choice, &text);
-    Status status = text_flush(&text, err);
-    text_release(&text);
-    return status;
+    return command_print(STATUS_OK, &text, err);
 }
 
 Status run_power(void *options, Parsed *parsed, Err *err)

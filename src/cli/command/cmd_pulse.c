@@ -1,5 +1,5 @@
-/* Prints what `pulse` found. Films and scenes are drawn by the commands render and scene, as if
- * they were called with the tree that has the values over time. */
+/* Prints the report of `pulse`. The commands render and scene draw animations and scenes, from the
+ * tree in memory that has the values over time. */
 #include "cli/commands.h"
 #include "job/pulse/pulsing.h"
 #include "options/output.h"

@@ -1,4 +1,4 @@
-/* Prints whether all cases agree. */
+/* Prints whether all cases agree, unless --quiet is given. */
 #include "cli/commands.h"
 #include "job/verify/report.h"
 #include <stdio.h>

@@ -1,4 +1,4 @@
-/* Prints the commands or the table of a study, if these are asked for. */
+/* Runs a study. Prints the commands of --commands or the table of --table. */
 #include "cli/commands.h"
 #include "study/study.h"
 

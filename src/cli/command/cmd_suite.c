@@ -1,4 +1,4 @@
-/* Prints the score card. The exit status tells whether all pictures are certified. */
+/* Prints the score card. The exit status is 1 if a picture is not certified. */
 #include "cli/commands.h"
 #include "job/verify/tubesuite.h"
 #include "options/output.h"
@@ -6,13 +6,11 @@
 
 static Status print(const TubeSuiteOptions *options, const TubeSuite *suite, Err *err)
 {
-    Text text = TEXT_TO(stdout);
+    Text text = TEXT_INIT;
     if (options->renderer.json)
         return json_write(tubesuite_json(suite), "-", err);
     tubesuite_text(suite, &text);
-    Status status = text_flush(&text, err);
-    text_release(&text);
-    return status;
+    return command_print(STATUS_OK, &text, err);
 }
 
 Status run_suite(void *options, Parsed *parsed, Err *err)

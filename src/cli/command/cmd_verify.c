@@ -6,14 +6,12 @@
 
 static Status print(const VerifyOptions *options, const Verification *found, bool quiet, Err *err)
 {
-    Text text = TEXT_TO(stdout);
+    Text text = TEXT_INIT;
     if (options->json)
         return json_write(verify_json(found), "-", err);
     if (!quiet)
         verify_text(found, &text);
-    Status status = text_flush(&text, err);
-    text_release(&text);
-    return status;
+    return command_print(STATUS_OK, &text, err);
 }
 
 Status run_verify(void *options, Parsed *parsed, Err *err)

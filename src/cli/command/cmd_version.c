@@ -1,5 +1,5 @@
-/* What a report of a fault needs to say: program, compiler, instructions, libraries, and the other
- * programs that are found. */
+/* Prints what a bug report needs: the versions of the program, its compiler and libraries, the
+ * processor instructions, and the other programs that were found. */
 #include "cli/commands.h"
 #include "cli/window/window.h"
 #include "figure/figure.h"
@@ -27,7 +27,8 @@ static void put_kernels(Text *text)
     text_puts(text, "\n");
 }
 
-/* The first line with a number that the program prints when asked for its version. */
+/* Copies the first line with a digit and without a colon from the output of `PROGRAM --version` to
+ * *line. Returns false if there is none or if the program fails. */
 static bool ask_version(const char *program, char *line, int size)
 {
     Text command = TEXT_INIT;
@@ -87,11 +88,7 @@ Status run_version(void *options, Parsed *parsed, Err *err)
     text_puts(&text, "\n");
     put_program("POV-Ray", povray ? povray : "povray", "which povray and verify run", &text);
     put_program("OpenSCAD", "openscad", "which would open models of scene", &text);
-    Status status = text_check(&text, err);
-    if (status == STATUS_OK)
-        fputs(text_chars(&text), stdout);
-    text_release(&text);
-    return status;
+    return command_print(STATUS_OK, &text, err);
 }
 
 const Command command_version = {

@@ -1,5 +1,6 @@
-/* A window on a tree. What it shows is the picture that `render` draws with the options that key o
- * prints: the same scene, the same renderer, the same camera, moved by moving its options. */
+/* Shows a tree in a window. The window shows the picture that `render` draws with the options that
+ * the key o prints: both use the same scene, renderer and camera. The mouse moves the camera by
+ * changing these options. */
 #include "cli/command/view_overlay.h"
 #include "cli/commands.h"
 
@@ -15,13 +16,13 @@
 #include <strings.h>
 
 typedef struct Viewer {
-    PictureOptions *options; /* camera included, once there is a scene */
+    PictureOptions *options; /* include the camera, after open_viewer */
     const Parsed *parsed;
     const Common *common;
     const char *tree, *recipe;
     PictureSource source;
-    ViewParams home; /* the camera that the options asked for */
-    Box box;         /* of the scene's geometry, for its views */
+    ViewParams home; /* the camera of the options at the start */
+    Box box;         /* stage_box of the geometry */
     Scene scene;
     Display *display;
     Window *window;
@@ -29,11 +30,11 @@ typedef struct Viewer {
     bool plain; /* the overlay is hidden */
     bool help;  /* the overlay shows the keys */
     bool stale; /* the overlay must be drawn again */
-    bool moved; /* the picture is of another camera */
+    bool moved; /* the picture in the window is out of date */
     bool quit;
 } Viewer;
 
-/* The keys, as --help and the window list them; blanks align the list in --help. */
+/* The list of keys in --help and in the window. Blanks align the list in --help. */
 #define VIEW_KEYS(X)                                                                               \
     X("drag     ", "rotate; with the right button or shift: move")                                 \
     X("wheel    ", "zoom")                                                                         \
@@ -81,7 +82,7 @@ static Status aim(Viewer *viewer, Err *err)
                         &viewer->scene.view, err);
 }
 
-/* Makes the geometry anew; the one there is stays on failure. */
+/* Builds the geometry again. On failure the geometry before stays. */
 static Status make_geometry(Viewer *viewer, Err *err)
 {
     Geometry made;
@@ -95,7 +96,7 @@ static Status make_geometry(Viewer *viewer, Err *err)
     return make_display(viewer, err);
 }
 
-/* Makes the appearance anew; the one there is stays on failure. */
+/* Builds the appearance again. On failure the appearance before stays. */
 static Status make_appearance(Viewer *viewer, Err *err)
 {
     Appearance made;
@@ -125,7 +126,7 @@ static void set_title(Viewer *viewer)
     viewer->stale = true;
 }
 
-/* Draws the overlay again for the scene as it is now. */
+/* Draws the overlay of the current scene. */
 static Status update_overlay(Viewer *viewer, Err *err)
 {
     const int *pixels = viewer->options->size.pixels;
@@ -150,7 +151,8 @@ static Status update_overlay(Viewer *viewer, Err *err)
     return status;
 }
 
-/* Where the tree cannot be had in this model, the one that there is stays. */
+/* Shows the tree in another model. If its geometry cannot be built, prints why and keeps the model
+ * before. */
 static Status use_model(Viewer *viewer, SceneModel model, Err *err)
 {
     int before = viewer->options->model;
@@ -165,7 +167,7 @@ static Status use_model(Viewer *viewer, SceneModel model, Err *err)
     return status;
 }
 
-/* The number of a field, that after the last being none. */
+/* Returns the index of a field; the number of fields for NULL, no field. */
 static size_t field_number(const char *field)
 {
     size_t number = 0;
@@ -175,7 +177,7 @@ static size_t field_number(const char *field)
     return number;
 }
 
-/* Fields that the tree has not got are passed over. */
+/* Colors the vessels by the next field. Skips fields that this tree does not have. */
 static Status use_next_field(Viewer *viewer, Err *err)
 {
     size_t none = field_number(NULL);
@@ -196,7 +198,7 @@ static Status use_next_field(Viewer *viewer, Err *err)
 
 /* ---- what is shown, as options --------------------------------------------------------------- */
 
-/* Appends what stands for one option. */
+/* Appends one value of an option in the form of a command line or of a recipe. */
 typedef Status PutSetting(Text *text, const Option *option, const char *value, Err *err);
 
 static Status put_argument(Text *text, const Option *option, const char *value, Err *err)
@@ -210,8 +212,8 @@ static Status put_argument(Text *text, const Option *option, const char *value, 
     return STATUS_OK;
 }
 
-/* An INI file takes blanks at the ends of a value away, and what follows a semicolon after a
- * blank. */
+/* Refuses a value that an INI file cannot hold: the reader removes blanks at the ends of a value,
+ * and a semicolon after a blank begins a comment. */
 static Status put_pair(Text *text, const Option *option, const char *value, Err *err)
 {
     size_t length = strlen(value);
@@ -237,8 +239,8 @@ static Status put_setting(const Setting *setting, PutSetting *put, Text *text, E
     return status;
 }
 
-/* Whether the option makes the picture what it is; `plain` has its default. `text` as
- * setting_differs has it. */
+/* Returns true if the option is needed to reproduce the picture. `plain` has the default value.
+ * `text` fails as in setting_differs. */
 static bool is_shown(const Viewer *viewer, const Setting *setting, const Setting *plain, Text *text)
 {
     const Parsed *parsed = viewer->parsed;
@@ -252,8 +254,8 @@ static bool is_shown(const Viewer *viewer, const Setting *setting, const Setting
            !is_one_of(name, framing) && setting_differs(setting, plain, text);
 }
 
-/* Model, size, projection, where the camera is, and all that is not by default; the first settings
- * of a view are its own. */
+/* Appends model, size, projection, the position of the camera, and every option that differs from
+ * its default. */
 static Status put_settings(const Viewer *viewer, PutSetting *put, Text *text, Err *err)
 {
     Parsed plain;
@@ -437,7 +439,7 @@ static Status draw(Viewer *viewer, bool *done, Err *err)
     return window_show(viewer->window, picture.rgb, picture.width, picture.height, err);
 }
 
-/* All events that wait are heard before the next picture is drawn. */
+/* Handles all waiting events before each picture, so that drawing does not delay the mouse. */
 static Status run(Viewer *viewer, Err *err)
 {
     bool done = false;
@@ -453,7 +455,7 @@ static Status run(Viewer *viewer, Err *err)
     return STATUS_OK;
 }
 
-/* Turns the camera once around in `pictures` full pictures, as fast as they are drawn. */
+/* Draws `pictures` full-quality pictures of one turn of the camera, and prints the speed. */
 static Status turn_around(Viewer *viewer, int pictures, Err *err)
 {
     bool done;
@@ -469,7 +471,7 @@ static Status turn_around(Viewer *viewer, int pictures, Err *err)
         display_set_coarseness(viewer->display, 1);
         TRY(draw(viewer, &done, err));
     }
-    printf("%.1f pictures a second, %.1f ms of a processor each\n",
+    printf("%.1f pictures per second, %.1f ms of processor time each\n",
            pictures / (clock_seconds() - start_s),
            1e3 * (clock_cpu_seconds() - start_cpu_s) / pictures);
     return STATUS_OK;
@@ -506,14 +508,15 @@ static const Option own[] = {
     {.name = "save",
      SETS(OUTPUT, ViewOptions, recipe),
      .aside = true,
-     .help = "recipe file that the key w writes"},
+     .help = "recipe that the key w writes"},
     {.name = "turntable",
      SETS(WHOLE, ViewOptions, turn),
      FROM_TO(1, 100000),
      .group = GROUP_RUN,
      .aside = true,
      .otherwise = "",
-     .help = "draw N full-quality images of one turn, print the images per second, and quit"},
+     .help = "number of full-quality images of one turn; the command draws them, prints the "
+             "images per second, and quits"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);

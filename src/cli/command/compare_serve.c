@@ -1,5 +1,6 @@
 /* `compare --serve` answers questions of a test runner, one line of JSON for each line of JSON.
- * Each question is a command line of its own, so that a bad one changes nothing for the next. */
+ * Each question is parsed as a command line of its own, so that a question with an error does not
+ * change the next question. */
 #include "cli/command/compare_serve.h"
 
 #include "job/verify/compare.h"
@@ -7,7 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Adds a string, number or boolean as the value of an option. false leaves the option as it is. */
+/* Adds a string, number or boolean as the value of an option. The value false leaves the
+ * option unchanged. */
 static Status set_option(Parsed *parsed, const char *name, const json_t *value, Err *err)
 {
     char number[40];

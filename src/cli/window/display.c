@@ -1,8 +1,9 @@
 /* Progressive display. While the camera moves, pictures are drawn at 1 / k of the resolution. k
- * grows when a frame overran its time and shrinks by 1 when it did not, but does not return to a
- * value that was too slow within the last WHILE frames (hysteresis). When the camera rests, the
- * coarse picture is replaced from the top down by the whole one and that by the antialiased one,
- * some rows at a time, so that a hand on the mouse never waits for more than a few rows. */
+ * grows when a frame took longer than frame_s, and shrinks by 1 when it did not. k does not return
+ * to a value that was too slow within the last WHILE frames (hysteresis). When the camera rests,
+ * rows at full resolution replace the coarse picture from the top down, and antialiased rows then
+ * replace these. Each call draws only a few rows, so that the window reacts to the mouse at once.
+ */
 #include "cli/window/display.h"
 
 #include "image/image.h"
@@ -10,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* For drawing; the rest of a thirtieth of a second goes into the window. */
+/* Time for drawing, s. The window needs the rest of 1/30 s. */
 static const double frame_s = 1.0 / 40, refine_s = 1.0 / 40;
 enum { MAX_COARSENESS = 16, WHILE = 60 /* pictures */ };
 
@@ -69,13 +70,13 @@ static Status set_size(Display *display, int width, int height, Err *err)
     return STATUS_OK;
 }
 
-/* What is drawn. */
+/* The view that is drawn, and the appearance of its vessels. */
 typedef struct Subject {
     const View *view;
     const Appearance *appearance;
 } Subject;
 
-/* Rows first .. first + rows of the subject's picture go to the display's. */
+/* Draws the rows from `first` to first + rows - 1 into the picture of the display. */
 static Status draw_rows(Display *display, Subject subject, int first, int rows, int antialias,
                         Err *err)
 {
@@ -98,8 +99,9 @@ static DisplayPicture picture_of(const Display *display)
     return (DisplayPicture){display->rgb, display->width, display->height};
 }
 
-/* A coarser picture takes time in proportion to its pixels, more or less; of a finer one nothing is
- * known but what was tried. */
+/* Chooses the coarseness of the next picture from the time of this one. The time of a coarser
+ * picture is about proportional to its pixels. The time of a finer picture is only known after a
+ * try. */
 static void steer(Display *display, double seconds)
 {
     int k = display->coarseness;
@@ -134,7 +136,7 @@ Status display_quick(Display *display, const View *view, const Appearance *appea
     return status;
 }
 
-/* The coarse picture with the pixels of the window. */
+/* Enlarges the coarse picture to the pixels of the window. */
 static Status enlarge(Display *display, const Camera *camera, Err *err)
 {
     int width = display->width, height = display->height;

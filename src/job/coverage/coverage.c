@@ -38,31 +38,31 @@ static const Option rows[] = {
      SETS(OUTPUT, CoverageOptions, output),
      .argument = "D.nii.gz",
      .otherwise = "",
-     .help = "write the distance of each voxel from the nearest vessel wall, mm, as a volume: 0 in "
+     .help = "volume to write: the distance of each voxel from the nearest vessel wall, mm; 0 in "
              "vessels, NaN outside the tissue shape"},
     {.name = "territories",
      SETS(OUTPUT, CoverageOptions, territories),
      .argument = "L.nii.gz",
      .otherwise = "",
-     .help =
-         "write two files: a volume with the label of the territory of each voxel (0 outside the "
-         "tissue shape), and L.csv with the volume and flow of each territory"},
+     .help = "volume to write: the label of the territory of each voxel, 0 outside the tissue "
+             "shape. L.csv beside it lists the volume and flow of each territory"},
     {.name = "territory",
      SETS(CHOICE, CoverageOptions, kind),
      .choices = territory_kinds,
      .needs = "territories",
-     .help = "with --territories: what divides the tissue: terminal (the nearest end of a terminal "
-             "segment), segment "
-             "(the nearest wall), tree (the nearest wall; label: number of its tree)"},
+     .help = "with --territories: what the territory of a voxel belongs to: terminal (the "
+             "nearest end of a terminal segment), segment (the nearest vessel wall; the label is "
+             "the id of the segment), tree (the nearest vessel wall; the label is the number of "
+             "the tree)"},
     {.name = "summary",
      SETS(OUTPUT, CoverageOptions, summary),
      .argument = "S.csv",
      .otherwise = "",
-     .help = "write the results as rows: quantity, at, value, unit"},
+     .help = "write the results as a table with the columns quantity, at, value and unit"},
     {.name = "json",
      SETS(OUTPUT, CoverageOptions, json),
      .otherwise = "",
-     .help = "write the results as JSON"},
+     .help = "write the results as JSON to FILE"},
     {.name = "domain",
      SETS(TEXT, CoverageOptions, domain),
      .group = GROUP_TREE,

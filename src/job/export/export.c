@@ -19,8 +19,8 @@ static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, ExportOptions, output),
      .argument = "M.stl",
-     .help = "output file; its extension selects the format: a mesh (M.stl), curves, a volume of "
-             "voxels (V.nii.gz) or an interactive web page (P.html)"},
+     .help = "file to write; its extension selects the format: a mesh (M.stl), curves, a volume "
+             "of voxels (V.nii.gz) or an interactive web page (P.html)"},
     {.name = "model",
      SETS(CHOICE, ExportOptions, meshing.body),
      .choices = vessel_body_names,
@@ -41,7 +41,7 @@ static const Option own[] = {
      .group = GROUP_VESSELS,
      FROM_TO(RANGE_ABOVE_0, 1),
      .when = WHEN(MESH) | OF_SURFACE,
-     .help = "level of detail: keep about this fraction of the triangles; smaller values move them "
+     .help = "fraction of the triangles that is kept, about; smaller values move the triangles "
              "farther from the exact surface"},
     {.name = "tube-edge",
      SETS(NUMBER, ExportOptions, meshing.tube_edge),
@@ -49,8 +49,8 @@ static const Option own[] = {
      FROM_TO(0.05, 1e6),
      .otherwise = "as long as the tube",
      .when = WHEN(MESH) | OF_SURFACE,
-     .help = "maximum length of a triangle along a straight tube, in units of the radius; set it "
-             "for flow solvers"},
+     .help = "maximum length of the triangles along a straight tube, in units of its radius; set "
+             "it for flow solvers"},
     {SMOOTH_OPTION(ExportOptions, smooth), .when = WHEN(NO_PAGE)},
     {.name = "prune-radius",
      SETS(NUMBER, ExportOptions, prune_radius_mm),
@@ -58,7 +58,7 @@ static const Option own[] = {
      .range = &prune_range,
      .unit = "mm",
      .otherwise = "",
-     .help = "drop segments whose radius is below MM"},
+     .help = "radius below which segments are dropped, with their subtrees"},
     {.name = "part-overlaps",
      SETS(FLAG, ExportOptions, meshing.part_overlaps),
      .group = GROUP_VESSELS,
@@ -68,9 +68,8 @@ static const Option own[] = {
      SETS(FLAG, ExportOptions, parts),
      .group = GROUP_VESSELS,
      .when = OF_SURFACE,
-     .help =
-         "STL only: write the wall and each vessel end as a named solid, as text; VTP, gmsh and "
-         "VTU files always have them"},
+     .help = "STL only: write the wall and each vessel end as a named solid, in text form; VTP, "
+             "gmsh and VTU files always have these parts"},
     {.name = "layers",
      SETS(WHOLE, ExportOptions, meshing.layers.n_layers),
      .group = GROUP_VESSELS,
@@ -82,19 +81,19 @@ static const Option own[] = {
      .group = GROUP_VESSELS,
      FROM_TO(0.001, 0.5),
      .when = WHEN(LAYERS) | OF_SURFACE,
-     .help = "thickness of all layers together, as a fraction of the local radius; layers are "
-             "thinner where prisms would be inverted, or walls are near each other"},
+     .help = "thickness of all --layers together, as a fraction of the local radius; layers "
+             "become thinner where prisms would be inverted, or where walls are near each other"},
     {.name = "layer-growth",
      SETS(NUMBER, ExportOptions, meshing.layers.growth),
      .group = GROUP_VESSELS,
      FROM_TO(1, 2),
      .when = WHEN(LAYERS) | OF_SURFACE,
-     .help = "thickness of a layer divided by the thickness of the layer nearer to the wall"},
+     .help = "thickness of a layer divided by the thickness of the next layer towards the wall"},
     {.name = "lattice",
      SETS(FLAG, ExportOptions, lattice),
      .group = GROUP_VESSELS,
      .when = OF_SURFACE,
-     .help = "3MF only: write one exact beam per segment, and a mesh as a preview only"},
+     .help = "3MF only: write one exact beam per segment; the mesh in the file is a preview"},
     {.name = "wall",
      SETS(NUMBER, ExportOptions, wall_mm),
      .group = GROUP_VESSELS,
@@ -102,7 +101,7 @@ static const Option own[] = {
      .unit = "mm",
      .otherwise = "",
      .when = WHEN(NAMED_PARTS) | OF_SURFACE,
-     .help = "thickness of the wall: add a second, outer surface at this distance from the vessel "
+     .help = "thickness of the wall, by which a second, outer surface is added around the vessel "
              "surface; files with named parts only (VTP, or STL with --parts)"},
     {.name = "print",
      SETS(TEXT, ExportOptions, print),

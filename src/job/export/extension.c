@@ -20,8 +20,8 @@ static const Option rows[] = {
      .otherwise = "",
      .when = WHEN(NAMED_PARTS) | WHEN(NO_VOLUME) | WHEN(NO_PAGE),
      .excludes = "smooth",
-     .help = "lengthen each vessel end along its axis by N of its radii, for flow solvers; files "
-             "with named parts only"},
+     .help = "length, in radii of the end, by which each vessel end is extended along its axis, "
+             "for flow solvers; files with named parts only"},
     {.name = "extend-inlet",
      SETS(NUMBER, ExtensionOptions, inlet),
      GIVEN(ExtensionOptions, has_inlet),
@@ -31,7 +31,7 @@ static const Option rows[] = {
      .otherwise = "as --extend",
      .when = WHEN(NAMED_PARTS) | WHEN(NO_VOLUME) | WHEN(NO_PAGE),
      .excludes = "smooth",
-     .help = "lengthen the inlets by N radii"},
+     .help = "as --extend, for inlets only"},
     {.name = "extend-outlet",
      SETS(TEXT, ExtensionOptions, outlet),
      .group = GROUP_VESSELS,
@@ -39,8 +39,8 @@ static const Option rows[] = {
      .otherwise = "as --extend",
      .when = WHEN(NAMED_PARTS) | WHEN(NO_VOLUME) | WHEN(NO_PAGE),
      .excludes = "smooth",
-     .help = "lengthen the outlets by N radii, or each by the number of a CSV file with the "
-             "columns id and radii"},
+     .help = "as --extend, for outlets only; or a CSV file with the columns id and radii (number "
+             "of radii)"},
 };
 
 const OptionTable extension_table = OPTION_TABLE(rows);

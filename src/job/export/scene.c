@@ -31,27 +31,29 @@ static const Option own[] = {
      SETS(OUTPUT, SceneOptions, output),
      .is_told = true,
      .argument = "S.pov|S.scad|S.tachyon",
-     .help = "scene for POV-Ray (S.pov, with the geometry in S.inc beside it), model for OpenSCAD "
-             "(S.scad) or scene for Tachyon (S.tachyon)"},
+     .help = "file to write: a scene for POV-Ray (S.pov, with the geometry in S.inc beside it), "
+             "a model for OpenSCAD (S.scad) or a scene for Tachyon (S.tachyon)"},
     {BEAT_OPTION(SceneOptions, picture.beat), .when = WHEN(POVRAY)},
     {.name = "ids",
      SETS(SWITCH, SceneOptions, ids),
      .group = GROUP_POVRAY,
      .when = WHEN(FIELD_IDS) | WHEN(POVRAY),
-     .help = "isosurface and blob only: add the data that POV-Ray needs to render the id plane"},
+     .help = "isosurface and blob only: add the data with which POV-Ray can render the id plane "
+             "(the segment of each pixel)"},
     {.name = "ini",
      SETS(SWITCH, SceneOptions, ini),
      .group = GROUP_POVRAY,
      .when = WHEN(POVRAY),
-     .help = "also write S.ini with size, antialiasing and animations, so that `povray S.ini` "
-             "renders the image"},
+     .help = "also write S.ini, with the size, antialiasing and animation of the scene, so that "
+             "`povray S.ini` renders the image"},
     {.name = "scad",
      SETS(CHOICE, SceneOptions, scad),
      .choices = scad_forms,
      .group = GROUP_VESSELS,
      .when = WHEN(OPENSCAD),
-     .help = "OpenSCAD only: parametric (modules with sliders in the customizer), polyhedron (one "
-             "closed surface), auto (parametric for few vessels, polyhedron for many)"},
+     .help = "OpenSCAD only: kind of model: parametric (modules with sliders in the customizer), "
+             "polyhedron (one closed surface), auto (parametric for few vessels, polyhedron for "
+             "many)"},
 };
 
 static void set_defaults(void *options)

@@ -31,13 +31,13 @@ static const Option volume_options[] = {
      .group = GROUP_VOXELS,
      .argument = "MM",
      .otherwise = "1/256 of the longest side",
-     .help = "edge length of the voxels of the volume, mm; one length, or three lengths X,Y,Z"},
+     .help = "edge length of a voxel of the volume, mm: one length, or three, X,Y,Z"},
     {.name = "depth",
      SETS(CHOICE, VolumeOptions, depth),
      .choices = depths,
      .group = GROUP_VOXELS,
-     .help = "type of the samples, which state the filled fraction of each voxel: 8 or 16 (bits, "
-             "unsigned integer), float (32-bit floating point)"},
+     .help = "type of the samples, each of which states the fraction of a voxel that vessels "
+             "fill: 8 or 16 (unsigned integer of 8 or 16 bits), float (32-bit floating point)"},
     {.name = "labels",
      SETS(CHOICE, VolumeOptions, labels),
      .choices = label_kinds,
@@ -50,8 +50,8 @@ static const Option volume_options[] = {
      SETS(OUTPUT, VolumeOptions, centreline),
      .argument = "C.nii.gz",
      .group = GROUP_VOXELS,
-     .help =
-         "also write a volume that is 1 in each voxel that a segment axis passes through, else 0"},
+     .help = "second volume to write: 1 in each voxel that the axis of a segment passes through, "
+             "else 0"},
 };
 
 const OptionTable volume_table = OPTION_TABLE(volume_options);

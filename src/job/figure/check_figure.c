@@ -27,7 +27,8 @@ static const Option own[] = {
      FROM_TO(1, 400),
      .unit = "%",
      .otherwise = "the preset's",
-     .help = "maximum total ink of a CMYK figure: cyan, magenta, yellow and black of a pixel"},
+     .help = "maximum total ink of a pixel of a CMYK figure: the sum of cyan, magenta, yellow "
+             "and black"},
     {.name = "json",
      SETS(FLAG, CheckFigureOptions, json),
      .help = "print the result as JSON on standard output"},

@@ -24,10 +24,10 @@ static const Option own[] = {
      SETS(SIZE, FigureOptions, size),
      FROM_TO(1, IMAGE_MAX_SIDE),
      .group = GROUP_PAGE,
-     .help = "size of the page on paper (183mmx120mm) or in pixels (2000x1300); one length gives a "
-             "square"},
+     .help = "size of the page, on paper (183mmx120mm) or in pixels (2000x1300); one length "
+             "gives a square"},
     {DPI_OF_SIZE(FigureOptions, size), .group = GROUP_PAGE,
-     .help = "pixels per inch: sets the number of pixels of a --size on paper; with a --size in "
+     .help = "pixels per inch. Sets the number of pixels of a --size on paper; with a --size in "
              "pixels it is only stored in the file (.png, .tif, .jpg)"},
     {.name = "panel-columns",
      .former = "columns",
@@ -40,23 +40,24 @@ static const Option own[] = {
      FROM_TO(0, 1000),
      .group = GROUP_PAGE,
      .unit = "mm",
-     .help = "space between panels on the page"},
+     .help = "width of the space between panels on the page"},
     {.name = "margin",
      SETS(NUMBER, FigureOptions, margin_mm),
      FROM_TO(0, 1000),
      .group = GROUP_PAGE,
      .unit = "mm",
-     .help = "space between the panels and the edge of the page"},
+     .help = "width of the space between the panels and the edge of the page"},
     {.name = "same-scale",
      SETS(SWITCH, FigureOptions, same_scale),
      .group = GROUP_PAGE,
-     .help = "show the trees of all panels at one scale, the largest at which every panel holds "
-             "its tree"},
+     .help = "draw the trees of all panels at one scale, the largest at which every tree fits in "
+             "its panel"},
     {.name = "letters",
      SETS(CHOICE, FigureOptions, letters),
      .choices = letter_names,
      .group = GROUP_PAGE,
-     .help = "letters of panels whose recipe sets none: lower (a, b, c), upper (A, B, C), none"},
+     .help = "letters of the panels whose section of the recipe sets none: lower (a, b, c), "
+             "upper (A, B, C), none"},
     {.name = "text-size",
      SETS(NUMBER, FigureOptions, text_pt),
      FROM_TO(1, 1000),

@@ -18,68 +18,74 @@ static const Option rows[] = {
      SETS(OUTPUT, FlowingOptions, output),
      .argument = "F.vtp",
      .otherwise = "",
-     .help = "write the network with its fields: flow, velocity and wss, all 0 or more; pressure; "
-             "direction (1 along the segment, -1 against it, 0 if the flow is 0 or lost in "
-             "rounding); hematocrit, with --viscosity-law pries. The extension selects the format"},
+     .help = "network to write, with these fields per segment: flow, velocity and wss (wall "
+             "shear stress), all 0 or more; pressure; direction (1 if the blood flows along the "
+             "segment, -1 if against it, 0 if the flow is 0 or within the rounding error); "
+             "hematocrit, with --viscosity-law pries. The extension selects the format"},
     {.name = "summary",
      SETS(OUTPUT, FlowingOptions, summary),
      .argument = "S.csv",
      .otherwise = "",
-     .help = "write the report as rows: quantity, value, unit"},
-    {.name = "json", SETS(FLAG, FlowingOptions, json), .help = "print the report as JSON"},
+     .help = "write the report as a table with the columns quantity, value and unit"},
+    {.name = "json",
+     SETS(FLAG, FlowingOptions, json),
+     .help = "print the report as JSON on "
+             "standard output"},
     {.name = "boundary",
      SETS(TEXT, FlowingOptions, boundary),
      .group = GROUP_BLOOD,
      .argument = "B.csv|file|terminals",
      .otherwise = "from the file, else terminals",
-     .help = "boundary conditions: a CSV file with the columns id, pressure (mmHg), flow (ml/min, "
-             "above 0 where blood enters) and hematocrit, where each row has a pressure or a flow; "
-             "file (those of a Secomb network); terminals (--p-perf at the roots, shares of "
-             "--q-perf at the terminals)"},
+     .help = "boundary conditions: the known pressures and flows. B.csv: a table with the "
+             "columns id (of a node), pressure (mmHg), flow (ml/min, above 0 where blood enters) "
+             "and hematocrit (of blood that enters); each row has a pressure or a flow. file: "
+             "the boundary nodes of a Secomb network. terminals: --p-perf at the roots, and a "
+             "share of --q-perf at each terminal"},
     {.name = "ends",
      SETS(CHOICE, FlowingOptions, ends),
      .choices = ends_names,
      .group = GROUP_BLOOD,
-     .help = "with a table or a file: ends without a boundary condition: refuse (an error), closed "
-             "(no flow), estimate "
-             "(pressures that bring all pressures and wall shear stresses near targets; Fry 2012)"},
+     .help = "what to do with an end of a vessel that has no boundary condition, for --boundary "
+             "B.csv or file only: refuse (stop with an error), closed (no flow through the end), "
+             "estimate (choose the pressures that bring pressure and wall shear stress of all "
+             "vessels nearest to the two targets; Fry 2012)"},
     {.name = "separation",
      SETS(FLAG, FlowingOptions, separation),
      .group = GROUP_BLOOD,
      .when = WHEN(PRIES),
-     .help = "divide red cells at bifurcations by the law of phase separation (Pries 1989); needs "
-             "--viscosity-law pries"},
+     .help = "compute the hematocrit of each vessel by the law of phase separation at "
+             "bifurcations (Pries 1989), for --viscosity-law pries only; without this option all "
+             "vessels have --hematocrit"},
     {.name = "cell-volume",
      SETS(NUMBER, FlowingOptions, cell_fl),
      FROM_TO(5, 500),
      .unit = "fl",
      .group = GROUP_BLOOD,
      .when = WHEN(PRIES),
-     .help =
-         "--viscosity-law pries: mean corpuscular volume of the red cells, 92 for human blood, 55 "
-         "for rats"},
+     .help = "mean volume of a red cell, for --viscosity-law pries only; 92 for human blood, 55 "
+             "for rats"},
     {.name = "target-pressure",
      SETS(NUMBER, FlowingOptions, target_mmhg),
      FROM_TO(0, 1000),
      .unit = "mmHg",
      .group = GROUP_BLOOD,
      .when = WHEN(ESTIMATED),
-     .help = "--ends estimate: pressure that all vessels should have"},
+     .help = "target of the pressure in all vessels, for --ends estimate only"},
     {.name = "target-wss",
      SETS(NUMBER, FlowingOptions, target_pa),
      FROM_TO(0, 1000),
      .unit = "Pa",
      .group = GROUP_BLOOD,
      .when = WHEN(ESTIMATED),
-     .help = "--ends estimate: wall shear stress that all vessels should have"},
+     .help = "target of the wall shear stress in all vessels, for --ends estimate only"},
     {.name = "starts",
      SETS(COUNT, FlowingOptions, starts),
      FROM_TO(1, 100),
      .group = GROUP_BLOOD,
      .when = WHEN(ESTIMATED),
-     .help = "--ends estimate: number of estimates. The first starts without directions and is the "
-             "result. The others start with random directions, and the report states how far they "
-             "differ from it"},
+     .help = "number of estimates, for --ends estimate only. The first estimate begins without "
+             "flow directions and is the result. The others begin with random directions "
+             "(--seed); the report states how far they differ from the result"},
 };
 
 static void set_defaults(void *options)

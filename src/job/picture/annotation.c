@@ -50,20 +50,20 @@ static const Option rows[] = {
      .group = GROUP_PAGE,
      .unit = "mm",
      .otherwise = "",
-     .help =
-         "draw a scale bar that represents this length of the tree; orthographic projection only"},
+     .help = "length of the tree that a scale bar represents; without this option none is drawn; "
+             "orthographic only"},
     {.name = "scale-bar-at",
      SETS(CHOICE, Annotation, scale_bar_at),
      .choices = corner_names,
      .group = GROUP_PAGE,
      .needs = "scale-bar",
-     .help =
-         "corner of the scale bar; emptiest selects the corner where it covers the least vessels"},
+     .help = "corner of the scale bar; emptiest selects the corner where the bar covers the "
+             "fewest vessels"},
     {.name = "letter",
      SETS(TEXT, Annotation, letter),
      .group = GROUP_PAGE,
      .argument = "TEXT",
-     .help = "draw a bold letter in the upper left corner, as for a panel of a figure"},
+     .help = "bold text in the upper left corner, such as the letter of a panel"},
 };
 
 const OptionTable legend_table = OPTION_TABLE(legend_rows);

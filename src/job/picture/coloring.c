@@ -29,7 +29,7 @@ static const Option rows[] = {
      .otherwise = "",
      .when = WHEN(ONE_MOMENT),
      .needs = "color-by",
-     .help = "show only time step K of values that change with time; the first is 1"},
+     .help = "time step that is shown, of values that change with time; the first is 1"},
     {.name = "colormap",
      SETS(LOOKUP, Coloring, colormap),
      .group = GROUP_COLOR,
@@ -51,14 +51,15 @@ static const Option rows[] = {
      .otherwise = "minimum and maximum of the field",
      .when = WHEN(NO_BOUNDS),
      .needs = "color-by",
-     .help = "values at the two ends of the color map, or percentiles of the field (2%,98%)"},
+     .help = "values at the two ends of the color map (0,25), or percentiles of the field "
+             "(2%,98%)"},
     {.name = "range-of",
      SETS(CHOICE, Coloring, range_of),
      .choices = ranges_of,
      .group = GROUP_COLOR,
      .when = WHEN(WHOLE_RANGE) | WHEN(FITTED_RANGE),
      .needs = "color-by",
-     .help = "segments that the percentiles and the default range are computed from: drawn (only "
+     .help = "segments from which percentiles and the default --range are computed: drawn (only "
              "segments that are drawn), tree (all segments, also pruned ones)"},
     {.name = "log",
      SETS(FLAG, Coloring, log),
@@ -73,8 +74,8 @@ static const Option rows[] = {
      .argument = "N|A,B,...",
      .when = WHEN(STEPS),
      .needs = "color-by",
-     .help = "number of classes, each of one color, or the bounds between classes: 0,5,10 makes "
-             "the classes 0 to 5 and 5 to 10; 1: continuous colors"},
+     .help = "number of classes of one color each, or the bounds between classes: 0,5,10 makes "
+             "the classes 0 to 5 and 5 to 10; 1 makes continuous colors"},
     {.name = "under",
      SETS(COLOR, Coloring, under),
      GIVEN(Coloring, has_under),

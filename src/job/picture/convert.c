@@ -28,14 +28,14 @@ static const Option own[] = {
      .argument = "N",
      .otherwise = "",
      .when = WHEN(KEEPS_DPI),
-     .help = "resolution in pixels per inch, to store in a .png, .tif or .jpg"},
+     .help = "resolution to store in a .png, .tif or .jpg, pixels per inch"},
     {.name = "background",
      SETS(COLOR, ConvertOptions, background),
      GIVEN(ConvertOptions, has_background),
      .group = GROUP_PRESS,
      .otherwise = "none: keep the transparency",
-     .help =
-         "color to composite a transparent image over: a CSS name, #RRGGBB, or R,G,B each 0..1"},
+     .help = "color that a transparent image is composited over: a CSS name, #RRGGBB, or R,G,B "
+             "each 0..1"},
 };
 
 static void set_defaults(void *options)

@@ -55,8 +55,8 @@ static const Option rows[] = {
      .choices = potentials,
      .group = GROUP_VESSELS,
      .when = WHEN(POTENTIAL) | WHEN(SURFACES),
-     .help = "isosurface only: which vessels blend: paper (all vessels that come close), graph "
-             "(only vessels that are close along the tree)"},
+     .help = "isosurface only: which vessels blend into each other: paper (all vessels that come "
+             "close), graph (only vessels that are close along the tree)"},
     {.name = "joints",
      SETS(CHOICE, PictureOptions, joints),
      GIVEN(PictureOptions, has_joints),
@@ -86,7 +86,7 @@ static const Option rows[] = {
      .range = &prune_range,
      .group = GROUP_VESSELS,
      .unit = "mm",
-     .help = "drop segments whose radius is below MM"},
+     .help = "radius below which segments are dropped, with their subtrees"},
     {.name = "color-blend",
      SETS(CHOICE, PictureOptions, color_blend),
      .choices = color_blends,
@@ -101,11 +101,11 @@ static const Option rows[] = {
      FROM_TO(1, IMAGE_MAX_SIDE),
      .group = GROUP_CAMERA,
      .when = WHEN(CAMERA),
-     .help = "image size in pixels (800x600) or on paper (89mmx60mm); one length gives a square "
-             "(89mm)"},
+     .help = "size of the image, in pixels (800x600) or on paper (89mmx60mm); one length gives a "
+             "square (89mm)"},
     {DPI_OF_SIZE(PictureOptions, size), .group = GROUP_CAMERA,
      .when = WHEN(ON_PAPER) | WHEN(ON_PAPER_OR_KEPT),
-     .help = "pixels per inch: sets the number of pixels of a --size on paper; with a --size in "
+     .help = "pixels per inch. Sets the number of pixels of a --size on paper; with a --size in "
              "pixels it is only stored in the file (.png, .tif, .jpg)"},
     {.name = "projection",
      SETS(CHOICE, PictureOptions, projection),
@@ -130,8 +130,8 @@ static const Option rows[] = {
      .argument = "AZ,EL",
      .otherwise = "",
      .when = WHEN(CAMERA),
-     .help =
-         "rotate the camera of --view AZ degrees to the right and EL degrees up around the tree"},
+     .help = "rotation of the camera around the tree from its position of --view: AZ degrees to "
+             "the right and EL degrees up"},
     {.name = "up-axis",
      SETS(CHOICE, PictureOptions, stage.up_axis),
      .choices = up_axes,
@@ -143,9 +143,9 @@ static const Option rows[] = {
      .choices = framings,
      .group = GROUP_CAMERA,
      .when = WHEN(CAMERA),
-     .help = "what to fit in the image: tree (axes and radii of the segments, so that images of "
-             "all models match), domain (the tissue shape that the tree was grown in; an error if "
-             "its header states none), drawing (the geometry as drawn)"},
+     .help = "what the image is framed to show: tree (axes and radii of the segments; images of "
+             "all models match), domain (the tissue shape that the tree was grown in, which the "
+             "header of the tree must state), drawing (the geometry as drawn)"},
     {.name = "location",
      SETS(VECTOR, PictureOptions, stage.location),
      GIVEN(PictureOptions, stage.has_location),
@@ -159,8 +159,8 @@ static const Option rows[] = {
      .group = GROUP_CAMERA,
      .otherwise = "",
      .when = WHEN(CAMERA),
-     .help = "point at the center of the image, mm; without --location the framed camera is moved "
-             "so that it looks there"},
+     .help = "point at the center of the image, mm; without --location the framed camera is "
+             "moved so that it looks at this point"},
     {.name = "up",
      SETS(VECTOR, PictureOptions, stage.up),
      GIVEN(PictureOptions, stage.has_up),
@@ -184,7 +184,8 @@ static const Option rows[] = {
      .unit = "mm",
      .otherwise = "",
      .when = WHEN(CAMERA),
-     .help = "height of the visible region; orthographic only"},
+     .help = "height of the region of the scene that the image shows; orthographic only; without "
+             "this option the tree is framed"},
     {.name = "margin",
      SETS(NUMBER, PictureOptions, stage.margin),
      FROM_TO(0, 0.45),
@@ -206,9 +207,8 @@ static const Option rows[] = {
      .group = GROUP_LIGHT,
      .otherwise = "the look's: 0 in most looks",
      .when = WHEN(LIT),
-     .help =
-         "ambient occlusion with N rays per pixel (with --exact: N rays per sample); 0 turns it "
-         "off"},
+     .help = "number of rays of ambient occlusion per pixel (with --exact: per sample); 0 turns "
+             "ambient occlusion off"},
     {.name = "look",
      SETS(LOOKUP, PictureOptions, look),
      .group = GROUP_LIGHT,
@@ -222,16 +222,16 @@ static const Option rows[] = {
      .choices = erf_names,
      .group = GROUP_POVRAY,
      .when = WHEN(POTENTIAL),
-     .help =
-         "POV-Ray isosurface only: how to compute the error function: fast (approximation), exact"},
+     .help = "isosurface with POV-Ray only: how the error function is computed: fast "
+             "(approximation), exact"},
     {.name = "cell-beta",
      SETS(NUMBER, PictureOptions, cell_beta),
      FROM_TO(0.5, 64),
      .group = GROUP_POVRAY,
      .otherwise = "6",
      .when = WHEN(POTENTIAL),
-     .help = "POV-Ray isosurface only: cell size of the scene's grid, in units of the smallest "
-             "radius in the cell"},
+     .help = "isosurface with POV-Ray only: cell size of the grid of the scene, in units of the "
+             "smallest radius in the cell"},
     {.name = "shadows",
      SETS(SWITCH, PictureOptions, stage.shadows),
      GIVEN(PictureOptions, has_shadows),

@@ -38,7 +38,7 @@ static const Option rows[] = {
      .argument = "8|16|32",
      .otherwise = "8; 32 for .exr",
      .when = WHEN(PACKED) | WHEN(SURFACES),
-     .help = "bits per channel: 8 or 16; .exr files store floats of 16 or 32 bits"},
+     .help = "bits per channel; .exr files store 16 or 32 bits (floats), all other files 8 or 16"},
     {.name = "compression",
      SETS(CHOICE, PressOptions, compression),
      .choices = compressions,

@@ -25,13 +25,15 @@ static const Option own[] = {
      SETS(TEXT, RenderOptions, planes),
      .argument = "LIST",
      .when = WHEN(SURFACES) | WHEN(WHOLE),
-     .help = "planes to write beside the image, or into an .exr: any of color,depth,normal,id"},
+     .help = "planes of data to write, separated by commas: color, depth (distance from the "
+             "camera, mm), normal (of the surface), id (of the segment); each plane is a file "
+             "beside the image, or a layer of an .exr image"},
     {.name = "exact",
      SETS(FLAG, RenderOptions, exact),
      .group = GROUP_RUN,
      .when = WHEN(SURFACES),
-     .help = "draw the image that verify draws: POV-Ray's arithmetic, ray by ray, with one ray per "
-             "pixel unless --antialias is given"},
+     .help = "draw exactly the image that `corcast verify` compares with POV-Ray: POV-Ray's "
+             "arithmetic, ray by ray, with one ray per pixel unless --antialias is given"},
     {.name = "method",
      SETS(CHOICE, RenderOptions, method),
      GIVEN(RenderOptions, has_method),
@@ -54,8 +56,8 @@ static const Option own[] = {
      .group = GROUP_VESSELS,
      .unit = "mm",
      .otherwise = "",
-     .help = "draw outlines of this width on paper instead of shaded vessels, without hidden "
-             "lines; .svg, .pdf or .eps only"},
+     .help = "width on paper of lines that draw the outlines of vessels, without hidden lines, "
+             "instead of shaded vessels; .svg, .pdf or .eps only"},
     {.name = "hits",
      SETS(CHOICE, RenderOptions, hits),
      .choices = hits_names,
@@ -69,8 +71,8 @@ static const Option own[] = {
      .group = GROUP_LIGHT,
      .argument = "T",
      .when = WHEN(OPAQUE),
-     .help = "antialias only pixels that differ by T from a neighbor; 0 antialiases all pixels, as "
-             "POV-Ray does"},
+     .help = "color difference from a neighbor at which a pixel is antialiased; 0 antialiases "
+             "all pixels, as POV-Ray does"},
     {.name = "kernels",
      SETS(CHOICE, RenderOptions, kernels),
      .choices = render_kernel_names,
@@ -84,7 +86,7 @@ static const Option own[] = {
      .aside = true,
      .unit = "MB",
      .when = WHEN(SURFACES),
-     .help = "memory per band; a larger image is drawn and written band by band"},
+     .help = "maximum memory for the image; a larger image is drawn and written band by band"},
     {.name = "json",
      SETS(OUTPUT, RenderOptions, json),
      .when = WHEN(SURFACES) | WHEN(WHOLE),
@@ -95,8 +97,8 @@ static const Option own[] = {
      .group = GROUP_ANIMATION,
      .argument = "all|A..B",
      .when = WHEN(SURFACES),
-     .help = "draw one image per time step of values that change with time, for all steps or steps "
-             "A to B"},
+     .help = "time steps of which one image each is drawn, of values that change with time: all, "
+             "or A to B"},
     {BEAT_OPTION(RenderOptions, picture.beat), .when = WHEN(SURFACES)},
     {.name = "turntable",
      SETS(WHOLE, RenderOptions, animation.turn),
@@ -104,14 +106,14 @@ static const Option own[] = {
      FROM_TO(1, 100000),
      .otherwise = "",
      .when = WHEN(SURFACES),
-     .help = "draw N images of one full turn around the vertical axis"},
+     .help = "number of images of one full turn around the vertical axis"},
     {.name = "growth",
      SETS(WHOLE, RenderOptions, animation.growth),
      .group = GROUP_ANIMATION,
      FROM_TO(1, 100000),
      .otherwise = "",
      .when = WHEN(SURFACES),
-     .help = "draw N images of the tree as it grows from its root"},
+     .help = "number of images of the tree as it grows from its root"},
 };
 
 /* Returns the conditions about animations and tiles that do not hold. */

@@ -17,31 +17,35 @@ static const Option rows[] = {
     {.name = "output",
      SETS(OUTPUT, PulsingOptions, output),
      .argument = "V.csv|T.vtp|T.pvd|D.json|S.pov|F%04d.png",
-     .help =
-         "by the ending: .csv: values over time; .vtp and other formats that store columns: the "
-         "tree with values over time; .pvd: an index of ParaView and one tree per moment; "
-         ".json: a deck of svZeroDSolver; .pov: the beating tree as a scene of POV-Ray; .png "
-         "and other images: the beating tree as an animation, one picture per moment, where "
-         "%04d becomes the number of the picture and is required"},
+     .help = "file to write; its extension selects the content. .csv: values over time. .vtp and "
+             "other formats that store columns: the tree with values over time. .pvd: an index "
+             "for ParaView and one tree per moment. .json: an input file of svZeroDSolver. .pov: "
+             "the beating tree as a scene for POV-Ray. .png and other images: the beating tree "
+             "as an animation, one picture per moment; %04d in the name is required and becomes "
+             "the number of the picture"},
     {.name = "summary",
      SETS(OUTPUT, PulsingOptions, summary),
      .argument = "FILE.csv",
      .otherwise = "",
-     .help = "write one row per segment: ranges of pressure and flow, time-averaged wall shear "
-             "stress (TAWSS), oscillatory shear index (OSI), Womersley number, wave speed, delay, "
-             "area strain"},
+     .help = "table to write, one row per segment: ranges of pressure and flow, time-averaged "
+             "wall shear stress (TAWSS), oscillatory shear index (OSI), Womersley number, wave "
+             "speed, delay, area strain"},
     {.name = "impedance",
      SETS(OUTPUT, PulsingOptions, impedance),
      .argument = "FILE.csv",
      .otherwise = "",
-     .help = "write the input impedance of each root by frequency"},
-    {.name = "json", SETS(FLAG, PulsingOptions, json), .help = "print the report as JSON"},
+     .help = "table to write: the input impedance of each root by frequency"},
+    {.name = "json",
+     SETS(FLAG, PulsingOptions, json),
+     .help = "print the report as JSON on "
+             "standard output"},
     {.name = "fields",
      SETS(TEXT, PulsingOptions, fields),
      .group = GROUP_FILES,
      .argument = "all|NAME,...",
-     .help = "quantities to write: pressure, flow, velocity, wss, dilation (change of the radius / "
-             "radius); animations and scenes show the first"},
+     .help = "quantities to write: pressure, flow, velocity, wss (wall shear stress), dilation "
+             "(change of the radius divided by the radius); an animation or a scene shows the "
+             "first one"},
     {.name = "frames",
      SETS(COUNT, PulsingOptions, frames),
      FROM_TO(2, 2000),
@@ -52,10 +56,10 @@ static const Option rows[] = {
      .group = GROUP_PULSE,
      .argument = "NAME|FILE.csv",
      .list = "waveforms",
-     .help =
-         "shape of pressure or flow over one cycle at the inlets: a template, or a CSV file with "
-         "the columns time (s) and value, whose last value equals the first within 1 % of the "
-         "range; its mean is scaled to --p-perf (pressure) or --q-perf (flow)"},
+     .help = "pressure or flow at the inlets over one cycle: the name of a template, or a CSV "
+             "file with the columns time (s) and value; the last value of a file must equal the "
+             "first within 1 % of the range. The mean is scaled to --p-perf (pressure) or "
+             "--q-perf (flow)"},
     {.name = "drive-is",
      SETS(CHOICE, PulsingOptions, drive_is),
      GIVEN(PulsingOptions, has_drive_is),
@@ -70,39 +74,37 @@ static const Option rows[] = {
      .unit = "s",
      .group = GROUP_PULSE,
      .otherwise = "from the template; a file states its own",
-     .help = "duration of the cycle, for a --drive template"},
+     .help = "duration of the cycle of a --drive template"},
     {.name = "pulse-pressure",
      SETS(NUMBER, PulsingOptions, range_mmhg),
      FROM_TO(RANGE_ABOVE_0, 1000),
      .unit = "mmHg",
      .group = GROUP_PULSE,
      .otherwise = "from the waveform",
-     .help = "range of the pressure at the inlets, for a --drive of pressure"},
+     .help = "maximum minus minimum of the pressure at the inlets, if --drive is a pressure"},
     {.name = "harmonics",
      SETS(WHOLE, PulsingOptions, harmonics),
      GIVEN(PulsingOptions, has_harmonics),
      FROM_TO(1, WAVEFORM_MAX_HARMONICS),
      .group = GROUP_PULSE,
      .otherwise = "16, or as many as the waveform has",
-     .help =
-         "number of harmonics of the heart rate; a template with fewer is used as it is, and the "
-         "report states the number"},
+     .help = "number of harmonics of the heart rate that are computed; a template with fewer is "
+             "used as it is, and the report states the number"},
     {.name = "wall",
      SETS(TEXT, PulsingOptions, wall),
      .group = GROUP_PULSE,
      .argument = "NAME|K1,K2,K3",
      .list = "walls",
-     .help =
-         "stiffness of the wall: a law, or three numbers such as 2e6,-2.253,8.65e4; the stiffness "
-         "is "
-         "E h / r = K1 exp(K2 r) + K3, with Young's modulus E, the thickness h of the wall, the "
-         "radius r in mm, K1 and K3 in Pa, and K2 in 1/mm"},
+     .help = "stiffness of the wall: the name of a law, or three numbers, such as "
+             "2e6,-2.253,8.65e4; the stiffness is E h / r = K1 exp(K2 r) + K3, with Young's "
+             "modulus E, the thickness h of the wall, the radius r in mm, K1 and K3 in Pa, and "
+             "K2 in 1/mm"},
     {.name = "wall-time",
      SETS(NUMBER, PulsingOptions, wall_time_s),
      FROM_TO(0, 10),
      .unit = "s",
      .group = GROUP_PULSE,
-     .help = "relaxation time of a viscoelastic wall; 0 is elastic"},
+     .help = "relaxation time of a viscoelastic wall; 0 makes the wall elastic"},
     {.name = "outlets",
      SETS(TEXT, PulsingOptions, outlets),
      .group = GROUP_PULSE,
@@ -119,31 +121,32 @@ static const Option rows[] = {
      .when = WHEN(LUMPED),
      .excludes = "tissue-pressure",
      .clash = ", which has a time of its own, exclude each other",
-     .help = "rcr: compliance times total resistance (rp + rd) of each outlet; 0 is a resistance "
-             "alone"},
+     .help = "--outlets rcr only: time constant of each outlet, its compliance times its total "
+             "resistance (rp + rd); 0 makes the outlet a resistance alone"},
     {.name = "outlet-radius",
      SETS(NUMBER, PulsingOptions, outlet_radius_mm),
      FROM_TO(1e-4, 100),
      .unit = "mm",
      .group = GROUP_PULSE,
      .when = WHEN(STRUCTURED),
-     .help = "structured: vessels end below this radius"},
+     .help = "--outlets structured only: radius below which the vessels of the structured tree "
+             "end"},
     {.name = "venous-pressure",
      SETS(NUMBER, PulsingOptions, venous_mmhg),
      FROM_TO(-100, 1000),
      .unit = "mmHg",
      .group = GROUP_PULSE,
-     .help = "mean pressure behind the outlets; the resistance of an rcr outlet is (mean pressure "
-             "at the "
-             "outlet - this pressure) / mean flow"},
+     .help = "mean pressure behind the outlets; the resistance of an rcr outlet is (mean "
+             "pressure at the outlet - this pressure) / mean flow"},
     {.name = "tissue-pressure",
      SETS(TEXT, PulsingOptions, tissue),
      .group = GROUP_PULSE,
      .argument = "NAME|FILE.csv",
      .list = "waveforms",
      .otherwise = "none",
-     .help = "pressure that contracting muscle exerts on the small vessels behind the outlets: a "
-             "template of pressure, or a CSV file with the columns time (s) and pressure (mmHg)"},
+     .help = "pressure that contracting muscle exerts on the small vessels behind the outlets: "
+             "the name of a template of pressure, or a CSV file with the columns time (s) and "
+             "pressure (mmHg)"},
     {.name = "tissue-share",
      SETS(NUMBER, PulsingOptions, tissue_share),
      FROM_TO(0, 2),
@@ -162,8 +165,8 @@ static const Option rows[] = {
      FROM_TO(0, 1000),
      .group = GROUP_ANIMATION,
      .when = WHEN(ANIMATED),
-     .help = "animations and scenes: factor of the change of the radius that is drawn; 1 draws the "
-             "true change, 0 none"},
+     .help = "animations and scenes only: factor by which the change of the radius is drawn "
+             "larger; 1 draws the true change, 0 none"},
     {.name = "look",
      SETS(TEXT, PulsingOptions, look),
      .group = GROUP_ANIMATION,
@@ -171,15 +174,16 @@ static const Option rows[] = {
      .argument = "NAME",
      .list = "looks",
      .otherwise = "",
-     .help = "animations and scenes: look of the vessels; other options of the pictures are in the "
-             "section [render] of a --recipe, those of the scene in its section [scene]"},
+     .help = "animations and scenes only: look of the vessels; set other options of the pictures "
+             "in the section [render] of a --recipe, and those of the scene in its section "
+             "[scene]"},
     {.name = "size",
      SETS(SIZE, PulsingOptions, size),
      FROM_TO(1, 100000),
      .group = GROUP_ANIMATION,
      .when = WHEN(ANIMATED),
      .argument = "WxH",
-     .help = "animations and scenes: size of the picture, pixels"},
+     .help = "animations and scenes only: size of the picture, pixels"},
 };
 
 static void set_defaults(void *options)

@@ -27,41 +27,43 @@ static const Option own[] = {
      SETS(NUMBERS, BifurcationOptions, radii),
      .group = GROUP_TREE,
      .argument = "R,R,R",
-     .help = "radii of parent, left and right daughter, mm; one value sets the parent's, and "
-             "Murray's law the others"},
+     .help = "radii of the parent, the left and the right daughter, mm, separated by commas; one "
+             "value sets the radius of the parent, and Murray's law sets the others"},
     {.name = "lengths",
      SETS(NUMBERS, BifurcationOptions, lengths),
      .group = GROUP_TREE,
      .argument = "L,L,L",
-     .help = "lengths of parent, left and right daughter, mm; one value sets all three"},
+     .help = "lengths of the parent, the left and the right daughter, mm, separated by commas; "
+             "one value sets all three"},
     {.name = "angles",
      SETS(NUMBERS, BifurcationOptions, angles),
      GIVEN(BifurcationOptions, has_angles),
      .group = GROUP_TREE,
      .argument = "A,B",
      .otherwise = "angles of minimum target",
-     .help = "angles of the left and right daughter to the parent's direction, degrees"},
+     .help = "angles between the direction of the parent and the left and the right daughter, "
+             "degrees"},
     {.name = "ratio",
      SETS(NUMBER, BifurcationOptions, ratio),
      GIVEN(BifurcationOptions, has_ratio),
      FROM_TO(1e-3, 1e3),
      .group = GROUP_TREE,
      .when = WHEN(LONE_RADIUS),
-     .help = "radius of the right daughter divided by the left daughter's, if --radii gives only "
-             "the parent's"},
+     .help = "radius of the right daughter divided by the radius of the left one, if --radii has "
+             "only one value"},
     {.name = "gamma",
      SETS(NUMBER, BifurcationOptions, gamma),
      FROM_TO(0.1, 10),
      .group = GROUP_TREE,
      .when = WHEN(LONE_RADIUS),
-     .help = "Murray exponent: parent radius^gamma = sum of daughter radii^gamma"},
+     .help = "Murray exponent gamma: (parent radius)^gamma = sum of (daughter radius)^gamma"},
     {.name = "lambda",
      SETS(NUMBER, BifurcationOptions, lambda),
      FROM_TO(0, 10),
      .group = GROUP_TREE,
      .when = WHEN(FREE_ANGLES),
-     .help = "exponent of the target, the cost that the default angles minimize: sum of length * "
-             "radius^lambda"},
+     .help = "exponent lambda of the target, the cost that the default --angles minimize: sum "
+             "over all segments of length * radius^lambda"},
 };
 
 static ConditionSet unmet(const void *set, const Parsed *parsed)

@@ -28,21 +28,23 @@ static const Option rows[] = {
      SETS(OUTPUT, CertifyOptions, certificate),
      .argument = "FILE",
      .otherwise = "",
-     .help =
-         "write the proof to FILE, for an independent checker that shares no code with corcast"},
+     .help = "write the proof to FILE, for an independent checker that shares no code with "
+             "corcast"},
     {.name = "explain-gap",
      .former = "parts",
      SETS(FLAG, CertifyOptions, parts),
      .group = GROUP_OPTIMUM,
-     .help = "also refine the geometry of the tree, to show which part of the gap between target "
-             "and bound is due to the search, and which to the rules on length and clearance"},
+     .help = "also refine the geometry of the tree (in memory), to show which part of the gap "
+             "between target and bound is due to the search, and which part is due to the rules "
+             "on length and clearance"},
     {.name = "lambda",
      SETS(NUMBER, CertifyOptions, lambda),
      GIVEN(CertifyOptions, has_lambda),
      .range = &BOUND_LAMBDA_RANGE,
      .group = GROUP_OPTIMUM,
      .otherwise = "from the tree; required if it has none",
-     .help = "exponent of the target, the cost of the tree: sum of length * radius^lambda"},
+     .help = "exponent lambda of the target, the cost of the tree: sum over all segments of "
+             "length * radius^lambda"},
     {.name = "flow-split",
      .former = "terminal-flow",
      SETS(TEXT, CertifyOptions, blood.terminal_flow),
@@ -57,14 +59,14 @@ static const Option rows[] = {
      SETS_KEY(CertifyOptions, blood.said.number[META_GAMMA], blood.said.known, GAMMA),
      .group = GROUP_BLOOD,
      .otherwise = "gamma of the tree, else 3",
-     .help = "exponent E of the terminal radius for --flow-split murray; radii do not change"},
+     .help = "exponent E of the radius, for --flow-split murray only; the radii do not change"},
     {.name = "viscosity-law",
      SETS(CHOICE, CertifyOptions, blood.law),
      GIVEN(CertifyOptions, blood.said.known[META_VISCOSITY_LAW]),
      .choices = viscosity_law_names,
      .group = GROUP_BLOOD,
      .otherwise = "from the tree, else constant",
-     .help = "viscosity model; a bound can be proved for constant only"},
+     .help = "viscosity model; a bound can be proved only for constant"},
 };
 
 static const OptionTable table = OPTION_TABLE(rows);

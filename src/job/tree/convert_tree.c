@@ -16,21 +16,23 @@ static const Option rows[] = {
      .group = GROUP_FILES,
      .argument = "FILE[:COLUMN]",
      .when = WHEN(TREE),
-     .help = "add values per segment, matched by segment id, from a CSV file or a folder of "
-             "results of svOneDSolver"},
+     .help = "values per segment to add to the tree file as columns: a CSV file, whose rows have "
+             "the ids of segments, or a folder of results of svOneDSolver"},
     {.name = "fields",
      SETS(TEXT, TreeConversion, fields),
      .group = GROUP_FILES,
      .argument = "all|NAME,...",
      .list = "fields",
      .when = WHEN(TREE),
-     .help = "computed fields to add to the tree file as columns: all, or a list of names"},
+     .help = "fields to compute and add to the tree file as columns: all, or names separated by "
+             "commas"},
     {.name = "smooth",
      SETS(FLAG, TreeConversion, smooth),
      .group = GROUP_TREE,
      .when = WHEN(TREE),
-     .help = "remove the steps of measured centrelines by Taubin's filter; ends and bifurcations "
-             "stay, other nodes move by at most a quarter of their radius"},
+     .help = "smooth measured centrelines by Taubin's filter, which removes the steps of voxels; "
+             "ends and bifurcations keep their positions, other nodes move by at most a quarter "
+             "of their radius"},
     {.name = "step",
      SETS(NUMBER, TreeConversion, step_mm),
      FROM_TO(1e-6, 1e6),
@@ -38,8 +40,9 @@ static const Option rows[] = {
      .unit = "mm",
      .otherwise = "as in the file",
      .when = WHEN(TREE),
-     .help = "divide each branch into equal segments of about this length; a new segment has the "
-             "radius at which its resistance is the same as before"},
+     .help = "length of the equal segments that each branch is divided into, as closely as "
+             "possible; a new segment has the radius that keeps the resistance of its part of "
+             "the branch"},
     {.name = "centreline-arrays",
      SETS(FLAG, TreeConversion, centreline_arrays),
      .group = GROUP_FILES,

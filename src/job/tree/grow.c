@@ -22,15 +22,16 @@ static const Option own[] = {
      SETS(FLAG, GrowOptions, bound),
      .group = GROUP_OPTIMUM,
      .needs = "json",
-     .help = "also prove a lower bound on the target, as `corcast certify` does, and add it to the "
-             "file of --json"},
+     .help = "also prove a lower bound of the target, as `corcast certify` does, and write it to "
+             "the file of --json"},
     {.name = "stages",
      SETS(INPUT, GrowOptions, stages),
      .group = GROUP_TREE,
      .argument = "FILE.ini",
      .otherwise = "",
-     .help = "grow in stages: each section of the file has options of its own and continues the "
-             "tree of the section before"},
+     .help = "grow in stages: an INI file with one section per stage; the lines of a section are "
+             "options of growth, such as `domain = ball:20`; each stage continues the tree of "
+             "the stage before"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);

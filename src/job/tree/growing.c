@@ -19,7 +19,7 @@ static const Option rows[] = {
      SETS(COUNT, Growing, params.terminals),
      FROM_TO(1, GROW_MAX_TERMINALS),
      .group = GROUP_TREE,
-     .help = "number of terminals of the whole tree"},
+     .help = "number of terminals of the whole tree, at which growth stops"},
     {.name = "domain",
      SETS(TEXT, Growing, domain_spec),
      .group = GROUP_TREE,
@@ -32,37 +32,39 @@ static const Option rows[] = {
      SETS(VECTORS, Growing, inlet),
      .group = GROUP_TREE,
      .otherwise = "top of the tissue shape",
-     .help = "position of the inlet, mm; repeat the option to grow several trees, one per inlet"},
+     .help = "position of the inlet, the first point of the tree, mm; repeat the option to grow "
+             "several trees, one per inlet"},
     {.name = "inlet-shares",
      SETS(NUMBERS, Growing, inlet_share),
      .group = GROUP_TREE,
      .otherwise = "equal shares",
-     .help = "share of the terminals for each inlet, in the order of the inlets; shares need not "
-             "add up to 1"},
+     .help = "share of the terminals for each inlet, in the order of --inlet; 2,1 gives the "
+             "first inlet two thirds"},
     {.name = "from",
      SETS(INPUT, Growing, from_path),
      .group = GROUP_FILES,
      .argument = "T.swc",
-     .help = "continue growing this tree: existing nodes keep their positions, ids and types, and "
-             "existing segments stay straight; all radii are recomputed, unless --keep-radii is "
-             "given. Properties in its header apply unless options override them"},
+     .help = "tree to continue growing. Its nodes keep their positions, ids and types, and its "
+             "segments stay straight. All radii are recomputed, unless --keep-radii is given. "
+             "Properties in its header, such as domain and gamma, apply unless options set them"},
     {.name = "keep-radii",
      SETS(FLAG, Growing, params.keep_radii),
      .group = GROUP_TREE,
-     .help = "keep the radii of the --from tree; compute radii of new branches only"},
+     .help = "keep the radii of the --from tree; only the radii of new branches are computed"},
     {.name = "gamma",
      SETS(CURVE, Growing, params.gamma),
      GIVEN(Growing, given[META_GAMMA]),
      .meta = &meta_rows[META_GAMMA],
      .group = GROUP_BLOOD,
      .argument = "NUMBER|MM:NUMBER,...",
-     .help = "Murray exponent: parent radius^gamma = sum of daughter radii^gamma; or one exponent "
-             "per parent radius in mm, interpolated linearly in the logarithm of the radius"},
+     .help = "Murray exponent gamma: (parent radius)^gamma = sum of (daughter radius)^gamma. "
+             "Either one exponent, or pairs of a parent radius in mm and its exponent, such as "
+             "0.1:3,1:2.5, interpolated linearly in the logarithm of the radius"},
     {.name = "lambda",
      SETS_KEY(Growing, params.lambda, given, LAMBDA),
      .group = GROUP_OPTIMUM,
-     .help =
-         "exponent of the target, the cost that growth minimizes: sum of length * radius^lambda"},
+     .help = "exponent lambda of the target, the cost that growth minimizes: sum over all "
+             "segments of length * radius^lambda"},
     {.name = "p-perf",
      SETS_KEY(Growing, params.blood.p_perf_mmhg, given, P_PERF),
      .group = GROUP_BLOOD,
@@ -70,7 +72,7 @@ static const Option rows[] = {
     {.name = "p-term",
      SETS_KEY(Growing, params.blood.p_term_mmhg, given, P_TERM),
      .group = GROUP_BLOOD,
-     .help = "pressure at every terminal"},
+     .help = "pressure at all terminals"},
     {.name = "q-perf",
      SETS_KEY(Growing, params.blood.q_perf_ml_min, given, Q_PERF),
      .group = GROUP_BLOOD,
@@ -79,105 +81,106 @@ static const Option rows[] = {
      SETS_KEY(Growing, params.blood.viscosity_cp, given, VISCOSITY),
      .group = GROUP_BLOOD,
      .when = WHEN(CONSTANT_VISCOSITY),
-     .help = "viscosity of the blood, for --viscosity-law constant"},
+     .help = "viscosity of the blood; for --viscosity-law constant only"},
     {.name = "viscosity-law",
      SETS(CHOICE, Growing, params.blood.viscosity_law),
      GIVEN(Growing, given[META_VISCOSITY_LAW]),
      .choices = viscosity_law_names,
      .group = GROUP_BLOOD,
-     .help = "viscosity model: constant (the same in all vessels), pries (depends on the vessel "
-             "diameter; Pries 1994)"},
+     .help = "viscosity model: constant (the same in all vessels), pries (depends on the "
+             "diameter of the vessel; Pries 1994)"},
     {.name = "hematocrit",
      SETS_KEY(Growing, params.blood.hematocrit, given, HEMATOCRIT),
      .group = GROUP_BLOOD,
      .argument = "H",
      .when = WHEN(PRIES),
-     .help = "hematocrit of the blood, a fraction, for --viscosity-law pries"},
+     .help = "hematocrit of the blood, a fraction; for --viscosity-law pries only"},
     {.name = "plasma-viscosity",
      SETS_KEY(Growing, params.blood.plasma_viscosity_cp, given, PLASMA_VISCOSITY),
      .group = GROUP_BLOOD,
      .when = WHEN(PRIES),
-     .help = "viscosity of the plasma, for --viscosity-law pries"},
+     .help = "viscosity of the plasma; for --viscosity-law pries only"},
     {.name = "terminal-flow",
      SETS(CHOICE, Growing, params.blood.terminal_flow),
      GIVEN(Growing, given[META_TERMINAL_FLOW]),
      .choices = terminal_flow_names,
      .group = GROUP_BLOOD,
-     .help = "flow through each terminal: equal (the same for all), territory (in proportion to "
-             "the tissue nearest to the terminal), demand (in proportion to the demand of that "
-             "tissue, from --demand)"},
+     .help = "how --q-perf is divided among the terminals: equal (the same flow for all), "
+             "territory (in proportion to the volume of tissue nearest to the terminal), demand "
+             "(in proportion to the demand of that tissue in --demand)"},
     {.name = "demand",
      SETS(TEXT, Growing, demand_spec),
      .group = GROUP_TREE,
      .argument = "FILE[,MM]",
      .otherwise = "uniform",
-     .help = "map of the terminal density or, with --terminal-flow demand, of the blood demand: an "
-             "image with pixels MM wide, or a NIfTI file"},
+     .help = "map of the density of terminals or, with --terminal-flow demand, of the flow that "
+             "the tissue needs: an image with pixels MM wide, or a NIfTI file"},
     {.name = "min-radius",
      SETS(NUMBER, Growing, params.min_radius_mm),
      FROM_TO(0, 1e3),
      .group = GROUP_TREE,
      .unit = "mm",
-     .help = "also stop when the mean terminal radius falls to MM, if --terminals is not reached "
-             "before; 0: stop only at --terminals"},
+     .help = "mean radius of the terminals at which growth stops, even if --terminals is not "
+             "reached; 0 stops at --terminals only"},
     {.name = "clearance",
      SETS_KEY(Growing, params.clearance_mm, given, CLEARANCE),
      .group = GROUP_TREE,
-     .help =
-         "minimum distance between the walls of vessels of different trees, checked at the end"},
+     .help = "minimum distance between the walls of vessels of different trees; the distance is "
+             "checked at the end"},
     {.name = "pair",
      SETS(NUMBER, Growing, params.pair_mm),
      FROM_TO(0, 1e3),
      .group = GROUP_TREE,
      .unit = "mm",
-     .help = "grow an artery and a vein with paired terminals, MM apart; 0 grows no pairs"},
+     .help = "distance between the two terminals of a pair, for an artery and a vein that grow "
+             "together, with one terminal each per pair; 0 grows no pairs"},
     {.name = "candidates",
      SETS(WHOLE, Growing, params.candidates),
      FROM_TO(1, GROW_MAX_CANDIDATES),
      .group = GROUP_OPTIMUM,
      .argument = "K",
-     .help = "number of nearest segments to try for each new terminal"},
+     .help = "number of segments nearest to a new terminal that are tried as its parent"},
     {.name = "relax",
      SETS(COUNT, Growing, params.relax),
      FROM_TO(0, GROW_MAX_TERMINALS),
      .group = GROUP_OPTIMUM,
-     .help = "while the tree has at most N terminals: move all bifurcations to better positions "
-             "each time the number of terminals has doubled; 0: never"},
+     .help = "number of terminals up to which all bifurcations are moved to better positions "
+             "each time the number of terminals has doubled; 0 never moves them"},
     {.name = "toss",
      SETS(CHOICE, Growing, params.toss),
      .choices = tosses,
      .group = GROUP_OPTIMUM,
-     .help = "what a new terminal must keep its distance from: segment (all vessel axes), terminal "
-             "(only other terminals)"},
+     .help = "what new terminals keep a minimum distance from: segment (the axes of all "
+             "vessels), terminal (other terminals only)"},
     {.name = "fill",
      SETS(LOOKUP, Growing, fill),
      .group = GROUP_TREE,
      .needs = "from stages",
      .list = "morphometries",
-     .help =
-         "do not grow terminals, but fill the tree of --from with small vessels. Their numbers, "
-         "diameters and lengths are drawn at random from a published data set: its name, or "
-         "the path of a file of your own (with a '/'). The domain must be a volume"},
+     .help = "fill the tree of --from with small vessels instead of growing terminals. Their "
+             "numbers, diameters and lengths are drawn at random from a published data set: its "
+             "name, or the path of a file of your own (with a '/'). Orders are its classes of "
+             "diameter, numbered from the smallest. The domain must be a volume"},
     {.name = "fill-from",
      SETS(WHOLE, Growing, fill_from),
      FROM_TO(2, 100),
      .group = GROUP_TREE,
      .argument = "ORDER",
      .needs = "fill stages",
-     .help =
-         "--fill: lowest order of the vessels that the tree has already; vessels of lower orders "
-         "are added"},
+     .help = "--fill: lowest order of vessels that the tree of --from already has; vessels of "
+             "all lower orders, down to --fill-to, are added"},
     {.name = "fill-to",
      SETS(WHOLE, Growing, fill_to),
      FROM_TO(1, 99),
      .group = GROUP_TREE,
      .argument = "ORDER",
      .needs = "fill stages",
-     .help = "--fill: lowest order of the vessels that are added"},
+     .help = "--fill: lowest order of vessels that is added"},
     {.name = "partial",
      SETS(FLAG, Growing, params.partial),
      .group = GROUP_TREE,
-     .help = "write the incomplete tree if no more terminals fit in the tissue shape"},
+     .help = "write the incomplete tree if no more terminals fit in the tissue shape; without "
+             "this option that is an error"},
 };
 
 static ConditionSet unmet(const void *set, const Parsed *parsed)

@@ -22,20 +22,20 @@ static const Option own[] = {
      .help = "print the result as JSON on standard output"},
     {.name = "stats",
      SETS(FLAG, InfoOptions, stats),
-     .help = "also print radius and length by level and by Strahler order, and branching ratios"},
+     .help = "also print the radius and length of segments by level (number of bifurcations from "
+             "the inlet) and by Strahler order, and branching ratios"},
     {.name = "output",
      SETS(OUTPUT, InfoOptions, output),
      .argument = "S.csv",
      .otherwise = "",
      .needs = "stats",
-     .help =
-         "with --stats: also write the statistics as CSV, a row per quantity of each level, order, "
-         "vessel, branch point and end"},
+     .help = "with --stats: also write the statistics as CSV, one row per quantity of each "
+             "level, order, vessel, branch point and end"},
     {.name = "bound",
      SETS(FLAG, InfoOptions, bound),
      .group = GROUP_OPTIMUM,
      .needs = "json",
-     .help = "with --json: also prove a lower bound on the target, as `corcast certify` does"},
+     .help = "with --json: also prove a lower bound of the target, as `corcast certify` does"},
     {.name = "morphometry",
      SETS(LOOKUP, InfoOptions, morphometry),
      .list = "morphometries",
@@ -45,13 +45,15 @@ static const Option own[] = {
      SETS(CHOICE, InfoOptions, orders),
      .choices = morphometry_orders_names,
      .needs = "morphometry",
-     .help = "how vessels are sorted into orders, classes of size numbered from the smallest: "
-             "published (by the diameters of the data set), found (by the diameters of the tree)"},
+     .help = "with --morphometry: how vessels are sorted into orders, which are classes of size "
+             "numbered from the smallest: published (by the diameters of the data set), found "
+             "(by the diameters of the tree)"},
     {.name = "lambda",
      SETS_KEY(InfoOptions, blood.said.number[META_LAMBDA], blood.said.known, LAMBDA),
      .group = GROUP_OPTIMUM,
      .otherwise = "from the tree; without one, no target is computed",
-     .help = "exponent of the target, the cost of the tree: sum of length * radius^lambda"},
+     .help = "exponent lambda of the target, the cost of the tree: sum over all segments of "
+             "length * radius^lambda"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);

@@ -30,14 +30,16 @@ static const Option own[] = {
      .group = GROUP_TREE,
      .argument = "SHAPE",
      .otherwise = "from the tree, else none",
-     .help = "tissue shape that vessels must stay in; without one, vessels may go anywhere"},
+     .help = "tissue shape, as for `grow`, that vessels must stay in; without one, vessels may "
+             "leave the tissue"},
     {.name = "clearance",
      SETS(NUMBER, RefineOptions, clearance_mm),
      GIVEN(RefineOptions, has_clearance),
      .meta = &meta_rows[META_CLEARANCE],
      .group = GROUP_TREE,
      .otherwise = "from the tree, else 0",
-     .help = "minimum distance between the walls of vessels of different trees, kept and checked"},
+     .help = "minimum distance between the walls of vessels of different trees, which all moves "
+             "keep"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);

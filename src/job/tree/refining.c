@@ -17,22 +17,23 @@ static const Option rows[] = {
      .choices = levels,
      .group = GROUP_OPTIMUM,
      .argument = "LEVEL",
-     .help = "optimization of the whole tree: none, geometry (moves bifurcations), topology (also "
-             "reconnects branches), anneal (as topology, with many more moves)"},
+     .help = "how the whole tree is optimized after growth or reading: none, geometry (moves "
+             "bifurcations), topology (also reconnects branches), anneal (as topology, with many "
+             "more moves)"},
     {.name = "refine-seconds",
      SETS(NUMBER, Refining, seconds),
      FROM_TO(0, 1e6),
      .group = GROUP_OPTIMUM,
      .unit = "s",
      .needs = "refine",
-     .help = "maximum time, s; the result then depends on the speed of the machine; 0 sets no time "
-             "limit"},
+     .help = "maximum time of --refine; the result then depends on the speed of the machine; 0 "
+             "sets no limit"},
     {.name = "refine-moves",
      SETS(COUNT, Refining, moves),
      FROM_TO(0, 1e12),
      .group = GROUP_OPTIMUM,
      .needs = "refine",
-     .help = "maximum number of moves to try; 0 chooses enough for the tree"},
+     .help = "maximum number of moves that --refine tries; 0 chooses a number that suits the tree"},
 };
 
 const OptionTable refining_table = OPTION_TABLE(rows);

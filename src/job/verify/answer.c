@@ -17,42 +17,40 @@ static const Option own[] = {
     {.name = "output",
      SETS(OUTPUT, AnswerOptions, output),
      .argument = "A.exr",
-     .help = "answer: an OpenEXR file with two bounds of each color, by which compare grades "
-             "pictures"},
+     .help = "file to write: an OpenEXR file with two bounds of each color, for `corcast compare`"},
     {.name = "pattern",
      SETS(WHOLE, AnswerOptions, pattern),
      GIVEN(AnswerOptions, has_pattern),
      FROM_TO(1, ANSWER_MAX_PATTERN),
-     .help = "the color of a pixel is the mean of N x N samples and the center, as render --exact "
-             "--antialias N and POV-Ray's +A0.0 +AM1 +RN draw it; 1: the center alone"},
+     .help = "number N of the samples whose mean is the color of a pixel: N x N and the center, "
+             "as `corcast render --exact --antialias N` and POV-Ray's +A0.0 +AM1 +RN draw it; 1 "
+             "takes the center alone"},
     {.name = "area",
      SETS(FLAG, AnswerOptions, area),
      .excludes = "pattern",
      .clash = " are two answers; one can be asked",
-     .help = "the color of a pixel is the mean over its whole area; cannot be combined with "
-             "--pattern"},
+     .help = "define the color of a pixel as the mean over its whole area, instead of --pattern"},
     {.name = "width",
      SETS(TEXT, AnswerOptions, width),
      .argument = "W",
-     .help = "maximum width of the interval of a decided pixel, in sRGB: a number from 1e-12 to 1, "
-             "or a fraction; 1/510 is half a level of 8 bits"},
+     .help = "maximum width of the interval of a decided pixel, as sRGB value: a number from "
+             "1e-12 to 1, or a fraction; 1/510 is half a level of 8 bits"},
     {.name = "leaves",
      SETS(WHOLE, AnswerOptions, leaves),
      FROM_TO(1, 10000000),
      .needs = "area",
-     .help = "maximum number of parts of one pixel; a pixel that needs more keeps a wide interval "
-             "and counts as undecided"},
+     .help = "maximum number of parts that one pixel is divided into; a pixel that needs more "
+             "parts keeps a wide interval and counts as undecided"},
     {.name = "certificate",
      SETS(OUTPUT, AnswerOptions, certificate),
      .argument = "C.json",
-     .help = "write the scene's numbers and the claims behind up to 24 pixels as JSON, for a "
-             "checker that "
-             "shares no code with corcast"},
+     .help = "file to write: the numbers of the scene and the claims behind up to 24 pixels as "
+             "JSON, for a checker that shares no code with corcast"},
     {.name = "squares",
      SETS(FLAG, AnswerOptions, squares),
      .needs = "area",
-     .help = "compute with a second, slower method, which divides pixels into squares; its "
-             "intervals must overlap the intervals of the first method (for tests)"},
+     .help = "for tests: compute the intervals with a second, slower method, which divides "
+             "pixels into squares; they must overlap the intervals of the first method"},
     {.name = "model",
      SETS(CHOICE, AnswerOptions, body),
      .choices = bodies,

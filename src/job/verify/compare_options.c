@@ -14,24 +14,26 @@ static const Option own[] = {
     {.name = "junit",
      SETS(OUTPUT, CompareOptions, junit),
      .argument = "FILE.xml",
-     .help = "write the result as JUnit XML, one test case per rule"},
+     .help = "file to write: the result as JUnit XML, one test case per rule"},
     {.name = "serve",
      SETS(FLAG, CompareOptions, serve),
      .excludes = "json reference",
-     .help = "answer questions of a test runner: read a JSON object per line from standard input, "
-             "write a JSON object per line to standard output"},
+     .help = "serve a test runner: read a JSON object per line from standard input, and write a "
+             "JSON object per line to standard output"},
     {.name = "kind",
      SETS(CHOICE, CompareOptions, kind),
      .choices = kinds,
      .when = WHEN(TWO_FILES),
-     .help = "content of the two files: color, depth, normal, id, auto (from the file names)"},
+     .help = "content of the two files: color, depth, normal, id, auto (recognized by the file "
+             "names)"},
     {.name = "noise",
      SETS(TEXT, CompareOptions, noise),
      .group = GROUP_JUDGE,
      .argument = "R1,R2,...",
      .when = WHEN(TWO_FILES),
-     .help = "test whether two noisy images have the same mean; the variance of each pixel is "
-             "measured from these further renderings, at least two"},
+     .help = "further renderings of the scene, at least two; tests whether the two noisy images "
+             "have the same mean, and measures the variance of each pixel from the further "
+             "renderings"},
     {.name = "variance",
      SETS(INPUT, CompareOptions, variance),
      .group = GROUP_JUDGE,
@@ -39,55 +41,55 @@ static const Option own[] = {
      .when = WHEN(TWO_FILES),
      .excludes = "noise",
      .clash = " both give the variance",
-     .help = "test as with --noise, but read the variance of each pixel of one rendering from this "
-             "file of floats"},
+     .help = "file of floats with the variance of each pixel of one rendering; tests as --noise "
+             "does"},
     {.name = "alarms",
      SETS(NUMBER, CompareOptions, alarms),
      FROM_TO(1e-9, 0.5),
      .group = GROUP_JUDGE,
      .needs = "noise variance",
-     .help = "false alarm rate of --noise and --variance, a fraction"},
+     .help = "false alarm rate of the test of --noise or --variance, a fraction"},
     {.name = "reference",
      SETS(TEXT, CompareOptions, reference),
      .argument = "DIR",
-     .help = "compare each image in the folder A with the image of the same name in DIR (give no "
-             "B); an image that only one folder has counts as a difference"},
+     .help = "folder of reference images: compare each image in the folder A with the image of "
+             "the same name in DIR (give no B); an image that only one folder has counts as a "
+             "difference"},
     {.name = "only",
      SETS(TEXT, CompareOptions, only),
      .argument = "PATTERN",
      .needs = "reference",
      .excludes = "accept",
-     .help = "with --reference: compare only these images: names or wildcards (*, ?), separated by "
-             "commas"},
+     .help = "with --reference: images to compare: names or wildcards (*, ?), separated by commas"},
     {.name = "accept",
      SETS(TEXT, CompareOptions, accept),
      .argument = "PATTERN",
      .needs = "reference",
-     .help = "with --reference: copy images from the folder A over their references: names, "
-             "wildcards (*, ?) or all, separated by commas; wildcards and all select the images "
-             "that differ"},
+     .help = "with --reference: images that are copied from the folder A over their references: "
+             "names, wildcards (*, ?) or all, separated by commas; wildcards and all select only "
+             "images that differ"},
     {.name = "reason",
      SETS(TEXT, CompareOptions, reason),
      .argument = "TEXT",
      .needs = "accept",
-     .help = "why the images are accepted; stored in DIR/accepted.tsv"},
+     .help = "with --accept: why the images are accepted; stored in DIR/accepted.tsv"},
     {.name = "as",
      SETS(TEXT, CompareOptions, label),
      .argument = "LABEL",
      .needs = "accept",
-     .help = "store the accepted image as a further reference, NAME.ref-LABEL; an image agrees if "
-             "it agrees with any of its references"},
+     .help = "with --accept: label of a further reference, NAME.ref-LABEL, that the accepted "
+             "image is stored as; an image agrees if it agrees with any of its references"},
     {.name = "machine",
      SETS(TEXT, CompareOptions, machine),
      .argument = "TEXT",
      .needs = "accept",
-     .help = "machine or driver that drew the accepted image; stored in NAME.references.ini"},
+     .help = "with --accept: machine or driver that drew the image; stored in NAME.references.ini"},
     {.name = "expires",
      SETS(TEXT, CompareOptions, expires),
      .argument = "DATE",
      .needs = "accept",
-     .help = "last day of the accepted reference, such as 2027-03-01, or never; the comparison "
-             "fails after it"},
+     .help = "with --accept: last day on which the reference is valid, such as 2027-03-01, or "
+             "never; after that day the comparison fails"},
     {.name = "layer",
      SETS(TEXT, CompareOptions, layer),
      .argument = "NAME",
@@ -97,19 +99,20 @@ static const Option own[] = {
      SETS(CHOICE, CompareOptions, bits),
      .choices = bit_counts,
      .when = WHEN(TWO_FILES) | WHEN(COLOR_PICTURES),
-     .help = "precision of the comparison: own (as stored), 8 or 16 (convert both images to sRGB "
-             "with 8 or 16 bits per channel)"},
+     .help = "precision of the comparison: own (as stored), 8 or 16 (both images are converted "
+             "to sRGB with 8 or 16 bits per channel)"},
     {.name = "background",
      SETS(COLOR, CompareOptions, background),
      .when = WHEN(COLOR_PICTURES),
-     .help = "color to composite transparent images over: a CSS name, #RRGGBB, or R,G,B each 0..1"},
+     .help = "color that transparent images are composited over: a CSS name, #RRGGBB, or R,G,B "
+             "each 0..1"},
     {.name = "depth-mm",
      SETS(NUMBER, CompareOptions, depth_mm),
      FROM_TO(0, 1e7),
      .group = GROUP_JUDGE,
      .unit = "mm",
      .when = WHEN(DEPTHS),
-     .help = "maximum difference of a depth"},
+     .help = "maximum difference of two depths"},
     {.name = "metrics",
      SETS(SWITCH, CompareOptions, metrics),
      GIVEN(CompareOptions, has_metrics),
@@ -120,43 +123,44 @@ static const Option own[] = {
     {.name = "ids-a",
      SETS(INPUT, CompareOptions, ids_a),
      .when = WHEN(TWO_PICTURES) | WHEN(NO_IDS),
-     .help = "id plane of A; distinguishes pixels on silhouettes from pixels inside surfaces"},
+     .help = "id plane of A (the segment of each pixel); with both id planes, pixels on "
+             "silhouettes are told from pixels inside surfaces"},
     {.name = "ids-b",
      SETS(INPUT, CompareOptions, ids_b),
      .when = WHEN(TWO_PICTURES) | WHEN(NO_IDS),
-     .help = "id plane of B"},
+     .help = "id plane of B; see --ids-a"},
     {.name = "output",
      SETS(OUTPUT, CompareOptions, heat),
      .argument = "H.png",
      .when = WHEN(TWO_PICTURES),
-     .help = "write a heat map of the difference between the two images"},
+     .help = "file to write: a heat map of the difference between the two images"},
     {.name = "difference",
      SETS(OUTPUT, CompareOptions, difference),
      .argument = "D.png",
      .when = WHEN(TWO_PICTURES),
-     .help = "write an image of the signed difference, 128 + 8 (B - A) per channel"},
+     .help = "file to write: an image of the signed difference, 128 + 8 (B - A) per channel"},
     {.name = "flicker",
      SETS(OUTPUT, CompareOptions, flicker),
      .argument = "F.png",
      .when = WHEN(TWO_PICTURES),
-     .help = "write an animated PNG that shows A and B in turn"},
+     .help = "file to write: an animated PNG that shows A and B in turn"},
     {.name = "ledger",
      SETS(OUTPUT, CompareOptions, ledger),
      .argument = "L.csv",
      .when = WHEN(TWO_PICTURES),
-     .help = "write a CSV table with one row per segment: its pixels in A and B, and how much they "
-             "differ; needs the id planes of both images (--ids-a, --ids-b)"},
+     .help = "file to write: a CSV table with one row per segment: its pixels in A and in B, and "
+             "how much they differ; needs the id planes of both images (--ids-a, --ids-b)"},
     {.name = "html",
      SETS(OUTPUT, CompareOptions, page),
      .is_told = true,
      .argument = "PAGE.html",
-     .help = "write a web page about the two images, or about all that differ in two folders: "
-             "swipe, blink, zoom, differences, numbers, commands that accept"},
+     .help = "file to write: a web page about the two images, or about all images of two folders "
+             "that differ: swipe, blink, zoom, differences, numbers, and commands that accept"},
     {.name = "report",
      SETS(FOLDER, CompareOptions, report),
      .is_told = true,
-     .help = "write the page of --html, JSON, JUnit XML and, of two images, the heat map to the "
-             "folder DIR; `corcast report` joins such folders of two images"},
+     .help = "folder to write to: the page of --html, JSON, JUnit XML and, of two images, the "
+             "heat map; `corcast report` joins such folders of two images"},
 };
 
 static ConditionSet unmet(const void *set, const Parsed *parsed)
@@ -183,16 +187,16 @@ static const Option of_judge[] = {
      .clash = " are two rules; one can be asked",
      .help = "required agreement: A (identical), B (equal up to single-precision arithmetic), "
              "surface (equal up to the search for an implicit surface), none (only NaN differs); "
-             "`corcast compare --help` defines them"},
+             "`corcast compare --help` defines these tiers"},
     {.name = "tolerance",
      SETS(INPUT, JudgeOptions, tolerance),
      .group = GROUP_JUDGE,
      .argument = "FILE.ini",
      .excludes = "verdict",
      .clash = " are two rules; one can be asked",
-     .help = "file with limits of your own, one `name = value` per line; `corcast power --choose` "
-             "writes an example; limits that are not listed are not checked, unless --tier is "
-             "given"},
+     .help = "file with limits of your own, one `name = value` per line; `corcast power "
+             "--choose` writes an example; a limit that is not listed is not checked, unless "
+             "--tier is given"},
     {.name = "levels",
      SETS(NUMBER, JudgeOptions, levels),
      GIVEN(JudgeOptions, has_levels),
@@ -201,7 +205,7 @@ static const Option of_judge[] = {
      .when = WHEN(COLOR_PICTURES),
      .excludes = "verdict",
      .clash = " are two rules; one can be asked",
-     .help = "difference that a pixel may have, in 8-bit levels"},
+     .help = "maximum difference of a pixel that does not count, in levels of 8 bits"},
     {.name = "ppm",
      SETS(NUMBER, JudgeOptions, ppm),
      GIVEN(JudgeOptions, has_ppm),
@@ -210,7 +214,7 @@ static const Option of_judge[] = {
      .otherwise = "2 in tier A",
      .excludes = "verdict",
      .clash = " are two rules; one can be asked",
-     .help = "pixels per million that may differ by more than --levels"},
+     .help = "number of pixels per million that may differ by more than --levels"},
     {.name = "pixelmatch",
      SETS(NUMBER, JudgeOptions, pixelmatch),
      GIVEN(JudgeOptions, has_pixelmatch),
@@ -221,8 +225,8 @@ static const Option of_judge[] = {
      .when = WHEN(COLOR_PICTURES),
      .excludes = "verdict",
      .clash = " are two rules; one can be asked",
-     .help = "count different pixels as pixelmatch 7.2.0 does, at the threshold T; pixelmatch's "
-             "own default is 0.1"},
+     .help = "threshold T of pixelmatch 7.2.0, whose method then counts the pixels that differ; "
+             "pixelmatch's own default is 0.1"},
 };
 
 const OptionTable judge_options = OPTION_TABLE(of_judge);

@@ -24,18 +24,18 @@ static const Option own[] = {
      SETS(NUMBER, MetamorphOptions, seconds),
      FROM_TO(0.001, 1e6),
      .unit = "s",
-     .help =
-         "duration of the search, without confirming, making scenes small and reports; how many "
-         "pairs it has depends on the machine, unless --pairs ends it"},
+     .help = "maximum duration of the search, without the time for confirming pairs, making "
+             "scenes small and reports; the number of pairs then depends on the machine, unless "
+             "--pairs ends the search"},
     {.name = "pairs",
      SETS(COUNT, MetamorphOptions, max_pairs),
      FROM_TO(0, 1e9),
      .argument = "N",
-     .help = "maximum number of pairs; 0: no limit"},
+     .help = "maximum number of pairs; 0 sets no limit"},
     {.name = "output",
      SETS(FOLDER, MetamorphOptions, renderer.folder),
      .argument = "DIR",
-     .help = "folder for metamorph.json and a folder for each cause"},
+     .help = "folder to write to: metamorph.json, and one folder per cause"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);

@@ -40,8 +40,8 @@ static const Option own[] = {
      FROM_TO(1, IMAGE_MAX_SIDE),
      .group = GROUP_CAMERA,
      .otherwise = "from the scene",
-     .help = "image size in pixels (800x600) or on paper (89mmx60mm); one length gives a square "
-             "(89mm)"},
+     .help = "size of the image, in pixels (800x600) or on paper (89mmx60mm); one length gives a "
+             "square (89mm)"},
     {DPI_OF_SIZE(PovrayOptions, size), .group = GROUP_CAMERA, .when = WHEN(ON_PAPER),
      .help = "resolution in pixels per inch, for a size on paper"},
     {.name = "antialias",
@@ -60,8 +60,8 @@ static const Option own[] = {
      SETS(FLAG, PovrayOptions, alpha),
      .group = GROUP_LIGHT,
      .when = WHEN(COLOR_PLANE),
-     .help = "keep the scene's background transparent; the scene must have been written with "
-             "--background none"},
+     .help = "keep the background of the scene transparent; the scene must have been written "
+             "with --background none"},
     {.name = "plane",
      SETS(CHOICE, PovrayOptions, plane),
      .choices = planes,

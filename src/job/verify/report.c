@@ -27,7 +27,7 @@ static const Option own[] = {
     {.name = "power",
      SETS(INPUT, ReportOptions, power),
      .argument = "FILE.json",
-     .help = "results of `make power`, to be shown below the cases"},
+     .help = "file with the results of `make power`, which the page shows below the cases"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);

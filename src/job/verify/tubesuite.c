@@ -28,12 +28,12 @@ static const Option own[] = {
     {.name = "levels",
      SETS(NUMBER, TubeSuiteOptions, levels),
      FROM_TO(0, 255),
-     .help = "distance from the interval up to which a pixel counts as right, in levels of 1/255; "
-             "0.5 accepts renderers that cut decimals instead of rounding"},
+     .help = "maximum distance from its interval at which a pixel counts as right, in levels of "
+             "1/255; 0.5 accepts renderers that cut decimals instead of rounding"},
     {.name = "output",
      SETS(FOLDER, TubeSuiteOptions, renderer.folder),
      .argument = "DIR",
-     .help = "folder for the scenes, the pictures, suite.json and index.html"},
+     .help = "folder to write to: the scenes, the pictures, suite.json and index.html"},
 };
 
 static const OptionTable own_table = OPTION_TABLE(own);

@@ -18,15 +18,15 @@ static const Option own[] = {
      SETS(FOLDER, VerifyOptions, folder),
      .argument = "DIR",
      .is_told = true,
-     .help = "folder for the report, the POV-Ray scene, and the color, depth, normal and id images "
-             "of both renderers"},
+     .help = "folder to write to: the report, the POV-Ray scene, and the color, depth, normal "
+             "and id images of both renderers; it is created if it does not exist"},
     {BEAT_OPTION(VerifyOptions, picture.beat)},
     {.name = "bits",
      SETS(WHOLE, VerifyOptions, bits),
      .range = &bits_range,
      .group = GROUP_JUDGE,
      .argument = "8|16",
-     .help = "bits per channel of the images that are compared: 8 (sRGB) or 16 (linear)"},
+     .help = "bits per channel of the two images that are compared: 8 (sRGB) or 16 (linear)"},
     {.name = "kernels",
      SETS(CHOICE, VerifyOptions, kernels),
      .choices = render_kernel_names,
@@ -37,14 +37,15 @@ static const Option own[] = {
      SETS(CHOICE, VerifyOptions, witness),
      .choices = witnesses,
      .group = GROUP_JUDGE,
-     .help = "also render the scene with a third program; all three must agree on what is visible "
-             "where, and at what depth: none, tachyon"},
+     .help = "third program that also renders the scene: none, tachyon. All three programs must "
+             "agree on what is visible at each pixel, and at what depth"},
     {.name = "tiles",
      SETS(WHOLE, VerifyOptions, tiles),
      FROM_TO(1, 10000),
      .group = GROUP_RUN,
-     .help = "minimum number of parts that POV-Ray renders the image in, each from a scene with "
-             "only the vessels its rays can hit; more are used if a part does not fit in memory"},
+     .help = "minimum number of tiles that POV-Ray renders the image in; the scene of a tile has "
+             "only the vessels that its rays can hit. A tile that does not fit in memory is "
+             "divided further"},
     {.name = "json",
      SETS(FLAG, VerifyOptions, json),
      .help = "print the report as JSON on standard output"},
