@@ -82,7 +82,7 @@ static Status name_beside(const char *output, const char *replaced, const char *
 {
     const size_t kept = strlen(output) - strlen(replaced);
     file->role = role;
-    return file_format_name(&file->path, err, "%.*s%s", (int)kept, output, suffix);
+    return mem_printf(&file->path, err, "%.*s%s", (int)kept, output, suffix);
 }
 
 Status volumes_name(const VolumeOptions *options, const VolumeFormat *format, const char *output,

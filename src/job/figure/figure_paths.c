@@ -10,7 +10,7 @@
 Status figure_path(const char *folder, const char *path, char **out, Err *err)
 {
     const bool is_fixed = path[0] == '/' || strcmp(path, "-") == 0;
-    return file_format_name(out, err, "%s%s", is_fixed ? "" : folder, path);
+    return mem_printf(out, err, "%s%s", is_fixed ? "" : folder, path);
 }
 
 /* Returns the path in the description of a domain, such as mesh:FILE; NULL if there is none. */
@@ -54,7 +54,7 @@ static Status rebase_value(Parsed *parsed, const Setting *setting, const char *f
     if (!begin)
         goto done;
     TRY_GOTO(figure_path(folder, begin, &path, err));
-    TRY_GOTO(file_format_name(&changed, err, "%.*s%s", (int)(begin - value), value, path));
+    TRY_GOTO(mem_printf(&changed, err, "%.*s%s", (int)(begin - value), value, path));
     status = options_set(parsed, setting->option->name, changed, err);
 done:
     free(changed);

@@ -92,7 +92,7 @@ static Status open_place(PowerFiles *place, const char *extension, Err *err)
     TRY(make_folder(&place->folder, err));
     for (int i = 0; i < POWER_FILES; i++) {
         char **path = &place->files[i];
-        TRY(file_format_name(path, err, "%s/%s.%s", place->folder, names[i],
+        TRY(mem_printf(path, err, "%s/%s.%s", place->folder, names[i],
                              i == FILE_DRAWN ? extension : "png"));
         TRY(file_remove_on_signal(*path, err));
     }
