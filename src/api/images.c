@@ -22,9 +22,9 @@ static Status read_image(const ImageSource *from, corcast_image **out, Err *err)
     Status status = STATUS_OK;
     TRY(argument_check(out, "out", err));
     TRY(handle_new(&made, HANDLE_IMAGE, sizeof *made, err));
-    TRY_GOTO(from->bytes ? image_decode(&made->color, from->name, from->bytes, from->size,
-                                        ALPHA_KEPT, err)
-                         : image_read(&made->color, from->name, ALPHA_KEPT, NULL, err));
+    TRY_GOTO(from->bytes
+                 ? image_decode(&made->color, from->name, from->bytes, from->size, ALPHA_KEPT, err)
+                 : image_read(&made->color, from->name, ALPHA_KEPT, NULL, err));
     *out = made;
     made = NULL;
 done:

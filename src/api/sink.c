@@ -1,7 +1,7 @@
 /* Passes files to a callback, in blocks. Between two blocks the callback may stop the call. */
 #include "api/sink.h"
 
-#include "base/file.h"
+#include "base/base.h"
 #include <dirent.h>
 #include <errno.h>
 #include <stdlib.h>

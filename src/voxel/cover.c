@@ -57,14 +57,21 @@ static double union_length(double (*chords)[2], size_t n)
     return length;
 }
 
+/* The bodies that may meet a cell. */
+typedef struct NearBodies {
+    const Body *bodies;
+    const uint32_t *list; /* their indices in `bodies` */
+    size_t n;             /* number of indices */
+} NearBodies;
+
 /* Returns the length of the line through `middle` in the union, between -half and half. */
-static double line_in_union(const Body *bodies, const uint32_t *list, size_t n, Vec3 middle,
-                            int axis, double half, CoverWorkspace *workspace)
+static double line_in_union(const NearBodies *near, Vec3 middle, int axis, double half,
+                            CoverWorkspace *workspace)
 {
     size_t n_chords = 0;
-    for (size_t i = 0; i < n; i++) {
+    for (size_t i = 0; i < near->n; i++) {
         double low, high;
-        if (!body_chord(&bodies[list[i]], middle, axis, 0, 0, &low, &high))
+        if (!body_chord(&near->bodies[near->list[i]], middle, axis, 0, 0, &low, &high))
             continue;
         low = low > -half ? low : -half;
         high = high < half ? high : half;
@@ -75,11 +82,11 @@ static double line_in_union(const Body *bodies, const uint32_t *list, size_t n, 
 }
 
 /* Returns the coordinate axis for which the largest cosine with any body's axis is smallest. */
-static int axis_across(const Body *bodies, const uint32_t *list, size_t n)
+static int axis_across(const NearBodies *near)
 {
     Vec3 along = {0};
-    for (size_t i = 0; i < n; i++) {
-        Vec3 axis = bodies[list[i]].axis;
+    for (size_t i = 0; i < near->n; i++) {
+        Vec3 axis = near->bodies[near->list[i]].axis;
         along = vec3(fmax(along.x, fabs(axis.x)), fmax(along.y, fabs(axis.y)),
                      fmax(along.z, fabs(axis.z)));
     }
@@ -91,64 +98,65 @@ static Vec3 along_axis(int axis, double x)
     return vec3(axis == 0 ? x : 0, axis == 1 ? x : 0, axis == 2 ? x : 0);
 }
 
-static double part_by_lines(const Body *bodies, const uint32_t *list, size_t n,
-                            const VoxelCell *cell, CoverWorkspace *workspace)
+static double part_by_lines(const NearBodies *near, const VoxelCell *cell,
+                            CoverWorkspace *workspace)
 {
-    int axis = axis_across(bodies, list, n), first = (axis + 1) % 3, second = (axis + 2) % 3;
+    int axis = axis_across(near), first = (axis + 1) % 3, second = (axis + 2) % 3;
     double half = vec3_component(cell->half, axis), length = 0;
     for (int i = 0; i < LINES; i++) {
         double s = (2 * i + 1.0) / LINES - 1;
         double t = (2 * (i * LATTICE_STEP % LINES) + 1.0) / LINES - 1;
         Vec3 at = vec3_add(cell->center, along_axis(first, s * vec3_component(cell->half, first)));
         at = vec3_add(at, along_axis(second, t * vec3_component(cell->half, second)));
-        length += line_in_union(bodies, list, n, at, axis, half, workspace);
+        length += line_in_union(near, at, axis, half, workspace);
     }
     return length / (LINES * 2 * half);
 }
 
-static double part_of(const Body *bodies, const uint32_t *list, size_t n, const VoxelCell *cell,
-                      int depth, uint32_t *lists, CoverWorkspace *workspace);
+static double part_of(const NearBodies *near, const VoxelCell *cell, int depth, uint32_t *lists,
+                      CoverWorkspace *workspace);
 
-static double part_in_eight(const Body *bodies, const uint32_t *list, size_t n,
-                            const VoxelCell *cell, int depth, uint32_t *lists,
-                            CoverWorkspace *workspace)
+static double part_in_eight(const NearBodies *near, const VoxelCell *cell, int depth,
+                            uint32_t *lists, CoverWorkspace *workspace)
 {
     Vec3 half = vec3_scale(cell->half, 0.5);
     double part = 0;
     for (int i = 0; i < 8; i++) {
         Vec3 move = {i & 1 ? half.x : -half.x, i & 2 ? half.y : -half.y, i & 4 ? half.z : -half.z};
         VoxelCell eighth = {vec3_add(cell->center, move), half};
-        part += part_of(bodies, list, n, &eighth, depth + 1, lists, workspace);
+        part += part_of(near, &eighth, depth + 1, lists, workspace);
     }
     return part / 8;
 }
 
-/* Returns the covered fraction of a cell. `lists` is scratch: it has room for n bodies at this
- * depth and at each deeper one. */
-static double part_of(const Body *bodies, const uint32_t *list, size_t n, const VoxelCell *cell,
-                      int depth, uint32_t *lists, CoverWorkspace *workspace)
+/* Returns the covered fraction of a cell. `lists` is scratch: it has room for near->n bodies at
+ * this depth and at each deeper one. */
+static double part_of(const NearBodies *near, const VoxelCell *cell, int depth, uint32_t *lists,
+                      CoverWorkspace *workspace)
 {
     double thinnest = INFINITY;
     size_t met = 0;
-    for (size_t i = 0; i < n; i++) {
-        const Body *body = &bodies[list[i]];
+    for (size_t i = 0; i < near->n; i++) {
+        const Body *body = &near->bodies[near->list[i]];
         if (!body_meets(body, cell))
             continue;
         if (body_holds(body, cell))
             return 1;
-        lists[met++] = list[i];
+        lists[met++] = near->list[i];
         thinnest = fmin(thinnest, body->radius);
     }
     if (met <= 1)
-        return met ? body_fraction(&bodies[lists[0]], cell) : 0;
+        return met ? body_fraction(&near->bodies[lists[0]], cell) : 0;
+    const NearBodies meeting = {near->bodies, lists, met};
     double widest = fmax(cell->half.x, fmax(cell->half.y, cell->half.z));
     if (widest > thinnest && depth < MAX_DEPTH)
-        return part_in_eight(bodies, lists, met, cell, depth, lists + met, workspace);
-    return part_by_lines(bodies, lists, met, cell, workspace);
+        return part_in_eight(&meeting, cell, depth, lists + met, workspace);
+    return part_by_lines(&meeting, cell, workspace);
 }
 
 double cover_fraction(const Body *bodies, const uint32_t *list, size_t n, const VoxelCell *cell,
                       CoverWorkspace *workspace)
 {
-    return part_of(bodies, list, n, cell, 0, workspace->lists, workspace);
+    const NearBodies near = {bodies, list, n};
+    return part_of(&near, cell, 0, workspace->lists, workspace);
 }

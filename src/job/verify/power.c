@@ -93,7 +93,7 @@ static Status open_place(PowerFiles *place, const char *extension, Err *err)
     for (int i = 0; i < POWER_FILES; i++) {
         char **path = &place->files[i];
         TRY(mem_printf(path, err, "%s/%s.%s", place->folder, names[i],
-                             i == FILE_DRAWN ? extension : "png"));
+                       i == FILE_DRAWN ? extension : "png"));
         TRY(file_remove_on_signal(*path, err));
     }
     return STATUS_OK;
