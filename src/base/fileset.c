@@ -3,15 +3,7 @@
  * held back until then, so that its reader gets all or nothing. */
 #include "base/fileset.h"
 
-#include "base/memory.h"
 #include <stdlib.h>
-
-static Status open_in_memory(FileSlot *file, OutFile *open, Err *err)
-{
-    TRY(mem_strdup(&open->path, file->path, err));
-    open->stream = open_memstream(&file->bytes, &file->size);
-    return open->stream ? STATUS_OK : mem_out_of("for", file->path, err);
-}
 
 Status fileset_open(FileSet *files, Err *err)
 {
@@ -19,7 +11,7 @@ Status fileset_open(FileSet *files, Err *err)
         if (!file->path)
             continue;
         OutFile *open = &files->open[files->n_open++];
-        TRY(files->taker ? open_in_memory(file, open, err) : outfile_open(open, file->path, err));
+        TRY(outfile_open(open, file->path, err));
         file->stream = open->stream;
         file->text = open->stream == stdout ? TEXT_INIT : TEXT_TO(open->stream);
     }
@@ -48,31 +40,12 @@ static Status end_text(FileSlot *file, Err *err)
     return status;
 }
 
-/* Ends the streams in memory, and passes what they hold to the taker. */
-static Status hand_over(FileSet *files, Err *err)
-{
-    const FileTaker *taker = files->taker;
-    for (size_t i = 0, n = 0; i < MAX_FILE_SLOTS; i++) {
-        FileSlot *file = &files->at[i];
-        if (!file->path)
-            continue;
-        FILE *stream = files->open[n].stream;
-        files->open[n++].stream = NULL;
-        if (fclose(stream) != 0 || !file->bytes)
-            return mem_out_of("for", file->path, err);
-    }
-    for (const FileSlot *file = files->at; file < &files->at[MAX_FILE_SLOTS]; file++)
-        if (file->path && !taker->take(taker->user, file->path, file->bytes, file->size))
-            return err_set(err, STATUS_IO, "%s: refused by the caller", file->path);
-    return STATUS_OK;
-}
-
 Status fileset_commit(FileSet *files, Err *err)
 {
     for (size_t i = 0; i < MAX_FILE_SLOTS; i++)
         if (files->at[i].path)
             TRY(fileset_failed(files, end_text(&files->at[i], err), err));
-    return files->taker ? hand_over(files, err) : outfiles_commit(files->open, files->n_open, err);
+    return outfiles_commit(files->open, files->n_open, err);
 }
 
 void fileset_release(FileSet *files)
@@ -82,7 +55,6 @@ void fileset_release(FileSet *files)
     for (size_t i = 0; i < MAX_FILE_SLOTS; i++) {
         text_release(&files->at[i].text);
         free(files->at[i].path);
-        free(files->at[i].bytes);
     }
     *files = (FileSet){0};
 }

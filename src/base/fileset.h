@@ -8,14 +8,6 @@
 #include <stddef.h>
 #include <stdio.h>
 
-/* Receives files in memory, in place of the file system. */
-typedef struct FileTaker {
-    /* Takes one file. `name` is the path that the file would have. All arguments are borrowed.
-     * Returns false to refuse the file, which ends the operation. */
-    bool (*take)(void *user, const char *name, const void *bytes, size_t size);
-    void *user;
-} FileTaker;
-
 /* A file that an operation writes. */
 typedef struct FileSlot {
     const char *role; /* what the file holds, for messages: "the manifest"; NULL: the option that
@@ -23,8 +15,6 @@ typedef struct FileSlot {
     char *path;       /* owned; NULL: the file is not written */
     Text text;        /* receives the content */
     FILE *stream;     /* where the text goes, for content that does not pass through it; borrowed */
-    char *bytes;      /* the content, for a FileTaker; owned */
-    size_t size;      /* of `bytes` */
 } FileSlot;
 
 enum { MAX_FILE_SLOTS = 8 };
@@ -35,7 +25,6 @@ typedef struct FileSet {
     FileSlot at[MAX_FILE_SLOTS];
     OutFile open[MAX_FILE_SLOTS]; /* the files of `at` that are written, in the same order */
     size_t n_open;
-    const FileTaker *taker; /* NULL: the files go to the file system; borrowed */
 } FileSet;
 
 /* Opens the files. A text for standard output is held back until all is written. Errors as
@@ -47,7 +36,7 @@ MUST_CHECK Status fileset_open(FileSet *files, Err *err);
 MUST_CHECK Status fileset_failed(const FileSet *files, Status status, Err *err);
 
 /* Writes the rest of all texts, and gives all files their final names, or none. Errors: STATUS_IO,
- * naming the file, if writing fails or the taker refuses a file; STATUS_MEMORY. */
+ * naming the file, if writing fails; STATUS_MEMORY. */
 MUST_CHECK Status fileset_commit(FileSet *files, Err *err);
 
 /* Removes files that have no final name yet, and frees everything. */
