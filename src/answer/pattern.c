@@ -12,7 +12,7 @@ static double farthest_seen(const AnswerWorkspace *work, size_t n)
 {
     double far = (double)INFINITY;
     for (size_t i = 0; i < n; i++)
-        if (work->hits[i].pending == 0 && form_high(work->hits[i].depth) < far)
+        if (work->hits[i].n_edges == 0 && form_high(work->hits[i].depth) < far)
             far = form_high(work->hits[i].depth);
     return far;
 }
@@ -33,7 +33,7 @@ static bool is_behind_wall(const AnswerWorkspace *work, size_t n, size_t index)
     if (work->hits[index].face->kind != FACE_BALL)
         return false;
     for (size_t i = 0; i < n; i++)
-        if (work->hits[i].pending == 0 &&
+        if (work->hits[i].n_edges == 0 &&
             faces_form_capsule(work->hits[i].face, work->hits[index].face))
             return true;
     return false;
@@ -64,7 +64,7 @@ BeamHits beam_hits(AnswerWorkspace *work, const Beam *beam, const FaceList *list
     }
     found.n = drop_hidden(work, found.n);
     for (size_t i = 0; i < found.n; i++)
-        found.covered = found.covered || work->hits[i].pending == 0;
+        found.covered = found.covered || work->hits[i].n_edges == 0;
     return found;
 }
 
@@ -90,7 +90,7 @@ static void count_visible_points(AnswerWorkspace *work, const FormSurface *surfa
             light_blockers(plan, surface, &beam, light, 0, &work->blockers);
         for (size_t i = 0; i < work->blockers.n && blocked != 1; i++)
             if (blocker_at(plan, surface, &beam, light, work->blockers.faces[i], &work->blocker))
-                blocked = work->blocker.hit.pending == 0 && work->blocker.pending == 0 ? 1 : -1;
+                blocked = work->blocker.hit.n_edges == 0 && work->blocker.n_between == 0 ? 1 : -1;
         *sure += blocked == 0;
         *may += blocked != 1;
     }
