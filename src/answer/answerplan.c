@@ -1,6 +1,6 @@
-/* Everything here is exact or has a proven error, except the pixels that a face covers and the
- * boxes of the search tree: those are computed in plain doubles and widened by far more than their
- * rounding errors. */
+/* Makes the data that all pixels share: faces, their hierarchy, lights, beams. Everything here is
+ * exact or has a proven error, except the pixels that a face covers and the boxes of the search
+ * tree: those are computed in plain doubles and widened by far more than their rounding errors. */
 #include "answer/answerplan.h"
 
 #include <stdlib.h>

@@ -1,5 +1,7 @@
-/* A pixel is a heap of leaves. The leaf that adds most to the width of the pixel's interval is
- * divided, until the interval is narrow enough or the limit of leaves is reached.
+/* Computes area answers: bounds of the mean color over the square of a pixel.
+ *
+ * A pixel is a heap of leaves (rectangles). The leaf that adds most to the width of the pixel's
+ * interval is divided, until the interval is narrow enough or the limit of leaves is reached.
  *
  * Color varies across a vessel and hardly along it. A leaf that shows one wall is therefore turned:
  * it becomes the part in its square of a rectangle along the wall, and is then halved across the

@@ -1,5 +1,5 @@
-/* Hits as in docs/ANSWERS.md, section 4. Edges of a wall are linear in an orthographic view, so
- * that silhouettes are cut exactly. */
+/* Makes the faces of a scene and intersects beams with them, as in docs/ANSWERS.md, section 4.
+ * Edges of a wall are linear in an orthographic view, so that silhouettes are cut exactly. */
 #include "answer/faces.h"
 
 #include <stdlib.h>

@@ -1,4 +1,5 @@
-/* Computes the shading model of render/light/shade.c in real numbers. */
+/* Bounds the light on a surface, and finds its blockers. The shading model is that of
+ * render/light/shade.c, in real numbers instead of rounded ones. */
 #include "answer/light.h"
 
 static const Form one = {1, 0, 0, 0};

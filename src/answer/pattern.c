@@ -1,6 +1,7 @@
-/* Answers of single rays. A ray is a beam without extent, so that its forms are numbers with errors
- * near 1e-13. An edge that is nearer to the ray than that leaves the ray undecided: its color is
- * then the hull of all colors that are possible. */
+/* Computes pattern answers: bounds of the mean color at the sample positions of a pixel. A sample
+ * is one ray, and a ray is a beam without extent, so that its forms are numbers with errors near
+ * 1e-13. An edge that is nearer to the ray than that leaves the ray undecided: its color is then
+ * the hull of all colors that are possible. */
 #include "answer/workspace.h"
 
 #include <math.h>

@@ -1,4 +1,5 @@
-/* The pair is drawn once more for its report, so that the search keeps no pictures. */
+/* Writes the folder of a cause: the pair that shows it, its pictures and a report. The pair is
+ * drawn once more for this, so that the search keeps no pictures. */
 #include "metamorph/reports.h"
 
 #include "compare/compare.h"

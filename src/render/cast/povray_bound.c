@@ -1,4 +1,6 @@
-/* POV-Ray intersects a ray with an object if two tests find that the ray meets the object's box:
+/* Repeats POV-Ray's tests of bounding boxes, with its rounding.
+ *
+ * POV-Ray intersects a ray with an object if two tests find that the ray meets the object's box:
  * the test of its leaf in the hierarchy of boxes (Check_And_Enqueue of bounding/bbox.cpp of
  * 3.7.0.10), and the test of the object itself (Intersect_BBox_Dir of scene/objects.cpp). Both
  * compute in single precision, in different orders. The boxes above the leaf contain the leaf's box

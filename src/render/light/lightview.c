@@ -1,7 +1,7 @@
-/* The view's grid is the smallest rectangle that contains the projected corners of the geometry's
- * box, widened by 1e-4 for rounding. If all queried points lie in a part of the grid, lists are
- * made for the tiles of this part only. The grid does not depend on the part, so the results are
- * the same to the last bit. */
+/* Makes light views and the projections of points to them. The view's grid is the smallest
+ * rectangle that contains the projected corners of the geometry's box, widened by 1e-4 for
+ * rounding. If all queried points lie in a part of the grid, lists are made for the tiles of this
+ * part only. The grid does not depend on the part, so the results are the same to the last bit. */
 #include "render/light/lightview.h"
 
 /* Minimum distance of a point light from the middle of the scene, in radii of the scene. At this

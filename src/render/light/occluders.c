@@ -1,4 +1,6 @@
-/* The sphere of directions is divided into the same occlusion directions for all shading points.
+/* Reduces a geometry to the capsules that block ambient light, and makes the occlusion directions.
+ *
+ * The sphere of directions is divided into the same occlusion directions for all shading points.
  * For each direction a point has a cone: it begins as a line, and widens as its part of the sphere
  * does, up to a width of some vessels. Its ambient visibility is the product of the parts that
  * capsules leave free.

@@ -1,4 +1,6 @@
-/* Pixels are taken in quads, squares of 2 x 2. For each surface that a quad shows, one shading
+/* Computes the ambient visibility of the pixels of a band.
+ *
+ * Pixels are taken in quads, squares of 2 x 2. For each surface that a quad shows, one shading
  * point, a probe, traces cones [occluders.c] for all pixels of the quad that face about the same
  * way. Where surfaces differ or bend, a quad has several probes. Directions come in pairs, as
  * lines: a probe traces the end of a line that its surface faces. Lines are divided into four sets,

@@ -1,9 +1,9 @@
-/* Directions are points of a disc, lifted to the hemisphere above the disc (Malley). The density of
- * the directions is then proportional to their cosine, so that the mean needs no weights. The
- * points of the disc are those of a sunflower: point k of n lies at the radius sqrt((k + u) / n),
- * turned by k golden angles, and is evenly spread for every n. The same points at every pixel would
- * leave bands. Turned, and with another u, from pixel to pixel, they leave fine grain whose mean is
- * right. */
+/* Computes the ambient visibility of one point by rays. Directions are points of a disc, lifted to
+ * the hemisphere above the disc (Malley). The density of the directions is then proportional to
+ * their cosine, so that the mean needs no weights. The points of the disc are those of a sunflower:
+ * point k of n lies at the radius sqrt((k + u) / n), turned by k golden angles, and is evenly
+ * spread for every n. The same points at every pixel would leave bands. Turned, and with another u,
+ * from pixel to pixel, they leave fine grain whose mean is right. */
 #include "render/light/rayocclusion.h"
 
 #include <math.h>

@@ -1,4 +1,6 @@
-/* Items are sorted into the rows of tiles that they may touch. Chunks of items have counters of
+/* Projects the primitives of a geometry to a view (items), and sorts them into tiles.
+ *
+ * Items are sorted into the rows of tiles that they may touch. Chunks of items have counters of
  * their own, so that threads fill the rows without waiting and in the order of the items. Each
  * entry of a row also has the columns that the item may touch there. The list of a row's tiles is
  * made when the row is drawn.

@@ -1,6 +1,6 @@
-/* A primitive becomes an item: its middle in double precision, everything else in single precision
- * relative to that middle. Single precision then has to hold only numbers as small as the
- * primitive.
+/* Projects one primitive to a view. A primitive becomes an item: its middle in double precision,
+ * everything else in single precision relative to that middle. Single precision then has to hold
+ * only numbers as small as the primitive.
  *
  * An item is RASTER_EXACT if single precision cannot draw it to a thousandth of a pixel, or if the
  * kernels do not solve it: items that are near the viewer or around the viewer, longer than 16384

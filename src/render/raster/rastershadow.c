@@ -1,4 +1,6 @@
-/* A point is in shadow if the first primitive between the light and the point is not the primitive
+/* The shadow engine of primitives: answers shadow queries for points in a tile of a light view.
+ *
+ * A point is in shadow if the first primitive between the light and the point is not the primitive
  * on which the point lies. The kernels that find first hits therefore also answer shadow queries,
  * at arbitrary points instead of on a grid.
  *
