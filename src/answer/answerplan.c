@@ -7,7 +7,7 @@
 
 /* Widening of the pixels that a face covers. Positions in pixels have errors near 1e-9. */
 static const double screen_pad_px = 1e-4;
-/* Widening of boxes, of the diagonal of the scene. */
+/* Widening of boxes, as a fraction of the diagonal of the scene. */
 static const double box_pad = 1e-7;
 
 /* ---- assumptions ----------------------------------------------------------------------------- */

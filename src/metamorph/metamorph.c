@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
+/* Number of pairs that are drawn together; reason for the value not recorded. */
 enum { BATCH = 16 };
 
 typedef struct Search {

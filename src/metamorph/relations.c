@@ -49,6 +49,7 @@ static Vec3 translated(Vec3 v, const void *context)
     return vec3_add(v, *(const Vec3 *)context);
 }
 
+/* Turns by 90 degrees about z or x, or by 120 degrees about (1, 1, 1): integers stay integers. */
 static Vec3 turned(Vec3 v, const void *context)
 {
     const int axis = *(const int *)context;

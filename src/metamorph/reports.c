@@ -10,6 +10,8 @@ static const char *const sides[2] = {"first", "second"};
 
 /* ---- the sweep over scales ------------------------------------------------------------------- */
 
+/* Draws the first scene with all lengths times 2^k, |k| <= SWEEP, and counts the pixels that differ
+ * from k = 0. */
 static Status sweep_scales(MetamorphCause *cause, const TrialRenderer *renderer, Err *err)
 {
     enum { N = 2 * SWEEP + 1 };

@@ -7,6 +7,9 @@
 
 #include <string.h>
 
+/* Capacity for candidates of a stage, candidates that are drawn together, and minimum width and
+ * height of a reduced picture. MAX_PASSES bounds the number of passes through all stages. Reasons
+ * for the values are not recorded. */
 enum { CANDIDATES = 160, AT_A_TIME = 8, MAX_PASSES = 8, MIN_PIXELS = 8 };
 
 /* Candidates for a smaller scene. */

@@ -8,10 +8,11 @@
 
 #include <math.h>
 
-/* Number of times that u runs from 0 to 1 while the turn does: u takes all values in every
- * direction. */
+/* Number of times that u runs from 0 to 1 while the turn does once: u takes all values near every
+ * turn. Reason for 12 not recorded. */
 static const double shifts_per_turn = 12;
-static const double golden_part = 0.3819660112501051; /* of a full turn */
+static const double golden_part =
+    0.3819660112501051; /* the golden angle as a fraction of a full turn */
 
 typedef struct Axes {
     Vec3 a, b;
