@@ -1,6 +1,6 @@
-/* max(v, 0)^n is convex for n >= 1: it lies below its chord and, over an interval, above the
- * tangent at any of its points. The tangent at the middle has nearly the slope of the chord; the
- * difference of the slopes times half the width makes up for it. */
+/* Computes the power of a form. max(v, 0)^n is convex for n >= 1: it lies below its chord and, over
+ * an interval, above the tangent at any of its points. The tangent at the middle has nearly the
+ * slope of the chord; the difference of the slopes times half the width makes up for it. */
 #include "answer/affine.h"
 
 /* Bounds the error of elementary_pow, relative, with room for the roundings around it. */

@@ -1,5 +1,6 @@
-/* Tiles are the unit of work. Each pixel is computed on its own from what its tile shows, so that
- * neither tiles nor threads change the result. */
+/* Computes the answers of all pixels, in parallel. Tiles are the unit of work. Each pixel is
+ * computed on its own from what its tile shows, so that neither tiles nor threads change the
+ * result. */
 #include "answer/answer.h"
 
 #include "answer/certificate.h"

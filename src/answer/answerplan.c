@@ -1,13 +1,13 @@
-/* Everything here is exact or has a proven error, except the pixels that a face covers and the
- * boxes of the search tree: those are computed in plain doubles and widened by far more than their
- * rounding errors. */
+/* Makes the data that all pixels share: faces, their hierarchy, lights, beams. Everything here is
+ * exact or has a proven error, except the pixels that a face covers and the boxes of the search
+ * tree: those are computed in plain doubles and widened by far more than their rounding errors. */
 #include "answer/answerplan.h"
 
 #include <stdlib.h>
 
 /* Widening of the pixels that a face covers. Positions in pixels have errors near 1e-9. */
 static const double screen_pad_px = 1e-4;
-/* Widening of boxes, of the diagonal of the scene. */
+/* Widening of boxes, as a fraction of the diagonal of the scene. */
 static const double box_pad = 1e-7;
 
 /* ---- assumptions ----------------------------------------------------------------------------- */

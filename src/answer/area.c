@@ -1,10 +1,12 @@
-/* A pixel is a heap of leaves. The leaf that adds most to the width of the pixel's interval is
- * divided, until the interval is narrow enough or the limit of leaves is reached.
+/* Computes area answers: bounds of the mean color over the square of a pixel.
+ *
+ * A pixel is a heap of leaves (rectangles). The leaf that adds most to the width of the pixel's
+ * interval is divided, until the interval is narrow enough or the limit of leaves is reached.
  *
  * Color varies across a vessel and hardly along it. A leaf that shows one wall is therefore turned:
- * it becomes the part in its square of a rectangle along the wall, and is then halved across the
- * wall only, for as long as it shows this wall alone, and shading, not the strips along cuts, makes
- * its interval wide. */
+ * it is replaced by a rectangle along the wall, clipped to the square of the leaf. The rectangle is
+ * halved across the wall only, as long as it shows this wall alone and its interval is wide because
+ * of shading, not because of the strips along cuts. */
 #include "answer/region.h"
 
 #include <math.h>

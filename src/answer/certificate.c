@@ -1,5 +1,5 @@
-/* The scene is written first, then the pixels one by one, so that memory holds one pixel as JSON.
- */
+/* Writes certificates as JSON. The scene is written first, then the pixels one by one, so that
+ * memory holds one pixel as JSON. */
 #include "answer/certificate.h"
 
 void certificate_begin(const AnswerPlan *plan, Text *out)

@@ -1,5 +1,5 @@
-/* Hits as in docs/ANSWERS.md, section 4. Edges of a wall are linear in an orthographic view, so
- * that silhouettes are cut exactly. */
+/* Makes the faces of a scene and intersects beams with them, as in docs/ANSWERS.md, section 4.
+ * Edges of a wall are linear in an orthographic view, so that silhouettes are cut exactly. */
 #include "answer/faces.h"
 
 #include <stdlib.h>
@@ -36,7 +36,7 @@ static bool add_edge(FaceHit *hit, Form edge)
     if (form_high(edge) < 0)
         return false;
     if (!(form_low(edge) >= 0))
-        hit->edges[hit->pending++] = edge;
+        hit->edges[hit->n_edges++] = edge;
     return true;
 }
 
@@ -47,7 +47,7 @@ static bool unknown_hit(FaceHit *hit)
     hit->depth = hit->s = hit->w = anything;
     hit->v = (Form3){anything, anything, anything};
     hit->edges[0] = anything;
-    hit->pending = 1;
+    hit->n_edges = 1;
     return true;
 }
 
@@ -142,7 +142,7 @@ static bool hit_ground(const Face *face, const Beam *beam, FaceHit *hit)
 bool face_hit(const Face *face, size_t index, const Beam *beam, FaceHit *hit)
 {
     hit->face = face;
-    hit->pending = 0;
+    hit->n_edges = 0;
     switch (face->kind) {
     case FACE_WALL:
         return hit_wall(face, index, beam, hit);

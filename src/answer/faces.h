@@ -70,9 +70,9 @@ enum { HIT_EDGES = 4 };
 typedef struct FaceHit {
     const Face *face;
     Form depth;            /* valid for the rays that hit the face */
-    Form edges[HIT_EDGES]; /* the `pending` edges that may be negative somewhere in the beam; edges
-                            * that are >= 0 everywhere are left out */
-    int pending;
+    Form edges[HIT_EDGES]; /* the edges that may be negative somewhere in the beam; edges that are
+                            * >= 0 everywhere are left out */
+    int n_edges;
     /* mm. s is half of the chord that the ray's line cuts from a ball or, seen along the axis, from
      * a wall's circle. w, for walls, is the signed distance of the ray's line from the axis. */
     Form s, w;

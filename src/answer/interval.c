@@ -1,4 +1,5 @@
-/* Widths and slopes are those of the sRGB curve, because differences of colors are seen there. */
+/* Makes and joins intervals of colors. Widths and slopes are those of the sRGB curve, because
+ * differences of colors are seen there. */
 #include "answer/interval.h"
 
 #include <math.h>

@@ -1,4 +1,5 @@
-/* Computes the shading model of render/light/shade.c in real numbers. */
+/* Bounds the light on a surface, and finds its blockers. The shading model is that of
+ * render/light/shade.c, in real numbers instead of rounded ones. */
 #include "answer/light.h"
 
 static const Form one = {1, 0, 0, 0};
@@ -152,21 +153,21 @@ bool blocker_at(const AnswerPlan *plan, const FormSurface *s, const Beam *beam, 
                 uint32_t face, LightBlocker *blocker)
 {
     const Face *other = &plan->faces[face];
-    blocker->pending = 0;
+    blocker->n_between = 0;
     if (one_solid(s->hit->face, other) || !face_hit(other, face, beam, &blocker->hit))
         return false;
     const Form depth = blocker->hit.depth;
     if (form_high(depth) <= 0)
         return false;
     if (!(form_low(depth) > 0))
-        blocker->between[blocker->pending++] = depth;
+        blocker->between[blocker->n_between++] = depth;
     if (plan->lights[light].light->parallel)
         return true;
     const Form left = form_sub(one, depth);
     if (form_high(left) <= 0)
         return false;
     if (!(form_low(left) > 0))
-        blocker->between[blocker->pending++] = left;
+        blocker->between[blocker->n_between++] = left;
     return true;
 }
 

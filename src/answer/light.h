@@ -58,7 +58,7 @@ void light_blockers(const AnswerPlan *plan, const FormSurface *surface, const Be
 typedef struct LightBlocker {
     FaceHit hit;
     Form between[2]; /* edges that are >= 0 where the hit is between the surface and the light */
-    int pending;     /* number of edges in `between`; edges that are >= 0 everywhere are left out */
+    int n_between;   /* number of edges in `between`; edges that are >= 0 everywhere are left out */
 } LightBlocker;
 /* Computes the hit of a shadow beam with the face of this index. Returns false if the face surely
  * blocks no ray of the beam, for example because it is part of the surface's own convex solid. */

@@ -1,6 +1,7 @@
-/* Answers of single rays. A ray is a beam without extent, so that its forms are numbers with errors
- * near 1e-13. An edge that is nearer to the ray than that leaves the ray undecided: its color is
- * then the hull of all colors that are possible. */
+/* Computes pattern answers: bounds of the mean color at the sample positions of a pixel. A sample
+ * is one ray, and a ray is a beam without extent, so that its forms are numbers with errors near
+ * 1e-13. An edge that is nearer to the ray than that leaves the ray undecided: its color is then
+ * the hull of all colors that are possible. */
 #include "answer/workspace.h"
 
 #include <math.h>
@@ -12,7 +13,7 @@ static double farthest_seen(const AnswerWorkspace *work, size_t n)
 {
     double far = (double)INFINITY;
     for (size_t i = 0; i < n; i++)
-        if (work->hits[i].pending == 0 && form_high(work->hits[i].depth) < far)
+        if (work->hits[i].n_edges == 0 && form_high(work->hits[i].depth) < far)
             far = form_high(work->hits[i].depth);
     return far;
 }
@@ -33,7 +34,7 @@ static bool is_behind_wall(const AnswerWorkspace *work, size_t n, size_t index)
     if (work->hits[index].face->kind != FACE_BALL)
         return false;
     for (size_t i = 0; i < n; i++)
-        if (work->hits[i].pending == 0 &&
+        if (work->hits[i].n_edges == 0 &&
             faces_form_capsule(work->hits[i].face, work->hits[index].face))
             return true;
     return false;
@@ -64,7 +65,7 @@ BeamHits beam_hits(AnswerWorkspace *work, const Beam *beam, const FaceList *list
     }
     found.n = drop_hidden(work, found.n);
     for (size_t i = 0; i < found.n; i++)
-        found.covered = found.covered || work->hits[i].pending == 0;
+        found.covered = found.covered || work->hits[i].n_edges == 0;
     return found;
 }
 
@@ -90,7 +91,7 @@ static void count_visible_points(AnswerWorkspace *work, const FormSurface *surfa
             light_blockers(plan, surface, &beam, light, 0, &work->blockers);
         for (size_t i = 0; i < work->blockers.n && blocked != 1; i++)
             if (blocker_at(plan, surface, &beam, light, work->blockers.faces[i], &work->blocker))
-                blocked = work->blocker.hit.pending == 0 && work->blocker.pending == 0 ? 1 : -1;
+                blocked = work->blocker.hit.n_edges == 0 && work->blocker.n_between == 0 ? 1 : -1;
         *sure += blocked == 0;
         *may += blocked != 1;
     }

@@ -1,38 +1,46 @@
-/* A piece of the polygon holds the hits that may be visible in it, each with the set of its edges
- * that are not decided there. Light is additive, so shadows of each light cut the piece on their
- * own. Where a bound is NaN, nothing is decided, and the piece takes the range of all colors. */
+/* Computes bounds of the integral of the color over a polygon of a pixel.
+ *
+ * The polygon is cut into pieces. Each piece lists the hits that may be visible in it and, for each
+ * hit, its undecided edges: those that may be positive and negative in the piece. When one hit
+ * without undecided edges is left, the shadows of each light cut the piece in the same way. Light
+ * is additive, so each light starts again from the whole piece. The area near a cut, where
+ * rounding hides the sign of the edge, is bounded by the range of all colors that the piece can
+ * have. A comparison with NaN decides no edge, so a NaN leads to this range, too. */
 #include "answer/certificate.h"
 
 #include <math.h>
 
 enum {
-    MAX_CUTS = 60,  /* most cuts of a beam; beyond, pieces take the range of their colors */
-    MAX_DEPTH = 10, /* most cuts of a piece */
-    MAX_BLOCKERS = 24
+    /* Limits of the time of one polygon. At a limit, a piece is bounded by the range of its colors;
+     * the bounds stay true, but become wider. Reasons for the values are not recorded. */
+    MAX_CUTS = 60,    /* maximum number of cuts per polygon */
+    MAX_DEPTH = 10,   /* maximum number of cuts that lead to one piece; POLYGON_MAX allows for it */
+    MAX_BLOCKERS = 24 /* maximum number of blockers of a shadow beam */
 };
 
-/* A hit in a piece: `pending` has a bit for each undecided edge. */
+/* A hit in a piece. */
 typedef struct PieceHit {
-    uint8_t hit, pending;
+    uint8_t hit;       /* index in work->hits */
+    uint8_t undecided; /* bit k: edge k is undecided in the piece; 0: the hit covers the piece */
 } PieceHit;
 
 typedef struct Piece {
     LeafPolygon polygon;
     size_t n;
     PieceHit hits[MAX_HITS];
-    bool covered; /* some hit is decided: the background is not visible */
+    bool covered; /* some hit has no undecided edge: the background is not visible */
     int depth;    /* number of cuts */
 } Piece;
 
 /* A hit's surface and light, computed when first needed. */
 typedef struct HitLight {
-    bool made, has_range;
+    bool is_computed, range_is_computed;
     FormSurface surface;
     LightTerm terms[VIEW_MAX_LIGHTS];
-    ColorInterval range; /* of all colors that it can have in the beam */
+    ColorInterval range; /* of all colors that the hit can have in the beam */
 } HitLight;
 
-/* A blocker in a light beam, with all its edges. */
+/* A blocker in a light beam, with all its edges: those of its hit and LightBlocker.between. */
 typedef struct BlockerEdges {
     Form edges[HIT_EDGES + 2];
     int n;
@@ -43,7 +51,7 @@ typedef struct Region {
     const Beam *beam;
     RegionSum sum;
     int cuts;
-    HitLight *lights; /* of the worker, per hit */
+    HitLight *lights; /* per hit; array of region_integrate */
 } Region;
 
 /* ---- polygons -------------------------------------------------------------------------------- */
@@ -68,7 +76,7 @@ LeafPolygon polygon_cut(const LeafPolygon *p, Form f, double from)
             out.x[out.n] = p->x[i] + part * (p->x[next] - p->x[i]);
             out.y[out.n++] = p->y[i] + part * (p->y[next] - p->y[i]);
         }
-        if (out.n > POLYGON_MAX - 2)
+        if (out.n > POLYGON_MAX - 2) /* one pass of the loop adds up to two corners */
             return (LeafPolygon){0};
     }
     return out.n < 3 ? (LeafPolygon){0} : out;
@@ -97,12 +105,13 @@ static double area_of(const LeafPolygon *p)
     return moments_of(p).area;
 }
 
-/* The error of areas, corners and moments of polygons in [-1, 1], by far. */
+/* A generous upper bound of the rounding error of areas, corners and moments of polygons in the
+ * square [-1, 1]^2. */
 static const double area_error = 1e-13;
 
 /* ---- sums ------------------------------------------------------------------------------------ */
 
-/* Adds an area that has any color of an interval. */
+/* Adds an area whose color is only known to be in an interval. */
 static void add_interval(Region *r, double area, const ColorInterval *interval)
 {
     certificate_add_interval(r->work->record, area, interval);
@@ -113,8 +122,8 @@ static void add_interval(Region *r, double area, const ColorInterval *interval)
     }
 }
 
-/* Adds the integral of a form over a polygon, times `weight`. Colors are neither negative nor above
- * the brightest of the scene. */
+/* Adds the integral of a form over a polygon, times `weight`. The bounds are clamped to the range
+ * of the scene's colors. */
 static void add_form(Region *r, const LeafPolygon *polygon, const FormColor *color, double weight)
 {
     const PolygonMoments moments = moments_of(polygon), *m = &moments;
@@ -137,10 +146,10 @@ static HitLight *light_of(Region *r, size_t hit)
 {
     const AnswerPlan *plan = r->work->plan;
     HitLight *light = &r->lights[hit];
-    if (light->made)
+    if (light->is_computed)
         return light;
-    light->made = true;
-    light->has_range = false;
+    light->is_computed = true;
+    light->range_is_computed = false;
     light->surface = surface_at(plan, r->beam, &r->work->hits[hit]);
     for (size_t i = 0; i < plan->scene->view.n_lights; i++)
         light->terms[i] = light_term(plan, &light->surface, i);
@@ -152,9 +161,9 @@ static const ColorInterval *range_of(Region *r, size_t hit)
 {
     const AnswerPlan *plan = r->work->plan;
     HitLight *light = light_of(r, hit);
-    if (light->has_range)
+    if (light->range_is_computed)
         return &light->range;
-    light->has_range = true;
+    light->range_is_computed = true;
     light->range = interval_of_form(plan, &light->surface.base);
     for (size_t i = 0; i < plan->scene->view.n_lights; i++) {
         if (light->terms[i].is_zero)
@@ -177,20 +186,28 @@ static const ColorInterval *range_of(Region *r, size_t hit)
 
 typedef struct ShadowPiece {
     LeafPolygon polygon;
-    int n, depth;
+    int n, depth; /* depth: number of cuts */
     struct {
-        uint8_t blocker, pending;
+        uint8_t blocker, undecided; /* index in ShadowCuts.blockers; as PieceHit.undecided */
     } items[MAX_BLOCKERS];
 } ShadowPiece;
 
 typedef struct ShadowCuts {
     const BlockerEdges *blockers;
     const FormColor *adds;
-    ColorInterval range; /* of what the light adds, blocked or not, times the weight */
+    ColorInterval range; /* of the light's contribution times `weight`; contains 0 (blocked) */
     double weight;
 } ShadowCuts;
 
-/* Decides an edge over a polygon: 1 inside, -1 outside, 0 not decided. */
+/* Returns a bound of the error of value_at for this edge. value_at has four roundings; the
+ * reason of the factor 64 is not recorded. */
+static double edge_error(Form edge)
+{
+    return edge.e + 64 * FORM_U * form_span(edge);
+}
+
+/* Returns the sign of an edge over a polygon: 1 if it is >= 0 everywhere, -1 if it is negative
+ * everywhere, 0 if it is undecided. */
 static int side_of(Form edge, const LeafPolygon *p)
 {
     double low = value_at(edge, p, 0), high = low;
@@ -199,29 +216,30 @@ static int side_of(Form edge, const LeafPolygon *p)
         low = box_min(low, value);
         high = box_max(high, value);
     }
-    const double error = edge.e + 64 * FORM_U * form_span(edge);
+    const double error = edge_error(edge);
     return low >= error ? 1 : high < -error ? -1 : 0;
 }
 
-/* Clears the bits of `pending` whose edges are surely >= 0 over the polygon. Returns false if an
+/* Clears the bits of *undecided whose edges are surely >= 0 over the polygon. Returns false if an
  * edge with a bit is surely negative. */
-static bool decide_edges(const Form *edges, const LeafPolygon *p, uint8_t *pending)
+static bool decide_edges(const Form *edges, const LeafPolygon *p, uint8_t *undecided)
 {
-    for (int k = 0; k < 8 && *pending >> k; k++) {
-        const int side = *pending >> k & 1 ? side_of(edges[k], p) : 0;
+    for (int k = 0; k < 8 && *undecided >> k; k++) {
+        const int side = *undecided >> k & 1 ? side_of(edges[k], p) : 0;
         if (side < 0)
             return false;
         if (side > 0)
-            *pending &= (uint8_t) ~(1 << k);
+            *undecided &= (uint8_t) ~(1 << k);
     }
     return true;
 }
 
-/* Cuts a polygon at an edge. Returns the area of the strip in which it is not decided. */
+/* Cuts a polygon at an edge. Returns a bound of the area that is in neither part: the strip along
+ * the edge, and a part that polygon_cut gave up. */
 static double cut_at(Region *r, const LeafPolygon *p, Form edge, LeafPolygon *inside,
                      LeafPolygon *outside)
 {
-    const double error = edge.e + 64 * FORM_U * form_span(edge);
+    const double error = edge_error(edge);
     *inside = polygon_cut(p, edge, error);
     *outside = polygon_cut(p, (Form){-edge.c, -edge.x, -edge.y, 0}, error);
     r->cuts++;
@@ -229,27 +247,23 @@ static double cut_at(Region *r, const LeafPolygon *p, Form edge, LeafPolygon *in
     return (strip > 0 ? strip : 0) + area_error;
 }
 
-/* Adds the light that reaches a piece. */
-static void add_lit(Region *r, const ShadowCuts *cuts, ShadowPiece *piece)
+/* Adds the light that reaches a piece past all blockers. */
+static void add_unshadowed(Region *r, const ShadowCuts *cuts, ShadowPiece *piece)
 {
     if (piece->polygon.n < 3)
         return;
-    int first = -1;
     for (int i = 0; i < piece->n; i++) {
         const Form *edges = cuts->blockers[piece->items[i].blocker].edges;
-        if (!decide_edges(edges, &piece->polygon, &piece->items[i].pending))
+        if (!decide_edges(edges, &piece->polygon, &piece->items[i].undecided))
             piece->items[i--] = piece->items[--piece->n];
-        else if (!piece->items[i].pending)
+        else if (!piece->items[i].undecided)
             return; /* all in shadow */
-        else if (first < 0)
-            first = i;
     }
     if (piece->n == 0) {
         add_form(r, &piece->polygon, cuts->adds, cuts->weight);
         return;
     }
-    first = first < piece->n ? first : 0;
-    const int edge = __builtin_ctz(piece->items[first].pending);
+    const int edge = __builtin_ctz(piece->items[0].undecided);
     if (r->cuts >= MAX_CUTS || piece->depth >= MAX_DEPTH) {
         add_interval(r, area_of(&piece->polygon), &cuts->range);
         return;
@@ -257,17 +271,17 @@ static void add_lit(Region *r, const ShadowCuts *cuts, ShadowPiece *piece)
     ShadowPiece inside = *piece, outside = *piece;
     inside.depth = outside.depth = piece->depth + 1;
     add_interval(r,
-                 cut_at(r, &piece->polygon, cuts->blockers[piece->items[first].blocker].edges[edge],
+                 cut_at(r, &piece->polygon, cuts->blockers[piece->items[0].blocker].edges[edge],
                         &inside.polygon, &outside.polygon),
                  &cuts->range);
-    inside.items[first].pending &= (uint8_t) ~(1 << edge);
-    outside.items[first] = outside.items[--outside.n];
-    add_lit(r, cuts, &inside);
-    add_lit(r, cuts, &outside);
+    inside.items[0].undecided &= (uint8_t) ~(1 << edge);
+    outside.items[0] = outside.items[--outside.n];
+    add_unshadowed(r, cuts, &inside);
+    add_unshadowed(r, cuts, &outside);
 }
 
-/* Lists the faces that may block the light on a surface. Returns false if its extent is not
- * known. */
+/* Lists the faces that may block the light on a surface. Returns false if the extent of the surface
+ * is not finite. */
 static bool find_blockers(AnswerWorkspace *work, const FormSurface *surface, const Beam *beam,
                           size_t light)
 {
@@ -278,7 +292,9 @@ static bool find_blockers(AnswerWorkspace *work, const FormSurface *surface, con
     return true;
 }
 
-/* Finds the blockers of a face for all of the pixel, once. Returns NULL if they cannot be kept. */
+/* Returns the blockers of a face for the whole pixel, found once and then cached. Returns NULL if
+ * the cache is full, if the blockers cannot be determined, or if the light has several points,
+ * because a list of blockers is for one point. */
 static const BlockerCacheEntry *cached_blockers(AnswerWorkspace *work, const Face *face,
                                                 size_t light)
 {
@@ -295,11 +311,11 @@ static const BlockerCacheEntry *cached_blockers(AnswerWorkspace *work, const Fac
     if (!find_blockers(work, &surface, &beam, light) ||
         work->n_cached_faces + work->blockers.n > CACHE_FACES)
         return NULL;
-    BlockerCacheEntry *made = &work->cached[work->n_cached++];
-    *made = (BlockerCacheEntry){face, light, work->n_cached_faces, work->blockers.n};
-    for (size_t i = 0; i < made->n; i++)
+    BlockerCacheEntry *entry = &work->cached[work->n_cached++];
+    *entry = (BlockerCacheEntry){face, light, work->n_cached_faces, work->blockers.n};
+    for (size_t i = 0; i < entry->n; i++)
         work->cached_faces[work->n_cached_faces++] = work->blockers.faces[i];
-    return made;
+    return entry;
 }
 
 /* Lists the blockers of a light beam with their edges. Returns false if there are too many. */
@@ -321,15 +337,15 @@ static bool list_blockers(Region *r, const FormSurface *surface, const Beam *bea
             return false;
         BlockerEdges *edges = &blockers[(*n)++];
         edges->n = 0;
-        for (int k = 0; k < blocker->hit.pending; k++)
+        for (int k = 0; k < blocker->hit.n_edges; k++)
             edges->edges[edges->n++] = blocker->hit.edges[k];
-        for (int k = 0; k < blocker->pending; k++)
+        for (int k = 0; k < blocker->n_between; k++)
             edges->edges[edges->n++] = blocker->between[k];
     }
     return true;
 }
 
-/* Adds what point `point` of a light adds to a polygon of a hit. */
+/* Adds the light that point `point` of a light contributes to a hit over a polygon. */
 static void add_light(Region *r, HitLight *hit, size_t light, int point, const LeafPolygon *polygon)
 {
     const AnswerPlan *plan = r->work->plan;
@@ -354,6 +370,8 @@ static void add_light(Region *r, HitLight *hit, size_t light, int point, const L
         if (own == -1) {
             blockers[piece.n].n = 1;
             blockers[piece.n].edges[0] = form_neg(form3_dot(hit->surface.normal, beam.unit));
+            /* A path inside the solid is 2 radius |cosine| long. Up to SHADOW_FROM_MM, the solid
+             * blocks the ray or not. */
             blockers[piece.n].edges[0].e += 0.5 * SHADOW_FROM_MM / hit->surface.hit->face->radius;
             piece.n++;
         }
@@ -364,12 +382,12 @@ static void add_light(Region *r, HitLight *hit, size_t light, int point, const L
     }
     for (int i = 0; i < piece.n; i++) {
         piece.items[i].blocker = (uint8_t)i;
-        piece.items[i].pending = (uint8_t)((1 << blockers[i].n) - 1);
+        piece.items[i].undecided = (uint8_t)((1 << blockers[i].n) - 1);
     }
-    add_lit(r, &cuts, &piece);
+    add_unshadowed(r, &cuts, &piece);
 }
 
-/* Adds the color of one hit over a polygon. */
+/* Adds the color of one hit over a polygon, and notes the hit in sum.walls and sum.is_mixed. */
 static void add_hit(Region *r, size_t index, const LeafPolygon *polygon)
 {
     const AnswerPlan *plan = r->work->plan;
@@ -414,19 +432,22 @@ static ColorInterval range_of_piece(Region *r, const Piece *piece)
     return interval;
 }
 
-/* Decides edges over the piece. Drops hits that no ray of it has. */
+/* Decides edges over the piece. Drops hits whose face lies wholly outside the piece. */
 static void decide_hits(Region *r, Piece *piece)
 {
     piece->covered = false;
     for (size_t i = 0; i < piece->n; i++) {
         PieceHit *hit = &piece->hits[i];
-        if (decide_edges(r->work->hits[hit->hit].edges, &piece->polygon, &hit->pending))
-            piece->covered = piece->covered || !hit->pending;
+        if (decide_edges(r->work->hits[hit->hit].edges, &piece->polygon, &hit->undecided))
+            piece->covered = piece->covered || !hit->undecided;
         else
             piece->hits[i--] = piece->hits[--piece->n];
     }
 }
 
+/* Returns true if the hit is surely hidden in the piece: it is deeper than `far`, or it is a ball
+ * whose cylinder covers the piece. The wall of a capsule is in front of its ball wherever both are
+ * hit, but their depths may overlap. */
 static bool is_behind(const Region *r, const Piece *piece, size_t index, double far)
 {
     const FaceHit *hits = r->work->hits, *hit = &hits[piece->hits[index].hit];
@@ -435,33 +456,33 @@ static bool is_behind(const Region *r, const Piece *piece, size_t index, double 
     if (hit->face->kind != FACE_BALL)
         return false;
     for (size_t i = 0; i < piece->n; i++)
-        if (!piece->hits[i].pending && faces_form_capsule(hits[piece->hits[i].hit].face, hit->face))
+        if (!piece->hits[i].undecided &&
+            faces_form_capsule(hits[piece->hits[i].hit].face, hit->face))
             return true;
     return false;
 }
 
-/* Drops hits behind a decided one. */
+/* Drops hits behind a hit that covers the piece. */
 static void drop_behind(const Region *r, Piece *piece)
 {
     const FaceHit *hits = r->work->hits;
     double far = (double)INFINITY;
     for (size_t i = 0; i < piece->n; i++)
-        if (!piece->hits[i].pending && form_high(hits[piece->hits[i].hit].depth) < far)
+        if (!piece->hits[i].undecided && form_high(hits[piece->hits[i].hit].depth) < far)
             far = form_high(hits[piece->hits[i].hit].depth);
     for (size_t i = 0; i < piece->n; i++)
         if (is_behind(r, piece, i, far))
             piece->hits[i--] = piece->hits[--piece->n];
 }
 
-/* Returns the index of the hit whose edge is cut next: of the nearest; piece->n if none has an
- * undecided edge. */
-static size_t next_pending(const Region *r, const Piece *piece)
+/* Returns the index of the nearest hit with an undecided edge; piece->n if there is none. */
+static size_t nearest_undecided(const Region *r, const Piece *piece)
 {
     size_t next = piece->n;
     double nearest = (double)INFINITY;
     for (size_t i = 0; i < piece->n; i++) {
         const double near = r->work->hits[piece->hits[i].hit].depth.c;
-        if (piece->hits[i].pending && (next == piece->n || near < nearest)) {
+        if (piece->hits[i].undecided && (next == piece->n || near < nearest)) {
             next = i;
             nearest = near;
         }
@@ -478,8 +499,9 @@ static void drop_hit(Piece *piece, uint8_t hit)
 
 static void add_piece(Region *r, Piece *piece);
 
-/* Cuts a piece at an edge of a hit, or at the crease of two hits: `other` is in front where the
- * edge is positive, if it is not `hit`. */
+/* Cuts a piece. With bit >= 0, the cut is at edge `bit` of `hit`, and `other` is unused. With
+ * bit < 0, `edge` is the depth of `hit` minus the depth of `other`: where it is positive, `other`
+ * is in front and hides `hit`. */
 static void add_cut(Region *r, const Piece *piece, Form edge, PieceHit hit, int bit, uint8_t other)
 {
     Piece inside = *piece, outside = *piece;
@@ -488,7 +510,7 @@ static void add_cut(Region *r, const Piece *piece, Form edge, PieceHit hit, int 
     add_interval(r, cut_at(r, &piece->polygon, edge, &inside.polygon, &outside.polygon), &range);
     for (size_t i = 0; i < inside.n && bit >= 0; i++)
         if (inside.hits[i].hit == hit.hit)
-            inside.hits[i].pending &= (uint8_t) ~(1 << bit);
+            inside.hits[i].undecided &= (uint8_t) ~(1 << bit);
     if (bit < 0)
         drop_hit(&inside, hit.hit);
     drop_hit(&outside, bit < 0 ? other : hit.hit);
@@ -496,13 +518,14 @@ static void add_cut(Region *r, const Piece *piece, Form edge, PieceHit hit, int 
     add_piece(r, &outside);
 }
 
+/* Adds the color of a piece, after as many further cuts as it needs. */
 static void add_piece(Region *r, Piece *piece)
 {
     if (piece->polygon.n < 3)
         return;
     decide_hits(r, piece);
     drop_behind(r, piece);
-    const size_t next = next_pending(r, piece);
+    const size_t next = nearest_undecided(r, piece);
     if (piece->n == 0) {
         add_background(r, &piece->polygon);
     } else if (next == piece->n && piece->n == 1) {
@@ -512,7 +535,7 @@ static void add_piece(Region *r, Piece *piece)
         add_interval(r, area_of(&piece->polygon), &range);
     } else if (next < piece->n) {
         const PieceHit hit = piece->hits[next];
-        const int bit = __builtin_ctz(hit.pending);
+        const int bit = __builtin_ctz(hit.undecided);
         add_cut(r, piece, r->work->hits[hit.hit].edges[bit], hit, bit, hit.hit);
     } else { /* hits 0 and 1 overlap in depth */
         const PieceHit hit = piece->hits[0];
@@ -535,8 +558,8 @@ RegionSum region_integrate(AnswerWorkspace *work, const Beam *beam, const FaceLi
         return region.sum;
     }
     for (size_t i = 0; i < found.n; i++) {
-        lights[i].made = false;
-        whole.hits[i] = (PieceHit){(uint8_t)i, (uint8_t)((1 << work->hits[i].pending) - 1)};
+        lights[i].is_computed = false;
+        whole.hits[i] = (PieceHit){(uint8_t)i, (uint8_t)((1 << work->hits[i].n_edges) - 1)};
     }
     add_piece(&region, &whole);
     return region.sum;

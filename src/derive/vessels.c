@@ -1,12 +1,13 @@
 /* One forward sweep: a segment that starts at a root or at a branching begins a vessel; any other
- * segment continues the vessel of its parent. The radius is a running mean weighted by length. For
- * a vessel of one segment, it is the segment's radius to the last bit. */
+ * segment continues the vessel of its parent. The radius of a vessel is a running mean weighted by
+ * length. The mean of a vessel of one segment equals the segment's radius exactly. */
 #include "derive/vessels.h"
 
 #include "derive/fields.h"
 #include <stdlib.h>
 
-static void extend(Vessels *made, int32_t v, double radius, double length)
+/* Adds a segment to vessel v. */
+static void add_segment(Vessels *made, int32_t v, double radius, double length)
 {
     made->row[v].length_mm += length;
     if (length > 0)
@@ -22,19 +23,19 @@ static void find_vessels(const Tree *tree, const int32_t *children, const double
             made->of_node[i] = NO_VESSEL;
             continue;
         }
-        int32_t start = tree->parent[i], above = made->of_node[start];
-        bool begins = above == NO_VESSEL || children[start] >= 2;
-        int32_t v = begins ? (int32_t)made->n++ : above;
+        int32_t start = tree->parent[i], parent = made->of_node[start];
+        bool begins = parent == NO_VESSEL || children[start] >= 2;
+        int32_t v = begins ? (int32_t)made->n++ : parent;
         if (begins) {
             made->row[v].start = start;
-            made->parent[v] = above;
+            made->parent[v] = parent;
             made->level[v] = (int32_t)level[i];
             made->strahler[v] = (int32_t)strahler[i];
             made->radius_mm[v] = tree->radius_mm[i];
         }
         made->of_node[i] = v;
         made->row[v].end = (int32_t)tree_place(tree, i);
-        extend(made, v, tree->radius_mm[i], tree_segment_length(tree, i));
+        add_segment(made, v, tree->radius_mm[i], tree_segment_length(tree, i));
     }
 }
 
@@ -55,7 +56,7 @@ Status vessels_init(Vessels *vessels, const Tree *tree, Err *err)
     TRY_GOTO(mem_calloc(&strahler, tree->n, sizeof *strahler, "Strahler orders", err));
     TRY_GOTO(tree_child_counts(tree, &children, err));
     TRY_GOTO(field_level(tree, &none, level, err));
-    if (!tree->link)
+    if (!tree->link) /* Strahler orders are undefined in a network with loops; they stay 0 */
         TRY_GOTO(field_strahler(tree, &none, strahler, err));
     find_vessels(tree, children, level, strahler, &made);
     *vessels = made;

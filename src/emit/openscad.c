@@ -4,7 +4,9 @@
  *
  * The primitives of a scene have no nodes. The nodes are recovered from positions: the centre of a
  * ball is exactly equal, to the last bit, to the ends of the cylinders that meet there. One such
- * cylinder end means an end of the tree, two mean a bend, and more mean a bifurcation. */
+ * cylinder end means an end of the tree, two mean a bend, and more mean a bifurcation.
+ *
+ * put_text has conversions of its own: %v appends a vector, %n a number, %c a color. */
 #include "emit/rows.h"
 #include "emit/values.h"
 
@@ -22,6 +24,7 @@ typedef struct CylinderEnd {
     bool is_far;       /* the distal end, farther from the root */
 } CylinderEnd;
 
+/* The scene, and the table by which nodes are found. */
 typedef struct Parametric {
     const Scene *scene;
     CylinderEnd *ends; /* sorted by position, far ends first; owned */
@@ -131,7 +134,7 @@ static void put_ends(Text *out, const void *context, size_t i)
 /* ---- calls ----------------------------------------------------------------------------------- */
 
 /* Appends the color if vessels differ in color, and ends the call. */
-static void put_rest(Text *text, const Scene *scene, const Primitive *primitive)
+static void put_end_of_call(Text *text, const Scene *scene, const Primitive *primitive)
 {
     if (scene->appearance.meaning)
         put_text(text, ",[%c]", scene->appearance.colors[primitive->segment]);
@@ -147,18 +150,18 @@ static void put_vessel(Text *out, const Parametric *made, size_t i)
     text_puts(out, ",");
     put_node_at(out, made, primitive->b);
     put_text(out, ",r%u", id);
-    put_rest(out, made->scene, primitive);
+    put_end_of_call(out, made->scene, primitive);
 }
 
-/* Appends the call that draws a ball. Its radius is the largest radius of the cylinders that meet
- * there. */
+/* Appends the call that draws a ball. The ball's radius in the file is the maximum of the radius
+ * variables of the cylinders that meet there; a number if there are none. */
 static void put_joint(Text *out, const Parametric *made, const Primitive *ball)
 {
     const CylinderEnd *end;
     const size_t n = ends_at(made, ball->a, &end);
     if (n == 0) { /* the ball of a segment of length 0 */
         put_text(out, "  bifurcation([%v],%n", ball->a, ball->radius_mm);
-        put_rest(out, made->scene, ball);
+        put_end_of_call(out, made->scene, ball);
         return;
     }
     put_text(out, "  %s(", n == 1 ? "end" : n == 2 ? "bend" : "bifurcation");
@@ -173,7 +176,7 @@ static void put_joint(Text *out, const Parametric *made, const Primitive *ball)
         text_puts(out, "-");
         put_node_at(out, made, end->is_far ? cylinder->a : cylinder->b);
     }
-    put_rest(out, made->scene, ball);
+    put_end_of_call(out, made->scene, ball);
 }
 
 static void put_call(Text *out, const void *context, size_t i)
@@ -188,7 +191,7 @@ static void put_call(Text *out, const void *context, size_t i)
 
 /* ---- the file -------------------------------------------------------------------------------- */
 
-/* Estimates the time in seconds that CGAL takes to unite the primitives, with 12 sides each. */
+/* Estimates the time in seconds that OpenSCAD takes to unite the primitives, with 12 sides each. */
 static double openscad_seconds(const Scene *scene)
 {
     return seconds_per_primitive * (double)scene->geometry.n_primitives;

@@ -1,7 +1,9 @@
-/* cairo writes a PDF as a list of objects and a table of their offsets, without object streams.
- * Three constructs contain colors: the operators rg and RG of content streams, the pixels of
- * images, and the entries C0 and C1 of the functions of gradients. Each object is copied with its
- * colors converted, and a new table is written. */
+/* Converts the RGB colors of a PDF that cairo wrote to CMYK, and adds the output profile.
+ *
+ * cairo writes a list of objects and a cross-reference table, without object streams. Three
+ * constructs contain colors: the operators rg and RG of content streams, the pixels of images, and
+ * the entries C0 and C1 of the functions of gradients. Each object is copied with its colors
+ * converted, and a new cross-reference table is written. */
 #include "figure/pdf_inks.h"
 
 #include <ctype.h>
@@ -19,7 +21,7 @@ typedef struct PdfFile {
     Text out;
 } PdfFile;
 
-static Status broken(const char *what, Err *err)
+static Status conversion_error(const char *what, Err *err)
 {
     return err_set(err, STATUS_IO, "the page: cairo's PDF cannot be converted to inks: %s", what);
 }
@@ -32,14 +34,15 @@ static bool begins(const char *at, const char *word)
 
 /* ---- colors ---------------------------------------------------------------------------------- */
 
-/* Appends the inks of a color as four numbers. With `black_alone`, black becomes black ink only. */
-static void put_inks(const PdfFile *file, const double rgb[3], bool black_alone, Text *out)
+/* Appends the inks of a color as four numbers. With `black_ink_only`, black becomes black ink only.
+ */
+static void put_inks(const PdfFile *file, const double rgb[3], bool black_ink_only, Text *out)
 {
     uint8_t codes[3], cmyk[4];
     for (int c = 0; c < 3; c++)
         codes[c] = (uint8_t)lround(255 * fmin(1, fmax(0, rgb[c])));
     inks_convert(file->inks, codes, cmyk, 1);
-    if (black_alone && codes[0] + codes[1] + codes[2] == 0)
+    if (black_ink_only && codes[0] + codes[1] + codes[2] == 0)
         text_puts(out, "0 0 0 1");
     else
         for (int c = 0; c < 4; c++)
@@ -117,21 +120,24 @@ static void put_dictionary(const PdfFile *file, const char *at, size_t length, T
 
 /* ---- streams --------------------------------------------------------------------------------- */
 
+/* Decompresses a stream. The caller frees *out. The buffer begins at four times the stream plus 1
+ * KB and grows until the result fits. The numbers only decide how often zlib is called; reason not
+ * recorded. */
 static Status inflate_all(const char *from, size_t n, char **out, size_t *size, Err *err)
 {
-    for (size_t room = 4 * n + 1024;; room *= 4) {
+    for (size_t capacity = 4 * n + 1024;; capacity *= 4) {
         char *bytes;
-        TRY(mem_calloc(&bytes, room + 1, 1, "the page", err));
-        uLongf made = room;
-        const int failed = uncompress((Bytef *)bytes, &made, (const Bytef *)from, n);
-        if (failed == Z_OK) {
+        TRY(mem_calloc(&bytes, capacity + 1, 1, "the page", err));
+        uLongf made = capacity;
+        const int code = uncompress((Bytef *)bytes, &made, (const Bytef *)from, n);
+        if (code == Z_OK) {
             *out = bytes;
             *size = made;
             return STATUS_OK;
         }
         free(bytes);
-        if (failed != Z_BUF_ERROR)
-            return broken("a stream is not compressed", err);
+        if (code != Z_BUF_ERROR)
+            return conversion_error("a stream cannot be decompressed", err);
     }
 }
 
@@ -140,11 +146,11 @@ static Status put_deflated(const char *bytes, size_t n, Text *out, Err *err)
     uLongf size = compressBound(n);
     char *packed;
     TRY(mem_calloc(&packed, size, 1, "the page", err));
-    const int failed = compress((Bytef *)packed, &size, (const Bytef *)bytes, n);
-    if (failed == Z_OK)
+    const int code = compress((Bytef *)packed, &size, (const Bytef *)bytes, n);
+    if (code == Z_OK)
         text_append(out, packed, size);
     free(packed);
-    return failed == Z_OK ? text_check(out, err) : mem_out_of("for", "the page", err);
+    return code == Z_OK ? text_check(out, err) : mem_out_of("for", "the page", err);
 }
 
 /* Appends the converted content of a stream, deflated: the pixels of an image, or the operators of
@@ -182,7 +188,8 @@ static Status decode_jpeg(const char *from, size_t n, char **out, size_t *size, 
     TRY(image_decode(&image, "a JPEG of a .pdf panel", from, n, ALPHA_REFUSED, err));
     if (image.picture.channels != 3 || !image.picture.codes8) {
         image_release(&image);
-        return broken("a JPEG in RGB has another number of colors", err);
+        return conversion_error("a JPEG declared as RGB does not have three channels of 8 bits",
+                                err);
     }
     *size = picture_stride(&image.picture) * (size_t)image.picture.height;
     *out = (char *)image.picture.codes8;
@@ -218,6 +225,14 @@ done:
 
 /* ---- objects --------------------------------------------------------------------------------- */
 
+/* Returns true if a stream with this dictionary is a font program: cairo embeds TrueType and Type 1
+ * fonts (Length1) and CFF fonts (Type1C, CIDFontType0C). */
+static bool is_font(const char *dictionary, const char *end)
+{
+    return has(dictionary, end, "/Length1") || has(dictionary, end, "Type0C") ||
+           has(dictionary, end, "Type1C");
+}
+
 /* Appends the body of an object, which ends at `end`. Fonts, and images that are not RGB, are
  * copied unchanged. */
 static Status put_object(PdfFile *file, const char *body, const char *end, Err *err)
@@ -229,20 +244,20 @@ static Status put_object(PdfFile *file, const char *body, const char *end, Err *
     }
     const bool image = has(body, stream, "/Subtype /Image");
     const bool colors = image ? has(body, stream, "/DeviceRGB")
-                              : !has(body, stream, "/Length1") && !has(body, stream, "Type0C") &&
-                                    !has(body, stream, "Type1C") && has(body, stream, "/Length ");
+                              : !is_font(body, stream) && has(body, stream, "/Length ");
     const char *last = end;
     while (last > stream && !begins(last, "\nendstream"))
         last--;
     if (last == stream)
-        return broken("a stream has no end", err);
+        return conversion_error("a stream has no end", err);
     if (colors)
         return put_stream(file, body, stream, last, err);
     text_append(&file->out, body, (size_t)(end - body));
     return STATUS_OK;
 }
 
-/* Appends the output profile as object `number`. Sets *offset to its offset in the new file. */
+/* Appends the output profile as object `number`. Sets *offset to its offset in the new file. After
+ * an error, the object is incomplete, and the caller drops the file. */
 static Status put_profile(PdfFile *file, size_t number, size_t *offset, Err *err)
 {
     size_t size;
@@ -260,23 +275,23 @@ static Status put_profile(PdfFile *file, size_t number, size_t *offset, Err *err
 }
 
 typedef struct PdfObject {
-    size_t from, to; /* offsets in the old and in the new file */
+    size_t old_offset, new_offset; /* in the file of cairo, and in the converted file */
 } PdfObject;
 
 static Status put_objects(PdfFile *file, PdfObject *object, size_t n, Err *err)
 {
     for (size_t i = 1; i < n; i++) {
-        const char *at = file->pdf + object[i].from, *body = strstr(at, " obj\n");
+        const char *at = file->pdf + object[i].old_offset, *body = strstr(at, " obj\n");
         size_t next = file->length;
         for (size_t k = 1; k < n; k++)
-            if (object[k].from > object[i].from && object[k].from < next)
-                next = object[k].from;
+            if (object[k].old_offset > object[i].old_offset && object[k].old_offset < next)
+                next = object[k].old_offset;
         const char *end = file->pdf + next;
         while (body && end > body && !begins(end, "endobj"))
             end--;
         if (!body || end <= body)
-            return broken("an object has no end", err);
-        object[i].to = file->out.length;
+            return conversion_error("an object has no end", err);
+        object[i].new_offset = file->out.length;
         text_printf(&file->out, "%zu 0 obj\n", i);
         body += strlen(" obj\n");
         if (has(body, end, "/Type /Catalog"))
@@ -284,20 +299,21 @@ static Status put_objects(PdfFile *file, PdfObject *object, size_t n, Err *err)
                         "<< /OutputIntents [ << /Type /OutputIntent /S /GTS_PDFX\n"
                         "   /OutputConditionIdentifier (Custom) /DestOutputProfile %zu 0 R >> ]\n",
                         n);
+        /* The "<<" of the catalog is already written, before /OutputIntents. */
         body += has(body, end, "/Type /Catalog") ? strlen("<<") : 0;
         TRY(put_object(file, body, end, err));
         text_puts(&file->out, "endobj\n");
     }
-    return put_profile(file, n, &object[n].to, err);
+    return put_profile(file, n, &object[n].new_offset, err);
 }
 
-/* Appends the table of offsets and the trailer, which refers to the document's catalog. */
+/* Appends the cross-reference table and the trailer, which refers to the document's catalog. */
 static void put_table(PdfFile *file, const PdfObject *object, size_t n, const char *trailer)
 {
     const size_t at = file->out.length;
     text_printf(&file->out, "xref\n0 %zu\n0000000000 65535 f \n", n + 1);
     for (size_t i = 1; i <= n; i++)
-        text_printf(&file->out, "%010zu 00000 n \n", object[i].to);
+        text_printf(&file->out, "%010zu 00000 n \n", object[i].new_offset);
     const char *root = strstr(trailer, "/Root");
     text_printf(&file->out, "trailer\n<< /Size %zu\n   %.*s>>\nstartxref\n%zu\n%%%%EOF\n", n + 1,
                 root ? (int)strcspn(root, ">") : 0, root ? root : "", at);
@@ -306,19 +322,19 @@ static void put_table(PdfFile *file, const PdfObject *object, size_t n, const ch
 static Status convert(PdfFile *file, Err *err)
 {
     PdfObject *object = NULL;
-    const char *table = NULL, *first, *trailer;
+    const char *start = NULL, *first, *trailer; /* start: the line "startxref" */
     size_t n = 0, at = 0;
     Status status;
-    for (const char *c = file->pdf + file->length; c > file->pdf && !table; c--)
-        table = begins(c, "startxref\n") ? c : NULL;
-    if (!table || sscanf(table, "startxref %zu", &at) != 1 || at >= file->length ||
+    for (const char *c = file->pdf + file->length; c > file->pdf && !start; c--)
+        start = begins(c, "startxref\n") ? c : NULL;
+    if (!start || sscanf(start, "startxref %zu", &at) != 1 || at >= file->length ||
         sscanf(file->pdf + at, "xref 0 %zu", &n) != 1 || n < 2 || n > file->length)
-        return broken("it has no table", err);
+        return conversion_error("it has no cross-reference table", err);
     first = strchr(strchr(file->pdf + at, '\n') + 1, '\n') + 1;
     trailer = strstr(first, "trailer");
     TRY(mem_calloc(&object, n + 1, sizeof *object, "the page", err));
     for (size_t i = 0; i < n; i++) /* a line of the table has 20 bytes */
-        object[i].from = strtoul(first + 20 * i, NULL, 10);
+        object[i].old_offset = strtoul(first + 20 * i, NULL, 10);
     text_append(&file->out, file->pdf,
                 (size_t)(strchr(strchr(file->pdf, '\n') + 1, '\n') + 1 - file->pdf));
     TRY_GOTO(put_objects(file, object, n, err));

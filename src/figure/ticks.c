@@ -6,20 +6,24 @@
 
 #include <math.h>
 
+/* Relative slack of comparisons: rounding must not drop a tick at an end of the range. Any value
+ * would do that is well above 2^-52 and too small to be seen in a figure. */
+#define SLACK 1e-9
+
 /* Returns the smallest of 1, 2, 5, 10, 20, ... times a power of ten that is not below `least`. */
 static double round_step(double least)
 {
     double power = elementary_pow(10, floor(elementary_log10(least)));
     static const double digits[] = {1, 2, 5};
     for (size_t i = 0; i < sizeof digits / sizeof *digits; i++)
-        if (digits[i] * power >= least * (1 - 1e-9))
+        if (digits[i] * power >= least * (1 - SLACK))
             return digits[i] * power;
     return 10 * power;
 }
 
 static int equidistant(const double range[2], int wanted, bool integers, double ticks[FIGURE_TICKS])
 {
-    double step = round_step((range[1] - range[0]) / wanted), slack = 1e-9 * (range[1] - range[0]);
+    double step = round_step((range[1] - range[0]) / wanted), slack = SLACK * (range[1] - range[0]);
     int n = 0;
     if (integers)
         step = fmax(step, 1);
@@ -29,18 +33,20 @@ static int equidistant(const double range[2], int wanted, bool integers, double 
     return n;
 }
 
-/* Stores ticks at the first `digits` of 1, 2, 5 times every `apart`-th power of ten. Returns their
- * count. */
-static int powers(const double range[2], int apart, int digits, double ticks[FIGURE_TICKS])
+/* Stores ticks at 1, 2 and 5 times every `apart`-th power of ten, or only at the first `n_factors`
+ * of these multiples. Returns the number of ticks. */
+static int ticks_at_powers(const double range[2], int apart, int n_factors,
+                           double ticks[FIGURE_TICKS])
 {
-    static const double digit[] = {1, 2, 5};
+    static const double factors[] = {1, 2, 5};
     int n = 0;
     for (int k = (int)floor(elementary_log10(range[0])); k <= (int)ceil(elementary_log10(range[1]));
          k++)
-        for (int i = 0; i < digits && k % apart == 0; i++) {
+        for (int i = 0; i < n_factors && k % apart == 0; i++) {
+            /* Powers below 1 are divisors: 10^|k| is exact up to k = 22, 10^-|k| is not. */
             double value =
-                k < 0 ? digit[i] / elementary_pow(10, -k) : digit[i] * elementary_pow(10, k);
-            if (value >= range[0] * (1 - 1e-9) && value <= range[1] * (1 + 1e-9) &&
+                k < 0 ? factors[i] / elementary_pow(10, -k) : factors[i] * elementary_pow(10, k);
+            if (value >= range[0] * (1 - SLACK) && value <= range[1] * (1 + SLACK) &&
                 n < FIGURE_TICKS)
                 ticks[n++] = value;
         }
@@ -57,7 +63,7 @@ int figure_ticks(const ColorScale *scale, int wanted, bool integers, double tick
     if (!scale->log)
         return equidistant(range, wanted, integers, ticks);
     double decades = elementary_log10(range[1] / range[0]);
-    int n = decades >= 2 ? powers(range, (int)ceil(decades / wanted), 1, ticks)
-                         : powers(range, 1, 3, ticks);
+    int n = decades >= 2 ? ticks_at_powers(range, (int)ceil(decades / wanted), 1, ticks)
+                         : ticks_at_powers(range, 1, 3, ticks);
     return n >= 2 ? n : equidistant(range, wanted, integers, ticks);
 }

@@ -43,7 +43,7 @@ static void on_error(exr_const_context_t context, exr_result_t code, const char 
     (void)context;
     (void)code;
     const char *text = strstr(message, "): ");
-    guard_complain(text ? text + 3 : message);
+    guard_note_message(text ? text + 3 : message);
 }
 
 static int64_t on_size(exr_const_context_t context, void *user)
@@ -163,7 +163,7 @@ static Status check_colors(ExrReader *self, Err *err)
         return STATUS_OK;
     exr_result_t found =
         exr_attr_get_chromaticities(self->context, self->part, "chromaticities", &given);
-    guard_forget(); /* a missing attribute is no error */
+    guard_clear_message(); /* a missing attribute is no error */
     if (found != EXR_ERR_SUCCESS)
         return STATUS_OK;
     memcpy(values, &given, sizeof values);
@@ -223,7 +223,7 @@ static Status choose_part(ExrReader *self, int parts, Err *err)
             if (pass == 0 ? strcmp(part_name(self, self->part), layer) != 0 : !inside)
                 continue;
             self->prefix = inside ? layer : "";
-            guard_forget(); /* a part without a name is no error */
+            guard_clear_message(); /* a part without a name is no error */
             return STATUS_OK;
         }
     return no_layer(self, parts, err);

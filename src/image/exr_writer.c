@@ -28,7 +28,7 @@ static void on_error(exr_const_context_t context, exr_result_t code, const char 
     (void)message;
     if (code == EXR_ERR_OUT_OF_MEMORY)
         errno = ENOMEM;
-    guard_complain(exr_get_default_error_message(code));
+    guard_note_message(exr_get_default_error_message(code));
 }
 
 static int64_t on_write(exr_const_context_t context, void *user, const void *bytes, uint64_t size,

@@ -1,12 +1,15 @@
-/* The running guard is a thread-local variable, because libtiff's allocation functions receive no
- * pointer to the caller's data. The functions that call setjmp and longjmp have no local variables
- * that change between the two calls. */
+/* A guard runs calls of an image library: guard_run calls setjmp, and the library's error handler
+ * returns to it by longjmp [guard_leave]. The guard then makes a Status of the library's message.
+ *
+ * The running guard is a thread-local variable, because libtiff's allocation functions receive no
+ * pointer to the caller's data. The function that calls setjmp changes no local variable before the
+ * longjmp, so none needs `volatile`. */
 #include "image/guard.h"
 
 #include <errno.h>
 #include <string.h>
 
-static _Thread_local Guard *running;
+static _Thread_local Guard *running; /* NULL: none */
 
 void image_plain_text(char *text)
 {
@@ -15,18 +18,18 @@ void image_plain_text(char *text)
             *text = ' ';
 }
 
-static void set_complaint(const char *complaint)
+static void set_message(const char *message)
 {
-    snprintf(running->complaint, sizeof running->complaint, "%s", complaint);
-    image_plain_text(running->complaint);
+    snprintf(running->message, sizeof running->message, "%s", message);
+    image_plain_text(running->message);
 }
 
-void guard_leave(const char *complaint)
+void guard_leave(const char *message)
 {
     if (!running)
         return;
-    if (complaint)
-        set_complaint(complaint);
+    if (message)
+        set_message(message);
     running->left = true;
     longjmp(running->exit, 1);
 }
@@ -37,25 +40,27 @@ void guard_leave_without_memory(void)
     guard_leave(NULL);
 }
 
-void guard_complain(const char *complaint)
+void guard_note_message(const char *message)
 {
-    if (running && !*running->complaint)
-        set_complaint(complaint);
+    if (running && !*running->message)
+        set_message(message);
 }
 
-void guard_forget(void)
+void guard_clear_message(void)
 {
     if (running)
-        *running->complaint = '\0';
+        *running->message = '\0';
 }
 
+/* Writes the error for a file that is read. A library that fails without a message has usually
+ * found fewer data than the header of the file states. */
 static Status failed_reading(Err *err)
 {
     if (errno == ENOMEM)
         return mem_out_of("to read", running->name, err);
     return err_set(err, STATUS_INPUT, "%s: is not a valid %s file: %s", running->name,
                    running->format,
-                   *running->complaint ? running->complaint : "its header contradicts its data");
+                   *running->message ? running->message : "its header contradicts its data");
 }
 
 static Status failed_writing(Err *err)
@@ -63,12 +68,13 @@ static Status failed_writing(Err *err)
     if (errno == ENOMEM)
         return mem_out_of("to write a file of the format", running->format, err);
     return err_set(err, STATUS_IO, "writing the %s failed: %s", running->format,
-                   ferror(running->stream) || !*running->complaint ? strerror(errno)
-                                                                   : running->complaint);
+                   ferror(running->stream) || !*running->message ? strerror(errno)
+                                                                 : running->message);
 }
 
 Status guard_failure(Err *err)
 {
+    /* Only guards of a file that is read have a name [Guard.name]. */
     return running->name ? failed_reading(err) : failed_writing(err);
 }
 
@@ -77,6 +83,8 @@ static Status run(Guard *guard, GuardedWork *work, void *self, Err *err)
     if (setjmp(guard->exit))
         return guard_failure(err);
     Status status = work(self, err);
+    /* A library that skipped a part for want of memory left ENOMEM in errno, which guard_run had
+     * set to 0. */
     return status == STATUS_OK && errno == ENOMEM ? guard_failure(err) : status;
 }
 

@@ -17,12 +17,13 @@ enum { GUARD_TEXT = 200 };
 /* The work of a library on one file. Before the first call of guard_run, the caller sets the first
  * three members and zeroes the others. */
 typedef struct Guard {
-    const char *format;         /* of the file, for errors: "PNG" */
-    const char *name;           /* the file that is read, for errors; NULL: a file is written */
-    FILE *stream;               /* borrowed; the file that is written; NULL: a file is read */
-    char complaint[GUARD_TEXT]; /* what the library reported, in printable ASCII; "": nothing */
-    bool left;                  /* a callback has left the guard: the library's objects are in an
-                                 * undefined state */
+    const char *format;       /* of the file, for errors: "PNG" */
+    const char *name;         /* the file that is read, for errors; NULL: a file is written */
+    FILE *stream;             /* borrowed; the file that is written; NULL: a file is read */
+    char message[GUARD_TEXT]; /* what the library reported, in printable ASCII; "": nothing. Stays
+                               * from one guard_run to the next */
+    bool left;                /* a callback has left the guard: the library's objects are in an
+                               * undefined state. Never reset */
     jmp_buf exit;
     struct Guard *outer; /* the guard that was running before; NULL: none */
 } Guard;
@@ -42,15 +43,15 @@ MUST_CHECK Status guard_run(Guard *guard, GuardedWork *work, void *self, Err *er
 /* The following functions are for `work` and the callbacks of its library. They act on the running
  * guard of the thread. Except guard_failure, they do nothing if no guard is running. */
 
-/* Leaves the guard by longjmp. `complaint` replaces an earlier complaint; NULL keeps the earlier
- * one. */
-void guard_leave(const char *complaint);
+/* Leaves the guard by longjmp. `message` replaces an earlier message; NULL keeps the earlier one.
+ * If no guard is running, returns, and the library goes on. */
+void guard_leave(const char *message);
 /* Leaves the guard because an allocation failed. */
 void guard_leave_without_memory(void);
-/* Stores a library's message as the complaint, unless an earlier one is stored. */
-void guard_complain(const char *complaint);
-/* Removes the stored complaint. Called where the library's message is not an error. */
-void guard_forget(void);
+/* Stores a library's message, unless an earlier one is stored. */
+void guard_note_message(const char *message);
+/* Removes the stored message. Called where the library's message is not an error. */
+void guard_clear_message(void);
 
 /* Writes the error message for a failure of the running guard's library to *err. A guard must be
  * running.

@@ -49,7 +49,7 @@ static void on_error(cmsContext context, cmsUInt32Number code, const char *messa
 {
     (void)context;
     (void)code;
-    guard_complain(message);
+    guard_note_message(message);
 }
 
 static cmsContext make_context(void)
@@ -147,11 +147,11 @@ static Status prepare(Inks *inks, const char *path, Err *err)
     inks->guard.format = "ICC";
     inks->guard.name = path;
     TRY(guard_run(&inks->guard, open_profile, inks, err));
-    const char *complaint = inks->guard.complaint;
+    const char *message = inks->guard.message;
     if (!inks->fault)
         return STATUS_OK;
-    return err_set(err, STATUS_INPUT, "%s: %s%s%s", path, inks->fault, *complaint ? ": " : "",
-                   complaint);
+    return err_set(err, STATUS_INPUT, "%s: %s%s%s", path, inks->fault, *message ? ": " : "",
+                   message);
 }
 
 static bool is_profile(const char *start, size_t count)

@@ -31,7 +31,7 @@ static void on_message(j_common_ptr jpeg, int level)
         return;
     jpeg->err->num_warnings++;
     jpeg->err->format_message(jpeg, text);
-    guard_complain(text);
+    guard_note_message(text);
 }
 
 static struct jpeg_error_mgr *set_errors(struct jpeg_error_mgr *errors)

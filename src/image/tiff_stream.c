@@ -102,7 +102,7 @@ static int on_complaint(TIFF *handle, void *user, const char *module, const char
     (void)module;
     char text[GUARD_TEXT];
     vsnprintf(text, sizeof text, format, values);
-    guard_complain(text);
+    guard_note_message(text);
     return 1;
 }
 

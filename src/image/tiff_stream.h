@@ -14,7 +14,7 @@ typedef struct TiffStream {
 } TiffStream;
 
 /* Opens tiff->stream, or tiff->bytes, with a mode of TIFFOpen. Returns false on failure. The
- * guard's complaint receives the errors of libtiff, and its warnings when a file is written. */
+ * guard's message receives the errors of libtiff, and its warnings when a file is written. */
 bool tiff_open(TiffStream *tiff, const char *name, const char *mode);
 
 #endif

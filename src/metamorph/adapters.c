@@ -1,17 +1,20 @@
-/* Each format is a row of the table at the end of the file: its limits, and the function that
- * writes a scene. All numbers are written with so many digits that they are read back exactly. */
+/* Writes the random scenes of the metamorphic tests in the formats of the programs under test.
+ *
+ * Each format is a row of the table at the end of the file: its limits, and the function that
+ * writes a scene. Numbers are written with enough digits to be read back exactly. */
 #include "metamorph/adapters.h"
 
+/* Multiples of 1/4: their products with the factors 0.25 and 0.75 of the finish are exact. */
 static const double palette[TRIAL_COLORS][3] = {
     {1, 0.5, 0.25}, {0.25, 0.75, 1}, {0.5, 1, 0.5}, {0.75, 0.25, 0.75}};
 
-/* Adding 0 turns -0 into 0. */
-static void put_point(Text *out, Vec3 v, const char *between)
+/* Appends three coordinates. Adding 0 turns -0 into 0. */
+static void put_point(Text *out, Vec3 v, const char *separator)
 {
     text_number(out, v.x + 0);
-    text_puts(out, between);
+    text_puts(out, separator);
     text_number(out, v.y + 0);
-    text_puts(out, between);
+    text_puts(out, separator);
     text_number(out, v.z + 0);
 }
 
@@ -60,7 +63,8 @@ static void pov_light(const TrialScene *scene, const TrialLight *light, Text *ou
 }
 
 /* The axis of a torus in POV-Ray is y. The rows of the matrix are the images of x, y and z, and the
- * center. */
+ * center. `next` is perpendicular to the axis only because the axis of a trial is along x, y or z.
+ */
 static void pov_torus(const TrialShape *shape, Text *out)
 {
     const Vec3 axis = shape->at[1], next = vec3(axis.z, axis.x, axis.y);
@@ -74,6 +78,9 @@ static void pov_torus(const TrialShape *shape, Text *out)
     text_puts(out, ">");
 }
 
+/* Two components of strength 1 at at[0] and at[1]. FORM_CANCELLED adds one of strength 1 and one of
+ * strength -1, both at at[0]. At the threshold 0.25 a single component is a ball of radius[0] /
+ * sqrt 2, because its density is (1 - d^2 / radius^2)^2; reason of the value not recorded. */
 static void pov_blob(const TrialShape *shape, Text *out)
 {
     const int n = shape->form & FORM_CANCELLED ? 4 : 2;
@@ -85,7 +92,10 @@ static void pov_blob(const TrialShape *shape, Text *out)
     }
 }
 
-/* All its lengths are multiples of the radius, so that they scale with the scene. */
+/* A sphere as the isosurface of f = |x - at[0]|^2 - radius^2. All lengths are multiples of the
+ * radius, so that they scale with the scene; the factors are exact in binary. The gradient of f is
+ * at most 2 * 1.5625 radius within the container, below max_gradient. Reasons for the sizes of the
+ * accuracy and the container are not recorded. */
 static void pov_isosurface(const TrialShape *shape, Text *out)
 {
     static const char *const axes[] = {"x", "y", "z"};
@@ -104,7 +114,9 @@ static void pov_isosurface(const TrialShape *shape, Text *out)
     text_puts(out, " } }");
 }
 
-static void pov_points(const TrialShape *shape, const char *name, int n, Text *out)
+/* Begins a sphere, cylinder, cone or triangle: its points and radii. The caller adds the pigment
+ * and the closing brace. */
+static void pov_begin_simple(const TrialShape *shape, const char *name, int n, Text *out)
 {
     text_printf(out, "%s {", name);
     for (int i = 0; i < n; i++) {
@@ -116,7 +128,8 @@ static void pov_points(const TrialShape *shape, const char *name, int n, Text *o
         pov_number(out, ", ", shape->radius[0]);
 }
 
-/* A sphere about at[0] that holds the whole shape, with a radius that scales exactly. */
+/* Returns the radius of a sphere about at[0] that contains the shape. It uses sums of absolute
+ * values, not square roots, so that scaling by a power of two scales it exactly. */
 static double bounding_radius(const TrialShape *shape)
 {
     double reach = 2 * (shape->radius[0] + shape->radius[1]);
@@ -141,7 +154,7 @@ static void pov_shape(const TrialShape *shape, Text *out)
     else if (shape->kind == SHAPE_ISOSURFACE)
         pov_isosurface(shape, out);
     else
-        pov_points(shape, names[shape->kind], points, out);
+        pov_begin_simple(shape, names[shape->kind], points, out);
     if (shape->form & FORM_STURM)
         text_puts(out, " sturm");
     text_puts(out, " pigment { color rgb ");
@@ -179,8 +192,10 @@ static void tachyon_vector(Text *out, const char *name, Vec3 v)
     put_point(out, v, " ");
 }
 
-/* The picture's edges. Tachyon counts pixels from 1 at the lower left corner, and its right is
- * our left. */
+/* FRUSTUM has the left, right, lower and upper edge. Tachyon samples pixel i = 1, 2, ... n at
+ * left + i (right - left) / n, from the lower left; the shift by half a pixel moves this position
+ * to the center of the pixel. Left and right are exchanged, because Tachyon's x axis points to the
+ * left of this camera. */
 static void tachyon_camera(const TrialScene *scene, Text *out)
 {
     const double wide = picture_width(scene), x = 0.5 / scene->width_px, y = 0.5 / scene->height_px;
@@ -215,7 +230,7 @@ static void tachyon_light(const TrialLight *light, Text *out)
     text_puts(out, "\n");
 }
 
-/* Cylinders are open. */
+/* FCYLINDER is a cylinder without end discs. */
 static void tachyon_shape(const TrialShape *shape, Text *out)
 {
     static const char *const names[3] = {"TRI V0", " V1", " V2"};
@@ -264,6 +279,8 @@ static void write_swc(const TrialScene *scene, Text *out)
     }
 }
 
+/* Appends the camera as options of `corcast render`. The angle 30 need not match scene->height:
+ * pictures of one format are compared with each other only. */
 static void put_camera(const TrialScene *scene, Text *out)
 {
     text_puts(out, "--location ");
@@ -292,7 +309,8 @@ enum {
 
 const TrialAdapter trial_adapters[TRIAL_FORMATS] = {
     [TRIAL_POV] = {"pov", "png", {KINDS_POV, 20}, write_pov},
-    /* Tachyon reads single precision: 24 binary digits. */
+    /* 20 and 10: TrialLimits.camera_bits. Tachyon reads single precision, 24 binary digits; 10
+     * behind the point leave 14 before it. */
     [TRIAL_TACHYON] = {"tachyon", "ppm", {KINDS_TACHYON, 10}, write_tachyon},
     [TRIAL_SWC] = {"swc", "png", {1 << SHAPE_NODE, 20}, write_swc},
 };
@@ -311,6 +329,6 @@ void trial_command(const char *command, TrialFormat format, const TrialScene *sc
     if (marks.camera)
         drawing_command(command, &marks, out);
     else
-        text_puts(out, NULL);
+        text_puts(out, NULL); /* memory ran out: `out` fails, too */
     text_release(&camera);
 }

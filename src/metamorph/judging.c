@@ -1,4 +1,5 @@
-/* A drawing without a picture is a finding, not an error: the pair decides what it means. */
+/* Draws pairs of scenes with the renderer under test and compares the pictures. A drawing without a
+ * picture is a finding about the pair, not an error of this program. */
 #include "metamorph/judging.h"
 
 #include "compare/compare.h"

@@ -1,12 +1,15 @@
-/* Pairs are drawn in batches. A failing pair is confirmed first. If its relation has a known cause
- * whose kinds of shapes it contains, these shapes are left out: only a pair that still fails can
- * have a new cause. A new cause is shrunk, and its name is made from what is left. */
+/* Searches for scenes on which a renderer breaks a metamorphic relation: pairs of a scene and its
+ * changed copy. Pairs are drawn in batches. A failing pair is confirmed first. If its relation has
+ * a known cause whose kinds of shapes it contains, these shapes are left out: only a pair that
+ * still fails can have a new cause. A new cause is shrunk, and its name is made from what is left.
+ */
 #include "metamorph/metamorph.h"
 
 #include "metamorph/reports.h"
 #include <stdio.h>
 #include <string.h>
 
+/* Number of pairs that are drawn together; reason for the value not recorded. */
 enum { BATCH = 16 };
 
 typedef struct Search {

@@ -1,5 +1,6 @@
-/* All motions are exact in double precision. Each change sets no more than its own relation states,
- * so that a report names the cause. */
+/* The table of metamorphic relations: changes of a scene whose effect on the picture is known. All
+ * motions are exact in double precision. Each change sets no more than its own relation states, so
+ * that a report names the cause. */
 #include "metamorph/relations.h"
 
 #include <string.h>
@@ -48,6 +49,7 @@ static Vec3 translated(Vec3 v, const void *context)
     return vec3_add(v, *(const Vec3 *)context);
 }
 
+/* Turns by 90 degrees about z or x, or by 120 degrees about (1, 1, 1): integers stay integers. */
 static Vec3 turned(Vec3 v, const void *context)
 {
     const int axis = *(const int *)context;

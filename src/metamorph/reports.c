@@ -1,4 +1,5 @@
-/* The pair is drawn once more for its report, so that the search keeps no pictures. */
+/* Writes the folder of a cause: the pair that shows it, its pictures and a report. The pair is
+ * drawn once more for this, so that the search keeps no pictures. */
 #include "metamorph/reports.h"
 
 #include "compare/compare.h"
@@ -9,6 +10,8 @@ static const char *const sides[2] = {"first", "second"};
 
 /* ---- the sweep over scales ------------------------------------------------------------------- */
 
+/* Draws the first scene with all lengths times 2^k, |k| <= SWEEP, and counts the pixels that differ
+ * from k = 0. */
 static Status sweep_scales(MetamorphCause *cause, const TrialRenderer *renderer, Err *err)
 {
     enum { N = 2 * SWEEP + 1 };

@@ -1,11 +1,15 @@
-/* Each stage lists candidates, from the largest change to the smallest. Eight are drawn at a time,
- * and the first that still fails is taken. A candidate must fail with two cameras, because a
- * failure with one camera may be an accident of rounding. The search ends when no stage finds a
- * smaller pair. */
+/* Reduces a failing pair of scenes to a small pair that fails in the same way. Each stage lists
+ * candidates, pairs with smaller scenes, from the largest change to the smallest. Eight are drawn
+ * at a time, and the first that still fails is taken. A candidate must fail with two cameras,
+ * because a failure with one camera may be an accident of rounding. The search ends when no stage
+ * finds a smaller pair. */
 #include "metamorph/shrink.h"
 
 #include <string.h>
 
+/* Capacity for candidates of a stage, candidates that are drawn together, and minimum width and
+ * height of a reduced picture. MAX_PASSES bounds the number of passes through all stages. Reasons
+ * for the values are not recorded. */
 enum { CANDIDATES = 160, AT_A_TIME = 8, MAX_PASSES = 8, MIN_PIXELS = 8 };
 
 /* Candidates for a smaller scene. */

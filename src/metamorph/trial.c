@@ -1,5 +1,6 @@
-/* Half of the scenes get a special position: end-on, touching, concentric, thin, thick, long, or
- * far from the camera. Defects of renderers are more frequent there than in random scenes. */
+/* Makes random scenes for the metamorphic tests. Half of the scenes get a special position: end-on,
+ * touching, concentric, thin, thick, long, or far from the camera. Defects of renderers are more
+ * frequent there than in random scenes. */
 #include "metamorph/trial.h"
 
 const char *const shape_kind_names[SHAPE_KINDS] = {

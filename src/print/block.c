@@ -1,11 +1,12 @@
-/* The faces of the block and the vessels' surface, turned inside out, bound the solid. Ports join
- * the two. So no boolean operation is needed. */
+/* Makes a block with the vessels as channels. The boundary of the solid consists of the faces of
+ * the casing (the block without channels), of the surface of the vessels with its normals reversed,
+ * and of the walls of the ports that connect the two. So no boolean operation is needed. */
 #include "print/block.h"
 
 #include <stdlib.h>
 
 /* Returns the maximum distance of vessels from the axis through `middle`, mm. */
-static double reach_about(const VesselTree *tree, Vec3 middle, int axis)
+static double radius_about_axis(const VesselTree *tree, Vec3 middle, int axis)
 {
     double reach = 0;
     for (size_t i = 0; i < tree->n_segments; i++)
@@ -19,7 +20,7 @@ static double reach_about(const VesselTree *tree, Vec3 middle, int axis)
     return reach;
 }
 
-/* Returns the coordinate axis that the first segment is nearest to. */
+/* Returns the coordinate axis most nearly parallel to the first segment. */
 static int axis_of(const VesselTree *tree)
 {
     Vec3 span = vec3_sub(tree->segments[0].b, tree->segments[0].a);
@@ -35,31 +36,32 @@ Status block_casing(const VesselTree *tree, const PrintBlock *block, Casing *out
     Casing casing = {.is_round = block->is_round, .axis = axis_of(tree)};
     Box box = vesseltree_box(tree, 0);
     Vec3 middle = box_center(box);
-    double least[3], size[3], half[3];
+    double minimum[3], size[3], half[3]; /* mm; half: of the corners of the casing */
     for (int axis = 0; axis < 3; axis++) {
-        bool across = casing.is_round && axis != casing.axis;
-        double own = across ? 2 * reach_about(tree, middle, casing.axis)
-                            : vec3_component(box.high, axis) - vec3_component(box.low, axis);
-        least[axis] = own + 2 * block->margin_mm;
-        size[axis] = casing.is_round ? block->size_mm[across ? 0 : 1] : block->size_mm[axis];
+        bool is_radial = casing.is_round && axis != casing.axis;
+        double own = is_radial ? 2 * radius_about_axis(tree, middle, casing.axis)
+                               : vec3_component(box.high, axis) - vec3_component(box.low, axis);
+        minimum[axis] = own + 2 * block->margin_mm;
+        size[axis] = casing.is_round ? block->size_mm[is_radial ? 0 : 1] : block->size_mm[axis];
         if (size[axis] == 0)
-            size[axis] = least[axis];
-        half[axis] = 0.5 * size[axis] / (across ? elementary_cos(PI / CASING_SIDES) : 1);
+            size[axis] = minimum[axis];
+        /* A round casing is a prism whose inscribed circle has the wanted diameter. */
+        half[axis] = 0.5 * size[axis] / (is_radial ? elementary_cos(PI / CASING_SIDES) : 1);
     }
     for (int axis = 0; axis < 3; axis++)
-        if (size[axis] < least[axis])
+        if (size[axis] < minimum[axis])
             return err_set(err, STATUS_INPUT,
                            "the block of %.4g x %.4g x %.4g mm is smaller than the vessels with "
                            "a margin of %g mm, %.4g x %.4g x %.4g mm",
-                           size[0], size[1], size[2], block->margin_mm, least[0], least[1],
-                           least[2]);
+                           size[0], size[1], size[2], block->margin_mm, minimum[0], minimum[1],
+                           minimum[2]);
     casing.box.low = vec3_sub(middle, vec3(half[0], half[1], half[2]));
     casing.box.high = vec3_add(middle, vec3(half[0], half[1], half[2]));
     *out = casing;
     return STATUS_OK;
 }
 
-/* Adds the faces of the block, with a hole for each port. */
+/* Adds the faces of the casing, with a hole for each port. */
 static Status add_faces(Solid *solid, const Casing *casing, const Ports *ports, Err *err)
 {
     CasingHole *holes;

@@ -1,11 +1,12 @@
-/* A format's header is written by a function; everything else is in the format's row. NIfTI gives
- * the positions of voxels in mm to the right, to the front and upwards, MetaImage to the left, to
- * the back and upwards. The x, y and z axes of the tree are taken as right, front and up.
+/* Writes voxel volumes in several formats. Each format is a row of volume_formats; its header is
+ * written by a function that the row names. The x, y and z axes of the tree are taken as right,
+ * anterior and superior (RAS), the axes of NIfTI. MetaImage positions are LPS: left, posterior and
+ * superior.
  *
  * Chunks are compressed independently of each other. Each ends at a whole byte (Z_FULL_FLUSH), so
- * that consecutive chunks form one stream, as in pigz. The file is one gzip member, which every
- * reader accepts, and its bytes do not depend on which thread made which chunk. zlib can end a
- * chunk in this way, libdeflate cannot. */
+ * that consecutive chunks form one stream, as in pigz. The compressed part of the file is one gzip
+ * member, which every reader accepts. Its bytes do not depend on which thread made which chunk.
+ * zlib can end a chunk in this way, libdeflate cannot. */
 #define ZLIB_CONST
 #include "voxel/volume.h"
 
@@ -20,12 +21,12 @@
 typedef struct Sample {
     const char *name;        /* in messages */
     size_t size;             /* bytes */
-    double full;             /* the sample of a full voxel */
+    double full_value;       /* the sample of a full voxel */
     short nifti;             /* the type's code in NIfTI */
     const char *nrrd, *meta; /* its names in NRRD and MetaImage */
 } Sample;
 
-static const Sample samples_of[SAMPLE_TYPES] = {
+static const Sample sample_types[SAMPLE_TYPES] = {
     [SAMPLE_8] = {"8 bits", 1, 255, DT_UINT8, "uint8", "MET_UCHAR"},
     [SAMPLE_16] = {"16 bits", 2, 65535, DT_UINT16, "uint16", "MET_USHORT"},
     [SAMPLE_FLOAT] = {"float", 4, 1, DT_FLOAT32, "float", "MET_FLOAT"},
@@ -34,14 +35,16 @@ static const Sample samples_of[SAMPLE_TYPES] = {
 
 size_t sample_size(SampleType type)
 {
-    return samples_of[type].size;
+    return sample_types[type].size;
 }
 
 double sample_full(SampleType type)
 {
-    return samples_of[type].full;
+    return sample_types[type].full_value;
 }
 
+/* Packs labels of 16 bits from front to back, which overwrites no label before it is read.
+ * SAMPLE_32 needs no conversion. */
 void volume_labels(SampleType type, uint32_t *labels, size_t n)
 {
     for (size_t i = 0; type == SAMPLE_16 && i < n; i++) {
@@ -83,10 +86,10 @@ static void put_nifti(const VoxelGrid *grid, SampleType type, bool is_fraction, 
     }
     for (int i = 4; i < 8; i++)
         header.dim[i] = 1;
-    header.datatype = samples_of[type].nifti;
-    header.bitpix = (short)(8 * samples_of[type].size);
+    header.datatype = sample_types[type].nifti;
+    header.bitpix = (short)(8 * sample_types[type].size);
     header.vox_offset = sizeof header + sizeof no_extension;
-    header.scl_slope = is_fraction ? (float)(1 / samples_of[type].full) : 1;
+    header.scl_slope = is_fraction ? (float)(1 / sample_types[type].full_value) : 1;
     header.intent_code = is_fraction ? NIFTI_INTENT_NONE : NIFTI_INTENT_LABEL;
     header.xyzt_units = NIFTI_UNITS_MM;
     snprintf(header.descrip, sizeof header.descrip, "%s", about);
@@ -122,7 +125,7 @@ static void put_nrrd(const VoxelGrid *grid, SampleType type, bool is_fraction, c
     text_puts(out, "NRRD0005\n# ");
     text_put_line(out, about);
     text_printf(out, "\ntype: %s\ndimension: 3\nspace: right-anterior-superior\n",
-                samples_of[type].nrrd);
+                sample_types[type].nrrd);
     text_printf(out, "sizes: %lld %lld %lld\n", (long long)grid->n[0], (long long)grid->n[1],
                 (long long)grid->n[2]);
     text_printf(out, "space directions: (%s,0,0) (0,%s,0) (0,0,%s)\n", step.x, step.y, step.z);
@@ -130,12 +133,14 @@ static void put_nrrd(const VoxelGrid *grid, SampleType type, bool is_fraction, c
     text_printf(out, "space origin: (%s,%s,%s)\n", first.x, first.y, first.z);
     text_printf(out, "endian: %s\nencoding: gzip\n", is_little_endian() ? "little" : "big");
     if (is_fraction)
-        text_printf(out, "old max: %.0f\nold min: 0\n", samples_of[type].full);
+        text_printf(out, "old max: %.0f\nold min: 0\n", sample_types[type].full_value);
     text_puts(out, "\n");
 }
 
-static void put_meta(const VoxelGrid *grid, SampleType type, bool is_fraction, const char *about,
-                     Text *out)
+/* AnatomicalOrientation names the sides where the x, y and z axes of the voxels begin: left,
+ * posterior and inferior, so they lead to the right, anterior and superior, as in the matrix. */
+static void put_metaimage(const VoxelGrid *grid, SampleType type, bool is_fraction,
+                          const char *about, Text *out)
 {
     Vec3 center = first_center(grid);
     Numbers first = numbers_of(vec3(-center.x, -center.y, center.z)), step = numbers_of(grid->step);
@@ -149,7 +154,7 @@ static void put_meta(const VoxelGrid *grid, SampleType type, bool is_fraction, c
     text_printf(out, "ElementSpacing = %s %s %s\n", step.x, step.y, step.z);
     text_printf(out, "DimSize = %lld %lld %lld\n", (long long)grid->n[0], (long long)grid->n[1],
                 (long long)grid->n[2]);
-    text_printf(out, "ElementType = %s\nElementDataFile = LOCAL\n", samples_of[type].meta);
+    text_printf(out, "ElementType = %s\nElementDataFile = LOCAL\n", sample_types[type].meta);
 }
 
 /* Appends the header of POV-Ray's density file: the three sizes as big-endian 16-bit integers. */
@@ -168,14 +173,18 @@ static void put_df3(const VoxelGrid *grid, SampleType type, bool is_fraction, co
 /* ---- formats --------------------------------------------------------------------------------- */
 
 enum {
-    MAX_ROW = 1 << 28, /* voxels; a row is in one chunk, and zlib takes less than 4 GB at a time */
+    /* Maximum number of voxels in a row. A row of 4-byte samples is then 1 GB: it is in one chunk,
+     * and zlib takes less than 4 GB at a time. Reason for not using more of the 4 GB not recorded.
+     */
+    MAX_ROW = 1 << 28,
     ANY_SAMPLE = 1 << SAMPLE_8 | 1 << SAMPLE_16 | 1 << SAMPLE_FLOAT | 1 << SAMPLE_32,
     DENSITIES = 1 << SAMPLE_8 | 1 << SAMPLE_16
 };
 
-#define FORMAT(ending, holds, limit, samples, put, ...)                                            \
+/* The variable part sets flags. It must not be empty: ISO C11 requires an argument for "...". */
+#define FORMAT(ending, about, limit, samples, put, ...)                                            \
     {                                                                                              \
-        .suffix = ending, .description = holds, .max_side = limit, .types = samples,               \
+        .suffix = ending, .description = about, .max_side = limit, .types = samples,               \
         .put_header = put, __VA_ARGS__                                                             \
     }
 
@@ -184,7 +193,7 @@ const VolumeFormat volume_formats[] = {
            .header_deflated = true),
     FORMAT(".nii", "NIfTI-1", INT16_MAX, ANY_SAMPLE, put_nifti, .deflated = false),
     FORMAT(".nrrd", "NRRD, deflated", MAX_ROW, ANY_SAMPLE, put_nrrd, .deflated = true),
-    FORMAT(".mha", "MetaImage", MAX_ROW, ANY_SAMPLE, put_meta, .deflated = false),
+    FORMAT(".mha", "MetaImage", MAX_ROW, ANY_SAMPLE, put_metaimage, .deflated = false),
     FORMAT(".df3", "a density file for POV-Ray", UINT16_MAX, DENSITIES, put_df3, .big_endian = true,
            .is_density = true),
     {0},
@@ -215,13 +224,13 @@ Status volume_check(const VolumeFormat *format, const VoxelGrid *grid, SampleTyp
         return err_set(err, STATUS_USAGE, "%s holds no labels and no centrelines", format->suffix);
     if (!(format->types & 1u << type))
         return err_set(err, STATUS_USAGE, "%s has no samples of %s", format->suffix,
-                       samples_of[type].name);
+                       sample_types[type].name);
     return STATUS_OK;
 }
 
 /* ---- streams --------------------------------------------------------------------------------- */
 
-/* The gzip header of RFC 1952, without name and time, of an unknown system. */
+/* The gzip header of RFC 1952 without file name and time; operating system unknown (255). */
 static const uint8_t gzip_header[10] = {0x1f, 0x8b, 8, 0, 0, 0, 0, 0, 0, 255};
 /* An empty last block of deflate. */
 static const uint8_t deflate_end[2] = {3, 0};
@@ -298,15 +307,19 @@ static void swap_bytes(uint8_t *samples, size_t n, size_t size)
         }
 }
 
-/* Compression level 1 takes a sixth of the time of level 6, and makes files 6 % larger. RAW is
- * zlib's number for a raw stream with the largest window, MEMORY_LEVEL its default. */
-enum { LEVEL = 1, RAW = -15, MEMORY_LEVEL = 8 };
+/* Compression level 1 takes a sixth of the time of level 6, and makes files 6 % larger.
+ * RAW_WINDOW_BITS is the windowBits of a raw deflate stream with the largest window; MEMORY_LEVEL
+ * is zlib's default. */
+enum { LEVEL = 1, RAW_WINDOW_BITS = -15, MEMORY_LEVEL = 8 };
 
 static Status deflate_chunk(const uint8_t *samples, size_t n, VolumeChunk *out, Err *err)
 {
     z_stream zlib = {0};
-    if (deflateInit2(&zlib, LEVEL, Z_DEFLATED, RAW, MEMORY_LEVEL, Z_DEFAULT_STRATEGY) != Z_OK)
+    if (deflateInit2(&zlib, LEVEL, Z_DEFLATED, RAW_WINDOW_BITS, MEMORY_LEVEL, Z_DEFAULT_STRATEGY) !=
+        Z_OK)
         return mem_out_of("to compress", "voxels", err);
+    /* deflateBound holds for Z_FINISH. Z_FULL_FLUSH also writes an empty block of 5 bytes; reason
+     * for 16 not recorded. */
     size_t bound = deflateBound(&zlib, n) + 16;
     Status status;
     TRY_GOTO(mem_calloc(&out->bytes, bound, 1, "compressed voxels", err));
@@ -327,7 +340,7 @@ Status volume_pack(const VolumeStream *stream, uint8_t *samples, size_t n, Volum
 {
     VolumeChunk chunk = {.n_uncompressed = n, .n = n};
     if (stream->format->big_endian && is_little_endian())
-        swap_bytes(samples, n, samples_of[stream->type].size);
+        swap_bytes(samples, n, sample_types[stream->type].size);
     if (stream->format->deflated) {
         TRY(deflate_chunk(samples, n, &chunk, err));
     } else {
@@ -341,6 +354,7 @@ Status volume_pack(const VolumeStream *stream, uint8_t *samples, size_t n, Volum
 Status volume_put(VolumeStream *stream, const VolumeChunk *chunk, Err *err)
 {
     if (fwrite(chunk->bytes, 1, chunk->n, stream->to) != chunk->n)
+        /* The caller puts the name of the file before the message. */
         return err_set(err, STATUS_IO, "cannot be written: %s", strerror(errno));
     stream->crc = (uint32_t)crc32_combine(stream->crc, chunk->crc, (z_off_t)chunk->n_uncompressed);
     stream->n_uncompressed += chunk->n_uncompressed;

@@ -1,5 +1,6 @@
-/* The rules of a result are the rows of the table of measures that have a limit, in the order of
- * the limits. The first broken one gives the reason. */
+/* Judges the measures of a comparison by the limits of its tolerance. The rules of a result are the
+ * rows of the table of measures that have a limit, in the order of the limits. The first broken one
+ * gives the reason. */
 #include "compare/rules/judge.h"
 
 #include "compare/measure.h"

@@ -1,4 +1,10 @@
-/* Tiers are tables of limits; files are read by the keys of the limits. */
+/* Makes the tolerances by which two pictures are compared. A tolerance is a table of limits on the
+ * differences between the pictures. Its built-in versions (tiers) are listed here; a file may set
+ * single limits by their keys.
+ *
+ * The limits of tier "surface" have a margin of 2 to 3 over the largest differences in 27 scenes
+ * without a fault [docs/METHODS.md, Isosurfaces]. How the limits of tiers A and B were chosen is
+ * not recorded here, except where a comment says it. */
 #include "compare/rules/tolerance.h"
 
 #include <math.h>
@@ -49,6 +55,8 @@ typedef struct LimitValue {
     double value;
 } LimitValue;
 
+/* Sets no limit, except that values that are not numbers are a difference. LIMIT_COLOR_LEVELS says
+ * which colors count as equal, so the value 0 only counts pixels. NAN: pixelmatch does not run. */
 Tolerance tolerance_none(void)
 {
     Tolerance none = {.tier = "none"};
@@ -60,6 +68,7 @@ Tolerance tolerance_none(void)
     return none;
 }
 
+/* Returns tolerance_none with n of its limits replaced. */
 static Tolerance tier_of(const char *name, const LimitValue *values, size_t n)
 {
     Tolerance tolerance = tolerance_none();
@@ -71,6 +80,7 @@ static Tolerance tier_of(const char *name, const LimitValue *values, size_t n)
 
 Tolerance tolerance_identity(double depth_step_mm)
 {
+    /* A level is a step of 8-bit codes, and 1 / 257 of a level is a step of 16-bit codes. */
     const LimitValue values[] = {{LIMIT_COLOR_LEVELS, 1 / 257.0},
                                  {LIMIT_COLOR_PPM, 2},
                                  {LIMIT_INTERIOR_LEVELS, 1},
@@ -151,9 +161,10 @@ static Status set_limit(Tolerance *tolerance, Limit limit, const char *value, Er
     return STATUS_OK;
 }
 
-/* The name reads back to itself: control characters become blanks, and blanks neither begin nor end
- * it, nor begin a comment in it. */
-static Status take_name(char **name, const char *value, Err *err)
+/* Stores the name of a tolerance in the form in which a tolerance file can hold it: control
+ * characters become blanks, text after " ;" (a comment of INI files) is removed, and so are blanks
+ * at both ends. */
+static Status set_name(char **name, const char *value, Err *err)
 {
     Text text = TEXT_INIT;
     free(*name);
@@ -185,7 +196,8 @@ done:
     return status;
 }
 
-static Status take_line(void *user, const char *section, const char *key, const char *value,
+/* Callback of ini_read. `key` is NULL at the header of a section. */
+static Status read_line(void *user, const char *section, const char *key, const char *value,
                         Err *err)
 {
     ToleranceReader *reader = user;
@@ -193,7 +205,7 @@ static Status take_line(void *user, const char *section, const char *key, const 
         return err_set(err, STATUS_INPUT, "a tolerance file has no sections, but this one has [%s]",
                        section);
     if (strcmp(key, "tier") == 0)
-        return take_name(&reader->name, value, err);
+        return set_name(&reader->name, value, err);
     for (Limit i = 0; i < LIMITS; i++)
         if (limit_keys[i].key && strcmp(key, limit_keys[i].key) == 0)
             return set_limit(&reader->tolerance, i, value, err);
@@ -204,11 +216,11 @@ Status tolerance_read(Tolerance *tolerance, char **name, const char *path, Err *
 {
     ToleranceReader reader = {.tolerance = *tolerance};
     Status status = STATUS_OK;
-    TRY_GOTO(ini_read(path, "a tolerance", take_line, &reader, NULL, err));
+    TRY_GOTO(ini_read(path, "a tolerance", read_line, &reader, NULL, err));
     if (!reader.name)
         TRY_GOTO(mem_strdup(&reader.name, "given", err));
     *tolerance = reader.tolerance;
-    tolerance->spare_levels = 0; /* the file says how many pixels may be off */
+    tolerance->spare_levels = 0; /* no spare pixel: color_ppm holds as the file states it */
     tolerance->tier = *name = reader.name;
     reader.name = NULL;
 done:

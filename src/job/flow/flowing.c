@@ -1,7 +1,8 @@
-/* Steady flow follows from the resistances of the segments and the boundary conditions. These come
- * from a table, from the columns of a network's file, or from the metadata of a tree. Pries's law
- * makes the resistance depend on the hematocrit; with phase separation, flow and hematocrit are
- * then solved in turn [flownetwork_separate]. */
+/* The command `flow`: computes steady flow from the resistances of the segments and the boundary
+ * conditions. The boundary conditions come from a table, from the columns of a network's file, or
+ * from the metadata of a tree. With Pries's law, the resistance depends on the hematocrit. With
+ * phase separation, flow and hematocrit depend on each other and are computed alternately
+ * (flownetwork_separate). */
 #include "job/flow/flowing.h"
 
 #include "options/output.h"
@@ -88,6 +89,7 @@ static const Option rows[] = {
              "(--seed); the report states how far they differ from the result"},
 };
 
+/* Reasons for the defaults of the targets and of `starts` are not recorded. */
 static void set_defaults(void *options)
 {
     *(FlowingOptions *)options =
@@ -112,6 +114,7 @@ static Status check_output(const FlowingOptions *options, Err *err)
 static const char type_column[] = "boundary type", value_column[] = "boundary value",
                   hematocrit_column[] = "boundary hematocrit";
 enum { TYPE_PRESSURE = 0, TYPE_FLOW = 2 };
+#define ML_PER_NL 1e-6
 
 typedef enum BoundaryKind { BOUNDARY_TABLE, BOUNDARY_FILE, BOUNDARY_TERMINALS } BoundaryKind;
 
@@ -135,7 +138,7 @@ static Status find_kind(const Flowing *made, BoundaryKind *kind, Err *err)
                    given);
 }
 
-/* Refuses options about the boundary conditions of trees, if others are used. */
+/* Refuses options that have no effect on the chosen kind of boundary conditions. */
 static Status refuse_options(const Flowing *made, BoundaryKind kind, Err *err)
 {
     static const char *const of_terminals[] = {"q-perf", "p-perf", "flow-split"};
@@ -149,8 +152,8 @@ static Status refuse_options(const Flowing *made, BoundaryKind kind, Err *err)
     return STATUS_OK;
 }
 
-/* Sets the condition of a node. A number that is NAN is not stated. is_known[place] becomes true if
- * a pressure or a flow is stated. */
+/* Sets the boundary condition of node i. NAN means: not given. Sets is_known of the node to true if
+ * a pressure or a flow is given. */
 static Status set_condition(Flowing *made, size_t i, double mmhg, double ml_min, double hematocrit,
                             bool *is_known, Err *err)
 {
@@ -174,13 +177,13 @@ static Status set_condition(Flowing *made, size_t i, double mmhg, double ml_min,
 }
 
 /* Sets the conditions from the columns of a table. A column without a unit has the usual unit. */
-static Status take_table(Flowing *made, const Tree *values, bool *is_known, Err *err)
+static Status set_from_table(Flowing *made, const Tree *values, bool *is_known, Err *err)
 {
     static const struct {
         const char *name, *unit;
     } usual[3] = {{"pressure", "mmHg"}, {"flow", "ml/min"}, {"hematocrit", ""}};
     const TreeColumn *column[3];
-    double factor[3], at[3];
+    double factor[3], given[3];
     for (int k = 0; k < 3; k++) {
         column[k] = tree_column(values, usual[k].name);
         bool has_unit = column[k] && *column[k]->unit && *usual[k].unit;
@@ -194,8 +197,8 @@ static Status take_table(Flowing *made, const Tree *values, bool *is_known, Err 
                        "the table must have the columns id and pressure or flow");
     for (size_t i = 0; i < made->tree.n; i++) {
         for (int k = 0; k < 3; k++)
-            at[k] = column[k] ? column[k]->value[i] * factor[k] : (double)NAN;
-        TRY(set_condition(made, i, at[0], at[1], at[2], is_known, err));
+            given[k] = column[k] ? column[k]->value[i] * factor[k] : (double)NAN;
+        TRY(set_condition(made, i, given[0], given[1], given[2], is_known, err));
     }
     return STATUS_OK;
 }
@@ -207,7 +210,7 @@ static Status read_table(Flowing *made, bool *is_known, Err *err)
     Status status = STATUS_OK;
     TRY_GOTO(files_read(&made->parsed->files, "--boundary", path, err));
     TRY_GOTO(tree_read_values(&values, path, NULL, NULL, err));
-    status = take_table(made, &values, is_known, err);
+    status = set_from_table(made, &values, is_known, err);
     if (status == STATUS_INPUT)
         err_prefix(err, "%s: ", path);
 done:
@@ -216,7 +219,9 @@ done:
     return status;
 }
 
-static Status take_file(Flowing *made, bool *is_known, Err *err)
+/* Sets the conditions from the columns of a network of Secomb: pressures in mmHg, flows in nl/min.
+ */
+static Status set_from_file(Flowing *made, bool *is_known, Err *err)
 {
     const Tree *tree = &made->tree;
     const double *type = tree_column(tree, type_column)->value,
@@ -232,7 +237,7 @@ static Status take_file(Flowing *made, bool *is_known, Err *err)
                 "node %d has the boundary type %g; it must be %d (pressure) or %d (flow)",
                 tree->id[i], type[i], TYPE_PRESSURE, TYPE_FLOW);
         TRY(set_condition(made, i, is_flow ? (double)NAN : value[i],
-                          is_flow ? value[i] * 1e-6 : (double)NAN,
+                          is_flow ? value[i] * ML_PER_NL : (double)NAN,
                           hematocrit ? hematocrit->value[i] : (double)NAN, is_known, err));
     }
     return STATUS_OK;
@@ -276,7 +281,7 @@ static Status estimate(Flowing *made, const bool *is_open, Err *err)
                                 &made->spread, err);
 }
 
-static Status set_boundary(Flowing *made, const TreeMeta *said, Err *err)
+static Status set_boundary(Flowing *made, const TreeMeta *options_meta, Err *err)
 {
     BoundaryKind kind;
     bool *is_known = NULL, *is_open = NULL;
@@ -284,10 +289,10 @@ static Status set_boundary(Flowing *made, const TreeMeta *said, Err *err)
     TRY(find_kind(made, &kind, err));
     TRY(refuse_options(made, kind, err));
     if (kind == BOUNDARY_TERMINALS)
-        return treenetwork_set_terminals(&made->network, &made->tree, said, err);
+        return treenetwork_set_terminals(&made->network, &made->tree, options_meta, err);
     TRY_GOTO(mem_calloc(&is_known, made->tree.n, sizeof *is_known, "nodes", err));
     TRY_GOTO(mem_calloc(&is_open, made->tree.n, sizeof *is_open, "nodes", err));
-    TRY_GOTO(kind == BOUNDARY_FILE ? take_file(made, is_known, err)
+    TRY_GOTO(kind == BOUNDARY_FILE ? set_from_file(made, is_known, err)
                                    : read_table(made, is_known, err));
     TRY_GOTO(find_open(made, is_known, is_open, err));
     if (made->options->ends == ENDS_ESTIMATED)
@@ -300,27 +305,29 @@ done:
 
 /* ---- the flow -------------------------------------------------------------------------------- */
 
-static double value_of(const Flowing *made, const TreeMeta *said, MetaKey key)
+/* Returns a number that the user gave by an option, else that of the tree. */
+static double value_of(const Flowing *made, const TreeMeta *options_meta, MetaKey key)
 {
-    return said->known[key] ? said->number[key] : meta_number(&made->tree.meta, key);
+    return options_meta->known[key] ? options_meta->number[key]
+                                    : meta_number(&made->tree.meta, key);
 }
 
-/* Sets the blood of Pries's law and the resistances that follow from it. */
-static Status set_blood(Flowing *made, const TreeMeta *said, Err *err)
+/* Sets the parameters of Pries's viscosity law, and the resistances computed by it. */
+static Status set_blood(Flowing *made, const TreeMeta *options_meta, Err *err)
 {
     const Tree *tree = &made->tree;
     TRY(mem_alloc(&made->inflow_hematocrit, tree->n, sizeof(double), "hematocrits", err));
     for (size_t i = 0; i < tree->n; i++)
         made->inflow_hematocrit[i] = (double)NAN;
-    if (derive_viscosity_law(tree, said) != VISCOSITY_PRIES)
+    if (derive_viscosity_law(tree, options_meta) != VISCOSITY_PRIES)
         return STATUS_OK;
-    made->blood =
-        (NetworkBlood){.radius_mm = tree->radius_mm,
-                       .length_mm = made->network.length_mm,
-                       .inflow_hematocrit = made->inflow_hematocrit,
-                       .hematocrit = value_of(made, said, META_HEMATOCRIT),
-                       .plasma_pa_s = pa_s_from_cp(value_of(made, said, META_PLASMA_VISCOSITY)),
-                       .cell_fl = made->options->cell_fl};
+    made->blood = (NetworkBlood){
+        .radius_mm = tree->radius_mm,
+        .length_mm = made->network.length_mm,
+        .inflow_hematocrit = made->inflow_hematocrit,
+        .hematocrit = value_of(made, options_meta, META_HEMATOCRIT),
+        .plasma_pa_s = pa_s_from_cp(value_of(made, options_meta, META_PLASMA_VISCOSITY)),
+        .cell_fl = made->options->cell_fl};
     for (size_t i = 0; i < tree->n; i++)
         if (tree_is_segment(tree, i))
             made->network.resistance[i] =
@@ -502,14 +509,14 @@ static Status put_summary(const void *context, Text *text, Err *err)
 
 /* ---- the operation --------------------------------------------------------------------------- */
 
-static Status compute(Flowing *made, const TreeMeta *said, Err *err)
+static Status compute(Flowing *made, const TreeMeta *options_meta, Err *err)
 {
     size_t loops;
-    TRY(derive_viscosity(&made->tree, said, &made->viscosity, err));
+    TRY(derive_viscosity(&made->tree, options_meta, &made->viscosity, err));
     TRY(treenetwork_make(&made->tree, made->viscosity, &made->network, err));
-    TRY(set_blood(made, said, err));
+    TRY(set_blood(made, options_meta, err));
     size_t closed = count_closed(made);
-    Status status = set_boundary(made, said, err);
+    Status status = set_boundary(made, options_meta, err);
     if (status == STATUS_OK)
         status = solve(made, err);
     if (status == STATUS_INPUT && closed > 0)
@@ -531,11 +538,11 @@ static Status compute(Flowing *made, const TreeMeta *said, Err *err)
 Status flowing_make(void *options, Parsed *parsed, Flowing *made, Err *err)
 {
     *made = (Flowing){.options = options, .parsed = parsed};
-    const TreeMeta said = blood_said(&made->options->blood);
+    const TreeMeta options_meta = blood_said(&made->options->blood);
     TRY(check_output(made->options, err));
     TRY(reading_tree(parsed, parsed->operands[0], &made->tree, NULL, err));
     TRY(blood_settle(&made->options->blood, parsed, &made->tree, err));
-    Status status = compute(made, &said, err);
+    Status status = compute(made, &options_meta, err);
     if (status == STATUS_INPUT)
         err_prefix(err, "%s: ", parsed->operands[0]);
     return status;

@@ -1,29 +1,32 @@
-/* Grades a picture by an answer, or checks two answers against each other. */
+/* Checks a picture against an answer, or two answers against each other. An answer is a file with
+ * certified bounds of each pixel's color. */
 #include "job/verify/compare_parts.h"
 
 #include "job/picture/coloring.h"
 #include <string.h>
 
-/* Refuses options without effect on grades. */
+/* Refuses options that have no effect on the comparison with an answer. --output writes the map of
+ * distances between a picture and the answer, so it needs a picture, as --background does. */
 static Status check(const Parsed *parsed, bool two_answers, Err *err)
 {
     for (size_t i = 0; i < parsed->n_settings; i++) {
         const Setting *setting = &parsed->settings[i];
         const char *name = setting->option->name;
         const bool of_picture = strcmp(name, "output") == 0 || strcmp(name, "background") == 0;
-        const bool effect = setting_is_common(parsed, setting) || strcmp(name, "json") == 0 ||
-                            (of_picture && !two_answers);
-        if (setting->typed && !effect)
+        const bool has_effect = setting_is_common(parsed, setting) || strcmp(name, "json") == 0 ||
+                                (of_picture && !two_answers);
+        if (setting->typed && !has_effect)
             return err_set(err, STATUS_USAGE, "--%s has no effect if A is an answer", name);
     }
     return STATUS_OK;
 }
 
+/* Checks the picture B against the answer A. */
 static Status grade_picture(const CompareOptions *options, const Parsed *parsed, Comparison *made,
                             Err *err)
 {
-    const Rgb ground = rgb_of_option(options->background);
-    const float background[3] = {ground.r, ground.g, ground.b};
+    const Rgb color = rgb_of_option(options->background);
+    const float background[3] = {color.r, color.g, color.b};
     Image image = {0};
     AnswerFile answer = {0};
     Status status;
@@ -39,7 +42,8 @@ done:
     return status;
 }
 
-static Status grade_answer(const Parsed *parsed, Comparison *made, Err *err)
+/* Checks the answers A and B against each other. */
+static Status grade_answers(const Parsed *parsed, Comparison *made, Err *err)
 {
     AnswerFile a = {0}, b = {0};
     Status status;
@@ -59,9 +63,9 @@ Status compare_answer(const CompareOptions *options, const Parsed *parsed, Compa
     made->kind = COMPARED_ANSWER;
     Status status = check(parsed, two_answers, err);
     if (status == STATUS_OK)
-        status = two_answers ? grade_answer(parsed, made, err)
+        status = two_answers ? grade_answers(parsed, made, err)
                              : grade_picture(options, parsed, made, err);
-    made->agrees = made->grade.certified;
+    made->agrees = made->grade.certified; /* false after an error */
     return status;
 }
 

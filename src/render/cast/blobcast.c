@@ -1,4 +1,6 @@
-/* A blob is a sum of components, tubes and beads, of radius R and with the field (1 - d^2 / R^2)^2
+/* blob_search: finds the hits of a ray with a blob, by isolating the roots of quartics.
+ *
+ * A blob is a sum of components, tubes and beads, of radius R and with the field (1 - d^2 / R^2)^2
  * at the distance d [field/blob.h]. Along a ray, 1 - d^2 / R^2 is top - curve (t - nearest)^2:
  * everywhere for a ball, and for a tube with other numbers before, beside and beyond its axis. So
  * each component is a few *pieces*. Between two neighbours among the ends of all pieces, the field

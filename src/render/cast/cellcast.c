@@ -1,20 +1,23 @@
-/* cell_search: repeats POV-Ray's IsoSurface object (shape/isosurf.cpp of 3.7.0.10), open and with
- * max_trace 1, in POV-Ray's order of operations. On the part [t0, t1] of the ray in the box, the
- * root finder is
+/* Intersects rays with isosurfaces in boxes (cells) exactly as POV-Ray's IsoSurface object does
+ * (shape/isosurf.cpp of 3.7.0.10, open, max_trace 1), with the operations in the same order.
  *
- *     R(a, b):  if b - a < accuracy:                           a hit at b if f(b) < 0
- *               else if f(a) + f(b) < max_gradient (b - a):     R(a, m), then R(m, b), m the middle
+ * The surface of a cell is where its function f is 0. Within [t0, t1], the part of the ray in the
+ * cell's box, R(t0, t1) searches the first point with f < 0:
  *
- * If f is negative at t0, its sign is inverted, so that a ray from inside finds the point where it
- * leaves. A ray that starts within one accuracy of the box and has |f| < 4 max_gradient accuracy
- * there starts on the surface. Its start is then moved forward by five accuracies, and f's sign is
- * inverted if f is negative there. As a result, a shadow ray, which starts up to one accuracy
- * inside, hits its own surface again if it runs nearly along the surface.
+ *     R(a, b):  if b - a < accuracy:                          a hit at b if f(b) < 0
+ *               else if f(a) + f(b) < max_gradient (b - a):    R(a, m); without a hit, R(m, b);
+ *                                                              m is the middle of a and b
  *
- * POV-Ray also remembers the last cell that a ray missed. It takes a near ray for a miss of the
- * same cell if the minimum f on the first ray exceeds max_gradient times the distance of the two
- * rays. This cannot happen in corcast's scenes: the last cell missed is always Cell_Guard of
- * templates/povray/isosurface.inc. */
+ * If f(t0) is negative, the sign of f is inverted, so that a ray from inside finds the point where
+ * it leaves. If t0 < accuracy and |f(t0)| < 4 max_gradient accuracy, the ray starts on the surface:
+ * t0 becomes 5 accuracy, and the rule for the sign applies there. As a result, a shadow ray, which
+ * starts up to `accuracy` inside, hits its own surface again if it runs nearly along the surface.
+ *
+ * POV-Ray also remembers the last cell that was tested and missed. It treats a neighbouring ray as
+ * a miss of that cell, without a search, if the minimum of f along the first ray exceeds
+ * max_gradient times the distance between the two rays. This cannot happen in corcast's scenes:
+ * every ray tests Cell_Guard of templates/povray/isosurface.inc first and misses it, so no cell is
+ * remembered from the ray before. */
 #include "render/cast/boxcast.h"
 #include "render/cast/povray_bound.h"
 
@@ -22,23 +25,26 @@
 #include <stdlib.h>
 
 /* What POV-Ray calls EPSILON, CLOSE_TOLERANCE, DEPTH_TOLERANCE and BOUND_HUGE (shape/boxes.cpp). */
-static const double flat = 1e-10, close_by = 1e-6, behind = 1e-6, endless = 2e10;
+static const double epsilon = 1e-10, close_tolerance = 1e-6, depth_tolerance = 1e-6,
+                    bound_huge = 2e10;
 
 /* ---- one cell -------------------------------------------------------------------------------- */
 
-/* One axis of POV-Ray's box test. From the second axis on, `slack` is not 0: an end of the interval
- * changes only if the new end is nearer by more than `slack`. */
-static bool cut_axis(double from, double along, double low, double high, double slack, double *t0,
-                     double *t1)
+/* Cuts the interval [*t0, *t1] of a ray to the part between two planes across one axis, as
+ * POV-Ray's box test does. Returns false if nothing is left. `from` and `direction` are the
+ * components of the ray. An end of the interval moves only if it moves inwards by at least `slack`,
+ * which POV-Ray sets for the second and third axis. */
+static bool cut_axis(double from, double direction, double low, double high, double slack,
+                     double *t0, double *t1)
 {
-    if (fabs(along) <= flat)
+    if (fabs(direction) <= epsilon)
         return from >= low && from <= high;
-    double far = ((along < 0 ? low : high) - from) / along;
+    double far = ((direction < 0 ? low : high) - from) / direction;
     if (far < *t0)
         return false;
     if (far <= *t1 - slack)
         *t1 = far;
-    double near = ((along < 0 ? high : low) - from) / along;
+    double near = ((direction < 0 ? high : low) - from) / direction;
     if (near >= *t0 + slack) {
         if (near > *t1)
             return false;
@@ -51,10 +57,11 @@ static bool cut_box(Ray ray, const Cell *cell, double *t0, double *t1)
 {
     Vec3 o = ray.origin, d = ray.direction;
     *t0 = 0;
-    *t1 = endless;
+    *t1 = bound_huge;
     return cut_axis(o.x, d.x, cell->low.x, cell->high.x, 0, t0, t1) &&
-           cut_axis(o.y, d.y, cell->low.y, cell->high.y, close_by, t0, t1) &&
-           cut_axis(o.z, d.z, cell->low.z, cell->high.z, close_by, t0, t1) && *t1 >= behind;
+           cut_axis(o.y, d.y, cell->low.y, cell->high.y, close_tolerance, t0, t1) &&
+           cut_axis(o.z, d.z, cell->low.z, cell->high.z, close_tolerance, t0, t1) &&
+           *t1 >= depth_tolerance;
 }
 
 /* A search along a ray in a cell. */
@@ -62,7 +69,7 @@ typedef struct CellSearch {
     const CellTree *tree;
     const Cell *cell;
     Ray ray;
-    double sign;
+    double sign; /* 1, or -1: f is inverted */
 } CellSearch;
 
 static double value_at(const CellSearch *search, double t)
@@ -74,7 +81,8 @@ typedef struct CellSample {
     double t, f;
 } CellSample;
 
-/* The function R above. `rise` is max_gradient times the width. */
+/* The function R of the head, on [a.t, a.t + width]. `rise` is max_gradient times the width.
+ * Returns true and sets *t if there is a hit. */
 static bool find_root(const CellSearch *search, CellSample a, CellSample b, double rise,
                       double width, double *t)
 {
@@ -98,8 +106,8 @@ typedef struct CellQuery {
     BoundRay rounded;
 } CellQuery;
 
-/* ItemCrossings of cells. Sets hits[0].t, and *rank to the order in which POV-Ray intersects the
- * cells. */
+/* Callback of type ItemCrossings. Returns the number of hits, 0 or 1. Sets hits[0].t, and *rank, by
+ * which POV-Ray orders the cells. */
 static int cell_crossings(const void *items, uint32_t index, Ray ray, Hit hits[ITEM_CROSSINGS],
                           double *rank)
 {

@@ -1,13 +1,15 @@
-/* POV-Ray intersects a ray with an object if two tests find that the ray meets the object's box:
+/* Repeats POV-Ray's tests of bounding boxes, with its rounding.
+ *
+ * POV-Ray intersects a ray with an object if two tests find that the ray meets the object's box:
  * the test of its leaf in the hierarchy of boxes (Check_And_Enqueue of bounding/bbox.cpp of
  * 3.7.0.10), and the test of the object itself (Intersect_BBox_Dir of scene/objects.cpp). Both
  * compute in single precision, in different orders. The boxes above the leaf contain the leaf's box
  * and are not tested here: they differ from tile to tile. */
 #include "render/cast/povray_bound.h"
 
-/* What POV-Ray calls EPSILON, BOUND_HUGE and MIN_ISECT_DEPTH. */
-static const double ahead = 1e-10, endless = 2e10;
-static const float nearest = 1e-4F;
+/* POV-Ray's EPSILON, BOUND_HUGE and MIN_ISECT_DEPTH. */
+static const double epsilon = 1e-10, bound_huge = 2e10;
+static const float min_isect_depth = 1e-4F;
 
 /* A bounding box: its lower corner and its size. */
 typedef struct PovrayBox {
@@ -28,11 +30,11 @@ BoundRay bound_ray(Ray ray)
                       {(float)(1 / d.x), (float)(1 / d.y), (float)(1 / d.z)}};
 }
 
-/* The leaf's test; *first is where the ray enters the box. */
+/* The leaf's test. Sets *first to the t at which the ray enters the box. */
 static bool meets_leaf(const BoundRay *ray, const PovrayBox *bound, double *first)
 {
-    double last = endless;
-    *first = -endless;
+    double last = bound_huge;
+    *first = -bound_huge;
     for (int axis = 0; axis < 3; axis++) {
         float low = bound->low[axis], size = bound->size[axis], origin = ray->origin[axis],
               inverse = ray->inverse[axis];
@@ -46,7 +48,7 @@ static bool meets_leaf(const BoundRay *ray, const PovrayBox *bound, double *firs
         *first = fmax(*first, fmin(at_low, at_high));
         last = fmin(last, fmax(at_low, at_high));
     }
-    return *first <= last && last >= ahead;
+    return *first <= last && last >= epsilon;
 }
 
 /* The test of the object. If the ray is parallel to a side and its origin lies in the plane of that
@@ -68,7 +70,7 @@ static bool meets_object(const BoundRay *ray, const PovrayBox *bound)
         first = near[axis] > first ? near[axis] : first;
         last = far[axis] < last ? far[axis] : last;
     }
-    return first < HUGE_VALF && last > nearest;
+    return first < HUGE_VALF && last > min_isect_depth;
 }
 
 bool povray_looks_into(const BoundRay *ray, Box box, double *order)

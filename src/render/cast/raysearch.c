@@ -1,5 +1,6 @@
-/* The order of the rows matters: a blob is a field, too, and must come first. An isosurface is
- * searched by proof unless cells are wanted. */
+/* Chooses the search for a kind of geometry: the first row of a table that matches. The order of
+ * the rows matters: a blob is a field, too, and must come first. An isosurface is searched by proof
+ * unless cells are wanted. */
 #include "render/cast/raysearch.h"
 
 #include <stdlib.h>

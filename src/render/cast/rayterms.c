@@ -1,4 +1,5 @@
-/* Each term of the potential becomes a function of t along one ray.
+/* Collects the terms of the potential along one ray and groups them by their intervals. Each term
+ * becomes a function of t, the position along the ray.
  *
  * A term is stored relative to t_mid, where the ray is nearest to the segment, so that a distant
  * camera or a long segment costs no digits. The support of a term is taken to be a cylinder around

@@ -1,4 +1,6 @@
-/* Each pixel queries only a quarter of an area light's points, its sample set. The four pixels of a
+/* Computes the visibility of area lights for the pixels of a band.
+ *
+ * Each pixel queries only a quarter of an area light's points, its sample set. The four pixels of a
  * 2 x 2 block query four different sets. The result is averaged over the 3 x 3 pixels about each
  * pixel, with the weights 1 2 1 in each direction. Pixels that show another surface are left out.
  * These weights give each sample set the same total weight. On a plane, the average therefore is

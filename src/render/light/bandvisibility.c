@@ -1,5 +1,6 @@
-/* Shading points come first, one per pixel that hits a surface. Ambient occlusion is computed for
- * all of them at once [occlusion.c], then one area light after the other [arealights.c]. */
+/* Computes the visibility that all samples of a pixel share, in this order: the shading
+ * points come first, one per pixel that hits a surface. Ambient occlusion is computed for all of
+ * them at once [occlusion.c], then one area light after the other [arealights.c]. */
 #include "render/light/bandvisibility.h"
 
 #include "render/light/pixelpoints.h"

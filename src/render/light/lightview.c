@@ -1,12 +1,12 @@
-/* The view's grid is the smallest rectangle that contains the projected corners of the geometry's
- * box, widened by 1e-4 for rounding. If all queried points lie in a part of the grid, lists are
- * made for the tiles of this part only. The grid does not depend on the part, so the results are
- * the same to the last bit. */
+/* Makes light views and the projections of points to them. The view's grid is the smallest
+ * rectangle that contains the projected corners of the geometry's box, widened by 1e-4 for
+ * rounding. If all queried points lie in a part of the grid, lists are made for the tiles of this
+ * part only. The grid does not depend on the part, so the results are the same to the last bit. */
 #include "render/light/lightview.h"
 
 /* Minimum distance of a point light from the middle of the scene, in radii of the scene. At this
  * distance, the light view spans less than 60 degrees to each side. */
-static const double least_radii = 1.16;
+static const double min_distance_in_radii = 1.16;
 
 double lightview_radius(const Geometry *geometry)
 {
@@ -28,7 +28,7 @@ bool lightview_sees_all(const Geometry *geometry, const View *view, const Light 
 {
     Vec3 center = box_center(geometry->bounds);
     double distance = vec3_distance(light->location, center);
-    return (light->parallel || distance > least_radii * lightview_radius(geometry)) &&
+    return (light->parallel || distance > min_distance_in_radii * lightview_radius(geometry)) &&
            is_before_ground(&view->ground, light, center);
 }
 
@@ -43,6 +43,7 @@ static Viewpoint eye_of(const Geometry *geometry, const Light *light)
     Viewpoint eye = {.location = light->location, .perspective = !light->parallel};
     Vec3 target = light->parallel ? light->target : box_center(geometry->bounds);
     eye.axes[2] = vec3_normalized(vec3_sub(target, light->location));
+    /* 0.6: the angle between the view axis and the other vector is at least 36 degrees. */
     Vec3 other = fabs(eye.axes[2].x) < 0.6 ? vec3(1, 0, 0) : vec3(0, 1, 0);
     eye.axes[0] = vec3_normalized(vec3_cross(eye.axes[2], other));
     eye.axes[1] = vec3_cross(eye.axes[0], eye.axes[2]);

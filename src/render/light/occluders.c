@@ -1,4 +1,6 @@
-/* The sphere of directions is divided into the same occlusion directions for all shading points.
+/* Reduces a geometry to the capsules that block ambient light, and makes the occlusion directions.
+ *
+ * The sphere of directions is divided into the same occlusion directions for all shading points.
  * For each direction a point has a cone: it begins as a line, and widens as its part of the sphere
  * does, up to a width of some vessels. Its ambient visibility is the product of the parts that
  * capsules leave free.
@@ -23,7 +25,7 @@
 
 /* Largest half width of a cone, in units of the mean radius of the vessels. Wider cones err less in
  * dense trees and more in sparse ones; the value is a compromise. */
-static const double wide_in_radii = 3.5;
+static const double max_half_width_in_radii = 3.5;
 static const double golden_turn = 2.399963229728653; /* the golden angle, radians */
 
 static void store_point(float to[3][OCCLUDER_BLOCK], size_t lane, Vec3 point, Vec3 origin)
@@ -129,7 +131,9 @@ Status occluderset_new(const Geometry *geometry, OccluderSet *occluders, Err *er
             const FieldSegment *one = &geometry->segments[i];
             add_capsule(&listing, one->a, one->b, one->radius_mm);
         }
-        made.wide = listing.n > 0 ? (float)(wide_in_radii * listing.radii / (double)listing.n) : 0;
+        made.wide = listing.n > 0
+                        ? (float)(max_half_width_in_radii * listing.radii / (double)listing.n)
+                        : 0;
         made.slack = (float)(1e-6 * vec3_distance(geometry->bounds.low, geometry->bounds.high));
         made.n_blocks = (listing.n + OCCLUDER_BLOCK - 1) / OCCLUDER_BLOCK;
         while (listing.n % OCCLUDER_BLOCK)

@@ -1,4 +1,6 @@
-/* Pixels are taken in quads, squares of 2 x 2. For each surface that a quad shows, one shading
+/* Computes the ambient visibility of the pixels of a band.
+ *
+ * Pixels are taken in quads, squares of 2 x 2. For each surface that a quad shows, one shading
  * point, a probe, traces cones [occluders.c] for all pixels of the quad that face about the same
  * way. Where surfaces differ or bend, a quad has several probes. Directions come in pairs, as
  * lines: a probe traces the end of a line that its surface faces. Lines are divided into four sets,
@@ -31,10 +33,11 @@
 enum { SETS = 4, MAX_LINES = 128 };
 /* Cosine of the largest angle between the normals of a probe and of a pixel that it serves: 60
  * degrees [at the top of this file]. */
-static const float least_cosine = 0.5f;
+static const float min_cosine = 0.5f;
 /* Lines per occlusion direction of RenderParams. */
 enum { LINES = 4 };
-/* What threads take at a time: squares of SQUARE x SQUARE quads, and runs of probes. */
+/* What threads take at a time: squares of SQUARE x SQUARE quads, and runs of RUN probes. Reasons
+ * for the values are not recorded. */
 enum { SQUARE = 32, RUN = 512 };
 
 /* The probes of a quad. While they are chosen: index of the shading point, plus 1. Then: index of
@@ -93,7 +96,7 @@ static bool serves(const ShadingPoint *probe, const ShadingPoint *point)
 {
     float cosine = probe->normal[0] * point->normal[0] + probe->normal[1] * point->normal[1] +
                    probe->normal[2] * point->normal[2];
-    return cosine > least_cosine && shadingpoints_share_surface(probe, point);
+    return cosine > min_cosine && shadingpoints_share_surface(probe, point);
 }
 
 static uint32_t *probes_of(const OcclusionJob *job, int column, int row)

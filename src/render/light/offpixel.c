@@ -1,6 +1,7 @@
-/* Points query in runs, in the order of their indices. An answer therefore depends neither on the
- * number of threads nor on the band that is drawn, although rounding in kernels depends on which
- * points are queried together. */
+/* Finds the visibility of lights at shading points that belong to no pixel. Points query in runs,
+ * in the order of their indices. An answer therefore depends neither on the number of threads nor
+ * on the band that is drawn, although rounding in kernels depends on which points are queried
+ * together. */
 #include "render/light/offpixel.h"
 
 #include "render/light/shadowpass.h"

@@ -1,6 +1,7 @@
-/* The depth and normal planes of SCANLINE_BLOCK rows are drawn at a time, and freed when the
- * shading points of those rows exist. Two passes over the pixel blocks sort the points: the first
- * counts the points of each block and sample set, the second stores them behind one another. */
+/* Makes the shading points of a band of pixels. The depth and normal planes of SCANLINE_BLOCK rows
+ * are drawn at a time, and freed when the shading points of those rows exist. Two passes over the
+ * pixel blocks sort the points: the first counts the points of each block and sample set, the
+ * second stores them behind one another. */
 #include "render/light/pixelpoints.h"
 
 #include "render/cast/caster.h"

@@ -1,17 +1,18 @@
-/* Directions are points of a disc, lifted to the hemisphere above the disc (Malley). The density of
- * the directions is then proportional to their cosine, so that the mean needs no weights. The
- * points of the disc are those of a sunflower: point k of n lies at the radius sqrt((k + u) / n),
- * turned by k golden angles, and is evenly spread for every n. The same points at every pixel would
- * leave bands. Turned, and with another u, from pixel to pixel, they leave fine grain whose mean is
- * right. */
+/* Computes the ambient visibility of one point by rays. Directions are points of a disc, lifted to
+ * the hemisphere above the disc (Malley). The density of the directions is then proportional to
+ * their cosine, so that the mean needs no weights. The points of the disc are those of a sunflower:
+ * point k of n lies at the radius sqrt((k + u) / n), turned by k golden angles, and is evenly
+ * spread for every n. The same points at every pixel would leave bands. Turned, and with another u,
+ * from pixel to pixel, they leave fine grain whose mean is right. */
 #include "render/light/rayocclusion.h"
 
 #include <math.h>
 
-/* Number of times that u runs from 0 to 1 while the turn does: u takes all values in every
- * direction. */
+/* Number of times that u runs from 0 to 1 while the turn does once: u takes all values near every
+ * turn. Reason for 12 not recorded. */
 static const double shifts_per_turn = 12;
-static const double golden_part = 0.3819660112501051; /* of a full turn */
+static const double golden_part =
+    0.3819660112501051; /* the golden angle as a fraction of a full turn */
 
 typedef struct Axes {
     Vec3 a, b;

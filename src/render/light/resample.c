@@ -1,6 +1,6 @@
-/* Adaptive antialiasing compares pixels by square roots of linear channels, because equal steps of
- * a square root look about equal to the eye. POV-Ray compares other numbers, so no picture with a
- * threshold is compared with POV-Ray's. */
+/* Chooses the pixels that get more samples. Adaptive antialiasing compares pixels by square roots
+ * of linear channels, because equal steps of a square root look about equal to the eye. POV-Ray
+ * compares other numbers, so no picture with a threshold is compared with POV-Ray's. */
 #include "render/light/resample.h"
 
 #include <assert.h>

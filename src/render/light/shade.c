@@ -1,7 +1,8 @@
-/* Geometry is double and color is float, and every product is rounded where POV-Ray 3.7 rounds it
- * (render/trace.cpp; docs/POVRAY.md section 3), so that 8-bit and 16-bit pictures come out the same
- * to the last code. A color times a number is computed in double and rounded; a color times a
- * color, and a sum of colors, is computed in float. */
+/* Computes the color of a lit surface by POV-Ray's finishes and lights. Geometry is double and
+ * color is float, and every product is rounded where POV-Ray 3.7 rounds it (render/trace.cpp;
+ * docs/POVRAY.md section 3), so that 8-bit and 16-bit pictures come out the same to the last code.
+ * A color times a number is computed in double and rounded; a color times a color, and a sum of
+ * colors, is computed in float. */
 #include "render/light/shade.h"
 
 static Rgb rgb_scale(Rgb color, double factor)

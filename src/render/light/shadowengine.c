@@ -1,6 +1,7 @@
-/* Making bins has serial parts. Bins are therefore made for several lights at the same time, one
- * light per thread, as long as there is a light for each thread. For each of the remaining lights,
- * all threads work together, unless the geometry is so small that threads would not help. */
+/* Sorts the geometry into the tiles of light views (bins). Making bins has serial parts. Bins are
+ * therefore made for several lights at the same time, one light per thread, as long as there is a
+ * light for each thread. For each of the remaining lights, all threads work together, unless the
+ * geometry is so small that threads would not help. */
 #include "render/light/shadowengine.h"
 
 #include <stdlib.h>

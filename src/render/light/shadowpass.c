@@ -1,5 +1,6 @@
-/* Points go through the queues in runs of the order that they have. A run is short enough for its
- * queries to stay in the cache while one light view after the other answers them. */
+/* Counts how many points of a light are visible from each shading point. Points go through the
+ * queues in runs of the order that they have. A run is short enough for its queries to stay in the
+ * cache while one light view after the other answers them. */
 #include "render/light/shadowpass.h"
 
 #include "render/cast/caster.h"

@@ -1,7 +1,10 @@
-/* Neighbours in the image usually are neighbours in the light view, so the points of one call lie
- * in few tiles of the light view. Each tile of the light view has a chain of runs. A run holds the
- * points of one call that lie in that tile; they are consecutive in memory. Nothing else of the
- * image's tile is stored, so that a batch fits into the cache. */
+/* Collects shadow queries, and lets the engine answer them tile by tile of the light view.
+ *
+ * Neighbours in the image are usually neighbours in the light view. The points of one call of
+ * shadowqueue_add therefore lie in few tiles of the light view. The points of one call in one tile
+ * form a run and are consecutive in memory. The runs of a tile form a chain, from the last run
+ * backwards. Only the projected points are stored, so that all calls between two answers (a batch)
+ * fit into the cache. */
 #include "render/light/shadowqueue.h"
 
 #include <stdlib.h>
@@ -9,21 +12,22 @@
 
 /* Points of one call that lie in one tile of the light view. */
 typedef struct QueuedRun {
-    int first, n; /* of ShadowQueue.queued */
-    int before;   /* index of the run before it in the same tile, or -1 */
+    int first, n; /* the points queued[first] to queued[first + n - 1] */
+    int before;   /* index of the previous run of the tile, or -1 */
 } QueuedRun;
 
 struct ShadowQueue {
     const LightBins *bins;
-    void *workspace; /* the engine's */
+    void *workspace; /* of the engine; NULL: none */
     RenderKernels kernels;
-    bool has_items;
+    bool has_items; /* the calls of the batch stated the items of their points */
     int n_calls, n_runs, n_tiles;
-    uint32_t answer[SHADOW_BATCH]; /* per call */
+    uint32_t
+        first_answer[SHADOW_BATCH]; /* per call: index in `shadowed` of the answer for point 0 */
     QueuedRun runs[SHADOW_MAX_POINTS];
     int tiles[SHADOW_MAX_POINTS]; /* tiles of the light view that have runs, in the order of their
                                    * first runs */
-    ShadowPoints queued, taken;   /* all points, and those of the tile being answered */
+    ShadowPoints queued, current; /* all points, and those of the tile being answered */
     int *last;                    /* per tile of the light view: its last run, or -1; owned */
 };
 
@@ -56,17 +60,17 @@ void shadowqueue_free(ShadowQueue *queue)
 }
 
 /* Appends the points whose bits are set, and returns their number. */
-static int append_points(ShadowQueue *queue, const ProjectedPoints *aimed, const uint32_t *items,
-                         uint64_t which)
+static int append_points(ShadowQueue *queue, const ProjectedPoints *projected,
+                         const uint32_t *items, uint64_t which)
 {
     ShadowPoints *queued = &queue->queued;
     const uint32_t call = (uint32_t)queue->n_calls;
     int first = queued->n, n = first;
     for (; which; which &= which - 1, n++) {
         uint32_t sample = (uint32_t)__builtin_ctzll(which);
-        queued->x[n] = aimed->x[sample];
-        queued->y[n] = aimed->y[sample];
-        queued->z[n] = aimed->z[sample];
+        queued->x[n] = projected->x[sample];
+        queued->y[n] = projected->y[sample];
+        queued->z[n] = projected->z[sample];
         queued->query[n] = TILE_SAMPLES * call + sample;
         if (items)
             queued->item[n] = items[sample];
@@ -76,30 +80,30 @@ static int append_points(ShadowQueue *queue, const ProjectedPoints *aimed, const
 }
 
 void shadowqueue_add(ShadowQueue *queue, const HitPoints *points,
-                     const uint32_t items[TILE_SAMPLES], uint64_t wanted, uint32_t answer)
+                     const uint32_t items[TILE_SAMPLES], uint64_t wanted, uint32_t first_answer)
 {
     const TileKernels *kernels = tilekernels[kernels_kind(queue->kernels)];
-    ProjectedPoints aimed;
+    ProjectedPoints projected;
     if (!wanted)
         return;
-    kernels->aim(&queue->bins->aim, points, &aimed);
+    kernels->aim(&queue->bins->aim, points, &projected);
     while (wanted) {
-        int tile = aimed.tile[__builtin_ctzll(wanted)], n = queue->n_runs++;
-        uint64_t within = wanted & kernels->within(&aimed, tile);
+        int tile = projected.tile[__builtin_ctzll(wanted)], n = queue->n_runs++;
+        uint64_t within = wanted & kernels->within(&projected, tile);
         if (queue->last[tile] < 0)
             queue->tiles[queue->n_tiles++] = tile;
         QueuedRun *run = &queue->runs[n];
         *run = (QueuedRun){.first = queue->queued.n, .before = queue->last[tile]};
-        run->n = append_points(queue, &aimed, items, within);
+        run->n = append_points(queue, &projected, items, within);
         queue->last[tile] = n;
         wanted &= ~within;
     }
     queue->has_items = items != NULL;
-    queue->answer[queue->n_calls++] = answer;
+    queue->first_answer[queue->n_calls++] = first_answer;
 }
 
-/* Copies n points, and up to POINT_PADDING more: in blocks of one size, which compilers copy
- * without a call, because runs are short. */
+/* Appends n points to `to`. Copies blocks of a fixed size, so up to POINT_PADDING points too many:
+ * runs are short, and compilers copy a fixed size without a call. */
 static void copy_points(const ShadowPoints *from, int first, int n, bool has_items,
                         ShadowPoints *to)
 {
@@ -116,33 +120,33 @@ static void copy_points(const ShadowPoints *from, int first, int n, bool has_ite
     to->n = at + n;
 }
 
-/* Moves the queries of a tile to queue->taken. */
-static void take_points(ShadowQueue *queue, int tile)
+/* Copies the queued points of a tile to queue->current and empties the tile's chain. */
+static void collect_points(ShadowQueue *queue, int tile)
 {
-    ShadowPoints *taken = &queue->taken;
-    taken->n = 0;
+    ShadowPoints *current = &queue->current;
+    current->n = 0;
     for (int i = queue->last[tile]; i >= 0; i = queue->runs[i].before)
         copy_points(&queue->queued, queue->runs[i].first, queue->runs[i].n, queue->has_items,
-                    taken);
+                    current);
     if (!queue->has_items)
-        memset(taken->item, 0xff, (size_t)taken->n * sizeof *taken->item); /* NO_ITEM */
+        memset(current->item, 0xff, (size_t)current->n * sizeof *current->item); /* NO_ITEM */
     queue->last[tile] = -1;
 }
 
 Status shadowqueue_answer(ShadowQueue *queue, uint8_t *shadowed, Err *err)
 {
-    const ShadowPoints *points = &queue->taken;
+    const ShadowPoints *points = &queue->current;
     Status status = STATUS_OK;
     for (int i = 0; i < queue->n_tiles; i++) {
         const TileQueries queries = {.tile = queue->tiles[i],
                                      .next = i + 1 < queue->n_tiles ? queue->tiles[i + 1] : -1,
                                      .kernels = queue->kernels,
-                                     .points = &queue->taken};
-        take_points(queue, queries.tile);
+                                     .points = &queue->current};
+        collect_points(queue, queries.tile); /* also after an error: empties the chain */
         if (status == STATUS_OK)
             status = queue->bins->engine->test(queue->bins, queue->workspace, &queries, err);
         for (int k = 0; k < points->n && status == STATUS_OK; k++)
-            shadowed[queue->answer[points->query[k] / TILE_SAMPLES] +
+            shadowed[queue->first_answer[points->query[k] / TILE_SAMPLES] +
                      points->query[k] % TILE_SAMPLES] = points->state[k];
     }
     queue->n_calls = queue->n_runs = queue->n_tiles = queue->queued.n = 0;

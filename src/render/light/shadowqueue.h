@@ -26,13 +26,14 @@ void shadowqueue_free(ShadowQueue *queue);
  * points   in the frame for which the light bins were made.
  * items    per point: what it lies on [ShadowPoints.item]; NULL: not known, in all calls between
  *          two answers or in none.
- * answer   index of the answer for point 0 in `shadowed` of shadowqueue_answer. */
+ * first_answer  index of the answer for point 0 in `shadowed` of shadowqueue_answer. */
 void shadowqueue_add(ShadowQueue *queue, const HitPoints *points,
-                     const uint32_t items[TILE_SAMPLES], uint64_t wanted, uint32_t answer);
+                     const uint32_t items[TILE_SAMPLES], uint64_t wanted, uint32_t first_answer);
 
-/* Answers all queries and empties the queue. Sets shadowed[answer + i] to 1 if the light is hidden
- * from point i of the call with that `answer`. The caller has set it to 0 before: answers for lit
- * points may not be written. Errors: STATUS_MEMORY; the queue is empty then, too. */
+/* Answers all queries and empties the queue. Sets shadowed[first_answer + i] to 1 if the light is
+ * hidden from point i of the call with this `first_answer`. The caller has set it to 0 before:
+ * answers for lit points may not be written. Errors: STATUS_MEMORY; the queue is empty then, too.
+ */
 MUST_CHECK Status shadowqueue_answer(ShadowQueue *queue, uint8_t *shadowed, Err *err);
 
 #endif

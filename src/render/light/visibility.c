@@ -1,6 +1,6 @@
-/* A sample may hit a vessel thinner than a pixel that no pixel centre nearby hits. Such a sample
- * gets the visibility 1 of everything. That is about right for a vessel so thin and so far from
- * others. */
+/* Looks up the visibility of ambient light and area lights for the samples of a pixel. A sample may
+ * hit a vessel thinner than a pixel that no pixel centre nearby hits. Such a sample gets the
+ * visibility 1 of everything. That is about right for a vessel so thin and so far from others. */
 #include "render/light/visibility.h"
 
 #include <math.h>

@@ -1,4 +1,6 @@
-/* Items are sorted into the rows of tiles that they may touch. Chunks of items have counters of
+/* Projects the primitives of a geometry to a view (items), and sorts them into tiles.
+ *
+ * Items are sorted into the rows of tiles that they may touch. Chunks of items have counters of
  * their own, so that threads fill the rows without waiting and in the order of the items. Each
  * entry of a row also has the columns that the item may touch there. The list of a row's tiles is
  * made when the row is drawn.
@@ -11,9 +13,10 @@
 #include "render/cast/caster.h"
 #include <stdlib.h>
 
-/* Up to LEAST_CHUNK primitives fit into the cache of one processor. Other threads would fetch them
- * more slowly than this thread processes them. */
-enum { LEAST_CHUNK = 1 << 16, MOST_CHUNKS = 64 };
+/* Minimum number of primitives in a chunk: they fit into the cache of one processor, and other
+ * threads would fetch them more slowly than this thread processes them. Maximum number of chunks:
+ * it bounds the memory of the counters; reason for the value not recorded. */
+enum { MIN_CHUNK = 1 << 16, MAX_CHUNKS = 64 };
 enum { CACHE_LINE = sizeof(RasterItem) };
 _Static_assert(CACHE_LINE == 64, "an item fills a line");
 
@@ -21,7 +24,7 @@ _Static_assert(CACHE_LINE == 64, "an item fills a line");
 
 typedef struct Build {
     RasterBins *bins;
-    RasterSlab *slabs;      /* one a row */
+    RasterSlab *slabs;      /* per row of tiles */
     size_t *counts;         /* per chunk and row: number of items; then the index of the chunk's
                              * first entry */
     size_t *ends;           /* per chunk: index behind its last item */
@@ -146,16 +149,16 @@ static Status sort_into_rows(Build *build, int threads, Err *err)
 /* Returns true if the geometry is so small that one thread makes its items. */
 static bool are_small(const Geometry *geometry)
 {
-    return rasterbins_items(geometry) / LEAST_CHUNK < 2;
+    return rasterbins_items(geometry) / MIN_CHUNK < 2;
 }
 
 /* Returns the number of chunks: a multiple of the number of threads. */
 static size_t chunks_for(const Geometry *geometry, size_t threads)
 {
-    size_t chunks = rasterbins_items(geometry) / LEAST_CHUNK;
+    size_t chunks = rasterbins_items(geometry) / MIN_CHUNK;
     if (are_small(geometry))
         return 1;
-    chunks = chunks < MOST_CHUNKS ? chunks : MOST_CHUNKS;
+    chunks = chunks < MAX_CHUNKS ? chunks : MAX_CHUNKS;
     threads = threads < chunks ? threads : chunks;
     return (chunks + threads - 1) / threads * threads;
 }

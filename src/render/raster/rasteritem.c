@@ -1,14 +1,14 @@
-/* A primitive becomes an item: its middle in double precision, everything else in single precision
- * relative to that middle. Single precision then has to hold only numbers as small as the
- * primitive.
+/* Projects one primitive to a view. A primitive becomes an item: its middle in double precision,
+ * everything else in single precision relative to that middle. Single precision then has to hold
+ * only numbers as small as the primitive.
  *
  * An item is RASTER_EXACT if single precision cannot draw it to a thousandth of a pixel, or if the
  * kernels do not solve it: items that are near the viewer or around the viewer, longer than 16384
  * pixels, or viewed along their axis, and joints that may not be the surface of a solid. */
 #include "render/raster/rasteritem.h"
 
-static const double most_pixels = 16384; /* pixels; 2^-24 of it is a thousandth of a pixel */
-static const double least_sine =
+static const double max_length_px = 16384; /* pixels; 2^-24 of it is a thousandth of a pixel */
+static const double min_sine =
     0.02; /* sine of the smallest angle between axis and line of sight at which a cylinder is drawn
            * in single precision; reason for the value not recorded */
 
@@ -109,7 +109,7 @@ static RasterKind kind_of(const Geometry *geometry, const RasterView *view,
                           const Primitive *primitive, const ItemAxis *axis)
 {
     if (primitive->kind == PRIMITIVE_CYLINDER)
-        return !view->eye.perspective && axis->sine < least_sine ? RASTER_EXACT : RASTER_CYLINDER;
+        return !view->eye.perspective && axis->sine < min_sine ? RASTER_EXACT : RASTER_CYLINDER;
     if (primitive->kind == PRIMITIVE_JOINT)
         return !geometry->open_joints && primitive_joint_is_solid(primitive) ? RASTER_JOINT
                                                                              : RASTER_EXACT;
@@ -122,7 +122,7 @@ static bool is_odd(const RasterView *view, const RasterItem *item, const ItemAxi
 {
     double near = z - axis->cosine * axis->length / 2 - radius;
     double pixel = min_of(view->step_x, -view->step_y) * (view->eye.perspective ? near : 1);
-    return item_is_close(item) || axis->length / 2 + radius > most_pixels * pixel;
+    return item_is_close(item) || axis->length / 2 + radius > max_length_px * pixel;
 }
 
 void rasteritem_make(const Geometry *geometry, const RasterView *view, uint32_t number,

@@ -1,4 +1,6 @@
-/* With one sample at the centre of each pixel, no sample hits a third of the vessels of a tree of a
+/* Finds the rows and columns of tiles that an item may touch, and the items that no sample can hit.
+ *
+ * With one sample at the centre of each pixel, no sample hits a third of the vessels of a tree of a
  * million, because they are short and thin. These vessels are found first and left out, by their
  * distances from the few samples near them.
  *

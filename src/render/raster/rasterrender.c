@@ -1,5 +1,6 @@
-/* The tile engine of primitives. Shifted passes of antialiasing use the lists of the tiles of the
- * centre samples. The bins therefore hold every item that any sample of a pixel may hit. */
+/* The tile engine of primitives: calls the kernels for each tile. Shifted passes of antialiasing
+ * use the lists of the tiles of the centre samples. The bins therefore hold every item that any
+ * sample of a pixel may hit. */
 #include "render/engine.h"
 #include "render/light/resample.h"
 #include "render/raster/rasterbins.h"

@@ -1,4 +1,6 @@
-/* A point is in shadow if the first primitive between the light and the point is not the primitive
+/* The shadow engine of primitives: answers shadow queries for points in a tile of a light view.
+ *
+ * A point is in shadow if the first primitive between the light and the point is not the primitive
  * on which the point lies. The kernels that find first hits therefore also answer shadow queries,
  * at arbitrary points instead of on a grid.
  *
@@ -11,10 +13,12 @@
 #include <string.h>
 
 /* RasterKernels.cover reads up to this many words past the end of a list. */
-enum { MOST_LANES = 16 };
-/* Words of a cache line, and words of the next list that are prefetched. */
+enum { MAX_LANES = 16 };
+/* Words of a cache line, and maximum number of words of the next list that are prefetched; reason
+ * for 8 lines not recorded. */
 enum { LINE_WORDS = 16, MAX_PREFETCHED = 8 * LINE_WORDS };
-/* Tiles along a side of a light view, and words of a slab. */
+/* Minimum and maximum number of tiles along a side of a light view, and words of a slab. Reasons
+ * for the values are not recorded. */
 enum { MIN_SIDE = 16, MAX_SIDE = 512, SLAB_WORDS = 1 << 18 };
 
 /* The lists of a row of tiles. The list of column i has n = offsets[i + 1] - offsets[i] items. It
@@ -72,7 +76,7 @@ static Status list_boxes_of_row(size_t row, int worker, void *context, Err *err)
     uint32_t *offsets, *words;
     TRY(take_words(store, columns + 1, &offsets, err));
     TRY(rasterbins_count(bins, row, offsets, err));
-    TRY(take_words(store, 3 * (size_t)offsets[columns] + MOST_LANES, &words, err));
+    TRY(take_words(store, 3 * (size_t)offsets[columns] + MAX_LANES, &words, err));
     memset(store->taken, 0, columns * sizeof *store->taken);
     for (size_t i = bins->row_offsets[row]; i < bins->row_offsets[row + 1]; i++) {
         const RasterTiles span = bins->row_columns[i];

@@ -1,5 +1,6 @@
-/* In single precision, depths are relative to the middle of the geometry, and positions in a tile
- * to the middle of the tile, so that both stay small. */
+/* Makes the views of cameras on primitives, and their grids of samples. In single precision, depths
+ * are relative to the middle of the geometry, and positions in a tile to the middle of the tile, so
+ * that both stay small. */
 #include "render/raster/rasterview.h"
 
 RasterView rasterview_of_camera(const Camera *camera, Box bounds, int antialias)

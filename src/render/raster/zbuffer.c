@@ -1,20 +1,22 @@
-/* Every surface is covered with points a quarter of a pixel apart in both directions, at the scale
- * of the pixel where the primitive is nearest to the camera. Each point of the surface is within
- * half the diagonal of a cell, 0.177 pixels, of a sampled point, and projection does not increase
- * this distance. Only sampled points within 0.177 pixels of a pixel's centre are used, and the
- * nearest to the camera is kept. Where a surface covers the centre of a pixel, the pixel therefore
- * has a point of it, and outlines are right to 0.177 pixels. A row of tiles is the unit of work,
- * with its own depth buffer. */
+/* Draws primitives as points with a depth buffer.
+ *
+ * The points of a surface are at most a quarter of a pixel apart along both of its parameters,
+ * measured where the primitive is nearest to the camera. Four neighbouring points form a cell; so
+ * every point of the surface is within half the cell's diagonal, 0.177 pixels, of a sampled point.
+ * Projection does not increase this distance. Only sampled points within 0.177 pixels of the centre
+ * of a pixel are used, and the point nearest to the camera is kept. Where a surface covers the
+ * centre of a pixel, the pixel therefore receives a point of that surface, and outlines are
+ * accurate to 0.177 pixels. A row of tiles is the unit of work, with its own depth buffer. */
 #include "render/engine.h"
 #include "render/light/raycolor.h"
 #include "render/raster/rasterbins.h"
 #include <stdlib.h>
 
-static const double pixels_apart = 0.25;
-static const double caught = 0.177; /* pixels; just over 0.25 / sqrt 2 */
+static const double spacing_px = 0.25;
+static const double capture_radius_px = 0.177; /* just over 0.25 / sqrt 2 */
 
 typedef struct ZPoint {
-    double z; /* depth along the view; infinite: nothing */
+    double z; /* depth along the view axis; infinite if the pixel is empty */
     Vec3 normal;
     size_t primitive;
 } ZPoint;
@@ -30,11 +32,13 @@ typedef struct ZBuffers {
 typedef struct ZBrush {
     const RasterView *view;
     ZPoint *points;
-    int row; /* of pixels: the first one of the row of tiles */
+    int row; /* first row of pixels of the row of tiles */
     size_t primitive;
-    double apart; /* mm between points */
+    double spacing_mm; /* between points */
 } ZBrush;
 
+/* Stores a point in the pixel that it lies in, if it is near the pixel's centre and in front of the
+ * stored point. `at` and `normal` are in the frame of the view. */
 static void put_point(const ZBrush *brush, Vec3 at, Vec3 normal)
 {
     const RasterView *view = brush->view;
@@ -43,8 +47,8 @@ static void put_point(const ZBrush *brush, Vec3 at, Vec3 normal)
     double y = (at.y * scale - view->top) * view->per_y;
     double column = floor(x + 0.5), row = floor(y + 0.5);
     double off_x = x - column, off_y = y - row;
-    if (off_x * off_x + off_y * off_y > caught * caught || column < 0 || column >= view->columns ||
-        row < brush->row || row >= brush->row + TILE_SIDE)
+    if (off_x * off_x + off_y * off_y > capture_radius_px * capture_radius_px || column < 0 ||
+        column >= view->columns || row < brush->row || row >= brush->row + TILE_SIDE)
         return;
     ZPoint *point =
         &brush->points[(size_t)(row - brush->row) * (size_t)view->columns + (size_t)column];
@@ -52,13 +56,13 @@ static void put_point(const ZBrush *brush, Vec3 at, Vec3 normal)
         *point = (ZPoint){at.z, normal, brush->primitive};
 }
 
-/* Returns the number of steps along a length. */
+/* Returns the number of steps of at most the spacing along a length. */
 static int steps_through(const ZBrush *brush, double length)
 {
-    return (int)ceil(length / brush->apart) + 1;
+    return (int)ceil(length / brush->spacing_mm) + 1;
 }
 
-/* Returns true if a ball reaches into the row. */
+/* Returns true if a ball may reach into the row of tiles, with a margin of one pixel. */
 static bool touches_row(const ZBrush *brush, Vec3 center, double radius)
 {
     const RasterView *view = brush->view;
@@ -90,63 +94,67 @@ static void draw_disc(const ZBrush *brush, Vec3 center, const Vec3 plane[2], dou
 {
     int rings = steps_through(brush, radius);
     for (int ring = 0; ring < rings && touches_row(brush, center, radius); ring++) {
-        double part = radius * ring / rings;
-        draw_circle(brush, center, plane, part, steps_through(brush, FULL_TURN * part), &normal);
+        double inner = radius * ring / rings;
+        draw_circle(brush, center, plane, inner, steps_through(brush, FULL_TURN * inner), &normal);
     }
 }
 
 static void draw_cylinder(const ZBrush *brush, Vec3 a, Vec3 b, double radius)
 {
     Vec3 span = vec3_sub(b, a), axis = vec3_normalized(span), plane[2];
+    /* 0.6: the angle between the axis and the other vector is at least 36 degrees. */
     plane[0] =
         vec3_normalized(vec3_cross(axis, fabs(axis.x) < 0.6 ? vec3(1, 0, 0) : vec3(0, 1, 0)));
     plane[1] = vec3_cross(axis, plane[0]);
     int along = steps_through(brush, vec3_length(span));
-    int turn = steps_through(brush, FULL_TURN * radius);
+    int around = steps_through(brush, FULL_TURN * radius);
     for (int j = 0; j <= along; j++) {
         Vec3 center = vec3_add_scaled(a, span, (double)j / along);
         if (touches_row(brush, center, radius))
-            draw_circle(brush, center, plane, radius, turn, NULL);
+            draw_circle(brush, center, plane, radius, around, NULL);
     }
     draw_disc(brush, a, plane, radius, vec3_scale(axis, -1));
     draw_disc(brush, b, plane, radius, axis);
 }
 
+/* Draws rings about the z axis of the view. put_point drops points of other rows; why rings outside
+ * the row are not skipped, as in draw_cylinder, is not recorded. */
 static void draw_sphere(const ZBrush *brush, Vec3 center, double radius)
 {
     int rings = steps_through(brush, PI * radius);
     for (int ring = 0; ring <= rings; ring++) {
-        double angle = PI * ring / rings, part = elementary_sin(angle);
-        int points = steps_through(brush, FULL_TURN * radius * part);
+        double angle = PI * ring / rings, sine = elementary_sin(angle);
+        int points = steps_through(brush, FULL_TURN * radius * sine);
         for (int i = 0; i < points; i++) {
             double turn = FULL_TURN * i / points;
-            Vec3 out = {elementary_cos(turn) * part, elementary_sin(turn) * part,
+            Vec3 out = {elementary_cos(turn) * sine, elementary_sin(turn) * sine,
                         elementary_cos(angle)};
             put_point(brush, vec3_add_scaled(center, out, radius), out);
         }
     }
 }
 
-/* Draws a ruled joint by points of its rulings. Its frame is left-handed like that of the view, so
- * normals point inwards; finish_pixel turns them to the viewer. */
+/* Draws a ruled joint by points of its rulings. The joint's frame is left-handed, as the frame of
+ * the view is, so normals point inwards; finish_pixel turns them to the viewer. */
 static void draw_joint(const ZBrush *brush, const JointFrame *joint)
 {
     double larger = fmax(joint->radius, joint->radius + joint->radius_change);
     double length =
         vec3_length(joint->span) + vec3_length(joint->across_change) + fabs(joint->radius_change);
-    int turn = steps_through(brush, FULL_TURN * larger);
+    int around = steps_through(brush, FULL_TURN * larger);
     int along = steps_through(brush, length);
-    for (int i = 0; i < turn; i++) {
-        double angle = FULL_TURN * i / turn, cosine = elementary_cos(angle),
+    for (int i = 0; i < around; i++) {
+        double angle = FULL_TURN * i / around, cosine = elementary_cos(angle),
                sine = elementary_sin(angle);
-        Vec3 run = vec3_add_scaled(joint->span, joint->across_change, cosine);
-        run = vec3_add_scaled(run, joint->side, sine * joint->radius_change);
+        Vec3 along_ruling = vec3_add_scaled(joint->span, joint->across_change, cosine);
+        along_ruling = vec3_add_scaled(along_ruling, joint->side, sine * joint->radius_change);
         for (int j = 0; j <= along; j++) {
             double l = (double)j / along;
-            Vec3 way = vec3_scale(vec3_add_scaled(joint->across, joint->across_change, l), -sine);
-            way = vec3_add_scaled(way, joint->side,
-                                  cosine * (joint->radius + joint->radius_change * l));
-            Vec3 normal = vec3_cross(way, run);
+            Vec3 along_circle =
+                vec3_scale(vec3_add_scaled(joint->across, joint->across_change, l), -sine);
+            along_circle = vec3_add_scaled(along_circle, joint->side,
+                                           cosine * (joint->radius + joint->radius_change * l));
+            Vec3 normal = vec3_cross(along_circle, along_ruling);
             double size = vec3_length(normal);
             if (size > 0)
                 put_point(brush, joint_point(joint, cosine, sine, l), vec3_scale(normal, 1 / size));
@@ -159,9 +167,12 @@ static void draw_primitive(const ZBuffers *buffers, const RasterItem *item, ZBru
     const RasterView *view = brush->view;
     const Primitive *primitive = &buffers->drawing->geometry->primitives[item->primitive];
     double pixel = fmin(view->step_x, -view->step_y);
-    if (view->eye.perspective) /* a step across a slanting line of sight is foreshortened */
+    /* In perspective, a step s at depth z moves the projected point by up to s sqrt(1 + p^2) / z, p
+     * the distance of this point from the view axis at depth 1. At the corner p is largest. The
+     * square of the root is used, which is on the safe side. */
+    if (view->eye.perspective)
         pixel *= item_nearest(item) / (1 + view->left * view->left + view->top * view->top);
-    brush->apart = pixel * pixels_apart;
+    brush->spacing_mm = pixel * spacing_px;
     brush->primitive = item->primitive;
     Vec3 a = viewpoint_frame_point(&view->eye, primitive->a);
     Vec3 b = viewpoint_frame_point(&view->eye, primitive->b);
@@ -179,7 +190,8 @@ static void draw_primitive(const ZBuffers *buffers, const RasterItem *item, ZBru
     }
 }
 
-/* Stores the planes of a pixel of the band. */
+/* Computes and stores the color, depth, normal and segment of the pixel in column i and row j of
+ * the band, the rows that the caller asked for. */
 static void finish_pixel(const ZBuffers *buffers, const ZPoint *point, int i, int j, int worker)
 {
     const Drawing *drawing = buffers->drawing;
@@ -219,14 +231,19 @@ static Status draw_zbuffer_row(size_t number, int worker, void *context, Err *er
     return STATUS_OK;
 }
 
+/* Refuses a camera among the vessels: a primitive that reaches from behind the camera to its front
+ * would need infinitely many points. In perspective, where the spacing is proportional to the
+ * smallest depth, this depth must be at least 1 % of the primitive's half depth; reason of the 1 %
+ * not recorded. */
 static Status check_outside(const RasterBins *bins, Err *err)
 {
     for (size_t i = 0; i < bins->row_offsets[bins->tile_rows]; i++) {
         const RasterItem *item = &bins->items[bins->row_items[i]];
-        double deep = item_depth(item);
-        if (item->z + deep > 0 && item->z - deep < (bins->view.eye.perspective ? deep * 0.01 : 0))
+        double half_depth = item_depth(item);
+        if (item->z + half_depth > 0 &&
+            item->z - half_depth < (bins->view.eye.perspective ? half_depth * 0.01 : 0))
             return err_set(err, STATUS_USAGE,
-                           "`method` zbuffer needs a camera that is not among the vessels");
+                           "`method` zbuffer needs a camera outside the vessels");
     }
     return STATUS_OK;
 }
@@ -242,7 +259,8 @@ static Status prepare_zbuffer(const struct TileEngine *tiles, const Drawing *dra
     (void)tiles;
     Status status;
     RasterBins *bins = NULL;
-    /* Points up to half a pixel off are caught. */
+    /* With antialias 2, primitives are listed in the tiles up to half a pixel beyond their
+     * outlines; points are used up to capture_radius_px from the centre of a pixel. */
     RasterView view = rasterview_of_camera(&drawing->view->camera, drawing->geometry->bounds, 2);
     TRY_GOTO(rasterbins_new(drawing->geometry, &view, drawing->params->threads, &bins, err));
     TRY_GOTO(check_outside(bins, err));
