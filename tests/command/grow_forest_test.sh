@@ -106,8 +106,8 @@ test_wrong_inlets_and_shares_are_refused() {
 --inlet 0,50,0 occurs twice|--inlet 0,50 --inlet 3,4 --inlet 0,50
 clear of those of the other inlets|--inlet 0,50 --inlet 0,49.9 --q-perf 50000
 --inlet: 'right' is not X,Y or X,Y,Z|--inlet right
---inlet-shares: 3 shares for 2 inlets|--inlet 0,50 --inlet 3,4 --inlet-shares 1,1,1
---inlet-shares: 2 shares for 1 inlets|--inlet-shares 1,1
+--inlet-shares has 3 shares for 2 inlets|--inlet 0,50 --inlet 3,4 --inlet-shares 1,1,1
+--inlet-shares has 2 shares for 1 inlets|--inlet-shares 1,1
 --inlet-shares is 0; it must be a finite number above 0|--inlet 0,50 --inlet 3,4 --inlet-shares 1,0
 --inlet-shares is -0.5; it must be|--inlet 0,50 --inlet 3,4 --inlet-shares=-0.5,1
 --inlet-shares: '1,half' is not a list of numbers|--inlet 0,50 --inlet 3,4 --inlet-shares 1,half
