@@ -74,8 +74,8 @@ test_pairs_that_cannot_be_are_refused() {
     done <<'END'
 --pair needs two trees: specify --inlet twice, once per tree|--pair 1.25
 --pair needs two trees: specify --inlet twice, once per tree|--pair 1.25 --inlet 0,30,0 --inlet 0,-30,0 --inlet 30,0,0
---pair: .*an even number of --terminals|--pair 1.25 --inlet 0,30,0 --inlet 0,-30,0 --terminals 61
---pair: .*no other --inlet-shares than equal ones|--pair 1.25 --inlet 0,30,0 --inlet 0,-30,0 --inlet-shares 2,1
+--pair needs an even number of --terminals|--pair 1.25 --inlet 0,30,0 --inlet 0,-30,0 --terminals 61
+--pair needs .* equal --inlet-shares|--pair 1.25 --inlet 0,30,0 --inlet 0,-30,0 --inlet-shares 2,1
 --pair is 1.25; it must be at least --clearance, which is 1.3|--pair 1.25 --clearance 1.3 --inlet 0,30,0 --inlet 0,-30,0
 --pair is 0.3; it must be at least 0.[0-9]+, the radii 0.[0-9]+ and 0.[0-9]+ mm of the paired nodes [0-9]+ and [0-9]+ plus the clearance|--pair 0.3 --inlet 0,30,0 --inlet 0,-30,0
 --pair: '-1' is not a number from 0 to 1000|--pair=-1
