@@ -37,7 +37,7 @@ int main(int argc, char **argv)
     file_hold_standard_streams();
     file_clean_up_on_signals();
     if (argc < 2) {
-        fputs("corcast: no command given; run `corcast --help` for a list\n", stderr);
+        fputs("corcast: no command; run `corcast --help` for a list\n", stderr);
         return status_exit(STATUS_USAGE);
     }
     if (is_one_of(argv[1], version_words)) {

@@ -47,10 +47,11 @@ static Status take_row(Morphometry *table, size_t *capacity, const char *line, E
     double c[LONG_ROW_NUMBERS];
     bool is_long = numbers_parse(line, LONG_ROW_NUMBERS, c);
     if (!is_long && !numbers_parse(line, ROW_NUMBERS, c))
-        return err_set(err, STATUS_INPUT,
-                       "'%.40s' is neither a source, nor ratios, nor the daughters of the order "
-                       "above, nor the %d or %d numbers of an order",
-                       line, ROW_NUMBERS, LONG_ROW_NUMBERS);
+        return err_set(
+            err, STATUS_INPUT,
+            "'%.40s' is not a row of the table; a row is a source, ratios, the daughters "
+            "of the order above, or the %d or %d numbers of an order",
+            line, ROW_NUMBERS, LONG_ROW_NUMBERS);
     if (c[0] != (double)(table->n + 1) || !(c[1] > 0))
         return err_set(err, STATUS_INPUT,
                        "the row begins with order %g and diameter %g; it must be order %zu, and "

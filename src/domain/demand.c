@@ -22,8 +22,8 @@ static Status read_values(Demand *demand, double mm, bool has_mm, Err *err)
     bool is_nifti = mask_is_nifti(demand->file);
     if (is_nifti == has_mm)
         return err_set(err, STATUS_USAGE,
-                       is_nifti ? "`demand` %s: a NIfTI file has its own units; give it without a "
-                                  "number"
+                       is_nifti ? "`demand` %s: a NIfTI file states its own voxel size; use "
+                                  "FILE without a number"
                                 : "`demand` %s: a picture needs the width of a pixel in mm, "
                                   "FILE,MM",
                        demand->file);
@@ -98,8 +98,9 @@ Status demand_check(const Demand *demand, const Domain *domain, Err *err)
         return STATUS_OK;
     return err_set(
         err, STATUS_INPUT,
-        "%s: the demand map does not cover the domain: of %d points of the domain, at x %.4g "
-        "to %.4g, y %.4g to %.4g, z %.4g to %.4g mm, almost none has a demand above 0",
+        "%s: the demand map does not cover the domain: the demand is 0 at almost all of %d random "
+        "points of the domain; the domain extends from x %.4g to %.4g, y %.4g to %.4g, z %.4g to "
+        "%.4g mm",
         demand->file, LOOKS, domain->bounds.low.x, domain->bounds.high.x, domain->bounds.low.y,
         domain->bounds.high.y, domain->bounds.low.z, domain->bounds.high.z);
 }

@@ -77,7 +77,7 @@ static Status find_inner(Domain *domain, Err *err)
     if (try_sample(domain, &random, &domain->inner))
         return STATUS_OK;
     return err_set(err, domain->file ? STATUS_INPUT : STATUS_USAGE,
-                   "%s%sof %d points drawn in the domain none is inside it%s",
+                   "%s%snone of %d random points is inside the domain%s",
                    domain->file ? domain->file : "", domain->file ? ": " : "", MOST_DRAWS,
                    domain->surface ? "; the mesh may be thinner than twice its OFFSET" : "");
 }

@@ -201,12 +201,14 @@ static Status read_voxels(Mask *mask, const char *path, nifti_image *image, Err 
     double value;
     TRY(check_count(mask, path, n, err));
     if (image->nvox != n[0] * n[1] * n[2])
-        return err_set(err, STATUS_INPUT,
-                       "%s: holds more than one volume (%lld dimensions); a mask is a single one",
-                       path, (long long)image->ndim);
+        return err_set(
+            err, STATUS_INPUT,
+            "%s: holds more than one volume (%lld dimensions); a mask must be one volume", path,
+            (long long)image->ndim);
     if (!stored_value(image->datatype, zero, 0, &value))
         return err_set(err, STATUS_INPUT,
-                       "%s: its voxels are of the NIfTI type %s; a mask has whole or real numbers",
+                       "%s: its voxels are of the NIfTI type %s; the voxels of a mask must be "
+                       "integers or real numbers",
                        path, nifti_datatype_string(image->datatype));
     TRY(check_size(path, image, err));
     TRY(init(mask, path, n, err));
@@ -278,10 +280,11 @@ static Status find_voxels(const char *path, const Header *header, int64_t *begin
     *begin = header_bytes(header->version) + 4;
     double offset = header->vox_offset;
     if (offset == 0 && has_extensions(path, header->version))
-        return err_set(err, STATUS_INPUT,
-                       "%s: its vox_offset is 0, but extensions follow the header, so that it is "
-                       "not known where the voxels begin",
-                       path);
+        return err_set(
+            err, STATUS_INPUT,
+            "%s: its vox_offset is 0, but extensions follow the header, so the position of "
+            "the voxels is unknown; vox_offset must state it",
+            path);
     if (offset == 0)
         return STATUS_OK;
     if (!(offset >= (double)*begin && offset <= 1e15 && offset == floor(offset)))

@@ -81,16 +81,17 @@ static Status check_edges(const SoupEdge *edges, size_t n, const char *path, Err
         twisted += balance != 0 && (next - i) % 2 == 0;
     }
     if (open > 0)
-        return err_set(err, STATUS_INPUT,
-                       "%s: the mesh is open: %zu edge%s a triangle on one side only; close its "
-                       "holes",
-                       path, open, open == 1 ? " has" : "s have");
+        return err_set(
+            err, STATUS_INPUT,
+            "%s: the mesh is not closed: %zu edge%s to an odd number of triangles; close its "
+            "holes",
+            path, open, open == 1 ? " belongs" : "s belong");
     if (twisted > 0)
-        return err_set(err, STATUS_INPUT,
-                       "%s: the sides of the mesh do not agree: at %zu edge%s the triangles run "
-                       "the same way; turn them so that all are counter-clockwise seen from "
-                       "outside",
-                       path, twisted, twisted == 1 ? "" : "s");
+        return err_set(
+            err, STATUS_INPUT,
+            "%s: neighbouring triangles face opposite sides at %zu edge%s of the mesh; the "
+            "corners of all triangles must be counter-clockwise, seen from outside",
+            path, twisted, twisted == 1 ? "" : "s");
     return STATUS_OK;
 }
 

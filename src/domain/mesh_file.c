@@ -172,8 +172,8 @@ static Status read_stl_line(MeshReader *reader, char *line, Err *err)
         return STATUS_OK;
     if (keyword < 0)
         return refuse_line(reader,
-                           "is no word of an ASCII STL file, nor is the file a binary one of "
-                           "the size it states",
+                           "is not a keyword of an ASCII STL file, and the size of the file "
+                           "is not that of a binary STL file",
                            word, err);
     reader->has_ended = keyword == END_SOLID;
     if (keyword == VERTEX)
@@ -182,7 +182,7 @@ static Status read_stl_line(MeshReader *reader, char *line, Err *err)
         return STATUS_OK;
     const Vec3 *corner = reader->vertices;
     if (reader->n != 3)
-        return refuse_line(reader, "closes a facet that has not three vertices", word, err);
+        return refuse_line(reader, "ends a facet that does not have three vertices", word, err);
     reader->n = 0;
     return add_triangle(reader, corner[0], corner[1], corner[2], err);
 }
@@ -194,7 +194,7 @@ static Status find_corner(const MeshReader *reader, char *word, Vec3 *corner, Er
     word[strcspn(word, "/")] = '\0';
     long long number = 0, n = (long long)reader->n;
     if (!integer_parse(word, -n, n, &number) || number == 0)
-        return refuse_line(reader, "is not one of the vertices so far", word, err);
+        return refuse_line(reader, "is not the index of a vertex above this line", word, err);
     *corner = reader->vertices[number > 0 ? number - 1 : n + number];
     return STATUS_OK;
 }

@@ -36,11 +36,11 @@ static Status check_node(const Tree *from, size_t i, int32_t children, const Dom
                        id);
     if (keep_radii && tree_is_segment(from, i) && !(from->radius_mm[i] > 0))
         return err_set(err, STATUS_INPUT,
-                       "`from`: node %d has the radius 0, which `keep_radii` cannot keep", id);
+                       "`from`: node %d has radius 0; `keep_radii` needs radii above 0", id);
     if (domain->dimension == 2 && from->position[i].z != 0)
         return err_set(err, STATUS_INPUT,
-                       "`from`: node %d is at z = %g; with a `domain` of two dimensions the tree "
-                       "must lie in the plane z = 0",
+                       "`from`: node %d is at z = %g; the `domain` has two dimensions, so all "
+                       "nodes must be at z = 0",
                        id, from->position[i].z);
     return STATUS_OK;
 }
@@ -82,10 +82,10 @@ static Status check_place(const Tree *from, const Domain *domain, Err *err)
     Box tree = tree_bounds(from), box = domain->bounds;
     return err_set(
         err, STATUS_INPUT,
-        "`from`: the domain does not hold the tree: it is at x %.4g to %.4g, y %.4g to "
-        "%.4g, z %.4g to %.4g mm, and the domain at x %.4g to %.4g, y %.4g to %.4g, "
-        "z %.4g to %.4g mm; node %d is outside by %.3g mm. Place the domain with @X,Y,Z, "
-        "or let it be a hull about the tree, hull:MM",
+        "`from`: the whole tree is outside the domain: the tree extends from x %.4g to %.4g, "
+        "y %.4g to %.4g, z %.4g to %.4g mm, the domain from x %.4g to %.4g, y %.4g to %.4g, "
+        "z %.4g to %.4g mm; node %d is %.3g mm outside. Move the domain with @X,Y,Z, or use "
+        "hull:MM, a hull around the tree",
         tree.low.x, tree.high.x, tree.low.y, tree.high.y, tree.low.z, tree.high.z, box.low.x,
         box.high.x, box.low.y, box.high.y, box.low.z, box.high.z, from->id[farthest], mm);
 }
@@ -96,7 +96,7 @@ Status continue_check(const GrowParams *params, const Domain *domain, Err *err)
     size_t inlets = continue_inlets(from), terminals = 0;
     if (params->inlets > 0)
         return err_set(err, STATUS_USAGE,
-                       "`inlet`: the tree of `from` has its own; give only one of the two");
+                       "`inlet` cannot be combined with `from`, whose tree has its own inlets");
     if (inlets > GROW_MAX_INLETS)
         return err_set(err, STATUS_INPUT, "`from`: the tree has %zu roots; at most %d can grow",
                        inlets, GROW_MAX_INLETS);
@@ -109,9 +109,10 @@ Status continue_check(const GrowParams *params, const Domain *domain, Err *err)
     }
     TRY_GOTO(check_place(from, domain, err));
     if (params->terminals <= terminals)
-        status = err_set(err, STATUS_USAGE,
-                         "`terminals` %zu: must be above the %zu that the tree of `from` has",
-                         params->terminals, terminals);
+        status =
+            err_set(err, STATUS_USAGE,
+                    "`terminals` is %zu; it must be above %zu, the number in the tree of `from`",
+                    params->terminals, terminals);
 done:
     free(children);
     return status;

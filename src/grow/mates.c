@@ -54,12 +54,12 @@ Status mates_check(const GrowParams *params, const Tree *tree, Err *err)
     Status status = STATUS_OK;
     if (most > params->pair_mm)
         status = err_set(err, STATUS_INFEASIBLE,
-                         "`pair_mm` %g: the vessels of the pair of nodes %d and %d are %.4g and "
-                         "%.4g mm in radius, so that pairs must be at least %.4g mm apart, with "
-                         "the clearance; or raise `terminals` or lower `q_perf`",
-                         params->pair_mm, tree->id[pair[worst].node[0]],
-                         tree->id[pair[worst].node[1]], tree->radius_mm[pair[worst].node[0]],
-                         tree->radius_mm[pair[worst].node[1]], most);
+                         "`pair_mm` is %g; it must be at least %.4g, the radii %.4g and %.4g mm of "
+                         "the paired nodes %d and %d plus the clearance; raise `pair_mm` or "
+                         "`terminals`, or lower `q_perf`",
+                         params->pair_mm, most, tree->radius_mm[pair[worst].node[0]],
+                         tree->radius_mm[pair[worst].node[1]], tree->id[pair[worst].node[0]],
+                         tree->id[pair[worst].node[1]]);
     free(pair);
     return status;
 }

@@ -81,8 +81,9 @@ static Status check_inlet(Vec3 inlet, const Domain *domain, Err *err)
     domain_text(domain, &text);
     Status status = text_check(&text, err);
     if (status == STATUS_OK)
-        status = err_set(err, STATUS_USAGE, "`inlet` %.9g,%.9g,%.9g: must lie in the domain %s",
-                         inlet.x, inlet.y, inlet.z, text_chars(&text));
+        status =
+            err_set(err, STATUS_USAGE, "`inlet` is %.9g,%.9g,%.9g; it must be inside the domain %s",
+                    inlet.x, inlet.y, inlet.z, text_chars(&text));
     text_release(&text);
     return status;
 }
@@ -95,16 +96,17 @@ static Status check_inlets(const GrowParams *params, const Domain *domain, Err *
                        trees, GROW_MAX_INLETS);
     if (params->terminals < trees)
         return err_set(err, STATUS_USAGE,
-                       "`terminals` %zu: must be at least one for each of %zu inlets",
+                       "`terminals` is %zu; it must be at least %zu, one per inlet",
                        params->terminals, trees);
     for (size_t k = 0; k < params->inlets; k++) {
         Vec3 inlet = params->inlet[k];
         TRY(check_inlet(inlet, domain, err));
         for (size_t i = 0; i < k; i++)
             if (vec3_distance(inlet, params->inlet[i]) <= domain->slack_mm)
-                return err_set(err, STATUS_USAGE,
-                               "`inlet` %.9g,%.9g,%.9g: is given twice; inlets must be apart",
-                               inlet.x, inlet.y, inlet.z);
+                return err_set(
+                    err, STATUS_USAGE,
+                    "`inlet` %.9g,%.9g,%.9g occurs twice; all inlets must be different points",
+                    inlet.x, inlet.y, inlet.z);
     }
     return STATUS_OK;
 }
@@ -113,11 +115,12 @@ static Status check_shares(const GrowParams *params, size_t trees, Err *err)
 {
     if (params->inlet_shares != 0 && params->inlet_shares != trees)
         return err_set(err, STATUS_USAGE,
-                       "`inlet_shares`: %zu shares for %zu inlets; there must be one for each",
+                       "`inlet_shares` has %zu shares for %zu inlets; it must have one per inlet",
                        params->inlet_shares, trees);
     for (size_t k = 0; k < params->inlet_shares; k++)
         if (!(params->inlet_share[k] > 0) || !isfinite(params->inlet_share[k]))
-            return err_set(err, STATUS_USAGE, "`inlet_shares` %g: must be finite numbers above 0",
+            return err_set(err, STATUS_USAGE,
+                           "a share of `inlet_shares` is %g; it must be a finite number above 0",
                            params->inlet_share[k]);
     return STATUS_OK;
 }
@@ -135,7 +138,8 @@ static Status check_lengths(const GrowParams *params, Err *err)
     for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) {
         double mm = *(const double *)((const char *)params + lengths[i].offset);
         if (!(mm >= 0) || !isfinite(mm))
-            return err_set(err, STATUS_USAGE, "`%s` %g: must be a number of mm not below 0",
+            return err_set(err, STATUS_USAGE,
+                           "`%s` is %g; it must be a finite number of mm, 0 or more",
                            lengths[i].name, mm);
     }
     return STATUS_OK;
@@ -149,48 +153,53 @@ static Status check_pairs(const GrowParams *params, const Domain *domain, Err *e
         return STATUS_OK;
     if (params->from)
         return err_set(err, STATUS_USAGE,
-                       "`pair_mm`: pairs need two new trees, not those of `from`");
+                       "`pair_mm` cannot be combined with `from`: both trees must be new");
     if (params->inlets != 2)
         return err_set(err, STATUS_USAGE,
-                       "`pair_mm`: pairs need two trees, so `inlet` must be given twice");
+                       "`pair_mm` needs two trees: specify `inlet` twice, once per tree");
     if (params->terminals % 2 != 0 ||
         (params->inlet_shares == 2 && params->inlet_share[0] != params->inlet_share[1]))
-        return err_set(err, STATUS_USAGE,
-                       "`pair_mm`: pairs need as many terminals of one tree as of the other: an "
-                       "even number of `terminals`, and no other `inlet_shares` than equal ones");
+        return err_set(
+            err, STATUS_USAGE,
+            "`pair_mm` needs an even number of `terminals` and equal `inlet_shares`: each "
+            "pair has one terminal of each tree");
     if (mm < params->clearance_mm)
         return err_set(err, STATUS_USAGE,
-                       "`pair_mm` %g: must be at least the clearance, `clearance_mm` %g, and both "
-                       "radii",
+                       "`pair_mm` is %g; it must be at least `clearance_mm`, which is %g, plus the "
+                       "radii of both terminals",
                        mm, params->clearance_mm);
     if (mm > across)
         return err_set(err, STATUS_USAGE,
-                       "`pair_mm` %g: must be below what the domain is across, %.4g mm", mm,
-                       across);
+                       "`pair_mm` is %g; it must be at most %.4g mm, the diagonal of the domain's "
+                       "bounding box",
+                       mm, across);
     return STATUS_OK;
 }
 
 Status grow_params_check(const GrowParams *params, const Domain *domain, Err *err)
 {
     if (params->terminals < 1 || params->terminals > GROW_MAX_TERMINALS)
-        return err_set(err, STATUS_USAGE, "`terminals` %zu: must be from 1 to %d",
+        return err_set(err, STATUS_USAGE, "`terminals` is %zu; it must be from 1 to %d",
                        params->terminals, GROW_MAX_TERMINALS);
     TRY(grow_blood_check(params, err));
     TRY(check_lengths(params, err));
     if (params->clearance_mm > 0 && !params->from && params->inlets <= 1)
-        return err_set(err, STATUS_USAGE,
-                       "`clearance_mm` %g: is the distance between trees, but there is only one; "
-                       "give `inlet` several times to grow several",
-                       params->clearance_mm);
+        return err_set(
+            err, STATUS_USAGE,
+            "`clearance_mm` is %g, the distance between trees, but there is only one tree; "
+            "repeat `inlet` to grow several",
+            params->clearance_mm);
     if (params->candidates < 1 || params->candidates > GROW_MAX_CANDIDATES)
-        return err_set(err, STATUS_USAGE, "`candidates` %d: must be from 1 to %d",
+        return err_set(err, STATUS_USAGE, "`candidates` is %d; it must be from 1 to %d",
                        params->candidates, GROW_MAX_CANDIDATES);
     if (params->blood.terminal_flow == TERMINAL_FLOW_DEMAND && !params->demand)
-        return err_set(err, STATUS_USAGE, "`terminal_flow` demand: needs a demand map, `demand`");
+        return err_set(err, STATUS_USAGE,
+                       "`terminal_flow` demand needs a demand map; specify `demand`");
     if (params->demand)
         TRY(demand_check(params->demand, domain, err));
     if (params->keep_radii && !params->from)
-        return err_set(err, STATUS_USAGE, "`keep_radii`: needs a tree to grow on from, `from`");
+        return err_set(err, STATUS_USAGE,
+                       "`keep_radii` needs `from`, the tree whose radii are kept");
     if (params->from) {
         TRY(check_pairs(params, domain, err));
         TRY(continue_check(params, domain, err));

@@ -49,7 +49,7 @@ Status header_integer(HeaderCursor *cursor, const char *what, long long minimum,
         return err_set(err, STATUS_INPUT, "%s: ends before the %s", cursor->file.name, what);
     if (!integer_parse(word, minimum, maximum, out))
         return err_set(err, STATUS_INPUT,
-                       "%s: the %s is \"%s\"; it must be a whole number from %lld to %lld",
+                       "%s: the %s is \"%s\"; it must be an integer from %lld to %lld",
                        cursor->file.name, what, word, minimum, maximum);
     return STATUS_OK;
 }

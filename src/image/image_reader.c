@@ -17,8 +17,8 @@ struct ImageReader {
 Status image_no_rows(const char *name, Err *err)
 {
     return err_set(err, STATUS_INPUT,
-                   "%s: must be a picture as corcast writes it: an opaque PNG, or TIFF of one "
-                   "page, of 8 or 16 bits",
+                   "%s: is not a picture that can be read row by row; it must be an opaque PNG "
+                   "file, or a TIFF file of one page, with 8 or 16 bits per channel",
                    name);
 }
 

@@ -133,10 +133,10 @@ static Status open_profile(void *self, Err *err)
                                                           (cmsUInt32Number)inks->profile.size);
     if (!output_profile)
         return STATUS_OK;
-    inks->fault = "is the profile of other colors than cyan, magenta, yellow and black";
+    inks->fault = "is not a CMYK profile";
     if (cmsGetColorSpace(output_profile) == cmsSigCmykData) {
         make_transform(inks, output_profile);
-        inks->fault = inks->transform ? NULL : "is no profile that colors can be printed by";
+        inks->fault = inks->transform ? NULL : "cannot convert colors to inks";
     }
     cmsCloseProfile(output_profile);
     return STATUS_OK;

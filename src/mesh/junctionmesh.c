@@ -438,8 +438,8 @@ static Status refuse_loop(const JunctionBuild *build, Err *err)
     free(kept);
     return err_set(
         err, STATUS_INFEASIBLE,
-        "%s of segments %s%s is narrower than its vessels: its hole closes, so its surface is not "
-        "that of the network; use thinner vessels, or `break_loops`",
+        "%s of segments %s%s is narrower than its vessels, so the surface has no hole there; use "
+        "thinner vessels, or cut loops with `break_loops`",
         build->plan->n_loops > 1 ? "a loop" : "the loop", names,
         n > MOST_NAMED ? " and others" : "");
 }
@@ -453,8 +453,7 @@ static Status refuse(const JunctionBuild *build, double grid_mm, Err *err)
     if (build->workspace->patch.n_triangles == 0)
         return err_set(
             err, STATUS_INFEASIBLE,
-            "segment %u and the segments that it meets are so short for their radii that "
-            "they have no surface",
+            "segment %u and its neighbours are too short for their radii: they have no surface",
             ids[first]);
     if (build->mesh->loops_are_closed)
         return refuse_loop(build, err);

@@ -25,7 +25,7 @@ static const ConditionRow rows[] = {
     [WHEN_TREE] = {.sentence = "is for trees", .groups = GROUP(INPUT) | GROUP(BLOOD)},
     [WHEN_FIELDS] = {.sentence = "needs --fields", .groups = GROUP(BLOOD)},
     [WHEN_LONE_RADIUS] = {.sentence = "needs --radii with one radius, the parent's"},
-    [WHEN_FREE_ANGLES] = {.sentence = "has no effect if --angles is given"},
+    [WHEN_FREE_ANGLES] = {.sentence = "has no effect with --angles"},
     [WHEN_OWN_SEED] = {.sentence = "has no effect here: the plan sets the seeds"},
     [WHEN_LUMPED] = {.sentence = "has no effect on --outlets structured"},
     [WHEN_STRUCTURED] = {.sentence = "is for --outlets structured"},

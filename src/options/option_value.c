@@ -250,8 +250,8 @@ static Status read_vectors(const Option *option, const char *value, void *where,
 {
     VectorList *list = where;
     if (list->n == MAX_LIST)
-        return err_set(err, STATUS_USAGE, "--%s: may be given at most %d times", option->name,
-                       MAX_LIST);
+        return err_set(err, STATUS_USAGE, "--%s occurs more than %d times, the maximum",
+                       option->name, MAX_LIST);
     TRY(read_vector(option, value, &list->at[list->n], err));
     list->n++;
     return STATUS_OK;

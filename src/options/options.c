@@ -333,7 +333,7 @@ static Status read_option(Parsed *parsed, int argc, char **argv, int *at, Err *e
     const char *value;
     TRY(take_value(setting->option, &as, argc, argv, at, &value, err));
     if (setting->typed && option_is_path(setting->option))
-        return err_set(err, STATUS_USAGE, "%s is given twice; give it once",
+        return err_set(err, STATUS_USAGE, "%s occurs twice; use it once",
                        role_of(setting->option).text);
     return set_value(setting, value, err);
 }

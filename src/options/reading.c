@@ -109,11 +109,11 @@ static void say_cuts(const Talk *talk, const TreeReading *reading)
 static void say_radii(const Talk *talk, const char *path, const TreeReading *reading)
 {
     if (reading->repaired_radii > 0)
-        talk_note(talk, "%s: radii filled from their neighbours: %zu", path,
+        talk_note(talk, "%s: %zu radii were filled from their neighbours", path,
                   reading->repaired_radii);
     if (reading->given_radius > 0)
-        talk_note(talk, "%s: segments without a radius that got --radius: %zu", path,
-                  reading->given_radius);
+        talk_note(talk, "%s: %zu segment%s without a radius received --radius", path,
+                  reading->given_radius, reading->given_radius == 1 ? "" : "s");
 }
 
 /* Rounds up to two digits, so that a tolerance is not below the gap. */

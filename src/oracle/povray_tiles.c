@@ -170,7 +170,8 @@ static Status check_tiles(const PovrayTilesParams *params, const SceneTiles *til
             return err_set(
                 err, STATUS_INFEASIBLE,
                 "the vessels in the smallest tile, %d x %d pixels at (%d, %d), are %.0f %% of "
-                "what POV-Ray can parse in reasonable time; draw a larger picture, or drop thin "
+                "the amount that POV-Ray can parse in reasonable time; draw a larger picture, or "
+                "drop thin "
                 "vessels (`prune_radius`)",
                 tile->rect.width, tile->rect.height, tile->rect.left, tile->rect.top,
                 100 * tile->load);

@@ -165,16 +165,18 @@ static Status check(const Deck *deck, Err *err)
     for (size_t i = 0; i < tree->n; i++) {
         const bool is_end = deck->children[i] == 0, flows = pulse->outflow[i] > 0;
         if (!tree_is_segment(tree, i) && deck->children[i] > 1 && pulse->params.drive->is_flow)
-            return err_set(err, STATUS_INPUT,
-                           "%d segments leave root %d; a deck that is driven by flow needs one, so "
-                           "use a `drive` of pressure",
-                           deck->children[i], tree->id[i]);
+            return err_set(
+                err, STATUS_INPUT,
+                "root %d has %d segments; with a `drive` of flow, a deck needs exactly one; "
+                "use a `drive` of pressure",
+                tree->id[i], deck->children[i]);
         if (is_end != flows && (tree_is_segment(tree, i) || flows))
-            return err_set(err, STATUS_INPUT,
-                           "%s node %d; in a deck, flow leaves at the ends of the tree alone, and "
-                           "at all of them",
-                           flows ? "flow leaves at the inner" : "no flow leaves at the end",
-                           tree->id[i]);
+            return err_set(
+                err, STATUS_INPUT,
+                "%s node %d; in a deck, flow must leave the tree at each terminal and at "
+                "no other node",
+                flows ? "flow leaves the tree at the inner" : "no flow leaves at the terminal",
+                tree->id[i]);
     }
     return STATUS_OK;
 }

@@ -58,7 +58,7 @@ static Status camera_direction(const ViewParams *params, Vec3 center, Vec3 *dire
     if (!isfinite(vec3_length(span)))
         return err_set(err, STATUS_USAGE,
                        "`location` and `look_at` (%s) are farther apart than 1e150 mm",
-                       params->has_look_at ? "given" : "the middle of the tree");
+                       params->has_look_at ? "as specified" : "the center of the tree");
     if (!(vec3_length(span) > 0))
         return err_set(err, STATUS_USAGE,
                        "`location` and `look_at` are the same point, so the camera has no "

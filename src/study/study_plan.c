@@ -156,8 +156,8 @@ static Status check_different(const StudyKey *key, Err *err)
     Status status = STATUS_OK;
     for (size_t i = 1; i < key->n; i++)
         if (strcmp(sorted[i - 1], sorted[i]) == 0)
-            TRY_GOTO(err_set(err, STATUS_INPUT, "%s: the value %s is given twice", key->name,
-                             sorted[i]));
+            TRY_GOTO(
+                err_set(err, STATUS_INPUT, "%s: the value %s occurs twice", key->name, sorted[i]));
 done:
     free(sorted);
     return status;
@@ -198,8 +198,8 @@ static Status add_key(StudyPlan *plan, const char *name, StudyKey **key, Err *er
 {
     for (size_t k = 0; k < plan->n; k++)
         if (strcmp(plan->key[k].name, name) == 0)
-            return err_set(err, STATUS_INPUT,
-                           "'%s' is given twice; give all its values in one line", name);
+            return err_set(err, STATUS_INPUT, "'%s' occurs twice; write all its values in one line",
+                           name);
     TRY(mem_reserve(&plan->key, &plan->capacity, plan->n + 1, sizeof *plan->key, "keys", err));
     *key = &plan->key[plan->n];
     **key = (StudyKey){0};
@@ -220,7 +220,7 @@ static Status take_line(void *user, const char *section, const char *name, const
                        *section ? "[" : "'", *section ? section : name,
                        *section ? "] is not a section of a plan" : "' is above [grow]");
     if (!name && reading->in_section)
-        return err_set(err, STATUS_INPUT, "the section [grow] is given twice");
+        return err_set(err, STATUS_INPUT, "the section [grow] occurs twice");
     reading->in_section = true;
     if (!name)
         return STATUS_OK;

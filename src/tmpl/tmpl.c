@@ -134,7 +134,7 @@ static Status expand_name(TmplExpansion *self, char mark, const char *name, size
         TRY(put_named(self, name, length, &found, err));
     if (found)
         return STATUS_OK;
-    return err_set(err, STATUS_INPUT, "%s:%d: no value is given for ${%.*s}", self->path, line,
+    return err_set(err, STATUS_INPUT, "%s:%d: there is no value for ${%.*s}", self->path, line,
                    (int)length, name);
 }
 

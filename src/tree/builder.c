@@ -91,8 +91,7 @@ static Status unknown_node(const char *what, int64_t id, Err *err)
 static Status check_node(const BuilderNode *node, Err *err)
 {
     if (!is_id(node->id))
-        return err_set(err, STATUS_INPUT,
-                       "the id is '%lld'; it must be a whole number from 1 to %d",
+        return err_set(err, STATUS_INPUT, "the id is '%lld'; it must be an integer from 1 to %d",
                        (long long)node->id, TREE_MAX_ID);
     if (node->parent != TREE_NO_PARENT && !is_id(node->parent))
         return unknown_parent(node->parent, err);

@@ -45,8 +45,7 @@ Status graph_point(Graph *graph, const GraphPoint *point, Err *err)
     if (!vec3_finite(point->position))
         return err_set(err, STATUS_INPUT, "the position is not finite");
     if (point->id < 0 || point->id > TREE_MAX_ID)
-        return err_set(err, STATUS_INPUT,
-                       "the id is '%lld'; it must be a whole number from 1 to %d",
+        return err_set(err, STATUS_INPUT, "the id is '%lld'; it must be an integer from 1 to %d",
                        (long long)point->id, TREE_MAX_ID);
     double radius = point->radius;
     TRY(reading_radius(graph->options, &radius, err));

@@ -161,12 +161,12 @@ static void put_allowed(MetaKey key, Text *text)
         for (size_t i = 0; row->words[i]; i++)
             text_printf(text, "%s%s", i ? " or " : "", row->words[i]);
     else if (row->kind == META_BITS)
-        text_printf(text, "a whole number from 0 to %" PRIu64, UINT64_MAX);
+        text_printf(text, "an integer from 0 to %" PRIu64, UINT64_MAX);
     else if (row->kind == META_CURVE)
         text_printf(text, "MM:NUMBER,..., MM above 0 and rising, each NUMBER %s",
                     range_text(row->range, range));
     else if (*range_text(row->range, range))
-        text_printf(text, "a %snumber %s", row->kind == META_WHOLE ? "whole " : "", range);
+        text_printf(text, "%s %s", row->kind == META_WHOLE ? "an integer" : "a number", range);
     else
         text_puts(text, "a finite number");
 }
@@ -377,7 +377,7 @@ static Status refuse_number(const TreeMeta *meta, MetaKey key, MetaSource source
 {
     char number[NUMBER_TEXT_SIZE];
     return err_set(err, source == META_OF_OPTIONS ? STATUS_USAGE : STATUS_INPUT,
-                   "%s%s%s %s: must be %s%s", quote_of(source), meta_rows[key].name,
+                   "%s%s%s is %s; it must be %s%s", quote_of(source), meta_rows[key].name,
                    quote_of(source), number_text(meta->number[key], number), allowed, more);
 }
 

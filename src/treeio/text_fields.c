@@ -112,9 +112,8 @@ Status field_integer(const char *what, const char *text, int32_t minimum, int32_
     double value;
     if (!number_parse(text, &value) || !(value >= minimum && value <= maximum) ||
         value != floor(value))
-        return err_set(err, STATUS_INPUT,
-                       "the %s is '%.*s'; it must be a whole number from %d to %d", what, SHOWN,
-                       text, minimum, maximum);
+        return err_set(err, STATUS_INPUT, "the %s is '%.*s'; it must be an integer from %d to %d",
+                       what, SHOWN, text, minimum, maximum);
     *out = (int32_t)value;
     return STATUS_OK;
 }

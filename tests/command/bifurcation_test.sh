@@ -48,7 +48,7 @@ test_bifurcations_that_cannot_be_are_refused() {
 --angles 30,180|--angles: 180 is not above -180 and below 180
 --radii 3,1,1|no angles minimise the target for these radii and --lambda 2
 --radii 3,2,2 --ratio 0.5|--ratio needs --radii with one radius, the parent's
---angles 30,40 --lambda 1|--lambda has no effect if --angles is given
+--angles 30,40 --lambda 1|--lambda has no effect with --angles
 END
 }
 

@@ -50,7 +50,7 @@ test_the_parts_of_the_distance_add_up() {
     expect_json stdout '(.parts | add) as $sum | .target - .bound - $sum | fabs < 1e-9'
     expect_json stdout '.parts.search > 0 and .parts.rules > 0 and .parts.radii > 0 and .refined < .target'
     run_ok corcast certify tree.swc
-    expect_stdout '^  bound  .*, proved'
+    expect_stdout '^  lower bound  *[0-9.]*, proved'
     expect_stdout 'above bound +[0-9.]+ %'
 }
 

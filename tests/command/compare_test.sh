@@ -480,7 +480,7 @@ test_a_rendering_is_not_taken_for_a_variance() {
     expect_sentence 'r1\.png: holds integers of 8 bits; --variance needs floats'
     run corcast compare r4.png biased.png --variance r1.exr --noise r1.png,r2.png
     expect_status 2
-    expect_sentence '--variance and --noise both give the variance'
+    expect_sentence '--variance and --noise both state the variance'
     run corcast compare r4.png biased.png --noise r1.png,r2.png,r3.png
     expect_status 1
     run_ok corcast compare r4.png r5.png --noise r1.png,r2.png,r3.png

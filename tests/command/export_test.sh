@@ -294,7 +294,7 @@ test_refuses_a_vessel_that_is_too_short_to_have_a_surface() {
     printf '%s\n' '1 3 0 0 0 1 -1' '2 3 0.05 0 0 1 1' >t.swc
     run corcast export t.swc -o m.stl --quiet
     expect_status 2
-    expect_sentence 'segment 2 and the segments that it meets are so short for their radii that they have no surface'
+    expect_sentence 'segment 2 and its neighbours are too short for their radii: they have no surface'
     expect_only t.swc
 }
 

@@ -306,10 +306,10 @@ test_mistakes_are_named_with_file_and_line() {
     run_ok corcast grow --terminals 12 --quiet -o t.swc
     refused '[panel a]\ntree = t.swc\ncolr-by = flow\n' "r\.ini:3: unknown key 'colr-by' in \[panel\]; did you mean color-by"
     refused '[panel a]\ntree = t.swc\nsize = 3x3\n' "r\.ini:3: unknown key 'size' in"
-    refused '[panel a]\ntree = t.swc\n[panel a]\n' 'r\.ini:3: the section \[panel a\] is given twice'
-    refused '[figure]\n[figure]\n' 'r\.ini:2: the section \[figure\] is given twice'
-    refused '[panel a]\ntree = t.swc\nmodel = joined\nmodel = blob\n' "r\.ini:4: 'model' is given twice"
-    refused '[panel a]\ntree = t.swc\ngrow = --terminals 9\n' 'r\.ini:3: the tree is given twice'
+    refused '[panel a]\ntree = t.swc\n[panel a]\n' 'r\.ini:3: the section \[panel a\] occurs twice'
+    refused '[figure]\n[figure]\n' 'r\.ini:2: the section \[figure\] occurs twice'
+    refused '[panel a]\ntree = t.swc\nmodel = joined\nmodel = blob\n' "r\.ini:4: 'model' occurs twice"
+    refused '[panel a]\ntree = t.swc\ngrow = --terminals 9\n' 'r\.ini:3: the tree is specified twice'
     refused '[panel a]\ntree = t.swc\nmodel = jined\n' 'r\.ini:3: .*jined.* is not one of'
     refused '[panel a]\ntree = t.swc\n[figure]\npanel-columns = 0\n' 'r\.ini:4: .*columns.*0'
     refused '[panel a]\ntree = t.swc\n[panels]\n' 'r\.ini:3: \[panels\] must come before all panels'

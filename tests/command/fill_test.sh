@@ -102,8 +102,8 @@ test_a_filling_that_cannot_be_is_refused_in_one_sentence() {
     done <<'END'
 --fill kassab-lad|--fill needs --from or --stages
 --from skeleton.swc --fill kassab|--fill: 'kassab' is unknown; available: kassab-lad
---from skeleton.swc --fill kassab-lad --fill-from 12|--fill-from 12: must be from 2 to 11, the highest order of kassab-lad
---from skeleton.swc --fill kassab-lad --fill-to 7|--fill-to 7: must be from 1 to below --fill-from 7
+--from skeleton.swc --fill kassab-lad --fill-from 12|--fill-from is 12; it must be from 2 to 11, the highest order of kassab-lad
+--from skeleton.swc --fill kassab-lad --fill-to 7|--fill-to is 7; it must be from 1 to 6, below --fill-from
 --from skeleton.swc --fill kassab-lad --fill-from 1|--fill-from: '1' is not an integer from 2 to 100
 --from skeleton.swc --fill kassab-lad --domain disc:20|--fill: published tables describe vessels in space; the domain has two dimensions, and must have three
 --from skeleton.swc --terminals 50 --fill-to 3|--fill-to needs --fill or --stages
@@ -117,8 +117,8 @@ END
     done <<'END'
 $a [more]\nterminals = 90|stages.ini: \[more\]: the stage before it, \[small\], fills the tree; that must be the last stage
 s/^fill = .*/fill = kassab/|stages.ini: \[small\]: --fill: 'kassab' is unknown
-s/^fill-to = .*/fill-to = 7/|stages.ini: \[small\]: --fill-to 7: must be from 1 to below --fill-from 7
-/^.large/,/^q-perf/d|stages.ini: \[small\]: --fill: needs a tree to fill, --from
+s/^fill-to = .*/fill-to = 7/|stages.ini: \[small\]: --fill-to is 7; it must be from 1 to 6, below --fill-from
+/^.large/,/^q-perf/d|stages.ini: \[small\]: --fill needs --from, the tree to be filled
 END
 }
 

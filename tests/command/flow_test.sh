@@ -97,7 +97,7 @@ test_bad_boundary_conditions_are_refused() {
     refuse_table 'id,flow\n99,3\n' 'b.csv:2: .*99'
     refuse_table 'id,pressure\n21,40\n22,10\n23,10\n' 'node 24 is an end without a boundary condition'
     refuse_table 'id,pressure,flow\n21,40,1\n' 'node 21 has a pressure and a flow'
-    refuse_table 'id,pressure [mm]\n21,40\n' 'the column pressure is in mm, which is no unit like mmHg'
+    refuse_table 'id,pressure [mm]\n21,40\n' 'the unit of the column pressure is mm; it must be convertible to mmHg'
     refuse_table 'id,pressure,hematocrit\n21,40,1.5\n' 'node 21 has the hematocrit 1.5; it must be from 0 to 0.95'
     refuse_table 'id,speed\n21,40\n' 'must have the columns id and pressure or flow'
     sed 's/^21 0 /21 1 /' n.dat >type.dat
@@ -145,7 +145,7 @@ node type value
 END_OF_RING
     run corcast flow ring.dat --viscosity 3
     expect_status 2
-    expect_sentence 'the vessels that are connected with node [123] have no boundary condition'
+    expect_sentence 'the component of node [123] has no boundary condition'
     run_ok corcast flow ring.dat --viscosity 3 --ends closed --json
     expect_json stdout '.loops == 1 and .floating_components == 1 and .lost_segments == 3 and .largest_flow > 0'
 }
@@ -155,7 +155,7 @@ test_cells_that_do_not_settle_are_reported() {
     awk 'NF == 7 && $2 == 5 { $5 = $5 * 0.19 } { print }' n.dat >thin.dat
     run_ok corcast flow thin.dat $PRIES --separation --json
     expect_json stdout '.converged == 0 and .rounds == 100 and .hematocrit_change > 1e-3'
-    grep -q 'not converged: after 100 rounds' stderr || fail "no warning: $(cat stderr)"
+    grep -q 'the hematocrit has not converged: in the last of 100 iterations' stderr || fail "no warning: $(cat stderr)"
 }
 
 run_tests

@@ -102,16 +102,16 @@ test_wrong_inlets_and_shares_are_refused() {
         expect_sentence "$sentence"
         expect_only
     done <<'END'
---inlet 0,51,0: must lie in the domain disc:50|--inlet 0,50 --inlet 0,51
---inlet 0,50,0: is given twice|--inlet 0,50 --inlet 3,4 --inlet 0,50
+--inlet is 0,51,0; it must be inside the domain disc:50|--inlet 0,50 --inlet 0,51
+--inlet 0,50,0 occurs twice|--inlet 0,50 --inlet 3,4 --inlet 0,50
 clear of those of the other inlets|--inlet 0,50 --inlet 0,49.9 --q-perf 50000
 --inlet: 'right' is not X,Y or X,Y,Z|--inlet right
---inlet-shares: 3 shares for 2 inlets|--inlet 0,50 --inlet 3,4 --inlet-shares 1,1,1
---inlet-shares: 2 shares for 1 inlets|--inlet-shares 1,1
---inlet-shares 0: must be finite numbers above 0|--inlet 0,50 --inlet 3,4 --inlet-shares 1,0
---inlet-shares -0.5: must be|--inlet 0,50 --inlet 3,4 --inlet-shares=-0.5,1
+--inlet-shares has 3 shares for 2 inlets|--inlet 0,50 --inlet 3,4 --inlet-shares 1,1,1
+--inlet-shares has 2 shares for 1 inlets|--inlet-shares 1,1
+--inlet-shares is 0; it must be a finite number above 0|--inlet 0,50 --inlet 3,4 --inlet-shares 1,0
+--inlet-shares is -0.5; it must be|--inlet 0,50 --inlet 3,4 --inlet-shares=-0.5,1
 --inlet-shares: '1,half' is not a list of numbers|--inlet 0,50 --inlet 3,4 --inlet-shares 1,half
---terminals 1: must be at least one for each of 2 inlets|--inlet 0,50 --inlet 3,4 --terminals 1
+--terminals is 1; it must be at least 2, one per inlet|--inlet 0,50 --inlet 3,4 --terminals 1
 END
 }
 

@@ -74,7 +74,7 @@ test_a_tree_far_from_the_domain_is_refused_with_both_places() {
     awk '/^[0-9]/ { $3 += 83.5 } { print }' measured.swc >away.swc
     run corcast grow --from away.swc --terminals 50 -o grown.swc
     expect_status 2
-    expect_sentence 'the domain does not hold the tree: it is at x 7[0-9.]+ to .* and the domain at x -20 to 20'
+    expect_sentence 'the whole tree is outside the domain: the tree extends from x 7[0-9.]+ to .* the domain from x -20 to 20'
     expect_only measured.swc away.swc
 }
 
@@ -90,7 +90,7 @@ test_a_domain_that_holds_a_part_of_the_tree_is_said_to_when_there_is_no_room() {
 test_it_is_said_how_the_radii_of_the_tree_changed() {
     write_measured
     run_ok corcast grow --from measured.swc --terminals 150 --q-perf 30 -o grown.swc --json grown.json
-    grep -q 'the radii of the --from tree changed by a median factor of [0-9.]* ([0-9.]* to [0-9.]*)' stderr ||
+    grep -q 'the radii of the --from tree changed by factors of [0-9.]* to [0-9.]*, median [0-9.]*' stderr ||
         fail "expected the change of the radii$(said)"
     grep -v '^#' measured.swc | awk '{ print $1, $6 }' | sort >before
     grep -v '^#' grown.swc | awk '{ print $1, $6 }' | sort >after
@@ -224,12 +224,12 @@ test_what_cannot_grow_on_is_refused() {
         [ ! -e out.swc ] || fail "expected no output"
     done <<END
 2 --from: node 3 has 3 children.*no node has more than 2|--from $DATA/trifurcation.swc --domain ball:50
-2 --terminals 20: must be above the 20|--from tree.swc --terminals 20
+2 --terminals is 20; it must be above 20|--from tree.swc --terminals 20
 2 missing.swc: cannot be read|--from missing.swc
-2 --inlet: the tree of --from has its own|--from tree.swc --inlet 0,50
-2 --inlet-shares: 3 shares for 2 inlets|--from forest.swc --inlet-shares 1,1,1
+2 --inlet cannot be combined with --from|--from tree.swc --inlet 0,50
+2 --inlet-shares has 3 shares for 2 inlets|--from forest.swc --inlet-shares 1,1,1
 2 --inlet-shares: tree 2 of --from has 20 terminals.*only 10|--from forest.swc --inlet-shares 9,1 --terminals 100
-2 names no domain; give --domain|--from homeless.swc
+2 has no domain; use --domain|--from homeless.swc
 2 node 2 is at z = .*plane z = 0|--from ball.swc --domain disc:50
 2 --from: node 1 is an inlet without a vessel|--from bare.swc --domain disc:50
 2 --from: node 2, a terminal, has the position of its parent|--from point.swc --domain disc:50
@@ -286,7 +286,7 @@ test_domains_stand_where_they_are_placed() {
     expect_sentence 'hull:placed.swc,5@30,0,0: a hull surrounds its tree and cannot be placed with @$'
     run corcast grow --domain hull:5 -o hull.swc
     expect_status 2
-    expect_sentence "needs the tree of --from, which is missing"
+    expect_sentence "needs the tree of --from; specify --from"
 }
 
 test_a_tree_outside_its_domain_is_said_where_and_by_how_much() {

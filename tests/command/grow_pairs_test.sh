@@ -72,14 +72,14 @@ test_pairs_that_cannot_be_are_refused() {
         expect_sentence "$sentence"
         expect_only
     done <<'END'
---pair: pairs need two trees, so --inlet must be given twice|--pair 1.25
---pair: pairs need two trees, so --inlet must be given twice|--pair 1.25 --inlet 0,30,0 --inlet 0,-30,0 --inlet 30,0,0
---pair: .*an even number of --terminals|--pair 1.25 --inlet 0,30,0 --inlet 0,-30,0 --terminals 61
---pair: .*no other --inlet-shares than equal ones|--pair 1.25 --inlet 0,30,0 --inlet 0,-30,0 --inlet-shares 2,1
---pair 1.25: must be at least the clearance, --clearance 1.3|--pair 1.25 --clearance 1.3 --inlet 0,30,0 --inlet 0,-30,0
---pair 0.3: the vessels of the pair of nodes [0-9]+ and [0-9]+ are 0.[0-9]+ and 0.[0-9]+ mm in radius, so that pairs must be at least 0.[0-9]+ mm apart|--pair 0.3 --inlet 0,30,0 --inlet 0,-30,0
+--pair needs two trees: specify --inlet twice, once per tree|--pair 1.25
+--pair needs two trees: specify --inlet twice, once per tree|--pair 1.25 --inlet 0,30,0 --inlet 0,-30,0 --inlet 30,0,0
+--pair needs an even number of --terminals|--pair 1.25 --inlet 0,30,0 --inlet 0,-30,0 --terminals 61
+--pair needs .* equal --inlet-shares|--pair 1.25 --inlet 0,30,0 --inlet 0,-30,0 --inlet-shares 2,1
+--pair is 1.25; it must be at least --clearance, which is 1.3|--pair 1.25 --clearance 1.3 --inlet 0,30,0 --inlet 0,-30,0
+--pair is 0.3; it must be at least 0.[0-9]+, the radii 0.[0-9]+ and 0.[0-9]+ mm of the paired nodes [0-9]+ and [0-9]+ plus the clearance|--pair 0.3 --inlet 0,30,0 --inlet 0,-30,0
 --pair: '-1' is not a number from 0 to 1000|--pair=-1
-^corcast grow: --pair 200: must be below what the domain is across, 141.4 mm$|--domain disc:50 --pair 200 --inlet 0,50 --inlet 4.5,-49
+^corcast grow: --pair is 200; it must be at most 141.4 mm, the diagonal of the domain's bounding box$|--domain disc:50 --pair 200 --inlet 0,50 --inlet 4.5,-49
 two trees that must not cross block each other in the plane|--quiet --domain disc:50 --pair 2 --inlet 0,50 --inlet 4.5,-49 --q-perf 20
 END
     run_ok corcast grow --terminals 8 --domain disc:50 --pair 2 --inlet 0,50 --inlet 4.5,-49 --q-perf 20 -o few.swc
@@ -88,7 +88,7 @@ END
     run_ok corcast grow "${two[@]}" --terminals 40 -o pairs.swc
     run corcast grow --from pairs.swc --terminals 80 --pair 1 -o none.swc
     expect_status 2
-    expect_sentence '--pair: pairs need two new trees, not those of --from'
+    expect_sentence '--pair cannot be combined with --from: both trees must be new'
 }
 
 test_wrong_pairs_in_a_file_are_refused_by_line() {

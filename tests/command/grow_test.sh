@@ -349,7 +349,7 @@ test_trees_grow_on_surfaces() {
     write_cube open.obj 31.5 open
     run corcast grow --domain surface:open.obj --terminals 40 -o refused.swc
     expect_status 2
-    expect_sentence 'open.obj: the mesh is open: 4 edges have a triangle on one side only; close its holes'
+    expect_sentence 'open.obj: the mesh is not closed: 4 edges belong to an odd number of triangles'
 }
 
 # Trees that are relaxed during growth have a lower target and obey every rule.

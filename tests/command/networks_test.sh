@@ -29,7 +29,7 @@ test_loops_are_kept_and_counted() {
         .bifurcations == 2 and .reading.degrees[0:5] == [0, 2, 2, 0, 2] and .max_level == 2 and
         .max_strahler == null and (.total_length_mm - 35 | fabs) < 1e-12'
     run_ok corcast info ring.csv
-    expect_stdout '^  loops         2; the maximum level is 2, and there are no Strahler orders$'
+    expect_stdout '^  loops         2; maximum bifurcation level 2; loops have no Strahler orders$'
     expect_stdout '^  components    1$'
     run_ok corcast info ring.csv --json --break-loops
     expect_json stdout '.segments == 5 and .loops == 0 and .reading.network.loops == 2 and

@@ -216,7 +216,7 @@ test_of_segments_between_the_same_two_points_the_thickest_is_drawn_in_every_mode
                     fail "expected $model to name the segment it leaves out of $tree$(said)"
             done
             run_ok corcast export tree.swc --input-unit mm -o tree.stl
-            grep -q "corcast: segments that are left out, as they are inside others between the same two points: 1" stderr ||
+            grep -q "corcast: 1 segment is inside other segments between the same two points and left out" stderr ||
                 fail "expected export to name the segment it leaves out of $tree$(said)"
         done
     done

@@ -181,7 +181,7 @@ test_bad_inputs_are_refused() {
     printf 'id,rp,c,rd\n2,1,-1,2\n' >bad.csv
     refuses 'outlet 2 has rp 1, c -1 and rd 2' --outlets bad.csv
     printf 'id,rp,c,rd\n%s,0.5,0.01,3\n' "$(awk '$7 == 1 { print $1; exit }' tree.swc)" >bad.csv
-    refuses 'bad.csv: segment [0-9]+ is no outlet' --outlets bad.csv
+    refuses 'bad.csv: segment [0-9]+ is not an outlet' --outlets bad.csv
     printf '0,80\n0.4,120\n1,80\n' >p.csv
     refuses '\-\-ventricle is for a --tissue-pressure template' --tissue-pressure p.csv --ventricle 5,120
     refuses 'not A,B, two numbers with A below B$' --tissue-pressure ventricular-pressure --ventricle 10%,90%

@@ -311,9 +311,9 @@ test_no_file_is_written_twice() {
     refuses "--difference 'x.png' and --flicker 'x.png'" compare a.png a.png --difference x.png --flicker x.png
     refuses "-o and --json cannot both be standard output" grow --terminals 3 -o - --json -
     refuses "the input and the input cannot both be standard input" compare - -
-    refuses "-o is given twice" render tree.swc -o x.png -o y.png
-    refuses "--look is given twice" render tree.swc -o x.png --look cast --look=print
-    refuses "--recipe is given twice" grow --recipe tree.ini --recipe tree.ini -o x.swc
+    refuses "-o occurs twice" render tree.swc -o x.png -o y.png
+    refuses "--look occurs twice" render tree.swc -o x.png --look cast --look=print
+    refuses "--recipe occurs twice" grow --recipe tree.ini --recipe tree.ini -o x.swc
     ln -s there.swc link.swc
     refuses "-o 'link.swc' and --json 'there.swc' are the same file" grow --terminals 3 -o link.swc --json there.swc
     [ ! -e there.swc ] || fail "expected nothing to be written"

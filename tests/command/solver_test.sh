@@ -273,7 +273,7 @@ test_extensions_lengthen_ends_along_their_axes() {
     printf 'id,radii\n4,2\n' >no.csv
     run corcast export t.swc --extend-outlet no.csv -o c.vtp
     expect_status 2
-    expect_sentence 'segment 4 is no outlet'
+    expect_sentence 'segment 4 is not an outlet'
     run corcast export t.swc --extend -1 -o c.vtp
     expect_status 2
     run corcast export t.swc --extend 2 -o c.glb

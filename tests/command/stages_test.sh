@@ -56,12 +56,12 @@ test_stages_that_contradict_each_other_are_refused_with_their_names() {
     done <<'END'
 s/keep-radii = on/toss = terminal/|^corcast grow: stages.ini: \[tissue\]: gamma 3 would change the radii of stage \[trunk\], which has gamma 2.4; set keep-radii = on, or use the same gamma$
 s/p-term = 60/p-term = 90/|stages.ini: \[tissue\]: p-term 90 mmHg leaves no pressure drop beyond stage \[trunk\], whose radii are kept and whose terminals are at 88.5
-s/terminals = 600/terminals = 40/|stages.ini: \[tissue\]: terminals 40: must be above the 40 of stage \[trunk\]$
+s/terminals = 600/terminals = 40/|stages.ini: \[tissue\]: terminals is 40; it must be above 40, the number of stage \[trunk\]$
 s/^gamma = 3/gamma = 3\ngamma = 2.9/|stages.ini:13: stage \[tissue\] sets 'gamma' twice
 s/.tissue./[trunk]/|stages.ini:8: the stage \[trunk\] is defined twice
 s/keep-radii = on/inlet = 0,0,30/|stages.ini:11: 'inlet' can be set only in the first stage; later stages continue its trees
 s/keep-radii = on/inlet-shares = 2,1/|stages.ini:11: 'inlet-shares' can be set only in the first stage
-s/domain = ball:31.5/domain = ball:5@100,0,0/|stages.ini: \[tissue\]: .*the domain does not hold the tree
+s/domain = ball:31.5/domain = ball:5@100,0,0/|stages.ini: \[tissue\]: .*the whole tree is outside the domain
 s/^keep-radii.*//;s/gamma = 3/gamma = 0.1:3,2:2/|stages.ini: \[tissue\]: gamma 0.1:3,2:2 would change the radii of stage \[trunk\], which has gamma 2.4
 s/gamma = 3/gama = 3/|stages.ini:12: unknown option 'gama' in a stage
 s/gamma = 3/from = x.swc/|stages.ini:12: unknown option 'from' in a stage
@@ -115,7 +115,7 @@ test_trees_keep_the_clearance_that_was_asked_for() {
     expect_sentence "clearance.*-1"
     run corcast grow --terminals 160 --clearance 1.5 -o none.swc
     expect_status 2
-    expect_sentence '^corcast grow: --clearance 1.5: is the distance between trees, but there is only one; give --inlet several times to grow several$'
+    expect_sentence '^corcast grow: --clearance is 1.5, the distance between trees, but there is only one tree; repeat --inlet to grow several$'
     run corcast grow --terminals 160 --inlet 0,50 --inlet 4.5,49 --clearance 30.5 -o none.swc
     expect_status 2
     expect_sentence 'no straight vessel leads from --inlet 4.5,49,0 into the domain, clear of those of the other inlets'
@@ -150,7 +150,7 @@ test_flow_parts_as_the_map_demands() {
         fail "expected about five times as much blood on the left, through as many terminals"
     run corcast grow --terminal-flow demand -o none.swc
     expect_status 2
-    expect_sentence '--terminal-flow demand: needs a demand map, --demand'
+    expect_sentence '--terminal-flow demand needs a demand map; specify --demand'
 }
 
 test_maps_of_demand_that_say_nothing_are_refused() {
@@ -164,7 +164,7 @@ test_maps_of_demand_that_say_nothing_are_refused() {
         expect_sentence "$sentence"
     done <<'END'
 zero.pgm: the demand map is empty: none of its values is above 0|--demand zero.pgm,1
-demand.pgm: the demand map does not cover the domain: of 20000 points of the domain, at x 490 to 510|--demand demand.pgm,1 --domain disc:10@500,0
+demand.pgm: the demand map does not cover the domain: the demand is 0 at almost all of 20000 random points of the domain; the domain extends from x 490 to 510|--demand demand.pgm,1 --domain disc:10@500,0
 --demand demand.pgm: a picture needs the width of a pixel in mm, FILE,MM|--demand demand.pgm
 a pixel must be from 1e-06 to 1e.06 mm wide|--demand demand.pgm,0
 END

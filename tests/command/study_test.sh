@@ -130,8 +130,8 @@ refuses() {
 }
 
 test_refuses_what_is_wrong_in_a_plan_with_file_and_line() {
-    refuses '[grow]\nseed = 1\n[grow]\n' 'plan.ini:3: the section \[grow\] is given twice'
-    refuses '[grow]\nseed = 1\n\nseed = 2\n' "plan.ini:4: 'seed' is given twice; give all its values in one line"
+    refuses '[grow]\nseed = 1\n[grow]\n' 'plan.ini:3: the section \[grow\] occurs twice'
+    refuses '[grow]\nseed = 1\n\nseed = 2\n' "plan.ini:4: 'seed' occurs twice; write all its values in one line"
     refuses '[grow]\nsed = 1\n' "plan.ini:2: 'sed' is not an option of grow; did you mean seed"
     refuses '[grow]\nthreads = 2\n' "plan.ini:2: a plan cannot set the option 'threads' of grow"
     refuses '[tree]\nseed = 1\n' 'plan.ini:1: \[tree\] is not a section of a plan'
@@ -142,7 +142,7 @@ test_refuses_what_is_wrong_in_a_plan_with_file_and_line() {
     refuses '[grow]\nseed = 1..2000\nterminals = 1..2000\n' 'plan.ini:3: terminals: the plan has more than 1000000'
     refuses '[grow]\ngamma = 2.5, -3\n' "plan.ini:2: --gamma: '-3' is not a number"
     refuses '[grow]\ngamma = 2.5, , 3\n' 'plan.ini:2: gamma: a value is missing'
-    refuses '[grow]\ngamma = 2.5, 3, 2.50\n' 'plan.ini:2: gamma: the value 2.5 is given twice'
+    refuses '[grow]\ngamma = 2.5, 3, 2.50\n' 'plan.ini:2: gamma: the value 2.5 occurs twice'
     refuses '[grow]\nseed = 1,2\n' "plan.ini:2: --seed: '1,2' is not"
     run corcast study plan.ini
     expect_status 2

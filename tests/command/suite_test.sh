@@ -65,7 +65,7 @@ test_what_is_accepted_agrees_afterwards_and_has_its_reason() {
     expect_sentence "no picture 'nothing\.ppm' in drawn or stored"
     run corcast compare --reference stored drawn --accept a.ppm
     expect_status 2
-    expect_sentence '--accept and --reason must be given together'
+    expect_sentence '--accept and --reason must be used together'
 }
 
 test_only_a_case_that_compare_lists_is_accepted() {

@@ -186,7 +186,7 @@ test_what_a_format_has_no_place_for_is_said() {
     for extension in vmv segments.csv in; do
         run_ok corcast convert tree.swc "tree.$extension"
         grep -q "^corcast: the roots' own radii are left out: " stderr || fail "got of $extension: $(cat stderr)"
-        grep -q '^corcast: nodes that share a position with another node: 2; ' stderr || fail "got of $extension: $(cat stderr)"
+        grep -q '^corcast: 2 nodes share a position with another node; ' stderr || fail "got of $extension: $(cat stderr)"
         run_ok corcast info --json "tree.$extension"
         expect_json stdout '.segments == 4'
         run_ok corcast convert tree.swc "tree.$extension" --quiet
@@ -215,7 +215,7 @@ test_derived_fields_become_columns_of_what_is_written() {
     sed -n '4p' tree.segments.csv | awk -F, '{ exit !(($11 - 79.57747) ^ 2 < 1e-8 && ($12 - 0.5570423) ^ 2 < 1e-12) }' ||
         fail "expected velocity and shear stress, got $(sed -n '4p' tree.segments.csv)"
     run_ok corcast convert tree.swc tree.csv --fields all
-    expect_sentence '^corcast: pressure are? left out: they need values that neither the tree nor an option gives$'
+    expect_sentence '^corcast: pressure are? left out: they need values that are neither in the tree nor in options$'
     run_ok corcast convert tree.swc tree.csv --fields all --p-perf 90
     [ ! -s stderr ] || fail "expected all fields: $(cat stderr)"
     run_ok corcast convert tree.swc other.csv --fields strahler --quiet

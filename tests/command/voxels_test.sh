@@ -223,7 +223,7 @@ test_memory_is_that_of_the_estimate() {
 test_says_that_a_segment_with_the_ends_of_a_thicker_one_has_no_voxels() {
     printf '1 3 0 0 0 0.9 -1\n2 3 10 0 0 0.9 1\n3 3 10 0 0 0.4 1\n' >s.swc
     run_ok corcast export s.swc -o s.nii.gz --spacing 0.5 --labels segment --quiet
-    expect_sentence 'segments that have both ends of a thicker segment and no voxels of their own: 1'
+    expect_sentence '1 segment is inside other segments between the same two points, without voxels of their own'
     expect_json s.nii.gz.json '.segments == 2 and .segments_within_others == 1'
 }
 

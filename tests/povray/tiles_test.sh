@@ -71,7 +71,7 @@ test_a_scene_that_is_too_much_for_povray_is_drawn_in_tiles_or_refused() {
     [ "$(wc -c <near/scene.inc)" -lt "$(wc -c <report/scene.tile-1.inc)" ] || fail "expected less to be seen from near by"
     run corcast verify tree.swc --model blob --size 12x12 -o refused
     expect_status 2
-    expect_sentence 'the vessels in the smallest tile, 12 x 12 pixels at \(0, 0\), are 103 % of what POV-Ray can parse in reasonable time; draw a larger picture, or drop thin vessels \(--prune-radius\)$'
+    expect_sentence 'the vessels in the smallest tile, 12 x 12 pixels at \(0, 0\), are 103 % of the amount that POV-Ray can parse in reasonable time; draw a larger picture, or drop thin vessels \(--prune-radius\)$'
     [ -z "$(ls refused)" ] || fail "expected an empty folder, got $(ls refused)"
 }
 

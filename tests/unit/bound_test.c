@@ -363,7 +363,7 @@ static void refuses_trees_and_exponents_without_a_bound(void **state)
     expect_refused(&tree, 2, STATUS_INPUT, "node 2: blood flows to it through a radius of 0");
     expect_refused(&still, 2, STATUS_INPUT, "node 2: blood leaves the tree where its root is");
     tree.radius_mm[1] = 1;
-    expect_refused(&tree, 0.49, STATUS_USAGE, "`lambda` 0.49: must be from 0.5 to 4");
+    expect_refused(&tree, 0.49, STATUS_USAGE, "`lambda` is 0.49; it must be from 0.5 to 4");
     expect_refused(&tree, NAN, STATUS_USAGE, "`lambda`");
     assert_int_equal(tree_add_flow_shares(&tree, NULL), STATUS_OK);
     expect_refused(&tree, 2, STATUS_INPUT, "no blood flows");

@@ -157,9 +157,8 @@ static void rejects_rows_naming_line_and_column(void **state)
     } bad[] = {
         {"1,,0,0,0,1", ":3: the row has 6 fields; it must have 8, one per column"},
         {"1,,0,0,0,1,,,9", ":3: the row has 9 fields; it must have 8, one per column"},
-        {"0,,0,0,0,1,,", ":3: the id is '0'; it must be a whole number from 1 to 100000000"},
-        {"1,-2,0,0,0,1,,",
-         ":3: the parent is '-2'; it must be a whole number from -1 to 100000000"},
+        {"0,,0,0,0,1,,", ":3: the id is '0'; it must be an integer from 1 to 100000000"},
+        {"1,-2,0,0,0,1,,", ":3: the parent is '-2'; it must be an integer from -1 to 100000000"},
         {"1,,O,0,0,1,,", ":3: the x_mm is 'O'; it must be a finite number"},
         {"1,,0,,0,1,,", ":3: the y_mm is ''; it must be a finite number"},
         {"1,,0,0,0,-1,,", ":3: the radius_mm is '-1'; it must be a finite number of 0 or more"},

@@ -129,7 +129,7 @@ static void texts_that_are_no_domain_are_refused(void **state)
         {"mask", "name of a file is missing"},
         {"mask:a.pgm", "width of a pixel in mm; use mask:FILE,MM"},
         {"mask:a.pgm,0", "the unit of the file must be a number of mm from 1e-06 to 1e+06"},
-        {"mask:a.nii.gz,2", "has its own units"},
+        {"mask:a.nii.gz,2", "states its own voxel size"},
         {"mesh:a.ply", "must end in .stl or .obj"},
         {"mesh:a.stl,-1", "the unit of the file must be a number of mm from 1e-06 to 1e+06"},
         {"polygon:a.txt,nan", "the unit of the file must be a number of mm from 1e-06 to 1e+06"},
@@ -495,11 +495,10 @@ static void meshes_that_enclose_nothing_are_refused(void **state)
 {
     (void)state;
     static const char *const last_faces[][2] = {
-        {"", "a.obj: the mesh is open: 4 edges have a triangle on one side only"},
-        {"f 2 4 8\n", "is open: 3 edges"},
-        {"f 2 6 8 4\n",
-         "the sides of the mesh do not agree: at 4 edges the triangles run the same"},
-        {"f 2 4 8 9\n", "a.obj:14: '9' is not one of the vertices so far"},
+        {"", "a.obj: the mesh is not closed: 4 edges belong to an odd number of triangles"},
+        {"f 2 4 8\n", "is not closed: 3 edges"},
+        {"f 2 6 8 4\n", "neighbouring triangles face opposite sides at 4 edges of the mesh"},
+        {"f 2 4 8 9\n", "a.obj:14: '9' is not the index of a vertex above this line"},
         {"f 2 4 -9 8\n", "'-9' is not"},
         {"f 2 4 0 8\n", "'0' is not"},
         {"f 2 4\n", "a.obj:14: 'f' is a face of fewer than three corners"},
@@ -527,9 +526,9 @@ static void files_that_are_no_stl_are_refused(void **state)
     static const char *const cases[][2] = {
         {"", "has no triangles"},
         {"solid a\nendsolid\n", "has no triangles"},
-        {"ply\nformat ascii\n", "a.stl:1: 'ply' is no word of an ASCII STL file"},
+        {"ply\nformat ascii\n", "a.stl:1: 'ply' is not a keyword of an ASCII STL file"},
         {"solid\nfacet normal 0 0 1\nouter loop\nvertex 1 2 3\nendloop\n",
-         "a.stl:5: 'endloop' closes a facet that has not three vertices"},
+         "a.stl:5: 'endloop' ends a facet that does not have three vertices"},
         {"solid\nfacet\nouter loop\nvertex 1 2 inf\n", "a.stl:4: the point 1 2 inf"},
         {"solid\nfacet\nouter loop\nvertex 1 2\n", "a.stl:4: '' is not a number"},
     };
@@ -633,7 +632,7 @@ static void ascii_stl_files_may_be_spelled_as_old_programs_do(void **state)
     Text text = TEXT_INIT;
     put_stl(&spellings[0], &text);
     text_puts(&text, "solid u\nspline\n"); /* the end of one solid is not that of the file */
-    expect_text_refused("mesh:a.stl", text.chars, "'spline' is no word of an ASCII STL file");
+    expect_text_refused("mesh:a.stl", text.chars, "'spline' is not a keyword of an ASCII STL file");
     text_release(&text);
     expect_text_refused("mesh:a.stl", "solid\nfacet\nouter loop\nvertex 1,5 2 3\n",
                         "a.stl:4: '1,5' has a comma; a vertex has three numbers, x y z, with "
@@ -739,7 +738,7 @@ static void a_surface_whose_layer_is_nowhere_is_refused(void **state)
     text_puts(&text, "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n");
     write_bytes("a.obj", text.chars, text.length);
     expect_refused("surface:a.obj,3", STATUS_INPUT,
-                   "of 100000 points drawn in the domain none is inside it; the mesh may be "
+                   "none of 100000 random points is inside the domain; the mesh may be "
                    "thinner than twice its OFFSET");
     unlink("a.obj");
     text_release(&text);

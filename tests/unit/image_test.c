@@ -189,7 +189,7 @@ static void says_what_is_wrong_with_a_pnm(void **state)
     refuses("", "is not a PBM, PGM, PPM, PAM, PFM, PNG, TIFF, OpenEXR, JPEG or WebP file");
     refuses("GIF89a", "is not a PBM, PGM, PPM, PAM, PFM, PNG, TIFF, OpenEXR, JPEG or WebP file");
     refuses("P6", "ends before the width");
-    refuses("P6 0 5 255 ", "the width is \"0\"; it must be a whole number from 1 to 1048576");
+    refuses("P6 0 5 255 ", "the width is \"0\"; it must be an integer from 1 to 1048576");
     refuses("P6 5 -5 255 ", "the height is \"-5\"");
     refuses("P6 99999999999 5 255 ", "the width is \"99999999999\"");
     refuses("P6 5 5 65536 ", "the largest value is \"65536\"");

@@ -147,7 +147,7 @@ static void an_option_that_is_excluded_is_refused(void **state)
     must(options_set(&parsed, "verdict", "cmp {a} {b}", &err), &err);
     must(options_set(&parsed, "ppm", "8", &err), &err);
     assert_int_equal(options_finish(&parsed, &err), STATUS_USAGE);
-    assert_string_equal(err.text, "--ppm and --verdict are two rules; one can be asked");
+    assert_string_equal(err.text, "--ppm and --verdict are two rules; use only one");
     end();
 }
 

@@ -327,7 +327,7 @@ static void rejects_a_table_of_morphometry_that_is_none(void **state)
          ":2: the row begins with order 2 and diameter 9; it must be order 1, and a "
          "diameter above 0"},
         {"source X\n1 0 1 1 1 9 2 nan .1 nan nan nan\n", ":2: the row begins with order 1"},
-        {"source X\nratios 2 3\n", ":2: 'ratios 2 3' is neither a source, nor ratios"},
+        {"source X\nratios 2 3\n", ":2: 'ratios 2 3' is not a row of the table"},
         {"source X\nfitted-from 1 1 2.5\n", ":2: 'fitted-from 1 1 2.5' is neither"},
         {"source X\nfitted-from 1 nan 1\n", ":2: 'fitted-from 1 nan 1' is neither"},
         {"source X\nsource Y\n", ":2: 'source Y' is neither"},

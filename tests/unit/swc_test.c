@@ -228,8 +228,7 @@ static void rejects_a_known_key_of_bad_value(void **state)
     assert_refused("# gamma:", ":1: gamma is ''; it must be a number above 0 and at most 10");
     assert_refused("# lambda: -1", ":1: lambda is '-1'; it must be a number of at least 0");
     assert_refused("# lambda: inf", ":1: lambda is 'inf'; it must be a number of at least 0");
-    assert_refused("# dimension: 2.5",
-                   ":1: dimension is '2.5'; it must be a whole number from 2 to 3");
+    assert_refused("# dimension: 2.5", ":1: dimension is '2.5'; it must be an integer from 2 to 3");
     assert_refused("# p_perf_mmHg: nan", ":1: p_perf_mmHg is 'nan'; it must be a finite number");
     assert_refused("# p_term_mmHg: 1 2", ":1: p_term_mmHg is '1 2'; it must be a finite number");
     assert_refused("# q_perf_ml_min: 0", ":1: q_perf_ml_min is '0'; it must be a number above 0");
@@ -242,7 +241,7 @@ static void rejects_a_known_key_of_bad_value(void **state)
                    ":1: terminal_flow is ''; it must be equal or territory or demand");
     assert_refused("# terminal_flow: equal\n#terminal_flow: territory",
                    ":2: terminal_flow is 'territory', but an earlier line has another value");
-    static const char seed[] = "it must be a whole number from 0 to 18446744073709551615";
+    static const char seed[] = "it must be an integer from 0 to 18446744073709551615";
     char expected[120];
     snprintf(expected, sizeof expected, ":1: seed is '-1'; %s", seed);
     assert_refused("# seed: -1", expected);
@@ -368,11 +367,11 @@ static void rejects_what_is_not_a_number(void **state)
     assert_refused("1 2 0 0 0x1p3 .5 -1\n",
                    ":1: the z coordinate is '0x1p3'; it must be a finite number");
     assert_refused("one 2 0 0 0 .5 -1\n",
-                   ":1: the id is 'one'; it must be a whole number from 1 to 100000000");
-    assert_refused("1 axon 0 0 0 .5 -1\n", ":1: the type is 'axon'; it must be a whole number from "
+                   ":1: the id is 'one'; it must be an integer from 1 to 100000000");
+    assert_refused("1 axon 0 0 0 .5 -1\n", ":1: the type is 'axon'; it must be an integer from "
                                            "-2147483648 to 2147483647");
     assert_refused("1 2 0 0 0 .5 none\n",
-                   ":1: the parent is 'none'; it must be a whole number from -1 to 100000000");
+                   ":1: the parent is 'none'; it must be an integer from -1 to 100000000");
 }
 
 static void rejects_what_is_not_finite(void **state)
@@ -402,7 +401,7 @@ static void rejects_a_negative_radius_and_takes_zero(void **state)
 static void rejects_ids_out_of_range(void **state)
 {
     (void)state;
-    static const char allowed[] = "; it must be a whole number from 1 to 100000000";
+    static const char allowed[] = "; it must be an integer from 1 to 100000000";
     static const char *const ids[] = {"-3", "100000001", "1.5", "nan", "99999999999999999999"};
     for (size_t i = 0; i < sizeof ids / sizeof *ids; i++) {
         char text[80], expected[120];
@@ -411,9 +410,9 @@ static void rejects_ids_out_of_range(void **state)
         assert_refused(text, expected);
     }
     assert_refused("7 2 0 0 0 .5 -1\n0 2 0 0 1 .5 7\n",
-                   ":2: the id is '0'; it must be a whole number from 1 to 100000000");
+                   ":2: the id is '0'; it must be an integer from 1 to 100000000");
     assert_refused("0 2 0 0 0 .5 -1\n100000000 2 0 0 1 .5 0\n",
-                   ":2: the id is '100000000'; it must be a whole number from 0 to 99999999");
+                   ":2: the id is '100000000'; it must be an integer from 0 to 99999999");
     Tree tree = read_text("100000000 2 0 0 0 .5 -1\n1e1 2 0 0 1 .5 100000000.0\n");
     assert_int_equal(tree.id[0], 100000000);
     assert_int_equal(tree.id[1], 10);
@@ -442,7 +441,7 @@ static void rejects_an_unknown_parent(void **state)
         assert_refused(text, expected);
     }
     assert_refused("7 2 0 0 0 .5 -2\n",
-                   ":1: the parent is '-2'; it must be a whole number from -1 to 100000000");
+                   ":1: the parent is '-2'; it must be an integer from -1 to 100000000");
 }
 
 static void rejects_cycles(void **state)

@@ -329,7 +329,7 @@ static void rejects_networks_that_make_no_sense(void **state)
 {
     (void)state;
     assert_refused("dat", TISSUE "three\n",
-                   ":7: the number of segments is 'three'; it must be a whole number from 0 to "
+                   ":7: the number of segments is 'three'; it must be an integer from 0 to "
                    "100000000");
     assert_refused("dat", TISSUE "1\nname\n1 5 1 2\n",
                    ":9: a row of the segments needs at least 5 fields, found 4");
@@ -431,7 +431,7 @@ static void rejects_scenes_of_metaio_that_make_no_sense(void **state)
         {TUBE "ElementSpacing = 1 2\n", ":4: ElementSpacing is '1 2'; it must be 3 numbers"},
         {TUBE "ElementType = MET_SHORT\n",
          ":4: ElementType is 'MET_SHORT'; it must be MET_FLOAT or MET_DOUBLE"},
-        {"ObjectType = Tube\nNDims = 4\n", ":2: the NDims is '4'; it must be a whole number from 2 "
+        {"ObjectType = Tube\nNDims = 4\n", ":2: the NDims is '4'; it must be an integer from 2 "
                                            "to 3"},
         {TUBE "ParentID = 8\nPointDim = x y z r\nNPoints = 1\nPoints =\n1 2 3 4\n",
          ":7: there is no object with the ID '8'"},
@@ -589,7 +589,7 @@ static void rejects_graphs_of_amira_that_make_no_sense(void **state)
         {"define POINT 8", "define POINT 2000000000",
          ":6: its header states 2000000000 POINT; a file of 637 bytes can hold at most 1000637"},
         {"define POINT 8", "define POINT -8",
-         ":6: the POINT is '-8'; it must be a whole number from 0 to 2147483647"},
+         ":6: the POINT is '-8'; it must be an integer from 0 to 2147483647"},
         {"define POINT 8", "define POINT 9", ":47: '@5' in EdgePointCoordinates is not a number"},
         {"@5\n\n# Data", "@5(HxMagic,12)\n\n# Data",
          ":19: block @5 is packed by 'HxMagic'; it must be HxByteRLE or HxZip"},
@@ -695,10 +695,10 @@ static void a_second_table_holds_the_lines_between_nodes(void **state)
                         "4 3 -5 0 20 1.25 2\n");
     tree_release(&tree);
     assert_table_refused("x,y\n0,1\n1,1\n2,2\n", &options,
-                         "edges.csv:4: the from is '3'; it must be a whole number from 0 to 2");
+                         "edges.csv:4: the from is '3'; it must be an integer from 0 to 2");
     unlink(edges);
     assert_table_refused("x0,y0,z0,x1,y1,z1,radius\n0,1,2,3,4,5,6\n", &options,
-                         "`edges` was given, but this is not a table of nodes");
+                         "`edges` has a value, but this is not a table of nodes");
 }
 
 static void a_csv_of_segments_is_written_and_read_again(void **state)

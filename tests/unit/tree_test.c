@@ -281,7 +281,7 @@ static void a_key_says_what_its_values_may_be(void **state)
         {META_LAMBDA, 0, "-0.125", "lambda is '-0.125'; it must be a number of at least 0"},
         {META_P_TERM, -3.25, "inf", "p_term_mmHg is 'inf'; it must be a finite number"},
         {META_HEMATOCRIT, 0.95, "nan", "hematocrit is 'nan'; it must be a number from 0 to 0.95"},
-        {META_DIMENSION, 3, "2.5", "dimension is '2.5'; it must be a whole number from 2 to 3"},
+        {META_DIMENSION, 3, "2.5", "dimension is '2.5'; it must be an integer from 2 to 3"},
         {META_VISCOSITY_LAW, VISCOSITY_PRIES, "2",
          "viscosity_law is '2'; it must be constant or pries"}};
     for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
@@ -357,14 +357,15 @@ static void cco_asks_for_what_it_rests_on(void **state)
     meta_set_number(&meta, META_P_TERM, 97.5);
     meta_set_number(&meta, META_Q_PERF, 312.5);
     assert_int_equal(meta_check_cco(&meta, META_OF_OPTIONS, &err), STATUS_USAGE);
-    assert_string_equal(err.text, "`p_term_mmHg` 97.5: must be below `p_perf_mmHg`, which is 97.5");
+    assert_string_equal(err.text,
+                        "`p_term_mmHg` is 97.5; it must be below `p_perf_mmHg`, which is 97.5");
     meta_set_number(&meta, META_P_TERM, 60);
     meta_set_number(&meta, META_VISCOSITY, 3.6);
     must(meta_check_cco(&meta, META_OF_FILE, &err), &err);
     meta_set_number(&meta, META_VISCOSITY_LAW, VISCOSITY_PRIES);
     meta_set_number(&meta, META_HEMATOCRIT, 0.96);
     assert_int_equal(meta_check_cco(&meta, META_OF_FILE, &err), STATUS_INPUT);
-    assert_string_equal(err.text, "hematocrit 0.96: must be a number from 0 to 0.95");
+    assert_string_equal(err.text, "hematocrit is 0.96; it must be a number from 0 to 0.95");
     meta_set_number(&meta, META_HEMATOCRIT, 0.4375);
     assert_int_equal(meta_check_cco(&meta, META_OF_FILE, &err), STATUS_INPUT);
     assert_string_equal(err.text,

@@ -194,7 +194,7 @@ static void refuses_what_has_no_radii_to_keep(void **state)
     assert_non_null(strstr(err.text, "node 20 has the radius 0"));
     params.from = NULL;
     assert_int_equal(grow_on(&params, &tree, &err), STATUS_USAGE);
-    assert_non_null(strstr(err.text, "`keep_radii`: needs a tree"));
+    assert_non_null(strstr(err.text, "`keep_radii` needs `from`"));
     tree_release(&from);
 }
 

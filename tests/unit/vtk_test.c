@@ -237,7 +237,7 @@ static void refuses_legacy_files_that_say_no_network(void **state)
         {LEGACY("3.0", "ASCII") "DATASET STRUCTURED_GRID\n",
          ":4: the dataset is STRUCTURED_GRID; it must be POLYDATA or UNSTRUCTURED_GRID"},
         {POLYDATA "POINTS many float\n",
-         ":5: the number of points is 'many'; it must be a whole number"},
+         ":5: the number of points is 'many'; it must be an integer"},
         {POLYDATA "POINTS 2 complex\n", ":5: 'complex' is not a type of numbers"},
         {POLYDATA "POINTS 2 float\n0 0 x 1 0 0\n", ":6: 'x' in POINTS is not a number"},
         {POLYDATA "POINTS 2 float\n0 0 0 1 0    \n",

@@ -9,12 +9,12 @@ static void print(const char *path, const Certified *found)
     const Bound *bound = &found->bound;
     printf("%s\n", path);
     printf("  target        %.9g (sum of length * radius^%g)\n", bound->target, bound->lambda);
-    printf(
-        "  bound         %.9g, proved: no tree with this topology, these %zu terminals, and their "
-        "flows and pressures has a lower target\n",
-        bound->bound, bound->outlets);
-    printf("  best found    %.9g, with free radii and positions\n", bound->best);
-    printf("  above bound   %.3g %% of the bound\n", 100 * (bound->target / bound->bound - 1));
+    printf("  lower bound   %.9g, proved for all trees with this topology and these %zu terminals, "
+           "flows and pressures\n",
+           bound->bound, bound->outlets);
+    printf("  best found    %.9g, with unconstrained radii and positions\n", bound->best);
+    printf("  above bound   %.3g %% of the bound, of which\n",
+           100 * (bound->target / bound->bound - 1));
     for (int k = 0; k < PARTS; k++)
         if (!isnan(found->part[k]))
             printf("    %-11s %.3g %% (%s)\n", part_rows[k].key,

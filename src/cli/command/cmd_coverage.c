@@ -10,10 +10,10 @@ static void print_law(const CoverageResult *result)
     if (result->dimension == 2)
         return;
     printf("  grown trees   with this volume per terminal: mean %.4g mm, 95 %% within %.4g mm, "
-           "largest %.4g mm\n",
+           "largest void %.4g mm\n",
            law->mean_mm, law->within_95_mm, law->largest_mm);
     printf("                95 %% of the tissue within %g mm needs about %.3g terminals per "
-           "mm\xC2\xB3; here are %.3g\n",
+           "mm\xC2\xB3; this tree has %.3g\n",
            last, law->density_needed, (double)result->terminals / result->report.tissue_volume);
 }
 
@@ -22,18 +22,19 @@ static void print(const char *name, const CoverageResult *result)
     const CoverageReport *report = &result->report;
     const char *unit = result->dimension == 2 ? "mm\xC2\xB2" : "mm\xC2\xB3";
     printf("%s\n", name);
-    printf("  tissue        %.6g %s in %lld voxels of %g mm, without %.4g %s of vessels\n",
+    printf("  tissue        %.6g %s in %lld voxels of %g mm, excluding %.4g %s of vessels\n",
            report->tissue_volume, unit, (long long)report->tissue_voxels, result->spacing_mm,
            report->vessel_volume, unit);
-    printf("  distance      mean %.4g mm, median %.4g mm, 95 %% within %.4g mm\n", report->mean_mm,
-           coverage_quantile(report, 0.5), coverage_quantile(report, 0.95));
+    printf("  distance      to the nearest vessel: mean %.4g mm, median %.4g mm, 95 %% within %.4g "
+           "mm\n",
+           report->mean_mm, coverage_quantile(report, 0.5), coverage_quantile(report, 0.95));
     for (size_t i = 0; i < result->beyond.n; i++)
         printf("  beyond        %g mm: %.4g %% of the tissue\n", result->beyond.at[i],
                100 * (double)report->beyond[i] / (double)report->tissue_voxels);
-    printf("  largest void  %.5g mm from any vessel, at %.5g, %.5g, %.5g mm\n", report->largest_mm,
-           report->largest_at.x, report->largest_at.y, report->largest_at.z);
+    printf("  largest void  %.5g mm to the nearest vessel, at %.5g, %.5g, %.5g mm\n",
+           report->largest_mm, report->largest_at.x, report->largest_at.y, report->largest_at.z);
     if (report->largest_error_mm > 1e-3)
-        printf("                (many points are as far; no point is more than %.2g mm farther)\n",
+        printf("                (no point is more than %.2g mm farther)\n",
                report->largest_error_mm);
     print_law(result);
 }

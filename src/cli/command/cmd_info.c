@@ -43,8 +43,8 @@ static void print_gamma(const LogCurve *gamma)
     if (gamma->n == 1)
         printf("  gamma         %g\n", gamma->value[0]);
     for (size_t k = 0; gamma->n > 1 && k < gamma->n; k++)
-        printf("  %-13s %g at a radius of %g mm of the parent\n", k == 0 ? "gamma" : "",
-               gamma->value[k], gamma->place[k]);
+        printf("  %-13s %g at a parent radius of %g mm\n", k == 0 ? "gamma" : "", gamma->value[k],
+               gamma->place[k]);
 }
 
 static void print_summary(const char *path, const TreeSummary *summary)
@@ -66,10 +66,10 @@ static void print_summary(const char *path, const TreeSummary *summary)
         printf(", %s mm at the thinnest", READABLE(summary->min_radius_mm, 6));
     printf("\n");
     if (summary->has.orders)
-        printf("  orders        bifurcation level %d, Strahler %d\n", summary->max_level,
-               summary->max_strahler);
+        printf("  orders        maximum bifurcation level %d, maximum Strahler order %d\n",
+               summary->max_level, summary->max_strahler);
     else
-        printf("  loops         %zu; the maximum level is %d, and there are no Strahler orders\n",
+        printf("  loops         %zu; maximum bifurcation level %d; loops have no Strahler orders\n",
                summary->loops, summary->max_level);
     if (summary->has.terminal_pressure)
         printf("  terminals at  %.9g to %.9g mmHg\n", summary->terminal_pressure_min_mmhg,
@@ -144,7 +144,7 @@ static void print_left_out(const NetworkReading *network)
         {network->merged, "point merged into another", "points merged into others"},
         {network->unused, "point that no line uses", "points that no line uses"},
         {network->without_length, "line without length", "lines without length"},
-        {network->repeated, "line given before", "lines given before"},
+        {network->repeated, "repeated line", "repeated lines"},
         {network->loops, "line cut where a loop closed", "lines cut where loops closed"},
     };
     const char *title = "left out     ";
@@ -171,8 +171,8 @@ static void print_network(const TreeReading *reading)
         printf("                and %zu more place%s\n", reading->network.loops - 3,
                ending(reading->network.loops - 3));
     if (reading->network.against > 0)
-        printf("  directions    %zu line%s given towards the root\n", reading->network.against,
-               reading->network.against == 1 ? " is" : "s are");
+        printf("  directions    %zu line%s towards the root in the file\n",
+               reading->network.against, reading->network.against == 1 ? " points" : "s point");
 }
 
 static void print_roots(const TreeReading *reading, size_t components)
@@ -204,12 +204,12 @@ static Status print_read_unit(const TreeReading *reading, Err *err)
     if (reading->median_radius_mm > 0)
         printf("  median radius %s mm\n", READABLE(reading->median_radius_mm, 6));
     TRY(print_unit("  unit          ", length_unit_names[reading->unit], err));
-    printf(", %s", reading->unit_is_stated ? "given" : "assumed");
+    printf(", %s", reading->unit_is_stated ? "stated" : "assumed");
     if (reading->median_radius_mm > 0 && reading->has_plausible_unit)
-        TRY(print_unit("; radii look like ", length_unit_names[reading->plausible_unit], err));
+        TRY(print_unit("; radii suggest ", length_unit_names[reading->plausible_unit], err));
     else if (reading->median_radius_mm > 0)
-        printf("; radii look like no vessel's");
-    printf("%s\n", reading->looks_like_voxels ? ", and coordinates like voxels" : "");
+        printf("; radii are not plausible for vessels in any unit");
+    printf("%s\n", reading->looks_like_voxels ? "; coordinates suggest voxels" : "");
     if (reading->without_radius > 0)
         printf("  no radius     %zu segment%s\n", reading->without_radius,
                ending(reading->without_radius));
@@ -246,14 +246,16 @@ static void print_table(const char *title, const char *number, const StatisticsT
 
 static void print_ratios(const OrderRatios *ratios)
 {
-    printf("  from order to order: number ÷ %.3f, diameter × %.3f, length × %.3f\n", ratios->number,
-           ratios->diameter, ratios->length);
+    printf("  ratios from order to order: number ÷ %.3f, diameter × %.3f, length × %.3f\n",
+           ratios->number, ratios->diameter, ratios->length);
 }
 
 static void print_connectivity(const TreeStatistics *statistics)
 {
     size_t n = statistics->by_diameter_strahler.n;
-    printf("\nElements that spring from an element of each diameter-defined order\n  order");
+    printf("\nMean number of daughter elements of each order (columns) per element of each order "
+           "(rows),\n"
+           "by diameter-defined Strahler order\n  order");
     for (size_t k = 0; k < n; k++)
         printf(" %8zu", k + 1);
     for (size_t i = 0; i < n; i++) {
@@ -279,7 +281,8 @@ static void print_orders(const TreeStatistics *statistics)
     print_ratios(&statistics->diameter_strahler_ratios);
     print_connectivity(statistics);
     if (!statistics->diameter_orders_converged)
-        printf("  the orders still changed after %d rounds\n", statistics->diameter_rounds);
+        printf("  the diameter-defined orders have not converged after %d iterations\n",
+               statistics->diameter_rounds);
     printf("\nBifurcations (mean ± standard deviation)\n");
     print_spread("symmetry, r_thinnest / r_thickest", &statistics->symmetry);
     print_spread("area ratio, sum of r² / r_parent²", &statistics->area_ratio);
@@ -314,10 +317,11 @@ static void print_pair(const MorphometryPair *pair)
 static void print_morphometry(const InfoReport *report)
 {
     const MorphometryComparison *comparison = &report->comparison[report->orders];
-    printf("\nBeside %s, by %s orders\n", report->table.source,
+    printf("\nCompared with %s, by %s orders\n", report->table.source,
            morphometry_orders_names[report->orders]);
-    printf("  (± the published standard deviation; where there is none, the wider of %g %% and %d\n"
-           "  published standard errors (SE); lengths in mm)\n",
+    printf("  (± the published standard deviation or, without one, the larger of %g %% and %d "
+           "published\n"
+           "  standard errors (SE); lengths in mm)\n",
            100 * MORPHOMETRY_ROOM, MORPHOMETRY_ERRORS);
     printf("  %-27s %5s %9s  %10s  %s\n", "of the elements", "order", "published", "this tree",
            "published");

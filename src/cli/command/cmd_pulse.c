@@ -15,20 +15,22 @@ static void print(const Pulsing *made)
     printf("  cycle         %g s, %d harmonics, driven by %s (%s)\n", pulse->period_s,
            pulse->params.harmonics, made->drive.is_flow ? "flow" : "pressure",
            made->options->drive);
-    printf("  waves         %.3g to %.3g m/s (wall %s)\n", report->wave_speed[0],
+    printf("  wave speed    %.3g to %.3g m/s (wall %s)\n", report->wave_speed[0],
            report->wave_speed[1], made->options->wall);
-    printf("  Womersley     %.3g to %.3g at the heart rate\n", report->alpha[0], report->alpha[1]);
-    printf("  inlet         %.4g to %.4g mmHg; impedance %.4g mmHg s/ml, %.4g at %.3g Hz\n",
+    printf("  Womersley     %.3g to %.3g at the frequency of the cycle\n", report->alpha[0],
+           report->alpha[1]);
+    printf("  inlet         %.4g to %.4g mmHg; impedance %.4g mmHg s/ml at 0 Hz, %.4g at %.3g Hz\n",
            report->inlet_mmhg[0], report->inlet_mmhg[1], pulse_root_impedance(pulse, 0, 0).re,
            elementary_hypot(z.re, z.im), 1 / pulse->period_s);
     printf("  oscillation   OSI up to %.3g, above 0.1 in %.3g %% of the segments; flow reverses in "
-           "%.3g %%\n",
+           "%.3g %% of the segments\n",
            report->osi, 100 * report->oscillating, 100 * report->reversing);
-    printf("  linear model  radii and resistances do not change over the cycle; areas would change "
-           "by up to %.3g %%, blood reaches %.3g %% of the wave speed\n",
-           100 * report->strain, 100 * report->mach);
+    printf(
+        "  linear model  radii and resistances are constant over the cycle; areas would change by "
+        "up to %.3g %%; the velocity of blood reaches %.3g %% of the wave speed\n",
+        100 * report->strain, 100 * report->mach);
     if (made->options->output && pulsing_draws(made->options->output))
-        printf("  drawn         changes of the radius are exaggerated %g times\n",
+        printf("  drawn         changes of the radius are multiplied by %g\n",
                made->options->exaggerate);
 }
 

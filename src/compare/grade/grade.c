@@ -30,7 +30,7 @@ Status answerfile_read(AnswerFile *answer, const char *path, Err *err)
         !image_exr_text(path, "answer", answer->pattern, sizeof answer->pattern) ||
         !image_exr_text(path, "answerScene", answer->scene, sizeof answer->scene) ||
         !image_exr_text(path, "answerWidth", answer->width, sizeof answer->width))
-        return err_set(err, STATUS_INPUT, "%s: is no complete answer of `corcast answer`", path);
+        return err_set(err, STATUS_INPUT, "%s: is not a complete answer of `corcast answer`", path);
     return STATUS_OK;
 }
 
@@ -168,9 +168,11 @@ Status answergrade_answers(const AnswerFile *a, const AnswerFile *b, AnswerGrade
     if (strcmp(a->scene, b->scene) != 0)
         return err_set(err, STATUS_INPUT, "the two answers are of different scenes");
     if (strcmp(a->pattern, b->pattern) != 0)
-        return err_set(err, STATUS_INPUT,
-                       "the two answers are of different patterns, %s and %s; they may differ",
-                       a->pattern, b->pattern);
+        return err_set(
+            err, STATUS_INPUT,
+            "the two answers have different sampling patterns, %s and %s; only answers of "
+            "one pattern can be compared",
+            a->pattern, b->pattern);
     AnswerGrade made = {.pixels = (size_t)a->low.width * (size_t)a->low.height};
     for (size_t pixel = 0; pixel < made.pixels; pixel++) {
         Levels of_a[3], of_b[3];

@@ -200,7 +200,7 @@ static void put_segments(const CompareResult *color, Text *out)
                     color->worst_segments[i].differing);
     text_puts(out, color->n_worst_segments ? " pixels."
                    : color->has_ids        ? "No segment differs."
-                                           : "Not compared by segment: no id planes were given.");
+                                           : "Not compared by segment: there are no id planes.");
 }
 
 static void fill_words(const ReportCase *report, Markup *parts)

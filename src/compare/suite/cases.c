@@ -64,9 +64,11 @@ static Status add_companion(Suite *suite, const char *name, Err *err)
 static Status add_case(Suite *suite, const char *name, bool is_reference, Err *err)
 {
     if (suite->n == MOST_CASES)
-        return err_set(err, STATUS_INPUT,
-                       "more than %d pictures to compare; check for links that repeat folders",
-                       MOST_CASES);
+        return err_set(
+            err, STATUS_INPUT,
+            "there are more than %d pictures to compare; check for symbolic links that lead "
+            "back to a parent folder",
+            MOST_CASES);
     TRY(mem_reserve(&suite->cases, &suite->capacity, suite->n + 1, sizeof *suite->cases, "cases",
                     err));
     SuiteCase *added = &suite->cases[suite->n];

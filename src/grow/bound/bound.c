@@ -139,7 +139,7 @@ Status bound_tree(const Tree *tree, double lambda, Bound *out, Err *err)
 {
     char range[RANGE_TEXT_SIZE];
     if (!range_has(BOUND_LAMBDA_RANGE, lambda))
-        return err_set(err, STATUS_USAGE, "`lambda` %g: must be %s", lambda,
+        return err_set(err, STATUS_USAGE, "`lambda` is %g; it must be %s", lambda,
                        range_text(BOUND_LAMBDA_RANGE, range));
     BoundSearch search = {0};
     Bound made = {.lambda = lambda};

@@ -44,7 +44,9 @@ Status filling_init(Filling *filling, const FillRules *rules, uint64_t seed, Err
 Status filling_add(Filling *filling, FillElement element, Err *err)
 {
     if (filling->n > TREE_MAX_ID)
-        return err_set(err, STATUS_INFEASIBLE, "a filling has at most %d elements", TREE_MAX_ID);
+        return err_set(err, STATUS_INFEASIBLE,
+                       "`fill` needs more than %d elements, the maximum; use a higher `fill_to`",
+                       TREE_MAX_ID);
     TRY(mem_reserve(&filling->element, &filling->capacity, filling->n + 1, sizeof *filling->element,
                     "elements", err));
     int32_t index = (int32_t)filling->n, *last = &filling->last[element.order];

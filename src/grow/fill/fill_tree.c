@@ -15,18 +15,20 @@ static Status check(const GrowParams *params, const FillRules *rules, const Doma
 {
     TRY(grow_blood_check(params, err));
     if (!params->from)
-        return err_set(err, STATUS_USAGE, "`fill`: needs a tree to fill, `from`");
+        return err_set(err, STATUS_USAGE, "`fill` needs `from`, the tree to be filled");
     if (domain->dimension != 3)
-        return err_set(err, STATUS_USAGE,
-                       "`fill`: published tables describe vessels in space; the domain has two "
-                       "dimensions, and must have three");
+        return err_set(
+            err, STATUS_USAGE,
+            "`fill`: the domain has two dimensions; it must have three, because published "
+            "tables describe vessels in three dimensions");
     if (rules->from < 2 || rules->from > (int)rules->table->n)
         return err_set(err, STATUS_USAGE,
-                       "`fill_from` %d: must be from 2 to %zu, the highest order of %s",
+                       "`fill_from` is %d; it must be from 2 to %zu, the highest order of %s",
                        rules->from, rules->table->n, rules->name);
     if (rules->to < 1 || rules->to >= rules->from)
-        return err_set(err, STATUS_USAGE, "`fill_to` %d: must be from 1 to below `fill_from` %d",
-                       rules->to, rules->from);
+        return err_set(err, STATUS_USAGE,
+                       "`fill_to` is %d; it must be from 1 to %d, below `fill_from`", rules->to,
+                       rules->from - 1);
     for (size_t i = 0; i < params->from->n; i++)
         if (tree_is_segment(params->from, i) && !(params->from->radius_mm[i] > 0))
             return err_set(err, STATUS_INPUT,

@@ -37,12 +37,13 @@ static Status check_node(const Tree *tree, const int32_t *counts, size_t i, Err 
     if (tree_is_segment(tree, i) && children != 1 &&
         !(vec3_distance(tree->position[i], tree->position[proximal(tree, counts, i)]) > 0))
         return err_set(err, STATUS_INPUT,
-                       "node %d is where its vessel begins; refinement needs vessels longer than 0",
+                       "node %d has the same position as the start of its vessel; refinement needs "
+                       "vessels longer than 0",
                        id);
     if (tree->flow_share && (children == 0 ? !(tree->flow_share[i] > 0) : tree->flow_share[i] != 0))
         return err_set(err, STATUS_INPUT,
-                       "node %d: flow share %g; refinement needs flow out of all terminals and "
-                       "nowhere else",
+                       "the flow share of node %d is %g; refinement needs a share above 0 at each "
+                       "terminal and 0 at all other nodes",
                        id, tree->flow_share[i]);
     return STATUS_OK;
 }
@@ -55,8 +56,8 @@ static Status check_inside(const Tree *tree, const int32_t *counts, size_t i, co
     Vec3 at = tree->position[i];
     if (!domain_inside(domain, at, domain->slack_mm))
         return err_set(err, STATUS_INPUT,
-                       "node %d at (%.9g, %.9g, %.9g) is outside the domain; refinement needs the "
-                       "whole tree inside",
+                       "node %d at (%.9g, %.9g, %.9g) is outside the domain; all nodes "
+                       "must be inside",
                        tree->id[i], at.x, at.y, at.z);
     if (tree_is_segment(tree, i) && !domain_is_convex(domain) &&
         !domain_holds_segment(domain, tree->position[proximal(tree, counts, i)], at))
@@ -71,8 +72,7 @@ Status refine_check(const RefineParams *params, const Domain *domain, const Tree
 {
     char number[NUMBER_TEXT_SIZE];
     if (!(params->seconds >= 0) || !isfinite(params->seconds))
-        return err_set(err, STATUS_USAGE,
-                       "`seconds` %s: must be a finite number of seconds not below 0",
+        return err_set(err, STATUS_USAGE, "`seconds` is %s; it must be a finite number, 0 or more",
                        number_text(params->seconds, number));
     TRY(check_meta(&tree->meta, err));
     int32_t *children = NULL;

@@ -341,13 +341,21 @@ const Command command_export = {
     .name = "export",
     .summary = "write the vessels as a mesh, curves, voxels or an interactive web page",
     .operands = "T.swc -o M.stl",
-    .examples = "  corcast export tree.swc -o tree.stl\n"
+    .examples = "  # a closed surface mesh\n"
+                "  corcast export tree.swc -o tree.stl\n"
+                "  # a mesh for the web, colored by Strahler order\n"
                 "  corcast export tree.swc --color-by strahler -o tree.glb\n"
+                "  # a mesh that deviates from the surface by at most 5 % of the radius\n"
                 "  corcast export tree.swc --mesh-tolerance 0.05 -o tree.ply\n"
+                "  # wall, inlets and outlets as separate parts, for a flow solver\n"
                 "  corcast export tree.swc --parts -o tree.stl\n"
+                "  # all ends are lengthened by 5 radii\n"
                 "  corcast export tree.swc --extend 5 -o tree.vtp\n"
+                "  # curves for Blender\n"
                 "  corcast export tree.swc --color-by flow -o tree.py\n"
+                "  # voxels of 0.1 mm, and the segment of each voxel\n"
                 "  corcast export tree.swc --spacing 0.1 --labels segment -o tree.nii.gz\n"
+                "  # an interactive web page\n"
                 "  corcast export tree.swc --color-by flow -o tree.html\n",
     .min_operands = 1,
     .max_operands = 1,

@@ -61,7 +61,8 @@ static Status read_lengths(const char *path, Parsed *parsed, const Tree *tree,
         if (isnan(value[i]))
             continue;
         if (children[i] > 0 || !tree_is_segment(tree, i))
-            status = err_set(err, STATUS_INPUT, "%s: segment %d is no outlet", path, tree->id[i]);
+            status =
+                err_set(err, STATUS_INPUT, "%s: segment %d is not an outlet", path, tree->id[i]);
         else if (!range_has(length_range, value[i]))
             status = err_set(err, STATUS_INPUT,
                              "%s: the extension of outlet %d is %g radii; it must be 0 to 100",

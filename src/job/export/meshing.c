@@ -17,13 +17,12 @@ static Status take_vessels(MeshResult *made, VesselBody body, const Talk *talk, 
     TRY(stage_vessels(&made->of.tree, picture_pieces(&made->of), &made->vessels, &report, err));
     made->vessels.body = body;
     if (report.dropped)
-        talk_warn(talk, "segments that are left out, as they have no length or no radius: %zu",
-                  report.dropped);
+        talk_warn(talk, "%zu segment%s no length or no radius and %s left out", report.dropped,
+                  report.dropped == 1 ? " has" : "s have", report.dropped == 1 ? "is" : "are");
     if (report.covered)
         talk_warn(talk,
-                  "segments that are left out, as they are inside others between the same two "
-                  "points: %zu",
-                  report.covered);
+                  "%zu segment%s inside other segments between the same two points and left out",
+                  report.covered, report.covered == 1 ? " is" : "s are");
     return STATUS_OK;
 }
 
@@ -127,8 +126,8 @@ static void say_layers(const PrismLayers *layers, const Talk *talk)
     if (layers->n_thinner)
         talk_note(
             talk,
-            "the layers are thinner than asked for at %zu of %zu points; their mean thickness "
-            "is %.3f of it, their smallest %.2g",
+            "the layers are thinner than specified at %zu of %zu points: on average %.3f of the "
+            "specified thickness, at least %.2g of it",
             layers->n_thinner, layers->n_wall_points, layers->mean_part, layers->least_part);
 }
 

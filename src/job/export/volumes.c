@@ -126,14 +126,15 @@ static Status take_geometry(Volumes *made, const Talk *talk, Err *err)
                                     .smooth = picture_pieces(made->of)};
     TRY(stage_geometry(&made->of->tree, &rounded, &made->geometry, &report, err));
     if (report.dropped)
-        talk_warn(talk, "segments that are left out, as they have no length or no radius: %zu",
-                  report.dropped);
+        talk_warn(talk, "%zu segment%s no length or no radius and %s left out", report.dropped,
+                  report.dropped == 1 ? " has" : "s have", report.dropped == 1 ? "is" : "are");
     made->within = report.covered;
     if (made->within)
         talk_warn(
             talk,
-            "segments that have both ends of a thicker segment and no voxels of their own: %zu",
-            made->within);
+            "%zu segment%s inside other segments between the same two points, without voxels of "
+            "their own",
+            made->within, made->within == 1 ? " is" : "s are");
     return STATUS_OK;
 }
 
@@ -237,7 +238,7 @@ static void say_result(const Volumes *made, const Talk *talk)
                   "--depth",
                   depths[made->options->depth], fabs(more), more > 0 ? "more" : "less");
     if (report->n_given_voxels)
-        talk_warn(talk, "%zu label%s no voxel; each was given a voxel that it touches",
+        talk_warn(talk, "%zu label%s no voxel; each received a voxel that it touches",
                   report->n_given_voxels,
                   report->n_given_voxels == 1 ? " dominates" : "s dominate");
     talk_note(talk, "%lld voxels contain vessels, %s mm\xC2\xB3", (long long)report->filled,

@@ -155,7 +155,7 @@ static Status add_fields(const Coloring *coloring, const Talk *talk, Webpage *pa
     TRY_GOTO(text_check(&lacking, err));
     if (*text_chars(&lacking))
         talk_note(talk,
-                  "%s are left out: they need %svalues that neither the tree nor an option gives",
+                  "%s are left out: they need %svalues that are neither in the tree nor in options",
                   text_chars(&lacking), page->of->tree.link ? "a tree without loops, or " : "");
 done:
     text_release(&lacking);

@@ -180,7 +180,7 @@ static Status unknown_key(const char *name, const char *section, const Parsed *a
 static Status read_value(Setting *setting, const char *value, bool twice, Err *err)
 {
     if (setting->typed && !twice)
-        return err_set(err, STATUS_USAGE, "'%s' is given twice", setting->option->name);
+        return err_set(err, STATUS_USAGE, "'%s' occurs twice", setting->option->name);
     TRY(setting_read(setting, value, err));
     setting->typed = setting->said = true;
     return STATUS_OK;
@@ -193,7 +193,7 @@ static Status take_tree(Section *section, const TreeMaker *maker, const char *va
     PanelOptions *panel = section->own.options;
     Setting *tree = find_key(&section->own, is_own, "tree");
     if (section->made || tree->typed)
-        return err_set(err, STATUS_USAGE, "the tree is given twice");
+        return err_set(err, STATUS_USAGE, "the tree is specified twice");
     section->maker = maker;
     section->arguments = maker ? value : NULL;
     section->made = maker != NULL;
@@ -255,8 +255,8 @@ static Status add_section(Reading *reading, SectionKind kind, const char *name, 
     FigurePlan *plan = reading->plan;
     for (size_t i = 0; i < plan->n; i++)
         if (plan->sections[i]->kind == kind && strcmp(plan->sections[i]->name, name) == 0)
-            return err_set(err, STATUS_USAGE, "the section [%s %s] is given twice",
-                           kinds[kind].name, name);
+            return err_set(err, STATUS_USAGE, "the section [%s %s] occurs twice", kinds[kind].name,
+                           name);
     TRY(mem_reserve(&plan->sections, &plan->capacity, plan->n + 1, sizeof *plan->sections,
                     "sections", err));
     Section *section;
@@ -285,7 +285,7 @@ static Status begin_section(Reading *reading, const char *head, Err *err)
                  : strcmp(head, "panels") == 0 ? &reading->seen_panels
                                                : NULL;
     if (seen && *seen)
-        return err_set(err, STATUS_USAGE, "the section [%s] is given twice", head);
+        return err_set(err, STATUS_USAGE, "the section [%s] occurs twice", head);
     if (seen) {
         *seen = true;
         reading->in = IN_FIGURE;

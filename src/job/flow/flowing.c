@@ -189,7 +189,8 @@ static Status set_from_table(Flowing *made, const Tree *values, bool *is_known, 
         bool has_unit = column[k] && *column[k]->unit && *usual[k].unit;
         factor[k] = has_unit ? unit_ratio(column[k]->unit, usual[k].unit) : 1;
         if (factor[k] == 0)
-            return err_set(err, STATUS_INPUT, "the column %s is in %s, which is no unit like %s",
+            return err_set(err, STATUS_INPUT,
+                           "the unit of the column %s is %s; it must be convertible to %s",
                            usual[k].name, column[k]->unit, usual[k].unit);
     }
     if (!column[0] && !column[1])
@@ -257,8 +258,8 @@ static Status find_open(const Flowing *made, const bool *is_known, bool *is_open
         is_open[i] = degree[i] == 1 && !is_known[i];
         if (is_open[i] && made->options->ends == ENDS_REFUSED)
             status = err_set(err, STATUS_INPUT,
-                             "node %d is an end without a boundary condition; give its pressure or "
-                             "flow, or choose what `ends` without one are: closed or estimate",
+                             "node %d is an end without a boundary condition; state its pressure "
+                             "or flow, or set `ends` to closed or estimate",
                              made->tree.id[i]);
     }
     free(degree);
@@ -357,14 +358,16 @@ static Status solve(Flowing *made, Err *err)
                 flownetwork_resistance(&made->blood, i, cells->hematocrit[i]);
     if (made->options->separation && !cells->converged)
         talk_warn(made->parsed->common.talk,
-                  "not converged: after %zu rounds the hematocrit still changes by %.2g and the "
-                  "flow by %.2g ml/min; the fields are those of the last round",
+                  "the hematocrit has not converged: in the last of %zu iterations it changed by "
+                  "up to %.2g and the flow by up to %.2g ml/min; the fields are those of the last "
+                  "iteration",
                   cells->rounds, cells->hematocrit_change, ml_min_from_mm3_s(cells->flow_change));
     if (made->flow.no_flow > 0 && made->options->ends == ENDS_REFUSED)
-        return err_set(err, STATUS_INPUT,
-                       "the vessels that are connected with node %d have no boundary condition; "
-                       "give a pressure or flow there, or --ends closed",
-                       made->tree.id[made->flow.no_flow_node]);
+        return err_set(
+            err, STATUS_INPUT,
+            "the component of node %d has no boundary condition; state a pressure or a flow "
+            "there, or use --ends closed",
+            made->tree.id[made->flow.no_flow_node]);
     return STATUS_OK;
 }
 
@@ -448,18 +451,18 @@ static void report_flow(Flowing *made, size_t loops)
     add_row(made, "segments", "segments", segments, "");
     add_row(made, "loops", "independent loops", (double)loops, "");
     add_row(made, "components", "connected components", (double)flow->components, "");
-    add_row(made, "floating_components", "components that know only differences of pressure",
+    add_row(made, "floating_components", "components without a boundary pressure",
             (double)flow->floating, "");
     add_row(made, "inflow", "inflow", inflow, "ml/min");
     add_row(made, "largest_flow", "largest flow", ml_min_from_mm3_s(flow->largest), "ml/min");
     add_row(made, "pressure_min", "lowest pressure", pressure[0], "mmHg");
     add_row(made, "pressure_max", "highest pressure", pressure[1], "mmHg");
     add_row(made, "closed_segments", "segments too narrow for flow", closed, "");
-    add_row(made, "lost_segments", "segments without flow above rounding", lost, "");
-    add_row(made, "unknowns", "unknowns after reduction", (double)flow->unknowns, "");
-    add_row(made, "steps", "steps of conjugate gradients", (double)flow->steps, "");
-    add_row(made, "mass_imbalance", "mass imbalance, of the largest flow", flow->imbalance, "");
-    add_row(made, "own_mass_imbalance", "mass imbalance, of the flow at the node",
+    add_row(made, "lost_segments", "segments whose flow is within rounding error", lost, "");
+    add_row(made, "unknowns", "unknown pressures after reduction", (double)flow->unknowns, "");
+    add_row(made, "steps", "conjugate gradient iterations", (double)flow->steps, "");
+    add_row(made, "mass_imbalance", "mass imbalance / largest flow", flow->imbalance, "");
+    add_row(made, "own_mass_imbalance", "mass imbalance / flow through the node",
             flow->own_imbalance, "");
 }
 
@@ -467,13 +470,15 @@ static void report_cells(Flowing *made)
 {
     const NetworkCells *cells = &made->cells;
     add_row(made, "converged", "hematocrit converged (1: yes)", cells->converged, "");
-    add_row(made, "rounds", "rounds", (double)cells->rounds, "");
-    add_row(made, "flow_change", "last change of flow", ml_min_from_mm3_s(cells->flow_change),
-            "ml/min");
-    add_row(made, "hematocrit_change", "last change of hematocrit", cells->hematocrit_change, "");
-    add_row(made, "cell_imbalance", "cell balance, of the largest cell flow", cells->imbalance, "");
-    add_row(made, "capped_segments", "segments at the largest hematocrit", (double)cells->capped,
+    add_row(made, "rounds", "hematocrit iterations", (double)cells->rounds, "");
+    add_row(made, "flow_change", "change of flow in the last iteration",
+            ml_min_from_mm3_s(cells->flow_change), "ml/min");
+    add_row(made, "hematocrit_change", "change of hematocrit in the last iteration",
+            cells->hematocrit_change, "");
+    add_row(made, "cell_imbalance", "red cell imbalance / largest red cell flow", cells->imbalance,
             "");
+    add_row(made, "capped_segments", "segments limited to the maximum hematocrit",
+            (double)cells->capped, "");
 }
 
 static void report_spread(Flowing *made)
@@ -579,10 +584,14 @@ const Command command_flow = {
     .summary = "compute steady flow in a network of vessels, also with loops",
     .operands = "T.vtp [-o F.vtp] [--summary S.csv] [--json]",
     .examples =
+        "  # flow and pressures of a grown tree, as fields of a VTP file\n"
         "  corcast flow tree.swc -o flow.vtp\n"
+        "  # a network whose file states its boundary conditions\n"
         "  corcast flow network.dat --viscosity 3 -o flow.vtp --summary flow.csv\n"
+        "  # boundary conditions from a table; red cells separate at bifurcations\n"
         "  corcast flow network.vtp --boundary ends.csv --viscosity-law pries --hematocrit 0.4 \\\n"
         "      --plasma-viscosity 1.05 --separation -o flow.vtp\n"
+        "  # ends without a boundary condition get an estimated pressure\n"
         "  corcast flow network.vtp --boundary some.csv --ends estimate --viscosity 3 --json\n",
     .min_operands = 1,
     .max_operands = 1,

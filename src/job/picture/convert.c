@@ -150,11 +150,12 @@ static Status unknown_kind(const char *path, Err *err)
     tree_format_list(&trees);
     Status status = text_check(&trees, err);
     if (status == STATUS_OK)
-        status = err_set(err, STATUS_USAGE,
-                         "'%s' has an unknown extension; known are %s for trees, and .png, .ppm, "
-                         ".pgm, .tif, .jpg, .pfm and .exr for images, and .webp, .pbm, .pam and "
-                         ".pnm for one that is read",
-                         path, text_chars(&trees));
+        status =
+            err_set(err, STATUS_USAGE,
+                    "'%s' has an unknown extension; known are %s for trees, .png, .ppm, .pgm, "
+                    ".tif, .jpg, .pfm and .exr for images, and also .webp, .pbm, .pam and .pnm "
+                    "for images to be read",
+                    path, text_chars(&trees));
     text_release(&trees);
     suggestion_add_extension(file_extension(path), err);
     return status;

@@ -372,16 +372,18 @@ static Status say_losses(const Geometry *geometry, const PictureReport *made, co
         talk_note(talk, "%zu segment%s thinned until unconnected vessels no longer overlap",
                   report->thinned, report->thinned == 1 ? " is" : "s are");
     if (report->places_short + report->places_sharp)
-        talk_note(talk,
-                  "joints that could not be built: %zu (vessels too short), %zu (turn too sharp); "
-                  "they are %s",
-                  report->places_short, report->places_sharp,
-                  made->joints == JOINTS_PAPER ? "built all the same" : "replaced by spheres");
+        talk_note(
+            talk,
+            "%zu joints could not be built because vessels are too short, %zu because vessels "
+            "turn too sharply; they are %s",
+            report->places_short, report->places_sharp,
+            made->joints == JOINTS_PAPER ? "built nevertheless" : "replaced by spheres");
     if (report->places_crowded)
-        talk_note(talk,
-                  "joints that could not be built, as too many vessels meet: %zu; they are "
-                  "replaced by spheres",
-                  report->places_crowded);
+        talk_note(
+            talk,
+            "%zu joints could not be built because too many vessels meet; they are replaced by "
+            "spheres",
+            report->places_crowded);
     return STATUS_OK;
 }
 
@@ -443,10 +445,11 @@ static void say_limits(const Scene *scene, bool shadows, const Talk *talk)
                   "use a larger --input-unit or another camera",
                   nearest_mm);
     if (balls)
-        talk_note(talk,
-                  "spheres that are not drawn, as in POV-Ray, because their radius is at most %g "
-                  "mm: %zu; use a larger --input-unit",
-                  ball_mm, balls);
+        talk_note(
+            talk,
+            "%zu spheres have a radius of at most %g mm and are not drawn, as in POV-Ray; use a "
+            "larger --input-unit",
+            balls, ball_mm);
     if (shadows && 2 * thickest < shadow_mm)
         talk_note(talk,
                   "no vessel casts a shadow on itself: as in POV-Ray, parts nearer than %g mm to a "

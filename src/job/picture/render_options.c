@@ -33,7 +33,7 @@ static const Option own[] = {
      .group = GROUP_RUN,
      .when = WHEN(SURFACES),
      .help = "draw exactly the image that `corcast verify` compares with POV-Ray: POV-Ray's "
-             "arithmetic, ray by ray, with one ray per pixel unless --antialias is given"},
+             "arithmetic, ray by ray, with one ray per pixel unless --antialias is used"},
     {.name = "method",
      SETS(CHOICE, RenderOptions, method),
      GIVEN(RenderOptions, has_method),

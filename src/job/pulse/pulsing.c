@@ -120,7 +120,7 @@ static const Option rows[] = {
      .group = GROUP_PULSE,
      .when = WHEN(LUMPED),
      .excludes = "tissue-pressure",
-     .clash = ", which has a time of its own, exclude each other",
+     .clash = " exclude each other: --tissue-pressure has its own time constant",
      .help = "--outlets rcr only: time constant of each outlet, its compliance times its total "
              "resistance (rp + rd); 0 makes the outlet a resistance alone"},
     {.name = "outlet-radius",
@@ -435,8 +435,8 @@ static Status check_given(const Pulsing *made, Err *err)
 {
     for (size_t i = 0; made->given && i < made->tree.n; i++)
         if (!isnan(made->given[i].rp) && !(made->pulse.outflow[i] > 0))
-            return err_set(err, STATUS_INPUT, "%s: segment %d is no outlet", made->options->outlets,
-                           made->tree.id[i]);
+            return err_set(err, STATUS_INPUT, "%s: segment %d is not an outlet",
+                           made->options->outlets, made->tree.id[i]);
     return STATUS_OK;
 }
 
@@ -507,12 +507,14 @@ static void warn(const Pulsing *made)
     const Talk *talk = made->parsed->common.talk;
     if (report->strain > 0.3)
         talk_warn(talk,
-                  "the area of a vessel changes by %.2g of its mean; above 0.3 a linear model is "
+                  "the cross-section of a vessel changes by %.2g of its mean area; above 0.3 a "
+                  "linear model is "
                   "not accurate; use a stiffer --wall or a lower --pulse-pressure",
                   report->strain);
     if (report->mach > 0.25)
         talk_warn(talk,
-                  "blood reaches %.2g of the wave speed; above 0.25 a linear model is not accurate",
+                  "the velocity of blood reaches %.2g of the wave speed; above 0.25 a linear model "
+                  "is not accurate",
                   report->mach);
     if (report->lowest_mmhg < made->options->venous_mmhg)
         talk_warn(talk,

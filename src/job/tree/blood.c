@@ -7,7 +7,7 @@
 #include <string.h>
 #include <strings.h>
 
-static const char of_tree[] = "from the tree; flow, pressure and wss need it";
+static const char of_tree[] = "from the tree; without it, there is no flow, pressure or wss";
 
 #define SAYS(KEY) SETS_KEY(BloodOptions, said.number[META_##KEY], said.known, KEY)
 
@@ -100,8 +100,8 @@ static Status part_by_radius(const BloodOptions *blood, Tree *tree, const char *
     const double gamma = source->known[META_GAMMA] ? source->number[META_GAMMA] : 3;
     if (source == &tree->meta && tree->meta.known[META_GAMMA_BY_RADIUS])
         return err_set(err, STATUS_USAGE,
-                       "--flow-split murray: the exponent of %s varies with radius; give one "
-                       "number with --flow-exponent",
+                       "--flow-split murray: the exponent of %s varies with radius; set one "
+                       "exponent with --flow-exponent",
                        tree_path);
     Status status = tree_set_flow_by_radius(tree, gamma, err);
     if (status == STATUS_INPUT)

@@ -72,9 +72,11 @@ static const Option rows[] = {
 static const OptionTable table = OPTION_TABLE(rows);
 
 const struct PartRow part_rows[PARTS] = {
-    [PART_SEARCH] = {"search", "what refining its geometry gains, every rule kept"},
-    [PART_RULES] = {"rules", "rules of length and clearance, and geometry"},
-    [PART_RADII] = {"radii", "Murray's law"},
+    [PART_SEARCH] = {"search", "gain of refining the geometry under all rules"},
+    [PART_RULES] =
+        {"rules",
+         "cost of the rules of length and clearance, and of a geometry that is not optimal"},
+    [PART_RADII] = {"radii", "cost of Murray's law"},
     [PART_UNPROVED] = {"unproved", "between the best geometry found and the bound"},
 };
 

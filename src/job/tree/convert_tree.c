@@ -115,7 +115,7 @@ static Status add_all(Tree *tree, const TreeMeta *said, const Talk *talk, Err *e
     TRY_GOTO(text_check(&lacking, err));
     if (*text_chars(&lacking))
         talk_note(talk,
-                  "%s are left out: they need %svalues that neither the tree nor an option gives",
+                  "%s are left out: they need %svalues that are neither in the tree nor in options",
                   text_chars(&lacking), tree->link ? "a tree without loops, or " : "");
 done:
     text_release(&lacking);
@@ -155,10 +155,11 @@ static Status reshape(const TreeConversion *conversion, const Talk *talk, Tree *
     if (conversion->smooth) {
         SmoothMoves moves;
         TRY(tree_smooth(tree, &moves, err));
-        talk_note(talk,
-                  "smoothed: nodes moved by up to %.3g mm, %.3g radii; moves that were limited to "
-                  "%g radii: %zu",
-                  moves.most_mm, moves.most_radii, SMOOTH_MOST_RADII, moves.held);
+        talk_note(
+            talk,
+            "smoothed: nodes moved by up to %.3g mm (%.3g radii); the limit of %g radii shortened "
+            "%zu moves",
+            moves.most_mm, moves.most_radii, SMOOTH_MOST_RADII, moves.held);
     }
     if (conversion->step_mm > 0) {
         Tree resampled;

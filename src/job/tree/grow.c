@@ -48,25 +48,27 @@ static void note_grown(const Talk *talk, const GrowReport *report, const GrowPar
     const FillReport *fill = &report->fill;
     if (fill->elements > 0) {
         talk_note(talk,
-                  "filled with %zu elements in %.3g s: %zu terminals, %.4g ml/min; the terminals' "
-                  "flows vary by %.0f %% of their mean (standard deviation)",
+                  "filled with %zu elements in %.3g s: %zu terminals, %.4g ml/min; the "
+                  "standard deviation of the terminals' flows is %.0f %% of their mean",
                   fill->elements, report->seconds, report->terminals, fill->flow_ml_min,
                   100 * fill->flow_spread);
         if (fill->left_out > 0)
-            talk_warn(talk, "%zu elements have no place in the tissue shape and were left out",
+            talk_warn(talk, "%zu elements do not fit in the tissue shape and were left out",
                       fill->left_out);
         return;
     }
     talk_note(talk, "grew %zu terminals in %.3g s: target %.6g, root radius %.4g mm",
               report->terminals, report->seconds, report->target, report->root_radius_mm);
     if (params->pair_mm > 0)
-        talk_note(talk,
-                  "%zu pairs of terminals %.4g mm apart; walls of the two trees at least %.4g mm",
-                  report->terminals / 2, params->pair_mm, report->apart_mm);
+        talk_note(
+            talk,
+            "%zu pairs of terminals are %.4g mm apart; the walls of the two trees are at least "
+            "%.4g mm apart",
+            report->terminals / 2, params->pair_mm, report->apart_mm);
     if (report->median_change > 0 && !params->keep_radii)
         talk_note(talk,
-                  "the radii of the --from tree changed by a median factor of %.2g (%.2g to %.2g)",
-                  report->median_change, report->least_change, report->greatest_change);
+                  "the radii of the --from tree changed by factors of %.2g to %.2g, median %.2g",
+                  report->least_change, report->greatest_change, report->median_change);
 }
 
 /* Warns of a tree that does not fit its domain. */
@@ -86,8 +88,8 @@ static void warn_of_size(const Talk *talk, const GrowReport *report, const Domai
     else if (report->thickness < 1)
         talk_warn(
             talk,
-            "the domain, %.4g x %.4g%s mm%s, is too small: vessels were kept apart with %g of "
-            "their true radii only; use fewer terminals, a larger domain or a smaller --q-perf",
+            "the domain, %.4g x %.4g%s mm%s, is too small: vessels were kept apart with only %g of "
+            "their true radii; use fewer terminals, a larger domain or a smaller --q-perf",
             size.x, size.y, depth, unit, report->thickness);
 }
 
@@ -194,9 +196,13 @@ const Command command_grow = {
     .name = "grow",
     .summary = "grow an arterial tree (constrained constructive optimization)",
     .operands = "-o T.swc",
-    .examples = "  corcast grow --terminals 4000 --seed 7 -o tree.swc\n"
+    .examples = "  # 4000 terminals in the default tissue shape\n"
+                "  corcast grow --terminals 4000 --seed 7 -o tree.swc\n"
+                "  # a tree in a ball of radius 30 mm\n"
                 "  corcast grow --domain ball:30 --gamma 2.55 --lambda 1 -o tree.swc\n"
+                "  # continue a tree up to 8000 terminals\n"
                 "  corcast grow --from tree.swc --terminals 8000 -o larger.swc\n"
+                "  # two trees that supply 70 and 30 % of the terminals\n"
                 "  corcast grow --inlet 0,50 --inlet 30,-40 --inlet-shares 0.7,0.3 -o forest.swc\n",
     .needs_output = true,
     .reads_tree = true,

@@ -45,7 +45,7 @@ static const Option rows[] = {
      .group = GROUP_FILES,
      .argument = "T.swc",
      .help = "tree to continue growing. Its nodes keep their positions, ids and types, and its "
-             "segments stay straight. All radii are recomputed, unless --keep-radii is given. "
+             "segments stay straight. All radii are recomputed, unless --keep-radii is used. "
              "Properties in its header, such as domain and gamma, apply unless options set them"},
     {.name = "keep-radii",
      SETS(FLAG, Growing, params.keep_radii),
@@ -221,8 +221,7 @@ static Status read_from(Growing *growing, const Parsed *parsed, bool *has_domain
     TRY(tree_domain(&growing->from, &growing->domain, has_domain, err));
     if (*has_domain)
         return STATUS_OK;
-    return err_set(err, STATUS_USAGE,
-                   "--from: the header of the tree names no domain; give --domain");
+    return err_set(err, STATUS_USAGE, "--from: the header of the tree has no domain; use --domain");
 }
 
 Status growing_prepare(Growing *growing, Parsed *parsed, Err *err)

@@ -72,8 +72,8 @@ Status tree_output(const Tree *tree, const char *path, const Talk *talk, Err *er
         talk_note(talk, "%s are left out: the format cannot store them", text_chars(&left_out));
     if (lost.merged > 0)
         talk_note(talk,
-                  "nodes that share a position with another node: %zu; this format identifies "
-                  "nodes by position, so their segments may be lost when the file is read",
+                  "%zu nodes share a position with another node; this format identifies nodes by "
+                  "position, so their segments may be lost when the file is read",
                   lost.merged);
 done:
     text_release(&left_out);

@@ -117,9 +117,10 @@ static Status check_stage(const Staging *staging, const char *name, Err *err)
             staging->path, name, params->blood.p_term_mmhg, staging->last_name,
             staging->last_p_term);
     if (params->terminals <= staging->last_terminals)
-        return err_set(
-            err, STATUS_INPUT, "%s: [%s]: terminals %zu: must be above the %zu of stage [%s]",
-            staging->path, name, params->terminals, staging->last_terminals, staging->last_name);
+        return err_set(err, STATUS_INPUT,
+                       "%s: [%s]: terminals is %zu; it must be above %zu, the number of stage [%s]",
+                       staging->path, name, params->terminals, staging->last_terminals,
+                       staging->last_name);
     return STATUS_OK;
 }
 

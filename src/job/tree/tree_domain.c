@@ -62,9 +62,9 @@ Status tree_domain_parse(const char *spec, const Tree *from, const char *from_pa
                        "hull:FILE,MM (of the tree in a file)",
                        spec);
     if (!comma && !from)
-        return err_set(
-            err, STATUS_USAGE,
-            "--domain %s: needs the tree of --from, which is missing; or give hull:FILE,MM", spec);
+        return err_set(err, STATUS_USAGE,
+                       "--domain %s needs the tree of --from; specify --from, or use hull:FILE,MM",
+                       spec);
     if (!comma)
         return hull_of(from, mm, from_path, domain, err);
     char *path = NULL;

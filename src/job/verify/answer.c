@@ -28,7 +28,7 @@ static const Option own[] = {
     {.name = "area",
      SETS(FLAG, AnswerOptions, area),
      .excludes = "pattern",
-     .clash = " are two answers; one can be asked",
+     .clash = " are two definitions of the answer; use only one",
      .help = "define the color of a pixel as the mean over its whole area, instead of --pattern"},
     {.name = "width",
      SETS(TEXT, AnswerOptions, width),

@@ -79,17 +79,17 @@ static Status check_operands(const CompareOptions *options, const Parsed *parsed
         return check_given(options, plane_of(options, parsed), err);
     if (options->reference && parsed->n_operands != 1)
         return err_set(err, STATUS_USAGE,
-                       "--reference takes one operand, a folder of pictures; %d were given",
+                       "--reference takes one operand, a folder of pictures; found %d",
                        parsed->n_operands);
     if (!options->reference && parsed->n_operands != 2)
         return err_set(err, STATUS_USAGE,
                        "give two files, A and B, or --reference DIR and one folder");
     if (!options->accept != !options->reason || (options->reason && !*options->reason))
-        return err_set(err, STATUS_USAGE, "--accept and --reason must be given together");
+        return err_set(err, STATUS_USAGE, "--accept and --reason must be used together");
     if (!options->machine != !options->expires || (options->label && !options->machine))
         return err_set(err, STATUS_USAGE, "%s",
                        options->label ? "--as needs --machine and --expires"
-                                      : "--machine and --expires must be given together");
+                                      : "--machine and --expires must be used together");
     return STATUS_OK;
 }
 
@@ -99,7 +99,7 @@ static Status check_pair(const CompareOptions *options, PlaneKind plane, const P
     const bool color = plane == PLANE_COLOR;
     TRY(options_refuse(parsed, compare_unmet(plane), err));
     if (!options->ids_a != !options->ids_b)
-        return err_set(err, STATUS_USAGE, "--ids-a and --ids-b must be given together");
+        return err_set(err, STATUS_USAGE, "--ids-a and --ids-b must be used together");
     const bool has_ids = options->ids_a || (options->given[0].ids && options->given[1].ids);
     if (options->ledger && !has_ids)
         return err_set(err, STATUS_USAGE,

@@ -37,7 +37,7 @@ static Status variance_of_renderings(Plane *variance, const char *names, Err *er
     if (n < FEWEST)
         TRY_GOTO(err_set(err, STATUS_USAGE,
                          "--noise is '%s'; it must name at least %d more renderings of the scene, "
-                         "with commas between them; a file of variances is given by --variance",
+                         "with commas between them; use --variance for a file of variances",
                          names, FEWEST));
     status = noise_of_renderings(planes, n, variance, err);
 done:

@@ -40,7 +40,7 @@ static const Option own[] = {
      .argument = "V.exr",
      .when = WHEN(TWO_FILES),
      .excludes = "noise",
-     .clash = " both give the variance",
+     .clash = " both state the variance; use only one",
      .help = "file of floats with the variance of each pixel of one rendering; tests as --noise "
              "does"},
     {.name = "alarms",
@@ -184,7 +184,7 @@ static const Option of_judge[] = {
      .choices = tiers,
      .group = GROUP_JUDGE,
      .excludes = "verdict",
-     .clash = " are two rules; one can be asked",
+     .clash = " are two rules; use only one",
      .help = "required agreement: A (identical), B (equal up to single-precision arithmetic), "
              "surface (equal up to the search for an implicit surface), none (only NaN differs); "
              "`corcast compare --help` defines these tiers"},
@@ -193,10 +193,10 @@ static const Option of_judge[] = {
      .group = GROUP_JUDGE,
      .argument = "FILE.ini",
      .excludes = "verdict",
-     .clash = " are two rules; one can be asked",
+     .clash = " are two rules; use only one",
      .help = "file with limits of your own, one `name = value` per line; `corcast power "
              "--choose` writes an example; a limit that is not listed is not checked, unless "
-             "--tier is given"},
+             "--tier is used"},
     {.name = "levels",
      SETS(NUMBER, JudgeOptions, levels),
      GIVEN(JudgeOptions, has_levels),
@@ -204,7 +204,7 @@ static const Option of_judge[] = {
      .group = GROUP_JUDGE,
      .when = WHEN(COLOR_PICTURES),
      .excludes = "verdict",
-     .clash = " are two rules; one can be asked",
+     .clash = " are two rules; use only one",
      .help = "maximum difference of a pixel that does not count, in levels of 8 bits"},
     {.name = "ppm",
      SETS(NUMBER, JudgeOptions, ppm),
@@ -213,7 +213,7 @@ static const Option of_judge[] = {
      .group = GROUP_JUDGE,
      .otherwise = "2 in tier A",
      .excludes = "verdict",
-     .clash = " are two rules; one can be asked",
+     .clash = " are two rules; use only one",
      .help = "number of pixels per million that may differ by more than --levels"},
     {.name = "pixelmatch",
      SETS(NUMBER, JudgeOptions, pixelmatch),
@@ -224,7 +224,7 @@ static const Option of_judge[] = {
      .otherwise = "",
      .when = WHEN(COLOR_PICTURES),
      .excludes = "verdict",
-     .clash = " are two rules; one can be asked",
+     .clash = " are two rules; use only one",
      .help = "threshold T of pixelmatch 7.2.0, whose method then counts the pixels that differ; "
              "pixelmatch's own default is 0.1"},
 };

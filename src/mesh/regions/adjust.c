@@ -75,8 +75,8 @@ static Status thin_pairs(Parting *parting, Err *err)
         if (tree->segments[i].radius_mm < least_kept * parting->radii[i])
             return err_set(
                 err, STATUS_INPUT,
-                "segment %u overlaps an unconnected vessel so far that it would have to be "
-                "thinned to less than %g of its radius",
+                "segment %u overlaps an unconnected vessel; to separate them, its radius would "
+                "have to be less than %g of its true radius",
                 tree->ids[i], least_kept);
     }
     return STATUS_OK;

@@ -454,8 +454,8 @@ static Status check_in_front(const Geometry *geometry, const Camera *camera, Err
         if (!(camera_point(camera, vessel->a).per_mm > 0) ||
             !(camera_point(camera, vessel->b).per_mm > 0))
             return err_set(err, STATUS_USAGE,
-                           "segment %u is not in front of the camera, as all of a line drawing "
-                           "must be",
+                           "segment %u is not in front of the camera; a line drawing needs all "
+                           "segments in front of it",
                            geometry->ids[vessel->segment]);
     }
     return STATUS_OK;

@@ -159,7 +159,8 @@ static Status read_packing(Cursor *cursor, AmiraField *field, Err *err)
         return STATUS_OK;
     if (!cursor_word(cursor, name) || !cursor_word(cursor, bytes) ||
         !integer_parse(bytes, 0, INT64_MAX, &size) || !cursor_accept(cursor, ")"))
-        return err_set(err, STATUS_INPUT, "the packing of block @%lld is not known", field->block);
+        return err_set(err, STATUS_INPUT, "the compression of block @%lld is unknown",
+                       field->block);
     field->packing = (AmiraPacking)keyword_find(name, packing_names, PLAIN);
     field->packed = (size_t)size;
     if (field->packing == PLAIN)

@@ -732,8 +732,8 @@ static Status read_tables(Table *table, char *bytes, size_t size, Err *err)
         TRY(reading_note(graph->reading, err, "nodes have no ids; they were numbered from 0"));
     TRY(check_options(table->options, table->name, err));
     if (table->kind != NODES && edges)
-        return err_set(err, STATUS_INPUT, "%s: `edges` was given, but this is not a table of nodes",
-                       table->name);
+        return err_set(err, STATUS_INPUT,
+                       "%s: `edges` has a value, but this is not a table of nodes", table->name);
     if (table->kind == NODES && !edges && !table->at[ROLE_PARENT])
         return err_set(err, STATUS_INPUT,
                        "%s: the table has nodes, but no parents; give the edge table as `edges`",

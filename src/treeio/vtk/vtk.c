@@ -31,7 +31,7 @@ static Status read_count(LegacyReader *reader, const char *what, size_t *count, 
     long long number;
     cursor_word(&reader->cursor, word);
     if (!integer_parse(word, 0, INT64_MAX / 64, &number))
-        return err_set(err, STATUS_INPUT, "the number of %s is '%.40s'; it must be a whole number",
+        return err_set(err, STATUS_INPUT, "the number of %s is '%.40s'; it must be an integer",
                        what, word);
     *count = (size_t)number;
     return STATUS_OK;
@@ -226,8 +226,7 @@ static Status read_points(LegacyReader *reader, Err *err)
     VtkType type;
     VtkData *data = &reader->data;
     if (data->point)
-        return err_set(err, STATUS_INPUT,
-                       "there is a second section POINTS; only one may be given");
+        return err_set(err, STATUS_INPUT, "there is a second section POINTS; only one is allowed");
     TRY(read_count(reader, "points", &data->n_points, err));
     TRY(read_type(reader, "POINTS", &type, err));
     return read_numbers(reader, type, "POINTS", 3 * data->n_points, &data->point, err);
@@ -238,7 +237,7 @@ static Status read_cell_types(LegacyReader *reader, Err *err)
     double **types = &reader->cells[VTK_CELL_KINDS - 1].type;
     if (*types)
         return err_set(err, STATUS_INPUT,
-                       "there is a second section CELL_TYPES; only one may be given");
+                       "there is a second section CELL_TYPES; only one is allowed");
     TRY(read_count(reader, "cells", &reader->n_types, err));
     return read_numbers(reader, VTK_INT32, "CELL_TYPES", reader->n_types, types, err);
 }
@@ -332,7 +331,7 @@ static Status read_cells(LegacyReader *reader, VtkCells *cells, Err *err)
     size_t n = 0, size = 0;
     if (cells->n > 0 || cells->end)
         return err_set(err, STATUS_INPUT,
-                       "there is a second section for cells of this kind; only one may be given");
+                       "there is a second section for cells of this kind; only one is allowed");
     TRY(read_count(reader, "cells", &n, err));
     TRY(read_count(reader, "numbers", &size, err));
     cells->n_corners = size;

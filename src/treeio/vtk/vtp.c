@@ -91,8 +91,8 @@ static Status read_whole(const XmlElement *element, const char *name, long long 
     const char *text = xml_attribute(element, name);
     long long number = (long long)otherwise;
     if (text && !integer_parse(text, 0, most, &number))
-        return err_set(err, STATUS_INPUT, "%s is '%.40s'; it must be a whole number up to %lld",
-                       name, text, most);
+        return err_set(err, STATUS_INPUT, "%s is '%.40s'; it must be an integer up to %lld", name,
+                       text, most);
     *out = (size_t)number;
     return STATUS_OK;
 }
