@@ -497,8 +497,7 @@ static void meshes_that_enclose_nothing_are_refused(void **state)
     static const char *const last_faces[][2] = {
         {"", "a.obj: the mesh is open: 4 edges have a triangle on one side only"},
         {"f 2 4 8\n", "is open: 3 edges"},
-        {"f 2 6 8 4\n",
-         "the sides of the mesh do not agree: at 4 edges the triangles run the same"},
+        {"f 2 6 8 4\n", "the triangles of the mesh are not oriented consistently: at 4 edges two"},
         {"f 2 4 8 9\n", "a.obj:14: '9' is not one of the vertices so far"},
         {"f 2 4 -9 8\n", "'-9' is not"},
         {"f 2 4 0 8\n", "'0' is not"},
