@@ -1,14 +1,20 @@
-/* The distance to a site changes by at most the distance between two points. So among points within
- * h of a centre, only a site that is at most 2 h farther from the centre than the nearest one can
- * be the nearest. Each block of voxels keeps the list of these sites for its parts, which shorten
- * it further. The nearest site of a voxel is found by the same arithmetic as by a loop over all
- * sites. */
+/* Finds the vessel whose surface is nearest to each voxel centre of a block, by halving the block
+ * along each axis again and again, and shortening a list of candidate vessels at each step.
+ *
+ * The distances of two points to a site differ by at most the distance between the two points. So a
+ * site can be the nearest one of a point within h of a centre only if the site is at most 2 h
+ * farther from the centre than the centre's nearest site. A block passes its list of these sites to
+ * its eight parts, and each part shortens the list further. The result is identical to that of a
+ * loop over all sites, bit by bit, because both call site_distance. Distances to a site are
+ * negative inside the vessel. */
 #include "coverage/sites.h"
 
 #include <string.h>
 
-/* Rounding of a distance, as a part of the half diagonal of a block and of the coordinates. */
-static const double rounding = 1e-9;
+/* Allowance for rounding errors of distances: a fraction of a block's half diagonal, and a fraction
+ * of the coordinates, about 5 units of rounding. Reason for 1e-9 not recorded; a larger value makes
+ * lists longer, and does not change results. */
+static const double diagonal_slack = 1e-9, coordinate_slack = 1e-15;
 
 static Box site_box(const DomainTube *tube)
 {
@@ -66,11 +72,13 @@ static inline double box_distance2(const Box *box, Vec3 p)
     return x * x + y * y + z * z;
 }
 
-/* Returns true if a site in the box may be at most `most` away from the point. */
-static bool may_reach(const Box *box, Vec3 point, double most)
+/* Returns true if the distance of a site in the box from the point may be at most max_mm. A
+ * negative max_mm, which is a distance inside a vessel, is possible only if the point is in the
+ * box. */
+static bool may_reach(const Box *box, Vec3 point, double max_mm)
 {
     double distance2 = box_distance2(box, point);
-    return distance2 == 0 || (most > 0 && distance2 <= most * most);
+    return distance2 == 0 || (max_mm > 0 && distance2 <= max_mm * max_mm);
 }
 
 /* Pushes the children of an inner node so that the nearer one comes off the stack first. */
@@ -87,9 +95,12 @@ static int push_children(const BoxTree *tree, uint32_t node, Vec3 point, uint32_
     return top;
 }
 
+/* The stack of a walk: at most one node per level waits, and two more are pushed at the deepest. */
+enum { WALK_STACK = BOXTREE_DEPTH + 2 };
+
 double sites_nearest(const Sites *sites, Vec3 point, double enough_mm)
 {
-    uint32_t stack[BOXTREE_DEPTH + 2] = {0};
+    uint32_t stack[WALK_STACK] = {0};
     double best = INFINITY;
     for (int top = 1; top > 0 && best > enough_mm;) {
         uint32_t at = stack[--top];
@@ -108,47 +119,49 @@ double sites_nearest(const Sites *sites, Vec3 point, double enough_mm)
 
 /* ---- lists ----------------------------------------------------------------------------------- */
 
-/* A list on the stack: the entries first to first + n - 1. */
+/* A list on the stack: the entries [first, first + n) of both arrays of SiteLists. */
 typedef struct SiteRange {
     size_t first, n;
 } SiteRange;
 
-static Status push(SiteLists *lists, uint32_t site, double distance, Err *err)
+static Status push_site(SiteLists *lists, uint32_t site, double distance, Err *err)
 {
     TRY(ARRAY_PUSH(&lists->site, "vessels", err, site));
     return ARRAY_PUSH(&lists->distance, "distances", err, distance);
 }
 
+/* Returns the allowance for rounding errors of distances to the points of a block, mm. */
 static double slack_of(Vec3 centre, double half_diagonal)
 {
-    return rounding * half_diagonal + 1e-15 * (fabs(centre.x) + fabs(centre.y) + fabs(centre.z));
+    return diagonal_slack * half_diagonal +
+           coordinate_slack * (fabs(centre.x) + fabs(centre.y) + fabs(centre.z));
 }
 
-/* Pushes all sites that are at most `most` away from `centre`. */
-static Status gather_sites(SiteLists *lists, const Sites *sites, Vec3 centre, double most,
+/* Pushes a list of all sites whose distance from `centre` is at most max_mm. */
+static Status gather_sites(SiteLists *lists, const Sites *sites, Vec3 centre, double max_mm,
                            SiteRange *out, Err *err)
 {
-    uint32_t stack[BOXTREE_DEPTH + 2] = {0};
+    uint32_t stack[WALK_STACK] = {0};
     *out = (SiteRange){lists->site.n, 0};
     for (int top = 1; top > 0;) {
         uint32_t at = stack[--top];
         const BoxNode *node = &sites->tree.nodes[at];
-        if (!may_reach(&node->box, centre, most))
+        if (!may_reach(&node->box, centre, max_mm))
             continue;
         if (node->n_items == 0)
             top = push_children(&sites->tree, at, centre, stack, top);
         for (uint32_t i = 0; i < node->n_items; i++) {
             uint32_t site = sites->tree.items[node->first + i];
             double distance = site_distance(&sites->site[site], centre);
-            if (distance <= most)
-                TRY(push(lists, site, distance, err));
+            if (distance <= max_mm)
+                TRY(push_site(lists, site, distance, err));
         }
     }
     out->n = lists->site.n - out->first;
     return STATUS_OK;
 }
 
-/* Returns the site of a list that is nearest to a point, and stores the distance of each. */
+/* Stores the distance of each site of a list from a point, and returns the nearest site. */
 static Nearest measure_list(SiteLists *lists, const Sites *sites, SiteRange list, Vec3 point)
 {
     Nearest nearest = {INFINITY, UINT32_MAX};
@@ -162,15 +175,14 @@ static Nearest measure_list(SiteLists *lists, const Sites *sites, SiteRange list
     return nearest;
 }
 
-/* Pushes the sites of a list whose stored distance is at most `most_mm`. */
-static Status narrow_list(SiteLists *lists, SiteRange list, double most_mm, SiteRange *out,
-                          Err *err)
+/* Pushes a new list: the sites of `list` whose stored distance is at most max_mm. */
+static Status narrow_list(SiteLists *lists, SiteRange list, double max_mm, SiteRange *out, Err *err)
 {
     TRY(ARRAY_RESERVE(&lists->site, list.n, "vessels", err));
     TRY(ARRAY_RESERVE(&lists->distance, list.n, "distances", err));
     *out = (SiteRange){lists->site.n, 0};
     for (size_t i = list.first; i < list.first + list.n; i++)
-        if (lists->distance.items[i] <= most_mm)
+        if (lists->distance.items[i] <= max_mm)
             lists->site.items[out->first + out->n++] = lists->site.items[i];
     lists->site.n = lists->distance.n = out->first + out->n;
     return STATUS_OK;
@@ -201,29 +213,31 @@ static double block_reach(const VoxelGrid *grid, const VoxelBlock *block)
                                   grid->step.z * (double)(high[2] - low[2] - 1)));
 }
 
-/* Returns the position of a voxel in the arrays of the block. */
-static size_t place_of(const VoxelBlock *block, int64_t x, int64_t y, int64_t z)
+/* Returns the index of a voxel in the arrays of the block. */
+static size_t voxel_index(const VoxelBlock *block, int64_t x, int64_t y, int64_t z)
 {
     int64_t nx = block->high[0] - block->low[0], ny = block->high[1] - block->low[1];
     return (size_t)(x - block->low[0] + nx * (y - block->low[1] + ny * (z - block->low[2])));
 }
 
+/* Returns true if a voxel of `part`, which is a part of the search's block, is wanted. */
 static bool is_wanted(const SiteSearch *search, const VoxelBlock *part)
 {
     int64_t width = part->high[0] - part->low[0];
     for (int64_t z = part->low[2]; z < part->high[2]; z++)
         for (int64_t y = part->low[1]; y < part->high[1]; y++)
-            if (memchr(&search->wanted[place_of(search->block, part->low[0], y, z)], true,
+            if (memchr(&search->wanted[voxel_index(search->block, part->low[0], y, z)], true,
                        (size_t)width))
                 return true;
     return false;
 }
 
-/* A block is wide if its half diagonal is above this number of distances from the nearest vessel.
- * In trees of 10^4 and of 10^6 segments, 1 and 6 are slower. */
-static const double wide = 3;
+/* A block is wide if its half diagonal is more than this many times its centre's distance from the
+ * nearest vessel. In trees of 10^4 and of 10^6 segments, 1 and 6 are slower. */
+static const double wide_ratio = 3;
 
-/* Returns the half `which` of the eight parts of a block; it is empty along axes of one voxel. */
+/* Returns part `which` of the eight parts of a block. Bits 0, 1 and 2 of `which` select the upper
+ * half in x, y and z. The upper half of an axis of one voxel is empty. */
 static VoxelBlock part_of(const VoxelBlock *block, int which)
 {
     VoxelBlock part = *block;
@@ -243,48 +257,52 @@ static bool is_empty(const VoxelBlock *block)
            block->low[2] == block->high[2];
 }
 
-static Status fill(const SiteSearch *search, const VoxelBlock *block, SiteRange list, Err *err)
+/* Sets the nearest site of each wanted voxel of a block. `list` has all candidates, and stays on
+ * the stack; shorter lists are pushed above it. */
+static Status search_list(const SiteSearch *search, const VoxelBlock *block, SiteRange list,
+                          Err *err)
 {
     const int64_t *low = block->low;
     Vec3 centre = block_centre(search->grid, block);
     double reach = block_reach(search->grid, block);
     Nearest nearest = measure_list(search->lists, search->sites, list, centre);
     if (reach == 0) {
-        search->nearest[place_of(search->block, low[0], low[1], low[2])] = nearest;
+        search->nearest[voxel_index(search->block, low[0], low[1], low[2])] = nearest;
         return STATUS_OK;
     }
     SiteRange shorter;
-    double most = nearest.distance_mm + 2 * reach + slack_of(centre, reach);
-    TRY(narrow_list(search->lists, list, most, &shorter, err));
+    double max_mm = nearest.distance_mm + 2 * reach + slack_of(centre, reach);
+    TRY(narrow_list(search->lists, list, max_mm, &shorter, err));
     for (int which = 0; which < 8; which++) {
         VoxelBlock part = part_of(block, which);
         if (!is_empty(&part) && is_wanted(search, &part))
-            TRY(fill(search, &part, shorter, err));
+            TRY(search_list(search, &part, shorter, err));
         pop_to(search->lists, shorter);
     }
     return STATUS_OK;
 }
 
-/* Gathers the sites of a block, and fills it. A block that is wide beside its distance from the
- * vessels has a long list; its parts find theirs sooner in the tree of boxes. */
-static Status gather(const SiteSearch *search, const VoxelBlock *block, double nearest_mm, Err *err)
+/* Sets the nearest site of each wanted voxel of a block. nearest_mm is the distance of the block's
+ * centre from its nearest site. The list of a wide block would be long. So a wide block is split
+ * first, and each part gathers its own list from the tree of boxes, which is faster. */
+static Status search_block(const SiteSearch *search, const VoxelBlock *block, double nearest_mm,
+                           Err *err)
 {
     const double reach = block_reach(search->grid, block);
     SiteRange list;
-    if (reach <= wide * fabs(nearest_mm) || reach == 0) {
+    if (reach <= wide_ratio * fabs(nearest_mm) || reach == 0) {
         pop_to(search->lists, (SiteRange){0});
-        /* The nearest site of a point of the block is at most nearest_mm + reach away from it. */
         Vec3 centre = block_centre(search->grid, block);
-        double most = nearest_mm + 2 * reach + slack_of(centre, reach);
-        TRY(gather_sites(search->lists, search->sites, centre, most, &list, err));
-        return fill(search, block, list, err);
+        double max_mm = nearest_mm + 2 * reach + slack_of(centre, reach);
+        TRY(gather_sites(search->lists, search->sites, centre, max_mm, &list, err));
+        return search_list(search, block, list, err);
     }
     for (int which = 0; which < 8; which++) {
         VoxelBlock part = part_of(block, which);
         if (is_empty(&part) || !is_wanted(search, &part))
             continue;
         Vec3 centre = block_centre(search->grid, &part);
-        TRY(gather(search, &part, sites_nearest(search->sites, centre, -INFINITY), err));
+        TRY(search_block(search, &part, sites_nearest(search->sites, centre, -INFINITY), err));
     }
     return STATUS_OK;
 }
@@ -292,5 +310,5 @@ static Status gather(const SiteSearch *search, const VoxelBlock *block, double n
 Status sites_search(const SiteSearch *search, double nearest_mm, Err *err)
 {
     const VoxelBlock *block = search->block;
-    return is_wanted(search, block) ? gather(search, block, nearest_mm, err) : STATUS_OK;
+    return is_wanted(search, block) ? search_block(search, block, nearest_mm, err) : STATUS_OK;
 }

@@ -2,7 +2,7 @@
  * coverage.
  *
  * A site is a tube with hemispherical ends. A tube without length and radius is a point. The
- * distance to a site is the distance to its wall, and is negative inside the tube. */
+ * distance to a site is the distance to its surface, and is negative inside the tube. */
 #ifndef CORCAST_COVERAGE_SITES_H
 #define CORCAST_COVERAGE_SITES_H
 
@@ -27,7 +27,7 @@ typedef struct Sites {
 MUST_CHECK Status sites_make(const DomainTube *tubes, size_t n, Sites *out, Err *err);
 void sites_release(Sites *sites);
 
-/* Returns the distance of a point from the wall of a site, mm. */
+/* Returns the distance of a point from the surface of a site, mm; negative inside. */
 static inline double site_distance(const VesselSite *site, Vec3 point)
 {
     Vec3 apart = vec3_sub(point, site->from);
@@ -41,8 +41,8 @@ static inline double site_distance(const VesselSite *site, Vec3 point)
  */
 double sites_nearest(const Sites *sites, Vec3 point, double enough_mm);
 
-/* Workspace of one thread: a stack of lists of sites. The lists are stored one after the other in
- * two parallel arrays. Zero it before first use; release it with sitelists_release. */
+/* Workspace of one thread: a stack of lists of candidate sites. The lists are stored one after the
+ * other in two parallel arrays. Zero it before first use; release it with sitelists_release. */
 typedef struct SiteLists {
     ARRAY(uint32_t) site;   /* indices in Sites.site */
     ARRAY(double) distance; /* distance of the site from the point of the last measurement, mm */

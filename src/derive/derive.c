@@ -1,5 +1,6 @@
-/* A field is a row of a table. A column of the tree takes precedence over a computed field. The
- * functions of the rows write every node, with any value at roots; here the roots become NAN. */
+/* Finds a field by its name: a column of the tree, or else a computed field, which is a row of the
+ * table `rules`. The function of a row sets a value for every node. Its values at roots have no
+ * meaning, since a root is no segment, and this file replaces them by NAN. */
 #include "derive/derive.h"
 
 #include "derive/fields.h"
@@ -34,7 +35,7 @@ static Status field_type(const Tree *tree, const TreeMeta *overrides, double *va
  * lists, and the function that computes it. */
 typedef struct FieldRule {
     const char *name, *unit, *title, *description;
-    FieldFunction *fill;
+    FieldFunction *compute;
 } FieldRule;
 
 static const FieldRule rules[] = {
@@ -53,13 +54,13 @@ static const FieldRule rules[] = {
     {"branch", "", "main branch", "number of the branch; a branch follows the thickest daughter",
      field_branch},
     {"tree", "", NULL, "number of the connected tree or network", field_tree},
-    {"type", "", "SWC type", "SWC type code of the segment; in some files the name of its artery",
-     field_type},
+    {"type", "", "SWC type",
+     "SWC type code of the segment; in some files the code stands for the artery", field_type},
 };
 
 enum { N_RULES = sizeof rules / sizeof *rules };
 
-/* Returns the rule of the field, in small letters or capitals; NULL if there is none. */
+/* Returns the rule of a field, without regard to the case of the name; NULL if there is none. */
 static const FieldRule *find_rule(const char *name)
 {
     for (size_t i = 0; i < N_RULES; i++)
@@ -133,8 +134,8 @@ Status derive_rule(const Tree *tree, const TreeMeta *overrides, const char *name
         return unknown_field(tree, name, err);
     double *value = NULL;
     TRY(mem_calloc(&value, tree->n, sizeof *value, "field values", err));
-    Status status = rule->fill(tree, overrides, value, err);
-    if (status == STATUS_INPUT) /* the sentence of needed_value continues "the field NAME " */
+    Status status = rule->compute(tree, overrides, value, err);
+    if (status == STATUS_INPUT) /* the error of needed_value begins with a verb */
         err_prefix(err, "the field %s ", rule->name);
     if (status != STATUS_OK) {
         free(value);
@@ -155,18 +156,18 @@ static Status derive_column(const Tree *tree, const TreeColumn *column, Field *f
     return STATUS_OK;
 }
 
-/* Returns true if networks with links do not have the field. */
-static bool is_order(const char *name)
+/* Returns true if the field is defined only for trees without links, which close loops. */
+static bool is_for_trees_only(const char *name)
 {
     const FieldRule *rule = find_rule(name);
-    return rule && (rule->fill == field_strahler || rule->fill == field_diameter_strahler);
+    return rule && (rule->compute == field_strahler || rule->compute == field_diameter_strahler);
 }
 
 Status derive_field(const Tree *tree, const TreeMeta *overrides, const char *name, Field *field,
                     Err *err)
 {
     const TreeColumn *column = tree_column(tree, name);
-    if (!column && tree->link && is_order(name))
+    if (!column && tree->link && is_for_trees_only(name))
         return err_set(err, STATUS_INPUT,
                        "the field %s is defined for trees only, and the network has loops; "
                        "`break_loops` cuts each loop at its thinnest line",
@@ -175,7 +176,8 @@ Status derive_field(const Tree *tree, const TreeMeta *overrides, const char *nam
                   : derive_rule(tree, overrides, name, field, err);
 }
 
-/* Copies the columns of all frames of a series, one after another, into one field. */
+/* Copies the columns of all frames of a series, one after another, into one field. The unit
+ * is that of the last frame. */
 static Status join_frames(const Tree *tree, const Series *frames, const char *name,
                           FieldSeries *series, Err *err)
 {

@@ -8,29 +8,29 @@
 
 #include <stdlib.h>
 
-static void put_normals(const VesselMesh *mesh, const IndexLists *orders, Text *out)
+static void put_normals(const VesselMesh *mesh, const IndexLists *by_order, Text *out)
 {
     for (size_t i = 0; i < mesh->n_points; i++)
         put_triple(out, "vn ", mesh->normals[i], " ", "\n");
     for (size_t i = 0; i < mesh->n_triangles; i++) {
         float normal[3];
-        if (!mesh_is_cap(mesh, orders->items[i]))
+        if (!mesh_is_cap(mesh, by_order->items[i]))
             continue;
-        mesh_flat_normal(mesh, orders->items[i], normal);
+        mesh_flat_normal(mesh, by_order->items[i], normal);
         put_triple(out, "vn ", normal, " ", "\n");
     }
 }
 
-/* Appends a face. OBJ counts points and normals from 1. *flat is the number of flat normals that
+/* Appends a face. OBJ counts points and normals from 1. *n_flat is the number of flat normals that
  * have been used. */
-static void put_face(const VesselMesh *mesh, uint32_t triangle, size_t *flat, Text *out)
+static void put_face(const VesselMesh *mesh, uint32_t triangle, size_t *n_flat, Text *out)
 {
     bool cap = mesh_is_cap(mesh, triangle);
-    *flat += cap;
+    *n_flat += cap;
     text_puts(out, "f");
     for (int k = 0; k < 3; k++) {
         size_t point = (size_t)mesh->triangles[triangle][k] + 1;
-        text_printf(out, " %zu//%zu", point, cap ? mesh->n_points + *flat : point);
+        text_printf(out, " %zu//%zu", point, cap ? mesh->n_points + *n_flat : point);
     }
     text_puts(out, "\n");
 }
@@ -47,16 +47,16 @@ static void put_material(const EmitParams *params, uint32_t triangle, uint32_t *
     *last = code;
 }
 
-static void put_groups(const EmitParams *params, const IndexLists *orders, Text *out)
+static void put_groups(const EmitParams *params, const IndexLists *by_order, Text *out)
 {
     uint32_t material = UINT32_MAX;
-    size_t flat = 0;
+    size_t n_flat = 0;
     for (size_t order = 0; order <= MAX_ORDERS; order++) {
-        if (orders->first[order] < orders->first[order + 1])
+        if (by_order->first[order] < by_order->first[order + 1])
             text_printf(out, "g order_%zu\n", order);
-        for (size_t i = orders->first[order]; i < orders->first[order + 1]; i++) {
-            put_material(params, orders->items[i], &material, out);
-            put_face(params->mesh, orders->items[i], &flat, out);
+        for (size_t i = by_order->first[order]; i < by_order->first[order + 1]; i++) {
+            put_material(params, by_order->items[i], &material, out);
+            put_face(params->mesh, by_order->items[i], &n_flat, out);
         }
     }
 }
@@ -67,7 +67,7 @@ static int compare_colors(const void *a, const void *b)
 }
 
 /* Appends a material for each different color. Kd is the sRGB code divided by 255, not decoded to
- * linear. */
+ * linear. The caller checks `out`. */
 static Status put_materials(const EmitParams *params, Text *out, Err *err)
 {
     const size_t n = params->vessels->n_segments;
@@ -86,8 +86,8 @@ static Status put_materials(const EmitParams *params, Text *out, Err *err)
     return STATUS_OK;
 }
 
-/* The name must be printable ASCII without blanks, because some readers take any other byte for the
- * end of the name. */
+/* The name must be printable ASCII without blanks, because some readers end the name at any other
+ * byte. */
 Status obj_check_name(const char *second_file, Err *err)
 {
     if (is_ascii_name(second_file, " "))
@@ -101,18 +101,18 @@ Status obj_check_name(const char *second_file, Err *err)
 Status obj_write(const EmitParams *params, EmitOutput *to, Err *err)
 {
     const VesselMesh *mesh = params->mesh;
-    IndexLists orders = {0};
+    IndexLists by_order = {0};
     Status status;
-    TRY_GOTO(triangles_by_order(params, &orders, err));
+    TRY_GOTO(triangles_by_order(params, &by_order, err));
     text_printf(to->file, "# %s, by: %s\n# millimetres, y up\nmtllib %s\no tree\n",
                 params->generator, params->command, params->second_file);
     for (size_t i = 0; i < mesh->n_points; i++)
         put_triple(to->file, "v ", mesh->points[i], " ", "\n");
-    put_normals(mesh, &orders, to->file);
-    put_groups(params, &orders, to->file);
+    put_normals(mesh, &by_order, to->file);
+    put_groups(params, &by_order, to->file);
     TRY_GOTO(put_materials(params, to->second, err));
     TRY_GOTO(text_check(to->file, err));
 done:
-    indexlists_release(&orders);
+    indexlists_release(&by_order);
     return status;
 }

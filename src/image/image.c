@@ -1,4 +1,6 @@
-/* An image larger than the machine's memory is refused before it is allocated. Otherwise Linux
+/* Checks the sizes of images, and allocates, compares and releases images.
+ *
+ * An image larger than the machine's memory is refused before it is allocated. Otherwise Linux
  * would grant the memory and kill the program when the memory is used. */
 #include "image/image.h"
 
@@ -40,7 +42,7 @@ Status image_check_memory(int width, int height, size_t bytes, Err *err)
 /* mem_calloc or mem_alloc. */
 typedef Status Allocator(void *out, size_t count, size_t size, const char *what, Err *err);
 
-/* Allocates width * height * channels items. */
+/* Allocates width * height pixels of pixel_bytes each, with mem_calloc or mem_alloc. */
 static Status allocate(Allocator *allocator, void *out, int width, int height, size_t pixel_bytes,
                        Err *err)
 {
@@ -95,6 +97,7 @@ const uint16_t *picture_row(const Picture *picture, int y, uint16_t *scratch)
     return scratch;
 }
 
+/* Compares n pixels from column x on. Both pictures have the same width, channels and bits. */
 bool picture_rows_equal(const Picture *a, const Picture *b, int y, int x, int n)
 {
     size_t start = (size_t)y * picture_stride(a) + (size_t)x * (size_t)a->channels;

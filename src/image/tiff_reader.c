@@ -1,13 +1,16 @@
-/* Reads TIFF with libtiff.
+/* Reads TIFF with libtiff, in two ways.
  *
- * A whole file is read from memory: a single page in strips or tiles, with interleaved samples or
- * separate planes, in any compression that libtiff supports. Grey codes and palettes of 1, 2 and 4
- * bits become 8-bit codes. Floats of 16 and 64 bits become 32-bit floats. The tag Orientation is
- * applied while pixels are copied: the index of a pixel in the image is a linear function of its
- * column and row in the file.
+ * decode() reads a whole file from memory: a single page in strips or tiles, with interleaved
+ * samples or separate planes, in any compression that libtiff supports. Grey codes and palettes of
+ * 1, 2 and 4 bits become 8-bit codes. Floats of 16 and 64 bits become 32-bit floats. The tag
+ * Orientation is applied while pixels are copied: the index of a pixel in the image is a linear
+ * function of its column and row in the file.
  *
- * Row by row, a file is read from a stream, and only if its rows need no conversion
- * [has_plain_rows]. */
+ * begin(), rows() and end() read a file row by row from a stream, if its rows need no conversion
+ * [has_plain_rows]. They are meant for files that this program wrote: sRGB, with a resolution per
+ * inch, and compressed with LZW or deflate or not at all. They do not check these properties.
+ *
+ * A chunk is what one call of libtiff reads: a row or a tile. */
 #define IMATH_HALF_NO_LOOKUP_TABLE /* the table is in a separate library */
 #include "image/tiff_stream.h"
 
@@ -28,13 +31,13 @@ typedef struct TiffReader {
     int channels;           /* of the image */
     bool floats, min_is_white;
     const uint16_t *palette[3];   /* borrowed; NULL: none. Red, green, blue of 2^bits codes */
-    int palette_shift;            /* right shift that makes 8-bit codes of the palette's numbers */
+    int palette_shift;            /* right shift that converts the palette's entries to 8 bits */
     bool swapped;                 /* rows of the file are columns of the image */
     int64_t origin, across, down; /* index in the image of the file's column 0, row 0; index steps
                                    * to the file's next column and row */
-    uint32_t part_width, part_height; /* pixels of a tile, or of a row */
-    size_t part_bytes;
-    void *part; /* owned */
+    uint32_t chunk_width, chunk_height; /* pixels of a tile, or of a row */
+    size_t chunk_bytes;
+    void *chunk; /* owned */
     ImageNotes notes;
     ImageNote note[MAX_NOTES]; /* the texts belong to libtiff */
     uint32_t next;             /* index of the next row */
@@ -47,12 +50,14 @@ static bool tiff_is(const ImageBytes *file)
             memcmp(file->bytes, "II+\0", 4) == 0 || memcmp(file->bytes, "MM\0+", 4) == 0);
 }
 
-/* Sets origin, across and down. Orientations from 5 on swap rows and columns. */
+/* Sets origin, across and down. Orientations from 5 on swap rows and columns. `mirrored`: the
+ * columns of the file run against the axis of the image that they are on; `flipped`: its rows do.
+ */
 static void set_orientation(TiffReader *self, int orientation)
 {
     bool mirrored = orientation == ORIENTATION_TOPRIGHT || orientation == ORIENTATION_BOTRIGHT ||
                     orientation == ORIENTATION_RIGHTBOT || orientation == ORIENTATION_LEFTBOT;
-    bool upended = orientation == ORIENTATION_BOTRIGHT || orientation == ORIENTATION_BOTLEFT ||
+    bool flipped = orientation == ORIENTATION_BOTRIGHT || orientation == ORIENTATION_BOTLEFT ||
                    orientation == ORIENTATION_RIGHTTOP || orientation == ORIENTATION_RIGHTBOT;
     self->swapped = orientation >= ORIENTATION_LEFTTOP;
     self->across = self->swapped ? self->height : 1;
@@ -62,7 +67,7 @@ static void set_orientation(TiffReader *self, int orientation)
         self->origin += self->across * (self->width - 1);
         self->across = -self->across;
     }
-    if (upended) {
+    if (flipped) {
         self->origin += self->down * (self->height - 1);
         self->down = -self->down;
     }
@@ -117,9 +122,9 @@ static Status check_samples(TiffReader *self, uint16_t format, Err *err)
     return refuse(self, what, err);
 }
 
-/* The numbers of a palette have 16 bits. Some old programs write 8-bit numbers instead: they are
- * assumed if no number is above 255. */
-static Status take_palette(TiffReader *self, Err *err)
+/* Borrows the palette. Its entries have 16 bits. Some old programs write entries of 8 bits instead;
+ * 8 bits are assumed if no entry is above 255. */
+static Status read_palette(TiffReader *self, Err *err)
 {
     uint16_t *red, *green, *blue;
     if (!TIFFGetField(self->tiff.handle, TIFFTAG_COLORMAP, &red, &green, &blue) || self->bits > 8)
@@ -134,7 +139,8 @@ static Status take_palette(TiffReader *self, Err *err)
     return STATUS_OK;
 }
 
-/* Only grey and RGB have alpha. libtiff converts YCbCr colors of JPEG to RGB. */
+/* Checks the kind of colors and the number of samples per pixel. Only grey and RGB have alpha.
+ * libtiff converts YCbCr colors of JPEG to RGB. */
 static Status check_colors_of_samples(TiffReader *self, uint16_t photometric, Err *err)
 {
     const int samples = self->samples;
@@ -157,12 +163,13 @@ static Status check_colors_of_samples(TiffReader *self, uint16_t photometric, Er
                                  : "white as the lowest value with alpha or of floats",
                       err);
     if (samples == (grey || is_palette ? 1 : 3) || samples == (grey ? 2 : 4))
-        return is_palette ? take_palette(self, err) : STATUS_OK;
+        return is_palette ? read_palette(self, err) : STATUS_OK;
     char what[64];
     snprintf(what, sizeof what, "%d samples per pixel", samples);
     return refuse(self, what, err);
 }
 
+/* Checks the kind of samples and colors. A file that does not state its colors is grey. */
 static Status check_form(TiffReader *self, Err *err)
 {
     uint16_t samples, bits, format, planar, photometric = PHOTOMETRIC_MINISBLACK;
@@ -186,7 +193,9 @@ static int image_bits(const TiffReader *self)
 
 /* Returns an upper bound on the number of bytes of pixels that a file of this size can hold. LZW
  * compresses a blank picture by a factor of 1400, deflate by 1032, PackBits by 64 and ZSTD by
- * 32768. WebP and LERC take a few bytes for a blank strip of any size. */
+ * 32768. The two ratios are at least three times the highest of their kind. WebP and LERC take a
+ * few bytes for a blank strip of any size, so one strip of BLANK_STRIP bytes is added. Reason for
+ * 64 MiB not recorded. */
 static size_t max_bytes(const TiffReader *self)
 {
     enum { COMMON_RATIO = 10000, RATIO = 100000, BLANK_STRIP = 64 << 20 };
@@ -195,9 +204,9 @@ static size_t max_bytes(const TiffReader *self)
     bool common = compression == COMPRESSION_NONE || compression == COMPRESSION_LZW ||
                   compression == COMPRESSION_PACKBITS || compression == COMPRESSION_DEFLATE ||
                   compression == COMPRESSION_ADOBE_DEFLATE;
-    size_t unpacked = self->bits < 8 ? 8 / (size_t)self->bits : 1;
-    return common ? self->input.file.size * COMMON_RATIO * unpacked
-                  : self->input.file.size * RATIO * unpacked + BLANK_STRIP;
+    size_t samples_per_byte = self->bits < 8 ? 8 / (size_t)self->bits : 1;
+    return common ? self->input.file.size * COMMON_RATIO * samples_per_byte
+                  : self->input.file.size * RATIO * samples_per_byte + BLANK_STRIP;
 }
 
 /* Checks that the file is large enough for `width` x `height` pixels of the image, or of a tile. */
@@ -208,24 +217,25 @@ static Status check_claim(const TiffReader *self, uint32_t width, uint32_t heigh
                              max_bytes(self), err);
 }
 
-/* Sets the size of the part that one call of libtiff reads, a row or a tile, and allocates it. */
-static Status set_parts(TiffReader *self, Err *err)
+/* Sets the size of a chunk, and allocates it. */
+static Status set_chunks(TiffReader *self, Err *err)
 {
-    self->part_width = self->width;
-    self->part_height = 1;
+    self->chunk_width = self->width;
+    self->chunk_height = 1;
     bool tiled = TIFFIsTiled(self->tiff.handle);
     if (tiled) {
-        TIFFGetField(self->tiff.handle, TIFFTAG_TILEWIDTH, &self->part_width);
-        TIFFGetField(self->tiff.handle, TIFFTAG_TILELENGTH, &self->part_height);
-        TRY(check_claim(self, self->part_width, self->part_height, err));
+        TIFFGetField(self->tiff.handle, TIFFTAG_TILEWIDTH, &self->chunk_width);
+        TIFFGetField(self->tiff.handle, TIFFTAG_TILELENGTH, &self->chunk_height);
+        TRY(check_claim(self, self->chunk_width, self->chunk_height, err));
     }
-    const size_t row_samples = (size_t)self->part_width * (size_t)(self->samples / self->planes);
-    self->part_bytes = (row_samples * (size_t)self->bits + 7) / 8 * self->part_height;
-    TRY(image_check_memory((int)self->part_width, (int)self->part_height, self->part_bytes, err));
+    const size_t row_samples = (size_t)self->chunk_width * (size_t)(self->samples / self->planes);
+    self->chunk_bytes = (row_samples * (size_t)self->bits + 7) / 8 * self->chunk_height;
+    TRY(image_check_memory((int)self->chunk_width, (int)self->chunk_height, self->chunk_bytes,
+                           err));
     if ((size_t)(tiled ? TIFFTileSize(self->tiff.handle) : TIFFScanlineSize(self->tiff.handle)) !=
-        self->part_bytes)
+        self->chunk_bytes)
         return guard_failure(err);
-    return mem_calloc(&self->part, self->part_bytes, 1, "bytes of a part of a TIFF", err);
+    return mem_calloc(&self->chunk, self->chunk_bytes, 1, "bytes of a part of a TIFF", err);
 }
 
 /* Checks that the colors are sRGB. Chromaticities that the file does not state are assumed to be
@@ -265,9 +275,10 @@ static Status read_header(TiffReader *self, Err *err)
     TIFFGetFieldDefaulted(self->tiff.handle, TIFFTAG_ORIENTATION, &orientation);
     set_orientation(self, orientation);
     TRY(check_colors(self, err));
-    return set_parts(self, err);
+    return set_chunks(self, err);
 }
 
+/* Returns sample i of a row of integers of 1, 2, 4, 8 or 16 bits. */
 static unsigned integer_at(const uint8_t *row, size_t i, int bits)
 {
     if (bits == 8)
@@ -278,15 +289,19 @@ static unsigned integer_at(const uint8_t *row, size_t i, int bits)
     return row[first / 8] >> (8 - (size_t)bits - first % 8) & ((1u << bits) - 1);
 }
 
+/* Returns sample i of a row of floats of 16, 32 or 64 bits. */
 static float float_at(const uint8_t *row, size_t i, int bits)
 {
     double value;
     float single;
     if (bits == 16)
         return imath_half_to_float(((const imath_half_bits_t *)(const void *)row)[i]);
-    memcpy(&value, row + 8 * i, bits == 64 ? sizeof value : 0);
-    memcpy(&single, row + 4 * i, bits == 32 ? sizeof single : 0);
-    return bits == 64 ? (float)value : single;
+    if (bits == 64) {
+        memcpy(&value, row + 8 * i, sizeof value);
+        return (float)value;
+    }
+    memcpy(&single, row + 4 * i, sizeof single);
+    return single;
 }
 
 /* Sets codes of a pixel: with a palette all three codes of color `value`, otherwise the code of
@@ -309,7 +324,7 @@ static void set_code(const TiffReader *self, unsigned value, size_t pixel, int c
 
 /* Copies `n` pixels of row `y` of the file, from column `x` on. `row` holds all samples of these
  * pixels, or only the samples of `plane`. */
-static void take_row(const TiffReader *self, const uint8_t *row, uint32_t x, uint32_t y, uint32_t n,
+static void copy_row(const TiffReader *self, const uint8_t *row, uint32_t x, uint32_t y, uint32_t n,
                      int plane, Image *image)
 {
     const int samples = self->samples / self->planes;
@@ -326,18 +341,19 @@ static void take_row(const TiffReader *self, const uint8_t *row, uint32_t x, uin
 }
 
 /* Reads the tile, or the row, that begins at column `x`, row `y`. */
-static Status read_part(TiffReader *self, uint32_t x, uint32_t y, int plane, Image *image, Err *err)
+static Status read_chunk(TiffReader *self, uint32_t x, uint32_t y, int plane, Image *image,
+                         Err *err)
 {
     TIFF *handle = self->tiff.handle;
     bool read = TIFFIsTiled(handle)
-                    ? TIFFReadTile(handle, self->part, x, y, 0, (uint16_t)plane) >= 0
-                    : TIFFReadScanline(handle, self->part, y, (uint16_t)plane) == 1;
+                    ? TIFFReadTile(handle, self->chunk, x, y, 0, (uint16_t)plane) >= 0
+                    : TIFFReadScanline(handle, self->chunk, y, (uint16_t)plane) == 1;
     if (!read)
         return guard_failure(err);
-    uint32_t n = self->part_width < self->width - x ? self->part_width : self->width - x;
-    size_t row_bytes = self->part_bytes / self->part_height;
-    for (uint32_t row = 0; row < self->part_height && y + row < self->height; row++)
-        take_row(self, (const uint8_t *)self->part + row * row_bytes, x, y + row, n, plane, image);
+    uint32_t n = self->chunk_width < self->width - x ? self->chunk_width : self->width - x;
+    size_t row_bytes = self->chunk_bytes / self->chunk_height;
+    for (uint32_t row = 0; row < self->chunk_height && y + row < self->height; row++)
+        copy_row(self, (const uint8_t *)self->chunk + row * row_bytes, x, y + row, n, plane, image);
     return STATUS_OK;
 }
 
@@ -368,12 +384,12 @@ static void convert_alpha(const TiffReader *self, Image *image)
             image->plane.values[i] *= image->plane.values[i - i % samples + samples - 1];
 }
 
-static Status read_parts(TiffReader *self, Image *image, Err *err)
+static Status read_chunks(TiffReader *self, Image *image, Err *err)
 {
     for (int plane = 0; plane < self->planes; plane++)
-        for (uint32_t y = 0; y < self->height; y += self->part_height)
-            for (uint32_t x = 0; x < self->width; x += self->part_width)
-                TRY(read_part(self, x, y, plane, image, err));
+        for (uint32_t y = 0; y < self->height; y += self->chunk_height)
+            for (uint32_t x = 0; x < self->width; x += self->chunk_width)
+                TRY(read_chunk(self, x, y, plane, image, err));
     if (self->samples == 2 || self->samples == 4)
         convert_alpha(self, image);
     return STATUS_OK;
@@ -402,14 +418,14 @@ static Status open_tiff(TiffReader *self, Err *err)
     return tiff_open(&self->tiff, self->input.file.name, "r") ? STATUS_OK : guard_failure(err);
 }
 
-/* A handle whose guard was left is in an undefined state. It is not closed, and its memory
- * leaks. */
+/* After an error of libtiff has left a call by longjmp [guard.left], the handle is in an undefined
+ * state. Then it is not closed, and its memory leaks. */
 static void release(void *work)
 {
     TiffReader *self = work;
     if (self->tiff.handle && !self->input.guard.left)
         TIFFClose(self->tiff.handle);
-    free(self->part);
+    free(self->chunk);
 }
 
 static Status decode(void *work, Err *err)
@@ -424,13 +440,15 @@ static Status decode(void *work, Err *err)
         TRY(plane_init(&image->plane, width, height, self->channels, err));
     else
         TRY(picture_init(&image->picture, width, height, self->channels, image_bits(self), err));
-    TRY(read_parts(self, image, err));
+    TRY(read_chunks(self, image, err));
     return check_single(self, err);
 }
 
 /* ---- rows ------------------------------------------------------------------------------------ */
 
-static void take_notes(TiffReader *self)
+/* Reads the notes and the resolution that this program writes; "Shard" is the place of a tile in a
+ * picture that is rendered in tiles. */
+static void read_notes(TiffReader *self)
 {
     static const struct {
         uint32_t field;
@@ -449,6 +467,7 @@ static void take_notes(TiffReader *self)
         self->notes.dpi = (double)dpi;
 }
 
+/* Returns the compression of a file that this program wrote. */
 static ImageCompression compression_of(TIFF *handle)
 {
     uint16_t compression;
@@ -484,7 +503,7 @@ static Status begin(void *work, Err *err)
     TRY(image_check_sides(name, self->width, self->height, err));
     if (check_form(self, err) != STATUS_OK || !has_plain_rows(self))
         return image_no_rows(name, err);
-    take_notes(self);
+    read_notes(self);
     self->input.form = (ImageForm){.width = (int)self->width,
                                    .height = (int)self->height,
                                    .channels = self->samples,
@@ -536,6 +555,7 @@ static const char *colors_name(uint16_t photometric)
                : "another";
 }
 
+/* Returns the horizontal resolution in dots per inch, or 0 if the file states none. */
 static double resolution(TIFF *handle)
 {
     float per_unit = 0;
@@ -561,15 +581,15 @@ static Status measure_ink(TiffReader *self, Err *err)
     if (samples < INKS || planes != PLANARCONFIG_CONTIG || (bits != 8 && bits != 16) ||
         TIFFIsTiled(handle) || (size_t)TIFFScanlineSize(handle) != row_bytes)
         return STATUS_OK;
-    TRY(mem_calloc(&self->part, row_bytes, 1, "a row of a TIFF", err));
+    TRY(mem_calloc(&self->chunk, row_bytes, 1, "a row of a TIFF", err));
     for (uint32_t y = 0; y < self->height; y++) {
-        if (TIFFReadScanline(handle, self->part, y, 0) != 1)
+        if (TIFFReadScanline(handle, self->chunk, y, 0) != 1)
             return guard_failure(err);
         for (size_t x = 0; x < self->width; x++) {
             double sum = 0;
             for (size_t i = x * samples; i < x * samples + INKS; i++)
-                sum += bits == 8 ? ((const uint8_t *)self->part)[i] / 255.0
-                                 : ((const uint16_t *)self->part)[i] / 65535.0;
+                sum += bits == 8 ? ((const uint8_t *)self->chunk)[i] / 255.0
+                                 : ((const uint16_t *)self->chunk)[i] / 65535.0;
             most = fmax(most, sum);
         }
     }
@@ -577,6 +597,8 @@ static Status measure_ink(TiffReader *self, Err *err)
     return STATUS_OK;
 }
 
+/* A file that does not state its colors is reported as "another"; PHOTOMETRIC_YCBCR stands for it.
+ */
 static Status get_facts(void *work, Err *err)
 {
     TiffReader *self = work;

@@ -14,7 +14,7 @@
 /* Begin with {.what = "node"}; release with names_release. */
 typedef struct Names {
     const char *what; /* the word for a named thing in errors: "node" */
-    KeyMap first;     /* from the hash of a name to 1 + the index of its last entry in `name` */
+    KeyMap heads; /* from a hash to 1 + the position in `name` of the last name with this hash */
     ARRAY(struct Name) name;
 } Names;
 
@@ -24,10 +24,10 @@ void names_release(Names *names);
  *
  * text     the name; borrowed until names_release. An integer with a fraction of zeros, "12.0", is
  *          shortened to "12" in place, so that both spellings are one name.
- * record   the line of the file, for errors.
+ * line     the line of the file, for errors.
  * Errors   STATUS_INPUT, without file and line, if the name was added before; STATUS_MEMORY.
  * Cost     O(1) on average. */
-MUST_CHECK Status names_add(Names *names, char *text, size_t index, size_t record, Err *err);
+MUST_CHECK Status names_add(Names *names, char *text, size_t index, size_t line, Err *err);
 
 /* Finds the index of a name. `text` may be shortened in place, as in names_add. Errors:
  * STATUS_INPUT, without file and line, if the name was not added. */

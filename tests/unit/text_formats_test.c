@@ -131,7 +131,7 @@ static void rejects_decks_that_make_no_sense(void **state)
         {"NODE 0 0 0 0\nSEGMENT a 7 2.25 50 0 1 2 1.5\n", ":2: there is no NODE '1'"},
         {"JOINTINLET I 2 7\n", ":1: the card states 2 segments, but names 1"},
         {"NODE 0 0 0 0\nNODE 1 1 0 0\nSEGMENT a 7 1 1 0 1 2 2\nJOINT J 1 I O\nJOINTINLET I 1 8\n",
-         ":4: there is no SEGMENT of number '8'"},
+         ":4: there is no SEGMENT number '8'"},
         {"JOINT J 1 I O\n", ":1: there is no JOINTINLET 'I'"},
         {"NODE 0 0 0 0\n", ": the file has no lines; a tree has at least one"},
     };

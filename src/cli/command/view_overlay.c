@@ -103,7 +103,7 @@ static Status fill_page(FigurePage *page, const OverlayContent *content, Err *er
 {
     const Rgb background = content->scene->view.background;
     const OverlayPage to = {.page = page,
-                            .ink = annotation_ink(background),
+                            .ink = annotation_text_color(background),
                             .paper = annotation_color(background),
                             .size_pt = text_pt,
                             .em = text_pt * MM_PER_POINT};

@@ -241,7 +241,7 @@ static Status read_images(Figure *figure, Err *err)
 static FigureColor ink_on(FigureColor paper)
 {
     const Vec3 srgb = vec3(paper.rgb[0] / 255.0, paper.rgb[1] / 255.0, paper.rgb[2] / 255.0);
-    return annotation_ink(rgb_of_option(srgb));
+    return annotation_text_color(rgb_of_option(srgb));
 }
 
 /* Adds the letter of a panel: in the line above the panel or, without a title, in its upper left
@@ -263,7 +263,7 @@ static Status put_letter(Figure *figure, size_t i, const char *letter, FigureCol
                                  above ? box.top - 0.55 * em : box.top + (is_seen ? 1.5 : 1.1) * em,
                              .size_pt = options->text_pt + 1,
                              .bold = true,
-                             .color = above ? ink_on(paper) : annotation_ink(inside)};
+                             .color = above ? ink_on(paper) : annotation_text_color(inside)};
     FigurePage *page = &figure->sheet.page;
     const PlacedPicture picture = {&figure->panels[i].scene, box};
     figure_add_text(page, &text);

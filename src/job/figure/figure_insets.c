@@ -297,7 +297,7 @@ static Status put_inset(Figure *figure, const Section *section, size_t of, const
     FigureBox part = panel_part(inset, &panel->scene.view.camera);
     part = (FigureBox){box.left + part.left * width, box.top + part.top * height,
                        box.left + part.right * width, box.top + part.bottom * height};
-    FigureColor ink = annotation_ink(panel->scene.view.background);
+    FigureColor ink = annotation_text_color(panel->scene.view.background);
     put_frame(page, &part, line_mm, ink);
     put_frame(page, &shown, line_mm, ink);
     if (options->leaders) {

@@ -1,6 +1,11 @@
-/* The legend is at the right of the picture or below it, and a camera that frames the tree leaves
- * that space free. The letter is in the upper left corner, where publishers expect it, and the
- * scale bar in the corner with the fewest vessels. All distances are multiples of the font size. */
+/* The options for the legend, the scale bar and the panel letter of a picture; their checks; and
+ * their drawing on a page.
+ *
+ * The legend is at the right of the picture or below it. When the camera is fitted to the tree, the
+ * tree is drawn beside the space that is reserved for the legend. The panel letter is in the upper
+ * left corner, where publishers expect it. The scale bar is, by default, in the corner with the
+ * fewest vessels. All distances are multiples of the font size (1 em). Reasons for the multiples
+ * and for the default of 7 pt are not recorded, except where a comment has them. */
 #include "job/picture/annotation.h"
 
 #include "derive/derive.h"
@@ -17,7 +22,7 @@ static const Option legend_rows[] = {
      .help = "draw a color bar beside the tree, with ticks and the name and unit of the field"},
     {.name = "legend-at",
      SETS(CHOICE, Annotation, legend_at),
-     GIVEN(Annotation, has_side),
+     GIVEN(Annotation, has_legend_at),
      .choices = sides,
      .group = GROUP_PAGE,
      .otherwise = "right; bottom if an upright picture then has a larger tree",
@@ -74,7 +79,7 @@ void annotation_set_defaults(Annotation *annotation)
     annotation->text_pt = 7;
 }
 
-bool annotation_is_any(const Annotation *annotation)
+bool annotation_is_wanted(const Annotation *annotation)
 {
     return annotation->legend || annotation->has_scale_bar || annotation->letter;
 }
@@ -88,9 +93,9 @@ Status annotation_check_legend(const Annotation *annotation, const Coloring *col
 
 Status annotation_check(const Annotation *annotation, const PictureOptions *picture, Err *err)
 {
-    const bool flat = picture->projection == PROJECTION_ORTHOGRAPHIC;
+    const bool orthographic = picture->projection == PROJECTION_ORTHOGRAPHIC;
     TRY(annotation_check_legend(annotation, &picture->coloring, err));
-    if (annotation->has_scale_bar && !flat)
+    if (annotation->has_scale_bar && !orthographic)
         return err_set(
             err, STATUS_USAGE,
             "--scale-bar needs an orthographic picture: in perspective no scale bar is correct");
@@ -99,13 +104,14 @@ Status annotation_check(const Annotation *annotation, const PictureOptions *pict
 
 Status annotation_check_file(const Annotation *annotation, const char *output, Err *err)
 {
-    if (!image_traits(output).floats || !annotation_is_any(annotation))
+    if (!image_traits(output).floats || !annotation_is_wanted(annotation))
         return STATUS_OK;
     return err_set(err, STATUS_USAGE,
                    "-o: %s stores measured values and cannot have a legend, scale bar or letter",
                    strcmp(file_extension(output), "exr") ? "a .pfm" : "an .exr");
 }
 
+/* 300 dpi is a usual resolution of printed pictures. */
 double annotation_dpi(const PictureSize *size)
 {
     return size->dpi > 0 ? size->dpi : 300;
@@ -118,7 +124,9 @@ FigureColor annotation_color(Rgb linear)
                           (uint8_t)image_code(linear.b, ENCODING_SRGB, 8)}};
 }
 
-FigureColor annotation_ink(Rgb background)
+/* At a luminance of 0.18, black and white text have the same contrast, by the ratio of (luminance +
+ * 0.05) of WCAG 2. */
+FigureColor annotation_text_color(Rgb background)
 {
     float luminance = 0.2126f * background.r + 0.7152f * background.g + 0.0722f * background.b;
     uint8_t code = luminance < 0.18f ? 255 : 0;
@@ -160,10 +168,11 @@ static bool are_whole(const Appearance *appearance)
     return true;
 }
 
+/* A legend with more values has a bar. Reason for the number not recorded. */
 enum { MOST_SWATCHES = 12 };
 
 /* Lists the different values that the scale can show, ascending. Returns their number, at most
- * MOST_SWATCHES + 1. */
+ * MOST_SWATCHES + 1, which means: too many. */
 static int list_values(const Appearance *appearance, double list[MOST_SWATCHES + 1])
 {
     int n = 0;
@@ -183,7 +192,9 @@ static int list_values(const Appearance *appearance, double list[MOST_SWATCHES +
     return n;
 }
 
-/* Returns the length that a swatch takes, as a multiple of the text size. */
+/* Returns the length that a swatch takes along the legend, in em. The numbers are those of
+ * figure/legend.c, except that a digit is assumed to be 0.56 em wide. `across`: the swatches are
+ * side by side, so the widest label decides. */
 static double swatch_ems(bool across, double value)
 {
     const double digit_ems = 0.56;
@@ -191,21 +202,26 @@ static double swatch_ems(bool across, double value)
     return across ? fmax(1.7, digit_ems * (double)digits + 0.6) : 1.35;
 }
 
-/* Lists the values that have swatches: integers, if they fit into `ems` times the text size and
- * have the color of no class, and the value of a field that has only one. Returns their number; 0:
- * the legend has a bar. */
+/* Chooses between swatches and a bar. A scale with classes has a bar. Otherwise a field with a
+ * single value has one swatch. Integers have a swatch each if they are at most MOST_SWATCHES and
+ * their swatches fit into a length of `ems` em. Returns the number of swatches; 0: the legend has a
+ * bar. */
 static int list_swatches(const Appearance *appearance, bool across, double ems,
                          double list[MOST_SWATCHES + 1])
 {
     const ColorScale *scale = &appearance->scale;
     const int n = list_values(appearance, list);
-    if (scale->n_bounds || scale->classes > 1 || n == 1)
-        return n == 1 && !scale->n_bounds && scale->classes < 2;
+    if (scale->n_bounds || scale->classes > 1)
+        return 0;
+    if (n == 1)
+        return 1;
     const bool few = n > 0 && n <= MOST_SWATCHES && are_whole(appearance);
     return few && !appearance->positions && n * swatch_ems(across, list[n - 1]) <= ems ? n : 0;
 }
 
-/* Appends the legend of a picture of this size, anywhere. */
+/* Appends the legend of a picture of this size in mm, at an arbitrary position; the caller moves
+ * it. The bar is half as long as the picture's side, within 5 to 18 em. A vertical legend has a
+ * title above it, which takes about 3 em. */
 static Status add_legend(const Annotation *annotation, const Appearance *appearance, double width,
                          double height, FigureColor ink, FigurePage *page, Err *err)
 {
@@ -233,17 +249,20 @@ static Status add_legend(const Annotation *annotation, const Appearance *appeara
     return status == STATUS_OK ? figure_check(page, err) : status;
 }
 
+/* Returns the gap between annotations and the edge of the picture, mm. */
 static double gap_of(const Annotation *annotation)
 {
     return 0.9 * annotation->text_pt * MM_PER_POINT;
 }
 
-/* Measures the legend of a picture that is as large as the page `like`. */
+/* Sets `size` to the width and height in mm of the legend and its gap, for a picture that is as
+ * large as `model`. The legend is drawn on a page that is discarded, so its color does not matter.
+ */
 static Status measure(const Annotation *annotation, const Appearance *appearance,
-                      const FigurePage *like, double size[2], Err *err)
+                      const FigurePage *model, double size[2], Err *err)
 {
     FigurePage page;
-    figure_init(&page, like->width_mm, like->height_mm, like->dpi, like->fonts);
+    figure_init(&page, model->width_mm, model->height_mm, model->dpi, model->fonts);
     Status status = add_legend(annotation, appearance, page.width_mm, page.height_mm,
                                page.background, &page, err);
     const FigureBox box = figure_bounds(&page, 0);
@@ -253,24 +272,26 @@ static Status measure(const Annotation *annotation, const Appearance *appearance
     return status;
 }
 
+/* In an upright picture without --legend-at, the legend is on the side that leaves the larger
+ * square for the tree. Both sides are measured; a tie is decided in favour of the right side. */
 Status annotation_measure_legend(Annotation *annotation, const Appearance *appearance,
                                  const FigurePage *page, double size[2], Err *err)
 {
     TRY(measure(annotation, appearance, page, size, err));
-    if (annotation->has_side || page->height_mm <= page->width_mm)
+    if (annotation->has_legend_at || page->height_mm <= page->width_mm)
         return STATUS_OK;
-    const double beside = fmin(page->width_mm - size[0], page->height_mm);
+    const double right_square = fmin(page->width_mm - size[0], page->height_mm);
     annotation->legend_at = LEGEND_BOTTOM;
     TRY(measure(annotation, appearance, page, size, err));
-    if (fmin(page->width_mm, page->height_mm - size[1]) > beside)
+    if (fmin(page->width_mm, page->height_mm - size[1]) > right_square)
         return STATUS_OK;
     annotation->legend_at = LEGEND_RIGHT;
     return measure(annotation, appearance, page, size, err);
 }
 
-Status annotation_make_room(Annotation *annotation, const FigureFonts *fonts,
-                            const Appearance *appearance, const PictureSize *picture, int room[2],
-                            Err *err)
+Status annotation_reserve_space(Annotation *annotation, const FigureFonts *fonts,
+                                const Appearance *appearance, const PictureSize *picture,
+                                int space[2], Err *err)
 {
     const double pixel = MM_PER_INCH / annotation_dpi(picture);
     const int *pixels = picture->pixels;
@@ -284,16 +305,17 @@ Status annotation_make_room(Annotation *annotation, const FigureFonts *fonts,
     TRY(status);
     int side = annotation->legend_at == LEGEND_RIGHT ? 0 : 1;
     int needed = (int)ceil(size[side] / pixel);
+    /* A third of the picture is left for the tree; reason for the fraction not recorded. */
     if (needed > pixels[side] * 2 / 3)
         return err_set(err, STATUS_USAGE,
                        "--legend needs %.0f mm, but the picture has %.0f mm; use a larger --size "
                        "or a smaller --text-size",
                        needed * pixel, pixels[side] * pixel);
-    room[side] = needed;
+    space[side] = needed;
     return STATUS_OK;
 }
 
-/* The legend is centred at its edge of the rectangle. */
+/* Puts the legend at the right or the lower edge of `where`, centred along this edge. */
 Status annotation_put_legend(const Annotation *annotation, const Appearance *appearance,
                              FigureColor ink, FigureBox where, FigurePage *page, Err *err)
 {
@@ -311,12 +333,14 @@ Status annotation_put_legend(const Annotation *annotation, const Appearance *app
     return STATUS_OK;
 }
 
-/* ---- the rest -------------------------------------------------------------------------------- */
+/* ---- scale bar and letter ----------------------------------------------------------------------
+ */
 
 static Status put_scale_bar(const Annotation *annotation, const Scene *scene, FigureBox where,
                             FigurePage *page, Err *err)
 {
     const double width = where.right - where.left, gap = gap_of(annotation);
+    /* orthographic: camera.right is as long as the picture is wide, in mm of the tree */
     const double shown = vec3_length(scene->view.camera.right);
     const size_t first = page->n;
     if (annotation->scale_bar_mm > shown)
@@ -328,13 +352,15 @@ static Status put_scale_bar(const Annotation *annotation, const Scene *scene, Fi
     Status status = text_check(&label, err);
     if (status == STATUS_OK)
         figure_add_scale_bar(page, annotation->scale_bar_mm / shown * width, text_chars(&label),
-                             annotation->text_pt, annotation_ink(scene->view.background));
+                             annotation->text_pt, annotation_text_color(scene->view.background));
     text_release(&label);
     TRY(status);
     const PlacedPicture picture = {scene, where};
     return placing_move(page, first, &picture, annotation->scale_bar_at, gap, err);
 }
 
+/* Appends the panel letter, 1 pt larger than the other text. Its baseline is a capital's height
+ * below the gap. */
 static void put_letter(const Annotation *annotation, const Scene *scene, FigureBox where,
                        FigurePage *page)
 {
@@ -344,7 +370,7 @@ static void put_letter(const Annotation *annotation, const Scene *scene, FigureB
                                .y = where.top + gap + 0.73 * size * MM_PER_POINT,
                                .size_pt = size,
                                .bold = true,
-                               .color = annotation_ink(scene->view.background)};
+                               .color = annotation_text_color(scene->view.background)};
     figure_add_text(page, &letter);
 }
 
@@ -360,7 +386,7 @@ Status annotation_put(const Annotation *annotation, const Scene *scene, FigureBo
     const PlacedPicture picture = {scene, where};
     if (annotation->legend)
         TRY(annotation_put_legend(annotation, &scene->appearance,
-                                  annotation_ink(scene->view.background), where, page, err));
+                                  annotation_text_color(scene->view.background), where, page, err));
     if (annotation->letter)
         put_letter(annotation, scene, where, page);
     if (annotation->has_scale_bar)

@@ -5,7 +5,7 @@
  * All three are appended to a page (FigurePage), which is drawn over the picture or contains it:
  *
  *     annotation_check(annotation, picture, err);                          // before the scene
- *     annotation_make_room(annotation, fonts, appearance, size, room, err); // before the view
+ *     annotation_reserve_space(annotation, fonts, appearance, size, space, err); // before the view
  *     annotation_put(annotation, scene, where, page, err);                 // after the view */
 #ifndef CORCAST_JOB_PICTURE_ANNOTATION_H
 #define CORCAST_JOB_PICTURE_ANNOTATION_H
@@ -20,9 +20,9 @@ typedef enum LegendSide { LEGEND_RIGHT, LEGEND_BOTTOM } LegendSide;
 
 /* The options for annotations. Strings are borrowed from the parsed command line. */
 typedef struct Annotation {
-    bool legend;    /* a legend is drawn */
-    bool has_side;  /* `legend_at` is specified by an option */
-    bool has_title; /* `title` is specified by an option */
+    bool legend;        /* a legend is drawn */
+    bool has_legend_at; /* `legend_at` is specified by an option */
+    bool has_title;     /* `title` is specified by an option */
     LegendSide legend_at;
     const char *title;   /* title of the legend; NULL: name and unit of the field */
     const char *letter;  /* NULL: no letter */
@@ -38,7 +38,7 @@ void annotation_set_defaults(Annotation *annotation);
 extern const OptionTable legend_table, annotation_table;
 
 /* Returns true if a legend, a scale bar or a letter is to be drawn. */
-bool annotation_is_any(const Annotation *annotation);
+bool annotation_is_wanted(const Annotation *annotation);
 
 /* Checks the options. Errors: STATUS_USAGE if there is a legend but no --color-by, or a scale bar
  * in a perspective picture, where a length of the tree has no fixed length in the picture. */
@@ -56,18 +56,19 @@ MUST_CHECK Status annotation_check_file(const Annotation *annotation, const char
  * if the size is in pixels. */
 double annotation_dpi(const PictureSize *size);
 
-/* Reserves space for the legend, so that a camera that frames the tree leaves this space empty.
+/* Reserves space for the legend. A camera that is fitted to the tree leaves this space empty.
  *
  * annotation  receives the side of the legend, if no option specifies it.
- * room        receives the reserved width or height in pixels. Unchanged without a legend.
+ * space       [0] receives the reserved width, or [1] the reserved height, in pixels. The other
+ *             element is unchanged, and so are both without a legend.
  * Errors      STATUS_USAGE if the legend leaves no space for the tree; STATUS_MEMORY. */
-MUST_CHECK Status annotation_make_room(Annotation *annotation, const FigureFonts *fonts,
-                                       const Appearance *appearance, const PictureSize *picture,
-                                       int room[2], Err *err);
+MUST_CHECK Status annotation_reserve_space(Annotation *annotation, const FigureFonts *fonts,
+                                           const Appearance *appearance, const PictureSize *picture,
+                                           int space[2], Err *err);
 
 /* Measures the legend that a page of this size would have, and chooses its side if no option
- * specifies one: below a page that is upright, if more of the page is then left for the tree, else
- * at the right.
+ * specifies one. The side is the bottom if the page is upright and the legend then leaves a larger
+ * square for the tree, else the right.
  *
  * annotation  receives the side.
  * page        its size and fonts; its items do not matter.
@@ -96,6 +97,6 @@ double annotation_halo_width(double text_pt);
 /* Converts a linear RGB color to the color type of pages. */
 FigureColor annotation_color(Rgb linear);
 /* Returns black or white: the one that is readable on the background. */
-FigureColor annotation_ink(Rgb background);
+FigureColor annotation_text_color(Rgb background);
 
 #endif

@@ -186,19 +186,19 @@ static Status add_legend(const DiagramOptions *options, MadeDiagram *made, Err *
     page->height_mm = side ? page->height_mm + size[1] : fmax(page->height_mm, size[1]);
     const FigureBox whole = {0, 0, page->width_mm, page->height_mm};
     return annotation_put_legend(&legend, &made->appearance,
-                                 annotation_ink(rgb_of_option(options->background)), whole, page,
-                                 err);
+                                 annotation_text_color(rgb_of_option(options->background)), whole,
+                                 page, err);
 }
 
 /* Draws the bars beside the space of the legend, which becomes the page over the pixels. */
 static Status draw_pixels(DiagramOptions *options, MadeDiagram *made, Err *err)
 {
     const int *size = options->size.pixels;
-    const FigureColor ink = annotation_ink(rgb_of_option(options->background));
+    const FigureColor ink = annotation_text_color(rgb_of_option(options->background));
     int room[2] = {0, 0};
     TRY(picture_fits(size[0], size[1], 40, err));
-    TRY(annotation_make_room(&options->annotation, made->sheet.fonts, &made->appearance,
-                             &options->size, room, err));
+    TRY(annotation_reserve_space(&options->annotation, made->sheet.fonts, &made->appearance,
+                                 &options->size, room, err));
     TRY(diagram_draw(&made->style, &made->bars, size, room, &made->pixels.color, err));
     if (!options->annotation.legend)
         return STATUS_OK;

@@ -129,7 +129,7 @@ Status rendering_open(RenderOptions *options, Parsed *parsed, const FigureFonts 
     out->params.progress = progress_report;
     out->params.progress_context = &out->progress;
     out->has_sheet =
-        !fonts && (annotation_is_any(&options->annotation) || frames_is_page(options->output));
+        !fonts && (annotation_is_wanted(&options->annotation) || frames_is_page(options->output));
     Status status = plan(out, err);
     if (status == STATUS_OK)
         status = make_scene(out, fonts, err);

@@ -198,7 +198,7 @@ static Status check_transparent(const RenderOptions *options, Err *err)
         return err_set(err, STATUS_USAGE,
                        "-o: '%s' cannot be transparent; --background none needs .png, .tif or .exr",
                        options->output);
-    if (annotation_is_any(&options->annotation))
+    if (annotation_is_wanted(&options->annotation))
         return err_set(err, STATUS_USAGE,
                        "--background none: a legend, a scale bar or a letter needs a background");
     return STATUS_OK;
@@ -291,8 +291,8 @@ Status render_make_scene(RenderOptions *options, Parsed *parsed, const PictureSo
     TRY(animation_count(animation, &scene->appearance, err));
     TRY(pick_only(options->shard.only, animation, err));
     if (options->annotation.legend) {
-        TRY(annotation_make_room(&options->annotation, fonts, &scene->appearance, &picture->size,
-                                 picture->stage.room, err));
+        TRY(annotation_reserve_space(&options->annotation, fonts, &scene->appearance,
+                                     &picture->size, picture->stage.room, err));
         TRY(picture_view(picture, source, &scene->geometry, &scene->view, err));
     }
     if (animation->kind == ANIMATION_TURN)

@@ -62,7 +62,7 @@ RenderParams render_params_of(const RenderOptions *options, int threads, CellPar
  * report     receives what the scene does not show of the tree.
  * animation  receives the pictures to draw.
  * Errors     STATUS_USAGE if an option has no effect together with the effects of the look; the
- *            errors of picture_scene_of, animation_count and annotation_make_room. */
+ *            errors of picture_scene_of, animation_count and annotation_reserve_space. */
 MUST_CHECK Status render_make_scene(RenderOptions *options, Parsed *parsed,
                                     const PictureSource *source, const FigureFonts *fonts,
                                     Scene *scene, PictureReport *report, Animation *animation,

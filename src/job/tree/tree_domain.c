@@ -1,11 +1,12 @@
-/* The metadata of a tree stores its domain as the text that tree_domain_parse reads. */
+/* Reads domains, among them "hull": everything within a distance of the vessels of a tree. The
+ * metadata of a tree stores its domain as the same text. */
 #include "job/tree/tree_domain.h"
 
 #include "treeio/treeio.h"
 #include <stdlib.h>
 #include <string.h>
 
-static const char hull_mark[] = "hull";
+static const char hull_prefix[] = "hull";
 
 static Status hull_of(const Tree *tree, double mm, const char *path, Domain *domain, Err *err)
 {
@@ -34,7 +35,7 @@ static Status hull_of_file(const char *path, double mm, Domain *domain, Err *err
 }
 
 /* Returns true if the text ends with a position, @X,Y or @X,Y,Z. */
-static bool has_place(const char *text)
+static bool has_position(const char *text)
 {
     const char *at = strrchr(text, '@');
     double x;
@@ -44,16 +45,17 @@ static bool has_place(const char *text)
     return number_take(&at, &x) && *at == ',';
 }
 
-Status tree_domain_parse(const char *spec, const Tree *from, const char *from_path, Domain *domain,
-                         Err *err)
+/* The text is hull:MM, hull:FILE,MM, or a domain that domain_parse reads. */
+Status tree_domain_parse(const char *spec, const Tree *from_tree, const char *from_path,
+                         Domain *domain, Err *err)
 {
-    size_t skip = sizeof hull_mark - 1;
-    if (strncmp(spec, hull_mark, skip) != 0 || (spec[skip] && spec[skip] != ':'))
+    size_t skip = sizeof hull_prefix - 1;
+    if (strncmp(spec, hull_prefix, skip) != 0 || (spec[skip] && spec[skip] != ':'))
         return domain_parse(domain, spec, err);
     skip += spec[skip] == ':';
     const char *values = spec + skip, *comma = strrchr(values, ',');
     double mm;
-    if (has_place(values))
+    if (has_position(values))
         return err_set(err, STATUS_USAGE,
                        "--domain %s: a hull surrounds its tree and cannot be placed with @", spec);
     if (!number_parse(comma ? comma + 1 : values, &mm) || comma == values)
@@ -61,12 +63,12 @@ Status tree_domain_parse(const char *spec, const Tree *from, const char *from_pa
                        "--domain %s: use hull:MM (everything within MM of the --from tree) or "
                        "hull:FILE,MM (of the tree in a file)",
                        spec);
-    if (!comma && !from)
+    if (!comma && !from_tree)
         return err_set(err, STATUS_USAGE,
                        "--domain %s needs the tree of --from; specify --from, or use hull:FILE,MM",
                        spec);
     if (!comma)
-        return hull_of(from, mm, from_path, domain, err);
+        return hull_of(from_tree, mm, from_path, domain, err);
     char *path = NULL;
     TRY(mem_strdup(&path, values, err));
     path[comma - values] = '\0';
@@ -82,8 +84,8 @@ static bool is_standard_input(const char *spec)
     return file && file[1] == '-' && (!file[2] || file[2] == ',' || file[2] == '@');
 }
 
-/* A domain in a file "-" can be read from standard input once only, on the command line. The
- * metadata of a tree cannot repeat it. */
+/* A domain that came from standard input, the file "-", cannot be read again when the metadata of
+ * its tree names it. */
 Status tree_domain(const Tree *tree, Domain *domain, bool *found, Err *err)
 {
     *found = false;

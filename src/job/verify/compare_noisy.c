@@ -1,5 +1,5 @@
-/* Compares pictures of path tracers. The variance of their noise comes from a file of variances or
- * from several renderings. */
+/* Decides whether two pictures of path tracers differ by more than their noise. The variance of the
+ * noise of a pixel comes from a file of variances, or from several renderings of the scene. */
 #include "job/verify/compare_parts.h"
 
 #include <stdlib.h>
@@ -22,7 +22,7 @@ static Status read_colors(Plane *plane, const char *path, Err *err)
 /* Computes the variance of each value from renderings, whose names are separated by commas. */
 static Status variance_of_renderings(Plane *variance, const char *names, Err *err)
 {
-    enum { FEWEST = 2, MOST = 64 };
+    enum { FEWEST = 2, MOST = 64 }; /* a variance needs two; reason for 64 not recorded */
     Plane planes[MOST] = {{0}};
     size_t n = 0;
     char *copy = NULL, *rest = NULL;

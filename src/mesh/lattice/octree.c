@@ -104,7 +104,7 @@ static bool must_split(const OctreeBuilder *builder, const LocalField *part,
     double usual = builder->size->ratio * bounds->min_radius_mm;
     if (side > usual)
         return true;
-    if (bounds->has_unblended_pair)
+    if (bounds->has_unblended_terms)
         return side > parted_part * usual;
     if (side * bounds->max_normal_difference >
         crease_part * builder->size->bending * bounds->min_radius_mm)

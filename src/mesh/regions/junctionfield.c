@@ -1,25 +1,34 @@
-/* A term is bounded in a ball of radius rho about x. Lengths are in units of 1 / k, and E is the
- * distance of x from the axis. The radial factor is between its values at E + rho and at
- * max(0, E - rho). The axial factor is symmetric about the middle of the segment, where it is
- * largest, and falls on both sides. So in an interval of width 2 rho it is smallest at one of the
- * two ends, and largest at the point nearest to the middle. */
+/* Evaluates the potential field of a junction, and lists the terms that matter in a ball.
+ *
+ * The field is the largest sum over a group of terms. With lengths in units of 1 / k = radius /
+ * sqrt 2, the term of a segment is exp(-E^2) (erf u + erf v) / 2. E is the distance of x from the
+ * axis, and u and v are the distances of x from the two ends along the axis, positive inwards. A
+ * round term is exp(-d^2), where d is the distance of x from the segment. Either all terms of a
+ * field are round or zero is.
+ *
+ * A term is bounded in a ball of radius rho about x. The radial factor exp(-E^2) is between its
+ * values at E + rho and at max(0, E - rho). The axial factor (erf u + erf v) / 2 is symmetric about
+ * the middle of the segment, where it is largest, and falls on both sides. So in an interval of
+ * width 2 rho along the axis, the axial factor is smallest at one of the two ends of the interval,
+ * and largest at the point of the interval that is nearest to the middle of the segment. */
 #include "mesh/regions/junctionfield.h"
 
 #include "mesh/regions/gauss.h"
 #include <float.h>
 #include <stdlib.h>
 
-/* A term below this does not count for FieldBounds.min_radius_mm and has_unblended_pair. Reason for
- * the number not recorded. */
+/* Only terms that may exceed this in the ball count for FieldBounds.min_radius_mm and
+ * has_unblended_terms. Reason for the factor 0.1 not recorded. */
 static const double significant = 0.1 * FIELD_LEVEL;
 /* exp(-x^2) is below 10^-5 beyond this. */
 static const double out_of_reach = 3.4;
-/* Factor on the radius of the ball, because surfaces bend away from the planes that approximate
- * them. Reason for the number not recorded. */
+/* The search for creases enlarges the ball by this factor, because surfaces bend away from the
+ * planes that approximate them. Reason for the number not recorded. */
 static const double crease_slack = 1.2;
-/* In units of the radius: a cap that is less than this outside a capsule counts as inside it,
- * because of rounding. */
+/* A cap that protrudes from a capsule by less than this, in units of the cap's radius, counts as
+ * contained in the capsule: the difference may be a rounding error. */
 static const double cap_rounding = 1e-9;
+/* 1 / sqrt(pi), from the derivative of erf */
 static const double inv_sqrt_pi = 0.56418958354775628695;
 
 PotentialTerm potentialterm_make(Vec3 a, Vec3 b, double radius_mm, uint32_t segment,
@@ -52,6 +61,7 @@ static inline TermPlace place_in(const PotentialTerm *term, Vec3 x)
                        term->k * term->k * vec3_dot(across, across), across};
 }
 
+/* Returns the axial factor of a term. */
 static inline double axial(double u, double v)
 {
     Pair both = erf_pair((Pair){u, v});
@@ -88,39 +98,43 @@ double potentialterm_value(const PotentialTerm *term, Vec3 x)
     return value_at(term, &place);
 }
 
-/* Returns the gradient of a term at a place where the term has this value. */
+/* Returns the gradient of a term, 1/mm. `value` is the term's value at `place`. Beyond
+ * GAUSS_SATURATED erf_pair is constant, so its derivative there is 0. */
 static inline Vec3 term_gradient(const PotentialTerm *term, const TermPlace *place, double value)
 {
     if (term->is_round)
         return vec3_scale(from_nearest(term, place), -2 * term->k * term->k * value);
-    Pair ends = {place->u, place->v}, none = {0, 0};
-    Pair felt = exp_minus_pair(place->e2 + ends * ends);
-    felt = pair_select((PairBits)(pair_abs(ends) < GAUSS_SATURATED), felt, none);
+    Pair ends = {place->u, place->v}, zero = {0, 0};
+    Pair gaussians = exp_minus_pair(place->e2 + ends * ends);
+    gaussians = pair_select((PairBits)(pair_abs(ends) < GAUSS_SATURATED), gaussians, zero);
     return vec3_add_scaled(vec3_scale(place->across, -2 * term->k * term->k * value), term->axis,
-                           term->k * inv_sqrt_pi * (felt[0] - felt[1]));
+                           term->k * inv_sqrt_pi * (gaussians[0] - gaussians[1]));
 }
 
+/* Returns an upper bound of a term in the ball of radius rho, in units of 1 / k, about `place`. */
 static double upper_bound(const PotentialTerm *term, const TermPlace *place, double rho)
 {
     if (term->is_round) {
         double from_segment = fmax(0, sqrt(distance2(place)) - rho);
         return exp_minus(from_segment * from_segment);
     }
-    double across = fmax(0, sqrt(place->e2) - rho), off = 0.5 * (place->v - place->u);
-    double towards = fmin(rho, fabs(off)) * (off > 0 ? 1 : -1);
-    return exp_minus(across * across) * axial(place->u + towards, place->v - towards);
+    double across = fmax(0, sqrt(place->e2) - rho), to_middle = 0.5 * (place->v - place->u);
+    double shift = fmin(rho, fabs(to_middle)) * (to_middle > 0 ? 1 : -1);
+    return exp_minus(across * across) * axial(place->u + shift, place->v - shift);
 }
 
+/* Returns a lower bound of a term in the ball of radius rho, in units of 1 / k, about `place`. */
 static double lower_bound(const PotentialTerm *term, const TermPlace *place, double rho)
 {
     double across = sqrt(term->is_round ? distance2(place) : place->e2) + rho;
     if (across > 2)
-        return 0; /* the bound would be below 0.02, which is too small to matter in a sum */
+        return 0; /* the bound would be below exp(-4) < 0.02, which is too small to matter in a sum
+                   */
     if (term->is_round)
         return exp_minus(across * across);
-    double one = axial(place->u + rho, place->v - rho),
-           other = axial(place->u - rho, place->v + rho);
-    return exp_minus(across * across) * fmax(0, fmin(one, other));
+    double at_b = axial(place->u + rho, place->v - rho),
+           at_a = axial(place->u - rho, place->v + rho);
+    return exp_minus(across * across) * fmax(0, fmin(at_b, at_a));
 }
 
 void localfieldpool_release(LocalFieldPool *pool)
@@ -131,7 +145,7 @@ void localfieldpool_release(LocalFieldPool *pool)
     *pool = (LocalFieldPool){0};
 }
 
-static Status reserve_part(LocalFieldPool *pool, size_t terms, size_t words, Err *err)
+static Status reserve_local(LocalFieldPool *pool, size_t terms, size_t words, Err *err)
 {
     TRY(mem_reserve(&pool->terms, &pool->term_capacity, pool->n_terms + terms, sizeof *pool->terms,
                     "terms of a junction", err));
@@ -145,8 +159,8 @@ Status localfield_refuse(Err *err)
                    "more than %d segments meet at one point; leave some out", MAX_LOCAL_TERMS);
 }
 
-/* Returns a part without groups at the top of the pool. The caller appends its terms and groups. */
-static LocalField begin_part(const LocalFieldPool *pool, uint32_t n_terms)
+/* Returns an empty LocalField at the top of the pool. The caller appends its terms and groups. */
+static LocalField begin_local(const LocalFieldPool *pool, uint32_t n_terms)
 {
     return (LocalField){(uint32_t)pool->n_terms, n_terms, (uint32_t)pool->n_groups, 0,
                         (n_terms + 63) / 64};
@@ -154,9 +168,9 @@ static LocalField begin_part(const LocalFieldPool *pool, uint32_t n_terms)
 
 Status localfield_all(const JunctionField *field, LocalFieldPool *pool, LocalField *out, Err *err)
 {
-    LocalField part = begin_part(pool, field->n_terms);
-    size_t words = (size_t)part.words * field->n_groups;
-    TRY(reserve_part(pool, field->n_terms, words, err));
+    LocalField local = begin_local(pool, field->n_terms);
+    size_t words = (size_t)local.words * field->n_groups;
+    TRY(reserve_local(pool, field->n_terms, words, err));
     for (uint32_t i = 0; i < field->n_terms; i++)
         pool->terms[pool->n_terms++] = i;
     uint64_t *groups = &pool->groups[pool->n_groups];
@@ -164,31 +178,32 @@ Status localfield_all(const JunctionField *field, LocalFieldPool *pool, LocalFie
         groups[i] = 0;
     for (uint32_t g = 0; g < field->n_groups; g++)
         for (uint32_t i = field->first[g]; i < field->first[g + 1]; i++)
-            groups[g * part.words + field->members[i] / 64] |= (uint64_t)1
-                                                               << field->members[i] % 64;
+            groups[g * local.words + field->members[i] / 64] |= (uint64_t)1
+                                                                << field->members[i] % 64;
     pool->n_groups += words;
-    part.n_groups = field->n_groups;
-    *out = part;
+    local.n_groups = field->n_groups;
+    *out = local;
     return STATUS_OK;
 }
 
-Status localfield_copy(const LocalFieldPool *from, const LocalField *part, LocalFieldPool *to,
+Status localfield_copy(const LocalFieldPool *from, const LocalField *local, LocalFieldPool *to,
                        LocalField *out, Err *err)
 {
-    size_t words = (size_t)part->words * part->n_groups;
-    TRY(reserve_part(to, part->n_terms, words, err));
-    LocalField copy = begin_part(to, part->n_terms);
-    copy.n_groups = part->n_groups;
-    for (uint32_t i = 0; i < part->n_terms; i++)
-        to->terms[to->n_terms++] = from->terms[part->first_term + i];
+    size_t words = (size_t)local->words * local->n_groups;
+    TRY(reserve_local(to, local->n_terms, words, err));
+    LocalField copy = begin_local(to, local->n_terms);
+    copy.n_groups = local->n_groups;
+    for (uint32_t i = 0; i < local->n_terms; i++)
+        to->terms[to->n_terms++] = from->terms[local->first_term + i];
     for (size_t i = 0; i < words; i++)
-        to->groups[to->n_groups++] = from->groups[part->first_group + i];
+        to->groups[to->n_groups++] = from->groups[local->first_group + i];
     *out = copy;
     return STATUS_OK;
 }
 
 /* Groups are not compared with each other if there are more than this, because the time of the
- * comparisons grows with the square of their number. */
+ * comparisons grows with the square of their number. Groups that are subsets of others then stay,
+ * which costs time but does not change the field. Reason for 256 not recorded. */
 enum { MOST_COMPARED = 256 };
 
 static bool is_subset(const uint64_t *a, const uint64_t *b, uint32_t words)
@@ -199,38 +214,40 @@ static bool is_subset(const uint64_t *a, const uint64_t *b, uint32_t words)
     return true;
 }
 
-/* Adds the group at the top of the pool to the part, unless it is a subset of a group of the part.
- * Removes the groups that are subsets of it. */
-static void add_group(LocalFieldPool *pool, LocalField *part)
+/* Adds the group at the top of the pool to a local field, unless the group is a subset of a group
+ * of the local field. Removes the groups that are subsets of the added group. */
+static void add_group(LocalFieldPool *pool, LocalField *local)
 {
-    uint64_t *groups = &pool->groups[part->first_group];
-    uint32_t words = part->words, kept = 0;
-    uint64_t *added = &groups[(size_t)part->n_groups * words];
-    if (part->n_groups >= MOST_COMPARED) {
+    uint64_t *groups = &pool->groups[local->first_group];
+    uint32_t words = local->words, kept = 0;
+    uint64_t *added = &groups[(size_t)local->n_groups * words];
+    if (local->n_groups >= MOST_COMPARED) {
         pool->n_groups += words;
-        part->n_groups++;
+        local->n_groups++;
         return;
     }
-    for (uint32_t g = 0; g < part->n_groups; g++)
+    for (uint32_t g = 0; g < local->n_groups; g++)
         if (is_subset(added, &groups[(size_t)g * words], words))
             return;
-    for (uint32_t g = 0; g <= part->n_groups; g++) {
-        if (g < part->n_groups && is_subset(&groups[(size_t)g * words], added, words))
+    for (uint32_t g = 0; g <= local->n_groups; g++) {
+        if (g < local->n_groups && is_subset(&groups[(size_t)g * words], added, words))
             continue;
         for (uint32_t i = 0; i < words; i++)
             groups[(size_t)kept * words + i] = groups[(size_t)g * words + i];
         kept++;
     }
-    part->n_groups = kept;
-    pool->n_groups = part->first_group + (size_t)kept * words;
+    local->n_groups = kept;
+    pool->n_groups = local->first_group + (size_t)kept * words;
 }
 
-/* Reduces the groups of `part` to the terms that the pool's work lists. */
-static Status narrow_groups(LocalFieldPool *pool, const LocalField *part, LocalField *out, Err *err)
+/* Restricts each group of `local` to the terms listed in pool->work, and appends it to *out. Bit i
+ * of a restricted group stands for pool->work[i]. */
+static Status narrow_groups(LocalFieldPool *pool, const LocalField *local, LocalField *out,
+                            Err *err)
 {
-    for (uint32_t g = 0; g < part->n_groups; g++) {
-        TRY(reserve_part(pool, 0, out->words, err));
-        const uint64_t *group = &pool->groups[part->first_group + (size_t)g * part->words];
+    for (uint32_t g = 0; g < local->n_groups; g++) {
+        TRY(reserve_local(pool, 0, out->words, err));
+        const uint64_t *group = &pool->groups[local->first_group + (size_t)g * local->words];
         uint64_t *narrow = &pool->groups[pool->n_groups];
         for (uint32_t i = 0; i < out->words; i++)
             narrow[i] = 0;
@@ -242,7 +259,7 @@ static Status narrow_groups(LocalFieldPool *pool, const LocalField *part, LocalF
     return STATUS_OK;
 }
 
-/* Returns the sum over a group of numbers that are `stride` doubles apart. */
+/* Returns the sum of the values of a group's terms. Term i has values[i * stride]. */
 static double group_sum(const uint64_t *group, uint32_t words, const double *values, size_t stride)
 {
     double sum = 0;
@@ -252,19 +269,20 @@ static double group_sum(const uint64_t *group, uint32_t words, const double *val
     return sum;
 }
 
-static const uint64_t *group_of(const LocalFieldPool *pool, const LocalField *part, uint32_t number)
+static const uint64_t *group_of(const LocalFieldPool *pool, const LocalField *local, uint32_t index)
 {
-    return &pool->groups[part->first_group + (size_t)number * part->words];
+    return &pool->groups[local->first_group + (size_t)index * local->words];
 }
 
 /* Returns the group with the highest lower bound of its sum in the ball. */
-static uint32_t leading_group(const LocalFieldPool *pool, const LocalField *part)
+static uint32_t leading_group(const LocalFieldPool *pool, const LocalField *local)
 {
     const size_t stride = sizeof *pool->work / sizeof pool->work->lower;
     double most = -1;
     uint32_t best = 0;
-    for (uint32_t g = 0; g < part->n_groups; g++) {
-        double lower = group_sum(group_of(pool, part, g), part->words, &pool->work->lower, stride);
+    for (uint32_t g = 0; g < local->n_groups; g++) {
+        double lower =
+            group_sum(group_of(pool, local, g), local->words, &pool->work->lower, stride);
         if (lower > most) {
             most = lower;
             best = g;
@@ -273,116 +291,125 @@ static uint32_t leading_group(const LocalFieldPool *pool, const LocalField *part
     return best;
 }
 
-/* Returns true if the sum over group `a` is below the sum over `b` in all of the ball. Terms of
- * both groups are left out. */
-static bool is_below(const LocalFieldPool *pool, const LocalField *part, const uint64_t *a,
+/* Returns true if the sum over group `a` is certainly below the sum over group `b` everywhere in
+ * the ball. Terms that are in both groups cancel, so they are left out. */
+static bool is_below(const LocalFieldPool *pool, const LocalField *local, const uint64_t *a,
                      const uint64_t *b)
 {
     const size_t stride = sizeof *pool->work / sizeof pool->work->lower;
     uint64_t only_a[MAX_LOCAL_TERMS / 64], only_b[MAX_LOCAL_TERMS / 64];
-    for (uint32_t w = 0; w < part->words; w++) {
+    for (uint32_t w = 0; w < local->words; w++) {
         only_a[w] = a[w] & ~b[w];
         only_b[w] = b[w] & ~a[w];
     }
-    return group_sum(only_a, part->words, &pool->work->upper, stride) <
-           group_sum(only_b, part->words, &pool->work->lower, stride);
+    return group_sum(only_a, local->words, &pool->work->upper, stride) <
+           group_sum(only_b, local->words, &pool->work->lower, stride);
 }
 
-/* Returns true if two terms that may matter share no group. Only groups whose sum may be the
- * largest somewhere in the ball are looked at. */
-static bool has_parted(const LocalFieldPool *pool, const LocalField *part)
+/* Returns true if no group contains all the terms that matter. A term matters if it may exceed
+ * `significant`, and if the sum of one of its groups may be the largest somewhere in the ball. */
+static bool has_unblended_terms(const LocalFieldPool *pool, const LocalField *local)
 {
-    if (part->n_terms > MAX_LOCAL_TERMS)
+    if (local->n_terms > MAX_LOCAL_TERMS)
         return false;
     uint64_t matters[MAX_LOCAL_TERMS / 64] = {0};
-    const uint64_t *leader = group_of(pool, part, leading_group(pool, part));
-    for (uint32_t g = 0; g < part->n_groups; g++) {
-        const uint64_t *group = group_of(pool, part, g);
-        for (uint32_t w = 0; w < part->words && !is_below(pool, part, group, leader); w++)
+    const uint64_t *leader = group_of(pool, local, leading_group(pool, local));
+    for (uint32_t g = 0; g < local->n_groups; g++) {
+        const uint64_t *group = group_of(pool, local, g);
+        for (uint32_t w = 0; w < local->words && !is_below(pool, local, group, leader); w++)
             matters[w] |= group[w];
     }
-    for (uint32_t i = 0; i < part->n_terms; i++)
+    for (uint32_t i = 0; i < local->n_terms; i++)
         if (pool->work[i].upper <= significant)
             matters[i / 64] &= ~((uint64_t)1 << i % 64);
-    for (uint32_t g = 0; g < part->n_groups; g++)
-        if (is_subset(matters, group_of(pool, part, g), part->words))
+    for (uint32_t g = 0; g < local->n_groups; g++)
+        if (is_subset(matters, group_of(pool, local, g), local->words))
             return false;
     return true;
 }
 
-/* A surface that may pass a ball: its normal, and the distance of the centre outside it, mm. */
+/* A plane that approximates a surface that may pass through a ball. */
 typedef struct NearSurface {
     Vec3 normal;
-    double outside;
+    double outside; /* signed distance of the ball's centre from the plane, mm; above 0 outside */
 } NearSurface;
 
-/* Returns true if two surfaces, taken as planes, meet in a ball of this radius, or face each other
- * in it. */
+/* Returns true if two planes meet in a ball of this radius, or if their normals differ by more than
+ * 120 degrees, as on the two sides of a narrow gap. Reason for the angle not recorded. */
 static bool surfaces_meet(const NearSurface *a, const NearSurface *b, double radius_mm)
 {
     double cosine = vec3_dot(a->normal, b->normal);
-    double apart = a->outside * a->outside + b->outside * b->outside -
-                   2 * cosine * a->outside * b->outside; /* (distance * sine)^2 */
-    return cosine < -0.5 || apart <= (1 - cosine * cosine) * radius_mm * radius_mm;
+    /* (distance of the centre from the line where the planes meet * sine of their angle)^2 */
+    double line_distance2 =
+        a->outside * a->outside + b->outside * b->outside - 2 * cosine * a->outside * b->outside;
+    return cosine < -0.5 || line_distance2 <= (1 - cosine * cosine) * radius_mm * radius_mm;
 }
 
-/* Returns how far the round cap at one end of a capsule is outside the capsule `cover`, along the
- * outward direction of the end, in units of the radius. A capsule that continues the first one
- * covers its cap, all but a ring if the radius decreases or the direction turns. 1: not covered. */
-static double cap_beside(Vec3 end, Vec3 outward, double radius_mm, const PotentialTerm *cover)
+/* Returns the height from which on the capsule `cover` contains the round cap at one end of another
+ * capsule. Heights are in units of the cap's radius, along `outward`; 0: `cover` contains the whole
+ * cap; 1: none of it.
+ *
+ * The cap's ball protrudes from `cover` by s radii. At height h the cap's circle has the radius
+ * sqrt(1 - h^2). It is in a `cover` of the same direction if this is at most 1 - s, so from
+ * h = sqrt(2 s) on. An angle between the two axes raises the height by at most the sine of the
+ * angle. The length of `cover` is not taken into account. */
+static double uncovered_height(Vec3 end, Vec3 outward, double radius_mm, const PotentialTerm *cover)
 {
     const TermPlace place = place_in(cover, end);
-    const double short_of =
+    const double protrusion =
         (sqrt(distance2(&place)) / cover->k + radius_mm - cover->radius_mm) / radius_mm;
-    if (short_of < cap_rounding)
+    if (protrusion < cap_rounding)
         return 0;
     const double cosine = vec3_dot(outward, cover->axis) * (place.u < place.v ? 1 : -1);
-    if (short_of > 0.5 || cosine <= 0)
-        return 1;
-    return fmin(1, sqrt(2 * short_of) + sqrt(fmax(0, 1 - cosine * cosine)));
+    if (protrusion > 0.5 || cosine <= 0)
+        return 1; /* sqrt(2 * 0.5) = 1, or `cover` does not continue outwards */
+    return fmin(1, sqrt(2 * protrusion) + sqrt(fmax(0, 1 - cosine * cosine)));
 }
 
-/* Returns the surface of the i-th term. Beyond an end of the segment, the surface is the cap's
- * tangent plane, or the last tangent plane that no other term covers. `outside` is HUGE_VAL if
- * other terms cover the whole part of the surface that may be in the ball. */
+/* Returns the plane of the i-th term, a capsule. The plane is tangent at the capsule's point that
+ * is nearest to `center`. If another capsule covers this point of a cap, the plane is tangent at
+ * the edge of the cap's uncovered part. `outside` is HUGE_VAL if the ball does not reach that part.
+ */
 static NearSurface find_surface(const JunctionField *field, const LocalFieldPool *pool,
-                                const LocalField *part, uint32_t i, Vec3 center, double radius_mm)
+                                const LocalField *local, uint32_t i, Vec3 center, double radius_mm)
 {
-    const uint32_t *terms = &pool->terms[part->first_term];
+    const uint32_t *terms = &pool->terms[local->first_term];
     const PotentialTerm *term = &field->terms[terms[i]];
     const TermPlace place = place_in(term, center);
     const double beyond = fmax(0, fmax(-place.u, -place.v)) / term->k;
-    const Vec3 from = from_nearest(term, &place);
-    double cap = 1;
-    NearSurface surface = {vec3_normalized(from), vec3_length(from) - term->radius_mm};
+    const Vec3 from_axis = from_nearest(term, &place);
+    double uncovered = 1;
+    NearSurface surface = {vec3_normalized(from_axis), vec3_length(from_axis) - term->radius_mm};
     if (beyond == 0)
         return surface;
     const Vec3 outward = place.u < 0 ? vec3_scale(term->axis, -1) : term->axis;
-    for (uint32_t k = 0; k < part->n_terms; k++)
+    for (uint32_t k = 0; k < local->n_terms; k++)
         if (k != i)
-            cap = fmin(cap, cap_beside(vec3_sub(center, from), outward, term->radius_mm,
-                                       &field->terms[terms[k]]));
-    if (beyond <= cap * vec3_length(from))
+            uncovered = fmin(uncovered, uncovered_height(vec3_sub(center, from_axis), outward,
+                                                         term->radius_mm, &field->terms[terms[k]]));
+    if (beyond <= uncovered * vec3_length(from_axis))
         return surface;
-    surface.normal = vec3_add_scaled(vec3_scale(vec3_normalized(place.across), sqrt(1 - cap * cap)),
-                                     outward, cap);
-    surface.outside = beyond <= cap * term->radius_mm + radius_mm
-                          ? vec3_dot(from, surface.normal) - term->radius_mm
+    surface.normal =
+        vec3_add_scaled(vec3_scale(vec3_normalized(place.across), sqrt(1 - uncovered * uncovered)),
+                        outward, uncovered);
+    surface.outside = beyond <= uncovered * term->radius_mm + radius_mm
+                          ? vec3_dot(from_axis, surface.normal) - term->radius_mm
                           : HUGE_VAL;
     return surface;
 }
 
-/* Returns the maximum difference of the normals of surfaces that meet in the ball. */
+/* Returns the maximum of |n1 - n2|, in [0, 2], over the unit normals of the capsules' surfaces that
+ * meet in the ball. Only terms that may equal FIELD_LEVEL in the ball have a surface there. */
 static double find_crease(const JunctionField *field, const LocalFieldPool *pool,
-                          const LocalField *part, Vec3 center, double radius_mm)
+                          const LocalField *local, Vec3 center, double radius_mm)
 {
     NearSurface surfaces[MAX_LOCAL_TERMS];
     uint32_t n = 0;
     double most = 0;
-    for (uint32_t i = 0; i < part->n_terms && n < MAX_LOCAL_TERMS; i++) {
+    for (uint32_t i = 0; i < local->n_terms && n < MAX_LOCAL_TERMS; i++) {
         if (pool->work[i].upper < FIELD_LEVEL || pool->work[i].lower > FIELD_LEVEL)
             continue;
-        surfaces[n] = find_surface(field, pool, part, i, center, crease_slack * radius_mm);
+        surfaces[n] = find_surface(field, pool, local, i, center, crease_slack * radius_mm);
         if (surfaces[n].outside == HUGE_VAL)
             continue;
         for (uint32_t k = 0; k < n; k++)
@@ -394,46 +421,46 @@ static double find_crease(const JunctionField *field, const LocalFieldPool *pool
 }
 
 static void sum_bounds(const JunctionField *field, const LocalFieldPool *pool,
-                       const LocalField *part, Vec3 center, double radius_mm, FieldBounds *bounds)
+                       const LocalField *local, Vec3 center, double radius_mm, FieldBounds *bounds)
 {
     *bounds = (FieldBounds){.min_radius_mm = HUGE_VAL};
-    for (uint32_t i = 0; i < part->n_terms; i++) {
-        uint32_t number = pool->terms[part->first_term + i];
-        double radius = field->terms[number].radius_mm, upper = pool->work[i].upper;
+    for (uint32_t i = 0; i < local->n_terms; i++) {
+        uint32_t index = pool->terms[local->first_term + i];
+        double radius = field->terms[index].radius_mm, upper = pool->work[i].upper;
         bounds->sum_upper += upper;
         if (upper > bounds->largest_upper) {
             bounds->largest_upper = upper;
-            bounds->largest_term = number;
+            bounds->largest_term = index;
         }
         if (upper > significant)
             bounds->min_radius_mm = fmin(bounds->min_radius_mm, radius);
     }
-    for (uint32_t g = 0; g < part->n_groups; g++) {
-        const uint64_t *group = &pool->groups[part->first_group + (size_t)g * part->words];
+    for (uint32_t g = 0; g < local->n_groups; g++) {
+        const uint64_t *group = &pool->groups[local->first_group + (size_t)g * local->words];
         const TermBounds *work = pool->work;
         const size_t stride = sizeof *work / sizeof work->upper;
-        double upper = group_sum(group, part->words, &work->upper, stride);
-        double lower = group_sum(group, part->words, &work->lower, stride);
+        double upper = group_sum(group, local->words, &work->upper, stride);
+        double lower = group_sum(group, local->words, &work->lower, stride);
         bounds->upper = fmax(bounds->upper, upper);
         bounds->lower = fmax(bounds->lower, lower);
     }
     bool is_round = field->n_terms > 0 && field->terms[0].is_round;
     if (is_round)
-        bounds->max_normal_difference = find_crease(field, pool, part, center, radius_mm);
+        bounds->max_normal_difference = find_crease(field, pool, local, center, radius_mm);
     else
-        bounds->has_unblended_pair = part->n_groups > 1 && has_parted(pool, part);
+        bounds->has_unblended_terms = local->n_groups > 1 && has_unblended_terms(pool, local);
 }
 
-Status localfield_narrow(const JunctionField *field, LocalFieldPool *pool, const LocalField *part,
+Status localfield_narrow(const JunctionField *field, LocalFieldPool *pool, const LocalField *local,
                          const FieldBalls *balls, NarrowField *out, Err *err)
 {
-    TRY(reserve_part(pool, part->n_terms, 0, err));
-    TRY(mem_reserve(&pool->work, &pool->work_capacity, part->n_terms, sizeof *pool->work, "terms",
+    TRY(reserve_local(pool, local->n_terms, 0, err));
+    TRY(mem_reserve(&pool->work, &pool->work_capacity, local->n_terms, sizeof *pool->work, "terms",
                     err));
     TermBounds *work = pool->work;
-    LocalField narrow = begin_part(pool, 0);
-    for (uint32_t i = 0; i < part->n_terms; i++) {
-        uint32_t index = pool->terms[part->first_term + i];
+    LocalField narrow = begin_local(pool, 0);
+    for (uint32_t i = 0; i < local->n_terms; i++) {
+        uint32_t index = pool->terms[local->first_term + i];
         const PotentialTerm *term = &field->terms[index];
         TermPlace place = place_in(term, balls->center);
         double reach = out_of_reach + term->k * balls->radius_mm, inner = term->k * balls->inner_mm;
@@ -444,38 +471,39 @@ Status localfield_narrow(const JunctionField *field, LocalFieldPool *pool, const
         pool->terms[pool->n_terms++] = index;
     }
     narrow.words = (narrow.n_terms + 63) / 64;
-    TRY(narrow_groups(pool, part, &narrow, err));
+    TRY(narrow_groups(pool, local, &narrow, err));
     sum_bounds(field, pool, &narrow, balls->center, balls->inner_mm, &out->bounds);
     out->local = narrow;
     return STATUS_OK;
 }
 
-/* Finds the group with the largest sum. values[] has the values of the part's terms. */
-static FieldValue largest_group(const LocalFieldPool *pool, const LocalField *part,
+/* Finds the group with the largest sum. values[i] is the value of the local field's i-th term. */
+static FieldValue largest_group(const LocalFieldPool *pool, const LocalField *local,
                                 const double *values)
 {
     FieldValue best = {.phi = 0};
-    for (uint32_t g = 0; g < part->n_groups; g++) {
-        const uint64_t *group = &pool->groups[part->first_group + (size_t)g * part->words];
-        double sum = group_sum(group, part->words, values, 1);
+    for (uint32_t g = 0; g < local->n_groups; g++) {
+        const uint64_t *group = &pool->groups[local->first_group + (size_t)g * local->words];
+        double sum = group_sum(group, local->words, values, 1);
         if (sum > best.phi)
             best = (FieldValue){.phi = sum, .group = g};
     }
     return best;
 }
 
+/* The caller has checked that n_terms <= MAX_LOCAL_TERMS. Without groups the field is 0. */
 FieldValue localfield_value(const JunctionField *field, const LocalFieldPool *pool,
-                            const LocalField *part, Vec3 x)
+                            const LocalField *local, Vec3 x)
 {
     double values[MAX_LOCAL_TERMS], sum = 0;
-    const uint32_t *terms = &pool->terms[part->first_term];
-    for (uint32_t i = 0; i < part->n_terms && part->n_groups == 1; i++)
+    const uint32_t *terms = &pool->terms[local->first_term];
+    for (uint32_t i = 0; i < local->n_terms && local->n_groups == 1; i++)
         sum += potentialterm_value(&field->terms[terms[i]], x);
-    if (part->n_groups < 2)
+    if (local->n_groups < 2)
         return (FieldValue){.phi = sum};
-    for (uint32_t i = 0; i < part->n_terms; i++)
+    for (uint32_t i = 0; i < local->n_terms; i++)
         values[i] = potentialterm_value(&field->terms[terms[i]], x);
-    return largest_group(pool, part, values);
+    return largest_group(pool, local, values);
 }
 
 /* The gradient of a sum of terms, and its largest term so far. */
@@ -485,7 +513,7 @@ typedef struct GradientSum {
     uint32_t largest_term;
 } GradientSum;
 
-static inline void add_term(GradientSum *sum, const PotentialTerm *term, uint32_t number,
+static inline void add_term(GradientSum *sum, const PotentialTerm *term, uint32_t index,
                             const TermPlace *place, double value)
 {
     if (value == 0)
@@ -494,25 +522,25 @@ static inline void add_term(GradientSum *sum, const PotentialTerm *term, uint32_
     sum->gradient = vec3_add(sum->gradient, term_gradient(term, place, value));
     if (value > sum->largest) {
         sum->largest = value;
-        sum->largest_term = number;
+        sum->largest_term = index;
     }
 }
 
 /* Finds the group with the largest sum, and then the gradient of this sum alone. */
 static FieldValue gradient_of_largest(const JunctionField *field, const LocalFieldPool *pool,
-                                      const LocalField *part, Vec3 x, Vec3 *gradient)
+                                      const LocalField *local, Vec3 x, Vec3 *gradient)
 {
     double values[MAX_LOCAL_TERMS];
     TermPlace places[MAX_LOCAL_TERMS];
-    const uint32_t *terms = &pool->terms[part->first_term];
+    const uint32_t *terms = &pool->terms[local->first_term];
     GradientSum sum = {.largest = 0};
-    for (uint32_t i = 0; i < part->n_terms; i++) {
+    for (uint32_t i = 0; i < local->n_terms; i++) {
         places[i] = place_in(&field->terms[terms[i]], x);
         values[i] = value_at(&field->terms[terms[i]], &places[i]);
     }
-    FieldValue best = largest_group(pool, part, values);
-    const uint64_t *group = group_of(pool, part, best.group);
-    for (uint32_t i = 0; i < part->n_terms; i++)
+    FieldValue best = largest_group(pool, local, values);
+    const uint64_t *group = group_of(pool, local, best.group);
+    for (uint32_t i = 0; i < local->n_terms; i++)
         if (group[i / 64] >> i % 64 & 1)
             add_term(&sum, &field->terms[terms[i]], terms[i], &places[i], values[i]);
     *gradient = sum.gradient;
@@ -520,15 +548,15 @@ static FieldValue gradient_of_largest(const JunctionField *field, const LocalFie
     return best;
 }
 
-/* Most parts have one group, which holds all terms. */
+/* Most local fields have one group, which holds all terms. Their sums need no arrays. */
 FieldValue localfield_gradient(const JunctionField *field, const LocalFieldPool *pool,
-                               const LocalField *part, Vec3 x, Vec3 *gradient)
+                               const LocalField *local, Vec3 x, Vec3 *gradient)
 {
-    const uint32_t *terms = &pool->terms[part->first_term];
+    const uint32_t *terms = &pool->terms[local->first_term];
     GradientSum sum = {.largest = 0};
-    if (part->n_groups > 1)
-        return gradient_of_largest(field, pool, part, x, gradient);
-    for (uint32_t i = 0; i < part->n_terms && part->n_groups == 1; i++) {
+    if (local->n_groups > 1)
+        return gradient_of_largest(field, pool, local, x, gradient);
+    for (uint32_t i = 0; i < local->n_terms && local->n_groups == 1; i++) {
         const PotentialTerm *term = &field->terms[terms[i]];
         TermPlace place = place_in(term, x);
         add_term(&sum, term, terms[i], &place, value_at(term, &place));
@@ -537,6 +565,9 @@ FieldValue localfield_gradient(const JunctionField *field, const LocalFieldPool 
     return (FieldValue){.phi = sum.phi, .largest_term = sum.largest_term};
 }
 
+/* A lone vessel of radius r has phi = exp(-2 (d / r)^2) at the distance d from its axis, so the
+ * result is 2 (d / r - 1). Clamping keeps the logarithm finite where phi is 0, and the root real
+ * where blended terms sum to more than 1. Reasons for 1e-12 and 0.9 not recorded. */
 double field_height(double phi)
 {
     return sqrt(-2 * elementary_log(fmin(fmax(phi, 1e-12), 0.9))) - 2;

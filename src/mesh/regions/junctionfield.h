@@ -94,7 +94,8 @@ typedef struct FieldBounds {
     uint32_t largest_term; /* index in the field of the term with that bound */
     double min_radius_mm; /* smallest radius of the terms that may exceed FIELD_LEVEL / 10; HUGE_VAL
                            * if there is no such term */
-    bool has_unblended_pair;      /* two such terms share no group; false for BODY_ROUND */
+    bool has_unblended_terms;     /* no group contains all such terms that are in a group whose sum
+                                   * may be the largest in the ball; false for BODY_ROUND */
     double max_normal_difference; /* BODY_ROUND: maximum of |n1 - n2| over the unit normals of
                                    * surfaces that may meet in the ball; else 0 */
 } FieldBounds;

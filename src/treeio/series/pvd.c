@@ -1,6 +1,8 @@
-/* Reads ParaView's index of a time series: a list of files, each with the tree at one moment. The
- * first file gives the nodes. Each array becomes a time series, one column NAME_TIME per moment
- * [tree/series.h]. An array with the same values at all moments becomes one column NAME. */
+/* Reads ParaView's index of a time series (PVD): a list of files, each with the tree at one moment.
+ * All files must have the same nodes, parents and names of arrays. Positions, radii, types, links
+ * and flow shares are those of the earliest moment; those of later moments are ignored. Each array
+ * becomes a time series, one column NAME_TIME per moment [tree/series.h]. An array with the same
+ * values at all moments becomes one column NAME. */
 #include "treeio/formats.h"
 #include "treeio/treeio.h"
 #include "treeio/xml.h"
@@ -33,9 +35,9 @@ static void release(Collection *collection)
     ARRAY_RELEASE(&collection->moments);
 }
 
-/* Finds the path of `file`, which the index names relative to its own folder. A file called "-" is
- * "./-": only the command line means standard input by "-". */
-static Status beside(const char *index, const char *file, char **out, Err *err)
+/* Finds the path of `file`, which the index names relative to its own folder. A file named "-" is
+ * read as "./-", because "-" means standard input on the command line only. */
+static Status path_beside(const char *index, const char *file, char **out, Err *err)
 {
     if (*file == '/')
         return mem_strdup(out, file, err);
@@ -63,7 +65,7 @@ static Status begin_element(void *context, Xml *xml, const XmlElement *element, 
         return err_set(err, STATUS_INPUT,
                        "'%.60s' is a PVD file; a PVD file can only refer to trees", file);
     TRY(ARRAY_RESERVE(&collection->moments, 1, "moments", err));
-    TRY(beside(collection->name, file, &made.path, err));
+    TRY(path_beside(collection->name, file, &made.path, err));
     collection->moments.items[collection->moments.n++] = made;
     return STATUS_OK;
 }
@@ -75,18 +77,19 @@ static int by_time(const void *a, const void *b)
     return order ? order : (x->line > y->line) - (x->line < y->line);
 }
 
-/* Checks that the tree has the nodes and the columns of the first one. */
+/* Checks that the tree has the node ids, the parents and the names of columns that the tree of the
+ * earliest moment has. */
 static Status check_moment(const Collection *collection, const Moment *moment, Err *err)
 {
-    const Moment *of_first = &collection->moments.items[0];
-    const Tree *first = &of_first->tree, *tree = &moment->tree;
+    const Moment *earliest = &collection->moments.items[0];
+    const Tree *first = &earliest->tree, *tree = &moment->tree;
     if (tree->n != first->n ||
         memcmp(tree->parent, first->parent, tree->n * sizeof *tree->parent) != 0 ||
         memcmp(tree->id, first->id, tree->n * sizeof *tree->id) != 0)
         return err_set(
             err, STATUS_INPUT,
             "%s: the tree in %s differs from the tree in %s; all must have the same nodes",
-            collection->name, moment->path, of_first->path);
+            collection->name, moment->path, earliest->path);
     bool same = tree->n_columns == first->n_columns;
     for (size_t k = 0; k < first->n_columns && same; k++)
         same = strcmp(tree->column[k].name, first->column[k].name) == 0;
@@ -94,7 +97,7 @@ static Status check_moment(const Collection *collection, const Moment *moment, E
                 : err_set(err, STATUS_INPUT,
                           "%s: the arrays in %s differ from the arrays in %s; all must have the "
                           "same names",
-                          collection->name, moment->path, of_first->path);
+                          collection->name, moment->path, earliest->path);
 }
 
 /* Refuses pipes and devices: a pipe would wait for a writer, and a device may never end. A missing
@@ -126,7 +129,9 @@ done:
 
 static Status read_moments(Collection *collection, const ReadOptions *options, Err *err)
 {
-    ReadOptions of_moments = {0}; /* units are applied once, to the tree of all moments */
+    /* The options on units are applied once, to the tree of all moments. Radii that a file lacks or
+     * that are not positive must be set when the file is read. */
+    ReadOptions of_moments = {0};
     size_t n = collection->moments.n, untimed = collection->n_untimed;
     if (options) {
         of_moments.radius_mm = options->radius_mm;
@@ -165,20 +170,20 @@ static bool is_constant(const Collection *collection, size_t column)
     return true;
 }
 
-/* Adds a column of the tree at one moment to the builder. source[k] receives the values of column k
- * of the builder. */
+/* Adds a column of the tree at one moment to the builder. Sets source[k] to the values of the
+ * column, borrowed, where k is the column's index in the builder. */
 static Status add_column(TreeBuilder *builder, const Moment *moment, size_t column, bool constant,
                          const double **source, Err *err)
 {
     const TreeColumn *from = &moment->tree.column[column];
     char time[NUMBER_TEXT_SIZE];
     char *name;
-    size_t number = 0;
+    size_t index = 0;
     TRY(mem_printf(&name, err, constant ? "%s" : "%s_%s", from->name,
                    number_text(moment->time, time)));
     Status status;
-    TRY_GOTO(builder_column(builder, name, from->unit, &number, err));
-    source[number] = from->value;
+    TRY_GOTO(builder_column(builder, name, from->unit, &index, err));
+    source[index] = from->value;
 done:
     free(name);
     return status;

@@ -1,11 +1,12 @@
-/* Reads and writes decks of SimVascular's svOneDSolver: one card per line, with the fields that the
- * solver's reader defines (cvOneDOptionsLegacySerializer.cxx).
+/* Reads and writes decks, the input files of SimVascular's svOneDSolver: one card per line, with
+ * the fields that the solver's reader defines (cvOneDOptionsLegacySerializer.cxx).
  *
- * A JOINT card connects the ends of segments, whose nodes may have different positions; these nodes
- * become one point. A segment tapers from its inlet area to its outlet area. Its radius in the tree
- * is that of the outlet, because other formats state the radius at the distal end. Both areas are
- * columns, from which the writer restores them. Cards may come in any order, so the names of
- * segments in joints are looked up after the last card. */
+ * A JOINT card connects ends of segments. The nodes at these ends may differ in position; they
+ * become one point of the graph. A segment tapers from its inlet area to its outlet area. The
+ * segment's radius in the tree is that of the outlet, because other formats state the radius at the
+ * distal end. Both areas are kept as columns of the tree, so that the writer can restore them.
+ * Cards may come in any order, so the names of segments in joints are looked up after the last
+ * card. */
 #include "treeio/comments.h"
 #include "treeio/formats.h"
 #include "treeio/text/dialect.h"
@@ -20,12 +21,12 @@ enum { NODE, SEGMENT, JOINT, JOINT_INLET, JOINT_OUTLET, DATA_TABLE, OTHER_CARDS,
 
 /* The segments that a JOINTINLET or JOINTOUTLET card names. */
 typedef struct SegmentList {
-    size_t first, count; /* in DeckState.word */
+    size_t first, count; /* in DeckState.segment_names */
 } SegmentList;
 
 /* The lists of all cards of one kind, by their names. */
 typedef struct SegmentLists {
-    bool enters; /* blood enters the joint through these segments */
+    bool is_inlet; /* blood is_inlet the joint through these segments */
     Names names;
     ARRAY(SegmentList) list;
 } SegmentLists;
@@ -39,8 +40,8 @@ typedef struct DeckJoint {
 typedef struct DeckState {
     SegmentLists inlets, outlets;
     ARRAY(DeckJoint) joint;
-    ARRAY(char *) word; /* names of the segments of all lists */
-    bool in_table;      /* the next line is in a DATATABLE */
+    ARRAY(char *) segment_names; /* of all lists, one list after another */
+    bool in_table;               /* the next line is in a DATATABLE */
 } DeckState;
 
 static Status read_joint(DialectReader *reader, DialectRow *row, Err *err)
@@ -54,7 +55,7 @@ static Status read_list(DialectReader *reader, DialectRow *row, Err *err)
 {
     DeckState *deck = reader->own;
     SegmentLists *lists = reader->section == JOINT_INLET ? &deck->inlets : &deck->outlets;
-    size_t n = lists->list.n, first = deck->word.n;
+    size_t n = lists->list.n, first = deck->segment_names.n;
     int32_t count = 0;
     TRY(field_integer("number of segments", row->field[2], 1, INT32_MAX, &count, err));
     if ((size_t)count != row->count - 3)
@@ -63,10 +64,12 @@ static Status read_list(DialectReader *reader, DialectRow *row, Err *err)
     TRY(names_add(&lists->names, row->field[1], n, row->line, err));
     TRY(ARRAY_PUSH(&lists->list, "lists of segments", err, (SegmentList){first, (size_t)count}));
     for (size_t k = 3; k < row->count; k++)
-        TRY(ARRAY_PUSH(&deck->word, "segments of joints", err, row->field[k]));
+        TRY(ARRAY_PUSH(&deck->segment_names, "segments of joints", err, row->field[k]));
     return STATUS_OK;
 }
 
+/* Name of the card; the word for it in errors; minimum and maximum number of fields, of which 0
+ * means any number; the element that the card adds; the function that reads its other fields. */
 static const DialectSection cards[CARDS] = {
     [NODE] = {"NODE", "a NODE card", 5, 5, GRAPH_POINTS, NULL},
     [SEGMENT] = {"SEGMENT", "a SEGMENT card", 9, 17, GRAPH_LINES, NULL},
@@ -150,9 +153,10 @@ static Status join_list(DialectReader *reader, const SegmentLists *lists, char *
     TRY(names_find(&lists->names, name, &number, err));
     const SegmentList *list = &lists->list.items[number];
     for (size_t i = 0; i < list->count; i++) {
-        TRY(names_find(&reader->segments, deck->word.items[list->first + i], &number, err));
+        TRY(names_find(&reader->segments, deck->segment_names.items[list->first + i], &number,
+                       err));
         const GraphLine *line = &reader->pending.items[number].line;
-        size_t end = lists->enters ? line->b : line->a;
+        size_t end = lists->is_inlet ? line->b : line->a;
         if (*point == reader->graph->n_points)
             *point = end;
         TRY(graph_join(reader->graph, *point, end, err));
@@ -177,13 +181,13 @@ static void release_lists(SegmentLists *lists)
 
 Status oned_read(Graph *graph, char *bytes, size_t size, Err *err)
 {
-    DeckState deck = {.inlets = {.names = {.what = "JOINTINLET"}, .enters = true},
+    DeckState deck = {.inlets = {.names = {.what = "JOINTINLET"}, .is_inlet = true},
                       .outlets = {.names = {.what = "JOINTOUTLET"}}};
     DialectReader reader = {.dialect = &dialect,
                             .graph = graph,
                             .own = &deck,
                             .points = {.what = "NODE"},
-                            .segments = {.what = "SEGMENT of number"}};
+                            .segments = {.what = "SEGMENT number"}};
     Status status = STATUS_OK;
     graph->unit = LENGTH_CM;
     graph->is_named = true;
@@ -200,13 +204,14 @@ done:
     release_lists(&deck.inlets);
     release_lists(&deck.outlets);
     ARRAY_RELEASE(&deck.joint);
-    ARRAY_RELEASE(&deck.word);
+    ARRAY_RELEASE(&deck.segment_names);
     return status;
 }
 
 /* ---- writing ---- */
 
-/* A tree that is written. Node i is NODE i, and its segment is SEGMENT i - 1. */
+/* A tree that is being written. Node 0 is the root. Node i is NODE i, and its segment is SEGMENT
+ * i - 1. */
 typedef struct DeckTree {
     const Tree *tree;
     Text *text;
@@ -291,17 +296,17 @@ static double deck_value(const Tree *tree, size_t k, size_t i, double otherwise)
  * outlet area, to 1e-9, which is above the rounding errors of the conversion. */
 static void put_segment(const DeckTree *deck, size_t i)
 {
-    enum { ELEMENTS_OF_A_SEGMENT = 5 };
+    enum { ELEMENTS_OF_A_SEGMENT = 5 }; /* finite elements along a segment; reason not recorded */
     const Tree *tree = deck->tree;
     double radius = cm_from_mm(tree->radius_mm[i]), area = PI * radius * radius;
     double outlet = deck_value(tree, OUT_AREA, i, area);
-    bool as_read = fabs(outlet - area) <= 1e-9 * area;
+    bool is_unchanged = fabs(outlet - area) <= 1e-9 * area;
     text_printf(deck->text, "SEGMENT segment%d %zu", tree->id[i], i - 1);
     put_number(deck->text, deck_value(tree, LENGTH, i, cm_from_mm(tree_segment_length(tree, i))));
     text_printf(deck->text, " %.0f %d %zu", deck_value(tree, ELEMENTS, i, ELEMENTS_OF_A_SEGMENT),
                 tree->parent[i], i);
-    put_number(deck->text, as_read ? deck_value(tree, IN_AREA, i, area) : area);
-    put_number(deck->text, as_read ? outlet : area);
+    put_number(deck->text, is_unchanged ? deck_value(tree, IN_AREA, i, area) : area);
+    put_number(deck->text, is_unchanged ? outlet : area);
     text_puts(deck->text, " 0.0 BLOOD NONE 0.0 0 0");
     if (deck->children[i] == 0)
         text_printf(deck->text, " RESISTANCE R%zu\n", i);
@@ -309,8 +314,9 @@ static void put_segment(const DeckTree *deck, size_t i)
         text_puts(deck->text, " NOBOUND NONE\n");
 }
 
-/* Appends the resistance at each terminal, pressure / flow, and the constant flow at the inlet. A
- * terminal without flow gets a resistance that lets almost nothing through. */
+/* Appends the resistance at each terminal, and the constant flow at the inlet. The resistance is
+ * the terminal pressure over the flow, since the pressure beyond it is 0. A terminal without flow
+ * gets a resistance of 1e12 dyn s/cm5, which lets almost nothing through. */
 static void put_tables(const DeckTree *deck)
 {
     for (size_t i = 1; i < deck->tree->n; i++) {
@@ -328,8 +334,13 @@ static void put_tables(const DeckTree *deck)
     text_puts(deck->text, "\nENDDATATABLE\n");
 }
 
-/* Appends the material and the options of the solver. The walls are as stiff as in the solver's own
- * test cases of rigid vessels. */
+/* Appends the material and the options of the solver. The material has the density 1.06 g/cm3, the
+ * viscosity in poise, the reference pressure 0, the exponent 2 of the velocity profile, and k1, k2
+ * and k3 of Olufsen's law for the stiffness of walls. These three are those of the solver's own
+ * test cases of rigid vessels. The default viscosity, 4 cP, is a usual value for blood. The options
+ * of the solver are the time step 0.001 s, output every 100 steps, 1000 steps, 2 quadrature points,
+ * the table and kind of the inlet's condition, the tolerance 1e-6, a formulation and a
+ * stabilisation. Reasons for the options are not recorded. */
 static void put_material(const DeckTree *deck)
 {
     const TreeMeta *meta = &deck->tree->meta;
@@ -355,8 +366,8 @@ static Status check_tree(const DeckTree *deck, Err *err)
     return STATUS_OK;
 }
 
-/* Chooses the flow and the pressure. A comment in the deck states which of them the tree lacks. The
- * values 1 cm3/s and 60 mmHg are placeholders; reasons not recorded. */
+/* Chooses the flow and the pressure. A comment in the deck states which of the two the tree lacks.
+ * Then 1 cm3/s and 60 mmHg are placeholders; reasons for these values are not recorded. */
 static void choose_flow(DeckTree *deck)
 {
     const TreeMeta *meta = &deck->tree->meta;
